@@ -74,7 +74,11 @@ def recognise_once() -> Callable[..., object]:
 
 
 @pytest.fixture(autouse=True)
-def folders_of_examples(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.MonkeyPatch) -> None:
+def folders_of_examples(
+    request: pytest.FixtureRequest,
+    tmp_path_factory: pytest.TempPathFactory,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     """Let examples of docstrings find the data set `falls`, and `recognised`, what was recognised of it, where they name them."""
     item = request.node
     if not isinstance(item, DoctestItem) or not _says(item, '"falls"', '"recognised"'):

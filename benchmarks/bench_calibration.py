@@ -1,4 +1,5 @@
-"""Calibration of the paper's five impacts, of a range of 200 speeds, and others: CPU time on one core.
+"""Calibration of the paper's five impacts, of a range of 200 speeds, and others: CPU time on one
+core.
 
 Asked: the five impacts within 1 s, 200 speeds within 5 s.
 """
@@ -7,7 +8,8 @@ from __future__ import annotations
 
 import os
 
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before NumPy is loaded: small matrices gain nothing from threads
+# before NumPy is loaded: small matrices gain nothing from threads
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import time
 from collections.abc import Callable
@@ -47,8 +49,12 @@ def main() -> None:
     vi.calibrate(MODEL, THEORY)  # imports
     rows = {
         "the paper's five impacts": lambda: vi.calibrate(MODEL, THEORY),
-        "200 speeds from 0.5 to 10 m/s": lambda: vi.calibrate(MODEL, THEORY, speeds=np.linspace(0.5, 10.0, 200)),
-        "rebound and force, weighted": lambda: vi.calibrate(MODEL, THEORY, weights={"separation_speed": 1.0, "max_force": 0.5}),
+        "200 speeds from 0.5 to 10 m/s": lambda: vi.calibrate(
+            MODEL, THEORY, speeds=np.linspace(0.5, 10.0, 200)
+        ),
+        "rebound and force, weighted": lambda: vi.calibrate(
+            MODEL, THEORY, weights={"separation_speed": 1.0, "max_force": 0.5}
+        ),
         "four measured heights": measured,
         "four measured heights, 400 draws": lambda: measured(bootstrap=400),
     }

@@ -1,16 +1,18 @@
-"""What long runs take, beside what is foretold of them: CPU time and peak memory, each in a process of its own.
+"""What long runs take, beside what is foretold of them: CPU time and peak memory, each in a process
+of its own.
 
     python benchmarks/bench_costs.py [all]      "all" adds 57,000 impacts, which take minutes
 
-Before histories were packed, structures taken apart and times of samples left out they took: 57,000 impacts 280 s and 2.9 GB, 600 s of a
-sensor 14 s and 2.1 GB, 300 modes of a sphere 125 s and 2.8 GB.
+Before histories were packed, structures taken apart and times of samples left out they took: 57,000
+impacts 280 s and 2.9 GB, 600 s of a sensor 14 s and 2.1 GB, 300 modes of a sphere 125 s and 2.8 GB.
 """
 
 from __future__ import annotations
 
 import os
 
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before NumPy is loaded: what is measured is one core
+# before NumPy is loaded: what is measured is one core
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import resource
 import subprocess
@@ -45,7 +47,10 @@ VIBRATING: dict[str, Any] = {
 }
 CASES: dict[str, dict[str, Any]] = {
     "5,700 impacts, to rest": BOUNCING,
-    "57,000 impacts, to rest": {**BOUNCING, "contact": {"law": "lankarani-nikravesh", "restitution": 0.9999}},
+    "57,000 impacts, to rest": {
+        **BOUNCING,
+        "contact": {"law": "lankarani-nikravesh", "restitution": 0.9999},
+    },
     "600 s, a sensor of 50 kHz": VIBRATING,
     "300 modes of a sphere": {
         **BOUNCING,
@@ -67,7 +72,10 @@ def measure(name: str) -> None:
         vi.save_result(vi.simulate(case), Path(folder, "result"))
         size = sum(file.stat().st_size for file in Path(folder).rglob("*") if file.is_file()) / 1e6
     peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e3
-    print(f"{name:28} {time.process_time() - begun:7.1f} s CPU {peak:7.0f} MB {size:7.0f} MB on disk", flush=True)
+    print(
+        f"{name:28} {time.process_time() - begun:7.1f} s CPU {peak:7.0f} MB {size:7.0f} MB on disk",
+        flush=True,
+    )
     for sentence in told:
         print(f"  foretold: {sentence}", flush=True)
 
@@ -78,7 +86,11 @@ def main() -> None:
         if name.startswith("57") and "all" not in sys.argv:
             continue
         with tempfile.TemporaryDirectory() as store:
-            subprocess.run([sys.executable, __file__, "--one", name], check=True, env={**os.environ, "VIBROIMPACT_STORE": store})
+            subprocess.run(
+                [sys.executable, __file__, "--one", name],
+                check=True,
+                env={**os.environ, "VIBROIMPACT_STORE": store},
+            )
 
 
 if __name__ == "__main__":

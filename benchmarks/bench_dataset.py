@@ -1,8 +1,10 @@
-"""Falls of the shipped populations on elastic plates: CPU time of a fall, beside the least work that its numbers need.
+"""Falls of the shipped populations on elastic plates: CPU time of a fall, beside the least work
+that its numbers need.
 
-The median of several plates, in one process; the machine may be shared and noisy. The least work counts, in double precision,
-what no way around is known for: every mode in every sample that is kept (two flops), and in every sample of the finer rate at which the
-range of an accelerometer is followed while the sphere touches.
+The median of several plates, in one process; the machine may be shared and noisy. The least work
+counts, in double precision, what no way around is known for: every mode in every sample that is
+kept (two flops), and in every sample of the finer rate at which the range of an accelerometer is
+followed while the sphere touches.
 
     OPENBLAS_NUM_THREADS=1 python benchmarks/bench_dataset.py [falls on each plate]
 """
@@ -11,7 +13,8 @@ from __future__ import annotations
 
 import os
 
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before NumPy is loaded: small matrices gain nothing from threads
+# before NumPy is loaded: small matrices gain nothing from threads
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import resource
 import statistics
@@ -47,7 +50,9 @@ def flops_per_second() -> float:
 
 
 def least_flops(case: vi.Case, duration: float, window: float) -> tuple[float, float]:
-    """Return the flops of the samples that are kept, and of those at the finer rate during a contact of some duration [s]."""
+    """Return the flops of the samples that are kept, and of those at the finer rate
+    during a contact of some duration [s].
+    """
     modes = int(case.plate.modes or 0)
     kept = sum(2.0 * modes * sensor.rate * window for sensor in case.sensors)
     fine = 0.0
@@ -60,7 +65,8 @@ def least_flops(case: vi.Case, duration: float, window: float) -> tuple[float, f
 
 def main() -> None:
     rate, count = flops_per_second(), int(sys.argv[1]) if len(sys.argv) > 1 else 64
-    os.environ["VIBROIMPACT_STORE"] = tempfile.mkdtemp(prefix="bench-dataset-")  # empty: every plate is new
+    # empty: every plate is new
+    os.environ["VIBROIMPACT_STORE"] = tempfile.mkdtemp(prefix="bench-dataset-")
     for name in ("signals:coal-gangue", "signals:river-plate"):
         sweep = vi.load_sweep(name)
         assert sweep.population is not None
@@ -75,18 +81,38 @@ def main() -> None:
             static_compliance(recipe, (0.0, 0.0))  # which factorises the plate
             once.append(processor_time() - begun)
             begun = processor_time()
-            found = compute_points(sweep.table, sweep.section.keep, first, sweep.plan.points(first, count), sweep.window)
+            found = compute_points(
+                sweep.table,
+                sweep.section.keep,
+                first,
+                sweep.plan.points(first, count),
+                sweep.window,
+            )
             each.append((processor_time() - begun) / count)
             assert not found.failures
             durations.append(float(np.median(found.arrays["first_duration_s"])))
         fall, plate_time = statistics.median(each), statistics.median(once[1:])
-        kept, fine = least_flops(sweep.case_of(0), statistics.median(durations), sweep.window.length)
+        kept, fine = least_flops(
+            sweep.case_of(0), statistics.median(durations), sweep.window.length
+        )
         least, whole = (kept + fine) / rate, fall + plate_time / on_a_plate
-        print(f"{name}: {1e3 * fall:.1f} ms of user CPU a fall (median of {PLATES} plates, {count} falls on each)")
-        print(f"  and {plate_time:.2f} s a plate, of {on_a_plate} falls: {1e3 * whole:.1f} ms a fall in all")
+        print(
+            f"{name}: {1e3 * fall:.1f} ms of user CPU a fall (median of {PLATES} plates, "
+            f"{count} falls on each)"
+        )
+        print(
+            f"  and {plate_time:.2f} s a plate, of {on_a_plate} falls: {1e3 * whole:.1f} "
+            "ms a fall in all"
+        )
         print(f"  100,000 falls on two cores: {whole * 1e5 / 7200.0:.2f} h")
-        print(f"  least work: {1e-6 * kept:.2f} Mflop for the samples kept, {1e-6 * fine:.2f} for the contact at the finer rate,")
-        print(f"  {1e3 * least:.2f} ms at {1e-9 * rate:.1f} Gflop/s of a matrix times a vector: a fall takes {fall / least:.0f} times that")
+        print(
+            f"  least work: {1e-6 * kept:.2f} Mflop for the samples kept, "
+            f"{1e-6 * fine:.2f} for the contact at the finer rate,"
+        )
+        print(
+            f"  {1e3 * least:.2f} ms at {1e-9 * rate:.1f} Gflop/s of a matrix times a "
+            f"vector: a fall takes {fall / least:.0f} times that"
+        )
     print(f"largest memory: {resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024:.0f} MiB")
 
 

@@ -1,4 +1,5 @@
-"""How time and memory grow: exponents over rows of a table, samples, impacts, modes and duration. Each measurement is a process of its own.
+"""How time and memory grow: exponents over rows of a table, samples, impacts, modes and duration.
+Each measurement is a process of its own.
 
 python benchmarks/bench_growth.py [NAME ...]
 """
@@ -25,7 +26,13 @@ RIGID: dict[str, Any] = {
     "contact": {"law": "hunt-crossley", "restitution": 0.7},
     "run": {"impacts": 1},
 }
-PLATE = {"size": [0.3, 0.25, 0.01], "material": "steel", "model": "elastic", "supports": "clamped", "damping": 0.01}
+PLATE = {
+    "size": [0.3, 0.25, 0.01],
+    "material": "steel",
+    "model": "elastic",
+    "supports": "clamped",
+    "damping": 0.01,
+}
 
 
 def calibrated_rows(rows: int, folder: Path) -> None:
@@ -44,10 +51,20 @@ def friction_rows(rows: int, folder: Path) -> None:
     """Oblique impacts in a table, from which friction is fitted."""
     random = np.random.default_rng(1)
     speed, along = random.uniform(1.0, 8.0, rows), random.uniform(0.5, 6.0, rows)
-    after = np.maximum(along - 0.34 * speed, 5.0 / 7.0 * along) + 0.02 * random.standard_normal(rows)
-    lines = [f"{row[0]:.6f},{row[1]:.6f},{row[2]:.6f}\n" for row in zip(speed, along, after, strict=True)]
-    (folder / "table.csv").write_text("approach_speed_m_s,approach_velocity_x_m_s,separation_velocity_x_m_s\n" + "".join(lines))
-    contact = {"law": "newton", "restitution": 0.7, "friction": {"law": "coulomb", "coefficient": 0.1}}
+    after = np.maximum(along - 0.34 * speed, 5.0 / 7.0 * along) + 0.02 * random.standard_normal(
+        rows
+    )
+    lines = [
+        f"{row[0]:.6f},{row[1]:.6f},{row[2]:.6f}\n" for row in zip(speed, along, after, strict=True)
+    ]
+    (folder / "table.csv").write_text(
+        "approach_speed_m_s,approach_velocity_x_m_s,separation_velocity_x_m_s\n" + "".join(lines)
+    )
+    contact = {
+        "law": "newton",
+        "restitution": 0.7,
+        "friction": {"law": "coulomb", "coefficient": 0.1},
+    }
     section = {"parameter": ["friction.coefficient"], "target": {"file": str(folder / "table.csv")}}
     case = {**RIGID, "contact": contact, "drop": {"speed": 3.0, "angle": 0.5}, "calibrate": section}
     what = vi.read_calibration(case)
@@ -58,13 +75,21 @@ def wave_samples(samples: int, folder: Path) -> None:
     """Features of a sound."""
     from scipy.io import wavfile
 
-    wavfile.write(folder / "sound.wav", 48000, (9000 * np.random.default_rng(1).standard_normal(samples)).clip(-30000, 30000).astype("i2"))
+    wavfile.write(
+        folder / "sound.wav",
+        48000,
+        (9000 * np.random.default_rng(1).standard_normal(samples)).clip(-30000, 30000).astype("i2"),
+    )
     vi.record_table(vi.read_records(folder / "sound.wav"), ["rms", "kurtosis", "spectral_centroid"])
 
 
 def impacts(number: int, folder: Path) -> None:
     """A rigid drop, simulated and written."""
-    case = {**RIGID, "contact": {"law": "hunt-crossley", "restitution": 0.999}, "run": {"impacts": number, "rest_speed": 1e-9}}
+    case = {
+        **RIGID,
+        "contact": {"law": "hunt-crossley", "restitution": 0.999},
+        "run": {"impacts": number, "rest_speed": 1e-9},
+    }
     vi.save_result(vi.simulate(vi.read_case(case)), folder / "drop")
 
 
@@ -77,14 +102,29 @@ def modes(number: int, folder: Path) -> None:
 def duration(milliseconds: int, folder: Path) -> None:
     """An elastic drop with a sensor."""
     sensor = {"name": "a", "position": [0.05, 0.03], "rate": 50e3}
-    case = {**RIGID, "plate": {**PLATE, "modes": 10}, "drop": {"speed": 1.0}, "run": {"duration": 1e-3 * milliseconds}, "sensors": [sensor]}
+    case = {
+        **RIGID,
+        "plate": {**PLATE, "modes": 10},
+        "drop": {"speed": 1.0},
+        "run": {"duration": 1e-3 * milliseconds},
+        "sensors": [sensor],
+    }
     vi.simulate(vi.read_case(case)).signals()
 
 
 def sensors(number: int, folder: Path) -> None:
     """An elastic drop with so many sensors."""
-    every = [{"name": f"a{one}", "position": [0.1 * one / number, 0.03], "rate": 50e3} for one in range(number)]
-    case = {**RIGID, "plate": {**PLATE, "modes": 10}, "drop": {"speed": 1.0}, "run": {"duration": 0.2}, "sensors": every}
+    every = [
+        {"name": f"a{one}", "position": [0.1 * one / number, 0.03], "rate": 50e3}
+        for one in range(number)
+    ]
+    case = {
+        **RIGID,
+        "plate": {**PLATE, "modes": 10},
+        "drop": {"speed": 1.0},
+        "run": {"duration": 0.2},
+        "sensors": every,
+    }
     vi.simulate(vi.read_case(case)).signals()
 
 
@@ -100,8 +140,15 @@ MEASURED: dict[str, tuple[Callable[[int, Path], None], tuple[int, ...]]] = {
 
 
 def measured(name: str, size: int) -> tuple[float, float]:
-    """Return processor time [s] and largest memory [MB] of a process of its own, less those of one that only imports the program."""
-    found = subprocess.run([sys.executable, __file__, "--one", name, str(size)], check=True, capture_output=True, text=True)
+    """Return processor time [s] and largest memory [MB] of a process of its own, less
+    those of one that only imports the program.
+    """
+    found = subprocess.run(
+        [sys.executable, __file__, "--one", name, str(size)],
+        check=True,
+        capture_output=True,
+        text=True,
+    )
     time, memory = map(float, found.stdout.split()[-2:])
     return time, memory
 
@@ -112,7 +159,10 @@ def one(name: str, size: int) -> None:
     with TemporaryDirectory() as folder:
         MEASURED[name][0](size, Path(folder))
     used = resource.getrusage(resource.RUSAGE_SELF)
-    print(used.ru_utime + used.ru_stime - begun.ru_utime - begun.ru_stime, (used.ru_maxrss - begun.ru_maxrss) / 1024.0)
+    print(
+        used.ru_utime + used.ru_stime - begun.ru_utime - begun.ru_stime,
+        (used.ru_maxrss - begun.ru_maxrss) / 1024.0,
+    )
 
 
 def main() -> None:
@@ -124,8 +174,13 @@ def main() -> None:
             math.log(max(last, 1e-3) / max(before, 1e-3)) / math.log(sizes[-1] / sizes[-2])
             for before, last in zip(*found[-2:], strict=True)
         ]
-        each = ", ".join(f"{size:,}: {time:.2f} s {memory:.0f} MB" for size, (time, memory) in zip(sizes, found, strict=True))
-        print(f"{name:<9} time ~ n^{grown[0]:.2f}, memory ~ n^{grown[1]:.2f}   ({each})", flush=True)
+        each = ", ".join(
+            f"{size:,}: {time:.2f} s {memory:.0f} MB"
+            for size, (time, memory) in zip(sizes, found, strict=True)
+        )
+        print(
+            f"{name:<9} time ~ n^{grown[0]:.2f}, memory ~ n^{grown[1]:.2f}   ({each})", flush=True
+        )
 
 
 if __name__ == "__main__":

@@ -1,14 +1,17 @@
-"""Modes of elastic bodies: assembly, modes, memory, and a load from the store. CPU time on one core, each row in a process of its own.
+"""Modes of elastic bodies: assembly, modes, memory, and a load from the store. CPU time on one
+core, each row in a process of its own.
 
-Asked: 62,109 degrees of freedom (520 x 420 x 8 mm as 60 x 48 x 1 twenty-node bricks): assembly 2 s, 60 modes 20 s, 1.5 GB at most; 105,633
-degrees of freedom 40 s; the plate element 2 s at the same accuracy; a stored basis loads in 50 ms.
+Asked: 62,109 degrees of freedom (520 x 420 x 8 mm as 60 x 48 x 1 twenty-node bricks): assembly 2 s,
+60 modes 20 s, 1.5 GB at most; 105,633 degrees of freedom 40 s; the plate element 2 s at the same
+accuracy; a stored basis loads in 50 ms.
 """
 
 from __future__ import annotations
 
 import os
 
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before NumPy is loaded: what is measured is one core
+# before NumPy is loaded: what is measured is one core
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import resource
 import subprocess
@@ -46,7 +49,9 @@ def measure(name: str) -> None:
     import skfem  # noqa: F401  # its import is not assembly
 
     begin = time.process_time()
-    structure = plate_structure(mesh, STEEL, SIZE[2]) if mesh.is_flat else solid_structure(mesh, STEEL)
+    structure = (
+        plate_structure(mesh, STEEL, SIZE[2]) if mesh.is_flat else solid_structure(mesh, STEEL)
+    )
     assembled = time.process_time()
     held = held_by(structure)
     elastic = ElasticSystem(held.stiffness, held.mass, held.rigid, held.order)
@@ -67,7 +72,8 @@ def measure(name: str) -> None:
     memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e6
     first, last = modes.angular_frequencies[[0, -1]] / (2.0 * np.pi)
     print(
-        f"{name:22} {held.stiffness.shape[0]:7d} {assembled - begin:9.2f} {factorised - assembled:9.2f} {done - begin:9.2f} "
+        f"{name:22} {held.stiffness.shape[0]:7d} {assembled - begin:9.2f} "
+        f"{factorised - assembled:9.2f} {done - begin:9.2f} "
         f"{memory:9.2f} {1e3 * float(np.median(loads)):9.1f} {first:10.3f} {last:10.2f}",
         flush=True,
     )
@@ -77,9 +83,14 @@ def main() -> None:
     """Print a row a mesh."""
     print(f"{MODES} modes of a free steel plate of 520 x 420 x 8 mm")
     print(
-        f"{'mesh':22} {'dofs':>7} {'assembly':>9} {'factors':>9} {'all':>9} {'memory':>9} {'load':>9} {'mode 1':>10} {f'mode {MODES}':>10}"
+        f"{'mesh':22} {'dofs':>7} {'assembly':>9} {'factors':>9} {'all':>9} {'memory':>9} "
+        f"{'load':>9} {'mode 1':>10} {f'mode {MODES}':>10}"
     )
-    print(f"{'':22} {'':>7} {'[s]':>9} {'[s]':>9} {'[s]':>9} {'[GB]':>9} {'[ms]':>9} {'[Hz]':>10} {'[Hz]':>10}", flush=True)
+    print(
+        f"{'':22} {'':>7} {'[s]':>9} {'[s]':>9} {'[s]':>9} {'[GB]':>9} {'[ms]':>9} "
+        f"{'[Hz]':>10} {'[Hz]':>10}",
+        flush=True,
+    )
     for name in MESHES:
         subprocess.run([sys.executable, __file__, name], check=True)
 

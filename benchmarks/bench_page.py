@@ -1,8 +1,10 @@
-"""The pages in Debian's Chromium: from a slider's move to the last chart drawn on the live page, and the opening of a report.
+"""The pages in Debian's Chromium: from a slider's move to the last chart drawn on the live page,
+and the opening of a report.
 
     python benchmarks/bench_page.py
 
-It needs Playwright (`pip install playwright`; no browser is downloaded) and Chromium, whose path VIBROIMPACT_CHROMIUM may give.
+It needs Playwright (`pip install playwright`; no browser is downloaded) and Chromium, whose path
+VIBROIMPACT_CHROMIUM may give.
 """
 
 from __future__ import annotations
@@ -17,7 +19,14 @@ import time
 from pathlib import Path
 
 MOVES, SECONDS, OPENINGS = 50, 5, 7
-ARGUMENTS = ["--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-sync"]
+ARGUMENTS = [
+    "--no-sandbox",
+    "--disable-gpu",
+    "--disable-quic",
+    "--no-first-run",
+    "--disable-background-networking",
+    "--disable-sync",
+]
 MOVE = """async (moves) => {
   const range = document.querySelector('[data-key="drop.height"] input[type=range]'), times = [];
   for (let move = 0; move < moves; move++) {
@@ -56,10 +65,14 @@ def moves(browser, address: str, case: str) -> None:
         page.wait_for_timeout(500)
         times = sorted(page.evaluate(MOVE, MOVES))
         median = statistics.median(times)
-        seen = page.evaluate("[...vibroimpact.live.charts.values()].filter((chart) => chart.seen).length")
+        seen = page.evaluate(
+            "[...vibroimpact.live.charts.values()].filter((chart) => chart.seen).length"
+        )
         print(
-            f"{case}: a move of the height until the last of {seen} charts in the window is drawn: median {median:.0f} ms "
-            f"of {MOVES}, {times[0]:.0f} to {times[-1]:.0f} ms; {page.evaluate(HOLD, SECONDS):.1f} pictures a second while it moves"
+            f"{case}: a move of the height until the last of {seen} charts in the window "
+            f"is drawn: median {median:.0f} ms "
+            f"of {MOVES}, {times[0]:.0f} to {times[-1]:.0f} ms; "
+            f"{page.evaluate(HOLD, SECONDS):.1f} pictures a second while it moves"
         )
     page.close()
 
@@ -76,7 +89,10 @@ def opening(browser, report: Path) -> None:
         times.append(time.perf_counter() - begin)
         context.close()
     size, median = report.stat().st_size / 1e6, statistics.median(times)
-    print(f"report of paper:type3: {size:.2f} MB, opened and drawn in {median:.2f} s, median of {OPENINGS}")
+    print(
+        f"report of paper:type3: {size:.2f} MB, opened and drawn in {median:.2f} s, median "
+        f"of {OPENINGS}"
+    )
 
 
 def main() -> None:
@@ -92,9 +108,16 @@ def main() -> None:
     command = [sys.executable, "-m", "vibroimpact"]
     with tempfile.TemporaryDirectory() as place, sync_playwright() as playwright:
         report = Path(place) / "type3" / "report.html"
-        subprocess.run([*command, "run", "paper:type3", "-o", str(report.parent)], check=True, capture_output=True)
+        subprocess.run(
+            [*command, "run", "paper:type3", "-o", str(report.parent)],
+            check=True,
+            capture_output=True,
+        )
         server = subprocess.Popen(
-            [*command, "serve", "--no-browser", "--port", "0"], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True
+            [*command, "serve", "--no-browser", "--port", "0"],
+            stdout=subprocess.PIPE,
+            stderr=subprocess.DEVNULL,
+            text=True,
         )
         try:
             assert server.stdout is not None

@@ -1,15 +1,18 @@
-"""The same impacts in vibroimpact, SciPy, numba, LAMMPS and EXUDYN: CPU time and error; prints the page of benchmarks.
+"""The same impacts in vibroimpact, SciPy, numba, LAMMPS and EXUDYN: CPU time and error; prints the
+page of benchmarks.
 
 Programs that are not installed are left out, with a note.
 
-    python benchmarks/bench_programs.py [docs/benchmarks.md ["a virtual machine, two cores of an AMD EPYC"]]
+    python benchmarks/bench_programs.py [docs/benchmarks.md ["a virtual machine, two cores of an AMD
+    EPYC"]]
 """
 
 from __future__ import annotations
 
 import os
 
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before NumPy is loaded: small matrices gain nothing from threads
+# before NumPy is loaded: small matrices gain nothing from threads
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import importlib.metadata
 import importlib.util
@@ -101,8 +104,12 @@ def coefficients(law: vi.ContactLaw) -> tuple[float, float]:
     return float(law.forces(1.0, 0.0, 1.0)[0]), float(law.forces(1.0, 1.0, 1.0)[1])
 
 
-def by_scipy(mass: float, radius: float, height: float, stiffness: float, damping: float, tolerance: float) -> float:
-    """Return the fifth rebound height [m]: flight in closed form, DOP853 from touch to zero indentation, the law in plain floats."""
+def by_scipy(
+    mass: float, radius: float, height: float, stiffness: float, damping: float, tolerance: float
+) -> float:
+    """Return the fifth rebound height [m]: flight in closed form, DOP853 from touch to
+    zero indentation, the law in plain floats.
+    """
     gravity = 9.80665
     speed = math.sqrt(2.0 * gravity * (height - radius))
 
@@ -116,13 +123,23 @@ def by_scipy(mass: float, radius: float, height: float, stiffness: float, dampin
 
     apart.terminal, apart.direction = True, -1  # type: ignore[attr-defined]
     for _ in range(IMPACTS):
-        run = solve_ivp(motion, (0.0, 0.01), (0.0, speed), method="DOP853", rtol=tolerance, atol=1e-3 * tolerance, events=apart)
+        run = solve_ivp(
+            motion,
+            (0.0, 0.01),
+            (0.0, speed),
+            method="DOP853",
+            rtol=tolerance,
+            atol=1e-3 * tolerance,
+            events=apart,
+        )
         speed = -run.y[1, -1]
     return radius + speed**2 / (2.0 * gravity)
 
 
 def numba_loop() -> Callable[..., float]:
-    """Return a compiled fourth-order Runge-Kutta loop: the rebound speed after an impact; release by interpolation within a step."""
+    """Return a compiled fourth-order Runge-Kutta loop: the rebound speed after an impact;
+    release by interpolation within a step.
+    """
     from numba import njit
 
     @njit
@@ -130,13 +147,25 @@ def numba_loop() -> Callable[..., float]:
         x, v = 0.0, speed
         while True:
             x1, v1 = x, v
-            a1 = 9.80665 - (stiffness * max(x1, 0.0) ** 1.5 + damping * max(x1, 0.0) ** 0.25 * v1) / mass
+            a1 = (
+                9.80665
+                - (stiffness * max(x1, 0.0) ** 1.5 + damping * max(x1, 0.0) ** 0.25 * v1) / mass
+            )
             x2, v2 = x + 0.5 * step * v1, v + 0.5 * step * a1
-            a2 = 9.80665 - (stiffness * max(x2, 0.0) ** 1.5 + damping * max(x2, 0.0) ** 0.25 * v2) / mass
+            a2 = (
+                9.80665
+                - (stiffness * max(x2, 0.0) ** 1.5 + damping * max(x2, 0.0) ** 0.25 * v2) / mass
+            )
             x3, v3 = x + 0.5 * step * v2, v + 0.5 * step * a2
-            a3 = 9.80665 - (stiffness * max(x3, 0.0) ** 1.5 + damping * max(x3, 0.0) ** 0.25 * v3) / mass
+            a3 = (
+                9.80665
+                - (stiffness * max(x3, 0.0) ** 1.5 + damping * max(x3, 0.0) ** 0.25 * v3) / mass
+            )
             x4, v4 = x + step * v3, v + step * a3
-            a4 = 9.80665 - (stiffness * max(x4, 0.0) ** 1.5 + damping * max(x4, 0.0) ** 0.25 * v4) / mass
+            a4 = (
+                9.80665
+                - (stiffness * max(x4, 0.0) ** 1.5 + damping * max(x4, 0.0) ** 0.25 * v4) / mass
+            )
             before, speed_before = x, v
             x += step / 6.0 * (v1 + 2.0 * v2 + 2.0 * v3 + v4)
             v += step / 6.0 * (a1 + 2.0 * a2 + 2.0 * a3 + a4)
@@ -144,7 +173,9 @@ def numba_loop() -> Callable[..., float]:
                 return -(speed_before + (v - speed_before) * before / (before - x))
 
     @njit
-    def rebounds(speeds: np.ndarray, mass: float, stiffness: float, damping: float, step: float) -> np.ndarray:
+    def rebounds(
+        speeds: np.ndarray, mass: float, stiffness: float, damping: float, step: float
+    ) -> np.ndarray:
         found = np.empty_like(speeds)
         for number in range(len(speeds)):
             found[number] = rebound(speeds[number], mass, stiffness, damping, step)
@@ -154,31 +185,45 @@ def numba_loop() -> Callable[..., float]:
 
 
 def by_lammps(deck: str, steps: int) -> tuple[float, float]:
-    """Return the fifth rebound height [m] and the CPU time [ms] of the exported deck with so many steps a contact."""
+    """Return the fifth rebound height [m] and the CPU time [ms] of the exported deck with
+    so many steps a contact.
+    """
     (step,) = (float(one) for one in re.findall(r"timestep +(\S+)  # 20000 steps", deck))
     deck = deck.replace(f"{step!r}  # 20000", f"{step * 20000 / steps!r}  # {steps}").replace(
         "run             400000", f"run             {20 * steps}"
     )
     program = [str(Path(sys.executable).parent / "lmp"), "-log", "none", "-in", "rock.in"]
     height, whole = _run(program, "rock.in", deck)
-    return height, whole - statistics.median(_run(program, "rock.in", "print 'impact 5: rebound height 0 m'")[1] for _ in range(3))
+    return height, whole - statistics.median(
+        _run(program, "rock.in", "print 'impact 5: rebound height 0 m'")[1] for _ in range(3)
+    )
 
 
 def by_exudyn(model: str) -> tuple[float, float]:
-    """Return the fifth rebound height [m] and the CPU time [ms] of the exported model, imports excluded."""
+    """Return the fifth rebound height [m] and the CPU time [ms] of the exported model,
+    imports excluded.
+    """
     height, whole = _run([sys.executable, "rock.py"], "rock.py", model)
     imports = "import exudyn, exudyn.itemInterface\nprint('impact 5: rebound height 0 m')"
-    return height, whole - statistics.median(_run([sys.executable, "rock.py"], "rock.py", imports)[1] for _ in range(3))
+    return height, whole - statistics.median(
+        _run([sys.executable, "rock.py"], "rock.py", imports)[1] for _ in range(3)
+    )
 
 
 def _run(command: list[str], name: str, text: str) -> tuple[float, float]:
-    """Return the fifth rebound height [m] that a program prints, and the CPU time of its process [ms]."""
+    """Return the fifth rebound height [m] that a program prints, and the CPU time of its
+    process [ms].
+    """
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     with tempfile.TemporaryDirectory() as folder:
         (Path(folder) / name).write_text(text, encoding="utf-8")
-        printed = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=True).stdout
+        printed = subprocess.run(
+            command, cwd=folder, capture_output=True, text=True, check=True
+        ).stdout
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return float(LAST_HEIGHT.findall(printed)[-1]), 1e3 * (after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime)
+    return float(LAST_HEIGHT.findall(printed)[-1]), 1e3 * (
+        after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+    )
 
 
 def shown(value: float, digits: int) -> str:
@@ -188,7 +233,10 @@ def shown(value: float, digits: int) -> str:
 
 def table(rows: list[Row], quantity: str) -> str:
     """Return rows as Markdown, with the ratio to the first."""
-    lines = [f"| | steps per contact | CPU [ms] | relative to vibroimpact | error in {quantity} |", "|---|---|---|---|---|"]
+    lines = [
+        f"| | steps per contact | CPU [ms] | relative to vibroimpact | error in {quantity} |",
+        "|---|---|---|---|---|",
+    ]
     for one in rows:
         took, ratio = shown(one.milliseconds, 3), shown(one.milliseconds / rows[0].milliseconds, 2)
         lines.append(f"| {one.program} | {one.steps} | {took} | {ratio} | {one.error:.0e} |")
@@ -204,7 +252,12 @@ def one_drop(runs: int, folder: Path) -> list[Row]:
     """Return the rows of one drop with five impacts."""
     case = vi.read_case(CASE)
     problem = case.to_problem()
-    drop = float(problem.sphere.mass), float(problem.sphere.contact_offset), 4.0, *coefficients(problem.law_of(0))
+    drop = (
+        float(problem.sphere.mass),
+        float(problem.sphere.contact_offset),
+        4.0,
+        *coefficients(problem.law_of(0)),
+    )
     exact = by_scipy(*drop, 1e-13)
 
     def off(height: float) -> float:
@@ -212,22 +265,47 @@ def one_drop(runs: int, folder: Path) -> list[Row]:
 
     rows = []
     for tolerance in (1e-9, 1e-6):
-        stated = vi.read_case({**CASE, "run": {"impacts": IMPACTS, "tolerance": tolerance}}).to_problem()
+        stated = vi.read_case(
+            {**CASE, "run": {"impacts": IMPACTS, "tolerance": tolerance}}
+        ).to_problem()
         found = float(vi.simulate(stated).impacts["rebound_height_m"][4])
-        rows.append(Row(f"vibroimpact, tolerance {tolerance:.0e}", "", cpu_ms(lambda stated=stated: vi.simulate(stated), runs), off(found)))
+        rows.append(
+            Row(
+                f"vibroimpact, tolerance {tolerance:.0e}",
+                "",
+                cpu_ms(lambda stated=stated: vi.simulate(stated), runs),
+                off(found),
+            )
+        )
     for tolerance in (1e-9, 1e-6):
         took = cpu_ms(lambda tolerance=tolerance: by_scipy(*drop, tolerance), max(runs // 3, 3))
-        rows.append(Row(f"SciPy, DOP853, rtol {tolerance:.0e}", "", took, off(by_scipy(*drop, tolerance))))
+        rows.append(
+            Row(f"SciPy, DOP853, rtol {tolerance:.0e}", "", took, off(by_scipy(*drop, tolerance)))
+        )
     exported = folder / "run"
     vi.save_result(vi.simulate(case), exported)
     if has("lammps"):
-        (deck,) = (path for path in vi.export_result(exported, "lammps", folder / "lammps") if path.suffix == ".in")
+        (deck,) = (
+            path
+            for path in vi.export_result(exported, "lammps", folder / "lammps")
+            if path.suffix == ".in"
+        )
         for steps in (100, 1000, 20_000):
-            found, took = zip(*(by_lammps(deck.read_text(encoding="utf-8"), steps) for _ in range(3)), strict=True)
-            rows.append(Row("LAMMPS, velocity Verlet", f"{steps:,}", statistics.median(took), off(found[0])))
+            found, took = zip(
+                *(by_lammps(deck.read_text(encoding="utf-8"), steps) for _ in range(3)), strict=True
+            )
+            rows.append(
+                Row("LAMMPS, velocity Verlet", f"{steps:,}", statistics.median(took), off(found[0]))
+            )
     if has("exudyn"):
-        (model,) = (path for path in vi.export_result(exported, "exudyn", folder / "exudyn") if path.suffix == ".py")
-        found, took = zip(*(by_exudyn(model.read_text(encoding="utf-8")) for _ in range(3)), strict=True)
+        (model,) = (
+            path
+            for path in vi.export_result(exported, "exudyn", folder / "exudyn")
+            if path.suffix == ".py"
+        )
+        found, took = zip(
+            *(by_exudyn(model.read_text(encoding="utf-8")) for _ in range(3)), strict=True
+        )
         rows.append(Row("EXUDYN, as exported", "", statistics.median(took), off(found[0])))
     return rows
 
@@ -236,12 +314,22 @@ def many_drops(runs: int) -> tuple[list[Row], float]:
     """Return the rows of many drops with one impact, and what numba takes to compile [s]."""
     case = vi.read_case({**CASE, "run": {"impacts": 1}})
     problem = case.to_problem()
-    law, mass, radius = problem.law_of(0), float(problem.sphere.mass), float(problem.sphere.contact_offset)
+    law, mass, radius = (
+        problem.law_of(0),
+        float(problem.sphere.mass),
+        float(problem.sphere.contact_offset),
+    )
     heights = np.random.default_rng(0).uniform(0.5, 4.0, DROPS)
 
     def drops(tolerance: float) -> vi.Problem:
         return vi.Problem(
-            sphere=problem.sphere, plate=vi.rigid_plate(), laws=(law,), height=heights, impacts=1, tolerance=tolerance, gravity=9.80665
+            sphere=problem.sphere,
+            plate=vi.rigid_plate(),
+            laws=(law,),
+            height=heights,
+            impacts=1,
+            tolerance=tolerance,
+            gravity=9.80665,
         )
 
     exact = vi.tabulate(drops(1e-13)).impacts["separation_speed_m_s"][:, 0]
@@ -253,7 +341,14 @@ def many_drops(runs: int) -> tuple[list[Row], float]:
     for tolerance in (1e-9, 1e-6):
         stated = drops(tolerance)
         found = vi.tabulate(stated).impacts["separation_speed_m_s"][:, 0]
-        rows.append(Row(f"vibroimpact, tolerance {tolerance:.0e}", "", cpu_ms(lambda stated=stated: vi.tabulate(stated), runs), off(found)))
+        rows.append(
+            Row(
+                f"vibroimpact, tolerance {tolerance:.0e}",
+                "",
+                cpu_ms(lambda stated=stated: vi.tabulate(stated), runs),
+                off(found),
+            )
+        )
     if not has("numba"):
         return rows, math.nan
     begin = time.process_time()
@@ -266,7 +361,12 @@ def many_drops(runs: int) -> tuple[list[Row], float]:
     for steps in (100, 1000, 10_000):
         given = (speeds, mass, stiffness, damping, contact / steps)
         rows.append(
-            Row("numba, Runge-Kutta of order four", f"{steps:,}", cpu_ms(lambda given=given: rebounds(*given), 3), off(rebounds(*given)))
+            Row(
+                "numba, Runge-Kutta of order four",
+                f"{steps:,}",
+                cpu_ms(lambda given=given: rebounds(*given), 3),
+                off(rebounds(*given)),
+            )
         )
     return rows, compiled
 
@@ -276,8 +376,18 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as folder:
         one = one_drop(runs, Path(folder))
     many, compiled = many_drops(runs)
-    programs = {"numpy": "NumPy", "scipy": "SciPy", "numba": "numba", "lammps": "LAMMPS", "exudyn": "EXUDYN"}
-    there = [f"{shown} {importlib.metadata.version(name)}" for name, shown in programs.items() if has(name)]
+    programs = {
+        "numpy": "NumPy",
+        "scipy": "SciPy",
+        "numba": "numba",
+        "lammps": "LAMMPS",
+        "exudyn": "EXUDYN",
+    }
+    there = [
+        f"{shown} {importlib.metadata.version(name)}"
+        for name, shown in programs.items()
+        if has(name)
+    ]
     missing = [shown for name, shown in programs.items() if not has(name)]
     page = PAGE.format(
         runs=runs,
@@ -295,7 +405,8 @@ def main() -> None:
     if len(sys.argv) > 1:
         target = Path(sys.argv[1])
         before = target.read_text(encoding="utf-8") if target.exists() else ""
-        growth = before[before.find(_GROWTH) : before.find(_NEXT)] if _GROWTH in before else ""  # of bench_growth.py, and written by hand
+        # of bench_growth.py, and written by hand
+        growth = before[before.find(_GROWTH) : before.find(_NEXT)] if _GROWTH in before else ""
         target.write_text(page.replace(_NEXT, growth + _NEXT), encoding="utf-8")
     else:
         print(page)

@@ -1,4 +1,5 @@
-"""The paper reproduced: CPU and wall time of the whole command, with an empty store of modes and with a full one.
+"""The paper reproduced: CPU and wall time of the whole command, with an empty store of modes and
+with a full one.
 
 Asked are 3 minutes of CPU without stored modes, and 60 s with them.
 
@@ -9,7 +10,8 @@ from __future__ import annotations
 
 import os
 
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before NumPy is loaded: small matrices gain nothing from threads
+# before NumPy is loaded: small matrices gain nothing from threads
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import resource
 import subprocess
@@ -23,9 +25,17 @@ def run(folder: Path, store: Path) -> tuple[float, float]:
     """CPU and wall time [s] of `vibroimpact reproduce`."""
     before, begin = resource.getrusage(resource.RUSAGE_CHILDREN), time.perf_counter()
     command = [sys.executable, "-m", "vibroimpact", "reproduce", "-o", str(folder)]
-    subprocess.run(command, check=True, capture_output=True, env={**os.environ, "VIBROIMPACT_STORE": str(store)})
+    subprocess.run(
+        command,
+        check=True,
+        capture_output=True,
+        env={**os.environ, "VIBROIMPACT_STORE": str(store)},
+    )
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime, time.perf_counter() - begin
+    return (
+        after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime,
+        time.perf_counter() - begin,
+    )
 
 
 def main() -> None:

@@ -1,4 +1,5 @@
-"""Achieved restitution of many (law, mass, speed): by closed form, and by integration. CPU time on one core.
+"""Achieved restitution of many (law, mass, speed): by closed form, and by integration. CPU time on
+one core.
 
 Asked: 100,000 of a closed-form law within 1 s, of an integrated law within 60 s.
 """
@@ -7,7 +8,8 @@ from __future__ import annotations
 
 import os
 
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before NumPy is loaded: small matrices gain nothing from threads
+# before NumPy is loaded: small matrices gain nothing from threads
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import time
 from collections.abc import Callable
@@ -21,7 +23,9 @@ NUMBER = 100_000
 RANDOM = np.random.default_rng(0)
 MASS, SPEED = 10 ** RANDOM.uniform(-3, 0.5, NUMBER), 10 ** RANDOM.uniform(-1, 1.3, NUMBER)
 MODULUS = 10 ** RANDOM.uniform(9, 11, NUMBER)
-PAIR = ContactPair(MODULUS, (MASS / 6000.0) ** (1 / 3), MASS, yield_strength=3e-3 * MODULUS, poissons_ratio=0.3)
+PAIR = ContactPair(
+    MODULUS, (MASS / 6000.0) ** (1 / 3), MASS, yield_strength=3e-3 * MODULUS, poissons_ratio=0.3
+)
 
 
 def cpu_seconds(call: Callable[[], object], repeats: int) -> float:
@@ -37,7 +41,11 @@ def cpu_seconds(call: Callable[[], object], repeats: int) -> float:
 def random_law(name: str) -> vi.ContactLaw:
     """Return a law with random parameters, one a drop."""
     law = vi.find_contact_law(name)
-    given = {"restitution": RANDOM.uniform(0.3, 1.0, NUMBER)} if "restitution" in law.__dataclass_fields__ else {}
+    given = (
+        {"restitution": RANDOM.uniform(0.3, 1.0, NUMBER)}
+        if "restitution" in law.__dataclass_fields__
+        else {}
+    )
     made = law.example(PAIR)
     if name == "adams-impact":
         given = {"damping_max": 2e3 * MASS * 10 ** RANDOM.uniform(-1, 0.5, NUMBER)}
@@ -52,9 +60,15 @@ def main() -> None:
     for name in vi.contact_laws():
         law = random_law(name)
         if law.closed_form_restitution(MASS, SPEED) is None:
-            seconds, way = cpu_seconds(lambda law=law: vi.achieved_restitution(law, MASS, SPEED), 1), "integrated"
+            seconds, way = (
+                cpu_seconds(lambda law=law: vi.achieved_restitution(law, MASS, SPEED), 1),
+                "integrated",
+            )
         else:
-            seconds, way = cpu_seconds(lambda law=law: vi.achieved_restitution(law, MASS, SPEED), 3), "closed form"
+            seconds, way = (
+                cpu_seconds(lambda law=law: vi.achieved_restitution(law, MASS, SPEED), 3),
+                "closed form",
+            )
         print(f"  {name:24} {way:12} {seconds:8.3f} s   {1e6 * seconds / NUMBER:7.2f} us a drop")
 
 

@@ -1,7 +1,9 @@
-"""Studies from the file to the report: time, memory, two processes beside one, Dask beside processes.
+"""Studies from the file to the report: time, memory, two processes beside one, Dask beside
+processes.
 
-Medians and ratios of one run; the machine may be shared and noisy. Times of the chunks are wall-clock times, with workers that have
-begun; what comes after the chunks, putting together and drawing, is one process' work and told apart.
+Medians and ratios of one run; the machine may be shared and noisy. Times of the chunks are
+wall-clock times, with workers that have begun; what comes after the chunks, putting together and
+drawing, is one process' work and told apart.
 
     python benchmarks/bench_sweep.py [million]     "million" adds a study of a million drops
 """
@@ -71,17 +73,33 @@ OVER_ELASTIC: dict[str, Any] = {
 
 
 def drawn(case: dict[str, Any], over: dict[str, Any], samples: int, *keep: str) -> vi.Sweep:
-    return vi.read_sweep({**case, "sweep": {"design": "latin-hypercube", "samples": samples, "over": over, "keep": ["impacts", *keep]}})
+    return vi.read_sweep(
+        {
+            **case,
+            "sweep": {
+                "design": "latin-hypercube",
+                "samples": samples,
+                "over": over,
+                "keep": ["impacts", *keep],
+            },
+        }
+    )
 
 
 def cpu_seconds() -> float:
     """CPU time of this process and of those that it had [s]."""
-    return sum(used.ru_utime + used.ru_stime for used in map(resource.getrusage, (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)))
+    return sum(
+        used.ru_utime + used.ru_stime
+        for used in map(resource.getrusage, (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
+    )
 
 
 def peak_mib() -> tuple[float, float]:
     """Largest memory of this process, and of any that it had [MiB]."""
-    own, others = (resource.getrusage(who).ru_maxrss / 1024 for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
+    own, others = (
+        resource.getrusage(who).ru_maxrss / 1024
+        for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)
+    )
     return own, others
 
 
@@ -100,15 +118,21 @@ def whole(name: str, sweep: vi.Sweep, workers: int) -> None:
     own, others = peak_mib()
     took = time.perf_counter() - begin
     print(
-        f"{name}, {workers} process{'es' if workers > 1 else ''}: drops {done_at:.1f} s, with dataset, table and report {took:.1f} s, "
-        f"CPU {cpu_seconds() - cpu:.1f} s, {size:.0f} MiB on disk; memory so far {own:.0f} MiB, of workers {others:.0f} MiB",
+        f"{name}, {workers} process{'es' if workers > 1 else ''}: drops {done_at:.1f} s, "
+        f"with dataset, table and report {took:.1f} s, "
+        f"CPU {cpu_seconds() - cpu:.1f} s, {size:.0f} MiB on disk; memory so far {own:.0f} "
+        f"MiB, of workers {others:.0f} MiB",
         flush=True,
     )
 
 
 def seconds_of(start: Workers, sweep: vi.Sweep, chunk: int) -> float:
-    """Wall-clock time of the chunks of a study [s], from those after the first quarter: then all workers have begun."""
-    chunks = [Span(number, first, chunk) for number, first in enumerate(range(0, sweep.size, chunk))]
+    """Wall-clock time of the chunks of a study [s], from those after the first quarter:
+    then all workers have begun.
+    """
+    chunks = [
+        Span(number, first, chunk) for number, first in enumerate(range(0, sweep.size, chunk))
+    ]
     quarter = len(chunks) // 4
     ends: list[float] = []
 
@@ -118,7 +142,9 @@ def seconds_of(start: Workers, sweep: vi.Sweep, chunk: int) -> float:
     def keep(span: Span, result: Any) -> None:
         ends.append(time.perf_counter())
 
-    run_chunks(partial(compute_points, sweep.table, sweep.section.keep), points, chunks, start, keep)
+    run_chunks(
+        partial(compute_points, sweep.table, sweep.section.keep), points, chunks, start, keep
+    )
     return (ends[-1] - ends[quarter - 1]) / (len(chunks) - quarter) * len(chunks)
 
 
@@ -130,15 +156,25 @@ def scaling(name: str, sweep: vi.Sweep, chunk: int, entries: dict[str, bytes]) -
         "two processes": partial(processes, 2, setup, Path(tempfile.gettempdir())),
         "Dask, two workers": partial(dask_workers, "local", 2, setup),
     }
-    times = {way: [seconds_of(start, sweep, chunk) for _ in range(3)] for way, start in ways.items()}
+    times = {
+        way: [seconds_of(start, sweep, chunk) for _ in range(3)] for way, start in ways.items()
+    }
     one, two, dask = (statistics.median(values) for values in times.values())
     told = ", ".join(f"{way} {statistics.median(values):.1f} s" for way, values in times.items())
-    print(f"{name}: {told}; two are {one / two:.2f} times as fast as one, Dask takes {dask / two:.2f} of the time of processes", flush=True)
+    print(
+        f"{name}: {told}; two are {one / two:.2f} times as fast as one, Dask takes "
+        f"{dask / two:.2f} of the time of processes",
+        flush=True,
+    )
 
 
 def main() -> None:
     whole("100,000 rigid drops", drawn(RIGID, OVER, 100_000), 1)
-    whole("1,000 drops on an elastic plate, 100 modes, four sensors", drawn(ELASTIC, OVER_ELASTIC, 1000, "signals"), 2)
+    whole(
+        "1,000 drops on an elastic plate, 100 modes, four sensors",
+        drawn(ELASTIC, OVER_ELASTIC, 1000, "signals"),
+        2,
+    )
     scaling("480,000 rigid drops, chunks of 8,000", drawn(RIGID, OVER, 480_000), 8000, {})
     elastic = drawn(ELASTIC, OVER_ELASTIC, 320, "signals")
     scaling("320 drops on an elastic plate, chunks of 16", elastic, 16, carried_modes(elastic.case))

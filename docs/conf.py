@@ -1,4 +1,6 @@
-"""The documentation site: these pages, the docstrings and the gallery, built by `make docs-site` and read without a network."""
+"""The documentation site: these pages, the docstrings and the gallery, built by `make
+docs-site` and read without a network.
+"""
 
 import re
 import sys
@@ -45,10 +47,24 @@ copybutton_prompt_is_regexp = True
 autodoc_typehints = "none"  # the docstrings have the types, with units and shapes
 autosummary_generate = ["reference.md"]
 numpydoc_show_class_members = False
-# sections that are known and in order, a summary that ends in a full stop, and parameters that exist, in their order, with words
-numpydoc_validation_checks = {"GL06", "GL07", "SS01", "SS03", "SS05", "PR02", "PR03", "PR07", "PR09", "RT03", "RT05"}
+# sections that are known and in order, a summary that ends in a full stop, and parameters that
+# exist, in their order, with words
+numpydoc_validation_checks = {
+    "GL06",
+    "GL07",
+    "SS01",
+    "SS03",
+    "SS05",
+    "PR02",
+    "PR03",
+    "PR07",
+    "PR09",
+    "RT03",
+    "RT05",
+}
 
-# gallery: one drop and its law, vibrating bodies, sensors, estimates from records, many drops, and other programs
+# gallery: one drop and its law, vibrating bodies, sensors, estimates from records, many drops, and
+# other programs
 EXAMPLES = """
     drop laws_phase restitution_in_dem own_law energy tolerance air
     dent adhesion rolling oblique_measured
@@ -61,7 +77,8 @@ EXAMPLES = """
 sphinx_gallery_conf = {
     "examples_dirs": ["../examples/gallery"],
     "gallery_dirs": ["gallery"],
-    "within_subsection_order": ExplicitOrder([f"plot_{name}.py" for name in EXAMPLES.split()]),  # an example that is not in it is an error
+    # an example that is not in it is an error
+    "within_subsection_order": ExplicitOrder([f"plot_{name}.py" for name in EXAMPLES.split()]),
     "image_scrapers": ("gallery_checks.scrape", "plotly_gallery.scrape"),
     "reset_modules": ("matplotlib", "gallery_checks.check_example"),
     "reset_modules_order": "both",
@@ -117,9 +134,13 @@ laws/*
 
 
 def lead_to_pages(source: list[str]) -> None:
-    """Lead links to files beside this folder, and between these files, to the pages that include them."""
+    """Lead links to files beside this folder, and between these files, to the pages that
+    include them.
+    """
     for file, own in PAGES_OF_FILES.items():
-        source[0] = re.sub(rf"\]\((?:((?:\.\./)*)\.\./)?{re.escape(file)}\)", rf"](\1{own})", source[0])
+        source[0] = re.sub(
+            rf"\]\((?:((?:\.\./)*)\.\./)?{re.escape(file)}\)", rf"](\1{own})", source[0]
+        )
 
 
 def complete(app: Sphinx, page: str, source: list[str]) -> None:
@@ -129,8 +150,12 @@ def complete(app: Sphinx, page: str, source: list[str]) -> None:
         source[0] += LAWS
 
 
-def skip_fields_of_tuples(app: Sphinx, what: str, name: str, member: object, skip: bool, options: object) -> bool | None:
-    """Leave out what Python says of the fields of named tuples, "Alias for field number 0": their docstrings have them as parameters."""
+def skip_fields_of_tuples(
+    app: Sphinx, what: str, name: str, member: object, skip: bool, options: object
+) -> bool | None:
+    """Leave out what Python says of the fields of named tuples, "Alias for field number
+    0": their docstrings have them as parameters.
+    """
     return True if type(member).__name__ == "_tuplegetter" else None
 
 

@@ -1,4 +1,5 @@
-"""Two drops a nanometre apart on an undamped plate: how fast they separate, and what the first run predicts of it.
+"""Two drops a nanometre apart on an undamped plate: how fast they separate, and what the first run
+predicts of it.
 
 Makes the picture of docs/elastic-drops.md.
 """
@@ -38,11 +39,20 @@ for row in zip(number, *force, apart, predicted, strict=True):
 figure, (above, below) = plt.subplots(2, figsize=(7.5, 5.5), layout="constrained")
 times = np.linspace(1.2, min(first.end_time[0], second.end_time[0]), 4001)
 for response, style in ((first, "-"), (second, "--")):
-    above.plot(times, 1e3 * response.at(times)["position_m"], style, color="#0b4f8a" if response is first else "#b3400e")
+    above.plot(
+        times,
+        1e3 * response.at(times)["position_m"],
+        style,
+        color="#0b4f8a" if response is first else "#b3400e",
+    )
 above.legend(["dropped from 1 m", "1 nm higher"], frameon=False, ncols=2)
-above.set(xlabel="time [s]", ylabel="height of the centre [mm]", title="Two drops a nanometre apart")
+above.set(
+    xlabel="time [s]", ylabel="height of the centre [mm]", title="Two drops a nanometre apart"
+)
 below.semilogy(number, apart, "o", color="#b3400e", label="difference of the largest forces")
-below.semilogy(number, predicted, "-", color="#0b4f8a", label="predicted by the first run: sensitivity x 1e-9")
+below.semilogy(
+    number, predicted, "-", color="#0b4f8a", label="predicted by the first run: sensitivity x 1e-9"
+)
 below.axhline(1.0, color="#6b6b6b", linewidth=0.7)
 below.set(xlabel="impact", ylabel="relative change [-]", ylim=(1e-10, 1e6))
 below.legend(frameon=False)

@@ -18,9 +18,15 @@ omega = 2.0 * np.pi * frequency
 
 def bounced(strength: float, restitution: float, phase: float = 0.0, **drop: float) -> vi.Response:
     """Return a run on a table whose greatest acceleration is so many times gravity."""
-    motion = vi.PlateMotion(amplitude=strength * gravity / omega**2, frequency=frequency, phase=phase)
+    motion = vi.PlateMotion(
+        amplitude=strength * gravity / omega**2, frequency=frequency, phase=phase
+    )
     ball, law = vi.Body(mass=0.1, contact_offset=0.01), Newton(restitution=restitution)
-    return vi.simulate(vi.Problem(sphere=ball, plate=vi.rigid_plate(), laws=(law,), gravity=gravity, motion=motion, **drop))
+    return vi.simulate(
+        vi.Problem(
+            sphere=ball, plate=vi.rigid_plate(), laws=(law,), gravity=gravity, motion=motion, **drop
+        )
+    )
 
 
 figure, (path, diagram) = plt.subplots(1, 2, figsize=(10.0, 4.2), layout="constrained")
@@ -28,9 +34,18 @@ figure, (path, diagram) = plt.subplots(1, 2, figsize=(10.0, 4.2), layout="constr
 response = bounced(1.8, 0.3, height=0.013, impacts=None, duration=0.2)
 moments = np.linspace(0.0, 0.2, 4001)
 motion = response.at(moments)
-path.plot(1e3 * moments, 1e3 * (motion["position_m"] - 0.01), color="#0072b2", label="lowest point of the ball")
+path.plot(
+    1e3 * moments,
+    1e3 * (motion["position_m"] - 0.01),
+    color="#0072b2",
+    label="lowest point of the ball",
+)
 path.plot(1e3 * moments, 1e3 * motion["surface_m"], "--", color="#b3400e", label="table")
-path.set(xlabel="time [ms]", ylabel="height [mm]", title="e = 0.3, 1.8 g: impacts without end, a ride, a launch")
+path.set(
+    xlabel="time [ms]",
+    ylabel="height [mm]",
+    title="e = 0.3, 1.8 g: impacts without end, a ride, a launch",
+)
 path.legend(frameon=False)
 
 restitution = 0.5
@@ -46,6 +61,10 @@ for threshold, name in ((exists, "one bounce a period exists"), (doubles, "it do
     diagram.text(threshold, 1.66, f"{name} ", rotation=90, va="top", ha="right", color="#6b6b6b")
     print(f"{name} from {threshold:.5f} g on")
 diagram.set(
-    xlabel="greatest acceleration of the table [g]", ylabel="flights [periods]", xlim=(0.95, 2.02), ylim=(0.4, 1.7), title="e = 0.5"
+    xlabel="greatest acceleration of the table [g]",
+    ylabel="flights [periods]",
+    xlim=(0.95, 2.02),
+    ylim=(0.4, 1.7),
+    title="e = 0.5",
 )
 figure.savefig("ball-on-table.png", dpi=130)

@@ -1,4 +1,5 @@
-"""Two studies and their charts: four contact laws over the radius of the sphere, and drops of three materials, coloured by them.
+"""Two studies and their charts: four contact laws over the radius of the sphere, and drops of three
+materials, coloured by them.
 
 Makes the pictures of docs/studies.md.
 """
@@ -21,7 +22,10 @@ CASE = {
 RADII = {"from": "5 mm", "to": "50 mm", "scale": "log"}
 STUDIES = {
     "study-curves": {
-        "over": {"contact.law": ["flores", "hunt-crossley", "lankarani-nikravesh", "tsuji"], "sphere.radius": {**RADII, "number": 8}},
+        "over": {
+            "contact.law": ["flores", "hunt-crossley", "lankarani-nikravesh", "tsuji"],
+            "sphere.radius": {**RADII, "number": 8},
+        },
     },
     "study-drops": {
         "design": "latin-hypercube",
@@ -39,7 +43,9 @@ DRAWN = {"study-curves": "curves", "study-drops": "first_rebound_height_m"}
 
 for name, sweep in STUDIES.items():
     with TemporaryDirectory() as folder:
-        study = vi.read_study(vi.run_sweep(vi.read_sweep({**CASE, "sweep": sweep}), Path(folder, "study")))
+        study = vi.read_study(
+            vi.run_sweep(vi.read_sweep({**CASE, "sweep": sweep}), Path(folder, "study"))
+        )
         (chart,) = (chart for chart in study_charts(study) if chart.name == DRAWN[name])
     (file,) = save_charts([replace(chart, name=name)], Path())
     print(f"{file}: {chart.title}")

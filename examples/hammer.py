@@ -1,7 +1,8 @@
-"""A hammer hits a plate that is not quite as it was drawn: the records of the test beside the simulation of the drawing.
+"""A hammer hits a plate that is not quite as it was drawn: the records of the test beside the
+simulation of the drawing.
 
-The test is one of the program too: of a plate 2 % thinner, with another damping in each mode, and with noise. Makes the picture of
-docs/hammer.md.
+The test is one of the program too: of a plate 2 % thinner, with another damping in each mode, and
+with noise. Makes the picture of docs/hammer.md.
 """
 
 from dataclasses import replace
@@ -15,7 +16,10 @@ import vibroimpact as vi
 RATE, FINE = 12800.0, 16
 DRAWN = {
     "name": "a plate under a hammer",
-    "sphere": {"radius": "16 mm", "material": {"density": 7850, "youngs_modulus": "8 GPa", "poissons_ratio": 0.4}},
+    "sphere": {
+        "radius": "16 mm",
+        "material": {"density": 7850, "youngs_modulus": "8 GPa", "poissons_ratio": 0.4},
+    },
     "plate": {
         "size": ["400 mm", "300 mm", "12 mm"],
         "material": "steel",
@@ -55,12 +59,21 @@ print(f"as drawn: residual {100.0 * found.relative_residual[0]:.0f} %, FRAC {fou
 pairs = [pair for pair in found.modes if pair.damping_measured]
 for pair in pairs:
     mode, difference = pair.measured, 100.0 * pair.frequency_difference
-    print(f"mode {pair.number}: {mode.frequency.value:.1f} Hz ({difference:+.2f} %), damping ratio {mode.damping_ratio.value:.5f}")
+    print(
+        f"mode {pair.number}: {mode.frequency.value:.1f} Hz ({difference:+.2f} %), damping "
+        f"ratio {mode.damping_ratio.value:.5f}"
+    )
 chart = next(one for one in vi.correlation_charts(found) if one.name == "responses")
 vi.save_charts([replace(chart, name="hammer-responses")], Path(), ["png"])
 
 # frequencies 2 % low in all modes are those of a plate 2 % thinner; the damping is the measured one
-damping = {"frequencies": [pair.frequency for pair in pairs], "ratios": [pair.measured.damping_ratio.value for pair in pairs]}
+damping = {
+    "frequencies": [pair.frequency for pair in pairs],
+    "ratios": [pair.measured.damping_ratio.value for pair in pairs],
+}
 thinner = {**DRAWN["plate"], "size": ["400 mm", "300 mm", "11.76 mm"], "damping": damping}
 again = vi.correlate(vi.read_case({**DRAWN, "plate": thinner}), [acceleration], force=hammer)
-print(f"thinner, with the measured damping: residual {100.0 * again.relative_residual[0]:.1f} %, FRAC {again.frac[0]:.4f}")
+print(
+    "thinner, with the measured damping: residual "
+    f"{100.0 * again.relative_residual[0]:.1f} %, FRAC {again.frac[0]:.4f}"
+)

@@ -1,4 +1,5 @@
-"""What friction adds to a signal: a lump of rock hits an inclined steel plate, with and without it, and an accelerometer listens.
+"""What friction adds to a signal: a lump of rock hits an inclined steel plate, with and without it,
+and an accelerometer listens.
 
 Makes the picture of docs/oblique.md.
 """
@@ -35,11 +36,15 @@ for coefficient, colour in ((0.0, "#6b6b6b"), (0.3, "#b3400e")):
     row = {name: values[0] for name, values in response.impacts.items()}
     signal = response.signals()["beside"]
     time = np.arange(len(signal.value)) / signal.sensor.rate
-    axes.plot(1e3 * time, signal.value, color=colour, label=f"coefficient of friction {coefficient:g}")
+    axes.plot(
+        1e3 * time, signal.value, color=colour, label=f"coefficient of friction {coefficient:g}"
+    )
     print(
-        f"coefficient {coefficient:g}: {row['separation_velocity_x_m_s']:.3f} m/s along the plate and "
+        f"coefficient {coefficient:g}: {row['separation_velocity_x_m_s']:.3f} m/s along "
+        "the plate and "
         f"{-row['spin_y_after_rad_s']:.1f} rad/s after {row['approach_velocity_x_m_s']:.3f} m/s, "
-        f"{1e3 * row['friction_lost_J']:.1f} mJ lost by friction, peak {np.abs(signal.value).max():.0f} m/s2"
+        f"{1e3 * row['friction_lost_J']:.1f} mJ lost by friction, peak "
+        f"{np.abs(signal.value).max():.0f} m/s2"
     )
 axes.set(xlabel="time [ms]", ylabel="acceleration [m/s$^2$]", xlim=(0.0, 4.0))
 axes.legend(frameon=False)

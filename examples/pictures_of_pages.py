@@ -1,7 +1,8 @@
 """The live page and a report as they look in windows of three sizes, on light and on dark ground.
 
-Makes the pictures of docs/live-page.md and docs/result-folder.md: run it in docs/images. It needs Playwright (`pip install playwright`; no
-browser is downloaded) and Chromium, whose path VIBROIMPACT_CHROMIUM may give.
+Makes the pictures of docs/live-page.md and docs/result-folder.md: run it in docs/images. It needs
+Playwright (`pip install playwright`; no browser is downloaded) and Chromium, whose path
+VIBROIMPACT_CHROMIUM may give.
 """
 
 import os
@@ -27,7 +28,9 @@ COMMAND = [sys.executable, "-m", "vibroimpact"]
 def served() -> Iterator[str]:
     """Yield the address of the live page."""
     command = [*COMMAND, "serve", "--no-browser", "--port", "0"]
-    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True) as server:
+    with subprocess.Popen(
+        command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True
+    ) as server:
         try:
             assert server.stdout is not None
             yield re.search(r"http://\S+?/", server.stdout.readline()).group()
@@ -45,14 +48,20 @@ def pictures(browser, address: str, report: Path, folder: Path) -> None:
     """Take all pictures."""
     for width, height in SIZES:
         for scheme in ("light", "dark"):
-            context = browser.new_context(viewport={"width": width, "height": height}, color_scheme=scheme, reduced_motion="reduce")
+            context = browser.new_context(
+                viewport={"width": width, "height": height},
+                color_scheme=scheme,
+                reduced_motion="reduce",
+            )
             page = context.new_page()
             page.goto(address)
             page.wait_for_selector("html[data-detail=full]")
             page.select_option("#shipped", CASE)
             page.wait_for_selector("main[aria-busy=false]", timeout=300_000)
             # the plate is bent where the scene has come nearly half its way
-            page.locator("[data-scene=place]").evaluate("(place) => { place.value = 420; place.dispatchEvent(new Event('input')); }")
+            page.locator("[data-scene=place]").evaluate(
+                "(place) => { place.value = 420; place.dispatchEvent(new Event('input')); }"
+            )
             picture(page, folder, f"live-{width}-{scheme}")
             page.goto(report.as_uri())
             page.wait_for_selector("html[data-ready=true]")
@@ -67,14 +76,20 @@ def main() -> None:
         print("pictures_of_pages.py: needs Playwright: pip install playwright")
         return
     if not CHROMIUM.is_file():
-        print(f"pictures_of_pages.py: there is no {CHROMIUM}; VIBROIMPACT_CHROMIUM names another one")
+        print(
+            f"pictures_of_pages.py: there is no {CHROMIUM}; VIBROIMPACT_CHROMIUM names another one"
+        )
         return
     folder = Path("page")
     folder.mkdir(exist_ok=True)
     with TemporaryDirectory() as place, served() as address, sync_playwright() as playwright:
         report = Path(place) / "run" / "report.html"
-        subprocess.run([*COMMAND, "run", CASE, "-o", str(report.parent)], check=True, capture_output=True)
-        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox", "--disable-gpu", "--hide-scrollbars"])
+        subprocess.run(
+            [*COMMAND, "run", CASE, "-o", str(report.parent)], check=True, capture_output=True
+        )
+        browser = playwright.chromium.launch(
+            executable_path=CHROMIUM, args=["--no-sandbox", "--disable-gpu", "--hide-scrollbars"]
+        )
         pictures(browser, address, report, folder)
         browser.close()
     made = sorted(folder.glob("*.png"))

@@ -15,7 +15,10 @@ import vibroimpact
 
 PACKAGE = Path(vibroimpact.__file__).parent
 FLOORS = {  # top to bottom: name of a group, its colour, its subpackages and their contents
-    "commands and page": ("#e4e4e4", {"cli": "commands, help,\nexit status", "app": "the live page"}),
+    "commands and page": (
+        "#e4e4e4",
+        {"cli": "commands, help,\nexit status", "app": "the live page"},
+    ),
     "tasks": (
         "#a9c4dc",
         {
@@ -72,7 +75,9 @@ FLOORS = {  # top to bottom: name of a group, its colour, its subpackages and th
 }
 
 SHOWN = {room for _, rooms in FLOORS.values() for room in rooms}
-assert {place.parent.name for place in PACKAGE.glob("*/__init__.py")} <= SHOWN, "a subpackage is not in the figure"
+assert {place.parent.name for place in PACKAGE.glob("*/__init__.py")} <= SHOWN, (
+    "a subpackage is not in the figure"
+)
 
 
 figure, axes = plt.subplots(figsize=(11.0, 6.2))
@@ -83,7 +88,12 @@ for number, (floor, (colour, rooms)) in enumerate(reversed(FLOORS.items())):
     width = 1.0 / len(rooms)
     for place, (room, holds) in enumerate(rooms.items()):
         box = FancyBboxPatch(
-            (place * width + 0.006, number + 0.1), width - 0.012, 0.8, boxstyle="round,pad=0,rounding_size=0.012", fc=colour, ec="#6b6b6b"
+            (place * width + 0.006, number + 0.1),
+            width - 0.012,
+            0.8,
+            boxstyle="round,pad=0,rounding_size=0.012",
+            fc=colour,
+            ec="#6b6b6b",
         )
         axes.add_patch(box)
         middle = (place + 0.5) * width

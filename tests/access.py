@@ -1,4 +1,6 @@
-"""What makes a page usable by everybody, as a browser finds it: names of controls, headings in order, text that stands out."""
+"""What makes a page usable by everybody, as a browser finds it: names of controls,
+headings in order, text that stands out.
+"""
 
 from __future__ import annotations
 
@@ -11,10 +13,25 @@ if TYPE_CHECKING:
 CONTRAST = 4.5
 """Of text against its ground, at least: level AA of the Web Content Accessibility Guidelines."""
 
-_NAMED = {"slider", "spinbutton", "textbox", "combobox", "checkbox", "button", "link", "progressbar", "form", "region", "navigation"}
-"""Roles that say nothing without a name; those of pictures are read from the page, which has them also where nothing is drawn yet."""
+_NAMED = {
+    "slider",
+    "spinbutton",
+    "textbox",
+    "combobox",
+    "checkbox",
+    "button",
+    "link",
+    "progressbar",
+    "form",
+    "region",
+    "navigation",
+}
+"""Roles that say nothing without a name; those of pictures are read from the page, which
+has them also where nothing is drawn yet.
+"""
 
-# colours of any notation are read as a canvas paints them; a translucent ground lets through what is behind it
+# colours of any notation are read as a canvas paints them; a translucent ground lets through what
+# is behind it
 _CONTRASTS = """() => {
   const pen = Object.assign(document.createElement("canvas"), { width: 1, height: 1 }).getContext("2d", { willReadFrequently: true });
   const painted = (colours) => {
@@ -51,9 +68,14 @@ def names_of_controls(page: Page) -> list[tuple[str, str]]:
     """Return role and name of everything that needs a name, as a screen reader is told them."""
     tree = page.context.new_cdp_session(page).send("Accessibility.getFullAXTree")["nodes"]
     found = [
-        (node["role"]["value"], node["name"]["value"].strip()) for node in tree if not node["ignored"] and node["role"]["value"] in _NAMED
+        (node["role"]["value"], node["name"]["value"].strip())
+        for node in tree
+        if not node["ignored"] and node["role"]["value"] in _NAMED
     ]
-    pictures: list[str] = page.evaluate("() => [...document.querySelectorAll('canvas, [role=img]')].map((one) => one.ariaLabel || '')")
+    pictures: list[str] = page.evaluate(
+        "() => [...document.querySelectorAll('canvas, [role=img]')].map((one) => "
+        "one.ariaLabel || '')"
+    )
     return found + [("img", name) for name in pictures]
 
 
@@ -67,7 +89,9 @@ def headings(page: Page) -> list[int]:
 
 
 def assert_headings_are_in_order(page: Page) -> None:
-    """Check that there is one heading of the page, which comes first, and that none is more than a level below the one before."""
+    """Check that there is one heading of the page, which comes first, and that none is
+    more than a level below the one before.
+    """
     levels = headings(page)
     assert levels.count(1) == 1
     assert levels[0] == 1
@@ -75,13 +99,23 @@ def assert_headings_are_in_order(page: Page) -> None:
 
 
 def faint_texts(page: Page) -> list[tuple[str, float, str]]:
-    """Return the element of each text that is too faint, its contrast and the words; what is switched off may be."""
+    """Return the element of each text that is too faint, its contrast and the words; what
+    is switched off may be.
+    """
     found = page.evaluate(_CONTRASTS)
     assert len(found) > 100
-    return [(where, round(contrast, 2), words) for where, contrast, words in found if contrast < CONTRAST]
+    return [
+        (where, round(contrast, 2), words)
+        for where, contrast, words in found
+        if contrast < CONTRAST
+    ]
 
 
 def scrolls_sideways(page: Page) -> bool:
-    """Return whether the document as a whole is wider than the window; a table may be, in a frame of its own."""
-    found: bool = page.evaluate("() => document.documentElement.scrollWidth > document.documentElement.clientWidth")
+    """Return whether the document as a whole is wider than the window; a table may be, in
+    a frame of its own.
+    """
+    found: bool = page.evaluate(
+        "() => document.documentElement.scrollWidth > document.documentElement.clientWidth"
+    )
     return found

@@ -1,8 +1,10 @@
-"""What tests compare with what we did not write: one call asserts that both agree, and records by how much.
+"""What tests compare with what we did not write: one call asserts that both agree, and records by
+how much.
 
-Tests take the fixture `agrees`; a module says whom it compares with in its constant `AGAINST`. `pytest --validation FILE` writes the
-comparisons of the tests that passed into a file of JSON lines, in place of what it had of these tests; `validation_page.py` makes
-docs/validation.md of it. The default suite holds each comparison against what is told in `TOLD`.
+Tests take the fixture `agrees`; a module says whom it compares with in its constant `AGAINST`.
+`pytest --validation FILE` writes the comparisons of the tests that passed into a file of JSON
+lines, in place of what it had of these tests; `validation_page.py` makes docs/validation.md of it.
+The default suite holds each comparison against what is told in `TOLD`.
 """
 
 from __future__ import annotations
@@ -54,7 +56,9 @@ MEASURES: dict[str, Callable[[np.ndarray, np.ndarray], np.ndarray]] = {
     "mean": lambda apart, theirs: apart.mean(),
 }
 ROUNDING = 1e-12
-"""Deviations below it, as parts of what is compared, differ from machine to machine and are not told."""
+"""Deviations below it, as parts of what is compared, differ from machine to machine and
+are not told.
+"""
 
 
 Agrees = Callable[..., None]
@@ -62,7 +66,9 @@ Agrees = Callable[..., None]
 
 @dataclass(frozen=True)
 class Against:
-    """Whom a test compares with: a short name, what kind of opponent, in which subject, and where their numbers are from."""
+    """Whom a test compares with: a short name, what kind of opponent, in which subject,
+    and where their numbers are from.
+    """
 
     opponent: str
     kind: Kind
@@ -75,7 +81,12 @@ class Against:
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
-    parser.addoption("--validation", metavar="FILE", type=Path, help="write what agrees with others, and by how much, as JSON lines")
+    parser.addoption(
+        "--validation",
+        metavar="FILE",
+        type=Path,
+        help="write what agrees with others, and by how much, as JSON lines",
+    )
 
 
 @pytest.fixture
@@ -83,16 +94,28 @@ def agrees(request: pytest.FixtureRequest) -> Agrees:
     """Assert that two values or arrays agree within a tolerance, and record it."""
 
     def agrees(
-        case: str, quantity: str, ours: Any, theirs: Any, *, unit: str = "", against: Against | None = None, **tolerances: float
+        case: str,
+        quantity: str,
+        ours: Any,
+        theirs: Any,
+        *,
+        unit: str = "",
+        against: Against | None = None,
+        **tolerances: float,
     ) -> None:
-        """Compare ours with theirs; one tolerance: `relative`, `absolute`, `of_the_largest` of theirs, `rms` over theirs, or `mean`."""
+        """Compare ours with theirs; one tolerance: `relative`, `absolute`,
+        `of_the_largest` of theirs, `rms` over theirs, or `mean`.
+        """
         ((name, tolerance),) = tolerances.items()
         measure = name.replace("_", " ")
         ours = np.atleast_1d(np.asarray(ours, dtype=float))
         theirs = np.broadcast_to(np.asarray(theirs, dtype=float), ours.shape)
         assert ours.size, f"{case}, {quantity}: nothing to compare"
         deviation = float(MEASURES[measure](np.abs(ours - theirs), theirs).max())
-        assert deviation <= tolerance, f"{case}, {quantity}: {deviation:.3g} off ({measure}), at most {tolerance:g}\n{ours}\n{theirs}"
+        assert deviation <= tolerance, (
+            f"{case}, {quantity}: {deviation:.3g} off ({measure}), at most "
+            f"{tolerance:g}\n{ours}\n{theirs}"
+        )
         file, test = _place(request.node.nodeid)
         asked = _digits(tolerance, 2)
         row = {
@@ -110,7 +133,9 @@ def agrees(request: pytest.FixtureRequest) -> Agrees:
             "ours": _ends(ours, theirs, measure, tolerance),
         }
         request.node.user_properties.append(("agreement", row))
-        if request.config.getoption("--validation") is None and not any(map(request.node.get_closest_marker, ("peers", "slow"))):
+        if request.config.getoption("--validation") is None and not any(
+            map(request.node.get_closest_marker, ("peers", "slow"))
+        ):
             _check_told(row)
 
     return agrees
@@ -123,8 +148,12 @@ def _place(node: str) -> tuple[str, str]:
 
 
 def _upper(deviation: float, measure: str, tolerance: float, theirs: np.ndarray) -> float:
-    """A bound of a deviation that is the same on all machines: a decade below 1e-6, one digit above."""
-    scale = (float(np.abs(theirs).max()) or 1e4 * tolerance) if measure in ("absolute", "mean") else 1.0
+    """A bound of a deviation that is the same on all machines: a decade below 1e-6, one
+    digit above.
+    """
+    scale = (
+        (float(np.abs(theirs).max()) or 1e4 * tolerance) if measure in ("absolute", "mean") else 1.0
+    )
     deviation = max(deviation, ROUNDING * scale)
     decade = 10.0 ** math.ceil(math.log10(deviation) - 1e-9)
     return _digits(decade if deviation < 1e-6 * scale else deviation, 1)
@@ -147,7 +176,10 @@ def _ends(values: np.ndarray, theirs: np.ndarray, measure: str, tolerance: float
 
 def key(row: dict[str, Any]) -> tuple[Any, ...]:
     """What rows have in common that are one row of the page: all but the numbers."""
-    return tuple(row[name] for name in ("file", "test", "opponent", "case", "quantity", "measure", "tolerance"))
+    return tuple(
+        row[name]
+        for name in ("file", "test", "opponent", "case", "quantity", "measure", "tolerance")
+    )
 
 
 def merged(rows: Iterable[dict[str, Any]]) -> list[dict[str, Any]]:
@@ -169,17 +201,26 @@ def _told() -> dict[tuple[Any, ...], dict[str, Any]]:
 
 def _check_told(row: dict[str, Any]) -> None:
     """What is told of a comparison holds on this machine too, but for a decade of rounding."""
-    remedy = f"; `pytest {row['file']} --validation {TOLD.relative_to(ROOT)}` tells it, `python tests/validation_page.py` writes the page"
+    remedy = (
+        f"; `pytest {row['file']} --validation {TOLD.relative_to(ROOT)}` tells it, `python "
+        "tests/validation_page.py` writes the page"
+    )
     told = _told().get(key(row))
     assert told, f"docs/validation.md lacks {row['case']}, {row['quantity']}{remedy}"
     (low, high), slack = told["theirs"], 1e-4 * max(map(abs, told["theirs"]))
     same = low - slack <= row["theirs"][0] and row["theirs"][1] <= high + slack
     assert same, f"docs/validation.md tells other numbers of theirs than {row}{remedy}"
-    assert row["deviation"] <= 10.0 * told["deviation"] * (1.0 + 1e-9), f"docs/validation.md tells a smaller deviation than {row}{remedy}"
+    assert row["deviation"] <= 10.0 * told["deviation"] * (1.0 + 1e-9), (
+        f"docs/validation.md tells a smaller deviation than {row}{remedy}"
+    )
 
 
 def read(file: Path) -> list[dict[str, Any]]:
-    return [json.loads(line) for line in file.read_text(encoding="utf-8").splitlines()] if file.exists() else []
+    return (
+        [json.loads(line) for line in file.read_text(encoding="utf-8").splitlines()]
+        if file.exists()
+        else []
+    )
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
@@ -195,18 +236,23 @@ def _compares(item: pytest.Item) -> bool:
 
 def pytest_configure(config: pytest.Config) -> None:
     file = config.getoption("--validation")
-    if file is not None and not hasattr(config, "workerinput"):  # the workers of pytest-xdist report to the one that writes
+    # the workers of pytest-xdist report to the one that writes
+    if file is not None and not hasattr(config, "workerinput"):
         config.pluginmanager.register(Recorder(file), "recorder of agreements")
 
 
 class Recorder:
-    """Collects the comparisons of tests that passed, from all workers, and writes them at the end."""
+    """Collects the comparisons of tests that passed, from all workers, and writes them at
+    the end.
+    """
 
     def __init__(self, file: Path) -> None:
         self.file, self.rows, self.tests = file, [], set()
 
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
-        """Keep what a test that passed has compared, or one that fails as expected had compared before it did."""
+        """Keep what a test that passed has compared, or one that fails as expected had
+        compared before it did.
+        """
         if report.when == "call" and (report.passed or hasattr(report, "wasxfail")):
             self.rows += [row for name, row in report.user_properties if name == "agreement"]
             self.tests.add(_place(report.nodeid))

@@ -1,4 +1,6 @@
-"""Run a function on many hostile inputs, each within a limit of processor time and memory, in a process that may die of them."""
+"""Run a function on many hostile inputs, each within a limit of processor time and
+memory, in a process that may die of them.
+"""
 
 from __future__ import annotations
 
@@ -30,7 +32,9 @@ MEMORY = 1_000_000_000
 """Bytes of address space more than at the start."""
 
 WAITING = 300.0
-"""Seconds after which an input that computes nothing is taken to wait for ever; the machine may be busy."""
+"""Seconds after which an input that computes nothing is taken to wait for ever; the
+machine may be busy.
+"""
 
 LONGEST = 500
 """Characters of a message: of all its lines."""
@@ -41,7 +45,9 @@ LINES = 12
 
 @dataclass(frozen=True)
 class Outcome:
-    """What came of one input: "accepted", "refused" (a message), or one of the failures "traceback", "hung", "memory", "message"."""
+    """What came of one input: "accepted", "refused" (a message), or one of the failures
+    "traceback", "hung", "memory", "message".
+    """
 
     kind: str
     text: str = ""
@@ -57,22 +63,31 @@ def number(few: int) -> int:
 
 
 def seed(given: int) -> int:
-    """Return a seed of random numbers: the one given, or where VIBROIMPACT_SEED is set another, for inputs not met before."""
+    """Return a seed of random numbers: the one given, or where VIBROIMPACT_SEED is set
+    another, for inputs not met before.
+    """
     return given + 1_000_003 * int(os.environ.get("VIBROIMPACT_SEED", "0"))
 
 
 @cache
 def compile_once() -> None:
-    """Compute a drop on a rigid and on an elastic plate with its history, so that no input's process compiles the solvers."""
+    """Compute a drop on a rigid and on an elastic plate with its history, so that no
+    input's process compiles the solvers.
+    """
     modes = ModalBasis(np.array([200.0]), np.array([0.01]), np.array([0.5]), np.zeros((1, 3)))
     law = find_contact_law("hertz")(stiffness=1e9)
     sphere = Body(mass=0.1, contact_offset=0.02)
-    for plate in (Body(mass=np.inf, contact_offset=0.0), Body(mass=np.inf, contact_offset=0.0, modes=modes)):
+    for plate in (
+        Body(mass=np.inf, contact_offset=0.0),
+        Body(mass=np.inf, contact_offset=0.0, modes=modes),
+    ):
         simulate(Problem(laws=(law,), sphere=sphere, plate=plate, speed=1.0, impacts=1)).history()
 
 
 def attack(function: Callable[[Any], object], inputs: Sequence[Any]) -> list[Outcome]:
-    """Return what came of each input: of a hang or a crash too, which end the process that works on it and no other."""
+    """Return what came of each input: of a hang or a crash too, which end the process
+    that works on it and no other.
+    """
     compile_once()
     outcomes: list[Outcome] = []
     while len(outcomes) < len(inputs):
@@ -85,12 +100,18 @@ def failures(function: Callable[[Any], object], inputs: Iterable[Any]) -> str:
     inputs = list(inputs)
     outcomes = attack(function, inputs)
     print(dict(Counter(one.kind for one in outcomes)))
-    bad = [f"{one.kind}: {one.text}\n    of {given!r:.2000}" for given, one in zip(inputs, outcomes, strict=True) if one.failed]
+    bad = [
+        f"{one.kind}: {one.text}\n    of {given!r:.2000}"
+        for given, one in zip(inputs, outcomes, strict=True)
+        if one.failed
+    ]
     return "\n".join([f"{len(bad)} of {len(inputs)} failed", *bad[:20]]) if bad else ""
 
 
 def _in_a_child(function: Callable[[Any], object], inputs: Sequence[Any]) -> list[Outcome]:
-    """Work on inputs until all are done or one kills the process, which is the last of those returned."""
+    """Work on inputs until all are done or one kills the process, which is the last of
+    those returned.
+    """
     mine, theirs = Pipe(duplex=False)
     child = os.fork()
     if child == 0:  # never returns into the test
@@ -109,11 +130,17 @@ def _in_a_child(function: Callable[[Any], object], inputs: Sequence[Any]) -> lis
         while len(outcomes) < len(inputs) and mine.poll(WAITING):
             outcomes.append(mine.recv())
     with suppress(ProcessLookupError):
-        os.killpg(child, signal.SIGKILL)  # what waits for ever, and what a hostile input has started
+        # what waits for ever, and what a hostile input has started
+        os.killpg(child, signal.SIGKILL)
     _, status = os.waitpid(child, 0)
     if len(outcomes) < len(inputs):
         died = os.WTERMSIG(status) if os.WIFSIGNALED(status) else 0
-        outcomes.append(Outcome("hung" if died in (signal.SIGXCPU, signal.SIGKILL) else "traceback", f"the process ended by signal {died}"))
+        outcomes.append(
+            Outcome(
+                "hung" if died in (signal.SIGXCPU, signal.SIGKILL) else "traceback",
+                f"the process ended by signal {died}",
+            )
+        )
     return outcomes
 
 
@@ -132,14 +159,22 @@ def _outcome(function: Callable[[Any], object], given: Any) -> Outcome:
 def _judged(message: str) -> Outcome:
     """Hold a message to what a terminal and a reader can take."""
     lines = message.split("\n")
-    if not message.strip() or len(lines) > LINES or len(message) > LONGEST or not all(line.isprintable() for line in lines):
+    if (
+        not message.strip()
+        or len(lines) > LINES
+        or len(message) > LONGEST
+        or not all(line.isprintable() for line in lines)
+    ):
         return Outcome("message", message[:2000])
     return Outcome("refused", message)
 
 
 def _bound_time() -> None:
     used = resource.getrusage(resource.RUSAGE_SELF)
-    resource.setrlimit(resource.RLIMIT_CPU, (int(used.ru_utime + used.ru_stime) + SECONDS + 1, resource.RLIM_INFINITY))
+    resource.setrlimit(
+        resource.RLIMIT_CPU,
+        (int(used.ru_utime + used.ru_stime) + SECONDS + 1, resource.RLIM_INFINITY),
+    )
 
 
 def _bound_memory() -> None:

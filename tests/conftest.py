@@ -16,7 +16,9 @@ from vibroimpact.cli import main
 
 @pytest.fixture(autouse=True, scope="session")
 def commands_once() -> Iterator[None]:
-    """Typer makes all commands anew each time that one is called, which the tests do a thousand times in a process."""
+    """Typer makes all commands anew each time that one is called, which the tests do a
+    thousand times in a process.
+    """
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(typer.main, "get_command", cache(typer.main.get_command))
         yield
@@ -40,15 +42,21 @@ def damping() -> vi.Calibration:
 
 @pytest.fixture(scope="session")
 def tiny_models(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder with a small data set in `data`, and a model of each classifier that was trained on it."""
+    """A folder with a small data set in `data`, and a model of each classifier that was
+    trained on it.
+    """
     from recognised import write_tiny_models
 
     return write_tiny_models(tmp_path_factory.mktemp("tiny"))
 
 
 @pytest.fixture
-def command(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Callable[..., tuple[int, str, str]]:
-    """Run `vibroimpact` with words in the folder of the test, and return its exit status, its output and its errors."""
+def command(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> Callable[..., tuple[int, str, str]]:
+    """Run `vibroimpact` with words in the folder of the test, and return its exit status,
+    its output and its errors.
+    """
     monkeypatch.chdir(tmp_path)
 
     def run(*words: object) -> tuple[int, str, str]:

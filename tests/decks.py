@@ -1,4 +1,6 @@
-"""What the files of an export say to a program, apart from what they call things: for tests of names."""
+"""What the files of an export say to a program, apart from what they call things: for
+tests of names.
+"""
 
 from __future__ import annotations
 
@@ -43,7 +45,9 @@ def named(case: str, sensors: list[str], materials: tuple[str, str]) -> Drop:
 
 
 def said(format: ExportFormat, drop: Drop) -> Any:
-    """Return what the program is told, read as the program would; raises if it can't be, or a file or a note is called badly."""
+    """Return what the program is told, read as the program would; raises if it can't be,
+    or a file or a note is called badly.
+    """
     files = dict(format.write(drop))
     check_file_names(files)
     for note in format.notes(drop):
@@ -65,9 +69,15 @@ def check_file_names(files: Mapping[str, bytes]) -> None:
 def _adams(files: Mapping[str, bytes]) -> Any:
     texts = {PurePosixPath(name).suffix: content.decode("ascii") for name, content in files.items()}
     text = texts[".adm"]
-    # Adams View names the next thing after this remark: there is one before each thing that has a name, and no other
-    assert all(re.fullmatch(r"! adams_view_name='[A-Za-z]\w{0,59}'", line) for line in re.findall("(?m)^!.*adams_view_name.*", text))
-    assert len(re.findall("(?m)^!.*adams_view_name", text)) == len(re.findall(r"(?m)^[A-Z]+/\d+$", text))
+    # Adams View names the next thing after this remark: there is one before each thing that has a
+    # name, and no other
+    assert all(
+        re.fullmatch(r"! adams_view_name='[A-Za-z]\w{0,59}'", line)
+        for line in re.findall("(?m)^!.*adams_view_name.*", text)
+    )
+    assert len(re.findall("(?m)^!.*adams_view_name", text)) == len(
+        re.findall(r"(?m)^[A-Z]+/\d+$", text)
+    )
     model = read_dataset(text)
     read_solver_commands(texts[".acf"], model)
     return asdict(model)
@@ -80,9 +90,18 @@ def _adams_view(files: Mapping[str, bytes]) -> Any:
     assert re.fullmatch(r"[A-Za-z]\w{0,49}", name)
     assert all(len(line) <= 120 and line.isprintable() for line in text.split("\n"))
     materials = re.findall(r"(?m)^   material_name = \.\w+\.(\w+)  &$", text)
-    assert not {one.lower() for one in materials} & {"ground", "sphere", "contact", "gravity", "motion", "drop"}
+    assert not {one.lower() for one in materials} & {
+        "ground",
+        "sphere",
+        "contact",
+        "gravity",
+        "motion",
+        "drop",
+    }
     assert len({one.lower() for one in materials}) == 2
-    return asdict(read_commands(re.sub(rf"(?<![\w.])(\.|model_name = \.?){name}(?!\w)", r"\1model", text)))
+    return asdict(
+        read_commands(re.sub(rf"(?<![\w.])(\.|model_name = \.?){name}(?!\w)", r"\1model", text))
+    )
 
 
 def _lammps(files: Mapping[str, bytes]) -> Any:
@@ -112,7 +131,10 @@ def _parquet(files: Mapping[str, bytes]) -> Any:
 
     tables = [parquet.read_table(io.BytesIO(content)) for content in files.values()]
     for table in tables:
-        words = [table.schema.metadata[b"title"], *(field.metadata[b"long_name"] for field in table.schema)]
+        words = [
+            table.schema.metadata[b"title"],
+            *(field.metadata[b"long_name"] for field in table.schema),
+        ]
         assert all(one.decode().isprintable() for one in words)
     return sorted(str(table.to_pydict()) for table in tables)
 
@@ -123,7 +145,10 @@ def _mat(files: Mapping[str, bytes]) -> Any:
     for name in found["signals"]:
         assert re.fullmatch(r"[A-Za-z]\w{0,62}", name)
     assert str(found["drop"].pop("name")).isprintable()
-    signals = [{key: value for key, value in one.items() if key != "name"} for one in found["signals"].values()]
+    signals = [
+        {key: value for key, value in one.items() if key != "name"}
+        for one in found["signals"].values()
+    ]
     return str([signals, found["drop"], found["impacts"], found["units"]])
 
 
@@ -132,7 +157,9 @@ def _uff58(files: Mapping[str, bytes]) -> Any:
 
     (content,) = files.values()
     text = content.split(b"    58b")[0].decode("ascii")  # up to the first binary data
-    assert all(len(line) <= 80 and line.isprintable() for line in text.replace("\r", "").split("\n"))
+    assert all(
+        len(line) <= 80 and line.isprintable() for line in text.replace("\r", "").split("\n")
+    )
     with TemporaryDirectory() as folder:
         Path(folder, "a.uff").write_bytes(content)
         file = pyuff.UFF(str(Path(folder, "a.uff")))
@@ -148,7 +175,10 @@ def _wav(files: Mapping[str, bytes]) -> Any:
     for content in files.values():
         (length,) = np.frombuffer(content[content.index(b"ICMT") + 4 :][:4], "<u4")
         assert content[content.index(b"ICMT") + 8 :][:length].rstrip(b"\0").decode().isprintable()
-    return [(rate, values.tolist()) for rate, values in (wavfile.read(io.BytesIO(content)) for content in files.values())]
+    return [
+        (rate, values.tolist())
+        for rate, values in (wavfile.read(io.BytesIO(content)) for content in files.values())
+    ]
 
 
 _READERS: dict[str, Callable[[Mapping[str, bytes]], Any]] = {

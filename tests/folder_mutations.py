@@ -1,4 +1,6 @@
-"""Hostile versions of folders of results, whose checksums are right: as another program, or a person, could write them."""
+"""Hostile versions of folders of results, whose checksums are right: as another program,
+or a person, could write them.
+"""
 
 from __future__ import annotations
 
@@ -39,7 +41,9 @@ def damage_folder(folder: Path, file: str, draw: random.Random) -> None:
     if file.endswith(".json"):
         _change_json(path, draw)
     elif file.endswith(".toml"):
-        path.write_text(tomli_w.dumps({"a": draw.choice(TEXTS[:5]), "sphere": draw.choice((1, {}, [], "x"))}))
+        path.write_text(
+            tomli_w.dumps({"a": draw.choice(TEXTS[:5]), "sphere": draw.choice((1, {}, [], "x"))})
+        )
     elif file.endswith(".sqlite"):
         _change_ledger(path, draw)
     else:
@@ -89,8 +93,8 @@ def _change_ledger(path: Path, draw: random.Random) -> None:
         "DROP TABLE chunk", "DROP TABLE study", "INSERT INTO chunk (number, first, count) VALUES (99, 99, 1)",
         "ALTER TABLE chunk DROP COLUMN sha256",
         "CREATE TRIGGER t AFTER UPDATE ON chunk BEGIN DELETE FROM chunk; END", "UPDATE chunk SET finished = zeroblob(100000)",
-        "DROP TABLE chunk; CREATE VIEW chunk AS WITH RECURSIVE c(number) AS (SELECT 0 UNION ALL SELECT number + 1 FROM c) "
-        "SELECT number, number AS first, 1 AS count, 'waiting' AS state, NULL AS sha256, 0 AS failed, '' AS finished FROM c",
+        "DROP TABLE chunk; CREATE VIEW chunk AS WITH RECURSIVE c(number) AS " "(SELECT " "0 " "UNION " "ALL SELECT number + 1 FROM c) "
+        "SELECT number, number AS first, 1 AS count, 'waiting' AS state, NULL " "AS " "sha256, 0 " "AS failed, '' AS finished FROM c",
     )  # fmt: skip
     with closing(sqlite3.connect(path)) as connection, connection:
         connection.executescript(draw.choice(statements))

@@ -1,7 +1,9 @@
-"""Golden numbers: impacts, ledgers, histories and signals of drops of every kind, kept in a file, and compared with those computed now.
+"""Golden numbers: impacts, ledgers, histories and signals of drops of every kind, kept in a file,
+and compared with those computed now.
 
-All are computed to a tolerance of 1e-12, so that two ways of solving the same equations give the same numbers. To keep new ones, once it
-is understood why they are others, run this file with the names of the drops; without a name it keeps all.
+All are computed to a tolerance of 1e-12, so that two ways of solving the same equations give the
+same numbers. To keep new ones, once it is understood why they are others, run this file with the
+names of the drops; without a name it keeps all.
 """
 
 from __future__ import annotations
@@ -31,7 +33,9 @@ _AXIS = re.compile(r"_[xyz]_")
 
 
 def numbers(name: str, times: Floats | None = None) -> dict[str, Floats]:
-    """Return the numbers of a drop or a system by name; its history at times [s], which are chosen unless they are given."""
+    """Return the numbers of a drop or a system by name; its history at times [s], which
+    are chosen unless they are given.
+    """
     return _numbers_of_system(name, times) if name in SYSTEMS else _numbers_of_drop(name, times)
 
 
@@ -45,7 +49,10 @@ def _numbers_of_drop(name: str, times: Floats | None) -> dict[str, Floats]:
         times = _moments(response) if times is None else times
         found |= {f"history/{key}": np.asarray(value) for key, value in response.at(times).items()}
         if problem.sensors:
-            found |= {f"signal/{key}": _from_touch(signal, response) for key, signal in response.signals().items()}
+            found |= {
+                f"signal/{key}": _from_touch(signal, response)
+                for key, signal in response.signals().items()
+            }
         return found
     table = vi.tabulate(problem)
     return found | {f"table/{key}": np.asarray(value) for key, value in table.impacts.items()}
@@ -60,21 +67,34 @@ def _from_touch(signal: Any, response: vi.Response) -> Floats:
 def _numbers_of_system(name: str, times: Floats | None) -> dict[str, Floats]:
     make, duration = SYSTEMS[name]
     response = vi.simulate_system(replace(make(), tolerance=TOLERANCE), duration=duration)
-    columns = {key: value for key, value in response.impacts.items() if np.asarray(value).dtype.kind in "if"}
+    columns = {
+        key: value
+        for key, value in response.impacts.items()
+        if np.asarray(value).dtype.kind in "if"
+    }
     found = {f"impacts/{key}": np.asarray(value) for key, value in columns.items()}
     found |= {f"energy/{key}": np.asarray(value) for key, value in response.energy.items()}
     times = duration * (np.arange(60) + 0.37) / 60.0 if times is None else times
     found["history/time_s"] = times
-    found |= {f"history/force_N of {contact}": force for contact, force in response.forces(times).items()}
+    found |= {
+        f"history/force_N of {contact}": force for contact, force in response.forces(times).items()
+    }
     for body, motion in response.at(times).items():
-        found |= {f"history/{key} of {body}": np.asarray(getattr(motion, key)) for key in ("displacement", "velocity", "rotation", "modal")}
+        found |= {
+            f"history/{key} of {body}": np.asarray(getattr(motion, key))
+            for key in ("displacement", "velocity", "rotation", "modal")
+        }
     return found
 
 
 def _moments(response: vi.Response) -> Floats:
-    """Return times over the whole run, and in its first contacts, away from their ends: at an impulse the velocity is either one."""
+    """Return times over the whole run, and in its first contacts, away from their ends:
+    at an impulse the velocity is either one.
+    """
     begun, length = response.impacts["time_s"], response.impacts["duration_s"]
-    contacts = [(first, across) for first, across in zip(begun[:2], length[:2], strict=True) if across > 0.0]
+    contacts = [
+        (first, across) for first, across in zip(begun[:2], length[:2], strict=True) if across > 0.0
+    ]
     inside = [first + across * np.linspace(0.04, 0.96, 15) for first, across in contacts]
     end = begun[-1] + length[-1] if len(begun) else float(response.end_time[0])
     return np.sort(np.concatenate([*inside, end * (np.arange(25) + 0.37) / 25.0]))
@@ -85,7 +105,10 @@ def kept(name: str) -> dict[str, Floats]:
     with np.load(KEPT) as file:
         values, shapes = file[name], json.loads(str(file[f"shapes of {name}"]))
     ends = np.cumsum([math.prod(shape) for shape in shapes.values()])
-    return {key: part.reshape(shape) for (key, shape), part in zip(shapes.items(), np.split(values, ends[:-1]), strict=True)}
+    return {
+        key: part.reshape(shape)
+        for (key, shape), part in zip(shapes.items(), np.split(values, ends[:-1]), strict=True)
+    }
 
 
 def departures(name: str) -> dict[str, float]:
@@ -107,18 +130,27 @@ def departures(name: str) -> dict[str, float]:
 
 
 def _known_to(name: str) -> float:
-    """Return to what relative accuracy the numbers of a drop are known, where that is less than the tolerance.
+    """Return to what relative accuracy the numbers of a drop are known, where that is less than the
+    tolerance.
 
     So it is where friction with history acts on bodies that yield, or that are shaken.
     """
     if name.startswith("sloping in series"):
         return 5e-3
-    friction = ("sliding on a plate", "spinning on a plate", "shaken along", "shaken askew", "shaken, sloping")
+    friction = (
+        "sliding on a plate",
+        "spinning on a plate",
+        "shaken along",
+        "shaken askew",
+        "shaken, sloping",
+    )
     return 1e-3 if name.startswith(friction) else 0.0
 
 
 def _scale(key: str, numbers: Mapping[str, Floats]) -> float:
-    """Return the size of a column: of energies that of what was put in, of a component that of the largest of its vector."""
+    """Return the size of a column: of energies that of what was put in, of a component
+    that of the largest of its vector.
+    """
     if key.endswith("closure_relative"):
         return 1.0
     if key.endswith("_J"):
@@ -129,7 +161,8 @@ def _scale(key: str, numbers: Mapping[str, Floats]) -> float:
 
 
 def _allowance(key: str) -> float:
-    """Return how far a column may be off, as a part of its size, times the growth of what the drops differ in.
+    """Return how far a column may be off, as a part of its size, times the growth of what the drops
+    differ in.
 
     About 1e-10, where the mathematics is the same; more where the number is known less well.
     """
@@ -141,20 +174,29 @@ def _allowance(key: str) -> float:
         return 1e-7  # read between the nodes of a stretch
     if key.startswith("signal/"):
         return 5e-5  # as of accelerations
-    if key.startswith("history/"):  # likewise; the error of the ends goes with the square of that between them
+    # likewise; the error of the ends goes with the square of that between them
+    if key.startswith("history/"):
         if "plate_acceleration" in key:
             return 1e-2  # of modes that follow the force, its second derivative
-        return 1e-4 if "plate_" in key else 1e-5 if "acceleration" in key or "force" in key else 1e-8
+        return (
+            1e-4 if "plate_" in key else 1e-5 if "acceleration" in key or "force" in key else 1e-8
+        )
     return 2e-10  # 1e-10 in each of two
 
 
 def keep(names: list[str]) -> None:
-    """Compute the numbers of some drops, or of all, and keep them: of each a row of numbers, and the shapes of its columns."""
+    """Compute the numbers of some drops, or of all, and keep them: of each a row of
+    numbers, and the shapes of its columns.
+    """
     found = {}
     for name in NAMES:
         columns = numbers(name) if name in names or not names else kept(name)
-        found[name] = np.concatenate([np.ravel(values).astype(float) for values in columns.values()])
-        found[f"shapes of {name}"] = np.array(json.dumps({key: np.shape(values) for key, values in columns.items()}))
+        found[name] = np.concatenate(
+            [np.ravel(values).astype(float) for values in columns.values()]
+        )
+        found[f"shapes of {name}"] = np.array(
+            json.dumps({key: np.shape(values) for key, values in columns.items()})
+        )
     np.savez_compressed(KEPT, **found)
 
 

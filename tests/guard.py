@@ -1,6 +1,8 @@
-"""A guard on sockets for other processes and what these start: it records, and refuses, every call that leaves the machine.
+"""A guard on sockets for other processes and what these start: it records, and refuses, every call
+that leaves the machine.
 
-In Python an audit hook sees them; where there is a C compiler, a library that is loaded before all others sees those of compiled code too.
+In Python an audit hook sees them; where there is a C compiler, a library that is loaded before all
+others sees those of compiled code too.
 """
 
 from __future__ import annotations
@@ -120,17 +122,29 @@ class Guard:
         self.home.mkdir()
         (folder / "hook").mkdir()
         (folder / "hook" / "sitecustomize.py").write_text(_HOOK)
-        ours = [str(folder / "hook"), str(Path(__file__).parent), str(Path(vibroimpact.__file__).parents[1])]
+        ours = [
+            str(folder / "hook"),
+            str(Path(__file__).parent),
+            str(Path(vibroimpact.__file__).parents[1]),
+        ]
         names = ("PATH", "VIRTUAL_ENV", "LANG", "OPENBLAS_NUM_THREADS", "VIBROIMPACT_CODE_STORE")
         kept = {key: os.environ[key] for key in names if key in os.environ}
-        # as on the machine of a user: some libraries are silent where they find that they are tested
-        self.environment = kept | {"HOME": str(self.home), "PYTHONPATH": os.pathsep.join(ours), "GUARD_CALLS": str(self._record)}
+        # as on the machine of a user: some libraries are silent where they find that they are
+        # tested
+        self.environment = kept | {
+            "HOME": str(self.home),
+            "PYTHONPATH": os.pathsep.join(ours),
+            "GUARD_CALLS": str(self._record),
+        }
         compiler = shutil.which("cc")
         self.sees_compiled_code = compiler is not None and sys.platform.startswith("linux")
         if self.sees_compiled_code:
             source, library = folder / "guard.c", folder / "guard.so"
             source.write_text(_LIBRARY)
-            subprocess.run([str(compiler), "-shared", "-fPIC", "-o", str(library), str(source), "-ldl"], check=True)
+            subprocess.run(
+                [str(compiler), "-shared", "-fPIC", "-o", str(library), str(source), "-ldl"],
+                check=True,
+            )
             self.environment["LD_PRELOAD"] = str(library)
 
     @property
@@ -141,10 +155,22 @@ class Guard:
     def run(self, program: str, *arguments: str, folder: Path) -> str:
         """Run a program in Python, and return what it printed; its exit status must be 0."""
         command = [sys.executable, "-c", program, *arguments]
-        done = subprocess.run(command, env=self.environment, cwd=folder, capture_output=True, text=True, timeout=900, check=False)
+        done = subprocess.run(
+            command,
+            env=self.environment,
+            cwd=folder,
+            capture_output=True,
+            text=True,
+            timeout=900,
+            check=False,
+        )
         assert done.returncode == 0, done.stdout[-2000:] + done.stderr[-4000:]
         return done.stdout
 
     def written(self) -> set[str]:
         """Return the files in the home, as paths relative to it."""
-        return {path.relative_to(self.home).as_posix() for path in self.home.rglob("*") if not path.is_dir()}
+        return {
+            path.relative_to(self.home).as_posix()
+            for path in self.home.rglob("*")
+            if not path.is_dir()
+        }

@@ -9,11 +9,14 @@ import numpy as np
 import vibroimpact as vi
 
 RATE = 48_000.0
-_TONES = ((2300.0, 3e-3, 1.0), (5100.0, 1.5e-3, 0.6))  # frequency, decay and amplitude of what rings
+# frequency, decay and amplitude of what rings
+_TONES = ((2300.0, 3e-3, 1.0), (5100.0, 1.5e-3, 0.6))
 
 
 class Heard(NamedTuple):
-    """A record, the times of the touches [s], and the restitution of each but the first and the last."""
+    """A record, the times of the touches [s], and the restitution of each but the first
+    and the last.
+    """
 
     record: vi.Record
     touches: np.ndarray
@@ -24,7 +27,10 @@ def burst(time: np.ndarray, at: float) -> np.ndarray:
     """What a touch sounds like, of amplitude 1."""
     since = (time - at).clip(0.0)
     rise = -np.expm1(-since / 1.5e-4)
-    return rise**2 * sum(size * np.exp(-since / decay) * np.sin(2.0 * np.pi * one * since) for one, decay, size in _TONES)
+    return rise**2 * sum(
+        size * np.exp(-since / decay) * np.sin(2.0 * np.pi * one * since)
+        for one, decay, size in _TONES
+    )
 
 
 def heard(
@@ -39,7 +45,9 @@ def heard(
     flight: float = 0.4,
     rate: float = RATE,
 ) -> Heard:
-    """Bounces in white noise, so many decibels below the mean power, with hum, clicks and second contacts of the first bounces."""
+    """Bounces in white noise, so many decibels below the mean power, with hum, clicks and
+    second contacts of the first bounces.
+    """
     random = np.random.default_rng(seed)
     flights = flight * restitution ** np.arange(touches - 1)
     times = 0.2 + random.uniform(0.0, 1e-3) + np.concatenate([[0.0], np.cumsum(flights)])
@@ -49,10 +57,16 @@ def heard(
         value += restitution**number * burst(time, at)
         if number < doubles:
             value += 0.5 * restitution**number * burst(time, at + random.uniform(1.5e-3, 4e-3))
-    value += random.normal(scale=np.sqrt(np.mean(value**2)) * 10.0 ** (-decibels / 20.0), size=len(time))
+    value += random.normal(
+        scale=np.sqrt(np.mean(value**2)) * 10.0 ** (-decibels / 20.0), size=len(time)
+    )
     value += hum * np.sin(2.0 * np.pi * 50.0 * time + random.uniform(0.0, 6.0))
-    value[random.integers(0, len(time), clicks)] += random.choice([-1.0, 1.0], clicks) * random.uniform(0.5, 2.0, clicks)
-    return Heard(vi.Record("microphone", value, rate, "Pa"), times, np.full(touches - 2, restitution))
+    value[random.integers(0, len(time), clicks)] += random.choice(
+        [-1.0, 1.0], clicks
+    ) * random.uniform(0.5, 2.0, clicks)
+    return Heard(
+        vi.Record("microphone", value, rate, "Pa"), times, np.full(touches - 2, restitution)
+    )
 
 
 def music(seed: int, duration: float = 5.0) -> vi.Record:
@@ -67,6 +81,8 @@ def music(seed: int, duration: float = 5.0) -> vi.Record:
     )[seed % 3]
     for at in rhythm[rhythm < duration - 0.2]:
         first = int(at * RATE)
-        tone = np.exp(-time / 0.02) * np.sin(2.0 * np.pi * random.choice([440.0, 880.0, 1320.0, 2200.0]) * time)
+        tone = np.exp(-time / 0.02) * np.sin(
+            2.0 * np.pi * random.choice([440.0, 880.0, 1320.0, 2200.0]) * time
+        )
         value[first : first + len(time)] += random.uniform(0.2, 1.0) * tone
     return vi.Record("microphone", value, RATE, "Pa")

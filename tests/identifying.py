@@ -1,4 +1,6 @@
-"""Impacts on an elastic plate whose records are identified: simulated with more modes than the model that identifies them has."""
+"""Impacts on an elastic plate whose records are identified: simulated with more modes
+than the model that identifies them has.
+"""
 
 from __future__ import annotations
 
@@ -23,10 +25,15 @@ THICKNESS = 0.010
 
 
 def a_case(modes: int = 140, **changed: Any) -> vi.Case:
-    """A sphere of coal on a plate with three accelerometers; the modes reach beyond what they hear."""
+    """A sphere of coal on a plate with three accelerometers; the modes reach beyond what
+    they hear.
+    """
     table: dict[str, Any] = {
         "name": "coal on a plate",
-        "sphere": {"radius": 0.02, "material": {"density": 1380.0, "youngs_modulus": 2.26e9, "poissons_ratio": 0.28}},
+        "sphere": {
+            "radius": 0.02,
+            "material": {"density": 1380.0, "youngs_modulus": 2.26e9, "poissons_ratio": 0.28},
+        },
         "plate": {
             "size": [0.5, 0.4, THICKNESS],
             "material": {"density": 7850.0, "youngs_modulus": 210e9, "poissons_ratio": 0.3},
@@ -37,7 +44,9 @@ def a_case(modes: int = 140, **changed: Any) -> vi.Case:
         },
         "drop": {"speed": 3.0},
         "contact": {"law": "tsuji", "restitution": 0.6},
-        "sensors": [{"name": name, "position": list(place), "rate": RATE} for name, place in SENSORS.items()],
+        "sensors": [
+            {"name": name, "position": list(place), "rate": RATE} for name, place in SENSORS.items()
+        ],
     }
     return vi.read_case({**table, **changed})
 
@@ -69,40 +78,75 @@ class Impact:
         return float(0.5 * duration * weights @ force)
 
 
-def an_impact(radius: float, speed: float, place: tuple[float, float], modes: int = 280, off: np.random.Generator | None = None) -> Impact:
-    """A sphere that touches the plate first at `DELAY`; the plate is off its model by what the model states of its own errors, if asked."""
+def an_impact(
+    radius: float,
+    speed: float,
+    place: tuple[float, float],
+    modes: int = 280,
+    off: np.random.Generator | None = None,
+) -> Impact:
+    """A sphere that touches the plate first at `DELAY`; the plate is off its model by
+    what the model states of its own errors, if asked.
+    """
     there = plate(modes).at(place)
     if off is not None:
         there = off_by_its_errors(plate(modes), there, off)
     return _dropped(plate(modes), there, radius, speed, place)
 
 
-def _dropped(on: Plate, there: Problem, radius: float, speed: float, place: tuple[float, float]) -> Impact:
+def _dropped(
+    on: Plate, there: Problem, radius: float, speed: float, place: tuple[float, float]
+) -> Impact:
     case = on.touched
-    rigid = rigid_problem(case.model_copy(update={"sphere": case.sphere.model_copy(update={"radius": radius})}))
+    rigid = rigid_problem(
+        case.model_copy(update={"sphere": case.sphere.model_copy(update={"radius": radius})})
+    )
     gravity = float(there.gravity)
     height = radius + speed * DELAY - 0.5 * gravity * DELAY**2
-    falling = {"speed": None, "height": height, "velocity": gravity * DELAY - speed, "impacts": None, "duration": DELAY + 2.0 * WINDOW}
-    return Impact(radius, speed, place, vi.simulate(replace(there, sphere=rigid.sphere, laws=rigid.laws, **falling)))
+    falling = {
+        "speed": None,
+        "height": height,
+        "velocity": gravity * DELAY - speed,
+        "impacts": None,
+        "duration": DELAY + 2.0 * WINDOW,
+    }
+    return Impact(
+        radius,
+        speed,
+        place,
+        vi.simulate(replace(there, sphere=rigid.sphere, laws=rigid.laws, **falling)),
+    )
 
 
 def off_by_its_errors(plate: Plate, problem: Problem, random: np.random.Generator) -> Problem:
-    """A problem with frequencies and static compliance drawn from the errors that the model of its plate states."""
+    """A problem with frequencies and static compliance drawn from the errors that the
+    model of its plate states.
+    """
     mean, deviation = compliance_error(plate, problem)
     modes = problem.plate.modes
     assert modes is not None
-    frequencies = modes.frequencies * (1.0 + plate.frequency_errors * random.standard_normal(len(modes.frequencies)))
+    frequencies = modes.frequencies * (
+        1.0 + plate.frequency_errors * random.standard_normal(len(modes.frequencies))
+    )
     softer = with_compliance(problem, mean + deviation * random.standard_normal())
-    return replace(softer, plate=replace(problem.plate, modes=replace(modes, frequencies=frequencies)))
+    return replace(
+        softer, plate=replace(problem.plate, modes=replace(modes, frequencies=frequencies))
+    )
 
 
 def records_of(impact: Impact, decibels: float, seed: int) -> list[Record]:
-    """What the sensors record, with white noise so many decibels below the rms value after first touch."""
+    """What the sensors record, with white noise so many decibels below the rms value
+    after first touch.
+    """
     random, found = np.random.default_rng(seed), []
     for name, signal in impact.response.signals().items():
         from_touch = signal.value[round(DELAY * RATE) : round((DELAY + WINDOW) * RATE)]
         noise = 10.0 ** (-decibels / 20.0) * np.sqrt(np.mean(from_touch**2))
-        found.append(Record(name, signal.value + noise * random.standard_normal(len(signal.value)), RATE, "m/s2"))
+        found.append(
+            Record(
+                name, signal.value + noise * random.standard_normal(len(signal.value)), RATE, "m/s2"
+            )
+        )
     return found
 
 
@@ -113,14 +157,23 @@ LABORATORY = SetupErrors(sensor_place=5e-3, gain=0.02, thickness=0.01, modulus=0
 @cache
 def mounted(modes: int = 140, errors: SetupErrors | None = None) -> Plate:
     """The plate with accelerometers that have a mounted resonance."""
-    sensors = [{"name": name, "position": list(at), "rate": RATE, "accelerometer": {"resonance": 30e3}} for name, at in SENSORS.items()]
+    sensors = [
+        {"name": name, "position": list(at), "rate": RATE, "accelerometer": {"resonance": 30e3}}
+        for name, at in SENSORS.items()
+    ]
     return plate_of(a_case(modes, sensors=sensors), WINDOW, errors=errors)
 
 
 def in_laboratory(
-    radius: float, speed: float, place: tuple[float, float], random: np.random.Generator, errors: SetupErrors = LABORATORY
+    radius: float,
+    speed: float,
+    place: tuple[float, float],
+    random: np.random.Generator,
+    errors: SetupErrors = LABORATORY,
 ) -> tuple[Impact, Setup]:
-    """An impact on a plate and sensors that differ from the case by random errors, and how they do; gains are those of `heard_by`."""
+    """An impact on a plate and sensors that differ from the case by random errors, and
+    how they do; gains are those of `heard_by`.
+    """
     setup = Setup.of(errors.deviations(len(SENSORS)) * random.standard_normal(2 + 4 * len(SENSORS)))
     there = mounted(280).under(setup, list(SENSORS))
     return _dropped(there, there.at(place), radius, speed, place), setup
@@ -128,7 +181,10 @@ def in_laboratory(
 
 def heard_by(setup: Setup, records: list[Record]) -> list[Record]:
     """Records through amplifiers whose gains are those of a set-up."""
-    return [replace(record, value=(1.0 + gain) * record.value) for record, gain in zip(records, setup.gain, strict=True)]
+    return [
+        replace(record, value=(1.0 + gain) * record.value)
+        for record, gain in zip(records, setup.gain, strict=True)
+    ]
 
 
 def drawn(number: int, seed: int) -> list[tuple[float, float, tuple[float, float]]]:
@@ -136,4 +192,7 @@ def drawn(number: int, seed: int) -> list[tuple[float, float, tuple[float, float
     random = np.random.default_rng(seed)
     radii, speeds = random.uniform(0.012, 0.03, number), random.uniform(1.0, 6.0, number)
     places = random.uniform(-1.0, 1.0, (number, 2)) * [0.12, 0.1]
-    return [(float(r), float(v), (float(x), float(y))) for r, v, (x, y) in zip(radii, speeds, places, strict=True)]
+    return [
+        (float(r), float(v), (float(x), float(y)))
+        for r, v, (x, y) in zip(radii, speeds, places, strict=True)
+    ]

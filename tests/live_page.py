@@ -1,4 +1,6 @@
-"""What tests do with the live page: open it with a case, wait for what comes, read what it shows."""
+"""What tests do with the live page: open it with a case, wait for what comes, read what
+it shows.
+"""
 
 from __future__ import annotations
 
@@ -38,7 +40,13 @@ ELASTIC: dict[str, Any] = {
 }
 LONG_NAMES: dict[str, Any] = ELASTIC | {
     "name": "AName" * 14,
-    "sensors": [{"name": "beside_the_third_bolt" + 39 * "_", "position": ["90 mm", "20 mm"], "rate": "20 kHz"}],
+    "sensors": [
+        {
+            "name": "beside_the_third_bolt" + 39 * "_",
+            "position": ["90 mm", "20 mm"],
+            "rate": "20 kHz",
+        }
+    ],
 }
 """Names of which each is one long word."""
 PATCHES = {"type": "patches", "spacing": ["170 mm", "120 mm"], "radius": "8 mm"}
@@ -46,7 +54,9 @@ PATCHES = {"type": "patches", "spacing": ["170 mm", "120 mm"], "radius": "8 mm"}
 
 
 def open_live(page: Page, server: Server, table: dict[str, Any] | None = None) -> None:
-    """Open the live page with a case, or with the one with which it begins, and wait until it is shown."""
+    """Open the live page with a case, or with the one with which it begins, and wait
+    until it is shown.
+    """
     page.goto(server.address + ("" if table is None else fragment_of(table)))
     page.wait_for_selector("html[data-detail=full]")
     settle(page)
@@ -59,7 +69,9 @@ def settle(page: Page) -> None:
 
 def shown(page: Page) -> dict[str, Any]:
     """Return the resolved case of what is shown."""
-    found: dict[str, Any] = page.evaluate("() => JSON.parse(JSON.stringify(vibroimpact.live.state.last.case))")
+    found: dict[str, Any] = page.evaluate(
+        "() => JSON.parse(JSON.stringify(vibroimpact.live.state.last.case))"
+    )
     return found
 
 
@@ -99,7 +111,10 @@ def type_value(page: Page, key: str, value: object) -> None:
 
 def tables(page: Page, which: str) -> list[list[str]]:
     """Return the rows of a table of the page."""
-    return [line.locator("th, td").all_text_contents() for line in page.locator(f"#{which} tbody tr").all()]
+    return [
+        line.locator("th, td").all_text_contents()
+        for line in page.locator(f"#{which} tbody tr").all()
+    ]
 
 
 def wait_for_fault(page: Page) -> list[str]:

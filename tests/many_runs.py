@@ -24,9 +24,18 @@ SIZE = [0.3, 0.2, 0.01]
 
 def elastic(supports: Any = "clamped", **changes: object) -> dict:
     """A case of an elastic plate that is held in a way."""
-    plate = {"model": "elastic", "material": "steel", "size": SIZE, "modes": 6, "damping": 0.02, "mesh": {"element_size": 0.05}}
+    plate = {
+        "model": "elastic",
+        "material": "steel",
+        "size": SIZE,
+        "modes": 6,
+        "damping": 0.02,
+        "mesh": {"element_size": 0.05},
+    }
     drop = {"height": 0.1, "position": [0.02, 0.01]}
-    return plain_case(**{"plate": {**plate, "supports": supports}, "drop": drop, "run": {"impacts": 2}, **changes})
+    return plain_case(
+        **{"plate": {**plate, "supports": supports}, "drop": drop, "run": {"impacts": 2}, **changes}
+    )
 
 
 def sensor(name: str, place: tuple[float, float] = (0.1, 0.05), **more: object) -> dict:
@@ -39,14 +48,22 @@ CASES: dict[str, Callable[[], dict]] = {
     "a plate that is rigid": lambda: plain_case(plate__material="rigid"),
     "a sphere below": lambda: plain_case(plate={"material": "steel", "radius": 0.04}),
     "a sphere below that is free": lambda: plain_case(
-        plate={"material": "steel", "radius": 0.01, "supports": "free"}, drop={"speed": 1.0, "gravity": 0.0}, run={"impacts": 1}
+        plate={"material": "steel", "radius": 0.01, "supports": "free"},
+        drop={"speed": 1.0, "gravity": 0.0},
+        run={"impacts": 1},
     ),
     "an instantaneous law": lambda: plain_case(contact={"law": "newton", "restitution": 0.5}),
     "an instantaneous law without gravity": lambda: plain_case(
-        contact={"law": "newton", "restitution": 0.5}, drop={"speed": 1.0, "gravity": 0.0}, run={"impacts": 1}
+        contact={"law": "newton", "restitution": 0.5},
+        drop={"speed": 1.0, "gravity": 0.0},
+        run={"impacts": 1},
     ),
     "no impact": lambda: plain_case(run={"duration": 0.1}),
-    "rest": lambda: plain_case(contact={"law": "hunt-crossley", "restitution": 0.3}, drop={"height": 0.05}, run={"impacts": "all"}),
+    "rest": lambda: plain_case(
+        contact={"law": "hunt-crossley", "restitution": 0.3},
+        drop={"height": 0.05},
+        run={"impacts": "all"},
+    ),
     "a capture": lambda: plain_case(
         sphere={"radius": "1 um", "material": "glass"},
         plate={"material": "glass"},
@@ -54,22 +71,53 @@ CASES: dict[str, Callable[[], dict]] = {
         contact={"law": "jkr", "work_of_adhesion": 1.0},
         run={"impacts": 1},
     ),
-    "a dent": lambda: plain_case(contact={"law": "walton-braun", "stiffness": 1e7, "restitution": 0.6}),
-    "an elastic sphere": lambda: plain_case(
-        sphere={"radius": 0.025, "material": "steel", "model": "elastic", "modes": 3, "mesh": {"elements_across": 4}}, run={"impacts": 1}
+    "a dent": lambda: plain_case(
+        contact={"law": "walton-braun", "stiffness": 1e7, "restitution": 0.6}
     ),
-    "an elastic plate without impact": lambda: elastic(run={"duration": 0.02}, sensors=[sensor("a1")]),
-    "a free plate": lambda: elastic("free", drop={"speed": 1.0, "gravity": 0.0, "position": [0.02, 0.01]}, run={"impacts": 1}),
-    "sensors": lambda: elastic(sensors=[sensor("a1"), sensor("a2"), sensor("v", (-0.1, 0.0), quantity="velocity")]),
+    "an elastic sphere": lambda: plain_case(
+        sphere={
+            "radius": 0.025,
+            "material": "steel",
+            "model": "elastic",
+            "modes": 3,
+            "mesh": {"elements_across": 4},
+        },
+        run={"impacts": 1},
+    ),
+    "an elastic plate without impact": lambda: elastic(
+        run={"duration": 0.02}, sensors=[sensor("a1")]
+    ),
+    "a free plate": lambda: elastic(
+        "free", drop={"speed": 1.0, "gravity": 0.0, "position": [0.02, 0.01]}, run={"impacts": 1}
+    ),
+    "sensors": lambda: elastic(
+        sensors=[sensor("a1"), sensor("a2"), sensor("v", (-0.1, 0.0), quantity="velocity")]
+    ),
     "hostile names": lambda: elastic(
         name=HOSTILE,
-        sphere__material={"name": HOSTILE, "density": 2600, "youngs_modulus": 50e9, "poissons_ratio": 0.25},
-        plate__material={"name": f"{HOSTILE}2", "density": 7850, "youngs_modulus": 210e9, "poissons_ratio": 0.3},
+        sphere__material={
+            "name": HOSTILE,
+            "density": 2600,
+            "youngs_modulus": 50e9,
+            "poissons_ratio": 0.25,
+        },
+        plate__material={
+            "name": f"{HOSTILE}2",
+            "density": 7850,
+            "youngs_modulus": 210e9,
+            "poissons_ratio": 0.3,
+        },
         sensors=[sensor(HOSTILE), sensor("$\\frac{$", (0.0, 0.05)), sensor("a" * 200)],
     ),
 }
 
-_BAR = {"type": "bar", "position": [0.1, 0.05], "radius": 0.008, "length": 0.05, "material": "steel"}
+_BAR = {
+    "type": "bar",
+    "position": [0.1, 0.05],
+    "radius": 0.008,
+    "length": 0.05,
+    "material": "steel",
+}
 _CORNERS = {"spacing": [0.24, 0.14], "radius": 0.02}
 _SPRING = {"type": "spring", "stiffness": 1e5, "horizontal_stiffness": 1e5}
 
@@ -92,7 +140,10 @@ SUPPORTS: dict[str, Any] = {
         {"type": "point", "position": [-0.1, -0.07], "directions": "xyz"},
         {"type": "point", "position": [0.1, -0.07]},
     ],
-    "springs": [{**_SPRING, "position": [-0.1, -0.07], "radius": 0.01}, {**_SPRING, "position": [0.1, -0.07]}],
+    "springs": [
+        {**_SPRING, "position": [-0.1, -0.07], "radius": 0.01},
+        {**_SPRING, "position": [0.1, -0.07]},
+    ],
 }
 """Supports of every kind, but for the sets of a mesh that was brought."""
 
@@ -105,7 +156,9 @@ MADE: dict[str, Callable[[], vi.Problem]] = {
         impacts=2,
     ),
     "modes made in Python": lambda: drop_on(
-        vi.find_contact_law("hertz")(stiffness=5e8), random_modes(3, 10, 150.0, 15e3, 1.2, 0.02), impacts=2
+        vi.find_contact_law("hertz")(stiffness=5e8),
+        random_modes(3, 10, 150.0, 15e3, 1.2, 0.02),
+        impacts=2,
     ),
 }
 
@@ -127,7 +180,9 @@ def _result(case: dict) -> Result:
 
 
 def held(name: str) -> Result:
-    """Return a result whose case has the supports of a name; what was computed is that of a clamped plate."""
+    """Return a result whose case has the supports of a name; what was computed is that of
+    a clamped plate.
+    """
     return replace(run_of("sensors"), case=resolved_case(vi.read_case(elastic(SUPPORTS[name]))))
 
 
@@ -135,5 +190,14 @@ def _brought(folder: Path) -> dict:
     mesh = box_mesh((0.3, 0.2, 0.02), (6, 4, 1), "hex20")
     left = (mesh.nodes[:, 0] < mesh.nodes[:, 0].min() + 1e-9).nonzero()[0]
     vi.write_abaqus(vi.Mesh(mesh.nodes, mesh.blocks, {"root": left}), folder / "plate.inp")
-    plate = {"material": "steel", "model": "elastic", "modes": 6, "damping": 0.02, "mesh": str(folder / "plate.inp")}
-    return elastic(plate={**plate, "supports": {"type": "set", "name": "root"}}, drop={"height": 0.1, "position": [0.1, 0.05]})
+    plate = {
+        "material": "steel",
+        "model": "elastic",
+        "modes": 6,
+        "damping": 0.02,
+        "mesh": str(folder / "plate.inp"),
+    }
+    return elastic(
+        plate={**plate, "supports": {"type": "set", "name": "root"}},
+        drop={"height": 0.1, "position": [0.1, 0.05]},
+    )

@@ -82,7 +82,9 @@ def damaged_bytes(data: bytes, choose: random.Random) -> bytes:
         elif kind == 2:
             changed[early:early] = changed[early : early + number]
         elif kind == 3:
-            changed[early : early + number] = choose.choice((b"\0", b"\xff", b"\x7f", b"\n", b"-1\n")) * number
+            changed[early : early + number] = (
+                choose.choice((b"\0", b"\xff", b"\x7f", b"\n", b"-1\n")) * number
+            )
         else:
             del changed[at:]
     return bytes(changed)
@@ -105,7 +107,9 @@ def case_files(count: int, seed: int) -> Iterator[bytes]:
 
 
 def elastic_cases(count: int, seed: int) -> Iterator[Table]:
-    """Yield hostile cases of vibrating bodies, whose modes are quick to compute: most by their numbers, which are accepted most easily."""
+    """Yield hostile cases of vibrating bodies, whose modes are quick to compute: most by
+    their numbers, which are accepted most easily.
+    """
     choose = random.Random(seed)
     for _ in range(count):
         table = plain_case(**copy.deepcopy(ELASTIC))
@@ -134,7 +138,9 @@ def _place(table: Table, choose: random.Random) -> tuple[Any, Any]:
 
 
 def _hostile(choose: random.Random) -> Any:
-    return choose.choice((lambda: choose.choice(TEXTS), lambda: choose.choice(NUMBERS), choose.choice(OTHERS)))()
+    return choose.choice(
+        (lambda: choose.choice(TEXTS), lambda: choose.choice(NUMBERS), choose.choice(OTHERS))
+    )()
 
 
 def _replace(table: Table, choose: random.Random) -> None:
@@ -147,7 +153,9 @@ def _scale(table: Table, choose: random.Random) -> None:
     numbers = [(holder, key) for holder, key in _places(table) if type(holder[key]) in (int, float)]
     if numbers:
         holder, key = choose.choice(numbers)
-        holder[key] = holder[key] * 10.0 ** choose.choice((-300, -30, -12, -6, -3, -1, 1, 3, 6, 12, 30, 300))
+        holder[key] = holder[key] * 10.0 ** choose.choice(
+            (-300, -30, -12, -6, -3, -1, 1, 3, 6, 12, 30, 300)
+        )
 
 
 def _remove(table: Table, choose: random.Random) -> None:
@@ -186,11 +194,16 @@ def _swap(table: Table, choose: random.Random) -> None:
 
 
 def _repeat(table: Table, choose: random.Random) -> None:
-    lists = [(holder, key) for holder, key in _places(table) if isinstance(holder[key], list) and holder[key]]
+    lists = [
+        (holder, key)
+        for holder, key in _places(table)
+        if isinstance(holder[key], list) and holder[key]
+    ]
     if lists:
         holder, key = choose.choice(lists)
         times = choose.choice((2, 50, 3000))
-        if len(repr(holder[key])) * times < 1_000_000:  # beyond, and that is refused by the bytes of the file
+        # beyond, and that is refused by the bytes of the file
+        if len(repr(holder[key])) * times < 1_000_000:
             holder[key] = holder[key] * times
 
 
@@ -200,7 +213,9 @@ _CHANGES = (_replace, _replace, _replace, _scale, _remove, _add, _swap, _repeat)
 def _edit(data: bytes, choose: random.Random) -> bytes:
     changed = bytearray(data)
     for _ in range(choose.randint(1, 4)):
-        changed[choose.randrange(len(changed))] = choose.choice((choose.randrange(256), *b'0123456789"[]{}=.,#\n\\'))
+        changed[choose.randrange(len(changed))] = choose.choice(
+            (choose.randrange(256), *b'0123456789"[]{}=.,#\n\\')
+        )
     return bytes(changed)
 
 
@@ -229,7 +244,9 @@ def _insert(data: bytes, choose: random.Random) -> bytes:
 def _line(data: bytes, choose: random.Random) -> bytes:
     lines = data.split(b"\n")
     at = choose.randrange(len(lines))
-    lines[at : at + 1] = choose.choice(([], [lines[at]] * 2, [lines[at]] * 2000, [choose.choice(_TOKENS)], [choose.choice(lines)]))
+    lines[at : at + 1] = choose.choice(
+        ([], [lines[at]] * 2, [lines[at]] * 2000, [choose.choice(_TOKENS)], [choose.choice(lines)])
+    )
     return b"\n".join(lines) + b"\n"
 
 

@@ -1,4 +1,6 @@
-"""Oblique impacts of spheres of alumina on glass that Kharaz, Gorham and Salman measured (Powder Technol. 120:281, 2001)."""
+"""Oblique impacts of spheres of alumina on glass that Kharaz, Gorham and Salman measured
+(Powder Technol. 120:281, 2001).
+"""
 
 from __future__ import annotations
 
@@ -28,26 +30,49 @@ def problem_of(friction: str, **parameters: Any) -> vi.Problem:
     """Return the problem of impacts at the eight angles under a friction law."""
     ball = vi.rigid_sphere(RADIUS, ALUMINA)
     pair = ContactPair(
-        effective_modulus(ALUMINA, GLASS), RADIUS, ball.mass, effective_shear_modulus=effective_shear_modulus(ALUMINA, GLASS)
+        effective_modulus(ALUMINA, GLASS),
+        RADIUS,
+        ball.mass,
+        effective_shear_modulus=effective_shear_modulus(ALUMINA, GLASS),
     )
     law = vi.find_contact_law("lankarani-nikravesh").for_pair(pair, restitution=RESTITUTION)
     oblique = vi.Oblique(
-        velocity=(SPEED * np.sin(ANGLES), 0.0), friction=find_friction_law(friction).for_pair(pair, coefficient=FRICTION, **parameters)
+        velocity=(SPEED * np.sin(ANGLES), 0.0),
+        friction=find_friction_law(friction).for_pair(pair, coefficient=FRICTION, **parameters),
     )
     return vi.Problem(
-        sphere=ball, plate=vi.rigid_plate(), laws=(law,), speed=SPEED * np.cos(ANGLES), gravity=0.0, impacts=1, oblique=oblique
+        sphere=ball,
+        plate=vi.rigid_plate(),
+        laws=(law,),
+        speed=SPEED * np.cos(ANGLES),
+        gravity=0.0,
+        impacts=1,
+        oblique=oblique,
     )
 
 
 def tangential_restitution(friction: str, **parameters: Any) -> Floats:
     """Return the tangential restitution at the eight angles under a friction law."""
-    found: Floats = vi.tabulate(problem_of(friction, **parameters)).impacts["tangential_restitution"][:, 0]
+    found: Floats = vi.tabulate(problem_of(friction, **parameters)).impacts[
+        "tangential_restitution"
+    ][:, 0]
     return found
 
 
 def fitted_friction(friction: str, rows: slice, *more: str) -> vi.FrictionCalibration:
-    """Return the coefficient of friction, and more parameters, that fit the measured restitutions of some of the angles."""
+    """Return the coefficient of friction, and more parameters, that fit the measured
+    restitutions of some of the angles.
+    """
     angles, wanted = ANGLES[rows], {"tangential_restitution": MEASURED[rows]}
-    seen = from_table(SPEED * np.cos(angles), wanted, {name: np.ones(len(angles)) for name in wanted}, tuple("abcdefgh"[: len(angles)]))
-    impacts = vi.ObliqueImpacts(replace(seen, deviations_known=False), SPEED * np.sin(angles), np.zeros(len(angles)), wanted)
-    return vi.calibrate_friction(problem_of(friction).take(0), impacts, ["friction.coefficient", *more])
+    seen = from_table(
+        SPEED * np.cos(angles),
+        wanted,
+        {name: np.ones(len(angles)) for name in wanted},
+        tuple("abcdefgh"[: len(angles)]),
+    )
+    impacts = vi.ObliqueImpacts(
+        replace(seen, deviations_known=False), SPEED * np.sin(angles), np.zeros(len(angles)), wanted
+    )
+    return vi.calibrate_friction(
+        problem_of(friction).take(0), impacts, ["friction.coefficient", *more]
+    )

@@ -1,4 +1,6 @@
-"""Records of drops whose restitutions are known, with faults of sensors and clocks, in files as instruments write them."""
+"""Records of drops whose restitutions are known, with faults of sensors and clocks, in
+files as instruments write them.
+"""
 
 from __future__ import annotations
 
@@ -32,7 +34,9 @@ CONTACT = 5.5e-5
 
 
 class Made(NamedTuple):
-    """A file with a record, its kind, the restitutions that it holds, and what is wrong with it; its times and values."""
+    """A file with a record, its kind, the restitutions that it holds, and what is wrong
+    with it; its times and values.
+    """
 
     file: Path
     kind: str
@@ -43,7 +47,18 @@ class Made(NamedTuple):
     value: np.ndarray
 
 
-STYLES = ("plain", "numpy", "german", "utf-16", "preamble", "units-row", "blanks", "latin-1", "no-header", "no-units")
+STYLES = (
+    "plain",
+    "numpy",
+    "german",
+    "utf-16",
+    "preamble",
+    "units-row",
+    "blanks",
+    "latin-1",
+    "no-header",
+    "no-units",
+)
 
 
 KINDS = ("position", "position", "force", "sound")
@@ -56,7 +71,8 @@ FAULTS = {
 
 
 def made(seed: int, folder: Path | None, kind: str = "", only: str = "") -> Made:
-    """Return the record of a seed: of positions, of a force or of sound; of one kind, or with one of its faults and a little noise.
+    """Return the record of a seed: of positions, of a force or of sound; of one kind, or with one
+    of its faults and a little noise.
 
     Without a folder there is no file.
     """
@@ -81,7 +97,9 @@ def evaluated(record: Made) -> Calibration:
         drop={"height": f"{record.height!r} m +- 0", "gravity": f"{GRAVITY} m/s^2 +- 0"},
         contact={"law": "newton", "restitution": 0.5},
     )
-    return calibrate_case(read_calibration({**case, "calibrate": {"target": target, "degree": 0, "air": False}}))
+    return calibrate_case(
+        read_calibration({**case, "calibrate": {"target": target, "degree": 0, "air": False}})
+    )
 
 
 def standard_errors(record: Made) -> np.ndarray:
@@ -116,17 +134,24 @@ def _seen(record: Made) -> Observations:
         return impacts_in_position(time, record.value, gravity=GRAVITY, **given)
     if record.kind == "force":
         mass = 4.0 / 3.0 * np.pi * RADIUS**3 * float(STEEL["density"])
-        return impacts_in_force(record.time, record.value, mass=mass, gravity=GRAVITY, first_speed=first_speed)
+        return impacts_in_force(
+            record.time, record.value, mass=mass, gravity=GRAVITY, first_speed=first_speed
+        )
     heard = find_bounces(vi.Record("microphone", record.value, 48e3, "V"), CONTACT)
     return impacts_in_bounces(heard, gravity=GRAVITY, first_speed=first_speed)
 
 
 def _position(random: np.random.Generator, stem: Path | None, only: str = "") -> Made:
-    number, restitution, height = int(random.integers(3, 6)), random.uniform(0.55, 0.85), random.uniform(0.3, 1.0)
+    number, restitution, height = (
+        int(random.integers(3, 6)),
+        random.uniform(0.55, 0.85),
+        random.uniform(0.3, 1.0),
+    )
     rate = float(random.choice([120.0, 240.0, 500.0, 1000.0]))
     fall = float(np.sqrt(2.0 * (height - RADIUS) / GRAVITY))
     speeds = GRAVITY * fall * restitution ** np.arange(number + 1)
-    # how long a contact lasts is known to 80 % of Hertz's duration: losses prolong it, and plates that give
+    # how long a contact lasts is known to 80 % of Hertz's duration: losses prolong it, and plates
+    # that give
     contact = CONTACT * max(1.0 + 0.8 * random.normal(), 0.2)
     leaves, begin = [], fall
     for before, after in pairwise(speeds):
@@ -145,13 +170,25 @@ def _position(random: np.random.Generator, stem: Path | None, only: str = "") ->
     position = height - 0.5 * GRAVITY * np.maximum(time, 0.0) ** 2
     for after, leave in zip(speeds[1:], leaves, strict=True):
         since = time - leave
-        position = np.where(since >= 0.0, RADIUS + after * since - 0.5 * GRAVITY * since**2, position)
+        position = np.where(
+            since >= 0.0, RADIUS + after * since - 0.5 * GRAVITY * since**2, position
+        )
     zero, drift = random.uniform(-2e-3, 2e-3), random.uniform(-1e-3, 1e-3)
     if only in ("", "zero and drift"):
         position = position + zero + drift * time
-    position = position + (random.uniform(5e-5, 3e-4) if only in ("", "noise") else 5e-5) * random.normal(size=len(time))
+    position = position + (
+        random.uniform(5e-5, 3e-4) if only in ("", "noise") else 5e-5
+    ) * random.normal(size=len(time))
     file = _table(random, stem, shown, position, ("position", "m"), faults)
-    return Made(file, "position", np.full(number, restitution), height, ("zero, drift, clock, noise", *faults), shown, position)
+    return Made(
+        file,
+        "position",
+        np.full(number, restitution),
+        height,
+        ("zero, drift, clock, noise", *faults),
+        shown,
+        position,
+    )
 
 
 _LAWS: dict[str, tuple[str, tuple[float, ...]]] = {
@@ -162,7 +199,9 @@ _LAWS: dict[str, tuple[str, tuple[float, ...]]] = {
     "thornton": ("yield_pressure", (2e9, 2.5e9, 3e9, 4e9)),
     "storakers": ("yield_strength", (6e8, 8e8, 1e9, 1.2e9)),
 }
-"""Laws of viscous and of plastic contacts, and a parameter with values whose restitutions are about 0.6 to 0.9."""
+"""Laws of viscous and of plastic contacts, and a parameter with values whose restitutions
+are about 0.6 to 0.9.
+"""
 
 
 @cache
@@ -170,17 +209,32 @@ def _forces(law: str, value: float) -> tuple[vi.Response, np.ndarray, np.ndarray
     case = plain_case(
         sphere={"radius": RADIUS, "material": STEEL},
         plate={"material": STEEL},
-        drop={"height": 0.5, "gravity": GRAVITY, **({"same_spot": False} if "yield" in _LAWS[law][0] else {})},
+        drop={
+            "height": 0.5,
+            "gravity": GRAVITY,
+            **({"same_spot": False} if "yield" in _LAWS[law][0] else {}),
+        },
         contact={"law": law, _LAWS[law][0]: value},
         run={"impacts": 5},
     )
     response = vi.simulate(vi.read_case(case))
     touches, lasting = response.impacts["time_s"], response.impacts["duration_s"]
-    fine = [np.linspace(touch, touch + duration, 1001) for touch, duration in zip(touches, lasting, strict=True)]
-    time = np.concatenate([[0.0], *(part for touch in fine for part in ([touch[0] - 1e-9], touch, [touch[-1] + 1e-9]))])
+    fine = [
+        np.linspace(touch, touch + duration, 1001)
+        for touch, duration in zip(touches, lasting, strict=True)
+    ]
+    time = np.concatenate(
+        [
+            [0.0],
+            *(part for touch in fine for part in ([touch[0] - 1e-9], touch, [touch[-1] + 1e-9])),
+        ]
+    )
     force = response.at(time)["force_N"]
     for touch in fine:
-        force[np.isclose(time, touch[0] - 1e-9, rtol=0.0, atol=1e-12) | np.isclose(time, touch[-1] + 1e-9, rtol=0.0, atol=1e-12)] = 0.0
+        force[
+            np.isclose(time, touch[0] - 1e-9, rtol=0.0, atol=1e-12)
+            | np.isclose(time, touch[-1] + 1e-9, rtol=0.0, atol=1e-12)
+        ] = 0.0
     return response, np.append(time, touches[-1] + 0.02), np.append(force, 0.0)
 
 
@@ -195,28 +249,42 @@ def _force(random: np.random.Generator, stem: Path | None, only: str = "") -> Ma
     noise = random.uniform(0.002, 0.02) if only in ("", "noise") else 0.002
     value = gain * sampled + peak * noise * random.normal(size=len(time))
     if only in ("", "offset and drift"):
-        value += peak * (random.uniform(-0.03, 0.03) + random.uniform(-0.01, 0.01) * time / time[-1])
+        value += peak * (
+            random.uniform(-0.03, 0.03) + random.uniform(-0.01, 0.01) * time / time[-1]
+        )
     if only == "clipped" or (not only and random.uniform() < 0.2):
         value = np.minimum(value, 0.85 * peak)
         faults.append("clipped")
     file = _table(random, stem, time, value, ("force", "N"), faults)
     exact = response.impacts["restitution_achieved"]
-    return Made(file, "force", np.asarray(exact), 0.5, ("offset, drift, gain, noise", *faults), time, value)
+    return Made(
+        file, "force", np.asarray(exact), 0.5, ("offset, drift, gain, noise", *faults), time, value
+    )
 
 
 def _sound(random: np.random.Generator, stem: Path | None, only: str = "") -> Made:
-    number, restitution, height, rate = int(random.integers(4, 8)), random.uniform(0.6, 0.85), random.uniform(0.3, 1.0), 48_000
+    number, restitution, height, rate = (
+        int(random.integers(4, 8)),
+        random.uniform(0.6, 0.85),
+        random.uniform(0.3, 1.0),
+        48_000,
+    )
     fall = float(np.sqrt(2.0 * (height - RADIUS) / GRAVITY))
     flights = 2.0 * fall * restitution ** np.arange(1, number) + CONTACT
     touches = 0.1 + np.concatenate([[0.0], np.cumsum(flights)])
     time = np.arange(round((touches[-1] + 0.25) * rate)) / rate
-    value = 10.0 ** (random.uniform(-4.0, -2.3) if only in ("", "noise") else -4.0) * random.normal(size=len(time))
+    value = 10.0 ** (random.uniform(-4.0, -2.3) if only in ("", "noise") else -4.0) * random.normal(
+        size=len(time)
+    )
     for bounce, touch in enumerate(touches):
         since = (time - touch).clip(0.0)
         ringing = sum(
-            np.exp(-since / fade) * np.sin(2.0 * np.pi * pitch * since) for pitch, fade in ((1800, 0.02), (4300, 0.012), (9100, 6e-3))
+            np.exp(-since / fade) * np.sin(2.0 * np.pi * pitch * since)
+            for pitch, fade in ((1800, 0.02), (4300, 0.012), (9100, 6e-3))
         )
-        value += np.where(time >= touch, 0.2 * (1.0 + 0.1 * random.normal()) * restitution**bounce * ringing, 0.0)
+        value += np.where(
+            time >= touch, 0.2 * (1.0 + 0.1 * random.normal()) * restitution**bounce * ringing, 0.0
+        )
     if only in ("", "offset and drift"):
         value += random.uniform(-0.05, 0.05) + random.uniform(-0.02, 0.02) * time
     if only in ("", "hum"):
@@ -240,11 +308,20 @@ def _sound(random: np.random.Generator, stem: Path | None, only: str = "") -> Ma
     return Made(file, "sound", exact, height, ("offset, drift, hum, noise", *faults), time, value)
 
 
-_UNITS = {"m": (("m", 1.0), ("mm", 1e-3), ("cm", 1e-2)), "N": (("N", 1.0), ("kN", 1e3)), "V": (("V", 1.0), ("mV", 1e-3))}
+_UNITS = {
+    "m": (("m", 1.0), ("mm", 1e-3), ("cm", 1e-2)),
+    "N": (("N", 1.0), ("kN", 1e3)),
+    "V": (("V", 1.0), ("mV", 1e-3)),
+}
 
 
 def _table(
-    random: np.random.Generator, stem: Path | None, time: np.ndarray, value: np.ndarray, column: tuple[str, str], faults: list[str]
+    random: np.random.Generator,
+    stem: Path | None,
+    time: np.ndarray,
+    value: np.ndarray,
+    column: tuple[str, str],
+    faults: list[str],
 ) -> Path:
     """Write a table in one of the styles, which joins the faults."""
     if stem is None:
@@ -268,7 +345,12 @@ def _table(
     elif style == "utf-16":
         separator, encoding, head = "\t", "utf-16", [f"time [s]\t{name} [{shown}]"]
     elif style == "preamble":
-        head = ["Measured with scope 7, channel 1", "Date,2026-11-20,10:15", "Operator,A. B.", *head]
+        head = [
+            "Measured with scope 7, channel 1",
+            "Date,2026-11-20,10:15",
+            "Operator,A. B.",
+            *head,
+        ]
     elif style == "units-row":
         separator, head = ";", [f"Time;{name}", f"(ms);({shown})"]
     elif style == "blanks":
@@ -280,5 +362,7 @@ def _table(
     elif style == "no-units":
         head = [f"time,{name}"]
     file = stem.with_suffix(".txt" if style == "blanks" else ".csv")
-    file.write_bytes("\n".join([*head, *(separator.join(row) for row in rows), ""]).encode(encoding))
+    file.write_bytes(
+        "\n".join([*head, *(separator.join(row) for row in rows), ""]).encode(encoding)
+    )
     return file

@@ -1,4 +1,6 @@
-"""Hostile versions of what recognition reads: data sets, cards and graphs of models. Each is reproducible from its seed."""
+"""Hostile versions of what recognition reads: data sets, cards and graphs of models. Each
+is reproducible from its seed.
+"""
 
 from __future__ import annotations
 
@@ -45,7 +47,11 @@ def _variable(file: h5py.File, draw: random.Random) -> str:
 
 def _replaced(file: h5py.File, name: str, values: Any, **options: Any) -> h5py.Dataset:
     """Put other values in place of a variable, with its attributes but those of dimensions."""
-    old = {key: value for key, value in file[name].attrs.items() if key not in ("DIMENSION_LIST", "REFERENCE_LIST", "CLASS", "NAME")}
+    old = {
+        key: value
+        for key, value in file[name].attrs.items()
+        if key not in ("DIMENSION_LIST", "REFERENCE_LIST", "CLASS", "NAME")
+    }
     del file[name]
     data = file.create_dataset(name, data=values, **options)
     data.attrs.update(old)
@@ -82,7 +88,9 @@ def _other_type(file: h5py.File, draw: random.Random) -> None:
     values = file[name][()]
     other = draw.choice(
         (
-            lambda: np.array([str(one) for one in values.ravel()], dtype=h5py.string_dtype()).reshape(values.shape),
+            lambda: np.array(
+                [str(one) for one in values.ravel()], dtype=h5py.string_dtype()
+            ).reshape(values.shape),
             lambda: values.astype(np.complex64),
             lambda: values.astype(bool),
             lambda: values.astype("S8"),
@@ -129,13 +137,23 @@ def _huge(file: h5py.File, draw: random.Random) -> None:
     dtype = old.dtype
     del file[name]
     options = {"compression": "gzip"} if draw.random() < 0.5 else {}
-    file.create_dataset(name, shape, dtype, chunks=tuple(min(one, 1000) for one in shape), **options)
+    file.create_dataset(
+        name, shape, dtype, chunks=tuple(min(one, 1000) for one in shape), **options
+    )
 
 
 def _sensor(file: h5py.File, draw: random.Random) -> None:
     """Add a sensor that does not agree with the other."""
     values = file["signal_a1"][()]
-    other = draw.choice((lambda: values[:-5], lambda: values[:1], lambda: values[:0], lambda: values[:, :0], lambda: values.astype("S4")))()
+    other = draw.choice(
+        (
+            lambda: values[:-5],
+            lambda: values[:1],
+            lambda: values[:0],
+            lambda: values[:, :0],
+            lambda: values.astype("S4"),
+        )
+    )()
     data = file.create_dataset("signal_b", data=other)
     if draw.random() < 0.7:
         data.attrs["rate_Hz"] = 1e4
@@ -152,7 +170,10 @@ _ATTRIBUTES: tuple[Callable[[], Any], ...] = (
 def _attribute(file: h5py.File, draw: random.Random) -> None:
     places = [(file, name) for name in ("format", "title", "version", "study")]
     places += [(file["signal_a1"], name) for name in ("rate_Hz", "rate_Hz", "units", "CLASS")]
-    places += [(file["class"], name) for name in ("flag_values", "flag_values", "flag_meanings", "flag_meanings")]
+    places += [
+        (file["class"], name)
+        for name in ("flag_values", "flag_values", "flag_meanings", "flag_meanings")
+    ]
     for _ in range(draw.choice((1, 1, 2))):
         holder, name = draw.choice(places)
         if draw.random() < 0.15:
@@ -217,7 +238,11 @@ def bytes_damaged(data: bytes, draw: random.Random) -> bytes:
     if kind == "twice":
         return data[:place] + data[place // 2 :]
     length = draw.choice((1, 2, 8, 64, 512))
-    return (data[:place] + (draw.randbytes(length) if kind == "bytes" else bytes(length)) + data[place + length :])[: len(data)]
+    return (
+        data[:place]
+        + (draw.randbytes(length) if kind == "bytes" else bytes(length))
+        + data[place + length :]
+    )[: len(data)]
 
 
 # cards
@@ -296,10 +321,16 @@ def _node(model: Any, draw: random.Random) -> Any:
 
 def _numbers(model: Any, draw: random.Random) -> None:
     """Change numbers of attributes: coefficients, thresholds, places of nodes of trees."""
-    attributes = [one for node in model.graph.node for one in node.attribute if one.floats or one.ints]
+    attributes = [
+        one for node in model.graph.node for one in node.attribute if one.floats or one.ints
+    ]
     attribute = draw.choice(attributes)
     values = attribute.floats if attribute.floats else attribute.ints
-    others: tuple[Any, ...] = (np.nan, np.inf, -np.inf, 1e38, -5.0) if attribute.floats else (-1, 0, 10**6, 2**62, -(2**62), 3)
+    others: tuple[Any, ...] = (
+        (np.nan, np.inf, -np.inf, 1e38, -5.0)
+        if attribute.floats
+        else (-1, 0, 10**6, 2**62, -(2**62), 3)
+    )
     other = draw.choice(others)
     if draw.random() < 0.3:
         for place in range(len(values)):
@@ -309,7 +340,12 @@ def _numbers(model: Any, draw: random.Random) -> None:
 
 
 def _lengths(model: Any, draw: random.Random) -> None:
-    attributes = [one for node in model.graph.node for one in node.attribute if one.floats or one.ints or one.strings]
+    attributes = [
+        one
+        for node in model.graph.node
+        for one in node.attribute
+        if one.floats or one.ints or one.strings
+    ]
     attribute = draw.choice(attributes)
     values = next(one for one in (attribute.floats, attribute.ints, attribute.strings) if one)
     kept = list(values)
@@ -320,19 +356,38 @@ def _lengths(model: Any, draw: random.Random) -> None:
 def _operator(model: Any, draw: random.Random) -> None:
     node = _node(model, draw)
     node.op_type = draw.choice(
-        ("Loop", "Scan", "If", "Tile", "Expand", "Conv", "RandomNormal", "NonZero", "nothing", "", "Identity", "Neg", "Exp")
+        (
+            "Loop",
+            "Scan",
+            "If",
+            "Tile",
+            "Expand",
+            "Conv",
+            "RandomNormal",
+            "NonZero",
+            "nothing",
+            "",
+            "Identity",
+            "Neg",
+            "Exp",
+        )
     )
     if draw.random() < 0.5:
         node.domain = draw.choice(("", "com.microsoft", "ai.onnx.ml", "evil"))
 
 
 def _attributes(model: Any, draw: random.Random) -> None:
-    node = next(iter([one for one in model.graph.node if one.attribute and draw.random() < 0.5]), model.graph.node[0])
+    node = next(
+        iter([one for one in model.graph.node if one.attribute and draw.random() < 0.5]),
+        model.graph.node[0],
+    )
     attribute = draw.choice(list(node.attribute)) if node.attribute else None
     if attribute is None or draw.random() < 0.3:
         del node.attribute[:]
     elif attribute.HasField("s"):
-        attribute.s = draw.choice((b"PROBIT", b"nothing", b"", b"\xff\xfe", b"SOFTMAX_ZERO", b"NONE"))
+        attribute.s = draw.choice(
+            (b"PROBIT", b"nothing", b"", b"\xff\xfe", b"SOFTMAX_ZERO", b"NONE")
+        )
     else:
         attribute.name = draw.choice(("axis", "to", "nothing", "", "post_transform"))
 
@@ -340,7 +395,10 @@ def _attributes(model: Any, draw: random.Random) -> None:
 def add_loop(model: Any, draw: random.Random) -> None:
     """Add a loop that never ends, whose result the probabilities depend on."""
     body = helper.make_graph(
-        [helper.make_node("Identity", ["condition"], ["goes_on"]), helper.make_node("Identity", ["state"], ["state_out"])],
+        [
+            helper.make_node("Identity", ["condition"], ["goes_on"]),
+            helper.make_node("Identity", ["state"], ["state_out"]),
+        ],
         "body",
         [
             helper.make_tensor_value_info("step", TensorProto.INT64, []),
@@ -353,19 +411,31 @@ def add_loop(model: Any, draw: random.Random) -> None:
         ],
     )
     model.graph.initializer.extend(
-        [numpy_helper.from_array(np.array(2**62), "for_ever"), numpy_helper.from_array(np.array(True), "always")]
+        [
+            numpy_helper.from_array(np.array(2**62), "for_ever"),
+            numpy_helper.from_array(np.array(True), "always"),
+        ]
     )
-    after_probabilities(model, helper.make_node("Loop", ["for_ever", "always", "inner_probabilities"], ["probabilities"], body=body))
+    after_probabilities(
+        model,
+        helper.make_node(
+            "Loop", ["for_ever", "always", "inner_probabilities"], ["probabilities"], body=body
+        ),
+    )
 
 
 def _tensors(model: Any, draw: random.Random) -> None:
     """Add a result that does not fit into memory."""
     count = draw.choice((10**8, 8 * 10**8, 10**12, -1, 2**62))
-    model.graph.initializer.append(numpy_helper.from_array(np.array([count], dtype=np.int64), "count"))
+    model.graph.initializer.append(
+        numpy_helper.from_array(np.array([count], dtype=np.int64), "count")
+    )
     made = helper.make_node("ConstantOfShape", ["count"], ["large"])
     total = helper.make_node("ReduceSum", ["large"], ["total"], keepdims=0)
     model.graph.node.extend([made, total])
-    after_probabilities(model, helper.make_node("Add", ["inner_probabilities", "total"], ["probabilities"]))
+    after_probabilities(
+        model, helper.make_node("Add", ["inner_probabilities", "total"], ["probabilities"])
+    )
 
 
 def _growing(model: Any, draw: random.Random) -> None:
@@ -373,7 +443,9 @@ def _growing(model: Any, draw: random.Random) -> None:
     last = "inner_probabilities"
     nodes = []
     for number in range(draw.choice((8, 20, 40))):
-        nodes.append(helper.make_node("Concat", [last, last], [f"doubled{number}"], axis=draw.choice((0, 1))))
+        nodes.append(
+            helper.make_node("Concat", [last, last], [f"doubled{number}"], axis=draw.choice((0, 1)))
+        )
         last = f"doubled{number}"
     after_probabilities(model, *nodes, helper.make_node("Identity", [last], ["probabilities"]))
 
@@ -399,7 +471,9 @@ def _initializers(model: Any, draw: random.Random) -> None:
     kind = draw.choice(("external", "dims", "type", "values"))
     if kind == "external":
         tensor.data_location = TensorProto.EXTERNAL
-        tensor.external_data.add(key="location", value=draw.choice(("/dev/zero", "../../../etc/passwd", "card.json")))
+        tensor.external_data.add(
+            key="location", value=draw.choice(("/dev/zero", "../../../etc/passwd", "card.json"))
+        )
     elif kind == "dims":
         del tensor.dims[:]
         tensor.dims.extend(draw.choice(([2**40], [10**5, 10**5], [-1], [0], [2**62, 4], [3])))
@@ -417,17 +491,29 @@ def _ends(model: Any, draw: random.Random) -> None:
             lambda: graph.input.pop(),
             lambda: graph.output.pop(),
             lambda: graph.output.reverse(),
-            lambda: graph.input.append(helper.make_tensor_value_info("more", TensorProto.FLOAT, [2**40])),
-            lambda: graph.output.append(helper.make_tensor_value_info("nothing", TensorProto.FLOAT, None)),
+            lambda: graph.input.append(
+                helper.make_tensor_value_info("more", TensorProto.FLOAT, [2**40])
+            ),
+            lambda: graph.output.append(
+                helper.make_tensor_value_info("nothing", TensorProto.FLOAT, None)
+            ),
             lambda: setattr(graph.input[0], "name", "other"),
             lambda: setattr(graph.input[0].type.tensor_type, "elem_type", draw.choice((7, 8, 11))),
-            lambda: setattr(graph.input[0].type.tensor_type.shape.dim[1], "dim_value", draw.choice((0, 1, 5000, 2**62))),
+            lambda: setattr(
+                graph.input[0].type.tensor_type.shape.dim[1],
+                "dim_value",
+                draw.choice((0, 1, 5000, 2**62)),
+            ),
             lambda: setattr(graph.output[0], "name", "probabilities"),
             lambda: graph.node.pop(),
             lambda: graph.node.reverse(),
             lambda: graph.node.add().CopyFrom(graph.node[0]),
             lambda: model.ClearField("opset_import"),
-            lambda: model.opset_import.append(helper.make_opsetid(draw.choice(("", "evil", "ai.onnx.ml")), draw.choice((0, -1, 99, 5)))),
+            lambda: model.opset_import.append(
+                helper.make_opsetid(
+                    draw.choice(("", "evil", "ai.onnx.ml")), draw.choice((0, -1, 99, 5))
+                )
+            ),
             lambda: setattr(model, "ir_version", draw.choice((0, 99, -1))),
             lambda: model.ClearField("graph"),
             lambda: model.functions.add(name="f", domain="ai.onnx.ml"),
@@ -444,7 +530,9 @@ def _probabilities(model: Any, draw: random.Random) -> None:
     """Return what is no probability, by operators that the classifiers have too."""
     factor = np.float32(draw.choice((np.nan, -1.0, 2.0, np.inf, 0.0, 1.01)))
     model.graph.initializer.append(numpy_helper.from_array(np.array(factor), "factor"))
-    after_probabilities(model, helper.make_node("Mul", ["inner_probabilities", "factor"], ["probabilities"]))
+    after_probabilities(
+        model, helper.make_node("Mul", ["inner_probabilities", "factor"], ["probabilities"])
+    )
 
 
 GRAPH_CHANGES: dict[str, Callable[[Any, random.Random], None]] = {

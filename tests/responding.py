@@ -1,4 +1,6 @@
-"""A thin plate whose frequency responses are known in closed form, after Kirchhoff, and universal files with them by pyuff."""
+"""A thin plate whose frequency responses are known in closed form, after Kirchhoff, and
+universal files with them by pyuff.
+"""
 
 from __future__ import annotations
 
@@ -23,7 +25,9 @@ NODES, REFERENCE = (12, 13), 4
 DAMPING = 0.008
 FREQUENCY = np.arange(40.0, 800.0, 0.5)
 MOST = 400
-"""Modes of the closed form: what is left out of it is below a ten thousandth of the largest response."""
+"""Modes of the closed form: what is left out of it is below a ten thousandth of the
+largest response.
+"""
 
 TABLE: dict[str, Any] = {
     "name": "thin plate",
@@ -39,7 +43,10 @@ TABLE: dict[str, Any] = {
     "drop": {"speed": 0.5, "position": list(IMPACT)},
     "contact": {"law": "hertz"},
     "run": {"impacts": 1},
-    "sensors": [{"name": str(node), "position": list(place)} for node, place in zip(NODES, PLACES, strict=True)],
+    "sensors": [
+        {"name": str(node), "position": list(place)}
+        for node, place in zip(NODES, PLACES, strict=True)
+    ],
 }
 
 
@@ -49,19 +56,33 @@ def modal(place: tuple[float, float], modulus: float = MODULUS) -> tuple[Floats,
     return simply_supported(SIZE, (DENSITY, modulus, POISSON), corner, MOST)
 
 
-def accelerance(place: tuple[float, float], frequency: Floats = FREQUENCY, modulus: float = MODULUS, damping: float = DAMPING) -> Complex:
+def accelerance(
+    place: tuple[float, float],
+    frequency: Floats = FREQUENCY,
+    modulus: float = MODULUS,
+    damping: float = DAMPING,
+) -> Complex:
     """Acceleration upwards at a place over a downward force at the impact [m/s2/N]."""
     natural, there = modal(place, modulus)
     _, here = modal(IMPACT, modulus)
     omega, resonant = 2.0 * np.pi * frequency, 2.0 * np.pi * natural[:, None]
-    return np.asarray(omega**2 * np.sum((here * there)[:, None] / (resonant**2 - omega**2 + 2j * damping * resonant * omega), axis=0))
+    return np.asarray(
+        omega**2
+        * np.sum(
+            (here * there)[:, None] / (resonant**2 - omega**2 + 2j * damping * resonant * omega),
+            axis=0,
+        )
+    )
 
 
 def noisy(responses: Sequence[Complex], level: float = 0.005, seed: int = 1) -> list[Complex]:
     """The responses with white noise, relative to their rms values."""
     random = np.random.default_rng(seed)
     return [
-        one + level * np.sqrt(0.5 * np.mean(np.abs(one) ** 2)) * (random.standard_normal(len(one)) + 1j * random.standard_normal(len(one)))
+        one
+        + level
+        * np.sqrt(0.5 * np.mean(np.abs(one) ** 2))
+        * (random.standard_normal(len(one)) + 1j * random.standard_normal(len(one)))
         for one in responses
     ]
 
@@ -72,7 +93,11 @@ HEADER = {
     "description": "d",
     "db_app": "a",
     "program": "p",
-    **{f"{what}_{when}": "" for what in ("date", "time") for when in ("db_created", "db_saved", "file_written")},
+    **{
+        f"{what}_{when}": ""
+        for what in ("date", "time")
+        for when in ("db_created", "db_saved", "file_written")
+    },
 }
 COMMON = {
     "type": 58,
@@ -109,12 +134,18 @@ def by_pyuff(path: Path, *functions: dict[str, Any], first: dict[str, Any] | Non
     """A universal file with functions, of which each states what differs from `COMMON`."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", ResourceWarning)
-        pyuff.UFF(str(path)).write_sets([first or HEADER, *({**COMMON, **one} for one in functions)], "overwrite")
+        pyuff.UFF(str(path)).write_sets(
+            [first or HEADER, *({**COMMON, **one} for one in functions)], "overwrite"
+        )
     return path
 
 
 def measured(
-    path: Path, responses: Sequence[Complex], frequency: Floats = FREQUENCY, coherence: Floats | None = None, **changes: Any
+    path: Path,
+    responses: Sequence[Complex],
+    frequency: Floats = FREQUENCY,
+    coherence: Floats | None = None,
+    **changes: Any,
 ) -> Path:
     """A universal file with the responses of the two places, and their coherence."""
     sets: list[dict[str, Any]] = []
@@ -137,15 +168,29 @@ OF_TIME = {
 }
 
 
-def with_records(path: Path, responses: Sequence[Complex], force: Floats, motions: Sequence[Floats], rate: float) -> Path:
-    """A universal file with the responses of the two places, and with the records of the force, "hammer", and of the motion at both."""
+def with_records(
+    path: Path, responses: Sequence[Complex], force: Floats, motions: Sequence[Floats], rate: float
+) -> Path:
+    """A universal file with the responses of the two places, and with the records of the
+    force, "hammer", and of the motion at both.
+    """
     time = np.arange(len(force)) / rate
-    of_force = {"id1": "hammer", "rsp_node": REFERENCE, "ordinate_spec_data_type": 13, "ordinate_axis_units_lab": "N", "data": force}
+    of_force = {
+        "id1": "hammer",
+        "rsp_node": REFERENCE,
+        "ordinate_spec_data_type": 13,
+        "ordinate_axis_units_lab": "N",
+        "data": force,
+    }
     sets: list[dict[str, Any]] = [{**OF_TIME, "x": time, **of_force}]
     sets += [
-        {**OF_TIME, "x": time, "id1": str(node), "rsp_node": node, "data": motion} for node, motion in zip(NODES, motions, strict=True)
+        {**OF_TIME, "x": time, "id1": str(node), "rsp_node": node, "data": motion}
+        for node, motion in zip(NODES, motions, strict=True)
     ]
-    sets += [{"rsp_node": node, "x": FREQUENCY, "data": response} for node, response in zip(NODES, responses, strict=True)]
+    sets += [
+        {"rsp_node": node, "x": FREQUENCY, "data": response}
+        for node, response in zip(NODES, responses, strict=True)
+    ]
     return by_pyuff(path, *sets)
 
 

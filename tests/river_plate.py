@@ -14,13 +14,19 @@ PLACES = ((0.03, 0.02), (0.1, 0.05), (-0.15, 0.1), (0.05, -0.12), (0.2, 0.0), (-
 
 
 def class_limit(diameter: float) -> float:
-    """Return the amplitude [V] above which a grain is counted as of at least a diameter [mm]: Wyss and others 2016."""
+    """Return the amplitude [V] above which a grain is counted as of at least a diameter
+    [mm]: Wyss and others 2016.
+    """
     return 4.6e-4 * diameter**1.71
 
 
 @cache
-def amplitudes(diameter: float, speed: float = 1.0, yield_strength: float | None = None) -> np.ndarray:
-    """Return the largest voltage of the geophone for impacts of a grain [mm] at six places [V]; with a strength [Pa] the contact yields."""
+def amplitudes(
+    diameter: float, speed: float = 1.0, yield_strength: float | None = None
+) -> np.ndarray:
+    """Return the largest voltage of the geophone for impacts of a grain [mm] at six
+    places [V]; with a strength [Pa] the contact yields.
+    """
     table: dict[str, Any] = load_table("signals:river-plate")
     del table["sweep"], table["sensors"][0]["amplifier"]
     table["drop"], table["run"] = {"speed": speed}, {"duration": 0.06}

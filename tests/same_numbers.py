@@ -11,12 +11,18 @@ _COUNTS = 1000  # whole numbers below it count or name something, and are exact
 
 
 def other_numbers(old: str, new: str) -> list[str]:
-    """Return the lines that differ: in their words, or in a number by more than a unit of its last digit.
+    """Return the lines that differ: in their words, or in a number by more than a unit of its last
+    digit.
 
-    The rounding of a number may differ from machine to machine by that unit, and no more; a number of fewer digits is another one.
+    The rounding of a number may differ from machine to machine by that unit, and no more; a number
+    of fewer digits is another one.
     """
     pairs = enumerate(zip_longest(old.splitlines(), new.splitlines(), fillvalue=""), start=1)
-    return [f"line {number}: {before!r} is now {after!r}" for number, (before, after) in pairs if not _same(before, after)]
+    return [
+        f"line {number}: {before!r} is now {after!r}"
+        for number, (before, after) in pairs
+        if not _same(before, after)
+    ]
 
 
 def _same(before: str, after: str) -> bool:
@@ -33,7 +39,12 @@ def _near(one: re.Match[str], other: re.Match[str]) -> bool:
     if "." not in one[2] + other[2] and max(abs(value), abs(other_value)) < _COUNTS:
         return False
     # 9.99 may round to 10.0, of as many digits; else the last digit must stand in the same place
-    return digits == other_digits and last <= 10.01 * other_last and other_last <= 10.01 * last and abs(value - other_value) <= 1.01 * last
+    return (
+        digits == other_digits
+        and last <= 10.01 * other_last
+        and other_last <= 10.01 * last
+        and abs(value - other_value) <= 1.01 * last
+    )
 
 
 def _value(found: re.Match[str]) -> tuple[float, float, int]:

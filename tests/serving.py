@@ -12,9 +12,20 @@ class Server:
     """`vibroimpact serve` on a free port, or on one that is given; it ends with its block."""
 
     def __init__(self, *arguments: str, port: int = 0) -> None:
-        command = [sys.executable, "-m", "vibroimpact", "serve", "--port", str(port), "--no-browser", *arguments]
+        command = [
+            sys.executable,
+            "-m",
+            "vibroimpact",
+            "serve",
+            "--port",
+            str(port),
+            "--no-browser",
+            *arguments,
+        ]
         self.stopped = False
-        self.process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        self.process = subprocess.Popen(
+            command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+        )
         assert self.process.stdout is not None
         self.said = self.process.stdout.readline()
         found = re.search(r"http://127\.0\.0\.1:(\d+)/", self.said)
@@ -31,7 +42,12 @@ class Server:
     def __enter__(self) -> Server:
         return self
 
-    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
         if self.stopped:
             return
         died = self.process.poll()

@@ -1,4 +1,6 @@
-"""What the charts of the reproduction show over time, beside the simulations that they should show."""
+"""What the charts of the reproduction show over time, beside the simulations that they
+should show.
+"""
 
 from __future__ import annotations
 
@@ -17,7 +19,9 @@ def lines_of(panel: Panel) -> list[Line]:
 
 
 def assert_shows(line: Line, timeline: Timeline, response: Response, panel: Panel) -> None:
-    """The line is that of a simulation: in the whole as far as it is seen, and in each view, where it counts from its own first touch."""
+    """The line is that of a simulation: in the whole as far as it is seen, and in each
+    view, where it counts from its own first touch.
+    """
     time, values = timeline(response)
     assert np.isin(line.x, time).all()
     for pick in (np.nanmin, np.nanmax):
@@ -26,8 +30,15 @@ def assert_shows(line: Line, timeline: Timeline, response: Response, panel: Pane
     assert line.origins == tuple(response.impacts["time_s"][: len(panel.x.views)])
     for impact, view in enumerate(panel.x.views):
         own = own_view(line, panel, view)
-        assert own.start < own.origin < own.origin + float(response.impacts["duration_s"][impact]) < own.end
-        assert_same(line, time, values, time[(time >= own.start) & (time <= own.end) & np.isfinite(values)])
+        assert (
+            own.start
+            < own.origin
+            < own.origin + float(response.impacts["duration_s"][impact])
+            < own.end
+        )
+        assert_same(
+            line, time, values, time[(time >= own.start) & (time <= own.end) & np.isfinite(values)]
+        )
 
 
 def assert_same(line: Line, time: Floats, values: Floats, at: Floats) -> None:
@@ -40,7 +51,9 @@ def assert_same(line: Line, time: Floats, values: Floats, at: Floats) -> None:
 def _extremes(time: Floats, values: Floats, columns: int = 1500) -> Floats:
     """Return the times of the lowest and the highest value in each column of a picture."""
     there = np.flatnonzero(np.isfinite(values))
-    column = np.searchsorted(np.linspace(time[0], time[-1], columns + 1)[1:-1], time[there], side="right")
+    column = np.searchsorted(
+        np.linspace(time[0], time[-1], columns + 1)[1:-1], time[there], side="right"
+    )
     order = np.lexsort((values[there], column))
     ends = np.flatnonzero(np.diff(column[order], append=columns))
     return np.unique(time[there[order[np.concatenate([[0], ends[:-1] + 1, ends])]]])

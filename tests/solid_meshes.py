@@ -1,4 +1,6 @@
-"""Boxes of pyramids, six to a brick, whose apexes meet in its middle; and meshes in one: for tests of elements and of mesh files."""
+"""Boxes of pyramids, six to a brick, whose apexes meet in its middle; and meshes in one:
+for tests of elements and of mesh files.
+"""
 
 from __future__ import annotations
 
@@ -20,7 +22,8 @@ def pyramids_of(bricks: Mesh, kind: str) -> Mesh:
     points, connectivity = [], []
     for members in bricks.blocks[0].connectivity:
         for face in brick.faces:
-            corners = np.concatenate([brick.reference[list(face)][::-1], brick.reference[[26]]])  # the face as seen from inside
+            # the face as seen from inside
+            corners = np.concatenate([brick.reference[list(face)][::-1], brick.reference[[26]]])
             weights = ELEMENT_KINDS["pyramid5"].basis(own.reference)[0]
             values = brick.basis(weights @ corners)[0]
             connectivity.append(np.arange(len(own.reference)) + sum(map(len, points)))
@@ -46,6 +49,12 @@ def together(*meshes: Mesh) -> Mesh:
     return Mesh(
         np.concatenate([mesh.nodes for mesh in meshes]),
         (ElementBlock(blocks[0].kind, np.concatenate([block.connectivity for block in blocks])),),
-        {f"nodes{index}": np.arange(starts[index], starts[index + 1]) for index in range(len(meshes))},
-        {f"part{index}": np.arange(counts[index], counts[index + 1]) for index in range(len(meshes))},
+        {
+            f"nodes{index}": np.arange(starts[index], starts[index + 1])
+            for index in range(len(meshes))
+        },
+        {
+            f"part{index}": np.arange(counts[index], counts[index + 1])
+            for index in range(len(meshes))
+        },
     )

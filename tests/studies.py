@@ -20,7 +20,11 @@ RANDOM: dict[str, Any] = {
     "samples": 200,
     "over": {
         "sphere.radius": {"from": "5 mm", "to": "50 mm", "scale": "log"},
-        "sphere.material.youngs_modulus": {"distribution": "lognormal", "mean": "2 GPa", "standard_deviation": "0.5 GPa"},
+        "sphere.material.youngs_modulus": {
+            "distribution": "lognormal",
+            "mean": "2 GPa",
+            "standard_deviation": "0.5 GPa",
+        },
         "contact.restitution": {"distribution": "uniform", "from": 0.3, "to": 0.95},
         "drop.height": {"distribution": "normal", "mean": "1 m", "standard_deviation": "10 cm"},
     },
@@ -30,7 +34,10 @@ RANDOM: dict[str, Any] = {
 def coal_on_steel() -> dict[str, Any]:
     """Return the bodies of a small elastic study: coal on a steel plate of twelve modes."""
     return {
-        "sphere": {"radius": 0.02, "material": {"density": 1380.0, "youngs_modulus": 2.3e9, "poissons_ratio": 0.28}},
+        "sphere": {
+            "radius": 0.02,
+            "material": {"density": 1380.0, "youngs_modulus": 2.3e9, "poissons_ratio": 0.28},
+        },
         "plate": {
             "size": [0.4, 0.3, 0.008],
             "material": "steel",

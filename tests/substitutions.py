@@ -1,4 +1,6 @@
-"""Cases in which one value is of another kind: every place of every seed, and every kind of value that a file can hold."""
+"""Cases in which one value is of another kind: every place of every seed, and every kind
+of value that a file can hold.
+"""
 
 from __future__ import annotations
 
@@ -50,7 +52,9 @@ MISSPELT_TEXT, MISSPELT_KEY, MISSING = "misspelt text", "misspelt key", "missing
 
 
 class Substitution(NamedTuple):
-    """A valid case, and a place in it with another value, or a key with another name, or without it."""
+    """A valid case, and a place in it with another value, or a key with another name, or
+    without it.
+    """
 
     where: str
     kind: str
@@ -71,9 +75,17 @@ class Substitution(NamedTuple):
 
 @cache
 def all_substitutions() -> tuple[Substitution, ...]:
-    """Return a case for each key, once for each set of sections beside it that read it in another way, and each kind of value."""
+    """Return a case for each key, once for each set of sections beside it that read it in
+    another way, and each kind of value.
+    """
     cases = [*later_seeds(), *later_studies(), *study_seeds(), *seeds()]
-    return tuple({(found.where, found.kind): found for case in reversed(cases) for found in _substitutions(case)}.values())
+    return tuple(
+        {
+            (found.where, found.kind): found
+            for case in reversed(cases)
+            for found in _substitutions(case)
+        }.values()
+    )
 
 
 def value_at(table: Table, place: Place) -> Any:
@@ -116,7 +128,13 @@ def _substitutions(case: Table) -> Iterator[Substitution]:
     for place in _places(case):
         old, last = value_at(case, place), place[-1]
         where = ".".join("[]" if isinstance(key, int) else key for key in place)
-        beside = "sweep" if "sweep" in case else "calibrate" if "calibrate" in case and place[0] in ("contact", "calibrate") else ""
+        beside = (
+            "sweep"
+            if "sweep" in case
+            else "calibrate"
+            if "calibrate" in case and place[0] in ("contact", "calibrate")
+            else ""
+        )
         where = f"{where} {beside}".rstrip()
         kinds = [kind for kind, value in VALUES.items() if repr(old) != repr(value)]
         kinds += [MISSPELT_TEXT] if isinstance(old, str) else []

@@ -38,9 +38,14 @@ def plain_case(**changes: object) -> dict:
 
 
 def one_in(every: int, values: Iterable[Any], name: Callable[[Any], str] = str) -> list[Any]:
-    """Parameters of a test, of which one in so many is tried each time, and the others where there is time for the slow ones."""
+    """Parameters of a test, of which one in so many is tried each time, and the others
+    where there is time for the slow ones.
+    """
     several = [value if isinstance(value, tuple) else (value,) for value in values]
-    return [pytest.param(*value, id=name(value[0]), marks=pytest.mark.slow if place % every else ()) for place, value in enumerate(several)]
+    return [
+        pytest.param(*value, id=name(value[0]), marks=pytest.mark.slow if place % every else ())
+        for place, value in enumerate(several)
+    ]
 
 
 def example(name: str) -> ModuleType:
@@ -61,7 +66,9 @@ def module_at(place: str) -> ModuleType:
 
 def blocks(page: str, language: str) -> list[str]:
     """The blocks of a page in a language."""
-    return re.findall(rf"```{language}\n(.*?)```", (ROOT / page).read_text(encoding="utf-8"), flags=re.S)
+    return re.findall(
+        rf"```{language}\n(.*?)```", (ROOT / page).read_text(encoding="utf-8"), flags=re.S
+    )
 
 
 @cache

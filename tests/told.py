@@ -16,16 +16,33 @@ STIFFNESS, RADIUS, MASS = 5.115e8, 0.025, 0.09032
 
 
 def told(*laws: ContactLaw, **changes: Any) -> Drop:
-    """Return the drop of the paper's rock under given laws: three impacts from 0.5 m unless changes say otherwise."""
-    given: dict[str, Any] = {"radius": RADIUS, "mass": MASS, "height": 0.5, "gravity": 9.8, **changes}
-    start: dict[str, Any] = {"height": given["height"]} if not given.get("speed") else {"speed": given["speed"]}
+    """Return the drop of the paper's rock under given laws: three impacts from 0.5 m
+    unless changes say otherwise.
+    """
+    given: dict[str, Any] = {
+        "radius": RADIUS,
+        "mass": MASS,
+        "height": 0.5,
+        "gravity": 9.8,
+        **changes,
+    }
+    start: dict[str, Any] = (
+        {"height": given["height"]} if not given.get("speed") else {"speed": given["speed"]}
+    )
     if given.get("speed"):
         given["height"] = given["radius"]
     impacts = given.pop("number", 3)
     ball = Body(mass=given["mass"], contact_offset=given["radius"])
     start |= {"gravity": given["gravity"], "oblique": given.get("oblique")}
-    response = vi.simulate(vi.Problem(sphere=ball, plate=rigid_plate(), laws=laws, impacts=impacts, **start))
-    facts = {"name": "a test", "sphere_material": ROCK, "plate_material": STEEL, "plate_size": (0.52, 0.42, 0.008)}
+    response = vi.simulate(
+        vi.Problem(sphere=ball, plate=rigid_plate(), laws=laws, impacts=impacts, **start)
+    )
+    facts = {
+        "name": "a test",
+        "sphere_material": ROCK,
+        "plate_material": STEEL,
+        "plate_size": (0.52, 0.42, 0.008),
+    }
     run = {"laws": laws, "end_time": float(response.end_time[0]), "impacts": response.impacts}
     return Drop(**{**facts, **run, **given})
 
@@ -33,5 +50,15 @@ def told(*laws: ContactLaw, **changes: Any) -> Drop:
 def told_case(name: str, **changes: Any) -> Drop:
     """Return the drop of a shipped case."""
     problem = vi.load_case(name).to_problem()
-    facts = {"radius": float(problem.sphere.contact_offset), "mass": float(problem.sphere.mass), "gravity": float(problem.gravity)}
-    return told(*problem.laws, name=name, height=float(problem.height), number=problem.impacts, **{**facts, **changes})
+    facts = {
+        "radius": float(problem.sphere.contact_offset),
+        "mass": float(problem.sphere.mass),
+        "gravity": float(problem.gravity),
+    }
+    return told(
+        *problem.laws,
+        name=name,
+        height=float(problem.height),
+        number=problem.impacts,
+        **{**facts, **changes},
+    )

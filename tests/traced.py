@@ -1,7 +1,9 @@
-"""Kill a process before its n-th file operation, or have that fail: at the system calls, so that those of C libraries count too.
+"""Kill a process before its n-th file operation, or have that fail: at the system calls, so that
+those of C libraries count too.
 
-The work runs in a child, forked so that what is imported is there. A filter of the kernel (seccomp) stops it before each system call that
-changes a file; the one who watches it (ptrace) lets it go on, kills it, or has the call return an error.
+The work runs in a child, forked so that what is imported is there. A filter of the kernel (seccomp)
+stops it before each system call that changes a file; the one who watches it (ptrace) lets it go on,
+kills it, or has the call return an error.
 """
 
 from __future__ import annotations
@@ -28,13 +30,16 @@ _CALLS = {
 _WRITES = os.O_WRONLY | os.O_RDWR | os.O_CREAT | os.O_TRUNC
 _TRACEME, _PEEK, _CONT, _GETREGS, _SETREGS, _SETOPTIONS, _MESSAGE = 0, 1, 7, 12, 13, 0x4200, 0x4201
 _SECCOMP_STOP = signal.SIGTRAP | 7 << 8
-_OPTIONS = 0x100000 | 1 << 7 | 1 << 1 | 1 << 2 | 1 << 3  # end with the one who watches; stop at the filter; watch forks, vforks, threads
+# end with the one who watches; stop at the filter; watch forks, vforks, threads
+_OPTIONS = 0x100000 | 1 << 7 | 1 << 1 | 1 << 2 | 1 << 3
 _RAX, _RDI, _RSI, _RDX, _ORIG_RAX, _WORDS = 10, 14, 13, 12, 15, 27  # of user_regs_struct
 _WALL = 0x40000000
 
 
 class Ended(NamedTuple):
-    """How a child ended: its exit status, or None if it was killed; how many file operations there were; what it wrote; the last one."""
+    """How a child ended: its exit status, or None if it was killed; how many file
+    operations there were; what it wrote; the last one.
+    """
 
     status: int | None
     operations: int
@@ -42,8 +47,16 @@ class Ended(NamedTuple):
     last: str
 
 
-def traced(work: Callable[[], object], folder: Path, *, kill: int = 0, fail: int = 0, error: int = errno.ENOSPC) -> Ended:
-    """Run a function in a child; kill it before file operation `kill`, or have the operation `fail` return an error (both from 1).
+def traced(
+    work: Callable[[], object],
+    folder: Path,
+    *,
+    kill: int = 0,
+    fail: int = 0,
+    error: int = errno.ENOSPC,
+) -> Ended:
+    """Run a function in a child; kill it before file operation `kill`, or have the operation `fail`
+    return an error (both from 1).
 
     Parameters
     ----------
@@ -70,7 +83,9 @@ def traced(work: Callable[[], object], folder: Path, *, kill: int = 0, fail: int
                 continue
             told = (folder / "told").read_text(encoding="utf-8", errors="replace")
             (folder / "told").unlink()
-            return Ended(os.WEXITSTATUS(status) if os.WIFEXITED(status) else None, count, told, last)
+            return Ended(
+                os.WEXITSTATUS(status) if os.WIFEXITED(status) else None, count, told, last
+            )
         event, stopped_by = status >> 8, os.WSTOPSIG(status)
         if event == _SECCOMP_STOP:
             registers = list(struct.unpack(f"{_WORDS}Q", _registers(process)))
@@ -129,7 +144,9 @@ def _changes_a_file(registers: list[int]) -> str:
     name = _CALLS.get(registers[_ORIG_RAX], "")
     if name in ("write", "writev") and registers[_RDI] <= 2:
         return ""
-    if (name == "open" and not registers[_RSI] & _WRITES) or (name == "openat" and not registers[_RDX] & _WRITES):
+    if (name == "open" and not registers[_RSI] & _WRITES) or (
+        name == "openat" and not registers[_RDX] & _WRITES
+    ):
         return ""
     return name
 
@@ -137,7 +154,18 @@ def _changes_a_file(registers: list[int]) -> str:
 def _text(process: int, registers: list[int]) -> str:
     """Return the path that a system call is given, as far as it is one."""
     name = _CALLS[registers[_ORIG_RAX]]
-    if name in ("write", "writev", "pwrite64", "pwritev", "fsync", "fdatasync", "ftruncate", "fallocate", "fchmod", "flock"):
+    if name in (
+        "write",
+        "writev",
+        "pwrite64",
+        "pwritev",
+        "fsync",
+        "fdatasync",
+        "ftruncate",
+        "fallocate",
+        "fchmod",
+        "flock",
+    ):
         try:
             return os.readlink(f"/proc/{process}/fd/{registers[_RDI]}")
         except OSError:
@@ -163,14 +191,26 @@ def _filter() -> bool:
     program = [struct.pack("HBBI", load, 0, 0, 0)]
     for place, number in enumerate(numbers):
         program.append(struct.pack("HBBI", equal, len(numbers) - place, 0, number))
-    program += [struct.pack("HBBI", give, 0, 0, 0x7FFF0000), struct.pack("HBBI", give, 0, 0, 0x7FF00000)]  # allow; trace
+    # allow; trace
+    program += [
+        struct.pack("HBBI", give, 0, 0, 0x7FFF0000),
+        struct.pack("HBBI", give, 0, 0, 0x7FF00000),
+    ]
     code = ctypes.create_string_buffer(b"".join(program))
-    header = ctypes.create_string_buffer(struct.pack("HxxxxxxQ", len(program), ctypes.addressof(code)))
+    header = ctypes.create_string_buffer(
+        struct.pack("HxxxxxxQ", len(program), ctypes.addressof(code))
+    )
     libc = ctypes.CDLL(None)
-    return libc.prctl(38, 1, 0, 0, 0) == 0 and libc.prctl(22, 2, ctypes.c_void_p(ctypes.addressof(header)), 0, 0) == 0
+    return (
+        libc.prctl(38, 1, 0, 0, 0) == 0
+        and libc.prctl(22, 2, ctypes.c_void_p(ctypes.addressof(header)), 0, 0) == 0
+    )
 
 
 def _ptrace(request: int, process: int, address: int, data: int) -> int:
     function = ctypes.CDLL(None, use_errno=True).ptrace
-    function.argtypes, function.restype = (ctypes.c_long, ctypes.c_long, ctypes.c_void_p, ctypes.c_void_p), ctypes.c_long
+    function.argtypes, function.restype = (
+        (ctypes.c_long, ctypes.c_long, ctypes.c_void_p, ctypes.c_void_p),
+        ctypes.c_long,
+    )
     return int(function(request, process, address, data))

@@ -7,11 +7,18 @@ import itertools
 import numpy as np
 
 from vibroimpact.arrays import Floats
-from vibroimpact.dynamics.core.turning_points import add_rim, begin_at_rim, end_slip, held_at, new_curve
+from vibroimpact.dynamics.core.turning_points import (
+    add_rim,
+    begin_at_rim,
+    end_slip,
+    held_at,
+    new_curve,
+)
 
 
 def by_turning_points(depth: Floats, displacement: Floats) -> Floats:
-    """Return the integrals I of a contact along a history of straight steps (T,), by the turning points of it.
+    """Return the integrals I of a contact along a history of straight steps (T,), by the turning
+    points of it.
 
     `depth`, `displacement`: in the same unit, the latter over kappa (T,).
     """
@@ -29,11 +36,14 @@ def by_turning_points(depth: Floats, displacement: Floats) -> Floats:
         if not directions:
             inner = before**0.5
             outer = deep**0.5
-            integral += (moved - start) * 2.0 / 3.0 * (inner + outer - inner * outer / (inner + outer))
+            integral += (
+                (moved - start) * 2.0 / 3.0 * (inner + outer - inner * outer / (inner + outer))
+            )
             add_rim(curve, deep, moved, integral)
             direction = 0.0
         else:
-            if direction not in directions:  # it begins to slip, where both directions may: in that in which it slips deeper
+            # it begins to slip, where both directions may: in that in which it slips deeper
+            if direction not in directions:
                 fronts = {}
                 for sign in directions:
                     begin_at_rim(curve)

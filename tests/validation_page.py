@@ -1,4 +1,6 @@
-"""Write docs/validation.md from the recorded comparisons of the tests: `python tests/validation_page.py` (see `agreement.py`)."""
+"""Write docs/validation.md from the recorded comparisons of the tests: `python
+tests/validation_page.py` (see `agreement.py`).
+"""
 
 from __future__ import annotations
 
@@ -13,17 +15,25 @@ PAGE = ROOT / "docs" / "validation.md"
 PROSE = Path(__file__).with_suffix(".md")
 """The text of the page, with placeholders for the generated tables."""
 KINDS = {
-    "closed form": "analytical solutions, published formulas and signals of known parameters, evaluated in the tests; benchmarks with a "
-    "closed form",
-    "published computation": "published numerical results without a closed form, printed or digitized from figures",
-    "other program": "other programs and libraries, run for the same case, or their recorded results",
-    "own independent computation": "integrations, series and finite elements by the same authors; some take formulas of contact laws, "
+    "closed form": "analytical solutions, published formulas and signals of known parameters, "
+    "evaluated in the tests; benchmarks with a closed form",
+    "published computation": "published numerical results without a closed form, printed or digitized "
+    "from figures",
+    "other program": "other programs and libraries, run for the same case, or their recorded "
+    "results",
+    "own independent computation": "integrations, series and finite elements by the same authors; some take "
+    "formulas of contact laws, "
     "contact forces, modes or elements of the package",
-    "consistency": "no external reference: limits, conservation laws, round trips, convergence, another method of the package",
-    "fitted to published numbers": "published numbers to which an input of the case was fitted here: the fit meets them; no prediction",
-    "experiment": "measurements; friction and restitution measured in the same series, nothing fitted to the compared values",
-    "experiment, speed assumed": "measurements whose impact speeds are not stated; computed at one assumed speed",
-    "fitted to measurements": "measurements to which the compared law or its coefficient was fitted, by its authors or here: no prediction",
+    "consistency": "no external reference: limits, conservation laws, round trips, convergence, "
+    "another method of the package",
+    "fitted to published numbers": "published numbers to which an input of the case was fitted here: the fit "
+    "meets them; no prediction",
+    "experiment": "measurements; friction and restitution measured in the same series, nothing "
+    "fitted to the compared values",
+    "experiment, speed assumed": "measurements whose impact speeds are not stated; computed at one assumed "
+    "speed",
+    "fitted to measurements": "measurements to which the compared law or its coefficient was fitted, by "
+    "its authors or here: no prediction",
 }
 MEASURED = ("experiment", "experiment, speed assumed", "fitted to measurements")
 """Kinds whose reference values were measured."""
@@ -31,7 +41,9 @@ MEASURED = ("experiment", "experiment, speed assumed", "fitted to measurements")
 
 def number(value: float) -> str:
     """Format a number without trailing zeros: 1e-8, 0.005, 12166."""
-    return re.sub(r"e([+-])0*(\d)", lambda found: f"e{found[1].strip('+')}{found[2]}", f"{value:.6g}")
+    return re.sub(
+        r"e([+-])0*(\d)", lambda found: f"e{found[1].strip('+')}{found[2]}", f"{value:.6g}"
+    )
 
 
 def values(ends: list[float]) -> str:
@@ -61,7 +73,11 @@ def _capital(text: str) -> str:
 def block(rows: list[dict[str, Any]]) -> list[str]:
     """The section of one reference in one test file."""
     first = rows[0]
-    table = ["| case | quantity | reference | vibroimpact | deviation | tolerance |", "|---|---|---|---|---|---|", *map(line, rows)]
+    table = [
+        "| case | quantity | reference | vibroimpact | deviation | tolerance |",
+        "|---|---|---|---|---|---|",
+        *map(line, rows),
+    ]
     about = f"{_capital(first['kind'])}: {first['source'].rstrip('.')}. Test: `{first['file']}`"
     return [f"### {_capital(first['opponent'])}", "", about, "", *table, ""]
 
@@ -69,8 +85,13 @@ def block(rows: list[dict[str, Any]]) -> list[str]:
 def blocks(rows: list[dict[str, Any]], title: str) -> list[str]:
     if not rows:
         return []
-    by = sorted(rows, key=lambda row: (get_args(Kind).index(row["kind"]), row["opponent"], row["file"]))
-    made = [block(list(group)) for _, group in groupby(by, key=lambda row: (row["opponent"], row["file"]))]
+    by = sorted(
+        rows, key=lambda row: (get_args(Kind).index(row["kind"]), row["opponent"], row["file"])
+    )
+    made = [
+        block(list(group))
+        for _, group in groupby(by, key=lambda row: (row["opponent"], row["file"]))
+    ]
     return [f"## {title}", "", *(one for part in made for one in part)]
 
 
@@ -83,14 +104,29 @@ def part(row: dict[str, Any]) -> float:
 
 
 def summary(rows: list[dict[str, Any]]) -> list[str]:
-    """For each kind: the numbers of references, comparisons and values, and the comparison with the largest deviation; see `part`."""
-    table = ["| kind | description | references | comparisons | values | largest relative deviation |", "|---|---|---|---|---|---|"]
-    for kind, some in ((kind, [row for row in rows if row["kind"] == kind]) for kind in get_args(Kind)):
+    """For each kind: the numbers of references, comparisons and values, and the
+    comparison with the largest deviation; see `part`.
+    """
+    table = [
+        "| kind | description | references | comparisons | values | largest relative deviation |",
+        "|---|---|---|---|---|---|",
+    ]
+    for kind, some in (
+        (kind, [row for row in rows if row["kind"] == kind]) for kind in get_args(Kind)
+    ):
         if some:
             worst = max(some, key=part)
-            counts = len({row["opponent"] for row in some}), len(some), sum(row["points"] for row in some)
+            counts = (
+                len({row["opponent"] for row in some}),
+                len(some),
+                sum(row["points"] for row in some),
+            )
             told = f"{part(worst):.2g}: {worst['opponent']}; {worst['case']}; {worst['quantity']}"
-            table.append(f"| {kind} | {KINDS[kind]} | " + " | ".join(f"{count:,}" for count in counts) + f" | {told} |")
+            table.append(
+                f"| {kind} | {KINDS[kind]} | "
+                + " | ".join(f"{count:,}" for count in counts)
+                + f" | {told} |"
+            )
     return [*table, ""]
 
 
@@ -99,30 +135,56 @@ def measured(rows: list[dict[str, Any]]) -> list[str]:
     counts = {kind: sum(row["kind"] == kind for row in rows) for kind in MEASURED}
     kinds = ", ".join(f"{counts[kind]} *{kind}*" for kind in MEASURED)
     predicted = [row for row in rows if row["kind"] == MEASURED[0]]
-    assert len({(*row["theirs"], row["points"], row["opponent"]) for row in predicted}) == 1, "other values than those of one series"
+    assert len({(*row["theirs"], row["points"], row["opponent"]) for row in predicted}) == 1, (
+        "other values than those of one series"
+    )
     return [
-        f"Of these {len(rows):,} comparisons {sum(counts.values())} are with measured values: {kinds}. Only the first kind tests a "
-        f"prediction, in the same {predicted[0]['points']} measured values under {len(predicted)} friction laws.",
+        f"Of these {len(rows):,} comparisons {sum(counts.values())} are with measured "
+        f"values: {kinds}. Only the first kind tests a "
+        f"prediction, in the same {predicted[0]['points']} measured values under "
+        f"{len(predicted)} friction laws.",
         "",
     ]
 
 
 def missing(rows: list[dict[str, Any]]) -> list[str]:
     """Test files without recorded comparisons."""
-    found = {path.relative_to(ROOT).as_posix() for path in (ROOT / "tests" / "verification").glob("test_*.py")}
+    found = {
+        path.relative_to(ROOT).as_posix()
+        for path in (ROOT / "tests" / "verification").glob("test_*.py")
+    }
     left = sorted(found - {row["file"] for row in rows})
-    return [f"* **Not run** when this page was generated: {', '.join(f'`{file}`' for file in left)}.", ""] if left else []
+    return (
+        [
+            "* **Not run** when this page was generated: "
+            f"{', '.join(f'`{file}`' for file in left)}.",
+            "",
+        ]
+        if left
+        else []
+    )
 
 
 def page(rows: list[dict[str, Any]]) -> str:
     """The complete page, from rows as `agreement.read` returns them."""
-    experiments, computed = ([row for row in rows if (row["kind"] in MEASURED) == which] for which in (True, False))
+    experiments, computed = (
+        [row for row in rows if (row["kind"] in MEASURED) == which] for which in (True, False)
+    )
     tables = []
     for subject in get_args(Subject):
         tables += blocks([row for row in computed if row["subject"] == subject], _capital(subject))
     tables += blocks(experiments, "Experiments")
-    made = {"summary": summary(rows), "measured": measured(rows), "comparisons": tables, "missing": missing(rows)}
-    return re.sub(r"<!-- (\w+) -->\n", lambda place: "\n".join(made[place[1]]), PROSE.read_text(encoding="utf-8"))
+    made = {
+        "summary": summary(rows),
+        "measured": measured(rows),
+        "comparisons": tables,
+        "missing": missing(rows),
+    }
+    return re.sub(
+        r"<!-- (\w+) -->\n",
+        lambda place: "\n".join(made[place[1]]),
+        PROSE.read_text(encoding="utf-8"),
+    )
 
 
 if __name__ == "__main__":

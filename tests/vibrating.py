@@ -16,23 +16,38 @@ STIFFNESS = 5.1154524848e8
 
 
 def modes_of(frequencies: ArrayLike, contact: ArrayLike, damping: ArrayLike = 0.0) -> ModalBasis:
-    """Modes of given frequencies [Hz], motions of the contact point [kg^-1/2] and damping ratios, sorted."""
+    """Modes of given frequencies [Hz], motions of the contact point [kg^-1/2] and damping
+    ratios, sorted.
+    """
     frequencies = np.atleast_1d(np.asarray(frequencies, dtype=float))
     order = np.argsort(frequencies)
-    contact, damping = (np.broadcast_to(np.asarray(part, dtype=float), frequencies.shape)[order] for part in (contact, damping))
+    contact, damping = (
+        np.broadcast_to(np.asarray(part, dtype=float), frequencies.shape)[order]
+        for part in (contact, damping)
+    )
     points = {"a": np.outer(contact, [0.0, 0.0, 1.0])}
-    return ModalBasis(frequencies[order], damping, contact, np.outer(contact, [0.0, 0.0, 1.0]), points, 1.0)
+    return ModalBasis(
+        frequencies[order], damping, contact, np.outer(contact, [0.0, 0.0, 1.0]), points, 1.0
+    )
 
 
-def random_modes(seed: int, number: int, lowest: float, highest: float, size: float, damping: float = 0.0) -> ModalBasis:
-    """Modes spread over the octaves, with motions of the contact point of either sign and a standard deviation of `size` [kg^-1/2]."""
+def random_modes(
+    seed: int, number: int, lowest: float, highest: float, size: float, damping: float = 0.0
+) -> ModalBasis:
+    """Modes spread over the octaves, with motions of the contact point of either sign and
+    a standard deviation of `size` [kg^-1/2].
+    """
     random = np.random.default_rng(seed)
     frequencies = np.exp(random.uniform(np.log(lowest), np.log(highest), number))
     return modes_of(frequencies, size * random.normal(size=number), damping)
 
 
-def drop_on(law: ContactLaw, plate: ModalBasis | None = None, sphere: ModalBasis | None = None, **more: Any) -> vi.Problem:
-    """The paper's sphere, without an indentation of its own but that of the law, at 3 m/s unless said otherwise."""
+def drop_on(
+    law: ContactLaw, plate: ModalBasis | None = None, sphere: ModalBasis | None = None, **more: Any
+) -> vi.Problem:
+    """The paper's sphere, without an indentation of its own but that of the law, at 3 m/s
+    unless said otherwise.
+    """
     given = {"speed": 3.0, "gravity": 9.8, "impacts": 1, **more}
     if "height" in given:
         del given["speed"]
@@ -47,7 +62,11 @@ def oracle(problem: vi.Problem, **settings: float) -> Drop:
     """The same drop, as the oracle takes it from first touch."""
     law = problem.laws[0]
     assert isinstance(law, CompliantLaw)
-    bodies = [(body, sign) for body, sign in ((problem.sphere.modes, -1.0), (problem.plate.modes, 1.0)) if body is not None]
+    bodies = [
+        (body, sign)
+        for body, sign in ((problem.sphere.modes, -1.0), (problem.plate.modes, 1.0))
+        if body is not None
+    ]
 
     def of(parts: list[np.ndarray]) -> np.ndarray:
         return np.concatenate([np.zeros(0), *parts])
@@ -56,9 +75,19 @@ def oracle(problem: vi.Problem, **settings: float) -> Drop:
         static, dashpot = law.forces(np.array(delta), np.ones(()), np.array(speed))
         return float(static), float(dashpot)
 
-    fall = 0.0 if problem.height is None else float(problem.height) - float(problem.sphere.contact_offset)
-    speed = float(problem.speed) if problem.speed is not None else float(np.sqrt(2.0 * problem.gravity * fall))
-    inside = of([np.full(len(body.contact), sign < 0.0 and problem.sphere_inside) for body, sign in bodies]).astype(bool)
+    fall = (
+        0.0
+        if problem.height is None
+        else float(problem.height) - float(problem.sphere.contact_offset)
+    )
+    speed = (
+        float(problem.speed)
+        if problem.speed is not None
+        else float(np.sqrt(2.0 * problem.gravity * fall))
+    )
+    inside = of(
+        [np.full(len(body.contact), sign < 0.0 and problem.sphere_inside) for body, sign in bodies]
+    ).astype(bool)
     return Drop(
         float(problem.sphere.mass),
         float(problem.gravity),

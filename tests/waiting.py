@@ -10,5 +10,7 @@ from collections.abc import Callable
 def wait_until(so: Callable[[], bool], *processes: subprocess.Popen) -> None:
     """Wait until something is so; fail if a process that is to bring it about has ended before."""
     while not so():
-        assert all(process.poll() is None for process in processes), "a process ended before its time"
+        assert all(process.poll() is None for process in processes), (
+            "a process ended before its time"
+        )
         time.sleep(0.005)

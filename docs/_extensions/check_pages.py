@@ -18,7 +18,10 @@ def check(app: Sphinx, fault: Exception | None) -> None:
     for sentence in page_faults(pages):
         _log.warning(sentence)
     largest = max(pages.values(), key=lambda page: page.size())
-    _log.info(f"{len(pages)} pages; the largest, {largest.path.name}, weighs {largest.size() / 1e6:.2f} MB with its pictures")
+    _log.info(
+        f"{len(pages)} pages; the largest, {largest.path.name}, weighs "
+        f"{largest.size() / 1e6:.2f} MB with its pictures"
+    )
 
 
 def setup(app: Sphinx) -> dict[str, bool]:

@@ -1,4 +1,6 @@
-"""What an example of the gallery must do: end without a warning, draw figures with a title, and leave no file. A fault fails the build."""
+"""What an example of the gallery must do: end without a warning, draw figures with a
+title, and leave no file. A fault fails the build.
+"""
 
 from __future__ import annotations
 
@@ -16,7 +18,9 @@ _SOURCES = {".py", ".rst", ".toml"}
 
 
 def has_title(figure: Figure) -> bool:
-    """Return whether a figure or one of its axes has a title, which becomes the text for those who do not see the figure."""
+    """Return whether a figure or one of its axes has a title, which becomes the text for
+    those who do not see the figure.
+    """
     titles = [axes.get_title(side) for axes in figure.axes for side in ("left", "center")]
     return bool(figure.get_suptitle() or any(titles))
 
@@ -30,15 +34,20 @@ def scrape(block: Any, block_vars: dict[str, Any], gallery_conf: dict[str, Any])
 
 
 def check_example(gallery_conf: dict[str, Any], example: str | None, when: str) -> None:
-    """Turn warnings of an example into errors, and refuse the files that it leaves beside itself."""
+    """Turn warnings of an example into errors, and refuse the files that it leaves beside
+    itself.
+    """
     if when == "before":
         warnings.simplefilter("error")
-        warnings.filterwarnings("ignore", "FigureCanvasAgg is non-interactive")  # plt.show() of each example
+        # plt.show() of each example
+        warnings.filterwarnings("ignore", "FigureCanvasAgg is non-interactive")
         return
     warnings.resetwarnings()
     if example is None:
         return
     folder = Path(gallery_conf["src_dir"], gallery_conf["examples_dirs"][0]).resolve()
-    files = [file.name for file in folder.iterdir() if file.is_file() and file.suffix not in _SOURCES]
+    files = [
+        file.name for file in folder.iterdir() if file.is_file() and file.suffix not in _SOURCES
+    ]
     if files:
         raise ExtensionError(f"{example}: the example leaves {', '.join(sorted(files))}")

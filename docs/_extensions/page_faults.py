@@ -1,4 +1,6 @@
-"""What is wrong with built pages: dead links, pictures without words, what comes from a network, pages that are heavy or lead nowhere."""
+"""What is wrong with built pages: dead links, pictures without words, what comes from a
+network, pages that are heavy or lead nowhere.
+"""
 
 from __future__ import annotations
 
@@ -8,7 +10,9 @@ from pathlib import Path
 from urllib.parse import unquote, urlsplit
 
 MOST_BYTES = 3_000_000
-"""What a page and its pictures may weigh; films, and scripts and fonts that all pages share, do not count."""
+"""What a page and its pictures may weigh; films, and scripts and fonts that all pages
+share, do not count.
+"""
 
 _ENDS = {"search.html", "genindex.html"}
 """Pages that stand beside the order of reading."""
@@ -49,13 +53,23 @@ class Page(HTMLParser):
 
     def size(self) -> int:
         """Return what the page weighs with its pictures [bytes]."""
-        pictures = {self.path.parent / unquote(urlsplit(picture).path) for picture in self.pictures if not urlsplit(picture).scheme}
-        return len(self.text.encode()) + sum(picture.stat().st_size for picture in pictures if picture.is_file())
+        pictures = {
+            self.path.parent / unquote(urlsplit(picture).path)
+            for picture in self.pictures
+            if not urlsplit(picture).scheme
+        }
+        return len(self.text.encode()) + sum(
+            picture.stat().st_size for picture in pictures if picture.is_file()
+        )
 
 
 def read_pages(site: Path) -> dict[Path, Page]:
     """Return the pages of a site."""
-    return {path: Page(path) for path in sorted(site.resolve().rglob("*.html")) if "_static" not in path.relative_to(site.resolve()).parts}
+    return {
+        path: Page(path)
+        for path in sorted(site.resolve().rglob("*.html"))
+        if "_static" not in path.relative_to(site.resolve()).parts
+    }
 
 
 def page_faults(pages: dict[Path, Page]) -> list[str]:
@@ -63,18 +77,32 @@ def page_faults(pages: dict[Path, Page]) -> list[str]:
     faults = []
     for path, page in pages.items():
         found = [f"a picture without words: {picture}" for picture in page.without_words]
-        found += [f"loaded from a network: {loaded}" for loaded in page.loaded + page.pictures if urlsplit(loaded).netloc]
-        found += [f"there is no {file}" for file in page.loaded + page.pictures if not _leads(file, page, {})]
+        found += [
+            f"loaded from a network: {loaded}"
+            for loaded in page.loaded + page.pictures
+            if urlsplit(loaded).netloc
+        ]
+        found += [
+            f"there is no {file}"
+            for file in page.loaded + page.pictures
+            if not _leads(file, page, {})
+        ]
         found += [f"a dead link: {link}" for link in page.links if not _leads(link, page, pages)]
         if page.size() > MOST_BYTES:
             found.append(f"it weighs {page.size() / 1e6:.1f} MB with its pictures")
         faults += [f"{path.name}: {fault}" for fault in found]
-    ends = [path.name for path, page in pages.items() if not page.leads_on and path.name not in _ENDS]
-    return faults + ([f"more than one page leads no further: {', '.join(ends)}"] if len(ends) > 1 else [])
+    ends = [
+        path.name for path, page in pages.items() if not page.leads_on and path.name not in _ENDS
+    ]
+    return faults + (
+        [f"more than one page leads no further: {', '.join(ends)}"] if len(ends) > 1 else []
+    )
 
 
 def _leads(link: str, page: Page, pages: dict[Path, Page]) -> bool:
-    """Return whether a link leads to a file, and to a name in it if it is a page; a link out of the site is taken to."""
+    """Return whether a link leads to a file, and to a name in it if it is a page; a link
+    out of the site is taken to.
+    """
     to = urlsplit(link)
     if to.scheme or to.netloc:
         return True

@@ -1,4 +1,6 @@
-"""Charts of plotly in the gallery: one script serves all pages, captions are read aloud, and a print of the chart is its thumbnail."""
+"""Charts of plotly in the gallery: one script serves all pages, captions are read aloud,
+and a print of the chart is its thumbnail.
+"""
 
 from __future__ import annotations
 
@@ -28,7 +30,9 @@ _drawn: list[tuple[Figure, Chart]] = []
 
 
 def scrape(block: Any, block_vars: dict[str, Any], gallery_conf: dict[str, Any]) -> str:
-    """Return what a page shows of the figure that a block of an example ends with, and draw its thumbnail."""
+    """Return what a page shows of the figure that a block of an example ends with, and
+    draw its thumbnail.
+    """
     names = block_vars["example_globals"]
     figure = names.get("___")  # the value of the last line, as Sphinx-Gallery calls it
     if not isinstance(figure, Figure):
@@ -38,9 +42,13 @@ def scrape(block: Any, block_vars: dict[str, Any], gallery_conf: dict[str, Any])
     words = title
     if chart := next((chart for drawn, chart in _drawn if drawn is figure), None):
         words = f"{title}. {chart.caption}"
-        Path(next(block_vars["image_path_iterator"])).write_bytes(FORMATS["png"](matplotlib_figure(chart)))
+        Path(next(block_vars["image_path_iterator"])).write_bytes(
+            FORMATS["png"](matplotlib_figure(chart))
+        )
     _drawn.clear()
-    html = figure.to_html(full_html=False, include_plotlyjs=False, config={"responsive": True, "displaylogo": False})
+    html = figure.to_html(
+        full_html=False, include_plotlyjs=False, config={"responsive": True, "displaylogo": False}
+    )
     shown = f'<div class="{CLASS}" role="figure" aria-label="{escape(words)}">{html}</div>'
     return f".. raw:: html\n\n{indent(shown, '    ')}\n"
 
@@ -65,8 +73,12 @@ def describe_thumbnails(app: Sphinx, tree: nodes.document) -> None:
             node["alt"] = words
 
 
-def add_script(app: Sphinx, page: str, template: str, context: dict[str, Any], tree: nodes.document | None) -> None:
-    """Load plotly's script, and what fits charts to their columns, into pages that have a chart of it, and into no other."""
+def add_script(
+    app: Sphinx, page: str, template: str, context: dict[str, Any], tree: nodes.document | None
+) -> None:
+    """Load plotly's script, and what fits charts to their columns, into pages that have a
+    chart of it, and into no other.
+    """
     if tree is not None and any(CLASS in raw.astext() for raw in tree.findall(nodes.raw)):
         app.add_js_file(SCRIPT.name)
         app.add_js_file("chart-columns.js")
@@ -78,7 +90,8 @@ def copy_script(app: Sphinx, fault: Exception | None) -> None:
 
 
 def setup(app: Sphinx) -> dict[str, bool]:
-    notebook.plotly_figure = _remembering(notebook.plotly_figure)  # before what draws with it is imported
+    # before what draws with it is imported
+    notebook.plotly_figure = _remembering(notebook.plotly_figure)
     app.connect("doctree-read", describe_thumbnails)
     app.connect("html-page-context", add_script)
     app.connect("build-finished", copy_script)

@@ -2,15 +2,17 @@
 Accelerometer signal of an impact: resonance, range, anti-alias filter
 ======================================================================
 
-A hard steel ball of 6 mm in diameter strikes a plate of hardened steel, neither of which yields, and an accelerometer measures the motion
-at a point 70 mm away. The recorded signal differs from this motion by the mounted resonance of the accelerometer, its range, the anti-alias
-filter and the sampling.
+A hard steel ball of 6 mm in diameter strikes a plate of hardened steel, neither of which yields,
+and an accelerometer measures the motion at a point 70 mm away. The recorded signal differs from
+this motion by the mounted resonance of the accelerometer, its range, the anti-alias filter and the
+sampling.
 """
 
 # %%
 # One impact, several measuring chains
 # ------------------------------------
-# The impact is computed once; the signals of any instrument follow from the result, as sensors do not affect the plate in this model.
+# The impact is computed once; the signals of any instrument follow from the result, as sensors do
+# not affect the plate in this model.
 from dataclasses import replace
 
 import matplotlib.pyplot as plt
@@ -60,15 +62,17 @@ clipped = recorded(resonance=30e3, range=1500.0)
 # %%
 # Aliasing, resonance and overload
 # --------------------------------
-# Without a filter, components above 25 kHz are aliased into the band of a signal sampled at 50 kHz. The resonance increases the peak, and
-# the range clips it, which the signal reports as overload. The default filter, that of a delta-sigma converter, is flat up to 22.5 kHz.
+# Without a filter, components above 25 kHz are aliased into the band of a signal sampled at 50 kHz.
+# The resonance increases the peak, and the range clips it, which the signal reports as overload.
+# The default filter, that of a delta-sigma converter, is flat up to 22.5 kHz.
 assert np.allclose(
     aliased.value, ideal.value[::8][: len(aliased.value)], atol=1e-6 * np.abs(ideal.value).max()
 )
 assert np.abs(resonant.value).max() > 1.2 * np.abs(ideal.value).max()
 assert clipped.overload_time > 0.0
 print(
-    f"{clipped.peak:.0f} m/s² reached a range of 1500 m/s², which was exceeded for {1e6 * clipped.overload_time:.0f} µs in all"
+    f"{clipped.peak:.0f} m/s² reached a range of 1500 m/s², which was exceeded for "
+    f"{1e6 * clipped.overload_time:.0f} µs in all"
 )
 
 spectrum = {

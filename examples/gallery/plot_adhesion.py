@@ -2,16 +2,18 @@
 Sticking velocity of fine particles: JKR adhesion
 =================================================
 
-Below a critical speed a small particle does not rebound but sticks, because of its surface energy. The restitution of grains of different
-sizes on a wall is computed with the law of Johnson, Kendall and Roberts, with and without Krijt's viscoelastic loss; the sticking velocity
-increases as the size decreases.
+Below a critical speed a small particle does not rebound but sticks, because of its surface energy.
+The restitution of grains of different sizes on a wall is computed with the law of Johnson, Kendall
+and Roberts, with and without Krijt's viscoelastic loss; the sticking velocity increases as the size
+decreases.
 """
 
 # %%
 # Force and pull-off
 # ------------------
-# Adhesion attracts the surfaces at first touch, and a neck holds them together until it breaks at a negative indentation. The pull-off
-# force is :math:`\tfrac32 \pi w R`, independent of the stiffness.
+# Adhesion attracts the surfaces at first touch, and a neck holds them together until it breaks at a
+# negative indentation. The pull-off force is :math:`\tfrac32 \pi w R`, independent of the
+# stiffness.
 import matplotlib.pyplot as plt
 import numpy as np
 
@@ -51,8 +53,8 @@ assert abs(history["force_N"].min() / -pull_off - 1.0) < 1e-3
 # %%
 # Sticking velocity
 # -----------------
-# Without other losses, the energy that a grain loses to adhesion is :math:`7.09\, (w^5 R^4 / E^{*2})^{1/3}` (Thornton and Ning 1998), which
-# gives the sticking velocity.
+# Without other losses, the energy that a grain loses to adhesion is :math:`7.09\, (w^5 R^4 /
+# E^{*2})^{1/3}` (Thornton and Ning 1998), which gives the sticking velocity.
 radii = np.array([0.3e-6, 1e-6, 3e-6, 10e-6])
 sticks = np.sqrt(
     2.0

@@ -2,8 +2,9 @@
 Air drag in a drop test
 =======================
 
-A quartz grain of 0.1 mm that is dropped from 2 m reaches its terminal velocity; a pebble of 60 mm loses 0.3 % of its speed. For particles
-of up to a few millimetres, neglected drag biases a restitution that is computed from rebound heights: it appears as a loss in the contact.
+A quartz grain of 0.1 mm that is dropped from 2 m reaches its terminal velocity; a pebble of 60 mm
+loses 0.3 % of its speed. For particles of up to a few millimetres, neglected drag biases a
+restitution that is computed from rebound heights: it appears as a loss in the contact.
 """
 
 # %%
@@ -43,8 +44,8 @@ assert np.allclose(vacuum, np.sqrt(2.0 * gravity * height))
 # %%
 # Comparison with SciPy
 # ---------------------
-# Gravity and the drag of Clift and Gauvin (1970), integrated until impact; the drag is taken from the package. The smallest sphere falls
-# at nearly Stokes' terminal velocity.
+# Gravity and the drag of Clift and Gauvin (1970), integrated until impact; the drag is taken from
+# the package. The smallest sphere falls at nearly Stokes' terminal velocity.
 
 
 def by_scipy(one):

@@ -2,15 +2,17 @@
 Restitution from the sound of bounces
 =====================================
 
-The times between the bounces of a ball give its speeds, and their ratios the restitution, whatever the sensitivity of the microphone.
-Bounces are detected in a sound record with noise, mains hum and clicks, and the restitution is estimated with its intervals.
+The times between the bounces of a ball give its speeds, and their ratios the restitution, whatever
+the sensitivity of the microphone. Bounces are detected in a sound record with noise, mains hum and
+clicks, and the restitution is estimated with its intervals.
 """
 
 # %%
 # A synthetic record
 # ------------------
-# Nine impacts of a ball with a restitution of 0.85, each a short decaying vibration, in noise of the same mean power, with hum and three
-# clicks. A file is read by ``vi.one_record("bounces.wav")``.
+# Nine impacts of a ball with a restitution of 0.85, each a short decaying vibration, in noise of
+# the same mean power, with hum and three clicks. A file is read by
+# ``vi.one_record("bounces.wav")``.
 import matplotlib.pyplot as plt
 import numpy as np
 
@@ -40,7 +42,8 @@ record = vi.Record("telephone", sound, rate, "Pa")
 bounces = vi.find_bounces(record)
 rebounds = vi.rebounds_of(bounces, gravity=gravity)
 print(
-    f"dropped from about {100.0 * rebounds.drop_height:.1f} cm, restitution {rebounds.laws[0].coefficients[0]:.5f}"
+    f"dropped from about {100.0 * rebounds.drop_height:.1f} cm, restitution "
+    f"{rebounds.laws[0].coefficients[0]:.5f}"
 )
 
 assert np.allclose(bounces.time - bounces.time[0], touches - touches[0], atol=2e-5)

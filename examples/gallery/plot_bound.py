@@ -2,17 +2,19 @@
 Bayes error of coal and gangue classification
 =============================================
 
-The lowest error of a classifier that sees only the impulse and the contact time of an impact can be bounded before any training: rocks that
-agree in both cannot be distinguished by them. A sample of simulated drops gives estimates of bounds on this error, for a scatter of the
-measured amplitude that is assumed. A classifier of whole signals sees more, and can have a lower error.
+The lowest error of a classifier that sees only the impulse and the contact time of an impact can be
+bounded before any training: rocks that agree in both cannot be distinguished by them. A sample of
+simulated drops gives estimates of bounds on this error, for a scatter of the measured amplitude
+that is assumed. A classifier of whole signals sees more, and can have a lower error.
 """
 
 # %%
 # Population
 # ----------
-# Coal and gangue of 15 to 60 mm in radius fall from 0.8 to 3 m; their densities, moduli and restitutions have the distributions of the
-# shipped study. The estimates from 2,048 falls have a sampling error: with 20,000 falls the bounds are 0.4 to 0.9 % with the position known
-# and 1.7 to 2.0 % without.
+# Coal and gangue of 15 to 60 mm in radius fall from 0.8 to 3 m; their densities, moduli and
+# restitutions have the distributions of the shipped study. The estimates from 2,048 falls have a
+# sampling error: with 20,000 falls the bounds are 0.4 to 0.9 % with the position known and 1.7 to
+# 2.0 % without.
 import matplotlib.pyplot as plt
 import numpy as np
 
@@ -28,8 +30,8 @@ for name, error in bound.errors.items():
 assert bound.errors["one impact"].upper < 0.01 < 0.2 < bound.errors["contact time"].lower
 
 # %%
-# The contact times are near those of Hertz's theory, :math:`T = 2.87\, (m^2 / (E^{*2} R v))^{1/5}` (Johnson 1985, eq. 11.24), increased by
-# the damping.
+# The contact times are near those of Hertz's theory, :math:`T = 2.87\, (m^2 / (E^{*2} R v))^{1/5}`
+# (Johnson 1985, eq. 11.24), increased by the damping.
 falls = bound.falls
 mass = 4.0 / 3.0 * np.pi * falls.radius**3 * falls.density
 effective = 1.0 / ((1.0 - 0.28**2) / falls.modulus + (1.0 - 0.3**2) / 210e9)  # against steel

@@ -2,14 +2,16 @@
 Damping of Adams' IMPACT function from rebound heights
 ======================================================
 
-The damping of Adams' IMPACT function cannot be measured directly, but rebound heights can, with a ruler and a camera. From four of them
-follow the damping at the four approach speeds, its intervals, and the values in the units of the dialog: newtons, millimetres and seconds.
+The damping of Adams' IMPACT function cannot be measured directly, but rebound heights can, with a
+ruler and a camera. From four of them follow the damping at the four approach speeds, its intervals,
+and the values in the units of the dialog: newtons, millimetres and seconds.
 """
 
 # %%
 # The measurement
 # ---------------
-# A rock of 25 mm radius is dropped from 4 m. Its first four rebounds are those of the paper's theory, taken as if measured to 2 mm.
+# A rock of 25 mm radius is dropped from 4 m. Its first four rebounds are those of the paper's
+# theory, taken as if measured to 2 mm.
 import matplotlib.pyplot as plt
 import numpy as np
 
@@ -34,8 +36,8 @@ found = vi.calibrate_case(question)
 # %%
 # Values for the dialog
 # ---------------------
-# The conversion of a stiffness from N/m\ :sup:`1.5` to N/mm\ :sup:`1.5` is not a factor of 1000: the unit of length is raised to the
-# exponent.
+# The conversion of a stiffness from N/m\ :sup:`1.5` to N/mm\ :sup:`1.5` is not a factor of 1000:
+# the unit of length is raised to the exponent.
 law = found.problem.laws[0]
 stiffness = vi.convert_units(float(law.stiffness), "N/m^1.5", "N/mm^1.5")
 print(f"Stiffness          {stiffness:.0f} N/mm^{law.exponent}")
@@ -45,11 +47,13 @@ for speed, damping in zip(found.observations.speeds, found.values, strict=True):
     print(f"Damping            {1e-3 * damping:.4f} N s/mm for an impact at {speed:.2f} m/s")
 
 # %%
-# The doubts are those of a run: the rebound can be matched beyond the limits of the theory, but force and indentation are then doubtful.
+# The doubts are those of a run: the rebound can be matched beyond the limits of the theory, but
+# force and indentation are then doubtful.
 print(*found.doubts, sep="\n")
 
 # %%
-# The paper prints 179.75, 172.8, 166.3 and 160.9 N s/m, for the rebounds of its own theory: the intervals contain these values.
+# The paper prints 179.75, 172.8, 166.3 and 160.9 N s/m, for the rebounds of its own theory: the
+# intervals contain these values.
 printed = np.array([179.75, 172.8, 166.3, 160.9])
 assert np.all((found.intervals[:, 0] < printed) & (printed < found.intervals[:, 1]))
 

@@ -2,16 +2,17 @@
 Restitution coefficient against impact speed: elastic-plastic contact laws
 ==========================================================================
 
-A ball that yields leaves a permanent dent and loses energy to plastic deformation. Elastic-plastic contact laws are evaluated from below
-the yield speed to a thousand times this speed, and Thornton's law is compared with its closed form; the area of the loop of force against
-indentation is the energy lost.
+A ball that yields leaves a permanent dent and loses energy to plastic deformation. Elastic-plastic
+contact laws are evaluated from below the yield speed to a thousand times this speed, and Thornton's
+law is compared with its closed form; the area of the loop of force against indentation is the
+energy lost.
 """
 
 # %%
 # Thornton's closed form
 # ----------------------
-# An elastic-perfectly-plastic sphere (J. Appl. Mech. 64:383, 1997) has the following restitutions at multiples of the speed at which it
-# first yields.
+# An elastic-perfectly-plastic sphere (J. Appl. Mech. 64:383, 1997) has the following restitutions
+# at multiples of the speed at which it first yields.
 import matplotlib.pyplot as plt
 import numpy as np
 
@@ -43,7 +44,8 @@ for ratio, restitution in {
 # %%
 # Force-indentation hysteresis
 # ----------------------------
-# At 3 m/s the contact of each law is loaded, and unloaded along a steeper curve. The enclosed area is the energy lost.
+# At 3 m/s the contact of each law is loaded, and unloaded along a steeper curve. The enclosed area
+# is the energy lost.
 loops = {}
 for name, law in {
     "thornton": thornton,

@@ -2,16 +2,17 @@
 Contact force and rebound of a rock dropped on a steel plate
 ============================================================
 
-A rock of 25 mm radius falls 4 m onto a steel plate and bounces five times: Type 1 of the paper from which this project started, with Adams'
-IMPACT and a damping for each bounce. The rebound agrees with the printed one, which is among the numbers from which
-the full-damping penetration of the case was inferred; the largest force is 1.3 % larger than printed.
+A rock of 25 mm radius falls 4 m onto a steel plate and bounces five times: Type 1 of the paper from
+which this project started, with Adams' IMPACT and a damping for each bounce. The rebound agrees
+with the printed one, which is among the numbers from which the full-damping penetration of the case
+was inferred; the largest force is 1.3 % larger than printed.
 """
 
 # %%
 # Run a shipped case
 # ------------------
-# A case is a file, a dictionary, or a shipped case. At the end of a cell a response shows its impacts, and the limits of the theory that
-# the drop exceeds.
+# A case is a file, a dictionary, or a shipped case. At the end of a cell a response shows its
+# impacts, and the limits of the theory that the drop exceeds.
 import matplotlib.pyplot as plt
 import numpy as np
 
@@ -29,8 +30,9 @@ response.plot("force")
 # %%
 # Comparison with the paper
 # -------------------------
-# The paper prints a first rebound of 2.41132 m and a largest force of 9583.984 N. Its simulation had 20,000 output steps in 5 s, one in
-# 0.25 ms, which is about as long as a contact: a largest force that is read from output values can miss the peak.
+# The paper prints a first rebound of 2.41132 m and a largest force of 9583.984 N. Its simulation
+# had 20,000 output steps in 5 s, one in 0.25 ms, which is about as long as a contact: a largest
+# force that is read from output values can miss the peak.
 force, rebound = response.impacts["max_force_N"], response.impacts["rebound_height_m"]
 assert abs(rebound[0] - 2.41132) < 1e-4
 assert force[0] > 9583.984
@@ -39,7 +41,8 @@ assert abs(response.energy["closure_relative"]) < 1e-9
 # %%
 # Contact forces
 # --------------
-# The history can be evaluated at any time of the run: height above, force of each impact from first touch on below.
+# The history can be evaluated at any time of the run: height above, force of each impact from first
+# touch on below.
 plt.style.use("vibroimpact.charts.print")
 figure, (above, below) = plt.subplots(
     2, figsize=(6.4, 5.0), height_ratios=(2, 3), layout="constrained"

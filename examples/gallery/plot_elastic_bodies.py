@@ -2,17 +2,18 @@
 Impact of an elastic sphere on an elastic plate: bending waves
 ==============================================================
 
-Sphere and plate are elastic, as in Type 3 of the paper, but without damping in the contact. The impact excites bending waves in a plate of
-8 mm on four patches, which continue after the sphere has left. First the elastic sphere on a rigid plane is compared with full
-finite-element solutions.
+Sphere and plate are elastic, as in Type 3 of the paper, but without damping in the contact. The
+impact excites bending waves in a plate of 8 mm on four patches, which continue after the sphere has
+left. First the elastic sphere on a rigid plane is compared with full finite-element solutions.
 """
 
 # %%
 # An elastic sphere on a rigid plane
 # ----------------------------------
-# Sphere and speed of Type 2 of the paper, without damping. Full finite elements of two codes of the authors of this package give a
-# largest force of 12,166 N within 8 N. Ten modes of the
-# sphere, and the contact counted once, come within half a per cent; a rigid sphere under Hertz's law is 7 % low.
+# Sphere and speed of Type 2 of the paper, without damping. Full finite elements of two codes of the
+# authors of this package give a largest force of 12,166 N within 8 N. Ten modes of the sphere, and
+# the contact counted once, come within half a per cent; a rigid sphere under Hertz's law is 7 %
+# low.
 import matplotlib.pyplot as plt
 import numpy as np
 
@@ -37,7 +38,8 @@ assert abs(rigid / 12166.0 - 0.926) < 0.002
 # %%
 # Elastic sphere and plate
 # ------------------------
-# The plate is supported on four patches, which stand for the bars of the paper. Its modes are computed once and stored.
+# The plate is supported on four patches, which stand for the bars of the paper. Its modes are
+# computed once and stored.
 plate = {
     "size": ["520 mm", "420 mm", "8 mm"],
     "material": "steel-paper",
@@ -59,8 +61,8 @@ response.plot("energy")
 # %%
 # Deflection of the plate
 # -----------------------
-# The result contains deflections on a grid at a number of times. At first the deflection is largest near the contact; the rock leaves
-# 0.25 ms after first touch.
+# The result contains deflections on a grid at a number of times. At first the deflection is largest
+# near the contact; the rock leaves 0.25 ms after first touch.
 deflection = vi.result_of(response).deflection
 plt.style.use("vibroimpact.charts.print")
 figure, panels = plt.subplots(2, 3, figsize=(7.0, 4.2), layout="constrained")

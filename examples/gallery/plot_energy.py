@@ -2,8 +2,9 @@
 Energy balance of an impact on a vibrating plate
 ================================================
 
-Every run computes an energy balance: at all times the energy put in is the sum of kinetic, stored and dissipated energy. A steel ball falls
-on a plate of acrylic glass with damped modes; the balance closes to 1e-9. A run in which it does not close to 1e-6 is an error.
+Every run computes an energy balance: at all times the energy put in is the sum of kinetic, stored
+and dissipated energy. A steel ball falls on a plate of acrylic glass with damped modes; the balance
+closes to 1e-9. A run in which it does not close to 1e-6 is an error.
 """
 
 # %%
@@ -34,7 +35,8 @@ response
 # %%
 # Energy balance
 # --------------
-# Every entry of the balance is a column of the history. At every time their sum is the energy put in.
+# Every entry of the balance is a column of the history. At every time their sum is the energy put
+# in.
 history = response.history()
 stored = (
     "kinetic_J",
@@ -56,8 +58,8 @@ response.plot("energy")
 # %%
 # First milliseconds and whole run
 # --------------------------------
-# The first contact dissipates 6 % of the energy. The plate takes up nine tenths, and has dissipated nearly all of it before the second
-# impact.
+# The first contact dissipates 6 % of the energy. The plate takes up nine tenths, and has dissipated
+# nearly all of it before the second impact.
 words = (
     "kinetic, ball",
     "potential, ball",

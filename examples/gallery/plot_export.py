@@ -40,7 +40,8 @@ print({name: f"{len(text.splitlines())} lines" for name, text in texts.items()})
 # %%
 # The file for Adams
 # ------------------
-# The unit of length is the millimetre: the stiffness is that in N/m\ :sup:`1.5` divided by 1000\ :sup:`1.5`.
+# The unit of length is the millimetre: the stiffness is that in N/m\ :sup:`1.5` divided by 1000\
+# :sup:`1.5`.
 dataset = next(text for name, text in texts.items() if name.endswith(".adm"))
 words = re.search(r"IMPACT\(DZ\([^)]*\), VZ\([^)]*\), ([^)]*)\)", dataset.replace("\n,", ""))
 print(words[0])
@@ -51,7 +52,8 @@ gravity = -float(re.search(r"KGRAV = (\S+)", dataset)[1])
 # %%
 # Integration of the exported model
 # ---------------------------------
-# The equation in the file is integrated by SciPy from each first touch to release; the flights in between have a closed form.
+# The equation in the file is integrated by SciPy from each first touch to release; the flights in
+# between have a closed form.
 
 
 def motion(_, state):

@@ -2,14 +2,16 @@
 Signal features of geophone packets
 ===================================
 
-A synthetic record of a geophone below a plate contains the impacts of several grains. It is divided into packets, as in bedload
-measurement, and some sixty features describe each packet: the peak amplitude grows with the mass of the grain.
+A synthetic record of a geophone below a plate contains the impacts of several grains. It is divided
+into packets, as in bedload measurement, and some sixty features describe each packet: the peak
+amplitude grows with the mass of the grain.
 """
 
 # %%
 # A record of several grains
 # --------------------------
-# Seven grains of quartz of different sizes strike a steel plate one after another; their signals are joined end to end, with noise.
+# Seven grains of quartz of different sizes strike a steel plate one after another; their signals
+# are joined end to end, with noise.
 import matplotlib.pyplot as plt
 import numpy as np
 
@@ -59,7 +61,8 @@ record = vi.Record("geophone", value + 1e-4 * random.standard_normal(len(value))
 # %%
 # Packets
 # -------
-# A packet begins where the envelope reaches a threshold, and ends where it falls below the threshold for longer than the dead time.
+# A packet begins where the envelope reaches a threshold, and ends where it falls below the
+# threshold for longer than the dead time.
 packets = vi.find_packets(record, threshold=0.02, dead_time=5e-3)
 assert len(packets.onset) == len(diameters)
 assert np.abs(packets.onset / rate - (0.02 + pause * np.arange(len(diameters)))).max() < 3e-3
@@ -67,8 +70,9 @@ assert np.abs(packets.onset / rate - (0.02 + pause * np.arange(len(diameters))))
 # %%
 # Features of each
 # ----------------
-# The table has a row for each packet and a column for each feature. At a given speed the impulse of a grain is proportional to its mass,
-# and so is the response of the plate as long as the contact is shorter than its periods.
+# The table has a row for each packet and a column for each feature. At a given speed the impulse of
+# a grain is proportional to its mass, and so is the response of the plate as long as the contact is
+# shorter than its periods.
 table = vi.record_table(vi.packet_records(record, threshold=0.02))
 peak = table["peak"]
 power = np.polyfit(np.log(diameters), np.log(peak), 1)[0]

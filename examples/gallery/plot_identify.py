@@ -2,15 +2,15 @@
 Identification of an impact from accelerometer signals
 ======================================================
 
-From the signals of three accelerometers and a model of the plate, the position and the force of an impact and the radius and the speed of
-the sphere are estimated, with 95 % intervals.
+From the signals of three accelerometers and a model of the plate, the position and the force of an
+impact and the radius and the speed of the sphere are estimated, with 95 % intervals.
 """
 
 # %%
 # Synthetic records
 # -----------------
-# The records are simulated, with noise 40 dB below the vibration after the impact; the case used for the identification does not contain
-# the true radius, speed and position.
+# The records are simulated, with noise 40 dB below the vibration after the impact; the case used
+# for the identification does not contain the true radius, speed and position.
 import matplotlib.pyplot as plt
 import numpy as np
 
@@ -82,7 +82,8 @@ vi.plotly_figure(charts["records"])
 # %%
 # Position and force
 # ------------------
-# The fraction of the records explained by the best pulse at each position; and the force, estimated without a contact law.
+# The fraction of the records explained by the best pulse at each position; and the force, estimated
+# without a contact law.
 plt.style.use("vibroimpact.charts.print")
 figure, (left, right) = plt.subplots(
     1, 2, figsize=(7.4, 3.6), width_ratios=(5, 4), layout="constrained"

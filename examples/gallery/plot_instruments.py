@@ -2,8 +2,9 @@
 Geophone, strain gauge and microphone signals of an impact
 ==========================================================
 
-A grain strikes a steel plate, and a geophone, a strain gauge and a microphone record the impact. The signal of the microphone is
-delayed by the travel time of sound in air; the geophone measures velocity, the strain gauge the strain of the surface.
+A grain strikes a steel plate, and a geophone, a strain gauge and a microphone record the impact.
+The signal of the microphone is delayed by the travel time of sound in air; the geophone measures
+velocity, the strain gauge the strain of the surface.
 """
 
 # %%
@@ -69,8 +70,8 @@ signals = response.signals()
 # %%
 # Checks
 # ------
-# Far above its natural frequency the voltage of a geophone is its sensitivity times the velocity, and the signal of a microphone is
-# nearly zero until sound arrives from the plate.
+# Far above its natural frequency the voltage of a geophone is its sensitivity times the velocity,
+# and the signal of a microphone is nearly zero until sound arrives from the plate.
 velocity, volts, pressure = (signals[name] for name in ("velocity", "geophone", "microphone"))
 early = velocity.time < 2e-3
 assert np.allclose(

@@ -2,17 +2,17 @@
 Phase portraits of all contact laws
 ===================================
 
-The impact of a grain is computed with all contact laws of the library at the same speed. In the plane of indentation and velocity an
-elastic impact is symmetric, a damped one has a lower rebound velocity, a plastic one leaves a dent, and an adhesive one has a tensile phase
-before separation.
+The impact of a grain is computed with all contact laws of the library at the same speed. In the
+plane of indentation and velocity an elastic impact is symmetric, a damped one has a lower rebound
+velocity, a plastic one leaves a dent, and an adhesive one has a tensile phase before separation.
 """
 
 # %%
 # One impact under each law
 # -------------------------
-# A grain of 20 µm in diameter hits a plate of the same polymer at 0.3 m/s: with the chosen strengths and work of adhesion, small enough for
-# adhesion and fast enough to yield. What follows from the bodies, such as Hertz's stiffness and the effective mass, is supplied by the
-# case.
+# A grain of 20 µm in diameter hits a plate of the same polymer at 0.3 m/s: with the chosen
+# strengths and work of adhesion, small enough for adhesion and fast enough to yield. What follows
+# from the bodies, such as Hertz's stiffness and the effective mass, is supplied by the case.
 import matplotlib.pyplot as plt
 import numpy as np
 
@@ -55,8 +55,8 @@ for name in vi.contact_laws():
     assert abs(response.energy["closure_relative"]) < 1e-9
 
 # %%
-# Hunt and Crossley's restitution follows from :math:`D (1 + e) = \ln[(1 + D)/(1 - e D)]` with a damping factor D = 0.75; Tsuji's is the
-# specified one.
+# Hunt and Crossley's restitution follows from :math:`D (1 + e) = \ln[(1 + D)/(1 - e D)]` with a
+# damping factor D = 0.75; Tsuji's is the specified one.
 e = bounced["hunt-crossley"]
 assert abs(0.75 * (1 + e) - np.log(1.75 / (1 - 0.75 * e))) < 1e-6
 assert abs(bounced["tsuji"] - 0.5) < 1e-6
@@ -64,8 +64,9 @@ assert abs(bounced["tsuji"] - 0.5) < 1e-6
 # %%
 # Comparison
 # ----------
-# Velocity against indentation for each law, with Hertz's elastic impact as a grey area: approach at the bottom, rebound at the top. Laws
-# without a force (``newton``, ``jackson-green-marghitu``) are vertical lines.
+# Velocity against indentation for each law, with Hertz's elastic impact as a grey area: approach at
+# the bottom, rebound at the top. Laws without a force (``newton``, ``jackson-green-marghitu``) are
+# vertical lines.
 plt.style.use("vibroimpact.charts.print")
 figure, panels = plt.subplots(
     5, 5, figsize=(7.0, 7.0), sharex=True, sharey=True, layout="constrained"

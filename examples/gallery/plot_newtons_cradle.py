@@ -2,9 +2,10 @@
 Newton's cradle with Hertz contacts
 ===================================
 
-One ball hits four that touch. If they collided in pairs, one after another, the last would leave with the full speed and the others would
-stop. Hertz's contacts overlap in time, so that the last ball has 98.9 % of the speed and the first rebounds; with gaps of a tenth of a
-millimetre the last ball leaves with the full speed to 1e-5.
+One ball hits four that touch. If they collided in pairs, one after another, the last would leave
+with the full speed and the others would stop. Hertz's contacts overlap in time, so that the last
+ball has 98.9 % of the speed and the first rebounds; with gaps of a tenth of a millimetre the last
+ball leaves with the full speed to 1e-5.
 """
 
 # %%
@@ -20,7 +21,9 @@ law = vi.find_contact_law("hertz")(stiffness=1e9)  # N/m^1.5
 
 
 def cradle(gap):
-    """Return the response of five balls in a row, with gaps between them [m]; the first comes with 1 m/s."""
+    """Return the response of five balls in a row, with gaps between them [m]; the first
+    comes with 1 m/s.
+    """
     balls = {
         f"ball {number}": vi.MovingBody(mass=0.1, velocity=(float(number == 1), 0.0, 0.0))
         for number in range(1, 6)

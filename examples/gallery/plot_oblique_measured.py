@@ -3,15 +3,17 @@ Tangential restitution against impact angle, measured and computed
 ==================================================================
 
 Kharaz, Gorham and Salman dropped alumina spheres on thick glass and measured their tangential
-restitution; others read eight points off their figure. The friction law ``mdr``, which models the microslip at the rim of the contact,
-agrees with them within some hundredths; the single springs of the ``mindlin`` laws deviate by up to 0.25 at small angles.
+restitution; others read eight points off their figure. The friction law ``mdr``, which models the
+microslip at the rim of the contact, agrees with them within some hundredths; the single springs of
+the ``mindlin`` laws deviate by up to 0.25 at small angles.
 """
 
 # %%
 # Measured data
 # -------------
-# Powder Technology 120:281 (2001): angle from the normal [deg], and the tangential velocity after the impact over that before. The
-# coefficient of friction is that of the authors, from impacts at large angles, whose points are therefore no test of it.
+# Powder Technology 120:281 (2001): angle from the normal [deg], and the tangential velocity after
+# the impact over that before. The coefficient of friction is that of the authors, from impacts at
+# large angles, whose points are therefore no test of it.
 from dataclasses import replace
 
 import matplotlib.pyplot as plt
@@ -46,7 +48,8 @@ case = {
 # %%
 # Computation
 # -----------
-# A problem accepts arrays in place of numbers: one call computes a batch with an oblique impact for each angle.
+# A problem accepts arrays in place of numbers: one call computes a batch with an oblique impact for
+# each angle.
 
 
 def tangential_restitution(law, degrees):
@@ -63,8 +66,8 @@ error = {law: np.abs(tangential_restitution(law, angles) - measured).mean() for 
 assert error["mdr"] < 0.01 < 4 * error["mdr"] < min(error[law] for law in laws if law != "mdr")
 
 # %%
-# If it slides throughout the contact, a sphere loses the friction coefficient times its normal impulse in tangential momentum, whatever the
-# law.
+# If it slides throughout the contact, a sphere loses the friction coefficient times its normal
+# impulse in tangential momentum, whatever the law.
 steep = np.radians(angles[-1])
 assert np.allclose(
     tangential_restitution("mdr", angles[-1:]),

@@ -2,17 +2,19 @@
 A user-defined contact law
 ==========================
 
-A contact law is a frozen dataclass with functions that return its force and its energies. The example is a rubber lining of a chute,
-a spring whose force has a cubic term and a relaxation time; events, energy balance and charts need no further code, and the largest
-indentation is compared with its closed form.
+A contact law is a frozen dataclass with functions that return its force and its energies. The
+example is a rubber lining of a chute, a spring whose force has a cubic term and a relaxation time;
+events, energy balance and charts need no further code, and the largest indentation is compared with
+its closed form.
 """
 
 # %%
 # The law
 # -------
-# The elastic and the dissipative part of the force are returned separately, so that the dissipated energy can be computed. The function
-# works for numbers, with which it is compiled, and for arrays; it takes its coefficients from the law. If it is installed as a package
-# with an entry point, the law can also be used by its name in cases and on the command line.
+# The elastic and the dissipative part of the force are returned separately, so that the dissipated
+# energy can be computed. The function works for numbers, with which it is compiled, and for arrays;
+# it takes its coefficients from the law. If it is installed as a package with an entry point, the
+# law can also be used by its name in cases and on the command line.
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -82,7 +84,8 @@ def dropped(speed, relaxation):
 
 
 # %%
-# Without relaxation the largest indentation follows from the energy: :math:`\tfrac12 m v^2 = \tfrac12 k d^2 + \tfrac14 q d^4`.
+# Without relaxation the largest indentation follows from the energy: :math:`\tfrac12 m v^2 =
+# \tfrac12 k d^2 + \tfrac14 q d^4`.
 mass, speed, k, q = float(rock.mass), 3.0, 2e5, 4e10
 deepest = np.sqrt((-k + np.sqrt(k**2 + 2.0 * q * mass * speed**2)) / q)
 elastic = dropped(speed, 0.0)

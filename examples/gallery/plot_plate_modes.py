@@ -2,8 +2,9 @@
 Natural frequencies and mode shapes of a supported plate
 ========================================================
 
-Frequencies and mode shapes of a steel plate are computed without a mesher or another finite-element program. For simple supports they
-agree with Navier's closed form; on four patches they are compared with finite elements.
+Frequencies and mode shapes of a steel plate are computed without a mesher or another finite-element
+program. For simple supports they agree with Navier's closed form; on four patches they are compared
+with finite elements.
 """
 
 # %%
@@ -44,8 +45,9 @@ assert np.abs(computed / navier - 1.0).max() < 1e-3
 # %%
 # Support on four patches
 # -----------------------
-# Thick plate elements on four patches of 20 mm radius, which stand for the paper's bars; curved tetrahedra on two meshes, computed by the
-# authors of this package, give 171.3 and 268.8 Hz within 0.2 %.
+# Thick plate elements on four patches of 20 mm radius, which stand for the paper's bars; curved
+# tetrahedra on two meshes, computed by the authors of this package, give 171.3 and 268.8 Hz within
+# 0.2 %.
 plate = {
     **case["plate"],
     "supports": {"type": "patches", "spacing": ["458.4 mm", "360 mm"], "radius": "20 mm"},

@@ -2,16 +2,19 @@
 Restitution coefficient against plate thickness
 ===============================================
 
-A plate takes energy from an impact, which its bending waves carry away. The restitution of the paper's rock of 25 mm radius on steel plates
-of 7 to 20 mm agrees with Zener's theory of an infinite plate within 0.01: at 8 mm a quarter of the speed is lost without any damping. The
-contact is taken to be elastic; whether the rock would yield or crack is not known, since the paper gives no strength.
+A plate takes energy from an impact, which its bending waves carry away. The restitution of the
+paper's rock of 25 mm radius on steel plates of 7 to 20 mm agrees with Zener's theory of an infinite
+plate within 0.01: at 8 mm a quarter of the speed is lost without any damping. The contact is taken
+to be elastic; whether the rock would yield or crack is not known, since the paper gives no
+strength.
 """
 
 # %%
 # Zener's theory of an infinite plate
 # -----------------------------------
-# The velocity of an infinite plate at the contact is proportional to the force, so that one parameter remains, :math:`\lambda = m / (8
-# \sqrt{D \rho h}\, T)`, and one equation, :math:`\sigma'' + (1 + \lambda\, d/d\tau)\, \sigma^{3/2} = 0` (Phys. Rev. 59:669, 1941). SciPy
+# The velocity of an infinite plate at the contact is proportional to the force, so that one
+# parameter remains, :math:`\lambda = m / (8 \sqrt{D \rho h}\, T)`, and one equation,
+# :math:`\sigma'' + (1 + \lambda\, d/d\tau)\, \sigma^{3/2} = 0` (Phys. Rev. 59:669, 1941). SciPy
 # integrates it.
 import matplotlib.pyplot as plt
 import numpy as np
@@ -49,8 +52,8 @@ def zener(thickness):
 # %%
 # Finite plates
 # -------------
-# The plate of the paper with other thicknesses, simply supported, with all modes up to 6 kHz. Its edges are so far away that hardly any
-# wave returns before the rock has left.
+# The plate of the paper with other thicknesses, simply supported, with all modes up to 6 kHz. Its
+# edges are so far away that hardly any wave returns before the rock has left.
 
 
 def dropped(thickness):
@@ -80,7 +83,8 @@ assert np.abs(computed - theory).max() < 0.01
 # %%
 # Required thickness
 # ------------------
-# For a loss of less than a hundredth of the speed to bending waves, an infinite plate would have to be 44 mm thick.
+# For a loss of less than a hundredth of the speed to bending waves, an infinite plate would have to
+# be 44 mm thick.
 fine = np.geomspace(4e-3, 60e-3, 60)
 curve = np.array([zener(one) for one in fine])
 enough = np.interp(0.99, curve, fine)

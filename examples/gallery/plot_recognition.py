@@ -2,17 +2,19 @@
 Leakage in cross-validation of impact classifiers
 =================================================
 
-Classifiers are trained on signals of coal and gangue for which the Bayes error of one impact of an unseen rock is known in closed form.
-Tested on rocks that are not in the training data they stay below the accuracy that it allows; with signals split at random they appear to
-exceed it, as the signals of one rock are then in both parts.
+Classifiers are trained on signals of coal and gangue for which the Bayes error of one impact of an
+unseen rock is known in closed form. Tested on rocks that are not in the training data they stay
+below the accuracy that it allows; with signals split at random they appear to exceed it, as the
+signals of one rock are then in both parts.
 """
 
 # %%
 # Signals with a known Bayes error
 # --------------------------------
-# Half-sine forces act on a plate of four modes. The classes differ by the contact time alone, whose logarithm is normal; each rock adds a
-# characteristic tone, which identifies the rock but carries no information on its class. The intervals are wide, as there are only two
-# hundred and forty signals of thirty rocks.
+# Half-sine forces act on a plate of four modes. The classes differ by the contact time alone, whose
+# logarithm is normal; each rock adds a characteristic tone, which identifies the rock but carries
+# no information on its class. The intervals are wide, as there are only two hundred and forty
+# signals of thirty rocks.
 import matplotlib.pyplot as plt
 import numpy as np
 from scipy.signal import fftconvolve
@@ -79,8 +81,8 @@ for name in classifiers:
     assert apart.low < best < mixed.value
 
 # %%
-# Charts of the result show the confusion matrix, the effect of noise, the calibration and the importance of features; this one shows the
-# errors of all classifiers.
+# Charts of the result show the confusion matrix, the effect of noise, the calibration and the
+# importance of features; this one shows the errors of all classifiers.
 charts = {chart.name: chart for chart in vi.recognition_charts(found)}
 vi.plotly_figure(charts["scores"])
 

@@ -2,14 +2,16 @@
 Specified and achieved restitution of contact laws in DEM
 =========================================================
 
-With many contact laws the restitution that is entered in a discrete-element program is a parameter, not the ratio of the speeds. Six laws
-are evaluated for parameters from 0.05 to 1: with some of them a sphere that should hardly rebound keeps about two thirds of its speed.
+With many contact laws the restitution that is entered in a discrete-element program is a parameter,
+not the ratio of the speeds. Six laws are evaluated for parameters from 0.05 to 1: with some of them
+a sphere that should hardly rebound keeps about two thirds of its speed.
 """
 
 # %%
 # Achieved restitution
 # --------------------
-# `achieved_restitution` uses a closed form where there is one, and integrates the contact otherwise, for arrays of parameters.
+# `achieved_restitution` uses a closed form where there is one, and integrates the contact
+# otherwise, for arrays of parameters.
 import matplotlib.pyplot as plt
 import numpy as np
 
@@ -33,8 +35,9 @@ achieved = {
 }
 
 # %%
-# A published value for comparison: EXUDYN's test model contactSphereSphereTest.py gives a rebound speed of 6.629838 m/s for a sphere with
-# an approach speed of 10 m/s, for Hunt and Crossley's law with a restitution of 0.5.
+# A published value for comparison: EXUDYN's test model contactSphereSphereTest.py gives a rebound
+# speed of 6.629838 m/s for a sphere with an approach speed of 10 m/s, for Hunt and Crossley's law
+# with a restitution of 0.5.
 hunt = vi.find_contact_law("hunt-crossley")(stiffness=1e6, exponent=1.0, restitution=0.5)
 assert abs(vi.achieved_restitution(hunt, mass=1.0, speed=10.0) - 0.6629838) < 1e-4
 
@@ -58,7 +61,8 @@ typed
 # %%
 # Comparison of the laws
 # ----------------------
-# On the dashed diagonal the achieved restitution is the specified one. The dots are the parameters that achieve a restitution of 0.7.
+# On the dashed diagonal the achieved restitution is the specified one. The dots are the parameters
+# that achieve a restitution of 0.7.
 plt.style.use("vibroimpact.charts.print")
 figure, axes = plt.subplots(figsize=(6.4, 4.4), layout="constrained")
 axes.plot([0, 1], [0, 1], "--", color="#9a9a9a")

@@ -2,14 +2,16 @@
 Transition from sliding to rolling after an oblique impact
 ==========================================================
 
-A sphere that lands on a plate with a tangential velocity slides first and rolls at the end. Without spin, friction reduces its velocity by
-two sevenths, whatever the coefficient; with a smaller coefficient this takes longer. With sufficient backspin the sphere returns.
+A sphere that lands on a plate with a tangential velocity slides first and rolls at the end. Without
+spin, friction reduces its velocity by two sevenths, whatever the coefficient; with a smaller
+coefficient this takes longer. With sufficient backspin the sphere returns.
 """
 
 # %%
 # Four coefficients of friction
 # -----------------------------
-# The sphere has a normal velocity of 1 m/s and a tangential velocity of 2 m/s, without spin. It bounces, slides, and rolls.
+# The sphere has a normal velocity of 1 m/s and a tangential velocity of 2 m/s, without spin. It
+# bounces, slides, and rolls.
 import matplotlib.pyplot as plt
 import numpy as np
 
@@ -17,7 +19,9 @@ import vibroimpact as vi
 
 
 def thrown(coefficient, spin=0.0):
-    """Return a sphere of glass thrown along a steel plate, with a spin about the axis across [rad/s]."""
+    """Return a sphere of glass thrown along a steel plate, with a spin about the axis
+    across [rad/s].
+    """
     case = {
         "sphere": {"radius": "10 mm", "material": "glass"},
         "plate": {"material": "steel"},
@@ -39,8 +43,9 @@ backspin = thrown(0.16, spin=-700.0)
 # %%
 # Final velocity
 # --------------
-# Without spin all of them finally roll at 5/7 of the initial velocity. With backspin the final velocity follows from the angular momentum
-# about a point of the plate: :math:`v = (5 v_0 + 2 R \omega_0)/7`, which is negative here.
+# Without spin all of them finally roll at 5/7 of the initial velocity. With backspin the final
+# velocity follows from the angular momentum about a point of the plate: :math:`v = (5 v_0 + 2 R
+# \omega_0)/7`, which is negative here.
 for response in slow.values():
     end = response.at(2.5)
     assert abs(end["velocity_x_m_s"] - 5.0 / 7.0 * 2.0) < 1e-9
@@ -50,7 +55,8 @@ assert abs(backspin.at(2.5)["velocity_x_m_s"] - (5.0 * 2.0 - 2.0 * 0.01 * 700.0)
 # %%
 # Velocity over time
 # ------------------
-# The velocity changes in steps while the sphere bounces, linearly while it slides in contact, and is then constant.
+# The velocity changes in steps while the sphere bounces, linearly while it slides in contact, and
+# is then constant.
 plt.style.use("vibroimpact.charts.print")
 figure, axes = plt.subplots(figsize=(6.4, 4.2), layout="constrained")
 time = np.linspace(0.0, 2.5, 3000)

@@ -2,9 +2,9 @@
 Global sensitivity analysis of a drop: Sobol indices
 ====================================================
 
-Five inputs of a drop have standard deviations of 2 to 16 %. Sobol indices quantify how much of the variance of a result is explained by
-each of them, alone and in interaction with others: the largest force depends mainly on the size and the modulus, the rebound height mainly
-on the restitution.
+Five inputs of a drop have standard deviations of 2 to 16 %. Sobol indices quantify how much of the
+variance of a result is explained by each of them, alone and in interaction with others: the largest
+force depends mainly on the size and the modulus, the rebound height mainly on the restitution.
 """
 
 # %%
@@ -53,9 +53,10 @@ with TemporaryDirectory() as folder:
 # %%
 # Total indices of the largest force
 # ----------------------------------
-# The data of a chart can be accessed; its bars are the total indices of the largest force. For Hertz's contact that force is a product of
-# powers, :math:`F \propto E^{*\,2/5} \rho^{3/5} R^2 h^{3/5}`, so that the shares of the variance that is not due to the damping follow from
-# the exponents and the relative standard deviations.
+# The data of a chart can be accessed; its bars are the total indices of the largest force. For
+# Hertz's contact that force is a product of powers, :math:`F \propto E^{*\,2/5} \rho^{3/5} R^2
+# h^{3/5}`, so that the shares of the variance that is not due to the damping follow from the
+# exponents and the relative standard deviations.
 chart = charts["sensitivity"]
 panel = next(panel for panel in chart.panels if panel.title == "Largest force")
 bars = next(mark for mark in panel.marks if getattr(mark, "name", "").startswith("in all"))

@@ -2,16 +2,18 @@
 Bouncing ball on a vibrating table: period doubling and chaos
 =============================================================
 
-As the acceleration of a vibrating table is increased, the motion of a ball on it changes from one bounce per period by period doubling to
-chaos. The thresholds of the one-period motion and of the first period doubling are known in closed form.
+As the acceleration of a vibrating table is increased, the motion of a ball on it changes from one
+bounce per period by period doubling to chaos. The thresholds of the one-period motion and of the
+first period doubling are known in closed form.
 """
 
 # %%
 # Thresholds
 # ----------
-# With the greatest acceleration of the table over gravity, :math:`\Gamma`, a motion with one bounce per period exists from :math:`\Gamma =
-# \pi (1 - e)/(1 + e)` on; its period doubles at :math:`\Gamma^2 = [\pi (1 - e)/(1 + e)]^2 + 4 (1 + e^2)^2/(1 + e)^4` (Holmes 1982; Luck and
-# Mehta 1993).
+# With the greatest acceleration of the table over gravity, :math:`\Gamma`, a motion with one bounce
+# per period exists from :math:`\Gamma = \pi (1 - e)/(1 + e)` on; its period doubles at
+# :math:`\Gamma^2 = [\pi (1 - e)/(1 + e)]^2 + 4 (1 + e^2)^2/(1 + e)^4` (Holmes 1982; Luck and Mehta
+# 1993).
 import matplotlib.pyplot as plt
 import numpy as np
 
@@ -25,9 +27,9 @@ doubles = np.hypot(exists, 2.0 * (1.0 + restitution**2) / (1.0 + restitution) **
 # %%
 # Batch of accelerations
 # ----------------------
-# Numbers in a problem may be arrays, and only the ratio of the accelerations matters: the batch has one table motion and as many
-# values of gravity. Each ball starts nearly in phase with the table; after fifty bounces of transient the flights of the next thirty are
-# recorded.
+# Numbers in a problem may be arrays, and only the ratio of the accelerations matters: the batch has
+# one table motion and as many values of gravity. Each ball starts nearly in phase with the table;
+# after fifty bounces of transient the flights of the next thirty are recorded.
 strength = np.append(np.linspace(1.02 * exists, doubles, 24), np.linspace(1.01 * doubles, 2.0, 70))
 amplitude = 0.5e-3
 gravity = amplitude * omega**2 / strength

@@ -2,15 +2,16 @@
 Impact of a rock on a vibrating screen deck
 ===========================================
 
-A rock of 20 kg falls on the deck of a screen, 80 kg on springs, whose frame vibrates. The motions of deck and rock are coupled; the motion
-of the rock agrees with SciPy's integration of both bodies and their contact within a tenth of a micrometre over a second.
+A rock of 20 kg falls on the deck of a screen, 80 kg on springs, whose frame vibrates. The motions
+of deck and rock are coupled; the motion of the rock agrees with SciPy's integration of both bodies
+and their contact within a tenth of a micrometre over a second.
 """
 
 # %%
 # Deck and rock
 # -------------
-# A deck on springs is a plate with one mode of 12 Hz; its supports vibrate at 15 Hz. The contact is viscoelastic and so soft that the
-# indentation is some millimetres.
+# A deck on springs is a plate with one mode of 12 Hz; its supports vibrate at 15 Hz. The contact is
+# viscoelastic and so soft that the indentation is some millimetres.
 import matplotlib.pyplot as plt
 import numpy as np
 from scipy.integrate import solve_ivp

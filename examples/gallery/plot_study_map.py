@@ -2,8 +2,9 @@
 Parameter study: contact force and yield against size and drop height
 =====================================================================
 
-Which rocks dent a plate? A study computes drops of granite spheres of fifty sizes from forty heights, and records the
-largest force and the contact pressure relative to the yield limit of the plate. The pressure is independent of the size of the sphere.
+Which rocks dent a plate? A study computes drops of granite spheres of fifty sizes from forty
+heights, and records the largest force and the contact pressure relative to the yield limit of the
+plate. The pressure is independent of the size of the sphere.
 """
 
 # %%
@@ -40,9 +41,10 @@ with TemporaryDirectory() as folder:
 # %%
 # Scaling with size and height
 # ----------------------------
-# Hertz's contact of a sphere that falls from a given height scales with its size: the force is proportional to the square of the radius,
-# the indentation to the radius, and the peak pressure over 1.6 times the yield strength, the limit of the plate, is independent of it. The
-# small deviation is due to the weight during the contact.
+# Hertz's contact of a sphere that falls from a given height scales with its size: the force is
+# proportional to the square of the radius, the indentation to the radius, and the peak pressure
+# over 1.6 times the yield strength, the limit of the plate, is independent of it. The small
+# deviation is due to the weight during the contact.
 dropped = height - radius[:, None]  # the height is that of the centre
 reference = force[0, 0] / radius[0] ** 2 / dropped[0, 0] ** 0.6
 assert np.allclose(force, reference * radius[:, None] ** 2 * dropped**0.6, rtol=5e-3)
@@ -52,8 +54,8 @@ assert np.allclose(overload, reference * dropped**0.2, rtol=5e-3)
 # %%
 # Map of force and pressure
 # -------------------------
-# Colours show the largest force, dashed lines the ratio of the pressure to the yield limit of mild steel: granite dents it from all of
-# these heights.
+# Colours show the largest force, dashed lines the ratio of the pressure to the yield limit of mild
+# steel: granite dents it from all of these heights.
 plt.style.use("vibroimpact.charts.print")
 figure, axes = plt.subplots(figsize=(6.4, 4.4), layout="constrained")
 map_of_force = axes.pcolormesh(

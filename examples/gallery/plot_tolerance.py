@@ -2,8 +2,8 @@
 Integration error against tolerance
 ===================================
 
-The restitution of five contact laws is integrated with tolerances from 1e-6 to 1e-13, and compared with closed forms: the error stays below
-the tolerance.
+The restitution of five contact laws is integrated with tolerances from 1e-6 to 1e-13, and compared
+with closed forms: the error stays below the tolerance.
 """
 
 # %%

@@ -38,14 +38,18 @@ if TYPE_CHECKING:
     from vibroimpact.calibration.charts import calibration_charts as calibration_charts
     from vibroimpact.calibration.folder import save_calibration as save_calibration
     from vibroimpact.calibration.force_record import impacts_in_force as impacts_in_force
-    from vibroimpact.calibration.friction.calibrate import FrictionCalibration as FrictionCalibration
+    from vibroimpact.calibration.friction.calibrate import (
+        FrictionCalibration as FrictionCalibration,
+    )
     from vibroimpact.calibration.friction.calibrate import calibrate_friction as calibrate_friction
     from vibroimpact.calibration.friction.measured import ObliqueImpacts as ObliqueImpacts
     from vibroimpact.calibration.observations import Observations as Observations
     from vibroimpact.calibration.position_record import impacts_in_position as impacts_in_position
     from vibroimpact.calibration.restitutions.folder import save_restitutions as save_restitutions
     from vibroimpact.calibration.restitutions.restitutions import Restitutions as Restitutions
-    from vibroimpact.calibration.restitutions.restitutions import read_restitutions as read_restitutions
+    from vibroimpact.calibration.restitutions.restitutions import (
+        read_restitutions as read_restitutions,
+    )
     from vibroimpact.calibration.tunables import law_parameter as law_parameter
     from vibroimpact.calibration.tunables import modal_damping as modal_damping
     from vibroimpact.cases.case import Case as Case
@@ -80,12 +84,16 @@ if TYPE_CHECKING:
     from vibroimpact.correlation.responses.charts import response_charts as response_charts
     from vibroimpact.correlation.responses.compare import correlate_responses as correlate_responses
     from vibroimpact.correlation.responses.compare import responses_of_case as responses_of_case
-    from vibroimpact.correlation.responses.folder import save_response_correlation as save_response_correlation
+    from vibroimpact.correlation.responses.folder import (
+        save_response_correlation as save_response_correlation,
+    )
     from vibroimpact.correlation.responses.result import ResponseCorrelation as ResponseCorrelation
     from vibroimpact.dynamics.air import Air as Air
     from vibroimpact.dynamics.liquid import Liquid as Liquid
     from vibroimpact.dynamics.local_element import identify_local_element as identify_local_element
-    from vibroimpact.dynamics.local_element import local_element_deviations as local_element_deviations
+    from vibroimpact.dynamics.local_element import (
+        local_element_deviations as local_element_deviations,
+    )
     from vibroimpact.dynamics.oblique.statement import Oblique as Oblique
     from vibroimpact.dynamics.outcome import Outcome as Outcome
     from vibroimpact.dynamics.problem import Problem as Problem
@@ -95,7 +103,9 @@ if TYPE_CHECKING:
     from vibroimpact.dynamics.restitution import law_achieving as law_achieving
     from vibroimpact.dynamics.sensors.electronics import Amplifier as Amplifier
     from vibroimpact.dynamics.sensors.electronics import Converter as Converter
-    from vibroimpact.dynamics.sensors.instruments.accelerometer import Accelerometer as Accelerometer
+    from vibroimpact.dynamics.sensors.instruments.accelerometer import (
+        Accelerometer as Accelerometer,
+    )
     from vibroimpact.dynamics.sensors.instruments.force_sensor import ForceSensor as ForceSensor
     from vibroimpact.dynamics.sensors.instruments.geophone import Geophone as Geophone
     from vibroimpact.dynamics.sensors.instruments.microphone import Microphone as Microphone

@@ -1,8 +1,10 @@
-"""Scalar functions that numba compiles where it is there, and that plain Python runs where it is not.
+"""Scalar functions that numba compiles where it is there, and that plain Python runs where it is
+not.
 
-Two decorators mark them. `scalar` marks a function of a contact law: it stays a Python function, which NumPy's arrays go through as well,
-and compiled code may call it. `compiled` marks a function of the core, with its types; the module that it stands in is loaded only where
-drops are computed, since loading numba takes some tenths of a second.
+Two decorators mark them. `scalar` marks a function of a contact law: it stays a Python function,
+which NumPy's arrays go through as well, and compiled code may call it. `compiled` marks a function
+of the core, with its types; the module that it stands in is loaded only where drops are computed,
+since loading numba takes some tenths of a second.
 """
 
 from __future__ import annotations
@@ -57,7 +59,8 @@ def compiled(signature: Callable[[Any], Any]) -> Callable[[Function], Function]:
     Parameters
     ----------
     signature : callable
-        Returns numba's signature from the names of the types, which are in `vibroimpact.compiler.types`. Not called without a compiler.
+        Returns numba's signature from the names of the types, which are in
+        `vibroimpact.compiler.types`. Not called without a compiler.
 
     Examples
     --------
@@ -81,9 +84,11 @@ def compiled(signature: Callable[[Any], Any]) -> Callable[[Function], Function]:
 
 
 def law_function(law_class: type[Any], kind: str = "force") -> Any:
-    """Return a function of a contact law as a function value; without a compiler the Python function.
+    """Return a function of a contact law as a function value; without a compiler the Python
+    function.
 
-    A law that numba cannot compile is called in Python from compiled code; a `SlowLawWarning` says so.
+    A law that numba cannot compile is called in Python from compiled code; a `SlowLawWarning` says
+    so.
 
     Parameters
     ----------
@@ -100,7 +105,8 @@ def law_function(law_class: type[Any], kind: str = "force") -> Any:
 
 
 def law_addresses(law_class: type[Any]) -> Any:
-    """Return what compiled functions take from Python for the four functions of a law, and make them of by `force_at` and its like.
+    """Return what compiled functions take from Python for the four functions of a law, and make
+    them of by `force_at` and its like.
 
     Parameters
     ----------
@@ -124,7 +130,9 @@ def law_addresses(law_class: type[Any]) -> Any:
     16.0
     """
     if INTERPRETING.get():
-        return np.array([interpreted_function(law_class, kind) for kind in LAW_FUNCTIONS], dtype=object)
+        return np.array(
+            [interpreted_function(law_class, kind) for kind in LAW_FUNCTIONS], dtype=object
+        )
     if law_class not in _ADDRESSES:
         functions = [law_function(law_class, kind) for kind in LAW_FUNCTIONS]
         _ADDRESSES[law_class] = (
@@ -145,7 +153,8 @@ def why_not_compiled() -> str:
         return reason
     try:
         import numba
-    except Exception as error:  # ImportError where NumPy is too new for it, OSError where a library of it cannot be loaded
+    except Exception as error:
+        # ImportError where NumPy is too new for it, OSError where a library of it cannot be loaded
         return f"numba cannot be loaded: {error}"
     return "switched off in the configuration of numba" if numba.config.DISABLE_JIT else ""
 

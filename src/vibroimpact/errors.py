@@ -19,9 +19,12 @@ LONGEST_LINE = 450
 """Largest length of a line of a message; what is left is for the number of further faults."""
 
 MOST_LINES = 10
-"""Largest number of faults in a message, one line each; another line gives the number of further faults."""
+"""Largest number of faults in a message, one line each; another line gives the number of
+further faults.
+"""
 
-_LONGEST_LIST = 220  # characters of the names that a message lists; those of the longest section of a case
+# characters of the names that a message lists; those of the longest section of a case
+_LONGEST_LIST = 220
 _LONGEST_NAME = 60
 _MOST_NEAR = 3  # names that come first where not all are listed
 
@@ -57,8 +60,8 @@ class VibroimpactError(Exception):
     def lines(self) -> tuple[str, ...]:
         """The lines of the message, one per fault.
 
-        They are printable, of at most `LONGEST_LINE` characters; at most `MOST_LINES`, and one that counts the rest; together they have
-        at most `LONGEST_MESSAGE` characters.
+        They are printable, of at most `LONGEST_LINE` characters; at most `MOST_LINES`, and one that
+        counts the rest; together they have at most `LONGEST_MESSAGE` characters.
         """
         return lines_of(self.faults)
 
@@ -75,7 +78,8 @@ class SlowLawWarning(UserWarning):
 
 
 class InputError(VibroimpactError, ValueError):
-    """An invalid case, argument or file; the message states the location, the fault, and what is allowed.
+    """An invalid case, argument or file; the message states the location, the fault, and what is
+    allowed.
 
     Parameters
     ----------
@@ -104,7 +108,11 @@ class InputError(VibroimpactError, ValueError):
 
         Examples
         --------
-        >>> print(InputError.of_several(["sphere: this section is missing", "plate: this section is missing"]))
+        >>> print(
+        ...     InputError.of_several(
+        ...         ["sphere: this section is missing", "plate: this section is missing"]
+        ...     )
+        ... )
         sphere: this section is missing
         plate: this section is missing
         """
@@ -121,7 +129,10 @@ class ComputationError(VibroimpactError, RuntimeError):
     Examples
     --------
     >>> import vibroimpact as vi
-    >>> issubclass(vi.ComputationError, vi.VibroimpactError), issubclass(vi.ComputationError, vi.InputError)
+    >>> (
+    ...     issubclass(vi.ComputationError, vi.VibroimpactError),
+    ...     issubclass(vi.ComputationError, vi.InputError),
+    ... )
     (True, False)
     """
 
@@ -137,7 +148,11 @@ def lines_of(faults: Iterable[str]) -> tuple[str, ...]:
     'and at least 190 other faults'
     """
     first = iter(faults)
-    found = tuple(dict.fromkeys(shortened(visible(fault), LONGEST_LINE) for fault in islice(first, _LARGEST_COUNT)))
+    found = tuple(
+        dict.fromkeys(
+            shortened(visible(fault), LONGEST_LINE) for fault in islice(first, _LARGEST_COUNT)
+        )
+    )
     all_seen = next(first, None) is None
     few = len(found) <= MOST_LINES + 1  # a line that counts one fault would be as long as the fault
     if all_seen and few and len("\n".join(found)) <= LONGEST_MESSAGE:
@@ -147,11 +162,15 @@ def lines_of(faults: Iterable[str]) -> tuple[str, ...]:
     rest = len(found) - fitting
     if not rest:  # many are alike, and not all were looked at
         return (*found, "and perhaps other faults")
-    return (*found[:fitting], f"and {'' if all_seen else 'at least '}{rest} other fault{'s' if rest > 1 else ''}")
+    return (
+        *found[:fitting],
+        f"and {'' if all_seen else 'at least '}{rest} other fault{'s' if rest > 1 else ''}",
+    )
 
 
 def listed(names: Iterable[str], near: str = "", command: str = "") -> str:
-    """Return names for a message, separated by commas: all of them, or if that would be long those closest to a word, and more.
+    """Return names for a message, separated by commas: all of them, or if that would be long those
+    closest to a word, and more.
 
     Parameters
     ----------
@@ -183,7 +202,8 @@ def listed(names: Iterable[str], near: str = "", command: str = "") -> str:
 
 
 def choices(names: Iterable[str], given: str, command: str = "") -> str:
-    """Return the names that are allowed in place of one that was given, as `listed` does, and which of them was probably meant.
+    """Return the names that are allowed in place of one that was given, as `listed` does, and which
+    of them was probably meant.
 
     Examples
     --------
@@ -195,7 +215,8 @@ def choices(names: Iterable[str], given: str, command: str = "") -> str:
 
 
 def did_you_mean(word: str, known: Iterable[str]) -> str:
-    """Return " Did you mean ...?" for the known word closest to `word`, or "" if there is none, or it is the word itself.
+    """Return " Did you mean ...?" for the known word closest to `word`, or "" if there is none, or
+    it is the word itself.
 
     Examples
     --------

@@ -36,7 +36,8 @@ def save_figures(
     formats : sequence of str
         Of "png", "svg" and "pdf".
     output : path, optional
-        Folder into which they are written, and which is made if it is not there; by default `figures` in `directory`.
+        Folder into which they are written, and which is made if it is not there; by default
+        `figures` in `directory`.
     progress : callable, optional
         Called with the fraction done.
 
@@ -48,14 +49,17 @@ def save_figures(
     Raises
     ------
     InputError
-        If it is neither a result folder nor a study, its data are damaged, there is no such format, or it can't be written to.
+        If it is neither a result folder nor a study, its data are damaged, there is no such format,
+        or it can't be written to.
 
     Examples
     --------
     >>> import tempfile
     >>> import vibroimpact as vi
     >>> with tempfile.TemporaryDirectory() as place:
-    ...     folder = vi.save_result(vi.simulate(vi.load_case("paper:type1-theory")), f"{place}/theory")
+    ...     folder = vi.save_result(
+    ...         vi.simulate(vi.load_case("paper:type1-theory")), f"{place}/theory"
+    ...     )
     ...     sorted(file.name for file in save_figures(folder, ["svg"]).iterdir())[:3]
     ['acceleration.svg', 'energy.svg', 'force.svg']
     """
@@ -82,8 +86,12 @@ def _write_below(write: Callable[[Path], None], folder: Path) -> None:
     write(folder / FIGURES)
 
 
-def _writer_of(folder: Path, formats: Sequence[str], progress: Callable[[float], None]) -> Callable[[Path], None]:
-    """Return the function that writes the figures of a result folder or a study into a directory."""
+def _writer_of(
+    folder: Path, formats: Sequence[str], progress: Callable[[float], None]
+) -> Callable[[Path], None]:
+    """Return the function that writes the figures of a result folder or a study into a
+    directory.
+    """
     from vibroimpact.studies.study_folder import is_study
 
     if is_study(folder):
@@ -100,12 +108,17 @@ def _writer_of(folder: Path, formats: Sequence[str], progress: Callable[[float],
 
 
 def _result_in(folder: Path) -> Result:
-    """Return the result in a folder; a reproduction of the paper, which has none, has its figures already."""
+    """Return the result in a folder; a reproduction of the paper, which has none, has its
+    figures already.
+    """
     try:
         return read_result(folder)
     except InputError:
         from vibroimpact.paper.report.folder import is_reproduction
 
         if is_reproduction(folder):
-            raise InputError(f"{folder}: a reproduction of the paper has its figures already, in {folder / FIGURES}") from None
+            raise InputError(
+                f"{folder}: a reproduction of the paper has its figures already, in "
+                f"{folder / FIGURES}"
+            ) from None
         raise

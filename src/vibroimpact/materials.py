@@ -77,7 +77,11 @@ class Material:
     def __post_init__(self) -> None:
         for name, allowed in _RANGES.items():
             value = getattr(self, name)
-            absent = value is None or np.all(np.isnan(value) if name == "density" else np.isinf(value) & (name == "youngs_modulus"))
+            absent = value is None or np.all(
+                np.isnan(value)
+                if name == "density"
+                else np.isinf(value) & (name == "youngs_modulus")
+            )
             try:
                 if not absent:
                     allowed.check(value)
@@ -93,7 +97,13 @@ class Material:
 _OTHER = "other_names"
 """Key of the library file for other common names of a material."""
 
-RIGID = Material(density=math.nan, youngs_modulus=math.inf, poissons_ratio=0.0, name="rigid", description="a material of infinite modulus")
+RIGID = Material(
+    density=math.nan,
+    youngs_modulus=math.inf,
+    poissons_ratio=0.0,
+    name="rigid",
+    description="a material of infinite modulus",
+)
 
 
 @cache
@@ -106,17 +116,24 @@ def material_library() -> Mapping[str, Material]:
     2260000000.0
     """
     entries = _library_file().items()
-    return {name: Material(name=name, **{key: value for key, value in entry.items() if key != _OTHER}) for name, entry in entries}
+    return {
+        name: Material(name=name, **{key: value for key, value in entry.items() if key != _OTHER})
+        for name, entry in entries
+    }
 
 
 @cache
 def _library_file() -> Mapping[str, Mapping[str, Any]]:
-    return tomllib.loads(files("vibroimpact").joinpath("materials.toml").read_text(encoding="utf-8"))
+    return tomllib.loads(
+        files("vibroimpact").joinpath("materials.toml").read_text(encoding="utf-8")
+    )
 
 
 @cache
 def _known_by() -> Mapping[str, str]:
-    """Return the library name for each known name of a material, reduced to lower-case letters and digits."""
+    """Return the library name for each known name of a material, reduced to lower-case
+    letters and digits.
+    """
     names = {name: (name, *entry.get(_OTHER, ())) for name, entry in _library_file().items()}
     return {_plain(one): name for name, several in names.items() for one in (*several, name)}
 
@@ -126,7 +143,9 @@ def _plain(name: str) -> str:
 
 
 def _meant(name: str) -> str:
-    """Return " Did you mean ...?" for the material with this other name, or with the closest name; "" if there is none."""
+    """Return " Did you mean ...?" for the material with this other name, or with the
+    closest name; "" if there is none.
+    """
     found = _known_by().get(_plain(name))
     return f' Did you mean "{found}"?' if found else did_you_mean(name.lower(), material_library())
 
@@ -137,7 +156,8 @@ def find_material(name: str) -> Material:
     Raises
     ------
     InputError
-        If there is none; the message suggests the one with this other name ("PMMA", "alu"), or the closest name.
+        If there is none; the message suggests the one with this other name ("PMMA", "alu"), or the
+        closest name.
 
     Examples
     --------
@@ -148,6 +168,11 @@ def find_material(name: str) -> Material:
         return RIGID
     library = material_library()
     if name not in library:
-        remedy = "or give its numbers: { density = ..., youngs_modulus = ..., poissons_ratio = ... }"
-        raise InputError(f'there is no material {shown(name)} in the library; "vibroimpact materials" lists them, {remedy}.{_meant(name)}')
+        remedy = (
+            "or give its numbers: { density = ..., youngs_modulus = ..., poissons_ratio = ... }"
+        )
+        raise InputError(
+            f'there is no material {shown(name)} in the library; "vibroimpact materials" '
+            f"lists them, {remedy}.{_meant(name)}"
+        )
     return library[name]

@@ -29,7 +29,12 @@ class Range:
     @property
     def words(self) -> str:
         """The range in words; "" if every finite number is inside."""
-        bounds = (("greater than", self.above), ("at least", self.at_least), ("less than", self.below), ("at most", self.at_most))
+        bounds = (
+            ("greater than", self.above),
+            ("at least", self.at_least),
+            ("less than", self.below),
+            ("at most", self.at_most),
+        )
         return " and ".join(f"{word} {bound:g}" for word, bound in bounds if math.isfinite(bound))
 
     def clip(self, values: Any) -> Any:
@@ -40,7 +45,11 @@ class Range:
         >>> Range(at_least=0).clip(np.array([-1.0, 2.0])).tolist()
         [0.0, 2.0]
         """
-        low = self.above + 1e-12 * abs(self.above) + 1e-300 if math.isfinite(self.above) else self.at_least
+        low = (
+            self.above + 1e-12 * abs(self.above) + 1e-300
+            if math.isfinite(self.above)
+            else self.at_least
+        )
         high = self.below - 1e-12 * abs(self.below) if math.isfinite(self.below) else self.at_most
         return np.clip(values, low, high)
 
@@ -62,15 +71,26 @@ class Range:
         InputError
             With the first invalid value (as `shown`, if given), and the allowed range.
         """
-        if isinstance(values, float) and self.above < values < self.below and self.at_least <= values <= self.at_most:
+        if (
+            isinstance(values, float)
+            and self.above < values < self.below
+            and self.at_least <= values <= self.at_most
+        ):
             return  # fast path: an array of one element takes ten times as long
         try:
             array = np.asarray(values, dtype=float)
         except (TypeError, ValueError):
             raise InputError(
-                f"{values!r} is not allowed; it must be a number{' in ' + unit if unit else ''}, or an array of them"
+                f"{values!r} is not allowed; it must be a "
+                f"number{' in ' + unit if unit else ''}, or an array of them"
             ) from None
-        inside = np.isfinite(array) & (array > self.above) & (array >= self.at_least) & (array < self.below) & (array <= self.at_most)
+        inside = (
+            np.isfinite(array)
+            & (array > self.above)
+            & (array >= self.at_least)
+            & (array < self.below)
+            & (array <= self.at_most)
+        )
         if not inside.all():
             wrong = shown or f"{array[~inside].flat[0]:g}"
             allowed = f"{self.words}{' ' + unit if unit else ''}" if self.words else "finite"

@@ -1,4 +1,6 @@
-"""Registries of plug-in modules: all modules of a package, and look-up of registered entries by name."""
+"""Registries of plug-in modules: all modules of a package, and look-up of registered
+entries by name.
+"""
 
 from __future__ import annotations
 
@@ -22,7 +24,9 @@ def modules_in(package: str) -> list[ModuleType]:
     >>> modules_in("vibroimpact.studies.designs")[0].__name__
     'vibroimpact.studies.designs.grid'
     """
-    names = sorted(info.name for info in pkgutil.iter_modules(importlib.import_module(package).__path__))
+    names = sorted(
+        info.name for info in pkgutil.iter_modules(importlib.import_module(package).__path__)
+    )
     return [importlib.import_module(f"{package}.{name}") for name in names]
 
 
@@ -53,5 +57,7 @@ def find_named(kind: str, name: str, known: Mapping[str, Found], command: str = 
     vibroimpact.errors.InputError: there is no law "herz"; there are hertz. Did you mean "hertz"?
     """
     if name not in known:
-        raise InputError(f"there is no {kind} {shown(name)}; there are {choices(known, name, command)}")
+        raise InputError(
+            f"there is no {kind} {shown(name)}; there are {choices(known, name, command)}"
+        )
     return known[name]

@@ -15,7 +15,8 @@ from vibroimpact.runs.page import write_report
 def remake_report(directory: str | PathLike[str]) -> Path:
     """Regenerate the report of a result folder from its data; other files are left unchanged.
 
-    The report of a reproduction of the paper is regenerated from its existing parts, that of a study from its dataset.
+    The report of a reproduction of the paper is regenerated from its existing parts, that of a
+    study from its dataset.
 
     Raises
     ------
@@ -27,7 +28,9 @@ def remake_report(directory: str | PathLike[str]) -> Path:
     >>> from tempfile import TemporaryDirectory
     >>> import vibroimpact as vi
     >>> with TemporaryDirectory() as folder:
-    ...     place = vi.save_result(vi.simulate(vi.load_case("paper:type1-theory")), f"{folder}/theory")
+    ...     place = vi.save_result(
+    ...         vi.simulate(vi.load_case("paper:type1-theory")), f"{folder}/theory"
+    ...     )
     ...     vi.remake_report(place).name
     'theory'
     """

@@ -1,7 +1,8 @@
 """Types of the resolved case: the tables of `case.toml`, in SI, with all defaults resolved.
 
-A problem carries the resolved case that it was made from, and a result the one that its folder holds. Numbers may be arrays, with one
-value per drop of a batch. Keys that do not apply to a case are absent.
+A problem carries the resolved case that it was made from, and a result the one that its folder
+holds. Numbers may be arrays, with one value per drop of a batch. Keys that do not apply to a case
+are absent.
 """
 
 from __future__ import annotations
@@ -13,7 +14,9 @@ from vibroimpact.arrays import Array
 
 
 class ResolvedBody(TypedDict, total=False):
-    """The keys that sphere and plate share: material, and mesh, reduction and damping of an elastic body."""
+    """The keys that sphere and plate share: material, and mesh, reduction and damping of
+    an elastic body.
+    """
 
     material: Any  # a table of numbers, or "rigid"
     model: str
@@ -44,7 +47,9 @@ class ResolvedPlate(ResolvedBody, total=False):
 
 
 class ResolvedDrop(TypedDict, total=False):
-    """The drop: height or speed [m], [m/s], its angle [rad] or a velocity, spin [rad/s], position [m], gravity [m/s^2], air."""
+    """The drop: height or speed [m], [m/s], its angle [rad] or a velocity, spin [rad/s],
+    position [m], gravity [m/s^2], air.
+    """
 
     height: Array
     speed: Array
@@ -90,7 +95,8 @@ class ResolvedSensor(TypedDict, total=False):
 class ResolvedCase(TypedDict, total=False):
     """A resolved case; empty for a problem that was made in Python.
 
-    `contact`: the name of the law, its parameters, the treatment of local compliance, and `friction`: its law and parameters.
+    `contact`: the name of the law, its parameters, the treatment of local compliance, and
+    `friction`: its law and parameters.
     """
 
     schema_version: int

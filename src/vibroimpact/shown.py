@@ -10,7 +10,8 @@ from typing import Any
 
 
 def visible(text: str) -> str:
-    r"""Return a text with control characters, line breaks and other unprintable characters as escape sequences.
+    r"""Return a text with control characters, line breaks and other unprintable characters as
+    escape sequences.
 
     Examples
     --------
@@ -45,7 +46,8 @@ def shortened(text: str, most: int) -> str:
 
 
 def shown(value: Any, most: int = 60) -> str:
-    r"""Return a value for a message, as a case file has it: a text in quotes, true, a list, a table; of limited length.
+    r"""Return a value for a message, as a case file has it: a text in quotes, true, a list, a
+    table; of limited length.
 
     Examples
     --------
@@ -62,14 +64,20 @@ def shown(value: Any, most: int = 60) -> str:
 
 
 class _Short(reprlib.Repr):
-    """Representation of limited depth and length, as TOML has it: a value from Python may be arbitrarily large."""
+    """Representation of limited depth and length, as TOML has it: a value from Python may
+    be arbitrarily large.
+    """
 
     def __init__(self) -> None:
         super().__init__()
         self.maxlevel, self.maxstring, self.maxother = 4, 60, 60
 
     def repr_int(self, x: int, level: int) -> str:
-        return repr(x) if x.bit_length() < 400 else f"a whole number of about {int(x.bit_length() * 0.30103)} digits"
+        return (
+            repr(x)
+            if x.bit_length() < 400
+            else f"a whole number of about {int(x.bit_length() * 0.30103)} digits"
+        )
 
     def repr_bool(self, x: bool, level: int) -> str:
         return str(x).lower()
@@ -81,7 +89,8 @@ class _Short(reprlib.Repr):
         if not x or level <= 0:
             return "{ ... }" if x else "{}"
         entries = [
-            f"{shortened(str(key), self.maxstring)} = {self.repr1(value, level - 1)}" for key, value in islice(x.items(), self.maxdict)
+            f"{shortened(str(key), self.maxstring)} = {self.repr1(value, level - 1)}"
+            for key, value in islice(x.items(), self.maxdict)
         ]
         return f"{{ {', '.join(entries)}{', ...' if len(x) > self.maxdict else ''} }}"
 

@@ -23,9 +23,15 @@ GUIDE = "docs/guides/coal-from-rock.md"
 BOUNDS = "docs/bounds.md"
 RECOGNITION = "docs/recognition.md"
 
-COAL = {"three specimens": 2.11, "panel 8939": 3.66, "roof cutting": 9 * 4.91 * 2.01 / (3 * 4.91 + 2.01), "Shangwan": 23.87}
-"""Young's moduli of coal [GPa] as published: Shock Vib. 2021:8854538, Table 5, without gas; Adv. Civ. Eng. 2019:4815236, Table 2; Sci.
-Rep. 14, 2024, doi 10.1038/s41598-024-79523-8, Table 1, 9 K G / (3 K + G); Shock Vib. 2021:7649459, Table 4."""
+COAL = {
+    "three specimens": 2.11,
+    "panel 8939": 3.66,
+    "roof cutting": 9 * 4.91 * 2.01 / (3 * 4.91 + 2.01),
+    "Shangwan": 23.87,
+}
+"""Young's moduli of coal [GPa] as published: Shock Vib. 2021:8854538, Table 5, without gas; Adv.
+Civ. Eng. 2019:4815236, Table 2; Sci. Rep. 14, 2024, doi 10.1038/s41598-024-79523-8, Table 1, 9 K G
+/ (3 K + G); Shock Vib. 2021:7649459, Table 4."""
 ROCK = {
     "sandy mudstone, roof cutting": 9 * 2.56 * 2.36 / (3 * 2.56 + 2.36),
     "medium sandstone, roof cutting": 9 * 2.89 * 2.54 / (3 * 2.89 + 2.54),
@@ -45,11 +51,19 @@ def test_contact_times_of_coal_and_gangue() -> None:
     ):
         material = {"density": density, "youngs_modulus": modulus, "poissons_ratio": 0.28}
         plate = {"material": {"density": 7850.0, "youngs_modulus": 210e9, "poissons_ratio": 0.3}}
-        case = {"sphere": {"radius": radius, "material": material}, "plate": plate, "drop": {"speed": 8.8}, "contact": {"law": "hertz"}}
-        times[name] = 1e6 * float(vi.simulate(vi.read_case({**case, "run": {"impacts": 1}})).impacts["duration_s"][0])
+        case = {
+            "sphere": {"radius": radius, "material": material},
+            "plate": plate,
+            "drop": {"speed": 8.8},
+            "contact": {"law": "hertz"},
+        }
+        times[name] = 1e6 * float(
+            vi.simulate(vi.read_case({**case, "run": {"impacts": 1}})).impacts["duration_s"][0]
+        )
     says(
         GUIDE,
-        "at 8.8 m/s, the contact of gangue of 50 mm radius lasts {} µs, that of coal of 25 mm {} µs",
+        "at 8.8 m/s, the contact of gangue of 50 mm radius lasts {} µs, that of "
+        "coal of 25 mm {} µs",
         times["large gangue"],
         times["coal"],
     )
@@ -71,16 +85,39 @@ def per_cent(error: BayesError) -> tuple[float, float]:
 @pytest.mark.slow
 def test_the_table_of_bounds(whole: Bound) -> None:
     errors, exact = whole.errors, whole.without_scatter
-    impulse, time, near, far = (errors[name] for name in ("impulse", "contact time", "one impact", "one impact, place unknown"))
-    says(GUIDE, "the impulse alone | {} to {} % | {} to {} % |", *per_cent(impulse), *per_cent(exact["impulse"]))
-    says(GUIDE, "the contact time alone (normalised signals) | {} to {} % | {} to {} % |", *per_cent(time), *per_cent(time))
-    says(
-        GUIDE, "impulse and contact time, position known | {} to {} % | at most {} % |", *per_cent(near), 100.0 * exact["one impact"].upper
+    impulse, time, near, far = (
+        errors[name]
+        for name in ("impulse", "contact time", "one impact", "one impact, place unknown")
     )
     says(
-        GUIDE, "impulse and contact time, position unknown | {} to {} % | at most {} % |", *per_cent(far), 100.0 * exact["one impact"].upper
+        GUIDE,
+        "the impulse alone | {} to {} % | {} to {} % |",
+        *per_cent(impulse),
+        *per_cent(exact["impulse"]),
     )
-    says(GUIDE, "is near the bound for impulse and contact time at an unknown position, {} to {} %", *per_cent(far))
+    says(
+        GUIDE,
+        "the contact time alone (normalised signals) | {} to {} % | {} to {} % |",
+        *per_cent(time),
+        *per_cent(time),
+    )
+    says(
+        GUIDE,
+        "impulse and contact time, position known | {} to {} % | at most {} % |",
+        *per_cent(near),
+        100.0 * exact["one impact"].upper,
+    )
+    says(
+        GUIDE,
+        "impulse and contact time, position unknown | {} to {} % | at most {} % |",
+        *per_cent(far),
+        100.0 * exact["one impact"].upper,
+    )
+    says(
+        GUIDE,
+        "is near the bound for impulse and contact time at an unknown position, {} to {} %",
+        *per_cent(far),
+    )
     says(
         BOUNDS,
         "the command uses {} falls: {} to {} %, {} to {} %, {} to {} % and {} to {} %",
@@ -88,20 +125,34 @@ def test_the_table_of_bounds(whole: Bound) -> None:
         *(part for one in (impulse, time, near, far) for part in per_cent(one)),
     )
     says(
-        BOUNDS, "So of the {} to {} % for an unknown position {} % or less would remain", *per_cent(far), 100.0 * exact["one impact"].upper
+        BOUNDS,
+        "So of the {} to {} % for an unknown position {} % or less would remain",
+        *per_cent(far),
+        100.0 * exact["one impact"].upper,
     )
-    assert exact["one impact"].upper < 0.55 * far.lower  # about half of the error or more is the scatter
-    says(GUIDE, "with a bandwidth of 1 kHz the lowest error is at most {} %, with 8 kHz {} %", *over_bandwidth(whole, 40.0))
+    # about half of the error or more is the scatter
+    assert exact["one impact"].upper < 0.55 * far.lower
+    says(
+        GUIDE,
+        "with a bandwidth of 1 kHz the lowest error is at most {} %, with 8 kHz {} %",
+        *over_bandwidth(whole, 40.0),
+    )
     says(GUIDE, "At 20 dB it is {} and {} %", *over_bandwidth(whole, 20.0))
     most = max(one.standard_error for one in whole.errors.values())
-    says(BOUNDS, "the upper bounds have standard errors of up to {} %, as 2,000 falls are tested", 100.0 * most)
+    says(
+        BOUNDS,
+        "the upper bounds have standard errors of up to {} %, as 2,000 falls are tested",
+        100.0 * most,
+    )
     assert 0.24 < time.lower < time.upper < 0.3, f"{BOUNDS}: a quarter of the falls"
 
 
 def over_bandwidth(bound: Bound, ratio: float) -> tuple[float, float]:
     """Return the errors from one impact with a band of 1 and of 8 kHz [%]."""
     column = SIGNAL_TO_NOISE.tolist().index(ratio)
-    narrow, wide = (100.0 * float(bound.map[BANDWIDTHS.tolist().index(band), column]) for band in (1e3, 8e3))
+    narrow, wide = (
+        100.0 * float(bound.map[BANDWIDTHS.tolist().index(band), column]) for band in (1e3, 8e3)
+    )
     return narrow, wide
 
 
@@ -110,14 +161,18 @@ def test_the_printed_table_of_bounds() -> None:
     bound = vi.bound_of(vi.load_sweep("signals:coal-gangue", 5000))
     text = page_text(BOUNDS)
     for name in ("impulse", "contact time", "one impact", "one impact, place unknown"):
-        assert f" {name} {error_words(bound.errors[name])} {error_words(bound.without_scatter[name])} " in text
+        assert (
+            f" {name} {error_words(bound.errors[name])} {error_words(bound.without_scatter[name])} "
+            in text
+        )
 
 
 def test_the_assumed_channel() -> None:
     one = Channel()
     says(
         BOUNDS,
-        "a band of {} kHz, noise {} dB below the peak force of the median fall, and relative standard deviations of {} % for the "
+        "a band of {} kHz, noise {} dB below the peak force of the median fall, and "
+        "relative standard deviations of {} % for the "
         "sensitivity and {} % for the amplitude where the position is not known",
         1e-3 * one.bandwidth,
         one.signal_to_noise,
@@ -131,7 +186,8 @@ def test_the_assumed_channel() -> None:
     )
     says(
         GUIDE,
-        "chosen by this program, not measured: {} % of the sensitivity, and {} % where the position is",
+        "chosen by this program, not measured: {} % of the sensitivity, and {} "
+        "% where the position is",
         100.0 * one.gain,
         100.0 * one.place,
     )
@@ -145,7 +201,9 @@ def test_the_assumed_channel() -> None:
 
 @cache
 def with_moduli(coal: tuple[float, float] | None, gangue: tuple[float, float]) -> Falls:
-    """Return falls of the shipped population with other log-normal moduli, by mean and standard deviation [GPa]."""
+    """Return falls of the shipped population with other log-normal moduli, by mean and
+    standard deviation [GPa].
+    """
     table = vi.load_sweep("signals:coal-gangue").whole_table
     table["sweep"]["samples"] = 20_000
     for name, given in (("coal", coal), ("gangue", gangue)):
@@ -157,7 +215,9 @@ def with_moduli(coal: tuple[float, float] | None, gangue: tuple[float, float]) -
 
 
 def between(values: Any) -> tuple[float, float]:
-    """Return mean and standard deviation of the log-normal distribution that has nine tenths between smallest and largest value."""
+    """Return mean and standard deviation of the log-normal distribution that has nine
+    tenths between smallest and largest value.
+    """
     low, high = min(values), max(values)
     spread = np.log(high / low) / (norm.ppf(0.95) - norm.ppf(0.05))
     mean = np.sqrt(low * high) * np.exp(0.5 * spread**2)
@@ -165,12 +225,16 @@ def between(values: Any) -> tuple[float, float]:
 
 
 def errors_of(falls: Falls) -> tuple[tuple[float, float], tuple[float, float], float]:
-    """Return the bounds [%] from impulse and contact time at a known and at an unknown position, and the larger standard error."""
+    """Return the bounds [%] from impulse and contact time at a known and at an unknown
+    position, and the larger standard error.
+    """
     values, noise = measurable(falls, Channel())
     classes = np.unique(falls.classes, return_inverse=True)[1]
     found = []
     for impulse in ("impulse", "far impulse"):
-        measured, deviation = (np.stack([part[impulse], part["duration"]], axis=1) for part in (values, noise))
+        measured, deviation = (
+            np.stack([part[impulse], part["duration"]], axis=1) for part in (values, noise)
+        )
         found.append(bayes_error(measured, deviation, classes))
     near, far = found
     return per_cent(near), per_cent(far), 100.0 * max(near.standard_error, far.standard_error)
@@ -180,26 +244,39 @@ def errors_of(falls: Falls) -> tuple[tuple[float, float], tuple[float, float], f
 def test_the_ratio_of_the_moduli_decides() -> None:
     near, far, deviation = {}, {}, {}
     for ratio in (1.2, 2.0, 4.0, 8.0):
-        near[ratio], far[ratio], deviation[ratio] = errors_of(with_moduli(None, (ratio * 2.5, 0.35 * ratio * 2.5)))
+        near[ratio], far[ratio], deviation[ratio] = errors_of(
+            with_moduli(None, (ratio * 2.5, 0.35 * ratio * 2.5))
+        )
     says(GUIDE, "| 1.2 | {} to {} % | {} to {} % |", *near[1.2], *far[1.2])
     says(GUIDE, "| 2 | {} to {} % | {} to {} % |", *near[2.0], *far[2.0])
     says(GUIDE, "| 4 | {} to {} % | {} % |", *near[4.0], far[4.0][1])
     says(GUIDE, "| 8 (shipped) | {} to {} % | {} to {} % |", *near[8.0], *far[8.0])
-    says(GUIDE, "The upper bounds have standard errors of up to {} %. Guessing", max(deviation.values()))
+    says(
+        GUIDE,
+        "The upper bounds have standard errors of up to {} %. Guessing",
+        max(deviation.values()),
+    )
     mixed, mixed_far, _ = errors_of(with_moduli(between(COAL.values()), between(ROCK.values())))
-    says(GUIDE, "| both spread as in published tables | {} to {} % | {} to {} % |", *mixed, *mixed_far)
+    says(
+        GUIDE,
+        "| both spread as in published tables | {} to {} % | {} to {} % |",
+        *mixed,
+        *mixed_far,
+    )
 
 
 def test_published_moduli() -> None:
     says(
         GUIDE,
-        "Published moduli of coal are {} GPa (mean of three specimens, Shock Vib. 2021:8854538, Table 5), {} (Adv. Civ. Eng.",
+        "Published moduli of coal are {} GPa (mean of three specimens, Shock Vib. "
+        "2021:8854538, Table 5), {} (Adv. Civ. Eng.",
         COAL["three specimens"],
         COAL["panel 8939"],
     )
     says(
         GUIDE,
-        "Table 2), {} (Sci. Rep. 14, 2024, doi 10.1038/s41598-024-79523-8, Table 1, from bulk and shear modulus) and",
+        "Table 2), {} (Sci. Rep. 14, 2024, doi 10.1038/s41598-024-79523-8, Table 1, from "
+        "bulk and shear modulus) and",
         COAL["roof cutting"],
     )
     says(GUIDE, "and {} GPa (Shock Vib. 2021:7649459, Table 4)", COAL["Shangwan"])
@@ -219,12 +296,16 @@ def test_published_moduli() -> None:
 
 @pytest.mark.slow
 def test_an_almost_exact_bound_excludes_nothing() -> None:
-    """Of two classes that differ by their density alone impulse, contact time and interval leave the bound near zero."""
+    """Of two classes that differ by their density alone impulse, contact time and
+    interval leave the bound near zero.
+    """
     alike = with_moduli(None, (2.5, 0.8))
     assert least_error(alike) < 5e-4
     says(GUIDE, "all nearly exactly, is less than {} %", 0.05)
     assert least_error(with_moduli(None, (20.0, 7.0))) < 5e-4
-    says(RECOGNITION, "For coal and gangue the bound is less than {} %, and then finds no leak", 0.05)
+    says(
+        RECOGNITION, "For coal and gangue the bound is less than {} %, and then finds no leak", 0.05
+    )
 
 
 # what elastic contacts leave out
@@ -236,7 +317,9 @@ def test_peak_pressures() -> None:
     effective = 1.0 / ((1.0 - 0.28**2) / falls.modulus + (1.0 - 0.3**2) / 210e9)
     pressure = (6.0 * force * effective**2 / (np.pi**3 * falls.radius**2)) ** (1.0 / 3.0)
     coal, gangue = (1e-9 * pressure[falls.classes == name] for name in ("coal", "gangue"))
-    says(GUIDE, "Hertz's peak pressure of the median fall of coal is {} GPa", float(np.median(coal)))
+    says(
+        GUIDE, "Hertz's peak pressure of the median fall of coal is {} GPa", float(np.median(coal))
+    )
     says(GUIDE, "that of gangue is {} GPa", float(np.median(gangue)))
     assert gangue.min() > 1.6 * 0.235  # GPa, first yield of steel of 235 MPa
 

@@ -9,7 +9,12 @@ PAGE = "docs/conventions.md"
 
 
 def test_factors_of_conversion() -> None:
-    says(PAGE, ": by {} for n = 1.5, not by {}.", factor("N/m^1.5", "N/mm^1.5"), factor("N/m", "N/mm"))
+    says(
+        PAGE,
+        ": by {} for n = 1.5, not by {}.",
+        factor("N/m^1.5", "N/mm^1.5"),
+        factor("N/m", "N/mm"),
+    )
     says(PAGE, "The damping of a dashpot, in N s/m, is divided by {}.", factor("N s/m", "N s/mm"))
 
 

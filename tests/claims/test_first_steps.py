@@ -16,7 +16,12 @@ from vibroimpact.cases.limits.plate_mesh import plate_mesh_error
 
 PAGE = "docs/first-steps.md"
 (CASE,) = (tomllib.loads(block) for block in blocks(PAGE, "toml"))
-ALUMINIUM = {"density": 2700, "youngs_modulus": "70 GPa", "poissons_ratio": 0.3, "yield_strength": "240 MPa"}
+ALUMINIUM = {
+    "density": 2700,
+    "youngs_modulus": "70 GPa",
+    "poissons_ratio": 0.3,
+    "yield_strength": "240 MPa",
+}
 
 
 def first(response: vi.Response, column: str) -> float:
@@ -24,11 +29,15 @@ def first(response: vi.Response, column: str) -> float:
 
 
 def run(**changes: dict[str, Any]) -> vi.Response:
-    return vi.simulate(vi.read_case({**CASE, **{name: {**CASE[name], **keys} for name, keys in changes.items()}}))
+    return vi.simulate(
+        vi.read_case({**CASE, **{name: {**CASE[name], **keys} for name, keys in changes.items()}})
+    )
 
 
 def test_python() -> None:
-    required = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["requires-python"]
+    required = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"][
+        "requires-python"
+    ]
     says(PAGE, "You need Python {} or newer", float(required.removeprefix(">=")))
     says("README.md", "On Linux with Python {} or newer", float(required.removeprefix(">=")))
 
@@ -49,16 +58,28 @@ def test_the_run() -> None:
     )
     energy = {name: float(value) for name, value in response.energy.items()}
     put_in = energy["input_J"]
-    says(PAGE, "contact dissipated {} {}", 1e3 * energy["contact_dissipated_J"], 100.0 * energy["contact_dissipated_J"] / put_in)
+    says(
+        PAGE,
+        "contact dissipated {} {}",
+        1e3 * energy["contact_dissipated_J"],
+        100.0 * energy["contact_dissipated_J"] / put_in,
+    )
     damped = energy["plate_damping_J"]
     says(PAGE, "plate damping {} {}", 1e3 * damped, 100.0 * damped / put_in)
     assert 0.5 < damped / put_in < 0.65  # more than half of the energy
     says(PAGE, "a1 {} m/s²", response.signals()["a1"].largest)
     says(PAGE, "the restitution achieved is {}.", first(response, "restitution_achieved"))
-    says(PAGE, "make the largest force about {} % too large", 100.0 * plate_mesh_error(response.problem.facts, response.impacts))
+    says(
+        PAGE,
+        "make the largest force about {} % too large",
+        100.0 * plate_mesh_error(response.problem.facts, response.impacts),
+    )
     of_mesh, *doubts = vi.result_of(response).doubts
     assert "about 0.57 % too large; give plate.mesh.element_size" in of_mesh
-    assert [("cracks" in doubt, "no strength is given" in doubt) for doubt in doubts] == [(True, False), (True, True)]
+    assert [("cracks" in doubt, "no strength is given" in doubt) for doubt in doubts] == [
+        (True, False),
+        (True, True),
+    ]
 
 
 @pytest.mark.slow

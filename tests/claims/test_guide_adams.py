@@ -32,16 +32,33 @@ def first(response: vi.Response, column: str) -> float:
 def test_the_ball() -> None:
     found, response = example("pictures_of_guides").found_for_adams()
     assert found.doubts == () == tuple(vi.result_of(response).doubts)
-    says(PAGE, "The restitution is {} at {} m/s.", first(response, "restitution_achieved"), first(response, "approach_speed_m_s"))
-    says(PAGE, "the interval of the damping: {} to {} N s/mm at {} %", *(1e-3 * found.intervals[0]), 100 * found.confidence)
+    says(
+        PAGE,
+        "The restitution is {} at {} m/s.",
+        first(response, "restitution_achieved"),
+        first(response, "approach_speed_m_s"),
+    )
+    says(
+        PAGE,
+        "the interval of the damping: {} to {} N s/mm at {} %",
+        *(1e-3 * found.intervals[0]),
+        100 * found.confidence,
+    )
     says(PAGE, "the ball indents by {} mm", 1e3 * first(response, "max_indentation_m"))
-    says(PAGE, "with the calibrated values {} and more", min(achieved(response.problem.laws[0], response)))
+    says(
+        PAGE,
+        "with the calibrated values {} and more",
+        min(achieved(response.problem.laws[0], response)),
+    )
 
 
 def achieved(law: vi.ContactLaw, response: vi.Response) -> list[float]:
     """The restitution of the ball over the speeds of the figure."""
     mass = float(response.problem.sphere.mass)
-    return [float(vi.achieved_restitution(law, mass=mass, speed=speed)) for speed in (0.1, 0.3, 0.767, 3.0, 10.0)]
+    return [
+        float(vi.achieved_restitution(law, mass=mass, speed=speed))
+        for speed in (0.1, 0.3, 0.767, 3.0, 10.0)
+    ]
 
 
 def test_the_defaults_of_the_dialog() -> None:
@@ -55,11 +72,23 @@ def test_the_defaults_of_the_dialog() -> None:
         law["exponent"],
         1e-3 * law["damping_max"],
         1e3 * law["full_damping_penetration"],
-        float(vi.achieved_restitution(defaults, mass=float(response.problem.sphere.mass), speed=first(response, "approach_speed_m_s"))),
+        float(
+            vi.achieved_restitution(
+                defaults,
+                mass=float(response.problem.sphere.mass),
+                speed=first(response, "approach_speed_m_s"),
+            )
+        ),
     )
-    faster = float(vi.achieved_restitution(defaults, mass=float(response.problem.sphere.mass), speed=3.0))
+    faster = float(
+        vi.achieved_restitution(defaults, mass=float(response.problem.sphere.mass), speed=3.0)
+    )
     says(PAGE, "and of {} at 3 m/s", faster)
-    says(PAGE, "with the dialog's defaults below {} everywhere", round(max(achieved(defaults, response)) + 0.05, 1))
+    says(
+        PAGE,
+        "with the dialog's defaults below {} everywhere",
+        round(max(achieved(defaults, response)) + 0.05, 1),
+    )
     part = float(vi.achieved_restitution(defaults, mass=1.0, speed=1.0))
     says(PAGE, "a mass of 1 kg has {} at 1 m/s", part)
     says(PAGE, "speed=1.0) # {}", part)
@@ -72,25 +101,54 @@ def rock() -> vi.Calibration:
 
 def off(column: str, way: str) -> list[float]:
     """Relative difference of each impact from the target [%]."""
-    return [100.0 * float(part) for part in rock().drops[way][column] / rock().drops["target"][column] - 1.0]
+    return [
+        100.0 * float(part)
+        for part in rock().drops[way][column] / rock().drops["target"][column] - 1.0
+    ]
 
 
 def test_the_rock() -> None:
-    says(PAGE, "With the first throughout, the fifth rebound is {} % too low", -off("rebound_height_m", "constant")[4])
+    says(
+        PAGE,
+        "With the first throughout, the fifth rebound is {} % too low",
+        -off("rebound_height_m", "constant")[4],
+    )
     forces = off("max_force_N", "variable")
-    says(PAGE, "for the rock it is {} to {} % below that of the target law", -max(forces), -min(forces))
-    says(PAGE, '"N/mm^1.5") # {}', vi.convert_units(float(rock().problem.laws[0].stiffness), "N/m^1.5", "N/mm^1.5"))
+    says(
+        PAGE,
+        "for the rock it is {} to {} % below that of the target law",
+        -max(forces),
+        -min(forces),
+    )
+    says(
+        PAGE,
+        '"N/mm^1.5") # {}',
+        vi.convert_units(float(rock().problem.laws[0].stiffness), "N/m^1.5", "N/mm^1.5"),
+    )
 
 
 def test_steel_that_yields() -> None:
     yields = vi.simulate(vi.read_case({**MILD, "contact": {"law": "meyer"}}))
-    says(PAGE, "gives a restitution of {} there and {} kN", first(yields, "restitution_achieved"), 1e-3 * first(yields, "max_force_N"))
-    table = {**MILD, "contact": {"law": "adams-impact"}, "calibrate": {"target": {"rebound_heights": ["0.337 m"]}}}
+    says(
+        PAGE,
+        "gives a restitution of {} there and {} kN",
+        first(yields, "restitution_achieved"),
+        1e-3 * first(yields, "max_force_N"),
+    )
+    table = {
+        **MILD,
+        "contact": {"law": "adams-impact"},
+        "calibrate": {"target": {"rebound_heights": ["0.337 m"]}},
+    }
     question = vi.read_calibration(table)
     found = vi.calibrate_case(question)
     response = vi.simulate(vi.calibrated_case(question.case, found))
     assert any("yields under Hertz's peak pressure" in doubt for doubt in found.doubts)
-    says(PAGE, "calibrated to a rebound of 0.337 m all the same, a restitution of {}", first(response, "restitution_achieved"))
+    says(
+        PAGE,
+        "calibrated to a rebound of 0.337 m all the same, a restitution of {}",
+        first(response, "restitution_achieved"),
+    )
     says(PAGE, "the {} kN that IMPACT then gives", 1e-3 * first(response, "max_force_N"))
     result = vi.result_of(response)
     says(
@@ -99,11 +157,17 @@ def test_steel_that_yields() -> None:
         0.5,
         float(numbers_of(Conditions(result.case, result._seen))["plate_strength"]),
     )
-    says(PAGE, "Structural steel ({} MPa)", 1e-6 * float(vi.find_material("steel").yield_strength or 0.0))
+    says(
+        PAGE,
+        "Structural steel ({} MPa)",
+        1e-6 * float(vi.find_material("steel").yield_strength or 0.0),
+    )
 
 
 @pytest.mark.slow
-def test_what_the_commands_print(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+def test_what_the_commands_print(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
     """The tables of the page, line by line."""
 
     def printed(*words: str) -> list[str]:
@@ -116,7 +180,10 @@ def test_what_the_commands_print(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     monkeypatch.chdir(tmp_path)
     Path("ball.toml").write_text(blocks(PAGE, "toml")[0], encoding="utf-8")
     ball, rocks = blocks(PAGE, "text")
-    for lines in (printed("calibrate", "ball.toml", "-o", "ball"), printed("export", "ball", "--to", "adams", "-o", "ball-adams")):
+    for lines in (
+        printed("calibrate", "ball.toml", "-o", "ball"),
+        printed("export", "ball", "--to", "adams", "-o", "ball-adams"),
+    ):
         assert [line for line in ball.splitlines() if line.rstrip() not in lines] == []
     lines = printed("calibrate", "paper:calibration", "-o", "rock")
     assert [line for line in rocks.splitlines() if line.rstrip() not in lines] == []

@@ -34,7 +34,11 @@ def test_laws() -> None:
 
 def test_program_of_the_page() -> None:
     law = names_of_page(PAGE)["law"]
-    says(PAGE, "vi.achieved_restitution(law, mass=0.1, speed=1.0) # {}", float(vi.achieved_restitution(law, mass=0.1, speed=1.0)))
+    says(
+        PAGE,
+        "vi.achieved_restitution(law, mass=0.1, speed=1.0) # {}",
+        float(vi.achieved_restitution(law, mass=0.1, speed=1.0)),
+    )
     asked = vi.law_achieving(law, 0.7, mass=0.1, speed=1.0)
     says(PAGE, "# {} achieves 0.7", float(asked.restitution))
 
@@ -44,12 +48,19 @@ def test_steps() -> None:
 
     def errors(asked: float) -> list[float]:
         law = vi.find_contact_law("tsuji")(stiffness=1e8, restitution=asked, effective_mass=0.1)
-        return [names["restitution_in_steps"](law, 0.1, 1.0, steps) - asked for steps in (10, 20, 50, 100)]
+        return [
+            names["restitution_in_steps"](law, 0.1, 1.0, steps) - asked
+            for steps in (10, 20, 50, 100)
+        ]
 
     nearly, half = errors(0.9), errors(0.5)
     says(PAGE, "| error of 0.9 | {} | {} | {} | {} |", *nearly)
     says(PAGE, "| error of 0.5 | {} | {} | {} | {} |", *half)
-    says(PAGE, "with 50 steps in the *shortest* contact the restitution is accurate to {}", max(nearly[2], half[2]))
+    says(
+        PAGE,
+        "with 50 steps in the *shortest* contact the restitution is accurate to {}",
+        max(nearly[2], half[2]),
+    )
 
 
 def test_dashpots() -> None:
@@ -69,18 +80,23 @@ def test_dashpots() -> None:
 def test_viscoelastic_grains() -> None:
     names = names_of_page(PAGE)
     mass, speed = names["mass"] * names["each"], names["speed"] * names["each"]
-    law = vi.find_contact_law("kuwabara-kono")(stiffness=names["dashpot"].stiffness, dissipation_time=0.2e-6)
+    law = vi.find_contact_law("kuwabara-kono")(
+        stiffness=names["dashpot"].stiffness, dissipation_time=0.2e-6
+    )
     found = vi.achieved_restitution(law, mass=mass, speed=speed)
     assert (found.min(), found.max()) == (found[0, -1], found[-1, 0])
     says(
         PAGE,
-        "a dissipation time of 0.2 µs the restitution of the same grains ranges from {} (0.5 mm, 1 m/s) to {} (5 mm, 0.03 m/s)",
+        "a dissipation time of 0.2 µs the restitution of the same grains ranges from {} "
+        "(0.5 mm, 1 m/s) to {} (5 mm, 0.03 m/s)",
         found[0, -1],
         found[-1, 0],
     )
     hertz = vi.find_contact_law("hertz")(stiffness=float(law.stiffness[0, -1]))
     body = vi.Body(mass=float(mass[0, -1]), contact_offset=1e-3)
-    alone = vi.Problem(sphere=body, plate=vi.rigid_plate(), laws=(hertz,), speed=1.0, gravity=0.0, impacts=1)
+    alone = vi.Problem(
+        sphere=body, plate=vi.rigid_plate(), laws=(hertz,), speed=1.0, gravity=0.0, impacts=1
+    )
     (limit,) = RELAXATION
     assert 0.2e-6 / float(vi.simulate(alone).impacts["duration_s"][0]) < limit.threshold
 
@@ -92,9 +108,13 @@ def test_glass_is_within_its_strength() -> None:
     pressure = 1.5 * stiffness * depth**1.5 / (np.pi * radius * depth)
     assert pressure == pytest.approx(pressure[0])
     glass = demands(names["glass"], float(pressure[0]))
-    crushed, torn = (glass[name][0] / glass[name][1] for name in ("compressive_strength", "tensile_strength"))
+    crushed, torn = (
+        glass[name][0] / glass[name][1] for name in ("compressive_strength", "tensile_strength")
+    )
     says(PAGE, "At 1 m/s Hertz's pressure is {} of that at which glass is crushed", crushed)
-    says(PAGE, "the tension beside the contact is {} times the tensile strength of float glass", torn)
+    says(
+        PAGE, "the tension beside the contact is {} times the tensile strength of float glass", torn
+    )
 
 
 def test_exported_line(tmp_path: Path) -> None:

@@ -25,14 +25,21 @@ def row(response: vi.Response) -> tuple[float, float, float]:
 
 def limits_of(response: vi.Response) -> dict[str, float]:
     result = vi.result_of(response)
-    return {name: float(number) for name, number in numbers_of(Conditions(result.case, result._seen)).items()}
+    return {
+        name: float(number)
+        for name, number in numbers_of(Conditions(result.case, result._seen)).items()
+    }
 
 
 def test_rigid_plate() -> None:
     back, force, duration = row(PICTURES.on_rigid_plate())
     says(PAGE, "| rigid | {} | | {} | {} |", back, force, duration)
     assert not vi.result_of(PICTURES.on_rigid_plate()).doubts
-    says(PAGE, "the pressure is at most {} of that of first yield of the nylon", limits_of(PICTURES.on_rigid_plate())["sphere_strength"])
+    says(
+        PAGE,
+        "the pressure is at most {} of that of first yield of the nylon",
+        limits_of(PICTURES.on_rigid_plate())["sphere_strength"],
+    )
 
 
 @pytest.mark.slow  # modes of five plates
@@ -58,12 +65,21 @@ def test_thicknesses() -> None:
         1e-3 * thin.frequencies("plate")[-1],
         3e-3 / float(thin.impacts["duration_s"][0]),
     )
-    says(PAGE, "may change the force by {} %; above {} % it raises a doubt", 100 * thin.truncation["plate"], 100 * _TRUNCATED)
+    says(
+        PAGE,
+        "may change the force by {} %; above {} % it raises a doubt",
+        100 * thin.truncation["plate"],
+        100 * _TRUNCATED,
+    )
 
 
 def test_fit_of_zeners_equation() -> None:
-    """The restitution of an elastic contact on a dashpot, by SciPy, beside the formula of the page."""
-    inelasticity = np.array([0.006, 0.01, 0.03, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 1.0, 1.5, 2.0, 2.5, 3.0])
+    """The restitution of an elastic contact on a dashpot, by SciPy, beside the formula of
+    the page.
+    """
+    inelasticity = np.array(
+        [0.006, 0.01, 0.03, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 1.0, 1.5, 2.0, 2.5, 3.0]
+    )
     error = np.array([abs(exact(one) - np.exp(-1.72 * one)) for one in inelasticity])
     says(
         PAGE,
@@ -83,21 +99,32 @@ def exact(inelasticity: float) -> float:
         return float(state[0]) if time > 0.1 else 1.0
 
     apart.terminal = True  # type: ignore[attr-defined]
-    return -float(solve_ivp(slopes, (0.0, 50.0), [0.0, 1.0], rtol=1e-9, atol=1e-12, events=apart).y[1, -1])
+    return -float(
+        solve_ivp(slopes, (0.0, 50.0), [0.0, 1.0], rtol=1e-9, atol=1e-12, events=apart).y[1, -1]
+    )
 
 
 @pytest.mark.slow
 def test_program_of_the_page() -> None:
     names = names_of_page(PAGE)
-    rock = names["zener"](0.008, names["mass"], names["stiffness"], speed=8.83, material=vi.find_material("steel"))
+    rock = names["zener"](
+        0.008, names["mass"], names["stiffness"], speed=8.83, material=vi.find_material("steel")
+    )
     says(PAGE, 'material=vi.find_material("steel")) # {}', rock)
     assert rock == pytest.approx(0.75, abs=0.02)  # a quarter of the speed
     drop = vi.read_case(PICTURES.THICKNESS).to_problem()
     mass, stiffness = float(drop.sphere.mass), float(drop.laws[0].stiffness)
     thickness = np.arange(20, 60)
     speed = PICTURES.first_impact(PICTURES.on_rigid_plate())["approach_speed_m_s"]
-    left = [names["zener"](1e-3 * one, mass, stiffness, speed=speed, material=vi.find_material("steel")) for one in thickness]
-    says(PAGE, "this requires a plate of {} mm", float(np.interp(np.exp(-1.72 * 0.006), left, thickness)))
+    left = [
+        names["zener"](1e-3 * one, mass, stiffness, speed=speed, material=vi.find_material("steel"))
+        for one in thickness
+    ]
+    says(
+        PAGE,
+        "this requires a plate of {} mm",
+        float(np.interp(np.exp(-1.72 * 0.006), left, thickness)),
+    )
 
 
 def test_granite_dents_and_cracks() -> None:
@@ -109,5 +136,13 @@ def test_granite_dents_and_cracks() -> None:
         "run": {"impacts": 1},
     }
     found = limits_of(vi.simulate(vi.read_case(granite)))
-    says(PAGE, "from 1 m on a rigid plate the pressure is {} times that of first yield of the steel", found["plate_strength"])
-    says(PAGE, "the tension beside the contact {} times the tensile strength of granite", found["sphere_strength"])
+    says(
+        PAGE,
+        "from 1 m on a rigid plate the pressure is {} times that of first yield of the steel",
+        found["plate_strength"],
+    )
+    says(
+        PAGE,
+        "the tension beside the contact {} times the tensile strength of granite",
+        found["sphere_strength"],
+    )

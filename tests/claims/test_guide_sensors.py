@@ -22,7 +22,12 @@ def test_chains() -> None:
     assert "is overloaded beyond its range" in doubt  # that which the page clips
     motion, magnet, clipped, slow = response.signals().values()
     says(PAGE, "| the motion itself, {} kHz | {3} |", 1e-3 * motion.sensor.rate, motion.largest)
-    says(PAGE, "51.2 kHz | {3} | vibrates at its resonance: {} times too large |", magnet.largest, magnet.largest / motion.largest)
+    says(
+        PAGE,
+        "51.2 kHz | {3} | vibrates at its resonance: {} times too large |",
+        magnet.largest,
+        magnet.largest / motion.largest,
+    )
     says(
         PAGE,
         "51.2 kHz | {2} | clipped for {} ms; the acceleration at the input reached {3} m/s² |",
@@ -32,19 +37,29 @@ def test_chains() -> None:
     )
     says(PAGE, "resonance at 32 kHz, range {} m/s²", clipped.sensor.instrument.range)
     says(PAGE, "no resonance, {} kHz | {} |", 1e-3 * slow.sensor.rate, slow.largest)
-    assert motion.largest / slow.largest == pytest.approx(12.0, abs=0.5)  # a twelfth of the amplitude
+    # a twelfth of the amplitude
+    assert motion.largest / slow.largest == pytest.approx(12.0, abs=0.5)
     case = vi.read_case(PICTURES.SENSORS)
     apart = np.subtract(case.sensors[0].position, case.drop.position)
     says(PAGE, "one position {} mm from it", 1e3 * float(np.hypot(*apart)))
     impact = PICTURES.first_impact(response)
-    says(PAGE, "the largest force is {} kN and the restitution {}", 1e-3 * impact["max_force_N"], impact["restitution_achieved"])
+    says(
+        PAGE,
+        "the largest force is {} kN and the restitution {}",
+        1e-3 * impact["max_force_N"],
+        impact["restitution_achieved"],
+    )
 
 
 @pytest.mark.slow
 def test_without_yielding() -> None:
     response = PICTURES.measured_by_chains("hertz")
     result, impact = vi.result_of(response), PICTURES.first_impact(response)
-    says(PAGE, "would be {} times that of first yield", float(numbers_of(Conditions(result.case, result._seen))["plate_strength"]))
+    says(
+        PAGE,
+        "would be {} times that of first yield",
+        float(numbers_of(Conditions(result.case, result._seen))["plate_strength"]),
+    )
     says(
         PAGE,
         "it would be {} kN, and the largest acceleration {3} m/s²",
@@ -64,15 +79,30 @@ def test_the_case_of_the_page() -> None:
 def test_spectrum_of_hertz() -> None:
     body = vi.Body(mass=0.1, contact_offset=0.01)
     law = vi.find_contact_law("hertz")(stiffness=1e8)
-    response = vi.simulate(vi.Problem(sphere=body, plate=vi.rigid_plate(), laws=(law,), speed=1.0, gravity=0.0, impacts=1))
+    response = vi.simulate(
+        vi.Problem(
+            sphere=body, plate=vi.rigid_plate(), laws=(law,), speed=1.0, gravity=0.0, impacts=1
+        )
+    )
     duration = float(response.impacts["duration_s"][0])
     time = np.linspace(0.0, duration, 2001)
     force = response.at(time, ("force_N",))["force_N"]
-    part = abs(np.trapezoid(force * np.exp(-2j * np.pi * 1.2 / duration * time), time) / np.trapezoid(force, time))
-    says(PAGE, "up to about 1.2/T, where the spectrum of Hertz's force has fallen by {} dB", -20.0 * np.log10(part))
+    part = abs(
+        np.trapezoid(force * np.exp(-2j * np.pi * 1.2 / duration * time), time)
+        / np.trapezoid(force, time)
+    )
+    says(
+        PAGE,
+        "up to about 1.2/T, where the spectrum of Hertz's force has fallen by {} dB",
+        -20.0 * np.log10(part),
+    )
     says(PAGE, "dB: {} kHz for 150 µs", 1e-3 * 1.2 / 150e-6)
 
 
 def test_reading_below_the_resonance() -> None:
-    says(PAGE, "At a fifth of the mounted resonance the reading is {} % too large", 100.0 * (1.0 / (1.0 - 1.0 / 25.0) - 1.0))
+    says(
+        PAGE,
+        "At a fifth of the mounted resonance the reading is {} % too large",
+        100.0 * (1.0 / (1.0 - 1.0 / 25.0) - 1.0),
+    )
     says(PAGE, "at half {} %", 100.0 * (1.0 / (1.0 - 1.0 / 4.0) - 1.0))

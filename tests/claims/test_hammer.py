@@ -30,18 +30,35 @@ def row(number: int) -> tuple[float, float, float, float]:
     """Return the numbers of a mode in the table."""
     (pair,) = (one for one in example()["found"].modes if one.number == number)
     mode = pair.measured
-    return mode.frequency.value, 100.0 * pair.frequency_difference, pair.damping_ratio, mode.damping_ratio.value
+    return (
+        mode.frequency.value,
+        100.0 * pair.frequency_difference,
+        pair.damping_ratio,
+        mode.damping_ratio.value,
+    )
 
 
 @pytest.mark.slow
 def test_as_drawn() -> None:
     found, drawn = example()["found"], example()["DRAWN"]
     sides = [float(one.removesuffix(" mm")) for one in drawn["plate"]["size"]]
-    says(PAGE, "of a steel plate of {} x {} x {} mm whose case has a damping ratio of {} in all modes", *sides, drawn["plate"]["damping"])
+    says(
+        PAGE,
+        "of a steel plate of {} x {} x {} mm whose case has a damping ratio of {} in all modes",
+        *sides,
+        drawn["plate"]["damping"],
+    )
     thinner = float(example()["thinner"]["size"][2].removesuffix(" mm"))
     says(PAGE, "The plate as built is {} % thinner", 100.0 * (1.0 - thinner / sides[2]))
-    says(PAGE, "before any correction: FRAC {}, residual {} %", float(found.frac[0]), 100.0 * float(found.relative_residual[0]))
-    differences = [-100.0 * pair.frequency_difference for pair in found.modes if pair.measured is not None]
+    says(
+        PAGE,
+        "before any correction: FRAC {}, residual {} %",
+        float(found.frac[0]),
+        100.0 * float(found.relative_residual[0]),
+    )
+    differences = [
+        -100.0 * pair.frequency_difference for pair in found.modes if pair.measured is not None
+    ]
     says(PAGE, "measured resonances lie {} % below the simulated ones", min(differences))
     says(PAGE, "All frequencies are {} % low", max(differences))
     says(PAGE, "| 1 | {} Hz | {} % | {} | {} |", *row(1))
@@ -53,11 +70,20 @@ def test_as_drawn() -> None:
 @pytest.mark.slow
 def test_corrected() -> None:
     again = example()["again"]
-    says(PAGE, "the residual is {} %, and FRAC {}", 100.0 * float(again.relative_residual[0]), float(again.frac[0]))
+    says(
+        PAGE,
+        "the residual is {} %, and FRAC {}",
+        100.0 * float(again.relative_residual[0]),
+        float(again.frac[0]),
+    )
 
 
 def test_what_of_damping_is_not_told() -> None:
-    says(PAGE, "is wider than from {} to {} times its value", *Estimate(1.0, find._VAGUE, logarithmic=True).interval)
+    says(
+        PAGE,
+        "is wider than from {} to {} times its value",
+        *Estimate(1.0, find._VAGUE, logarithmic=True).interval,
+    )
     says(PAGE, "Modes with damping ratios above {} are not reported", find._WIDEST)
 
 
@@ -67,13 +93,16 @@ def test_noise_of_the_force() -> None:
     noise = force.max() * np.random.default_rng(3).standard_normal(len(force))
 
     def residual(measured: np.ndarray) -> float:
-        found = vi.correlate(a_case(damping=0.008), records(value), force=vi.Record("hammer", measured, RATE, "N"))
+        found = vi.correlate(
+            a_case(damping=0.008), records(value), force=vi.Record("hammer", measured, RATE, "N")
+        )
         return 100.0 * float(found.relative_residual[0])
 
     level = 0.01
     says(
         PAGE,
-        "with a residual of {} %, white noise of {} % of the force's peak increases the residual to {} %, and {} % to {} %",
+        "with a residual of {} %, white noise of {} % of the force's peak increases the "
+        "residual to {} %, and {} % to {} %",
         residual(force),
         *(0.1, residual(force + 0.001 * noise)),
         *(100.0 * level, residual(force + level * noise)),

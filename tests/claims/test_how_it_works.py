@@ -13,7 +13,9 @@ from stated import NUMBER, ROOT, says
 PAGE = "docs/how-it-works.md"
 
 
-def test_what_the_example_prints(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+def test_what_the_example_prints(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
     monkeypatch.chdir(tmp_path)
     runpy.run_path(str(ROOT / "examples" / "how_it_works.py"))
     printed = capsys.readouterr().out
@@ -22,15 +24,28 @@ def test_what_the_example_prints(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
         (line,) = (line for line in printed.splitlines() if line.lstrip().startswith(begin))
         return [float(number) for number in re.findall(NUMBER, line.replace(begin, "", 1))]
 
-    in_time, in_root = (numbers(f"Hertz's force over {of}: the coefficient of order 20 of its Legendre series is")[0] for of in "tx")
+    in_time, in_root = (
+        numbers(f"Hertz's force over {of}: the coefficient of order 20 of its Legendre series is")[
+            0
+        ]
+        for of in "tx"
+    )
     says(PAGE, "that of order {} is {} in t and {} in x", 20, in_time, in_root)
     says(PAGE, "Of {} mJ the ball regains {}", *numbers("energy of")[:2])
-    says(PAGE, "The amplitude of the pulse is {} N within the row and {} N at the wall", *numbers("row of 12 beads:")[:2])
+    says(
+        PAGE,
+        "The amplitude of the pulse is {} N within the row and {} N at the wall",
+        *numbers("row of 12 beads:")[:2],
+    )
     for modes in (5, 50, 500):
         highest, force, steps, _ = numbers(f"{modes} modes to")
-        says(PAGE, "| {} | {} kHz | {} | {} ms | {} N |", modes, highest, steps, TIMES[modes], force)
+        says(
+            PAGE, "| {} | {} kHz | {} | {} ms | {} N |", modes, highest, steps, TIMES[modes], force
+        )
     highest, force, steps, _ = numbers("5000 modes to")
-    says(PAGE, "| {} | {} MHz | {} | {} ms | {} N |", 5000, 1e-3 * highest, steps, TIMES[5000], force)
+    says(
+        PAGE, "| {} | {} MHz | {} | {} ms | {} N |", 5000, 1e-3 * highest, steps, TIMES[5000], force
+    )
 
 
 TIMES = {5: 14, 50: 17, 500: 25, 5000: 130}

@@ -1,4 +1,6 @@
-"""Numbers of the page of limits: thresholds as the program has them, and errors that are computed again."""
+"""Numbers of the page of limits: thresholds as the program has them, and errors that are
+computed again.
+"""
 
 from __future__ import annotations
 
@@ -36,35 +38,72 @@ def threshold(name: str, unit: float = 1.0) -> float:
 
 def test_thresholds() -> None:
     says(PAGE, "at the same energy | above {} %", threshold("finite_sphere", 100.0))
-    says(PAGE, "contact radius over the radius of the sphere | above {} |", threshold("small_contact"))
-    says(PAGE, "as a [function of it](case-file.md#functions-of-the-approach-speed) | above {} |", threshold("speeds_given"))
+    says(
+        PAGE,
+        "contact radius over the radius of the sphere | above {} |",
+        threshold("small_contact"),
+    )
+    says(
+        PAGE,
+        "as a [function of it](case-file.md#functions-of-the-approach-speed) | above {} |",
+        threshold("speeds_given"),
+    )
     says(PAGE, "over the tensile strength | above {} |", threshold("sphere_strength"))
     says(PAGE, "(Clift and Gauvin 1970; {} kg/m^3)", AIR_DENSITY)
     says(PAGE, "| above {} % | the loss, and the speed with drag", threshold("air_drag", 100.0))
     says(PAGE, "which `drop.air` leaves out | above {} %", threshold("air_buoyancy", 100.0))
     says(
         PAGE,
-        "Reynolds number at first touch over {}, for flights in air or in a liquid, unless a drag coefficient is given | above {} |",
+        "Reynolds number at first touch over {}, for flights in air or in a liquid, unless "
+        "a drag coefficient is given | above {} |",
         HIGHEST_REYNOLDS,
         threshold("drag_coefficient"),
     )
-    says(PAGE, "the speed of sound in air at 20 C, {} m/s, for flights in air | above {} |", fast_flight._SPEED_OF_SOUND, threshold("mach"))
+    says(
+        PAGE,
+        "the speed of sound in air at 20 C, {} m/s, for flights in air | above {} |",
+        fast_flight._SPEED_OF_SOUND,
+        threshold("mach"),
+    )
     says(PAGE, "distance of `exponent` from Hertz's {}, where", HERTZ)
     says(PAGE, "below a Stokes number of about {} (Joseph", CRITICAL_STOKES)
     says(PAGE, "over its thickness | above {} |", threshold("plate_deflection"))
-    says(PAGE, "| {} contact radii (rigid plate) or {} thicknesses (elastic)", edge._RADII, edge._THICKNESSES)
-    says(PAGE, "a Hertzian contact as deep if that is shorter | above {} |", threshold("relaxation"))
     says(
         PAGE,
-        "by a work of adhesion of {} J/m^2, for laws without adhesion (Thornton and Ning 1998) | above {} %",
+        "| {} contact radii (rigid plate) or {} thicknesses (elastic)",
+        edge._RADII,
+        edge._THICKNESSES,
+    )
+    says(
+        PAGE, "a Hertzian contact as deep if that is shorter | above {} |", threshold("relaxation")
+    )
+    says(
+        PAGE,
+        "by a work of adhesion of {} J/m^2, for laws without adhesion (Thornton and Ning "
+        "1998) | above {} %",
         WORK_OF_ADHESION,
         threshold("adhesion", 100.0),
     )
-    says(PAGE, "above {} %; fewer than {} |", 100.0 * modes_left_out._TRUNCATED, modes_left_out._CYCLES)
+    says(
+        PAGE,
+        "above {} %; fewer than {} |",
+        100.0 * modes_left_out._TRUNCATED,
+        modes_left_out._CYCLES,
+    )
     says(PAGE, "for a relative change of the drop of {}, or of the tolerance", RELATIVE_CHANGE)
-    says(PAGE, "| above {} % | the change, and the first impact concerned", threshold("sensitivity", 100.0))
-    says(PAGE, "| above {} % | the error, and the duration of the contact", threshold("plate_waves", 100.0))
-    says(PAGE, "| above {} % | the error, and a smaller element size", threshold("plate_mesh", 100.0))
+    says(
+        PAGE,
+        "| above {} % | the change, and the first impact concerned",
+        threshold("sensitivity", 100.0),
+    )
+    says(
+        PAGE,
+        "| above {} % | the error, and the duration of the contact",
+        threshold("plate_waves", 100.0),
+    )
+    says(
+        PAGE, "| above {} % | the error, and a smaller element size", threshold("plate_mesh", 100.0)
+    )
     says(PAGE, "| above {} % | the number of modes", 100.0 * modes._FREQUENCY_OFF)
     says(
         PAGE,
@@ -73,25 +112,48 @@ def test_thresholds() -> None:
         100.0 * sensor_doubts._PROMISED,
         100.0 * sensor_doubts._LOW,
     )
-    says(PAGE, "Beyond a/R = {} the term is extrapolated; beyond {} a doubt", FITTED[1], threshold("small_contact"))
+    says(
+        PAGE,
+        "Beyond a/R = {} the term is extrapolated; beyond {} a doubt",
+        FITTED[1],
+        threshold("small_contact"),
+    )
 
 
 def force(part: float, *, corrected: bool) -> float:
     """Return the largest force of the rigid sphere that takes Hertz's contact to a radius."""
     mass = 4.0 / 3.0 * np.pi * RADIUS**3 * DENSITY
     speed = (0.8 * 4.0 / 3.0 * PAIR * RADIUS**0.5 * (part**2 * RADIUS) ** 2.5 / mass) ** 0.5
-    bodies = {"sphere": {"radius": RADIUS, "material": "rock-paper"}, "plate": {"material": "rigid"}}
+    bodies = {
+        "sphere": {"radius": RADIUS, "material": "rock-paper"},
+        "plate": {"material": "rigid"},
+    }
     contact = {"law": "hertz", "finite_sphere": corrected}
-    case = plain_case(**bodies, drop={"speed": speed, "gravity": 0.0}, contact=contact, run={"impacts": 1})
+    case = plain_case(
+        **bodies, drop={"speed": speed, "gravity": 0.0}, contact=contact, run={"impacts": 1}
+    )
     return float(vi.simulate(vi.read_case(case)).impacts["max_force_N"][0])
 
 
 def test_the_finite_sphere() -> None:
-    stated = [100.0 * float(force_lacking(4.0 / 3.0 * PAIR * RADIUS**2 * part**3, RADIUS, PAIR, MODULUS, RATIO)) for part in IMPACTS]
+    stated = [
+        100.0
+        * float(force_lacking(4.0 / 3.0 * PAIR * RADIUS**2 * part**3, RADIUS, PAIR, MODULUS, RATIO))
+        for part in IMPACTS
+    ]
     off = {}
     for corrected in (False, True):
-        off[corrected] = [100.0 * (force(part, corrected=corrected) / exact - 1.0) for part, exact in IMPACTS.items()]
-    says(PAGE, "the force of the half space is {}, {} and {} % too small", *(-value for value in off[False]))
+        off[corrected] = [
+            100.0 * (force(part, corrected=corrected) / exact - 1.0)
+            for part, exact in IMPACTS.items()
+        ]
+    says(
+        PAGE,
+        "the force of the half space is {}, {} and {} % too small",
+        *(-value for value in off[False]),
+    )
     says(PAGE, "where {}, {} and {} % are printed", *stated)
-    for (part, exact), without, corrected in zip(IMPACTS.items(), off[False], off[True], strict=True):
+    for (part, exact), without, corrected in zip(
+        IMPACTS.items(), off[False], off[True], strict=True
+    ):
         says(PAGE, "| {} | {} N | {} % | {} % |", part, exact, without, corrected)

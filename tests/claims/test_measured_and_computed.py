@@ -6,8 +6,26 @@ import numpy as np
 import pytest
 
 import vibroimpact as vi
-from bounces_in_oil import OIL_DENSITY, TRACKS, VISCOSITY, computed_restitution, fall_in, speed_at_touch
-from oblique_measured import ALL, ANGLES, FRICTION, MEASURED, RADIUS, SLIPPING, SPEED, STICKING, fitted_friction, tangential_restitution
+from bounces_in_oil import (
+    OIL_DENSITY,
+    TRACKS,
+    VISCOSITY,
+    computed_restitution,
+    fall_in,
+    speed_at_touch,
+)
+from oblique_measured import (
+    ALL,
+    ANGLES,
+    FRICTION,
+    MEASURED,
+    RADIUS,
+    SLIPPING,
+    SPEED,
+    STICKING,
+    fitted_friction,
+    tangential_restitution,
+)
 from river_plate import amplitudes, class_limit
 from stated import says
 
@@ -30,7 +48,11 @@ def test_oblique_impacts() -> None:
     springs = [mean_error(law, STICKING) for law in ("mindlin", "mindlin-rescale", "mindlin-force")]
     says(PAGE, "mean error {} with microslip", mean_error("mdr", STICKING))
     says(
-        PAGE, "{} with Coulomb's friction alone, {} to {} with single springs", mean_error("coulomb", STICKING), min(springs), max(springs)
+        PAGE,
+        "{} with Coulomb's friction alone, {} to {} with single springs",
+        mean_error("coulomb", STICKING),
+        min(springs),
+        max(springs),
     )
     for law in ("mdr", "mindlin", "mindlin-rescale", "mindlin-force"):
         says(
@@ -39,7 +61,12 @@ def test_oblique_impacts() -> None:
             mean_error(law, SLIPPING),
             mean_error("coulomb", SLIPPING),
         )
-    above = np.array([tangential_restitution(law) - MEASURED for law in ("mindlin", "mindlin-rescale", "mindlin-force")]).max(axis=0)
+    above = np.array(
+        [
+            tangential_restitution(law) - MEASURED
+            for law in ("mindlin", "mindlin-rescale", "mindlin-force")
+        ]
+    ).max(axis=0)
     worst = int(above.argmax())
     says(
         PAGE,
@@ -54,7 +81,12 @@ def test_oblique_impacts() -> None:
 def test_the_friction_that_fits() -> None:
     found = fitted_friction("mdr", ALL)
     assert found.intervals is not None
-    says(PAGE, "to such a table: {} ({} to {}) from all eight angles", float(found.values[0]), *found.intervals[0])
+    says(
+        PAGE,
+        "to such a table: {} ({} to {}) from all eight angles",
+        float(found.values[0]),
+        *found.intervals[0],
+    )
     says(PAGE, "the authors obtained {} from impacts that slide throughout", FRICTION)
 
 
@@ -64,7 +96,8 @@ def test_the_river_plate() -> None:
     off = [100.0 * (np.median(amplitudes(size)) / class_limit(size) - 1.0) for size in sizes]
     says(
         PAGE,
-        "At an assumed {} m/s: {} % ({} mm), {} % ({} mm), {} % ({} mm), {} % ({} mm), {} % ({} mm), {} % ({} mm)",
+        "At an assumed {} m/s: {} % ({} mm), {} % ({} mm), {} % ({} mm), {} % ({} mm), {} % "
+        "({} mm), {} % ({} mm)",
         1.0,
         *(value for pair in zip(off, sizes, strict=True) for value in pair),
     )

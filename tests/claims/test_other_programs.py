@@ -1,4 +1,6 @@
-"""What pages say of files for other programs, and of contacts with these programs' own values; none of the programs is run here."""
+"""What pages say of files for other programs, and of contacts with these programs' own
+values; none of the programs is run here.
+"""
 
 from __future__ import annotations
 
@@ -28,7 +30,9 @@ from vibroimpact.results.result import result_of
 INDEX = "docs/index.md"
 EXPORT = "docs/export.md"
 
-PAIR = ContactPair(effective_modulus=effective_modulus(ROCK, STEEL), effective_radius=RADIUS, effective_mass=MASS)
+PAIR = ContactPair(
+    effective_modulus=effective_modulus(ROCK, STEEL), effective_radius=RADIUS, effective_mass=MASS
+)
 FORCES = re.compile(r"largest force (\S+) N, where the law has (\S+) N")
 
 
@@ -37,7 +41,9 @@ def law(name: str, **parameters: float) -> ContactLaw:
 
 
 def force_error(drop: Drop) -> float:
-    """Return by how much the largest force of MuJoCo's contact is too large [%], as the exported model states both forces."""
+    """Return by how much the largest force of MuJoCo's contact is too large [%], as the
+    exported model states both forces.
+    """
     (text,) = find_export_format("mujoco").write(drop).values()
     theirs, ours = map(float, FORCES.search(text.decode()).groups())
     return 100.0 * (theirs / ours - 1.0)
@@ -46,7 +52,9 @@ def force_error(drop: Drop) -> float:
 def test_the_defaults_of_adams() -> None:
     steel = vi.material_library()["steel"]
     impact = vi.find_contact_law("adams-impact")
-    defaults = impact(stiffness=1e5 * 1000**2.2, exponent=2.2, damping_max=10e3, full_damping_penetration=1e-4)
+    defaults = impact(
+        stiffness=1e5 * 1000**2.2, exponent=2.2, damping_max=10e3, full_damping_penetration=1e-4
+    )
     mass = steel.density * 4.0 / 3.0 * math.pi * 0.020**3
     says(
         INDEX,
@@ -58,13 +66,21 @@ def test_the_defaults_of_adams() -> None:
 
 
 def test_largest_force_of_a_linear_contact() -> None:
-    """Which has the restitution and the duration of the law; the height of the drop does not matter."""
+    """Which has the restitution and the duration of the law; the height of the drop does
+    not matter.
+    """
     hertz = [force_error(told(law("hertz"), number=1, height=height)) for height in (0.1, 1.0, 4.0)]
     np.testing.assert_allclose(hertz, hertz[0], rtol=1e-3)
     says(EXPORT, "For Hertz's law without damping it is {} % low", -hertz[0])
-    says(EXPORT, "for the first impact of the paper's drop {} %", -force_error(told_case("paper:type1-variable")))
+    says(
+        EXPORT,
+        "for the first impact of the paper's drop {} %",
+        -force_error(told_case("paper:type1-variable")),
+    )
     errors = {
-        (name, restitution): force_error(told(law(name, restitution=restitution), number=1, height=1.0))
+        (name, restitution): force_error(
+            told(law(name, restitution=restitution), number=1, height=1.0)
+        )
         for name in ("hunt-crossley", "flores", "tsuji")
         for restitution in (0.9, 0.7, 0.5, 0.3)
     }
@@ -74,7 +90,13 @@ def test_largest_force_of_a_linear_contact() -> None:
         return min(found), max(found)
 
     says(EXPORT, "with Hunt and Crossley's law it is {} to {} % low", *low("hunt-crossley"))
-    says(EXPORT, "with Flores' {} to {} % (restitution parameters {} to {})", *low("flores"), 0.9, 0.3)
+    says(
+        EXPORT,
+        "with Flores' {} to {} % (restitution parameters {} to {})",
+        *low("flores"),
+        0.9,
+        0.3,
+    )
     says(
         EXPORT,
         "with Tsuji's law it is {} % low for {} and {} % high for {}",
@@ -85,16 +107,31 @@ def test_largest_force_of_a_linear_contact() -> None:
 
 def test_units_of_adams() -> None:
     stiffness = 5.115e8
-    says(EXPORT, "({} N/m^1.5 is {} N/mm^1.5)", stiffness, vi.convert_units(stiffness, "N/m^1.5", "N/mm^1.5"))
-    says(EXPORT, "A stiffness in N/m^n is therefore divided by {}^n", vi.convert_units(1.0, "m", "mm"))
+    says(
+        EXPORT,
+        "({} N/m^1.5 is {} N/mm^1.5)",
+        stiffness,
+        vi.convert_units(stiffness, "N/m^1.5", "N/mm^1.5"),
+    )
+    says(
+        EXPORT,
+        "A stiffness in N/m^n is therefore divided by {}^n",
+        vi.convert_units(1.0, "m", "mm"),
+    )
     says(EXPORT, "a damping in N s/m by {}", 1.0 / vi.convert_units(1.0, "N*s/m", "N*s/mm"))
 
 
 def test_samples_of_a_universal_file() -> None:
-    """The worst place of two samples about the peak of a half-sine is half a step to either side."""
+    """The worst place of two samples about the peak of a half-sine is half a step to
+    either side.
+    """
     samples = 20
     says(EXPORT, "with at least {} samples in the shortest contact", samples)
-    says(EXPORT, "the peak of a half-sine is then accurate to {} %", 100.0 * (1.0 - math.cos(0.5 * math.pi / samples)))
+    says(
+        EXPORT,
+        "the peak of a half-sine is then accurate to {} %",
+        100.0 * (1.0 - math.cos(0.5 * math.pi / samples)),
+    )
 
 
 def test_names() -> None:
@@ -134,7 +171,8 @@ def test_the_moving_picture() -> None:
     slower = 1e-3 * sum(pauses[:-1]) / (times[-1] - times[0])
     says(
         INDEX,
-        "A rock of {} mm in diameter, dropped from {} m onto a steel plate of {} mm on four feet: {} ms, slowed down {2} times, "
+        "A rock of {} mm in diameter, dropped from {} m onto a steel plate of {} mm on four "
+        "feet: {} ms, slowed down {2} times, "
         "deflection magnified {} times ({} mm at most)",
         2e3 * shown["RADIUS"],
         float(case["drop"]["height"].removesuffix(" m")),

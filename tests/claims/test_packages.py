@@ -17,7 +17,9 @@ def test_compiled_code_is_bounded() -> None:
 
 
 def test_pythons_without_numba() -> None:
-    project = tomllib.loads((Path(__file__).parents[2] / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    project = tomllib.loads(
+        (Path(__file__).parents[2] / "pyproject.toml").read_text(encoding="utf-8")
+    )["project"]
     (condition,) = (line for line in project["dependencies"] if line.startswith("numba"))
     first = re.search(r"python_version < '(.*)'", condition)
     assert first is not None

@@ -20,15 +20,25 @@ def test_defaults() -> None:
     text = (ROOT / PAGE).read_text(encoding="utf-8")
     accelerometer = vi.Accelerometer()
     assert f"`damping_ratio` ({accelerometer.damping_ratio}), `range`" in text
-    assert f"`damping_ratio` ({vi.Geophone(natural_frequency=10.0, sensitivity=27.6).damping_ratio}, with its shunt)" in text
+    assert (
+        "`damping_ratio` "
+        f"({vi.Geophone(natural_frequency=10.0, sensitivity=27.6).damping_ratio}, with its "
+        "shunt)" in text
+    )
     says(PAGE, "or {} kg/m^3)", vi.Microphone().air_density)
     (case,) = (vi.read_case(tomllib.loads(block)) for block in blocks(PAGE, "toml"))
     microphone = case.sensors[1].microphone
     assert microphone is not None
     says(PAGE, "({} m/s) of air at {} C", microphone.speed_of_sound, 20.0)
     # of an ideal gas: 1.4 times the gas constant of air times the temperature
-    assert float(np.sqrt(1.4 * 287.05 * 293.15)) == pytest.approx(microphone.speed_of_sound, abs=0.2)
+    assert float(np.sqrt(1.4 * 287.05 * 293.15)) == pytest.approx(
+        microphone.speed_of_sound, abs=0.2
+    )
 
 
 def test_power_that_needs_a_baffle() -> None:
-    says(PAGE, "A doubt is raised if more than {} % of the power lies below the former frequency", 100.0 * _LOW)
+    says(
+        PAGE,
+        "A doubt is raised if more than {} % of the power lies below the former frequency",
+        100.0 * _LOW,
+    )

@@ -23,10 +23,19 @@ MEASURED = np.array([0.794, 0.745, 0.673, 0.596, 0.688, 0.772, 0.847, 0.902])
 def alumina_on_glass(friction: str) -> vi.Problem:
     """Return the impact of the page on a rigid plate under a friction law, along the normal."""
     case = {
-        "sphere": {"radius": "2.5 mm", "material": {"density": 4000, "youngs_modulus": "380 GPa", "poissons_ratio": 0.23}},
-        "plate": {"material": {"density": 2500, "youngs_modulus": "70 GPa", "poissons_ratio": 0.25}},
+        "sphere": {
+            "radius": "2.5 mm",
+            "material": {"density": 4000, "youngs_modulus": "380 GPa", "poissons_ratio": 0.23},
+        },
+        "plate": {
+            "material": {"density": 2500, "youngs_modulus": "70 GPa", "poissons_ratio": 0.25}
+        },
         "drop": {"speed": SPEED, "angle": 0.1, "gravity": 0},
-        "contact": {"law": "lankarani-nikravesh", "restitution": 0.98, "friction": {"law": friction, "coefficient": COEFFICIENT}},
+        "contact": {
+            "law": "lankarani-nikravesh",
+            "restitution": 0.98,
+            "friction": {"law": friction, "coefficient": COEFFICIENT},
+        },
         "run": {"impacts": 1},
     }
     return vi.read_case(case).to_problem()
@@ -47,8 +56,14 @@ def test_measured_and_computed() -> None:
     computed = np.stack([tangential_restitution(law) for law in laws])
     for angle, measured, row in zip(ANGLES, MEASURED, computed.T, strict=True):
         says(PAGE, "| {}° | {} | {} | {} | {} | {} | {} |", angle, measured, *row)
-    says(PAGE, "| mean error | | {} | {} | {} | {} | {} |", *np.abs(computed - MEASURED).mean(axis=1))
-    says(PAGE, "deviate from the measurements by up to {}", np.abs(computed - MEASURED)[1:4, ANGLES < 30.0].max())
+    says(
+        PAGE, "| mean error | | {} | {} | {} | {} | {} |", *np.abs(computed - MEASURED).mean(axis=1)
+    )
+    says(
+        PAGE,
+        "deviate from the measurements by up to {}",
+        np.abs(computed - MEASURED)[1:4, ANGLES < 30.0].max(),
+    )
 
 
 def test_ball_whose_spin_a_moment_stops() -> None:
@@ -66,12 +81,25 @@ def test_ball_whose_spin_a_moment_stops() -> None:
         for problem in (rigid, replace(rigid, local_element=(1e18, 1e6)))
     ]
     says(PAGE, "falls on steel at {} m/s with {} mm/s along the plate", 2.0, 10.0)
-    says(PAGE, "coefficients {} and {}) returns with {} mm/s", friction["coefficient"], friction["rolling_coefficient"], returns[0])
-    says(PAGE, "returns with {} mm/s from a plate with a local stiffness of {} N/m as well", returns[1], 1e18)
+    says(
+        PAGE,
+        "coefficients {} and {}) returns with {} mm/s",
+        friction["coefficient"],
+        friction["rolling_coefficient"],
+        returns[0],
+    )
+    says(
+        PAGE,
+        "returns with {} mm/s from a plate with a local stiffness of {} N/m as well",
+        returns[1],
+        1e18,
+    )
 
 
 def friction_left(ratio: float) -> float:
-    """Return the friction of a contact that slides and twists over that of sliding alone, by quadrature of Hertz's pressure."""
+    """Return the friction of a contact that slides and twists over that of sliding alone,
+    by quadrature of Hertz's pressure.
+    """
     distance = (np.arange(2000) + 0.5) / 2000
     angle = 2.0 * np.pi * (np.arange(2000) + 0.5) / 2000
     along = 1.0 - ratio * distance[:, None] * np.sin(angle)
@@ -82,7 +110,13 @@ def friction_left(ratio: float) -> float:
 
 def test_friction_that_twisting_takes() -> None:
     lower = [100.0 * (1.0 - friction_left(ratio)) for ratio in (0.3, 1.0)]
-    says(PAGE, "The friction is lower by {} % at q = {}, and by {} % at q = 1", lower[0], 0.3, lower[1])
+    says(
+        PAGE,
+        "The friction is lower by {} % at q = {}, and by {} % at q = 1",
+        lower[0],
+        0.3,
+        lower[1],
+    )
 
 
 def test_where_single_springs_part_from_mdr() -> None:
@@ -92,7 +126,11 @@ def test_where_single_springs_part_from_mdr() -> None:
     def curve(friction: str) -> Floats:
         problem = alumina_on_glass(friction)
         assert problem.oblique is not None
-        drops = replace(problem, speed=SPEED * np.cos(angles), oblique=replace(problem.oblique, velocity=(SPEED * np.sin(angles), 0.0)))
+        drops = replace(
+            problem,
+            speed=SPEED * np.cos(angles),
+            oblique=replace(problem.oblique, velocity=(SPEED * np.sin(angles), 0.0)),
+        )
         return np.asarray(vi.tabulate(drops).impacts["tangential_restitution"][:, 0])
 
     mdr = curve("mdr")
@@ -114,7 +152,13 @@ def test_what_limits_the_motion_along_an_elastic_plate() -> None:
     random = np.random.default_rng(5)
     of_velocity, of_energy = [], []
     for _ in range(8):
-        plate = {"size": [0.2, 0.15, random.uniform(0.003, 0.01)], "material": "steel", "model": "elastic", "modes": 20, "damping": 0.01}
+        plate = {
+            "size": [0.2, 0.15, random.uniform(0.003, 0.01)],
+            "material": "steel",
+            "model": "elastic",
+            "modes": 20,
+            "damping": 0.01,
+        }
         case = {
             "sphere": {"radius": random.uniform(0.005, 0.02), "material": "steel"},
             "plate": {**plate, "supports": "simply-supported"},
@@ -126,10 +170,21 @@ def test_what_limits_the_motion_along_an_elastic_plate() -> None:
         }
         coefficient = random.uniform(0.1, 0.3)
         for law in ("mdr", "mindlin"):
-            contact = {"law": "hunt-crossley", "restitution": 0.8, "friction": {"law": law, "coefficient": coefficient}}
+            contact = {
+                "law": "hunt-crossley",
+                "restitution": 0.8,
+                "friction": {"law": law, "coefficient": coefficient},
+            }
             usual, exact = (
                 vi.simulate(
-                    vi.read_case({"schema_version": 1, **case, "contact": contact, "run": {"impacts": 1, "tolerance": one}})
+                    vi.read_case(
+                        {
+                            "schema_version": 1,
+                            **case,
+                            "contact": contact,
+                            "run": {"impacts": 1, "tolerance": one},
+                        }
+                    )
                 ).impacts
                 for one in (1e-9, 1e-13)
             )
@@ -137,7 +192,14 @@ def test_what_limits_the_motion_along_an_elastic_plate() -> None:
                 name = f"separation_velocity_{axis}_m_s"
                 of_velocity.append(abs(usual[name][0] - exact[name][0]) / case["drop"]["speed"])
             of_energy.append(abs(usual["friction_lost_J"][0] / exact["friction_lost_J"][0] - 1.0))
-    says(PAGE, "from {} to {} velocities along the plate after an impact change by less than {} of the approach speed", 1e-9, 1e-13, 2e-4)
+    says(
+        PAGE,
+        "from {} to {} velocities along the plate after an impact change by less than {} of "
+        "the approach speed",
+        1e-9,
+        1e-13,
+        2e-4,
+    )
     assert max(of_velocity) < 2e-4
     says(PAGE, "and the energy lost by friction by less than {} %", 1.0)
     assert 1e-6 < max(of_energy) < 0.01

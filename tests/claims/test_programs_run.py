@@ -59,7 +59,9 @@ def test_a_rigid_drop_that_rebounds_as_an_elastic_one(tmp_path: Path) -> None:
         "sphere": {name: values["sphere"][name] for name in ("radius", "material")},
         "plate": {name: values["plate"][name] for name in ("size", "material")},
         "drop": values["drop"],
-        "contact": {name: value for name, value in values["contact"].items() if name != "local_compliance"},
+        "contact": {
+            name: value for name, value in values["contact"].items() if name != "local_compliance"
+        },
         "calibrate": {"target": str(tmp_path / "elastic" / "impacts.csv")},
         "run": {"impacts": 5},
     }
@@ -68,6 +70,14 @@ def test_a_rigid_drop_that_rebounds_as_an_elastic_one(tmp_path: Path) -> None:
     found = vi.calibrate_case(asked)
     vi.save_calibration(vi.calibrated_case(asked.case, found), found, tmp_path / "found")
     (file,) = vi.export_result(tmp_path / "found", "lammps", tmp_path / "found.in")
-    printed = subprocess.run([*command, file.name], cwd=tmp_path, capture_output=True, text=True, check=True).stdout
-    restitutions = [float(value) for value in re.findall(r"impact \d+: .*restitution (\S+),", printed)]
-    says(EXPORT, "LAMMPS prints restitutions of {}, {}, {}, {} and {} for the paper's Type 3", *restitutions)
+    printed = subprocess.run(
+        [*command, file.name], cwd=tmp_path, capture_output=True, text=True, check=True
+    ).stdout
+    restitutions = [
+        float(value) for value in re.findall(r"impact \d+: .*restitution (\S+),", printed)
+    ]
+    says(
+        EXPORT,
+        "LAMMPS prints restitutions of {}, {}, {}, {} and {} for the paper's Type 3",
+        *restitutions,
+    )

@@ -24,14 +24,29 @@ PAGE = "docs/recognition.md"
 
 @pytest.mark.slow
 def test_the_example_of_a_random_split(tmp_path: Path) -> None:
-    found = vi.recognise(write_knocks(tmp_path / "data", rocks=40, falls=15, tone=0.5), folds=4, seeds=1, workers=1)
+    found = vi.recognise(
+        write_knocks(tmp_path / "data", rocks=40, falls=15, tone=0.5), folds=4, seeds=1, workers=1
+    )
     says(PAGE, "{} simulated impacts of {} rocks", sum(found.counts), found.groups)
     says(PAGE, "is known in closed form, {} %", 100.0 * BAYES_ERROR)
-    says(PAGE, "no classifier can have a balanced accuracy above {} % on unseen rocks", 100.0 * (1.0 - BAYES_ERROR))
+    says(
+        PAGE,
+        "no classifier can have a balanced accuracy above {} % on unseen rocks",
+        100.0 * (1.0 - BAYES_ERROR),
+    )
     rows = {}
-    for name in ("logistic regression", "random forest", "gradient boosting", "support vector machine", "true contact time"):
+    for name in (
+        "logistic regression",
+        "random forest",
+        "gradient boosting",
+        "support vector machine",
+        "true contact time",
+    ):
         one = found.scores[name].balanced_accuracy
-        rows[name] = [100.0 * part for part in (one.value, one.low, one.high, found.random[name].balanced_accuracy.value)]
+        rows[name] = [
+            100.0 * part
+            for part in (one.value, one.low, one.high, found.random[name].balanced_accuracy.value)
+        ]
         if name != "true contact time":
             assert one.low < 100.0 * (1.0 - BAYES_ERROR) < rows[name][3]
     says(PAGE, "| logistic regression | {} | {} to {} | {} |", *rows["logistic regression"])
@@ -53,7 +68,11 @@ def test_settings_and_population() -> None:
     says(PAGE, "with a confidence of {} %, the result reports *leak*", SURE)
     says(PAGE, "and a clock from {} % on", 100.0 * _CLOCK)
     says(PAGE, "below the bound with a confidence of {} %", SURE)
-    says(PAGE, "of the trained classifier for {} % of the signals or more", 100.0 * (1.0 - _DIFFERENT))
+    says(
+        PAGE,
+        "of the trained classifier for {} % of the signals or more",
+        100.0 * (1.0 - _DIFFERENT),
+    )
     says(PAGE, "white noise from {} to {} dB", max(LEVELS), min(LEVELS))
     sweep = vi.load_sweep("signals:coal-gangue").whole_table["sweep"]
     classes = {name: one["over"] for name, one in sweep["classes"].items()}

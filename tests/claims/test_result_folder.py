@@ -1,4 +1,6 @@
-"""Sizes and limits that the page of the result folder states, read from what the program writes and from the limits that it applies."""
+"""Sizes and limits that the page of the result folder states, read from what the program
+writes and from the limits that it applies.
+"""
 
 from __future__ import annotations
 
@@ -24,21 +26,40 @@ PAGE = "docs/result-folder.md"
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return Path(vi.save_result(vi.simulate(vi.load_case("paper:type1-theory")), tmp_path_factory.mktemp("made") / "theory"))
+    return Path(
+        vi.save_result(
+            vi.simulate(vi.load_case("paper:type1-theory")),
+            tmp_path_factory.mktemp("made") / "theory",
+        )
+    )
 
 
 def test_limits_of_files() -> None:
     says(PAGE, "(the sensitivity times {}, or times", RELATIVE_CHANGE)
-    says(PAGE, "at about {} points and up to {} times, starting", surface_grid.POINTS, deflection._FRAMES)
+    says(
+        PAGE,
+        "at about {} points and up to {} times, starting",
+        surface_grid.POINTS,
+        deflection._FRAMES,
+    )
     says(PAGE, "if it has at most {} samples; longer ones", MOST_CSV_SAMPLES)
-    says(PAGE, "with up to {} of these times (fewer if they would take more than {} MB;", paraview._FRAMES, paraview._MOST_BYTES / 1e6)
-    says(PAGE, "with up to {} additional points per body after each of the first", fine_history._MOST)
+    says(
+        PAGE,
+        "with up to {} of these times (fewer if they would take more than {} MB;",
+        paraview._FRAMES,
+        paraview._MOST_BYTES / 1e6,
+    )
+    says(
+        PAGE, "with up to {} additional points per body after each of the first", fine_history._MOST
+    )
     says(PAGE, "the value of largest magnitude within {} ms", 1e3 * WINDOW)
     says(PAGE, "A run in which it exceeds {} is an error", CLOSURE_LIMIT)
 
 
 def test_the_page_of_a_report(folder: Path) -> None:
-    says(PAGE, "which is included in the page ({} MB)", (folder / "report.html").stat().st_size / 1e6)
+    says(
+        PAGE, "which is included in the page ({} MB)", (folder / "report.html").stat().st_size / 1e6
+    )
 
 
 def test_the_format_of_results(folder: Path) -> None:
@@ -49,7 +70,10 @@ def test_the_format_of_results(folder: Path) -> None:
 
 
 def test_figures_for_print(folder: Path, tmp_path: Path) -> None:
-    vi.save_charts([next(chart for chart in vi.run_charts(vi.read_result(folder)) if chart.name == "force")], tmp_path)
+    vi.save_charts(
+        [next(chart for chart in vi.run_charts(vi.read_result(folder)) if chart.name == "force")],
+        tmp_path,
+    )
     with Image.open(tmp_path / "force.png") as picture:
         dots = np.array(picture.info["dpi"])
         says(PAGE, "PNG files have {} dots per inch", dots[0])

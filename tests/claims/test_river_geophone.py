@@ -16,7 +16,9 @@ SIZES = (10.0, 12.3, 17.4, 21.8, 28.0, 37.6)  # mm
 
 
 def row(size: float) -> tuple[float, ...]:
-    """Return class limit, median at 1 m/s, its deviation [%], largest over smallest, and median at 0.3 m/s."""
+    """Return class limit, median at 1 m/s, its deviation [%], largest over smallest, and
+    median at 0.3 m/s.
+    """
     fast = amplitudes(size, 1.0)
     median = float(np.median(fast))
     return (
@@ -39,11 +41,28 @@ def test_the_table_and_its_conclusions() -> None:
     _, fast, deviation, ratio, slow = np.array([row(size) for size in SIZES]).T
     assert deviation[1] < 0.0 < deviation[2], "the lines cross between 12 and 17 mm"
     exponents = np.log(fast / slow) / np.log(1.0 / 0.3)
-    at_limit = dict(zip(SIZES, (np.array([class_limit(size) for size in SIZES]) / fast) ** (1.0 / exponents), strict=True))
-    says(PAGE, "one of 17 mm at {} m/s, one of 28 mm at {} m/s, one of 38 mm at {} m/s", at_limit[17.4], at_limit[28.0], at_limit[37.6])
+    at_limit = dict(
+        zip(
+            SIZES,
+            (np.array([class_limit(size) for size in SIZES]) / fast) ** (1.0 / exponents),
+            strict=True,
+        )
+    )
+    says(
+        PAGE,
+        "one of 17 mm at {} m/s, one of 28 mm at {} m/s, one of 38 mm at {} m/s",
+        at_limit[17.4],
+        at_limit[28.0],
+        at_limit[37.6],
+    )
     says(PAGE, "(exponents of {} to {})", exponents.min(), exponents.max())
     says(PAGE, "at 1 m/s differs by {} to {} times", ratio.min(), ratio.max())
-    says(PAGE, "with D^3 that is a factor of {} to {} in size", ratio.min() ** (1 / 3), ratio.max() ** (1 / 3))
+    says(
+        PAGE,
+        "with D^3 that is a factor of {} to {} in size",
+        ratio.min() ** (1 / 3),
+        ratio.max() ** (1 / 3),
+    )
     for computed in (fast, slow):
         slope = np.polyfit(np.log(SIZES), np.log(computed), 1)[0]
         assert 2.9 < slope < 3.1, "at constant speed the computed amplitude grows as D^3"
@@ -51,15 +70,33 @@ def test_the_table_and_its_conclusions() -> None:
 
 @pytest.mark.slow
 def test_what_yielding_does() -> None:
-    lower = [100.0 * (1.0 - np.median(amplitudes(size, 1.0, 235e6)) / np.median(amplitudes(size, 1.0))) for size in (10.0, 17.4, 37.6)]
-    says(PAGE, "medians of grains of 10, 17.4 and 37.6 mm at 1 m/s are {} to {} % lower", min(lower), max(lower))
+    lower = [
+        100.0 * (1.0 - np.median(amplitudes(size, 1.0, 235e6)) / np.median(amplitudes(size, 1.0)))
+        for size in (10.0, 17.4, 37.6)
+    ]
+    says(
+        PAGE,
+        "medians of grains of 10, 17.4 and 37.6 mm at 1 m/s are {} to {} % lower",
+        min(lower),
+        max(lower),
+    )
 
 
 def test_the_plate_yields() -> None:
-    for speed, words in ((1.0, "1.44 GPa, 3.8 times that at which"), (0.3, "2.4 times that at which")):
-        case = vi.load_case("signals:river-plate", {"drop": {"speed": speed, "position": [0.0, 0.0]}})
+    for speed, words in (
+        (1.0, "1.44 GPa, 3.8 times that at which"),
+        (0.3, "2.4 times that at which"),
+    ):
+        case = vi.load_case(
+            "signals:river-plate", {"drop": {"speed": speed, "position": [0.0, 0.0]}}
+        )
         assert any(words in doubt for doubt in case_document(case)["doubts"])
-    says(PAGE, "Hertz's peak pressure is {} GPa for every size, {} times that at which steel", 1.44, 3.8)
+    says(
+        PAGE,
+        "Hertz's peak pressure is {} GPa for every size, {} times that at which steel",
+        1.44,
+        3.8,
+    )
     says(PAGE, "begins to yield, and at 0.3 m/s {} times", 2.4)
 
 
@@ -68,15 +105,28 @@ def test_water_takes_a_hundredth_of_the_rebound() -> None:
     for liquid in (True, False):
         table = load_table("signals:river-plate")
         del table["sweep"], table["sensors"]
-        table["plate"], table["drop"], table["run"] = {"material": "steel"}, {"speed": 1.0}, {"impacts": 1}
+        table["plate"], table["drop"], table["run"] = (
+            {"material": "steel"},
+            {"speed": 1.0},
+            {"impacts": 1},
+        )
         table["sphere"]["radius"], table["contact"]["liquid"] = 0.005, liquid
         achieved.append(float(vi.simulate(vi.read_case(table)).impacts["restitution_achieved"][0]))
-    says(PAGE, "a quartz grain of 10 mm at 1 m/s is lower by {} %", 100.0 * (1.0 - achieved[0] / achieved[1]))
+    says(
+        PAGE,
+        "a quartz grain of 10 mm at 1 m/s is lower by {} %",
+        100.0 * (1.0 - achieved[0] / achieved[1]),
+    )
 
 
 @pytest.mark.slow
 def test_the_packets_of_one_grain() -> None:
-    one_grain = {"sphere.radius": "14 mm", "drop": {"speed": 0.5, "position": [0.1, 0.05]}, "run.duration": "60 ms", "plate.modes": 30}
+    one_grain = {
+        "sphere.radius": "14 mm",
+        "drop": {"speed": 0.5, "position": [0.1, 0.05]},
+        "run.duration": "60 ms",
+        "plate.modes": 30,
+    }
     signal = vi.simulate(vi.load_case("signals:river-plate", one_grain)).signals()["geophone"]
     packets = vi.find_packets(vi.Record("geophone", signal.value, signal.sensor.rate, "V"))
     says(PAGE, "one packet with {} impulses above the threshold", packets.impulses[0])

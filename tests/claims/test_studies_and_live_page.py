@@ -29,7 +29,12 @@ LIVE = "docs/live-page.md"
 
 
 def test_sizes_of_studies() -> None:
-    says(STUDIES, "More than {} drops, or {} GB of results, are computed only with", MOST_DROPS_UNCONFIRMED, 1e-9 * MOST_BYTES_UNCONFIRMED)
+    says(
+        STUDIES,
+        "More than {} drops, or {} GB of results, are computed only with",
+        MOST_DROPS_UNCONFIRMED,
+        1e-9 * MOST_BYTES_UNCONFIRMED,
+    )
     assert "the maximum is ten million" in page_text(STUDIES)
     assert MOST_DROPS == 10_000_000
     says(STUDIES, "not if more than {} % of the points have no value", 100.0 * MOST_LEFT_OUT)
@@ -47,7 +52,13 @@ def test_drafts() -> None:
 
 def test_sizes_of_cases() -> None:
     says(LIVE, "up to {} modes of a body (estimated if it has a", MOST_MODES)
-    says(LIVE, "about {} nodes of a mesh, {} impacts, {} s of simulated time", MOST_NODES, MOST_IMPACTS, LONGEST_RUN)
+    says(
+        LIVE,
+        "about {} nodes of a mesh, {} impacts, {} s of simulated time",
+        MOST_NODES,
+        MOST_IMPACTS,
+        LONGEST_RUN,
+    )
     says(LIVE, "{} sensors and {} million samples in total", MOST_SENSORS, 1e-6 * MOST_SAMPLES)
     says(LIVE, "three minutes and {} GB by the estimate", 1e-9 * MOST_MEMORY)
     assert MOST_SECONDS == 180.0

@@ -1,4 +1,6 @@
-"""What every export format keeps, whatever it is: a new file in exporting/formats is covered without a new test."""
+"""What every export format keeps, whatever it is: a new file in exporting/formats is
+covered without a new test.
+"""
 
 from __future__ import annotations
 
@@ -32,13 +34,17 @@ every_format = pytest.mark.parametrize("format", FORMATS, ids=lambda format: for
 
 @pytest.fixture(autouse=True)
 def has_its_package(request: pytest.FixtureRequest) -> None:
-    format = request.node.callspec.params.get("format") if hasattr(request.node, "callspec") else None
+    format = (
+        request.node.callspec.params.get("format") if hasattr(request.node, "callspec") else None
+    )
     if format and format.name in PACKAGES:
         pytest.importorskip(PACKAGES[format.name])
 
 
 @scalar
-def strange_forces(delta: Any, delta_dot: Any, approach_speed: Any, coefficients: Any) -> tuple[Any, Any]:
+def strange_forces(
+    delta: Any, delta_dot: Any, approach_speed: Any, coefficients: Any
+) -> tuple[Any, Any]:
     return 1e4 * np.tanh(100.0 * delta), 0.0 * delta
 
 
@@ -89,13 +95,21 @@ def written(format: ExportFormat, drop: Drop) -> dict[str, bytes] | None:
 @pytest.fixture(scope="module")
 def rigid() -> dict[str, Drop]:
     cases = {name: vi.load_case(name) for name in vi.shipped_cases()}
-    cases = {name: case for name, case in cases.items() if case.sphere.model == case.plate.model == "rigid"}
+    cases = {
+        name: case
+        for name, case in cases.items()
+        if case.sphere.model == case.plate.model == "rigid"
+    }
     assert len(cases) >= 3
-    return {name: drop_of_result(result_of(vi.simulate(case)), case) for name, case in cases.items()}
+    return {
+        name: drop_of_result(result_of(vi.simulate(case)), case) for name, case in cases.items()
+    }
 
 
 def test_formats_are_found_by_name() -> None:
-    assert {"adams", "adams-view", "lammps", "yade", "mujoco", "exudyn", *DATA} <= set(export_formats())
+    assert {"adams", "adams-view", "lammps", "yade", "mujoco", "exudyn", *DATA} <= set(
+        export_formats()
+    )
     for name, format in export_formats().items():
         assert find_export_format(name) is format
     with pytest.raises(vi.InputError, match='Did you mean "parquet"'):
@@ -111,7 +125,8 @@ def test_a_format_tells_what_it_is(format: ExportFormat) -> None:
         assert len(words) >= 4
         assert not words.endswith(".")
     assert len(format.tested) > 15
-    assert any(letter.isdigit() for letter in format.tested) or "parser" in format.tested  # a version, or one's own reader
+    # a version, or one's own reader
+    assert any(letter.isdigit() for letter in format.tested) or "parser" in format.tested
 
 
 @pytest.mark.parametrize("format", one_in(3, FORMATS, lambda format: format.name))
@@ -130,7 +145,13 @@ def test_shipped_cases_are_written_or_refused(
 @pytest.mark.parametrize("name", one_in(2, sorted(set(export_formats()) - DATA)))
 def test_every_law_is_written_or_refused(name: str) -> None:
     format = find_export_format(name)
-    pair = ContactPair(effective_modulus=2.4e9, effective_radius=RADIUS, effective_mass=MASS, yield_strength=5e7, poissons_ratio=0.28)
+    pair = ContactPair(
+        effective_modulus=2.4e9,
+        effective_radius=RADIUS,
+        effective_mass=MASS,
+        yield_strength=5e7,
+        poissons_ratio=0.28,
+    )
     for law in contact_laws().values():
         drop = told(law.example(pair), number=1)
         if written(format, drop) is None:
@@ -142,10 +163,19 @@ def test_every_law_is_written_or_refused(name: str) -> None:
 def test_every_friction_law_is_written_or_refused(format: ExportFormat) -> None:
     pair = ContactPair(2.4e9, RADIUS, MASS, effective_shear_modulus=2e9)
     for law in (None, *friction_laws().values()):
-        oblique = vi.Oblique(velocity=(1.0, 0.5), spin=(1.0, 2.0, 3.0), friction=None if law is None else law.example(pair))
-        drop = told(LankaraniNikravesh(stiffness=STIFFNESS, restitution=0.7), number=1, oblique=oblique)
+        oblique = vi.Oblique(
+            velocity=(1.0, 0.5),
+            spin=(1.0, 2.0, 3.0),
+            friction=None if law is None else law.example(pair),
+        )
+        drop = told(
+            LankaraniNikravesh(stiffness=STIFFNESS, restitution=0.7), number=1, oblique=oblique
+        )
         if format.name not in DATA and written(format, drop) is None:
-            with pytest.raises(vi.InputError, match="along the plate" if law is None else f"{law.name} can't|along the plate"):
+            with pytest.raises(
+                vi.InputError,
+                match="along the plate" if law is None else f"{law.name} can't|along the plate",
+            ):
                 format.write(format.prepare(drop))
 
 
@@ -168,4 +198,9 @@ def test_a_drop_without_an_impact_is_written_or_refused(format: ExportFormat) ->
 @pytest.mark.parametrize("name", sorted(DATA))
 def test_a_drop_of_which_nothing_is_known_is_refused(name: str) -> None:
     whole = told(LankaraniNikravesh(stiffness=STIFFNESS, restitution=0.7), number=1)
-    assert written(find_export_format(name), replace(whole, impacts={}, history={}, signals={}, surface={})) is None
+    assert (
+        written(
+            find_export_format(name), replace(whole, impacts={}, history={}, signals={}, surface={})
+        )
+        is None
+    )

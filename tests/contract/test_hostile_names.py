@@ -1,4 +1,6 @@
-"""Names that mean something to some program do nothing in any: what a program reads is the same whatever things are called."""
+"""Names that mean something to some program do nothing in any: what a program reads is
+the same whatever things are called.
+"""
 
 from __future__ import annotations
 
@@ -38,18 +40,75 @@ NAMES = [
         "{0}",
         ";",
     ),
-    *("a\nrun 1000", "a\r\nquit", "a\x0bb\x0cc\x85d\u2028e", "\x1b[31mred\x07", "a\x00b", "\x7f", "\ud800", "\u202eright to left"),
-    *("-->", "--", "a---b", "----", "*/", "/*", "]]>", "<a>&amp;", "<!--", "&#10;", "\\u000a", "\\N{DOLLAR SIGN}"),
-    *("-1", "    -1", "-rf", "151", "58", "2411", "CON", "nul", "com1.txt", "Aux", "end", "END", "function"),
-    *("ground", "sphere", "Contact", "touch", "damping", "gravity", "motion", "drop", "approach_speed", "mass"),
-    *("# coding: rot13", "-*- coding: utf-16 -*-", "coding=utf-16", "vim: set modeline:", "adams_view_name='ground'", "include deck.in"),
+    *(
+        "a\nrun 1000",
+        "a\r\nquit",
+        "a\x0bb\x0cc\x85d\u2028e",
+        "\x1b[31mred\x07",
+        "a\x00b",
+        "\x7f",
+        "\ud800",
+        "\u202eright to left",
+    ),
+    *(
+        "-->",
+        "--",
+        "a---b",
+        "----",
+        "*/",
+        "/*",
+        "]]>",
+        "<a>&amp;",
+        "<!--",
+        "&#10;",
+        "\\u000a",
+        "\\N{DOLLAR SIGN}",
+    ),
+    *(
+        "-1",
+        "    -1",
+        "-rf",
+        "151",
+        "58",
+        "2411",
+        "CON",
+        "nul",
+        "com1.txt",
+        "Aux",
+        "end",
+        "END",
+        "function",
+    ),
+    *(
+        "ground",
+        "sphere",
+        "Contact",
+        "touch",
+        "damping",
+        "gravity",
+        "motion",
+        "drop",
+        "approach_speed",
+        "mass",
+    ),
+    *(
+        "# coding: rot13",
+        "-*- coding: utf-16 -*-",
+        "coding=utf-16",
+        "vim: set modeline:",
+        "adams_view_name='ground'",
+        "include deck.in",
+    ),
     *("x" * 300, "xy " * 100, "x_" * 200, "Größe", "岩石落下", "𝛿 = ½", "e\u0301", "İ", "ß" * 90),
 ]
-FORMATS = [format for format in export_formats().values() if format.name != "vtu"]  # where no name goes
+# where no name goes
+FORMATS = [format for format in export_formats().values() if format.name != "vtu"]
 SENSORS = list(dict.fromkeys(NAMES))
 
 
-@pytest.mark.parametrize("every", [pytest.param(1, marks=pytest.mark.slow, id="all"), pytest.param(4, id="some")])
+@pytest.mark.parametrize(
+    "every", [pytest.param(1, marks=pytest.mark.slow, id="all"), pytest.param(4, id="some")]
+)
 @pytest.mark.parametrize("format", FORMATS, ids=lambda format: format.name)
 def test_a_name_does_nothing(format: ExportFormat, every: int) -> None:
     if format.name == "parquet":
@@ -65,14 +124,18 @@ def test_a_name_does_nothing(format: ExportFormat, every: int) -> None:
 
 
 @pytest.mark.parametrize(
-    "format", [format for format in FORMATS if format.name in ("csv", "parquet", "mat", "uff58", "wav")], ids=lambda f: f.name
+    "format",
+    [format for format in FORMATS if format.name in ("csv", "parquet", "mat", "uff58", "wav")],
+    ids=lambda f: f.name,
 )
 def test_all_names_at_once(format: ExportFormat) -> None:
     if format.name == "parquet":
         pytest.importorskip("pyarrow")
     if format.name == "uff58":
         pytest.importorskip("pyuff")
-    plain = said(format, named("plain", [f"s{number}" for number in range(len(SENSORS))], ("rock", "steel")))
+    plain = said(
+        format, named("plain", [f"s{number}" for number in range(len(SENSORS))], ("rock", "steel"))
+    )
     drop = named("plain", SENSORS, ("rock", "steel"))
     check_file_names(format.write(drop))
     assert len(" ".join(format.notes(drop))) < 40_000
@@ -100,18 +163,28 @@ def test_a_name_does_nothing_in_a_mesh(ending: str, tmp_path: Path) -> None:
     for place, name in enumerate(name for name in NAMES if one_line(name)):
         file = tmp_path / f"{place}.{ending}"
         sets = replace(mesh, node_sets={name: np.arange(4)}, element_sets={})
-        (vi.write_abaqus if ending == "inp" else vi.write_nastran)(sets, file, replace(STEEL, name=name))
+        (vi.write_abaqus if ending == "inp" else vi.write_nastran)(
+            sets, file, replace(STEEL, name=name)
+        )
         text = file.read_bytes().decode()
         assert all(line.isprintable() for line in text.split("\n")), repr(name)
         assert max(map(len, text.split("\n"))) <= 200
         found = vi.read_mesh(file)
         np.testing.assert_allclose(found.nodes, mesh.nodes, rtol=0.0, atol=1e-15)
-        assert [block.connectivity.tolist() for block in found.blocks] == [block.connectivity.tolist() for block in mesh.blocks]
+        assert [block.connectivity.tolist() for block in found.blocks] == [
+            block.connectivity.tolist() for block in mesh.blocks
+        ]
         assert [nodes.tolist() for nodes in found.node_sets.values()] == [[0, 1, 2, 3]], repr(name)
 
 
 def test_plain_words_keep_what_is_plain() -> None:
-    for name in ("the paper's Type 1, variable damping", "4 m (e = 0.65)", "drop_4m", "5 % of 10 m/s - 2", "x" * 80):
+    for name in (
+        "the paper's Type 1, variable damping",
+        "4 m (e = 0.65)",
+        "drop_4m",
+        "5 % of 10 m/s - 2",
+        "x" * 80,
+    ):
         assert plain_words(name) == name
     assert plain_words("x" * 81) == "x" * 80
     assert one_line("岩石\n落下") == "岩石 落下"
@@ -120,7 +193,8 @@ def test_plain_words_keep_what_is_plain() -> None:
 def test_many_names_take_no_long_time() -> None:
     """20,000 sensors that are called alike: in the square of their number it would take minutes."""
     names = plain_names(
-        [f"a{'?' * (number % 7)}{'!' * (number // 7)}" for number in range(7_000)] + [f"s{number}" for number in range(20_000)]
+        [f"a{'?' * (number % 7)}{'!' * (number // 7)}" for number in range(7_000)]
+        + [f"s{number}" for number in range(20_000)]
     )
     assert len(set(names.values())) == len(names)
 

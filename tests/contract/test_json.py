@@ -1,4 +1,6 @@
-"""`--json` of every command that prints a table: one document, with the numbers of the data files digit by digit."""
+"""`--json` of every command that prints a table: one document, with the numbers of the
+data files digit by digit.
+"""
 
 from __future__ import annotations
 
@@ -35,13 +37,19 @@ ELASTIC = plain_case(
         "mesh": {"element_size": 0.05},
     },
     drop={"height": 0.1, "position": [0.02, 0.01]},
-    sensors=[{"name": "a1", "position": [0.1, 0.05], "rate": 20e3, "accelerometer": {"range": 100.0}}],
+    sensors=[
+        {"name": "a1", "position": [0.1, 0.05], "rate": 20e3, "accelerometer": {"range": 100.0}}
+    ],
 )
 
 
 @pytest.fixture
-def printed(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path) -> Printed:
-    """Run a command with --json in an empty folder; return the document, with numbers as they are written."""
+def printed(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> Printed:
+    """Run a command with --json in an empty folder; return the document, with numbers as
+    they are written.
+    """
     monkeypatch.chdir(tmp_path)
 
     def run(*arguments: str, numbers: bool = False) -> Any:
@@ -70,13 +78,20 @@ def summary(folder: str, name: str = "summary.json") -> dict[str, Any]:
 def rows(folder: str, name: str) -> list[dict[str, Any]]:
     """The rows of a CSV file of a folder; None in empty cells."""
     with (Path(folder) / name).open(newline="", encoding="utf-8") as file:
-        return [{column: cell or None for column, cell in row.items()} for row in csv.DictReader(file)]
+        return [
+            {column: cell or None for column, cell in row.items()} for row in csv.DictReader(file)
+        ]
 
 
 def in_all_columns(found: list[dict[str, Any]]) -> list[dict[str, Any]]:
-    """Rows of a document with the columns of all of them, as a CSV file has them; without the words for an empty text."""
+    """Rows of a document with the columns of all of them, as a CSV file has them; without
+    the words for an empty text.
+    """
     columns = dict.fromkeys(column for row in found for column in row)
-    return [{column: row.get(column) if row.get(column) != "" else None for column in columns} for row in found]
+    return [
+        {column: row.get(column) if row.get(column) != "" else None for column in columns}
+        for row in found
+    ]
 
 
 def case_file(table: Mapping[str, Any], name: str) -> str:
@@ -86,13 +101,25 @@ def case_file(table: Mapping[str, Any], name: str) -> str:
 
 def test_every_command_that_prints_a_table_has_it() -> None:
     takes = {
-        one.callback.__name__: "as_json" in inspect.signature(one.callback).parameters for one in app.registered_commands if one.callback
+        one.callback.__name__: "as_json" in inspect.signature(one.callback).parameters
+        for one in app.registered_commands
+        if one.callback
     }
-    assert {name for name, there in takes.items() if not there} == {"report", "figures", "new", "serve", "schema"}  # one line each; JSON
+    # one line each; JSON
+    assert {name for name, there in takes.items() if not there} == {
+        "report",
+        "figures",
+        "new",
+        "serve",
+        "schema",
+    }
 
 
 def test_features_are_their_table(printed: Printed) -> None:
-    lines = [f"{place / 1e4!r},{math.exp(-place / 40.0) * math.sin(place / 3.0)!r}" for place in range(300)]
+    lines = [
+        f"{place / 1e4!r},{math.exp(-place / 40.0) * math.sin(place / 3.0)!r}"
+        for place in range(300)
+    ]
     Path("tap.csv").write_text("\n".join(["time_s,geophone_V", *lines]), encoding="utf-8")
     document = printed("features", "tap.csv", "-o", "table.csv")
     assert in_all_columns(document["signals"]) == rows(".", "table.csv")
@@ -115,23 +142,29 @@ def test_the_demo_is_a_run(printed: Printed) -> None:
 
 def test_a_case_explained_is_the_case_that_is_run(printed: Printed) -> None:
     file = case_file(plain_case(), "case.toml")
-    document, run = (printed(*command, file, numbers=True) for command in (("check",), ("run", "-o", "out")))
+    document, run = (
+        printed(*command, file, numbers=True) for command in (("check",), ("run", "-o", "out"))
+    )
     assert document["case"] == tomllib.loads(Path("out/case.toml").read_text(encoding="utf-8"))
     first, impact = document["first_impact"], run["impacts"][0]
     assert first["approach_speed_m_s"] == pytest.approx(impact["approach_speed_m_s"], rel=1e-12)
     assert first["restitution_asked"] == impact["restitution_asked"]
-    assert first["restitution_achieved"] == pytest.approx(impact["restitution_achieved"], rel=1e-3)  # which knows gravity
+    # which knows gravity
+    assert first["restitution_achieved"] == pytest.approx(impact["restitution_achieved"], rel=1e-3)
     assert document["without_losses"]["max_force_N"] > impact["max_force_N"]
     assert (len(document["doubts"]), document["meshes"], document["costs"]) == (2, {}, [])
     case = vi.load_case(file, {"contact.restitution": first["restitution_to_ask"]})
-    assert vi.simulate(case).impacts["restitution_achieved"][0] == pytest.approx(first["restitution_asked"], abs=1e-3)
+    assert vi.simulate(case).impacts["restitution_achieved"][0] == pytest.approx(
+        first["restitution_asked"], abs=1e-3
+    )
 
 
 def test_a_case_with_modes_tells_of_its_meshes(printed: Printed) -> None:
     (mesh,) = printed("check", case_file(ELASTIC, "plate.toml"), numbers=True)["meshes"].values()
     modes = printed("modes", "plate.toml", numbers=True)["modes"]["plate"]["mesh"]
     assert (mesh["elements"], str(mesh["nodes"])) == (modes["elements"], modes["nodes"])
-    assert mesh["degrees_of_freedom"] == 5 * mesh["nodes"] > int(modes["degrees of freedom"])  # of which the clamped edges are held
+    # of which the clamped edges are held
+    assert mesh["degrees_of_freedom"] == 5 * mesh["nodes"] > int(modes["degrees of freedom"])
     assert printed("check", "plate.toml")["meshes"]["plate"]["modes_computed"] is True
 
 
@@ -139,15 +172,39 @@ def test_a_study_is_explained_with_the_keys_of_its_file(printed: Printed) -> Non
     over = {
         "sphere.radius": {"from": "5 mm", "to": "50 mm", "number": 3, "scale": "log"},
         "contact.restitution": [0.5, 0.7],
-        "drop.height": {"distribution": "normal", "mean": "2 m", "standard_deviation": "10 cm", "at_least": "1 m", "number": 4},
-        "plate.material.density": {"distribution": "uniform", "from": 7000, "to": 8000, "number": 2},
+        "drop.height": {
+            "distribution": "normal",
+            "mean": "2 m",
+            "standard_deviation": "10 cm",
+            "at_least": "1 m",
+            "number": 4,
+        },
+        "plate.material.density": {
+            "distribution": "uniform",
+            "from": 7000,
+            "to": 8000,
+            "number": 2,
+        },
     }
-    study = printed("check", case_file(plain_case(sweep={"over": over}), "study.toml"), numbers=True)["study"]
+    study = printed(
+        "check", case_file(plain_case(sweep={"over": over}), "study.toml"), numbers=True
+    )["study"]
     assert (study["design"], study["drops"], study["keep"]) == ("grid", 48, ["peaks", "impacts"])
-    assert study["over"]["sphere.radius"] == {"unit": "m", "from": 0.005, "to": 0.05, "number": 3, "scale": "log"}
+    assert study["over"]["sphere.radius"] == {
+        "unit": "m",
+        "from": 0.005,
+        "to": 0.05,
+        "number": 3,
+        "scale": "log",
+    }
     assert study["over"]["contact.restitution"]["values"] == [0.5, 0.7]
     drawn = study["over"]["drop.height"]
-    assert (drawn["mean"], drawn["standard_deviation"], drawn["at_least"], drawn["at_most"]) == (2.0, 0.1, 1.0, None)
+    assert (drawn["mean"], drawn["standard_deviation"], drawn["at_least"], drawn["at_most"]) == (
+        2.0,
+        0.1,
+        1.0,
+        None,
+    )
     assert study["over"]["plate.material.density"]["distribution"] == "uniform"
 
 
@@ -157,7 +214,9 @@ def test_modes_are_those_of_the_tables(printed: Printed) -> None:
     tables = [(body.pop("modes"), body.pop("points")) for body in document["modes"].values()]
     assert document == summary("out")
     assert in_all_columns([row for modes, _ in tables for row in modes]) == rows("out", "modes.csv")
-    assert in_all_columns([row for _, points in tables for row in points]) == rows("out", "points.csv")
+    assert in_all_columns([row for _, points in tables for row in points]) == rows(
+        "out", "points.csv"
+    )
 
 
 def test_a_bound_is_its_summary_and_its_rows(printed: Printed) -> None:
@@ -168,13 +227,28 @@ def test_a_bound_is_its_summary_and_its_rows(printed: Printed) -> None:
 
 
 def test_a_comparison_is_its_summary_and_its_cases(printed: Printed) -> None:
-    document = printed("compare", "paper:type1-theory", "--laws", "flores,newton", "--achieving", "0.7", "-o", "out")
+    document = printed(
+        "compare",
+        "paper:type1-theory",
+        "--laws",
+        "flores,newton",
+        "--achieving",
+        "0.7",
+        "-o",
+        "out",
+    )
     assert document.pop("folder") == "out"
     for name, law in document["laws"].items():
-        parse = tomllib.loads((Path("out/cases") / f"{name}.toml").read_text(encoding="utf-8"), parse_float=str)
-        assert law.pop("case")["contact"] == {key: as_text(value) for key, value in parse["contact"].items()}
+        parse = tomllib.loads(
+            (Path("out/cases") / f"{name}.toml").read_text(encoding="utf-8"), parse_float=str
+        )
+        assert law.pop("case")["contact"] == {
+            key: as_text(value) for key, value in parse["contact"].items()
+        }
     assert document == summary("out")
-    table = [{"law": name, **row} for name, law in document["laws"].items() for row in law["impacts"]]
+    table = [
+        {"law": name, **row} for name, law in document["laws"].items() for row in law["impacts"]
+    ]
     assert in_all_columns(table) == rows("out", "comparison.csv")
 
 
@@ -196,14 +270,16 @@ def test_a_study_is_its_tables(printed: Printed) -> None:
     file = case_file(plain_case(sweep={"over": over}), "study.toml")
     document = printed("sweep", file, "-o", "out", "--processes", "1")
     assert document["folder"] == "out"
-    assert {name: document[name] for name in ("name", "version")} == {name: summary("out")[name] for name in ("name", "version")}
+    assert {name: document[name] for name in ("name", "version")} == {
+        name: summary("out")[name] for name in ("name", "version")
+    }
     assert document["study"] == {**summary("out")["study"], "failed": "0"}
     assert in_all_columns(document["percentiles"]) == rows("out", "percentiles.csv")
     assert in_all_columns(document["sensitivity"]) == rows("out", "sensitivity.csv")
     study = vi.read_study("out")
-    assert [(one["limit"], int(one["drops"]), float(one["number"])) for one in document["limits"]] == [
-        (one.limit, one.drops, one.number) for one in study.doubts
-    ]
+    assert [
+        (one["limit"], int(one["drops"]), float(one["number"])) for one in document["limits"]
+    ] == [(one.limit, one.drops, one.number) for one in study.doubts]
     assert len(document["doubts"]) >= len(study.doubts) > 0
 
 
@@ -211,8 +287,13 @@ def test_a_reproduction_is_its_values(printed: Printed) -> None:
     document = printed("reproduce", "-o", "out", "--only", "section3.1")
     assert (document["folder"], document["version"]) == ("out", summary("out")["version"])
     assert in_all_columns(document["values"]) == rows("out", "values.csv")
-    counted = {verdict: sum(row["verdict"] == verdict for row in document["values"]) for verdict in document["verdicts"]["all"]}
-    assert {verdict: int(number) for verdict, number in document["verdicts"]["all"].items()} == counted
+    counted = {
+        verdict: sum(row["verdict"] == verdict for row in document["values"])
+        for verdict in document["verdicts"]["all"]
+    }
+    assert {
+        verdict: int(number) for verdict, number in document["verdicts"]["all"].items()
+    } == counted
     by_kind = document["kinds"].values()
     assert {verdict: sum(int(by[verdict]) for by in by_kind) for verdict in counted} == counted
 
@@ -253,13 +334,19 @@ def test_materials_are_those_of_the_library(printed: Printed) -> None:
 def test_units_are_whole_numbers_of_the_machine(printed: Printed) -> None:
     document = printed("units", "5.115e8", "N/m^1.5", "--to", "N/mm^1.5", numbers=True)
     number = vi.convert_units(5.115e8, "N/m^1.5", "N/mm^1.5")
-    assert document == {"number": 5.115e8, "unit": "N/m^1.5", "converted": [{"number": number, "unit": "N/mm^1.5"}]}
+    assert document == {
+        "number": 5.115e8,
+        "unit": "N/m^1.5",
+        "converted": [{"number": number, "unit": "N/mm^1.5"}],
+    }
     systems = printed("units", "-5", "N/m", numbers=True)["converted"]
     assert [one["number"] for one in systems[:2]] == [-5.0, vi.convert_units(-5.0, "N/m", "N/mm")]
 
 
 def test_doubts_are_those_of_the_run(printed: Printed) -> None:
-    """What is calibrated and what is exported exceeds the limits that a run of the same case exceeds."""
+    """What is calibrated and what is exported exceeds the limits that a run of the same
+    case exceeds.
+    """
     steel = {
         "sphere": {"radius": 0.02, "material": "steel"},
         "plate": {"material": "steel"},
@@ -267,7 +354,9 @@ def test_doubts_are_those_of_the_run(printed: Printed) -> None:
         "run": {"impacts": 1},
     }
     target = {"target": {"rebound_heights": [0.337]}}
-    Path("ball.toml").write_text(tomli_w.dumps({**steel, "contact": {"law": "adams-impact"}, "calibrate": target}))
+    Path("ball.toml").write_text(
+        tomli_w.dumps({**steel, "contact": {"law": "adams-impact"}, "calibrate": target})
+    )
     calibrated = printed("calibrate", "ball.toml", "-o", "ball")["doubts"]
     run = printed("run", "ball/case.toml", "-o", "run")["doubts"]
     assert sum("yields under Hertz's peak pressure" in doubt for doubt in run) == 2
@@ -275,13 +364,21 @@ def test_doubts_are_those_of_the_run(printed: Printed) -> None:
     for folder in ("ball", "run"):
         assert printed("export", folder, "--to", "adams")["doubts"] == run
         assert printed("export", folder, "--to", "lammps")["doubts"] == run
-    assert all(html.escape(doubt).replace("&#x27;", "&#39;") in Path("ball/report.html").read_text(encoding="utf-8") for doubt in run)
+    assert all(
+        html.escape(doubt).replace("&#x27;", "&#39;")
+        in Path("ball/report.html").read_text(encoding="utf-8")
+        for doubt in run
+    )
 
 
 def test_exports_name_their_files(printed: Printed) -> None:
     from vibroimpact.exporting.export_format import export_formats
 
-    assert printed("export")["formats"].keys() == printed("export", "--formats")["formats"].keys() == export_formats().keys()
+    assert (
+        printed("export")["formats"].keys()
+        == printed("export", "--formats")["formats"].keys()
+        == export_formats().keys()
+    )
     printed("run", "paper:type1-theory", "-o", "theory")
     document = printed("export", "theory", "--to", "csv")
     assert document["format"] == "csv"
@@ -299,9 +396,13 @@ def test_the_installation_is_tested(printed: Printed) -> None:
 
 
 @pytest.mark.parametrize(
-    "arguments", [("check", "nothing.toml"), ("materials", "granit"), ("laws", "herz"), ("units", "5", "foo")], ids=" ".join
+    "arguments",
+    [("check", "nothing.toml"), ("materials", "granit"), ("laws", "herz"), ("units", "5", "foo")],
+    ids=" ".join,
 )
-def test_an_error_is_text(arguments: tuple[str, ...], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+def test_an_error_is_text(
+    arguments: tuple[str, ...], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
     monkeypatch.setattr("sys.argv", ["vibroimpact", *arguments, "--json"])
     with pytest.raises(SystemExit) as left:
         main()
@@ -311,7 +412,13 @@ def test_an_error_is_text(arguments: tuple[str, ...], monkeypatch: pytest.Monkey
 
 
 def test_numbers_that_are_not_finite_are_null_at_any_depth() -> None:
-    text = json_text({"a": math.nan, "b": [math.inf, {"c": (-math.inf, 1.0)}], "d\x7f\x1b\udcff": "\x7f"})
+    text = json_text(
+        {"a": math.nan, "b": [math.inf, {"c": (-math.inf, 1.0)}], "d\x7f\x1b\udcff": "\x7f"}
+    )
     assert text.isascii()
     assert text.replace("\n", "").isprintable()
-    assert json.loads(text) == {"a": None, "b": [None, {"c": [None, 1.0]}], "d\x7f\x1b\udcff": "\x7f"}
+    assert json.loads(text) == {
+        "a": None,
+        "b": [None, {"c": [None, 1.0]}],
+        "d\x7f\x1b\udcff": "\x7f",
+    }

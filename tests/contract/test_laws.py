@@ -1,4 +1,6 @@
-"""What every contact law keeps, whatever it is: a new file in contact/laws is covered without a new test."""
+"""What every contact law keeps, whatever it is: a new file in contact/laws is covered
+without a new test.
+"""
 
 from __future__ import annotations
 
@@ -25,7 +27,11 @@ MASSES, SPEEDS = np.array([[0.01], [0.09], [2.0]]), np.array([0.03, 0.4, 3.0, 20
 def parameters(law: type[ContactLaw]) -> dict[str, float]:
     examples = {item.name: item.metadata["example"] for item in dataclasses.fields(law)}
     for item in dataclasses.fields(law):
-        known = item.default is not dataclasses.MISSING or item.metadata["from_pair"] or examples[item.name] is not None
+        known = (
+            item.default is not dataclasses.MISSING
+            or item.metadata["from_pair"]
+            or examples[item.name] is not None
+        )
         assert known, f"{law.name}: {item.name} needs an example"
     return {key: value for key, value in examples.items() if value is not None}
 
@@ -42,7 +48,9 @@ def made(law: type[ContactLaw]) -> ContactLaw:
 def test_no_force_without_indentation(law: type[CompliantLaw]) -> None:
     static, dissipative = made(law).forces(np.zeros(3), np.zeros(3), np.ones(3))
     assert not dissipative.any()
-    assert abs(float(np.max(made(law).elastic_energy(np.zeros(1))))) <= 1e-15 * float(np.max(made(law).elastic_energy(np.full(1, 1e-4))))
+    assert abs(float(np.max(made(law).elastic_energy(np.zeros(1))))) <= 1e-15 * float(
+        np.max(made(law).elastic_energy(np.full(1, 1e-4)))
+    )
     if law.contact_end == "pull-off":  # the named exception: it snaps together
         assert np.all(static < 0.0)
     else:
@@ -54,14 +62,18 @@ def test_no_force_where_the_surfaces_part(law: type[CompliantLaw]) -> None:
     dented = made(law).after_compression(np.array([1e-4]))
     for level in (dented.touch_level, dented.release_level):
         static, _ = dented.forces(level + np.zeros(1), np.zeros(1), np.ones(1))
-        assert np.all(static <= 1e-9 * np.abs(dented.forces(np.array([1e-4]), np.zeros(1), np.ones(1))[0]))
+        assert np.all(
+            static <= 1e-9 * np.abs(dented.forces(np.array([1e-4]), np.zeros(1), np.ones(1))[0])
+        )
     assert np.all(dented.release_level <= dented.touch_level)
     assert np.all(dented.touch_level < 1e-4)
 
 
 @pytest.mark.parametrize("law", COMPLIANT, ids=lambda law: law.name)
 @pytest.mark.parametrize("dent", [0.0, 2e-4])
-def test_static_force_is_the_slope_of_elastic_energy_and_plastic_work(law: type[CompliantLaw], dent: float) -> None:
+def test_static_force_is_the_slope_of_elastic_energy_and_plastic_work(
+    law: type[CompliantLaw], dent: float
+) -> None:
     one = made(law).after_compression(np.full(7, dent))
     delta, step = one.touch_level + np.geomspace(1e-6, 1e-3, 7), 1e-5
 
@@ -92,20 +104,28 @@ def test_memory_only_grows_and_takes(law: type[CompliantLaw]) -> None:
     dented = one.after_compression(deepest)
     again = dented.after_compression(0.5 * deepest)
     np.testing.assert_array_equal(again.elastic_energy(deepest), dented.elastic_energy(deepest))
-    np.testing.assert_array_equal(dented.take(np.array([0])).forces(deepest, 0.0, 1.0)[0], one.forces(deepest, 0.0, 1.0)[0])
+    np.testing.assert_array_equal(
+        dented.take(np.array([0])).forces(deepest, 0.0, 1.0)[0], one.forces(deepest, 0.0, 1.0)[0]
+    )
     assert np.all(np.diff(dented.touch_level + np.zeros(4)) >= 0.0)
     assert not np.asarray(dented.plastic_work(deepest)).any()
-    np.testing.assert_allclose(dented.elastic_energy(deepest), one.elastic_energy(deepest), rtol=1e-12)
+    np.testing.assert_allclose(
+        dented.elastic_energy(deepest), one.elastic_energy(deepest), rtol=1e-12
+    )
     assert np.all(one.plastic_work(deepest) >= 0.0)
 
 
 @pytest.mark.parametrize("law", LAWS, ids=lambda law: law.name)
 def test_closed_form_agrees_with_integration(law: type[ContactLaw]) -> None:
     one = made(law)
-    closed, integrated = one.closed_form_restitution(MASSES, SPEEDS), integrated_restitution(one, MASSES, SPEEDS)
+    closed, integrated = (
+        one.closed_form_restitution(MASSES, SPEEDS),
+        integrated_restitution(one, MASSES, SPEEDS),
+    )
     assert integrated.shape == (3, 4)
     assert np.all((integrated >= 0.0) & (integrated <= 1.0 + 1e-9))
-    assert np.all((integrated > 0.0) | (getattr(law, "contact_end", "") == "pull-off"))  # the named exception: it may stick
+    # the named exception: it may stick
+    assert np.all((integrated > 0.0) | (getattr(law, "contact_end", "") == "pull-off"))
     if closed is not None:
         np.testing.assert_allclose(closed, integrated, rtol=0, atol=1e-8)
 
@@ -125,12 +145,18 @@ def test_achieving_is_the_inverse(law: type[ContactLaw]) -> None:
             vi.law_achieving(one, 0.5, mass=0.09, speed=3.0)
         return
     found = vi.law_achieving(one, np.array([0.75, 0.9]), mass=0.09, speed=3.0)
-    np.testing.assert_allclose(integrated_restitution(found, 0.09, 3.0), [0.75, 0.9], rtol=0, atol=1e-9)
+    np.testing.assert_allclose(
+        integrated_restitution(found, 0.09, 3.0), [0.75, 0.9], rtol=0, atol=1e-9
+    )
 
 
 @pytest.mark.parametrize("law", COMPLIANT, ids=lambda law: law.name)
 def test_array_equals_scalar(law: type[CompliantLaw]) -> None:
-    delta, rate, speed = np.geomspace(1e-6, 1e-3, 5), np.linspace(-2.0, 2.0, 5), np.linspace(1.0, 3.0, 5)
+    delta, rate, speed = (
+        np.geomspace(1e-6, 1e-3, 5),
+        np.linspace(-2.0, 2.0, 5),
+        np.linspace(1.0, 3.0, 5),
+    )
     for one in (made(law), made(law).after_compression(3e-4)):
         together = one.forces(delta, rate, speed)
         for index in range(5):
@@ -142,7 +168,9 @@ def test_array_equals_scalar(law: type[CompliantLaw]) -> None:
 def test_static_indentation_carries_the_weight(law: type[CompliantLaw]) -> None:
     weight = np.array([0.1, 1.0, 1000.0])
     delta = static_indentation(made(law), weight)
-    np.testing.assert_allclose(made(law).forces(delta, np.zeros(3), np.ones(3))[0], weight, rtol=1e-12)
+    np.testing.assert_allclose(
+        made(law).forces(delta, np.zeros(3), np.ones(3))[0], weight, rtol=1e-12
+    )
 
 
 @pytest.mark.parametrize("law", LAWS, ids=lambda law: law.name)
@@ -169,7 +197,9 @@ def test_round_trip_through_a_case(law: type[ContactLaw]) -> None:
 @pytest.mark.parametrize("law", LAWS, ids=lambda law: law.name)
 def test_a_list_is_one_value_an_impact(law: type[ContactLaw]) -> None:
     key, value = next(iter((parameters(law) or {"stiffness": 2e6}).items()))
-    case = vi.read_case(plain_case(contact={"law": law.name, **parameters(law), key: [value, 0.9 * value]}))
+    case = vi.read_case(
+        plain_case(contact={"law": law.name, **parameters(law), key: [value, 0.9 * value]})
+    )
     laws = case.to_problem().laws
     assert [getattr(one, key) for one in laws] == [value, 0.9 * value]
     assert len(vi.simulate(case).impacts["impact"]) == 3
@@ -183,7 +213,9 @@ def test_documentation_is_complete(law: type[ContactLaw]) -> None:
     for item in dataclasses.fields(law):
         assert f"\n{item.name} : " in text, f"{law.name}: {item.name} is not documented"
         assert item.metadata["meaning"]
-    assert "\n    Parameters\n" not in inspect.getsource(law), f"{law.name}: the section is made from the declarations"
+    assert "\n    Parameters\n" not in inspect.getsource(law), (
+        f"{law.name}: the section is made from the declarations"
+    )
     assert law.equation
     assert law.source
     assert law.name == inspect.getmodule(law).__name__.rpartition(".")[2].replace("_", "-")

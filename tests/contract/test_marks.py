@@ -1,4 +1,6 @@
-"""Every mark of a chart is drawn with the same numbers by matplotlib, by plotly in Python, and by the script of a page."""
+"""Every mark of a chart is drawn with the same numbers by matplotlib, by plotly in
+Python, and by the script of a page.
+"""
 
 from __future__ import annotations
 
@@ -40,7 +42,12 @@ pytestmark = pytest.mark.filterwarnings("error")
 
 X = np.array([0.0, 0.5, 1.5, 2.0, 3.5])
 Y = np.array([-1.0, 4.0, 2.5, 6.0, 0.5])
-SQUARES = np.array([[[0.0, 0.0], [1.0, 0.0], [1.0, 2.0], [0.0, 2.0]], [[1.0, 0.0], [2.0, 0.0], [2.0, 3.0], [1.0, 3.0]]])
+SQUARES = np.array(
+    [
+        [[0.0, 0.0], [1.0, 0.0], [1.0, 2.0], [0.0, 2.0]],
+        [[1.0, 0.0], [2.0, 0.0], [2.0, 3.0], [1.0, 3.0]],
+    ]
+)
 
 
 def at(x: Floats | float, y: Floats | float) -> Floats:
@@ -58,27 +65,54 @@ def marks() -> dict[str, tuple[Mark, Floats]]:
         "interrupted line": (Line(x, np.where(X == 1.5, np.nan, y)), at(X[X != 1.5], Y[X != 1.5])),
         "line back and forth": (Line(y * 1e-6, x * 1e6), at(Y, X)),
         "points": (Points(x, y, "a"), at(X, Y)),
-        "points with keys": (Points(x, y, "a", texts=("p", "q", "r", "s", "t"), keys={"of": X, "name": np.array(list("aabbc"))}), at(X, Y)),
+        "points with keys": (
+            Points(
+                x,
+                y,
+                "a",
+                texts=("p", "q", "r", "s", "t"),
+                keys={"of": X, "name": np.array(list("aabbc"))},
+            ),
+            at(X, Y),
+        ),
         "points with intervals": (Points(x, y, "a", low=y - 500.0, high=y + 500.0), at(X, Y)),
         "band": (Band(x, y - 1e3, y + 2e3, "b"), np.concatenate([at(X, Y - 1.0), at(X, Y + 2.0)])),
-        "stack": (Stack(x, layers), np.concatenate([at(X, 0.0), at(X, np.abs(Y)), at(X, np.abs(Y) + 2.0)])),
-        "stack below zero": (Stack(x, signs, np.arange(5)), np.concatenate([at(X, -np.abs(Y)), at(X, 2.0 - np.abs(Y))])),
+        "stack": (
+            Stack(x, layers),
+            np.concatenate([at(X, 0.0), at(X, np.abs(Y)), at(X, np.abs(Y) + 2.0)]),
+        ),
+        "stack below zero": (
+            Stack(x, signs, np.arange(5)),
+            np.concatenate([at(X, -np.abs(Y)), at(X, 2.0 - np.abs(Y))]),
+        ),
         "bars": (Bars(x, y, "c", width=2e-4), at(X, Y)),
         "bars on a base": (Bars(x, y, base=np.full(5, 1e3), width=2e-4), at(X, Y + 1.0)),
         "lying bars": (Bars(1e3 * X, 1e-3 * Y, "c", lying=True, width=200.0), at(Y, X)),
         "histogram": (Bars(x, y[:4]), at(0.5 * (X[1:] + X[:-1]), Y[:4])),
         "bars with intervals": (Bars(x, y, low=y - 100.0, high=y + 100.0, width=2e-4), at(X, Y)),
         "facets": (Facets(SQUARES * [1e-3, 1e3], np.array([0.0, 1.0])), SQUARES.reshape(-1, 2)),
-        "facets of both signs": (Facets(SQUARES * [1e-3, 1e3], np.array([-1.0, 1.0]), diverging=True), SQUARES.reshape(-1, 2)),
+        "facets of both signs": (
+            Facets(SQUARES * [1e-3, 1e3], np.array([-1.0, 1.0]), diverging=True),
+            SQUARES.reshape(-1, 2),
+        ),
         "level": (Level(2.5e3, "d"), at(np.nan, 2.5)),
         "upright level": (Level(1.5e-3, "d", upright=True, label="here"), at(1.5, np.nan)),
-        "spans": (Spans(x[:2], x[:2] + 2e-4, "in contact"), at(np.concatenate([X[:2], X[:2] + 0.2]), np.nan)),
+        "spans": (
+            Spans(x[:2], x[:2] + 2e-4, "in contact"),
+            at(np.concatenate([X[:2], X[:2] + 0.2]), np.nan),
+        ),
         "rug": (Rug(x, "modes"), at(X, np.nan)),
         "outline": (Outline(x, y, "e"), at(X, Y)),
         "arrow": (Arrow((0.0, 1e3), (2e-3, 5e3)), at(np.array([0.0, 2.0]), np.array([1.0, 5.0]))),
-        "dimension": (Arrow((0.0, 1e3), (2e-3, 5e3), both=True), at(np.array([0.0, 2.0]), np.array([1.0, 5.0]))),
+        "dimension": (
+            Arrow((0.0, 1e3), (2e-3, 5e3), both=True),
+            at(np.array([0.0, 2.0]), np.array([1.0, 5.0])),
+        ),
         "label": (Label(1e-3, 3e3, "words", "left"), at(1.0, 3.0)),
-        "map": (Map(x[[0, 1]], y[[0, 1, 3]], 1e-3 * np.arange(6.0).reshape(3, 2), Axis("Depth", "m")), np.empty((0, 2))),
+        "map": (
+            Map(x[[0, 1]], y[[0, 1, 3]], 1e-3 * np.arange(6.0).reshape(3, 2), Axis("Depth", "m")),
+            np.empty((0, 2)),
+        ),
     }
 
 
@@ -88,7 +122,12 @@ MARKS = marks()
 def chart_of(*marks: Mark, time: Axis | None = None, force: Axis | None = None) -> Chart:
     """A chart that is shown in milliseconds and kilonewtons, whatever else is in it."""
     frame = Line(np.array([0.0, 5e-3]), np.array([-2e3, 9e3]), role="dotted")
-    return Chart("a", "A chart", ((Panel(time or Axis("Time", "s"), force or Axis("Force", "N"), (frame, *marks)),),), "What is seen.")
+    return Chart(
+        "a",
+        "A chart",
+        ((Panel(time or Axis("Time", "s"), force or Axis("Force", "N"), (frame, *marks)),),),
+        "What is seen.",
+    )
 
 
 def test_every_mark_is_tried() -> None:
@@ -127,7 +166,9 @@ def pages() -> dict[str, dict[str, Any]]:
 
 @pytest.mark.skipif(NODE is None, reason="node is not there")
 @pytest.mark.parametrize("name", MARKS)
-def test_a_page_draws_a_mark_as_plotly_in_python_does(name: str, pages: dict[str, dict[str, Any]]) -> None:
+def test_a_page_draws_a_mark_as_plotly_in_python_does(
+    name: str, pages: dict[str, dict[str, Any]]
+) -> None:
     mark, expected = MARKS[name]
     page, python = pages[name], in_python(chart_of(mark))
     assert not missing(expected, points_of_plotly(page))
@@ -136,14 +177,27 @@ def test_a_page_draws_a_mark_as_plotly_in_python_does(name: str, pages: dict[str
     assert not missing(theirs[np.isfinite(theirs).all(axis=1)], ours)
     assert [trace["type"] for trace in page["data"]] == [trace["type"] for trace in python["data"]]
     for one, other in zip(page["data"], python["data"], strict=True):
-        for part in ("name", "showlegend", "mode", "fill", "orientation", "width", "xaxis", "yaxis"):
-            assert np.all(one.get(part) == np.asarray(other.get(part))) or np.allclose(one[part], other[part]), part
+        for part in (
+            "name",
+            "showlegend",
+            "mode",
+            "fill",
+            "orientation",
+            "width",
+            "xaxis",
+            "yaxis",
+        ):
+            assert np.all(one.get(part) == np.asarray(other.get(part))) or np.allclose(
+                one[part], other[part]
+            ), part
 
 
 def test_values_along_the_axes_are_those_of_the_marks() -> None:
     for name, (mark, expected) in MARKS.items():
         for values, axis, size in ((across(mark), 0, 1e-3), (upwards(mark), 1, 1e3)):
-            found = np.concatenate([np.empty(0), *(np.ravel(np.asarray(part, dtype=float)) for part in values)])
+            found = np.concatenate(
+                [np.empty(0), *(np.ravel(np.asarray(part, dtype=float)) for part in values)]
+            )
             wanted = expected[np.isfinite(expected[:, axis]), axis]
             if len(wanted) and (name, axis) != ("histogram", 0):  # which has edges
                 assert not missing(at(size * wanted, 0.0), at(found, 0.0)), name
@@ -156,9 +210,15 @@ def grids() -> dict[str, tuple[Map, Axis]]:
     return {
         "cells": (Map(x, y, both, depth), depth),
         "of both signs": (Map(x, y, both, depth, diverging=True), depth),
-        "smooth": (Map(x, y, np.nan_to_num(both), depth, diverging=True, contours=True, cells=False), depth),
+        "smooth": (
+            Map(x, y, np.nan_to_num(both), depth, diverging=True, contours=True, cells=False),
+            depth,
+        ),
         "logarithmic": (Map(x, y, np.array([[1.0, 10.0, 100.0], [2.0, 20.0, 200.0]]), size), size),
-        "logarithmic with zero": (Map(x, y, np.array([[0.0, 10.0, 100.0], [2.0, 20.0, 200.0]]), size), size),
+        "logarithmic with zero": (
+            Map(x, y, np.array([[0.0, 10.0, 100.0], [2.0, 20.0, 200.0]]), size),
+            size,
+        ),
         "nothing": (Map(x, y, np.full((2, 3), np.nan), depth), depth),
     }
 
@@ -185,13 +245,21 @@ def test_a_map_has_its_values_and_its_scale(name: str) -> None:
             assert ends == pytest.approx((0.0, np.log10(200.0)))
         elif name != "nothing":
             assert ends == pytest.approx((np.nanmin(shown), np.nanmax(shown)))
-        assert sum(trace["type"] == "contour" for trace in figure["data"]) == (3 if mark.contours else 0)
+        assert sum(trace["type"] == "contour" for trace in figure["data"]) == (
+            3 if mark.contours else 0
+        )
     picture = matplotlib_figure(chart)
     panel = picture.axes[0]
-    artist = panel.images[0] if not mark.cells else next(one for one in panel.collections if one.get_array() is not None)
+    artist = (
+        panel.images[0]
+        if not mark.cells
+        else next(one for one in panel.collections if one.get_array() is not None)
+    )
     drawn = artist.get_array()
     assert drawn is not None
-    np.testing.assert_allclose(np.ma.filled(np.ma.asarray(drawn, dtype=float), np.nan).reshape(2, 3), shown)
+    np.testing.assert_allclose(
+        np.ma.filled(np.ma.asarray(drawn, dtype=float), np.nan).reshape(2, 3), shown
+    )
     low, high = artist.get_clim()
     if mark.diverging:
         assert (low, high) == pytest.approx((-4.0, 4.0))
@@ -201,7 +269,19 @@ def test_a_map_has_its_values_and_its_scale(name: str) -> None:
 def test_labels_and_arrows_on_a_logarithmic_axis_are_where_the_values_are() -> None:
     force = Axis("Force", "N", log=True)
     line = Line(np.array([0.0, 5e-3]), np.array([1e3, 1e5]))
-    chart = Chart("a", "A", ((Panel(Axis("Time", "s"), force, (line, Label(1e-3, 1e4, "words"), Arrow((0.0, 1e3), (1e-3, 1e5)))),),))
+    chart = Chart(
+        "a",
+        "A",
+        (
+            (
+                Panel(
+                    Axis("Time", "s"),
+                    force,
+                    (line, Label(1e-3, 1e4, "words"), Arrow((0.0, 1e3), (1e-3, 1e5))),
+                ),
+            ),
+        ),
+    )
     figure = in_python(chart)
     words, arrow = figure["layout"]["annotations"]
     assert words["y"] == pytest.approx(1.0)  # of 10 kN
@@ -211,10 +291,25 @@ def test_labels_and_arrows_on_a_logarithmic_axis_are_where_the_values_are() -> N
 
 
 def view() -> Chart:
-    parts = (View("First", 1e-3, 2e-3, 1e-3, "Since it began", "largest 3 N"), View("Second", 2e-3, 4e-3, 2e-3, level=1e3))
+    parts = (
+        View("First", 1e-3, 2e-3, 1e-3, "Since it began", "largest 3 N"),
+        View("Second", 2e-3, 4e-3, 2e-3, level=1e3),
+    )
     x = np.linspace(0.0, 5e-3, 11)
     line = Line(x, np.where(x < 2.2e-3, 3.0, 9e3))
-    return Chart("a", "A", ((Panel(Axis("Time", "s", views=parts), Axis("Force", "N"), (line, Spans(x[2:3], x[4:5], "in contact"))),),))
+    return Chart(
+        "a",
+        "A",
+        (
+            (
+                Panel(
+                    Axis("Time", "s", views=parts),
+                    Axis("Force", "N"),
+                    (line, Spans(x[2:3], x[4:5], "in contact")),
+                ),
+            ),
+        ),
+    )
 
 
 def test_print_shows_views_in_panels_of_their_own() -> None:
@@ -249,7 +344,10 @@ def peaked(count: int) -> Line:
 
 def test_a_long_line_keeps_its_peak_everywhere() -> None:
     chart = chart_of(peaked(200_001))
-    figures: list[Callable[[], Floats]] = [lambda: points_of_print(matplotlib_figure(chart)), lambda: points_of_plotly(in_python(chart))]
+    figures: list[Callable[[], Floats]] = [
+        lambda: points_of_print(matplotlib_figure(chart)),
+        lambda: points_of_plotly(in_python(chart)),
+    ]
     if NODE:
         figures.append(lambda: points_of_plotly(in_a_page(chart)))
     for points in figures:
@@ -259,7 +357,9 @@ def test_a_long_line_keeps_its_peak_everywhere() -> None:
 
 
 @pytest.mark.parametrize("every", [3, 7, 1000])
-def test_a_long_line_with_gaps_is_drawn_in_all_of_its_parts_and_not_across_its_gaps(every: int) -> None:
+def test_a_long_line_with_gaps_is_drawn_in_all_of_its_parts_and_not_across_its_gaps(
+    every: int,
+) -> None:
     parts = 60_000 // every
     number = np.arange(parts * every)
     y = np.where(number % every == 0, np.nan, 1e3 * np.sin(number))
@@ -284,7 +384,9 @@ def test_a_long_line_with_gaps_is_drawn_in_all_of_its_parts_and_not_across_its_g
 def test_a_zoom_shows_the_points_that_the_whole_leaves_out() -> None:
     count = 200_001
     chart = chart_of(peaked(count))
-    line = max(in_a_page(chart, ranges={"x": [1e-3, 1.01e-3]})["data"], key=lambda trace: len(trace["x"]))
+    line = max(
+        in_a_page(chart, ranges={"x": [1e-3, 1.01e-3]})["data"], key=lambda trace: len(trace["x"])
+    )
     inside = [x for x in line["x"] if 1.0 <= x <= 1.01]
     assert len(inside) == pytest.approx(400, abs=2)
 
@@ -292,7 +394,11 @@ def test_a_zoom_shows_the_points_that_the_whole_leaves_out() -> None:
 def test_axes_of_names_ticks_and_whole_numbers() -> None:
     names = ("hertz", "<b>flores</b>")
     bars = Bars(np.arange(2.0), np.array([1.0, 2.0]))
-    panel = Panel(Axis("Law", "", names=names), Axis("Impacts", "", integer=True, range=(0.0, np.nan)), (bars,))
+    panel = Panel(
+        Axis("Law", "", names=names),
+        Axis("Impacts", "", integer=True, range=(0.0, np.nan)),
+        (bars,),
+    )
     chart = Chart("a", "A", ((panel,),))
     layout = in_python(chart)["layout"]
     assert layout["xaxis"]["ticktext"] == ["hertz", "&lt;b&gt;flores&lt;/b&gt;"]
@@ -305,9 +411,22 @@ def test_axes_of_names_ticks_and_whole_numbers() -> None:
 
 
 def test_the_pointer_tells_what_a_bar_is() -> None:
-    across, up = Axis("Part", "%"), Axis(names=("speed", ""))  # as names that have no room are left out
-    bars = Bars(np.array([0.2, 1.2]), np.array([3.0, 4.0]), "alone", lying=True, texts=("speed", "a < b"))
-    chart = Chart("a", "A", ((Panel(across, up, (bars, Bars(np.array([0.0, 1.0]), np.array([1.0, 2.0]), lying=True))),),))
+    # as names that have no room are left out
+    across, up = Axis("Part", "%"), Axis(names=("speed", ""))
+    bars = Bars(
+        np.array([0.2, 1.2]), np.array([3.0, 4.0]), "alone", lying=True, texts=("speed", "a < b")
+    )
+    chart = Chart(
+        "a",
+        "A",
+        (
+            (
+                Panel(
+                    across, up, (bars, Bars(np.array([0.0, 1.0]), np.array([1.0, 2.0]), lying=True))
+                ),
+            ),
+        ),
+    )
     for figure in [in_python(chart)] + ([in_a_page(chart)] if NODE else []):
         named, nameless = figure["data"]
         assert list(named["hovertext"]) == ["speed", "a &lt; b"]
@@ -318,7 +437,10 @@ def test_the_pointer_tells_what_a_bar_is() -> None:
 
 def test_a_legend_names_each_look_once() -> None:
     x = np.array([0.0, 1.0])
-    panels = tuple(Panel(Axis(), Axis(), (Line(x, x, "same"), Line(x, x + 1.0, "other", "series 2"))) for _ in range(2))
+    panels = tuple(
+        Panel(Axis(), Axis(), (Line(x, x, "same"), Line(x, x + 1.0, "other", "series 2")))
+        for _ in range(2)
+    )
     figure = in_python(Chart("a", "A", (panels,)))
     assert [trace["name"] for trace in figure["data"] if trace["showlegend"]] == ["same", "other"]
     (legend,) = matplotlib_figure(Chart("a", "A", (panels,))).legends

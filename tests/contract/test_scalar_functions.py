@@ -1,4 +1,6 @@
-"""Force, energies, levels and memory of every law are functions, which give the same for floats, for arrays and compiled."""
+"""Force, energies, levels and memory of every law are functions, which give the same for
+floats, for arrays and compiled.
+"""
 
 from __future__ import annotations
 
@@ -29,14 +31,22 @@ OTHER_PARAMETERS = [
     HuntCrossley(stiffness=1e9, dissipation=0.3),
     LinearSpringDashpot(stiffness=1e6, damping=10.0),
     WaltonBraun(stiffness=1e6, stiffening=1e3),
-    contact_laws()["meyer"](effective_modulus=7e10, effective_radius=0.01, yield_strength=4e8, meyer_index=2.0),
-    contact_laws()["meyer"](effective_modulus=7e10, effective_radius=0.01, yield_strength=4e8, meyer_index=3.0),
+    contact_laws()["meyer"](
+        effective_modulus=7e10, effective_radius=0.01, yield_strength=4e8, meyer_index=2.0
+    ),
+    contact_laws()["meyer"](
+        effective_modulus=7e10, effective_radius=0.01, yield_strength=4e8, meyer_index=3.0
+    ),
 ]
 DROPS = 40
 
 
 def example(law: type[CompliantLaw]) -> CompliantLaw:
-    typical = {item.name: item.metadata["example"] for item in dataclasses.fields(law) if item.metadata["example"] is not None}
+    typical = {
+        item.name: item.metadata["example"]
+        for item in dataclasses.fields(law)
+        if item.metadata["example"] is not None
+    }
     made = vi.read_case(plain_case(contact={"law": law.name, **typical})).to_problem().laws[0]
     assert isinstance(made, CompliantLaw)
     return made
@@ -47,7 +57,11 @@ def varied(law: CompliantLaw, random: np.random.Generator) -> CompliantLaw:
     changes = {}
     for item in dataclasses.fields(law):
         value = getattr(law, item.name)
-        if value is not None and not item.metadata["memory"] and 0.95 * value >= item.metadata["range"].at_least:
+        if (
+            value is not None
+            and not item.metadata["memory"]
+            and 0.95 * value >= item.metadata["range"].at_least
+        ):
             changes[item.name] = value * random.uniform(0.95, 1.0, DROPS)
     return dataclasses.replace(law, **changes)
 
@@ -62,10 +76,14 @@ def states(law: CompliantLaw) -> Iterator[CompliantLaw]:
 
 
 def motions(law: CompliantLaw) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Indentations, of an adhesive contact negative ones as well, their rates and approach speeds."""
+    """Indentations, of an adhesive contact negative ones as well, their rates and
+    approach speeds.
+    """
     random = np.random.default_rng(2)
     delta = 10.0 ** random.uniform(-9.0, -3.0, DROPS)
-    delta[::4] = 0.99 * random.random(DROPS // 4) * np.minimum(law.release_level + np.zeros(DROPS), 0.0)[::4]
+    delta[::4] = (
+        0.99 * random.random(DROPS // 4) * np.minimum(law.release_level + np.zeros(DROPS), 0.0)[::4]
+    )
     return delta, random.normal(size=DROPS), random.uniform(0.1, 5.0, DROPS)
 
 
@@ -80,12 +98,15 @@ def compiled_functions(law: type[CompliantLaw]) -> list[Callable[..., Any]]:
 
 def assert_close(of_floats: np.ndarray, of_arrays: np.ndarray, name: str) -> None:
     for alone, together in zip(of_floats, of_arrays, strict=True):
-        rounding = 1e-15 * np.abs(of_arrays[np.isfinite(of_arrays)]).max()  # what is a difference is known to that of its terms
+        # what is a difference is known to that of its terms
+        rounding = 1e-15 * np.abs(of_arrays[np.isfinite(of_arrays)]).max()
         np.testing.assert_allclose(alone, together, rtol=1e-13, atol=rounding, err_msg=name)
 
 
 def assert_rounded(changed: np.ndarray, wanted: np.ndarray) -> None:
-    """Assert that coefficients agree to a few roundings of the terms, of which two are differences in elastic-plastic laws."""
+    """Assert that coefficients agree to a few roundings of the terms, of which two are
+    differences in elastic-plastic laws.
+    """
     terms = np.abs(wanted)
     terms[1] += terms[0]
     terms[5] += terms[0] * terms[3]
@@ -98,15 +119,27 @@ def assert_same(functions: list[Callable[..., Any]], law: CompliantLaw) -> None:
     forces, energies, levels, compressed = functions
     delta, rate, speed = motions(law)
     shape = np.zeros(DROPS)
-    breakpoints = [np.broadcast_to(level, DROPS) for level in (*law.breakpoints, shape + np.inf, shape + np.inf)]
-    expected_levels = np.array([law.touch_level + shape, law.release_level + shape, *breakpoints[:2]])
+    breakpoints = [
+        np.broadcast_to(level, DROPS)
+        for level in (*law.breakpoints, shape + np.inf, shape + np.inf)
+    ]
+    expected_levels = np.array(
+        [law.touch_level + shape, law.release_level + shape, *breakpoints[:2]]
+    )
     after = law.after_compression(delta) if law.memories() else law
-    found_forces, found_energies, found_levels = np.empty((2, DROPS)), np.empty((2, DROPS)), np.empty((5, DROPS))
+    found_forces, found_energies, found_levels = (
+        np.empty((2, DROPS)),
+        np.empty((2, DROPS)),
+        np.empty((5, DROPS)),
+    )
     for drop in range(DROPS):
         own = law.take(drop)
         coefficients = law_coefficients(own)
-        assert np.all(np.isfinite(coefficients) | (law.name == "meyer"))  # whose pressure may rise without end
-        found_forces[:, drop] = forces(float(delta[drop]), float(rate[drop]), float(speed[drop]), coefficients)
+        # whose pressure may rise without end
+        assert np.all(np.isfinite(coefficients) | (law.name == "meyer"))
+        found_forces[:, drop] = forces(
+            float(delta[drop]), float(rate[drop]), float(speed[drop]), coefficients
+        )
         found_energies[:, drop] = energies(float(delta[drop]), coefficients)
         found_levels[:, drop] = levels(coefficients)
         changed = coefficients.copy()
@@ -118,7 +151,9 @@ def assert_same(functions: list[Callable[..., Any]], law: CompliantLaw) -> None:
         else:
             assert np.any(changed != coefficients)
     assert_close(found_forces, np.array(law.forces(delta, rate, speed)), "forces")
-    assert_close(found_energies, np.array([law.elastic_energy(delta), law.plastic_work(delta)]), "energies")
+    assert_close(
+        found_energies, np.array([law.elastic_energy(delta), law.plastic_work(delta)]), "energies"
+    )
     assert_close(found_levels[[0, 1, 3, 4]], expected_levels, "levels")
 
 
@@ -141,7 +176,9 @@ def test_laws_with_other_parameters(law: CompliantLaw) -> None:
         assert_same(compiled_functions(type(law)), state)
 
 
-@pytest.mark.parametrize("law", [*map(example, COMPLIANT), *OTHER_PARAMETERS], ids=lambda law: law.name)
+@pytest.mark.parametrize(
+    "law", [*map(example, COMPLIANT), *OTHER_PARAMETERS], ids=lambda law: law.name
+)
 def test_compiled_force_is_the_slope_of_the_energies(law: CompliantLaw) -> None:
     """The static force, in loading and in unloading, away from the breakpoints."""
     forces, energies, levels, _ = compiled_functions(type(law))
@@ -156,14 +193,21 @@ def test_compiled_force_is_the_slope_of_the_energies(law: CompliantLaw) -> None:
             step = 1e-5 * (delta - touch)
             if np.any(np.abs(corners - delta) < 2.0 * step):
                 continue
-            slope = (sum(energies(delta + step, coefficients)) - sum(energies(delta - step, coefficients))) / (2.0 * step)
+            slope = (
+                sum(energies(delta + step, coefficients))
+                - sum(energies(delta - step, coefficients))
+            ) / (2.0 * step)
             largest = abs(forces(touch + 1e-3, 0.0, 1.0, coefficients)[0])
-            assert slope == pytest.approx(forces(delta, 0.0, 1.0, coefficients)[0], rel=1e-6, abs=1e-6 * largest)
+            assert slope == pytest.approx(
+                forces(delta, 0.0, 1.0, coefficients)[0], rel=1e-6, abs=1e-6 * largest
+            )
 
 
 @dataclass(frozen=True, kw_only=True)
 class Crushing(CompliantLaw):
-    """A spring that unloads at twice the stiffness, given by methods alone, as another package may."""
+    """A spring that unloads at twice the stiffness, given by methods alone, as another
+    package may.
+    """
 
     name = "crushing"
     equation = "F = k delta loading, 2 k (delta - delta_m/2) unloading"
@@ -196,7 +240,10 @@ class Crushing(CompliantLaw):
         return self.changed({"deepest": np.maximum(self.deepest, deepest)})
 
 
-@pytest.mark.parametrize("take", [compiled_functions, lambda law: [interpreted_function(law, kind) for kind in LAW_FUNCTIONS]])
+@pytest.mark.parametrize(
+    "take",
+    [compiled_functions, lambda law: [interpreted_function(law, kind) for kind in LAW_FUNCTIONS]],
+)
 @pytest.mark.filterwarnings("ignore::vibroimpact.errors.SlowLawWarning")
 def test_a_law_of_methods_is_called(take: Callable[..., list[Callable[..., Any]]]) -> None:
     assert Crushing.missing_functions() == list(LAW_FUNCTIONS.values())
@@ -231,7 +278,9 @@ def test_a_law_of_methods_may_be_collected() -> None:
 def test_a_law_that_defines_forces_anew_is_not_compiled() -> None:
     @dataclass(frozen=True, kw_only=True)
     class Halved(Hertz):
-        def forces(self, delta: np.ndarray, delta_dot: np.ndarray, approach_speed: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        def forces(
+            self, delta: np.ndarray, delta_dot: np.ndarray, approach_speed: np.ndarray
+        ) -> tuple[np.ndarray, np.ndarray]:
             static, dissipative = super().forces(delta, delta_dot, approach_speed)
             return 0.5 * static, dissipative
 

@@ -1,4 +1,6 @@
-"""Hostile case files: each is explained or refused in a few clean lines, within seconds, and what is quick to run runs."""
+"""Hostile case files: each is explained or refused in a few clean lines, within seconds,
+and what is quick to run runs.
+"""
 
 from __future__ import annotations
 
@@ -24,12 +26,18 @@ def shown(renderable: object) -> None:
     """Print to a terminal that is none; no character of what a file holds may steer it."""
     written = StringIO()
     TerminalConsole(file=written, width=100).print(renderable)
-    bad = {character for character in written.getvalue() if not character.isprintable() and character not in "\n\u00a0"}
+    bad = {
+        character
+        for character in written.getvalue()
+        if not character.isprintable() and character not in "\n\u00a0"
+    }
     assert not bad, f"{bad} would reach the terminal"
 
 
 def check(data: bytes, folder: Path) -> vi.Case:
-    """Do what `vibroimpact check` does with a file, and where it has a calibration, read that too."""
+    """Do what `vibroimpact check` does with a file, and where it has a calibration, read
+    that too.
+    """
     file = folder / "case.toml"
     file.write_bytes(data)
     write_files(folder)

@@ -1,4 +1,6 @@
-"""Hostile cases of vibrating bodies: each is refused in a few clean lines, told to take long, or runs within seconds."""
+"""Hostile cases of vibrating bodies: each is refused in a few clean lines, told to take
+long, or runs within seconds.
+"""
 
 from __future__ import annotations
 
@@ -24,7 +26,12 @@ def run_unless_told(table: Table) -> None:
 def test_hostile_elastic_cases_run_or_are_told() -> None:
     import_module("vibroimpact.cases.elastic.bodies")  # once, and not in each process
     cases = list(elastic_cases(number(40), seed(4)))
-    outcomes = [attack(run_unless_told, [case])[0] for case in cases]  # each in a process of its own: modes are remembered there
+    # each in a process of its own: modes are remembered there
+    outcomes = [attack(run_unless_told, [case])[0] for case in cases]
     print(Counter(one.kind for one in outcomes))
-    told = [f"{one.kind}: {one.text}\n    of {case!r:.2000}" for case, one in zip(cases, outcomes, strict=True) if one.failed]
+    told = [
+        f"{one.kind}: {one.text}\n    of {case!r:.2000}"
+        for case, one in zip(cases, outcomes, strict=True)
+        if one.failed
+    ]
     assert not told, "\n".join(told)

@@ -1,4 +1,6 @@
-"""Random names of cases, sensors and materials in every export format: each says what it says under plain names."""
+"""Random names of cases, sensors and materials in every export format: each says what it
+says under plain names.
+"""
 
 from __future__ import annotations
 
@@ -50,7 +52,8 @@ def write_and_read(given: tuple[str, str, list[str], tuple[str, str]]) -> None:
     assert said(find_export_format(format), named(case, sensors, materials)) == plainly(format)
 
 
-@pytest.mark.parametrize("format", [name for name in export_formats() if name != "vtu"])  # where no name goes
+# where no name goes
+@pytest.mark.parametrize("format", [name for name in export_formats() if name != "vtu"])
 def test_random_names_do_nothing(format: str) -> None:
     if format == "parquet":
         pytest.importorskip("pyarrow")
@@ -58,7 +61,11 @@ def test_random_names_do_nothing(format: str) -> None:
         pytest.importorskip("pyuff")
     chance = random.Random(f"names for {format} {seed(0)}")
     names = [[some_name(chance) for _ in range(6)] for _ in range(number(10))]
-    inputs = [(format, one[0], [*one[1:3], one[3] + "3"], (one[4], one[5])) for one in names if len({one[1], one[2], one[3] + "3"}) == 3]
+    inputs = [
+        (format, one[0], [*one[1:3], one[3] + "3"], (one[4], one[5]))
+        for one in names
+        if len({one[1], one[2], one[3] + "3"}) == 3
+    ]
     plainly(format)  # for all
     found = failures(write_and_read, inputs)
     assert not found, found

@@ -1,6 +1,8 @@
-"""Folders of results whose files were changed, and whose checksums are right: every command that reads them back refuses, or does its work.
+"""Folders of results whose files were changed, and whose checksums are right: every command that
+reads them back refuses, or does its work.
 
-What a disk damages is refused by its checksum (`test_fuzz_results`); this is what another program or a person could have written.
+What a disk damages is refused by its checksum (`test_fuzz_results`); this is what another program
+or a person could have written.
 """
 
 from __future__ import annotations
@@ -37,14 +39,18 @@ class Change(NamedTuple):
 
 @pytest.fixture(autouse=True)
 def quick(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Leave out the other process that looks at files first: of these HDF5 neither hangs nor crashes."""
+    """Leave out the other process that looks at files first: of these HDF5 neither hangs
+    nor crashes.
+    """
     monkeypatch.setattr("vibroimpact.files.damaged_part.damaged_part", lambda path: "")
     monkeypatch.setattr("vibroimpact.files.damaged_part.endures", lambda path: True, raising=False)
 
 
 def changes(files: list[str], count: int, first: int) -> list[Change]:
     draw = random.Random(seed(first))
-    return [Change(files[place % len(files)], draw.getrandbits(32)) for place in range(number(count))]
+    return [
+        Change(files[place % len(files)], draw.getrandbits(32)) for place in range(number(count))
+    ]
 
 
 def use_changed(use: Callable[[Path], Any], folder: Path, change: Change) -> None:
@@ -55,7 +61,9 @@ def use_changed(use: Callable[[Path], Any], folder: Path, change: Change) -> Non
     use(copy)
 
 
-def no_failures(use: Callable[[Path], Any], folder: Path, files: list[str], count: int, first: int) -> None:
+def no_failures(
+    use: Callable[[Path], Any], folder: Path, files: list[str], count: int, first: int
+) -> None:
     told = failures(partial(use_changed, use, folder), changes(files, count, first))
     assert not told, told
 
@@ -70,8 +78,17 @@ def use_result(folder: Path) -> None:
 
 @FEW
 def test_results(few: int, tmp_path: Path) -> None:
-    vi.save_result(vi.simulate(vi.read_case({**TABLE, "run": {"impacts": 1, "duration": "20 ms"}})), tmp_path / "out")
-    no_failures(use_result, tmp_path / "out", ["result.nc", "result.nc", "summary.json", "case.toml"], 12 * few, 51)
+    vi.save_result(
+        vi.simulate(vi.read_case({**TABLE, "run": {"impacts": 1, "duration": "20 ms"}})),
+        tmp_path / "out",
+    )
+    no_failures(
+        use_result,
+        tmp_path / "out",
+        ["result.nc", "result.nc", "summary.json", "case.toml"],
+        12 * few,
+        51,
+    )
 
 
 def use_study(folder: Path) -> None:
@@ -89,7 +106,11 @@ def bound_study(folder: Path) -> None:
 def studies(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The folders of a study of rigid drops, and of one with classes and signals."""
     place = tmp_path_factory.mktemp("studies")
-    over = {"drop.height": ["1 m", "2 m", "3 m"], "contact.restitution": [0.3, 0.5], "plate.material": ["steel", "aluminium"]}
+    over = {
+        "drop.height": ["1 m", "2 m", "3 m"],
+        "contact.restitution": [0.3, 0.5],
+        "plate.material": ["steel", "aluminium"],
+    }
     vi.run_sweep(vi.read_sweep({**plain_case(), "sweep": {"over": over}}), place / "rigid")
     of_class = {"over": {"contact.restitution": {"from": 0.4, "to": 0.6}}}
     sweep = {
@@ -106,7 +127,9 @@ def studies(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @FEW
 def test_studies(few: int, studies: Path) -> None:
-    no_failures(use_study, studies / "rigid", ["study.nc", "study.nc", "summary.json"], 12 * few, 53)
+    no_failures(
+        use_study, studies / "rigid", ["study.nc", "study.nc", "summary.json"], 12 * few, 53
+    )
     no_failures(bound_study, studies / "classes", ["study.nc"], 6 * few, 54)
 
 
@@ -116,7 +139,9 @@ def resume(sweep: vi.Sweep, folder: Path) -> None:
 
 @FEW
 def test_ledgers(few: int, tmp_path: Path) -> None:
-    sweep = vi.read_sweep({**plain_case(), "sweep": {"over": {"drop.height": ["1 m", "2 m", "3 m"]}}})
+    sweep = vi.read_sweep(
+        {**plain_case(), "sweep": {"over": {"drop.height": ["1 m", "2 m", "3 m"]}}}
+    )
 
     def stop(done: int, total: int) -> None:
         raise KeyboardInterrupt
@@ -124,18 +149,32 @@ def test_ledgers(few: int, tmp_path: Path) -> None:
     with pytest.raises(KeyboardInterrupt):
         vi.run_sweep(sweep, tmp_path / "out", progress=stop)
     chunks = [f"chunks/{file.name}" for file in (tmp_path / "out" / "chunks").iterdir()]
-    no_failures(partial(resume, sweep), tmp_path / "out", [LEDGER, LEDGER, "summary.json", *chunks], 6 * few, 55)
+    no_failures(
+        partial(resume, sweep),
+        tmp_path / "out",
+        [LEDGER, LEDGER, "summary.json", *chunks],
+        6 * few,
+        55,
+    )
 
 
 @FEW
 def test_calibrations(few: int, tmp_path: Path) -> None:
-    case = plain_case(contact={"law": "adams-impact", "damping_max": 100.0}, run={"impacts": 2}, calibrate={"target": {"restitution": 0.6}})
+    case = plain_case(
+        contact={"law": "adams-impact", "damping_max": 100.0},
+        run={"impacts": 2},
+        calibrate={"target": {"restitution": 0.6}},
+    )
     what = read_calibration(case)
     folder = save_calibration(what.case, calibrate_case(what), tmp_path / "out")
-    no_failures(load_drop, folder, ["calibration.json", "calibration.json", "case.toml"], 6 * few, 56)
+    no_failures(
+        load_drop, folder, ["calibration.json", "calibration.json", "case.toml"], 6 * few, 56
+    )
 
 
 @FEW
 def test_reproductions(few: int, tmp_path: Path) -> None:
     reproduce_paper(tmp_path / "out", ["table1"])
-    no_failures(vi.remake_report, tmp_path / "out", ["parts/table1.json", "summary.json"], 6 * few, 57)
+    no_failures(
+        vi.remake_report, tmp_path / "out", ["parts/table1.json", "summary.json"], 6 * few, 57
+    )

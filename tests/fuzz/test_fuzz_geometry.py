@@ -1,4 +1,6 @@
-"""Damaged STEP files: Gmsh may stop, crash or never end, in a process of its own; what is left of it is a sentence."""
+"""Damaged STEP files: Gmsh may stop, crash or never end, in a process of its own; what is
+left of it is a sentence.
+"""
 
 from __future__ import annotations
 
@@ -45,10 +47,25 @@ def damaged(data: bytes, choose: random.Random) -> bytes:
         elif kind == 2:
             data = data[: at + len(data) // 4]
         elif kind == 3:
-            hostile = choose.choice([b"#1", b"#0", b"#999999", b"1e300", b"$", b"'" + b"\x1b[31m" * 99, b"(" * 20_000, b"\0", b"nan"])
+            hostile = choose.choice(
+                [
+                    b"#1",
+                    b"#0",
+                    b"#999999",
+                    b"1e300",
+                    b"$",
+                    b"'" + b"\x1b[31m" * 99,
+                    b"(" * 20_000,
+                    b"\0",
+                    b"nan",
+                ]
+            )
             data = data[:at] + hostile + data[at:]
         else:
-            data = data.replace(str(choose.choice([300, 200, 10])).encode(), choose.choice([b"0", b"1e12", b"-5", b"1e-9"]))
+            data = data.replace(
+                str(choose.choice([300, 200, 10])).encode(),
+                choose.choice([b"0", b"1e12", b"-5", b"1e-9"]),
+            )
     return data
 
 
@@ -65,13 +82,22 @@ def test_a_truncated_geometry(step: bytes, tmp_path: Path) -> None:
 
 @pytest.mark.slow
 def test_damaged_geometries(step: bytes, tmp_path: Path) -> None:
-    told = failures(lambda data: read_of(tmp_path, data), [step, *(damaged(step, random.Random(seed(one))) for one in range(number(30)))])
+    told = failures(
+        lambda data: read_of(tmp_path, data),
+        [step, *(damaged(step, random.Random(seed(one))) for one in range(number(30)))],
+    )
     assert not told, told
 
 
-def test_a_geometry_that_takes_too_long(step: bytes, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_geometry_that_takes_too_long(
+    step: bytes, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setattr("vibroimpact.meshes.geometry.MOST_SECONDS", 0.06)
     file = tmp_path / "box.step"
     file.write_bytes(step)
-    with pytest.raises(vi.InputError, match=r"Gmsh did not end within 0.001 minutes and was stopped; give a larger element size, or mesh"):
+    with pytest.raises(
+        vi.InputError,
+        match=r"Gmsh did not end within 0.001 minutes and was stopped; give a larger element "
+        r"size, or mesh",
+    ):
         mesh_geometry(file)

@@ -1,4 +1,6 @@
-"""Damaged mesh files: each is read or refused with a sentence, quickly; and what is read goes on to its modes, or is refused there."""
+"""Damaged mesh files: each is read or refused with a sentence, quickly; and what is read
+goes on to its modes, or is refused there.
+"""
 
 from __future__ import annotations
 
@@ -248,7 +250,11 @@ $Elements
 2 2 4 7 1
 $EndElements
 """
-SEEDS = {".bdf": [NASTRAN, LINKED_NASTRAN], ".inp": [ABAQUS, LINKED_ABAQUS, PLACED_ABAQUS], ".msh": [GMSH_2, GMSH_4, GMSH_40]}
+SEEDS = {
+    ".bdf": [NASTRAN, LINKED_NASTRAN],
+    ".inp": [ABAQUS, LINKED_ABAQUS, PLACED_ABAQUS],
+    ".msh": [GMSH_2, GMSH_4, GMSH_40],
+}
 HOSTILE = [
     "1000000000000", "999999999999999999999999", "-1", "0", "1e999", "nan", "inf", "-inf", "1_0", "1.5-3", "1.D+400", "0x10",
     "\u0663", "\x00", "\xff", "\ufeff", "\u2028", "\x0b", "\x1c", "\t", " " * 300, '"', "'", "$", ",", ",,,,,,,,,,,,", "*", "**",
@@ -278,7 +284,9 @@ def _edit_bytes(data: bytes, choose: random.Random) -> bytes:
     changed = bytearray(data)
     for _ in range(choose.randint(1, 5)):
         if changed:
-            changed[choose.randrange(len(changed))] = choose.choice([choose.randrange(256), choose.choice(b"0123456789 ,.-+*$\n\t")])
+            changed[choose.randrange(len(changed))] = choose.choice(
+                [choose.randrange(256), choose.choice(b"0123456789 ,.-+*$\n\t")]
+            )
     return bytes(changed)
 
 
@@ -303,7 +311,9 @@ def _replace_word(data: bytes, choose: random.Random) -> bytes:
     return b" ".join(words)
 
 
-def _on_lines(change: Callable[[list[bytes], int, int], None]) -> Callable[[bytes, random.Random], bytes]:
+def _on_lines(
+    change: Callable[[list[bytes], int, int], None],
+) -> Callable[[bytes, random.Random], bytes]:
     def damage(data: bytes, choose: random.Random) -> bytes:
         lines = data.split(b"\n")
         change(lines, choose.randrange(len(lines)), choose.randrange(len(lines)))
@@ -340,7 +350,9 @@ class Given(NamedTuple):
 
 
 def at_work(folder: Path) -> Callable[[Given], None]:
-    """Return what is done with a damaged file: read it, and look at the mesh; then take it as the plate of a case, down to its modes."""
+    """Return what is done with a damaged file: read it, and look at the mesh; then take
+    it as the plate of a case, down to its modes.
+    """
 
     def work(given: Given) -> None:
         file = folder / f"mesh{given.suffix}"
@@ -349,8 +361,16 @@ def at_work(folder: Path) -> Callable[[Given], None]:
         assert np.isfinite(mesh.nodes).all()
         assert all(block.connectivity.max() < len(mesh.nodes) for block in mesh.blocks)
         assert all(members.max() < len(mesh.nodes) for members in mesh.node_sets.values())
-        assert all(members.max() < mesh.number_of_elements for members in mesh.element_sets.values())
-        plate = {"material": "steel", "model": "elastic", "mesh": str(file), "supports": "free", "modes": 2}
+        assert all(
+            members.max() < mesh.number_of_elements for members in mesh.element_sets.values()
+        )
+        plate = {
+            "material": "steel",
+            "model": "elastic",
+            "mesh": str(file),
+            "supports": "free",
+            "modes": 2,
+        }
         case = vi.read_case(plain_case(plate=plate, drop={"speed": 1.0, "position": [0.2, 0.2]}))
         case_explained(case)
         vi.compute_modes(case)
@@ -360,7 +380,12 @@ def at_work(folder: Path) -> Callable[[Given], None]:
 
 @pytest.mark.parametrize("suffix", SEEDS)
 def test_damaged_meshes(suffix: str, tmp_path: Path) -> None:
-    """A reader returns a mesh or raises InputError, quickly, whatever the file holds; and so does what a case makes of the mesh."""
+    """A reader returns a mesh or raises InputError, quickly, whatever the file holds; and
+    so does what a case makes of the mesh.
+    """
     chosen = [random.Random(f"{suffix} {seed(one)}") for one in range(number(100))]
-    told = failures(at_work(tmp_path), [Given(suffix, damaged(choose.choice(SEEDS[suffix]), choose)) for choose in chosen])
+    told = failures(
+        at_work(tmp_path),
+        [Given(suffix, damaged(choose.choice(SEEDS[suffix]), choose)) for choose in chosen],
+    )
     assert not told, told

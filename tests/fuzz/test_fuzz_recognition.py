@@ -1,4 +1,6 @@
-"""Damaged and hostile data sets, cards and graphs of models are refused in a sentence, or give probabilities."""
+"""Damaged and hostile data sets, cards and graphs of models are refused in a sentence, or
+give probabilities.
+"""
 
 from __future__ import annotations
 
@@ -40,7 +42,9 @@ def read_dataset(use: Callable[[Path], None], made: Path, hostile: Hostile) -> N
     damage_dataset(copy / "dataset.nc", hostile)
     with pytest.MonkeyPatch.context() as patch:
         if hostile.change != "bytes":  # such files HDF5 endures
-            patch.setattr("vibroimpact.files.damaged_part.endures", lambda path: True, raising=False)
+            patch.setattr(
+                "vibroimpact.files.damaged_part.endures", lambda path: True, raising=False
+            )
         use(copy)
 
 
@@ -77,7 +81,9 @@ def made(tiny_models: Path) -> Path:
     return tiny_models
 
 
-def no_failures(function: Callable[[Hostile], None], changes: Iterable[str], few: int, first: int) -> None:
+def no_failures(
+    function: Callable[[Hostile], None], changes: Iterable[str], few: int, first: int
+) -> None:
     told = failures(function, hostiles(changes, number(few), seed(first)))
     assert not told, told
 

@@ -1,4 +1,6 @@
-"""Damaged sound and universal files: each is read, or refused by one message, within bounds of time and memory."""
+"""Damaged sound and universal files: each is read, or refused by one message, within
+bounds of time and memory.
+"""
 
 from __future__ import annotations
 
@@ -24,7 +26,11 @@ TAIL = bytes.fromhex("800000aa00389b71")
 
 
 def chunk(order: str, name: bytes, content: bytes, size: int | None = None) -> bytes:
-    return struct.pack(f"{order}4sI", name, len(content) if size is None else size) + content + b"\0" * (len(content) % 2)
+    return (
+        struct.pack(f"{order}4sI", name, len(content) if size is None else size)
+        + content
+        + b"\0" * (len(content) % 2)
+    )
 
 
 def wave_file(choose: random.Random) -> bytes:
@@ -42,13 +48,19 @@ def wave_file(choose: random.Random) -> bytes:
     wide, heard = mostly(width, 0, 9, 255), mostly(channels, 0, 255, 65535)
     frame, bits = mostly(wide * heard % 65536, 0, 1, 65535), mostly(8 * width, 0, 1, 12, 20, 65535)
     rate = mostly(8000, *RATES)
-    form = struct.pack(f"{order}HHIIHH", tag, heard, rate, mostly(rate * frame % 2**32, 0), frame, bits)
+    form = struct.pack(
+        f"{order}HHIIHH", tag, heard, rate, mostly(rate * frame % 2**32, 0), frame, bits
+    )
     if tag == 0xFFFE:
-        form += struct.pack(f"{order}HHIIHH", 22, bits, 0, choose.choice((1, 1, 3, 6)), 0, 16) + choose.choice(
-            (TAIL, TAIL, TAIL, TAIL, b"", TAIL[::-1])
-        )
+        form += struct.pack(
+            f"{order}HHIIHH", 22, bits, 0, choose.choice((1, 1, 3, 6)), 0, 16
+        ) + choose.choice((TAIL, TAIL, TAIL, TAIL, b"", TAIL[::-1]))
     samples = choose.randbytes(choose.choice((0, 1, 2, 30, 2000, 100_001, 2000, 4000)))
-    words = b"INFO" + chunk(order, b"ICMT", choose.choice(COMMENTS if choose.random() < 0.5 else COMMENTS[:1]).encode() + b"\0")
+    words = b"INFO" + chunk(
+        order,
+        b"ICMT",
+        choose.choice(COMMENTS if choose.random() < 0.5 else COMMENTS[:1]).encode() + b"\0",
+    )
     pieces = [
         chunk(order, b"fmt ", form, size()),
         chunk(order, b"data", samples, size()),
@@ -56,11 +68,15 @@ def wave_file(choose: random.Random) -> bytes:
     if choose.random() < 0.6:
         pieces.insert(choose.randrange(3), chunk(order, b"LIST", words, size()))
     if choose.random() < 0.3:
-        pieces.insert(choose.randrange(3), chunk(order, b"ds64", choose.randbytes(choose.choice((0, 8, 24)))))
+        pieces.insert(
+            choose.randrange(3), chunk(order, b"ds64", choose.randbytes(choose.choice((0, 8, 24))))
+        )
     if choose.random() < 0.2:
         pieces = pieces * choose.choice((0, 1, 2, 2000 if len(samples) < 100 else 2))
     kind = choose.choice((b"RIFF", b"RIFF", b"RF64")) if order == "<" else b"RIFX"
-    return kind + struct.pack(f"{order}I", choose.choice((1000, *SIZES))) + b"WAVE" + b"".join(pieces)
+    return (
+        kind + struct.pack(f"{order}I", choose.choice((1000, *SIZES))) + b"WAVE" + b"".join(pieces)
+    )
 
 
 def universal_file(choose: random.Random) -> bytes:
@@ -68,7 +84,9 @@ def universal_file(choose: random.Random) -> bytes:
 
     def field(value: object, width: int) -> str:
         if choose.random() < 0.02:
-            value = choose.choice((0, -1, 1, 5, 9, 10**9, 2**31, "nan", "inf", "1e999", "", "x", "9" * 30, "-0.0"))
+            value = choose.choice(
+                (0, -1, 1, 5, 9, 10**9, 2**31, "nan", "inf", "1e999", "", "x", "9" * 30, "-0.0")
+            )
         return str(value).rjust(width)
 
     pieces = []
@@ -93,9 +111,16 @@ def universal_file(choose: random.Random) -> bytes:
                 + "     0     0           0           0"
             )
         lines = [header, f"channel {number}", "NONE", "NONE", "NONE", "NONE"]
-        lines.append("    1         0    0         0  NONE               0   0  NONE               0   0")
         lines.append(
-            field(ordinate, 10) + field(count, 10) + field(int(even), 10) + field("0.0", 13) + field("1.0E-03", 13) + field("0.0", 13)
+            "    1         0    0         0  NONE               0   0  NONE               0   0"
+        )
+        lines.append(
+            field(ordinate, 10)
+            + field(count, 10)
+            + field(int(even), 10)
+            + field("0.0", 13)
+            + field("1.0E-03", 13)
+            + field("0.0", 13)
         )
         lines.append(field(17, 10) + "    0    0    0 Time                 s                   ")
         lines.append(
@@ -107,15 +132,20 @@ def universal_file(choose: random.Random) -> bytes:
         values = [choose.gauss(0.0, 1.0) for _ in range(count)]
         if binary:
             body = b"".join(
-                (b"" if even else struct.pack("<f", 1e-3 * at)) + struct.pack("<d" if double else "<f", one)
+                (b"" if even else struct.pack("<f", 1e-3 * at))
+                + struct.pack("<d" if double else "<f", one)
                 for at, one in enumerate(values)
             )
         else:
             cells = [
-                ("" if even else f"{1e-3 * at:13.5E}") + (f"{one:20.11E}" if double else f"{one:13.5E}") for at, one in enumerate(values)
+                ("" if even else f"{1e-3 * at:13.5E}")
+                + (f"{one:20.11E}" if double else f"{one:13.5E}")
+                for at, one in enumerate(values)
             ]
             each = (4 if double else 6) if even else (2 if double else 3)
-            body = "\n".join("".join(cells[at : at + each]) for at in range(0, count, each)).encode()
+            body = "\n".join(
+                "".join(cells[at : at + each]) for at in range(0, count, each)
+            ).encode()
         if choose.random() < 0.1:
             body = choose.randbytes(length)
         pieces.append("\n".join(["    -1", *lines]).encode() + b"\n" + body + b"\n    -1\n")
@@ -127,13 +157,18 @@ def universal_file(choose: random.Random) -> bytes:
         + "\n"
         + "".join(field("1.0D+00", 25) for _ in range(3))
     )
-    pieces.insert(choose.randrange(len(pieces) + 1), units.encode() + b"\n" + field("2.7D+02", 25).encode() + b"\n    -1\n")
+    pieces.insert(
+        choose.randrange(len(pieces) + 1),
+        units.encode() + b"\n" + field("2.7D+02", 25).encode() + b"\n    -1\n",
+    )
     return b"".join(pieces)
 
 
 @pytest.mark.parametrize(("name", "make"), [("sound.wav", wave_file), ("test.uff", universal_file)])
 @pytest.mark.parametrize("few", [40, pytest.param(400, marks=pytest.mark.slow)])
-def test_damaged_records(name: str, make: Callable[[random.Random], bytes], few: int, tmp_path: Path) -> None:
+def test_damaged_records(
+    name: str, make: Callable[[random.Random], bytes], few: int, tmp_path: Path
+) -> None:
     choose = random.Random(attack.seed(58 + few))
 
     def read(content: bytes) -> None:
@@ -141,5 +176,7 @@ def test_damaged_records(name: str, make: Callable[[random.Random], bytes], few:
         vi.record_table(vi.read_records(tmp_path / name), ["rms", "peak", "clipped_part"])
 
     whole = [make(choose) for _ in range(attack.number(few))]
-    files = [damaged_bytes(content, choose) if choose.random() < 0.5 else content for content in whole]
+    files = [
+        damaged_bytes(content, choose) if choose.random() < 0.5 else content for content in whole
+    ]
     assert attack.failures(read, files) == ""

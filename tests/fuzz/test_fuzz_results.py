@@ -1,4 +1,6 @@
-"""Damage to any file that is read back ends in a sentence, or changes nothing: no number is believed that was not written."""
+"""Damage to any file that is read back ends in a sentence, or changes nothing: no number
+is believed that was not written.
+"""
 
 from __future__ import annotations
 
@@ -34,7 +36,9 @@ from vibroimpact.studies.ledger import Span, make_ledger, open_ledger
 @pytest.fixture(autouse=True)
 def quick(monkeypatch: pytest.MonkeyPatch) -> None:
     """Leave out the process that looks for the part to name: what is refused is refused before."""
-    monkeypatch.setattr("vibroimpact.files.damaged_part.damaged_part", lambda path: "", raising=False)
+    monkeypatch.setattr(
+        "vibroimpact.files.damaged_part.damaged_part", lambda path: "", raising=False
+    )
 
 
 class Damage(NamedTuple):
@@ -46,7 +50,9 @@ class Damage(NamedTuple):
 
 
 def mark(value: Any) -> str:
-    """Return a fingerprint of all numbers and texts in a value; it is not the one that is tested."""
+    """Return a fingerprint of all numbers and texts in a value; it is not the one that is
+    tested.
+    """
 
     def plain(one: Any) -> Any:
         if isinstance(one, np.ndarray):
@@ -85,7 +91,9 @@ def text_damaged(data: bytes, draw: random.Random) -> bytes:
     """Return a text in which one number is another, or a value of another kind."""
     found = list(re.finditer(rb"-?\d+(\.\d+)?(e-?\d+)?|\"[^\"\n]*\"|null", data))
     match = draw.choice(found)
-    other = draw.choice((b"[1, 2]", b"null", b"{}", b'"x"', b"-1e400", b"1e308", b"7", b"[]", b"true"))
+    other = draw.choice(
+        (b"[1, 2]", b"null", b"{}", b'"x"', b"-1e400", b"1e308", b"7", b"[]", b"true")
+    )
     return data[: match.start()] + other + data[match.end() :]
 
 
@@ -101,7 +109,9 @@ def damages(files: list[str], few: int, seed: int) -> list[Damage]:
     ]
 
 
-def check(read: Callable[[Path], Any], folder: Path, copy: Path, expected: str, damage: Damage) -> None:
+def check(
+    read: Callable[[Path], Any], folder: Path, copy: Path, expected: str, damage: Damage
+) -> None:
     """Read a folder of which a file was damaged; fails if that gives other numbers."""
     shutil.rmtree(copy, ignore_errors=True)
     shutil.copytree(folder, copy)
@@ -116,7 +126,9 @@ def check(read: Callable[[Path], Any], folder: Path, copy: Path, expected: str, 
 def no_failures(read: Callable[[Path], Any], folder: Path, files: list[str], few: int) -> None:
     expected = mark(read(folder))
     copy = folder.with_name("copy")
-    found = attack.failures(partial(check, read, folder, copy, expected), damages(files, few, seed=attack.seed(18)))
+    found = attack.failures(
+        partial(check, read, folder, copy, expected), damages(files, few, seed=attack.seed(18))
+    )
     assert not found, found
 
 
@@ -137,7 +149,13 @@ def a_result() -> Result:
         np.ones(5),
         (0.1, 0.2),
     )
-    peaks = {"plate": {"max_velocity_m_s": 0.5, "frequencies_Hz": [100.0, 200.0], "frequency_errors": [0.1, None]}}
+    peaks = {
+        "plate": {
+            "max_velocity_m_s": 0.5,
+            "frequencies_Hz": [100.0, 200.0],
+            "frequency_errors": [0.1, None],
+        }
+    }
     facts: dict[str, float | str] = {"treatment": "consistent", "compliance_m_N": 1e-9}
     return replace(
         result,
@@ -160,17 +178,31 @@ def read_all_of_a_result(folder: Path) -> Any:
 def test_results(tmp_path: Path) -> None:
     (tmp_path / "out").mkdir()
     write_result(a_result(), tmp_path / "out")
-    no_failures(read_all_of_a_result, tmp_path / "out", ["result.nc", "result.nc", "summary.json", "case.toml"], 12)
+    no_failures(
+        read_all_of_a_result,
+        tmp_path / "out",
+        ["result.nc", "result.nc", "summary.json", "case.toml"],
+        12,
+    )
 
 
 def read_all_of_a_study(folder: Path) -> Any:
     study = vi.read_study(folder)
     values = [study.values(name) for name in study.shapes]
-    return [replace(study, path=Path()), values, study.doubts, study.times("a1") if "signal_a1" in study.shapes else None]
+    return [
+        replace(study, path=Path()),
+        values,
+        study.doubts,
+        study.times("a1") if "signal_a1" in study.shapes else None,
+    ]
 
 
 def test_studies(tmp_path: Path) -> None:
-    over = {"drop.height": ["1 m", "2 m", "3 m"], "contact.restitution": [0.3, 0.5, 0.9], "plate.material": ["steel", "aluminium"]}
+    over = {
+        "drop.height": ["1 m", "2 m", "3 m"],
+        "contact.restitution": [0.3, 0.5, 0.9],
+        "plate.material": ["steel", "aluminium"],
+    }
     sweep = vi.read_sweep({**plain_case(), "sweep": {"over": over}})
     no_failures(read_all_of_a_study, vi.run_sweep(sweep, tmp_path / "out"), ["study.nc"], 12)
 
@@ -185,9 +217,15 @@ def calibration(tmp_path_factory: pytest.TempPathFactory) -> Path:
     from vibroimpact.calibration.calibrate_case import calibrate_case, read_calibration
     from vibroimpact.calibration.folder import save_calibration
 
-    case = plain_case(contact={"law": "adams-impact", "damping_max": 100.0}, run={"impacts": 2}, calibrate={"target": {"restitution": 0.6}})
+    case = plain_case(
+        contact={"law": "adams-impact", "damping_max": 100.0},
+        run={"impacts": 2},
+        calibrate={"target": {"restitution": 0.6}},
+    )
     what = read_calibration(case)
-    return save_calibration(what.case, calibrate_case(what), tmp_path_factory.mktemp("calibrations") / "out")
+    return save_calibration(
+        what.case, calibrate_case(what), tmp_path_factory.mktemp("calibrations") / "out"
+    )
 
 
 def test_calibrations(calibration: Path) -> None:
@@ -208,7 +246,11 @@ def read_chunk_or_refuse(folder: Path) -> Any:
 
 
 def test_chunks(tmp_path: Path) -> None:
-    arrays = {"force": np.arange(400.0), "outcome": np.full(400, 3, dtype=np.int8), "none": np.zeros(400)}
+    arrays = {
+        "force": np.arange(400.0),
+        "outcome": np.full(400, 3, dtype=np.int8),
+        "none": np.zeros(400),
+    }
     (tmp_path / "out").mkdir()
     write_chunk(tmp_path / "out", Span(0, 0, 400), ChunkResult(arrays, {7: "it broke"}), "study")
     file = str(chunk_path(Path(), 0))

@@ -38,7 +38,9 @@ def hostile(random: np.random.Generator, number: int, samples: int) -> np.ndarra
     ]
     scales = 10.0 ** random.choice([0, 0, 0, -3, 3, -150, 150, -300, 300, -320, 307], number)
     with np.errstate(over="ignore", under="ignore", invalid="ignore"):
-        return np.array([scale * kinds[random.integers(len(kinds))]() for scale in scales]).reshape(number, samples)
+        return np.array([scale * kinds[random.integers(len(kinds))]() for scale in scales]).reshape(
+            number, samples
+        )
 
 
 @pytest.mark.parametrize("lengths", [10, pytest.param(50, marks=pytest.mark.slow)])
@@ -50,16 +52,28 @@ def test_hostile_signals(lengths: int) -> None:
         settings = {"dead_time": float(random.choice([0.0, 5e-3, 1e9]))}
         if random.random() < 0.5:
             settings["threshold"] = float(10.0 ** random.choice([-300, -3, 0, 300]))
-        table = vi.feature_table(signals, float(10.0 ** random.choice([-300, 0, 4, 6, 300])), **settings)
+        table = vi.feature_table(
+            signals, float(10.0 ** random.choice([-300, 0, 4, 6, 300])), **settings
+        )
         assert np.array_equal(np.isfinite(table.values), table.reasons == Reason.NONE)
         seen |= set(table.reasons.ravel().tolist())
         shares = [
-            name for name in table.names if name.startswith(("octave", "wavelet", "spectral_entropy", "spectral_flatness", "clipped"))
+            name
+            for name in table.names
+            if name.startswith(
+                ("octave", "wavelet", "spectral_entropy", "spectral_flatness", "clipped")
+            )
         ]
         for name in shares:
             there = table[name][np.isfinite(table[name])]
             assert np.all((there >= 0.0) & (there <= 1.0 + 1e-9)), name
-        for name in ("kurtosis", "crest_factor", "shape_factor", "impulse_factor", "clearance_factor"):
+        for name in (
+            "kurtosis",
+            "crest_factor",
+            "shape_factor",
+            "impulse_factor",
+            "clearance_factor",
+        ):
             there = table[name][np.isfinite(table[name])]
             assert np.all(there >= 1.0 - 1e-9), name
     # all reasons occur but the one that no feature of ours gives

@@ -1,4 +1,6 @@
-"""Hostile studies: each is refused in a few clean lines, or a few of its drops are computed, within seconds."""
+"""Hostile studies: each is refused in a few clean lines, or a few of its drops are
+computed, within seconds.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,6 @@
-"""Damaged tables and records: each is read or refused with a sentence, quickly; and what is read goes on to what it is used for."""
+"""Damaged tables and records: each is read or refused with a sentence, quickly; and what
+is read goes on to what it is used for.
+"""
 
 from __future__ import annotations
 
@@ -31,9 +33,12 @@ def force_record() -> str:
     """Two half sines, as a force sensor records them."""
     time = np.arange(0.0, 0.6, 2e-4)
     force = sum(
-        np.where(np.abs(time - at) < 2e-3, most * np.cos(math.pi * (time - at) / 4e-3), 0.0) for at, most in ((0.01, 800.0), (0.45, 500.0))
+        np.where(np.abs(time - at) < 2e-3, most * np.cos(math.pi * (time - at) / 4e-3), 0.0)
+        for at, most in ((0.01, 800.0), (0.45, 500.0))
     )
-    return "time [ms],force (N)\n" + "".join(f"{1e3 * at:.6g},{value:.5g}\n" for at, value in zip(time, force, strict=True))
+    return "time [ms],force (N)\n" + "".join(
+        f"{1e3 * at:.6g},{value:.5g}\n" for at, value in zip(time, force, strict=True)
+    )
 
 
 def position_record() -> str:
@@ -96,7 +101,9 @@ def damaged(data: bytes, choose: random.Random) -> bytes:
             data = data[:at] + choose.choice(HOSTILE).encode("utf-8", "surrogatepass") + data[at:]
         elif kind == 4:
             cells = rows[row].split(b",")
-            cells[choose.randrange(len(cells))] = choose.choice(HOSTILE).encode("utf-8", "surrogatepass")
+            cells[choose.randrange(len(cells))] = choose.choice(HOSTILE).encode(
+                "utf-8", "surrogatepass"
+            )
             data = b"\n".join([*rows[:row], b",".join(cells), *rows[row + 1 :]])
         elif kind == 5:
             rows[row], rows[other] = rows[other], rows[row]
@@ -121,7 +128,9 @@ def scaled(cell: bytes, factor: float) -> bytes:
 def observed(file: Path) -> None:
     """Take what a file tells as the target of a calibration, up to where the fit begins."""
     section = {"target": str(file)}
-    case = read_calibration(plain_case(contact={"law": "adams-impact", "damping_max": 100.0}, calibrate=section)).case
+    case = read_calibration(
+        plain_case(contact={"law": "adams-impact", "damping_max": 100.0}, calibrate=section)
+    ).case
     assert case.calibrate is not None
     target_of(case, problem_of(case), case.calibrate)
 
@@ -134,7 +143,9 @@ def swept(file: Path) -> None:
 
 
 def read(file: Path) -> None:
-    read_table_file(file, {"time": "s", "force": "N", "radius": "m", "share": "", "restitution": ""})
+    read_table_file(
+        file, {"time": "s", "force": "N", "radius": "m", "share": "", "restitution": ""}
+    )
 
 
 USES: dict[str, tuple[Callable[[Path], None], Callable[[], bytes]]] = {
@@ -166,11 +177,16 @@ def test_damaged_tables(use: str, tmp_path: Path) -> None:
         file.write_bytes(data)
         work(file)
 
-    told = failures(attempt, [damaged(whole, random.Random(f"{use} {seed(one)}")) for one in range(number(50))])
+    told = failures(
+        attempt, [damaged(whole, random.Random(f"{use} {seed(one)}")) for one in range(number(50))]
+    )
     assert not told, told
 
 
-@pytest.mark.parametrize("header", ["[" * 90_000, "(" * 90_000, " " * 90_000 + "]", "[ " * 45_000, "a," * 45_000, "a" * 90_000])
+@pytest.mark.parametrize(
+    "header",
+    ["[" * 90_000, "(" * 90_000, " " * 90_000 + "]", "[ " * 45_000, "a," * 45_000, "a" * 90_000],
+)
 def test_a_hostile_header(header: str, tmp_path: Path) -> None:
     file = tmp_path / "table.csv"
     file.write_text(f"{header}\n1\n")

@@ -1,4 +1,6 @@
-"""Values of another kind at every place of a case: each is accepted, or refused in a clean sentence of its own, whose remedy is one."""
+"""Values of another kind at every place of a case: each is accepted, or refused in a
+clean sentence of its own, whose remedy is one.
+"""
 
 from __future__ import annotations
 
@@ -17,10 +19,19 @@ from test_fuzz_cases import check
 import vibroimpact as vi
 from attack import failures, number, seed
 from seeds import Table
-from substitutions import MISSING, MISSPELT_KEY, Substitution, all_substitutions, value_at, with_key, with_value
+from substitutions import (
+    MISSING,
+    MISSPELT_KEY,
+    Substitution,
+    all_substitutions,
+    value_at,
+    with_key,
+    with_value,
+)
 
 OF_PYDANTIC = re.compile(
-    r"Input should|Field required|Value error|valid (integer|number|string|tuple|list|dict|date|bool)|instance of|\[type=|validation error"
+    r"Input should|Field required|Value error|valid "
+    r"(integer|number|string|tuple|list|dict|date|bool)|instance of|\[type=|validation error"
     r"|(less|greater) than or equal"
 )
 """Words that the library which checks types says, and that no case file has."""
@@ -40,7 +51,9 @@ AGAIN = re.compile(r"it is then in|is wanted: write|write a point|put it in quot
 
 
 def refusal(table: Table, folder: Path) -> str:
-    """Return the message with which a case is refused, without the name of its file; "" if it is accepted."""
+    """Return the message with which a case is refused, without the name of its file; ""
+    if it is accepted.
+    """
     try:
         check(tomli_w.dumps(table).encode(), folder)
     except vi.InputError as error:
@@ -49,26 +62,43 @@ def refusal(table: Table, folder: Path) -> str:
 
 
 def remedies(message: str, changed: Substitution) -> Iterator[Table]:
-    """Yield the case in which what a message of one fault tells is done; the fault is at the place that was changed."""
+    """Yield the case in which what a message of one fault tells is done; the fault is at
+    the place that was changed.
+    """
     meant = re.search(r'Did you mean "([^"]*)"\?$', message)
     if changed.kind in (MISSPELT_KEY, MISSING):
-        if meant is not None and changed.kind == MISSPELT_KEY and meant[1] not in value_at(changed.table, changed.place[:-1]):
+        if (
+            meant is not None
+            and changed.kind == MISSPELT_KEY
+            and meant[1] not in value_at(changed.table, changed.place[:-1])
+        ):
             yield with_key(changed.case, changed.place, meant[1])
         return
     given = value_at(changed.table, changed.place)
     put: Callable[[Any], Table] = partial(with_value, changed.case, changed.place)
     for pattern in REMEDIES:
-        yield from (put(tomllib.loads(f"value = {found}")["value"]) for found in re.findall(pattern, message))
+        yield from (
+            put(tomllib.loads(f"value = {found}")["value"])
+            for found in re.findall(pattern, message)
+        )
     if "put it in quotes" in message:
         yield put(str(given))
-    if meant is not None and isinstance(given, dict) and given and "unknown key" in message and meant[1] not in given:
+    if (
+        meant is not None
+        and isinstance(given, dict)
+        and given
+        and "unknown key" in message
+        and meant[1] not in given
+    ):
         yield with_key(changed.table, (*changed.place, next(iter(given))), meant[1])
     if meant is not None and isinstance(given, str) and f'"{given}"' in message[: meant.start()]:
         yield put(meant[1])
 
 
 def is_said_well(changed: Substitution, folder: Path) -> None:
-    """Check one case: `attack` judges the length of the message; its words and its remedies are judged here."""
+    """Check one case: `attack` judges the length of the message; its words and its
+    remedies are judged here.
+    """
     message = refusal(changed.table, folder)
     if not message:
         return
@@ -77,7 +107,9 @@ def is_said_well(changed: Substitution, folder: Path) -> None:
     for remedied in remedies(message, changed) if "\n" not in message else ():
         again = refusal(remedied, folder)
         assert again != message, f"the remedy leads to itself: {message}"
-        assert not again.startswith(f"{where}: ") or not AGAIN.search(again), f"{message}\nthen {again}"
+        assert not again.startswith(f"{where}: ") or not AGAIN.search(again), (
+            f"{message}\nthen {again}"
+        )
     raise vi.InputError.of_several(message.split("\n"))
 
 
@@ -103,7 +135,11 @@ def calibrate(changed: Substitution) -> None:
 @pytest.mark.slow
 def test_calibrations_with_values_of_other_kinds() -> None:
     """What `check` accepts in [calibrate] is calibrated or refused."""
-    concerned = [changed for changed in all_substitutions() if changed.place[0] == "calibrate" and "sweep" not in changed.case]
+    concerned = [
+        changed
+        for changed in all_substitutions()
+        if changed.place[0] == "calibrate" and "sweep" not in changed.case
+    ]
     told = failures(calibrate, concerned)
     assert not told, told
 
@@ -111,16 +147,52 @@ def test_calibrations_with_values_of_other_kinds() -> None:
 @pytest.mark.parametrize(
     ("where", "kind", "words"),
     [
-        ("contact.friction.law sweep", "empty list", "contact.friction.law: [] is not the name of a friction law"),
-        ("calibrate.parameter calibrate", "empty table", "calibrate.parameter: {} is not allowed; it takes the tuned parameter"),
-        ("calibrate.parameter calibrate", "empty list", "calibrate.parameter: the list is empty; name a parameter, such as"),
+        (
+            "contact.friction.law sweep",
+            "empty list",
+            "contact.friction.law: [] is not the name of a friction law",
+        ),
+        (
+            "calibrate.parameter calibrate",
+            "empty table",
+            "calibrate.parameter: {} is not allowed; it takes the tuned parameter",
+        ),
+        (
+            "calibrate.parameter calibrate",
+            "empty list",
+            "calibrate.parameter: the list is empty; name a parameter, such as",
+        ),
         ("schema_version", "true", "schema_version: true is no version; write 1"),
-        ("sweep.over.drop.height.factor sweep", "list of texts", 'sweep.over."drop.height".factor: "x" is not a plain number'),
-        ("sweep.classes.fine.over.sphere.radius sweep", "list of tables", "sphere.radius has values that are not numbers"),
-        ("calibrate.degree calibrate", "text", 'calibrate.degree: "steel" is not allowed; it must be a whole number from 0 to 12'),
-        ("calibrate.speeds.from calibrate", "misspelt key", 'unknown key "form"; [calibrate.speeds] takes from, to, number, scale.'),
-        ("drop.spin", "table", "drop.spin: { a = 1 } is not a list; it takes angular velocity about x, y and z"),
-        ("drop.height", "infinity as a text", 'drop.height: "1e999" is beyond what can be computed'),
+        (
+            "sweep.over.drop.height.factor sweep",
+            "list of texts",
+            'sweep.over."drop.height".factor: "x" is not a plain number',
+        ),
+        (
+            "sweep.classes.fine.over.sphere.radius sweep",
+            "list of tables",
+            "sphere.radius has values that are not numbers",
+        ),
+        (
+            "calibrate.degree calibrate",
+            "text",
+            'calibrate.degree: "steel" is not allowed; it must be a whole number from 0 to 12',
+        ),
+        (
+            "calibrate.speeds.from calibrate",
+            "misspelt key",
+            'unknown key "form"; [calibrate.speeds] takes from, to, number, scale.',
+        ),
+        (
+            "drop.spin",
+            "table",
+            "drop.spin: { a = 1 } is not a list; it takes angular velocity about x, y and z",
+        ),
+        (
+            "drop.height",
+            "infinity as a text",
+            'drop.height: "1e999" is beyond what can be computed',
+        ),
     ],
 )
 def test_what_is_said_of_some(where: str, kind: str, words: str, tmp_path: Path) -> None:

@@ -1,4 +1,6 @@
-"""Quantities and units made of hostile pieces: each is read or refused with a sentence, in no time."""
+"""Quantities and units made of hostile pieces: each is read or refused with a sentence,
+in no time.
+"""
 
 from __future__ import annotations
 
@@ -38,7 +40,10 @@ def test_hostile_units() -> None:
         choose = random.Random(unit)
         told: list[InputError] = []
         for action in (
-            lambda: to_si(f"{choose.choice(['1', '1e300', '1e-300', '.5', '1e99999'])} {unit}", choose.choice(["m", "Pa", "N/m^1.5", ""])),
+            lambda: to_si(
+                f"{choose.choice(['1', '1e300', '1e-300', '.5', '1e99999'])} {unit}",
+                choose.choice(["m", "Pa", "N/m^1.5", ""]),
+            ),
             lambda: to_si(unit, "m"),
             lambda: convert_units(1.0, unit, choose.choice(UNITS)),
             lambda: convert_units(1.0, choose.choice(UNITS), unit),

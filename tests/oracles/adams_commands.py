@@ -1,7 +1,9 @@
-"""A strict reader of Adams View command files (.cmd), from the documentation of the command language.
+"""A strict reader of Adams View command files (.cmd), from the documentation of the command
+language.
 
-Keywords, then `parameter = value` pairs; a command goes on while lines end in an ampersand; `!` begins a comment. Commands,
-parameters and values that are not known here are refused, and so are names that are new and taken, or used and not there.
+Keywords, then `parameter = value` pairs; a command goes on while lines end in an ampersand; `!`
+begins a comment. Commands, parameters and values that are not known here are refused, and so are
+names that are new and taken, or used and not there.
 """
 
 from __future__ import annotations
@@ -14,21 +16,51 @@ from oracles.adams_dataset import take_simulation
 from oracles.adams_functions import Refused
 
 _ON_OFF = "on|off"
-# what each parameter is: "new KIND" names an element, "KIND" refers to one, "a|b" is a choice; "!" before it: it must be there
+# what each parameter is: "new KIND" names an element, "KIND" refers to one, "a|b" is a choice; "!"
+# before it: it must be there
 _COMMANDS: dict[str, dict[str, str]] = {
-    "defaults units": dict.fromkeys(("length", "angle", "force", "mass", "time", "coordinate_system_type", "orientation_type"), "word"),
+    "defaults units": dict.fromkeys(
+        ("length", "angle", "force", "mass", "time", "coordinate_system_type", "orientation_type"),
+        "word",
+    ),
     "model create": {"model_name": "!new model"},
-    "material create": {"material_name": "!new material", "density": "!real", "youngs_modulus": "!real", "poissons_ratio": "!real"},
+    "material create": {
+        "material_name": "!new material",
+        "density": "!real",
+        "youngs_modulus": "!real",
+        "poissons_ratio": "!real",
+    },
     "defaults coordinate_system": {"default_coordinate_system": "!part"},
     "marker create": {"marker_name": "!new marker", "location": "!reals", "orientation": "!angles"},
-    "geometry create shape block": {"block_name": "!new geometry", "corner_marker": "!marker", "diag_corner_coords": "!reals"},
-    "geometry create shape ellipsoid": {"ellipsoid_name": "!new geometry", "center_marker": "!marker"}
+    "geometry create shape block": {
+        "block_name": "!new geometry",
+        "corner_marker": "!marker",
+        "diag_corner_coords": "!reals",
+    },
+    "geometry create shape ellipsoid": {
+        "ellipsoid_name": "!new geometry",
+        "center_marker": "!marker",
+    }
     | dict.fromkeys(("x_scale_factor", "y_scale_factor", "z_scale_factor"), "!real"),
-    "part create rigid_body name_and_position": {"part_name": "!new part", "location": "!reals", "orientation": "!angles"},
-    "part create rigid_body mass_properties": {"part_name": "!part", "mass": "!real", "center_of_mass_marker": "!marker"}
+    "part create rigid_body name_and_position": {
+        "part_name": "!new part",
+        "location": "!reals",
+        "orientation": "!angles",
+    },
+    "part create rigid_body mass_properties": {
+        "part_name": "!part",
+        "mass": "!real",
+        "center_of_mass_marker": "!marker",
+    }
     | dict.fromkeys(("ixx", "iyy", "izz", "ixy", "izx", "iyz"), "!real"),
-    "part create rigid_body initial_velocity": {"part_name": "!part"} | dict.fromkeys(("vx", "vy", "vz", "wx", "wy", "wz"), "real"),
-    "executive_control create sensor": {"sensor_name": "!new sensor", "compare": "!ge", "value": "!real", "error": "!real"}
+    "part create rigid_body initial_velocity": {"part_name": "!part"}
+    | dict.fromkeys(("vx", "vy", "vz", "wx", "wy", "wz"), "real"),
+    "executive_control create sensor": {
+        "sensor_name": "!new sensor",
+        "compare": "!ge",
+        "value": "!real",
+        "error": "!real",
+    }
     | dict.fromkeys(("codgen", "halt", "print", "restart", "return", "yydump"), _ON_OFF)
     | {"function": "!function", "evaluate": "!function"},
     "data_element create variable": {"variable_name": "!new variable", "function": "!function"},
@@ -49,7 +81,11 @@ _COMMANDS: dict[str, dict[str, str]] = {
     | {f"{axis}_{kind}_function": "!function" for kind in ("force", "torque") for axis in "xyz"},
     "force create body gravitational": {"gravity_field_name": "!word"}
     | dict.fromkeys(("x_component_gravity", "y_component_gravity", "z_component_gravity"), "!real"),
-    "output_control create request": {"request_name": "!new request", "component_names": "strings", "results_name": "strings"}
+    "output_control create request": {
+        "request_name": "!new request",
+        "component_names": "strings",
+        "results_name": "strings",
+    }
     | {f"f{column}": "function" for column in range(1, 9)},
     "executive_control set numerical_integration_parameters": {
         "model_name": "!model",
@@ -102,7 +138,10 @@ class _Session:
 
     def offset(self, location: str) -> tuple[float, float, float]:
         """A location, given from the default coordinate system, in the ground's."""
-        return tuple(a + b for a, b in zip(self.model.parts[self.origin].position, reals(location), strict=True))
+        return tuple(
+            a + b
+            for a, b in zip(self.model.parts[self.origin].position, reals(location), strict=True)
+        )
 
 
 def read_commands(text: str) -> Model:
@@ -127,7 +166,9 @@ def _split(text: str) -> list[tuple[str, dict[str, list[str]]]]:
             continue
         bare = line.rstrip()
         goes_on = bare.endswith("&")
-        logical[len(logical) - going_on :] = [(logical[-1] if going_on else "") + " " + bare.rstrip("&")]
+        logical[len(logical) - going_on :] = [
+            (logical[-1] if going_on else "") + " " + bare.rstrip("&")
+        ]
         going_on = goes_on
     if going_on:
         raise Refused("the last command is not finished")
@@ -163,7 +204,11 @@ def _command(line: str) -> tuple[str, dict[str, list[str]]]:
 
 def _joined(what: str, items: list[str]) -> str:
     """A function is the strings of its series, one after the other."""
-    return "".join(item[1:-1] for item in items) if what.lstrip("!") in ("function", "strings") else ", ".join(items)
+    return (
+        "".join(item[1:-1] for item in items)
+        if what.lstrip("!") in ("function", "strings")
+        else ", ".join(items)
+    )
 
 
 def _do(session: _Session, words: str, given: dict[str, str]) -> None:
@@ -181,7 +226,10 @@ def _do(session: _Session, words: str, given: dict[str, str]) -> None:
         name = given["marker_name"]
         part = name.rpartition(".")[0]
         at = model.parts[part].position
-        model.markers[name] = part, tuple(a - b for a, b in zip(session.offset(given["location"]), at, strict=True))
+        model.markers[name] = (
+            part,
+            tuple(a - b for a, b in zip(session.offset(given["location"]), at, strict=True)),
+        )
     elif words.endswith("name_and_position"):
         model.parts[given["part_name"]] = Part(session.offset(given["location"]))
     elif words.endswith("mass_properties"):
@@ -190,25 +238,37 @@ def _do(session: _Session, words: str, given: dict[str, str]) -> None:
         part.inertia = real(given["ixx"]), real(given["iyy"]), real(given["izz"])
     elif words.endswith("initial_velocity"):
         part = model.parts[given["part_name"]]
-        x, y, part.velocity, *spin = (real(given.get(name, "0")) for name in ("vx", "vy", "vz", "wx", "wy", "wz"))
+        x, y, part.velocity, *spin = (
+            real(given.get(name, "0")) for name in ("vx", "vy", "vz", "wx", "wy", "wz")
+        )
         part.along = (x, y, *(math.radians(one) for one in spin))  # the unit of angle is the degree
     elif words.endswith("ellipsoid"):
         model.balls[given["center_marker"]] = real(given["x_scale_factor"])
     elif words.endswith("create sensor"):
-        model.sensors[given["sensor_name"]] = Sensor(given["function"], real(given["value"]), real(given["error"]), given["evaluate"])
+        model.sensors[given["sensor_name"]] = Sensor(
+            given["function"], real(given["value"]), real(given["error"]), given["evaluate"]
+        )
     elif words.endswith("create variable"):
         model.variables[given["variable_name"]] = given["function"]
     elif words.endswith("single_component_force"):
-        model.forces[given["single_component_force_name"]] = given["i_marker_name"], given["j_marker_name"], given["function"]
+        model.forces[given["single_component_force_name"]] = (
+            given["i_marker_name"],
+            given["j_marker_name"],
+            given["function"],
+        )
     elif words.endswith("general_force"):
         if not model.parts[given["j_part_name"]].ground:
             raise Refused("the friction is not that of the ground")
-        functions = [given[f"{axis}_{kind}_function"] for kind in ("force", "torque") for axis in "xyz"]
+        functions = [
+            given[f"{axis}_{kind}_function"] for kind in ("force", "torque") for axis in "xyz"
+        ]
         model.general.append((given["i_marker_name"], given["ref_marker_name"], functions))
     elif words.endswith("gravitational"):
         model.gravity = tuple(real(given[f"{axis}_component_gravity"]) for axis in "xyz")
     elif words.endswith("create request"):
-        model.requests[given["request_name"]] = [value for name, value in given.items() if re.fullmatch(r"f\d", name)]
+        model.requests[given["request_name"]] = [
+            value for name, value in given.items() if re.fullmatch(r"f\d", name)
+        ]
     elif words.endswith("numerical_integration_parameters"):
         model.longest_step = real(given["hmax_time_step"])
     elif words == "simulation script create":

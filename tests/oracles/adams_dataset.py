@@ -1,7 +1,9 @@
-"""A strict reader of Adams/Solver datasets (.adm) and command files (.acf), from the statements' documentation.
+"""A strict reader of Adams/Solver datasets (.adm) and command files (.acf), from the statements'
+documentation.
 
-It takes one argument a line, each with the comma of continuation in the first column: less than Adams does. What it does not know it
-refuses: statements, arguments, numbers given twice, elements that are not there, lines beyond 80 columns.
+It takes one argument a line, each with the comma of continuation in the first column: less than
+Adams does. What it does not know it refuses: statements, arguments, numbers given twice, elements
+that are not there, lines beyond 80 columns.
 """
 
 from __future__ import annotations
@@ -19,11 +21,29 @@ _STATEMENTS: dict[str, dict[str, str]] = {
     "MARKER": {"PART": "!id", "QP": "reals", "FLOATING": "flag"},
     "GRAPHICS": {"BOX": "flag", "ELLIPSOID": "flag", "CORNER": "id", "CM": "id"}
     | dict.fromkeys(("X", "Y", "Z", "XSCALE", "YSCALE", "ZSCALE"), "real"),
-    "MATERIAL": {"NAME": "!word", "DENSITY": "!real", "YOUNGS_MODULUS": "!real", "POISSONS_RATIO": "!real"},
-    "SENSOR": {"GE": "!flag", "VALUE": "!real", "ERROR": "!real", "FUNCTION": "!function", "EVALUATE": "!function"},
+    "MATERIAL": {
+        "NAME": "!word",
+        "DENSITY": "!real",
+        "YOUNGS_MODULUS": "!real",
+        "POISSONS_RATIO": "!real",
+    },
+    "SENSOR": {
+        "GE": "!flag",
+        "VALUE": "!real",
+        "ERROR": "!real",
+        "FUNCTION": "!function",
+        "EVALUATE": "!function",
+    },
     "VARIABLE": {"FUNCTION": "!function"},
-    "SFORCE": {"TRANSLATION": "!flag", "ACTIONONLY": "!flag", "I": "!id", "J": "!id", "FUNCTION": "!function"},
-    "GFORCE": {"I": "!id", "JFLOAT": "!id", "RM": "!id"} | dict.fromkeys(("FX", "FY", "FZ", "TX", "TY", "TZ"), "!function"),
+    "SFORCE": {
+        "TRANSLATION": "!flag",
+        "ACTIONONLY": "!flag",
+        "I": "!id",
+        "J": "!id",
+        "FUNCTION": "!function",
+    },
+    "GFORCE": {"I": "!id", "JFLOAT": "!id", "RM": "!id"}
+    | dict.fromkeys(("FX", "FY", "FZ", "TX", "TY", "TZ"), "!function"),
     "REQUEST": {"CNAMES": "strings"} | {f"F{column}": "function" for column in range(1, 9)},
     "ACCGRAV": {"IGRAV": "!real", "JGRAV": "!real", "KGRAV": "!real"},
     "INTEGRATOR": {"GSTIFF": "!flag", "SI2": "flag", "ERROR": "!real", "HMAX": "!real"},
@@ -55,7 +75,11 @@ def read_dataset(text: str) -> Model:
     model, seen = Model(), set()
     for head, *rest in statements[:-1]:
         found = re.fullmatch(r"([A-Z]+)/(\d*)", head)
-        if not found or found[1] not in _STATEMENTS or (found[1] in _WITHOUT_NUMBER) != (found[2] == ""):
+        if (
+            not found
+            or found[1] not in _STATEMENTS
+            or (found[1] in _WITHOUT_NUMBER) != (found[2] == "")
+        ):
             raise Refused(f"{head!r} is no statement")
         if head in seen:
             raise Refused(f"{head} is there twice")
@@ -90,7 +114,12 @@ def _arguments(kind: str, lines: list[str]) -> dict[str, str]:
         what = known[name].lstrip("!")
         if what == "real":
             real(value)
-        patterns = {"id": r"\d+", "word": r"[A-Za-z_]\w*", "strings": r'"\w*"(, "\w*")*', "function": r"[^=\\]+"}
+        patterns = {
+            "id": r"\d+",
+            "word": r"[A-Za-z_]\w*",
+            "strings": r'"\w*"(, "\w*")*',
+            "function": r"[^=\\]+",
+        }
         if what in patterns and not re.fullmatch(patterns[what], value):
             raise Refused(f"{kind}: {name} = {value}")
     return found
@@ -107,9 +136,13 @@ def _take(model: Model, kind: str, number: str, given: dict[str, str]) -> None:
         elif missing := {"QG", "MASS", "CM", "IP"} - set(given):
             raise Refused(f"PART lacks {', '.join(sorted(missing))}")
         else:
-            x, y, z, *spin = (real(given.get(name, "0")) for name in ("VX", "VY", "VZ", "WX", "WY", "WZ"))
+            x, y, z, *spin = (
+                real(given.get(name, "0")) for name in ("VX", "VY", "VZ", "WX", "WY", "WZ")
+            )
             inertia, along = reals(given["IP"]), (x, y, *spin)
-            model.parts[number] = Part(reals(given["QG"]), real(given["MASS"]), inertia, given["CM"], z, along=along)
+            model.parts[number] = Part(
+                reals(given["QG"]), real(given["MASS"]), inertia, given["CM"], z, along=along
+            )
     elif kind == "MARKER":
         if ("QP" in given) == ("FLOATING" in given):
             raise Refused(f"MARKER/{number} has a place, or floats")
@@ -119,21 +152,36 @@ def _take(model: Model, kind: str, number: str, given: dict[str, str]) -> None:
             model.markers[number] = given["PART"], reals(given["QP"])
     elif kind == "GRAPHICS":
         at = given.get("CORNER" if "BOX" in given else "CM", "")
-        shape = {"BOX", "CORNER", "X", "Y", "Z"} if "BOX" in given else {"ELLIPSOID", "CM", "XSCALE", "YSCALE", "ZSCALE"}
+        shape = (
+            {"BOX", "CORNER", "X", "Y", "Z"}
+            if "BOX" in given
+            else {"ELLIPSOID", "CM", "XSCALE", "YSCALE", "ZSCALE"}
+        )
         if at not in model.markers or set(given) != shape:
             raise Refused(f"GRAPHICS/{number}: there is no marker {at}, or it is no shape")
         if "ELLIPSOID" in given:
             model.balls[at] = real(given["XSCALE"])
     elif kind == "SENSOR":
-        model.sensors[number] = Sensor(given["FUNCTION"], real(given["VALUE"]), real(given["ERROR"]), given["EVALUATE"])
+        model.sensors[number] = Sensor(
+            given["FUNCTION"], real(given["VALUE"]), real(given["ERROR"]), given["EVALUATE"]
+        )
     elif kind == "VARIABLE":
         model.variables[number] = given["FUNCTION"]
     elif kind == "SFORCE":
         model.forces[number] = given["I"], given["J"], given["FUNCTION"]
     elif kind == "GFORCE":
-        if given["JFLOAT"] not in model.floating or not model.parts[model.floating[given["JFLOAT"]]].ground:
+        if (
+            given["JFLOAT"] not in model.floating
+            or not model.parts[model.floating[given["JFLOAT"]]].ground
+        ):
             raise Refused(f"GFORCE/{number} has no floating marker on the ground")
-        model.general.append((given["I"], given["RM"], [given[name] for name in ("FX", "FY", "FZ", "TX", "TY", "TZ")]))
+        model.general.append(
+            (
+                given["I"],
+                given["RM"],
+                [given[name] for name in ("FX", "FY", "FZ", "TX", "TY", "TZ")],
+            )
+        )
     elif kind == "REQUEST":
         model.requests[number] = [value for name, value in given.items() if name != "CNAMES"]
     elif kind == "ACCGRAV":

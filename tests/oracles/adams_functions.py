@@ -1,7 +1,9 @@
-"""Adams' function expressions, parsed and evaluated as its manual describes them; nothing here knows how the package writes them.
+"""Adams' function expressions, parsed and evaluated as its manual describes them; nothing here
+knows how the package writes them.
 
-Precedence: `**` binds tighter than a sign on its left and looser than one on its right, and from right to left; then `*` and `/`;
-then `+` and `-`. Functions that are not in this file, wrong counts of arguments and references to nothing are refused.
+Precedence: `**` binds tighter than a sign on its left and looser than one on its right, and from
+right to left; then `*` and `/`; then `+` and `-`. Functions that are not in this file, wrong counts
+of arguments and references to nothing are refused.
 """
 
 from __future__ import annotations
@@ -18,7 +20,9 @@ class Refused(Exception):
 
 @dataclass
 class State:
-    """Height and velocity of each marker, what each sensor holds, and VX, VY, WX, WY and WZ of each marker."""
+    """Height and velocity of each marker, what each sensor holds, and VX, VY, WX, WY and
+    WZ of each marker.
+    """
 
     heights: Mapping[str, float]
     velocities: Mapping[str, float]
@@ -31,7 +35,9 @@ Value = Callable[[State], float]
 
 @dataclass
 class Scope:
-    """What an expression may refer to. `touches` gathers what changes its sign, from above, when a contact begins."""
+    """What an expression may refer to. `touches` gathers what changes its sign, from
+    above, when a contact begins.
+    """
 
     markers: Mapping[str, object]
     sensors: Mapping[str, object]
@@ -45,7 +51,9 @@ _TOKEN = re.compile(
 )
 
 _MARKERS = {"DZ": 3, "VZ": 4, "VX": 4, "VY": 4, "WX": 3, "WY": 3, "WZ": 3}
-"""How many markers a measure takes at most: of what, from what, along whose axis, seen from where."""
+"""How many markers a measure takes at most: of what, from what, along whose axis, seen
+from where.
+"""
 
 _PLAIN: dict[str, tuple[int, Callable[..., float]]] = {
     "SQRT": (1, math.sqrt),
@@ -94,7 +102,9 @@ class _Parser:
 
     def take(self, *wanted: str) -> str:
         if not self.tokens or (wanted and self.tokens[0][1] not in wanted):
-            raise Refused(f"{' or '.join(wanted) or 'something'} is missing before {self.tokens[:1]}")
+            raise Refused(
+                f"{' or '.join(wanted) or 'something'} is missing before {self.tokens[:1]}"
+            )
         return self.tokens.pop(0)[1]
 
     def next_is(self, *signs: str) -> bool:
@@ -104,14 +114,22 @@ class _Parser:
         value = self.product()
         while self.next_is("+", "-"):
             sign, left, right = self.take(), value, self.product()
-            value = (lambda s, a=left, b=right: a(s) + b(s)) if sign == "+" else (lambda s, a=left, b=right: a(s) - b(s))
+            value = (
+                (lambda s, a=left, b=right: a(s) + b(s))
+                if sign == "+"
+                else (lambda s, a=left, b=right: a(s) - b(s))
+            )
         return value
 
     def product(self) -> Value:
         value = self.signed()
         while self.next_is("*", "/"):
             sign, left, right = self.take(), value, self.signed()
-            value = (lambda s, a=left, b=right: a(s) * b(s)) if sign == "*" else (lambda s, a=left, b=right: a(s) / b(s))
+            value = (
+                (lambda s, a=left, b=right: a(s) * b(s))
+                if sign == "*"
+                else (lambda s, a=left, b=right: a(s) / b(s))
+            )
         return value
 
     def signed(self) -> Value:
@@ -152,7 +170,11 @@ class _Parser:
         self.take("(")
         if name == "IF":
             return self.arithmetic_if()
-        value = self.measure(name) if name in (*_MARKERS, "SENVAL", "VARVAL", "SFORCE") else self.general(name)
+        value = (
+            self.measure(name)
+            if name in (*_MARKERS, "SENVAL", "VARVAL", "SFORCE")
+            else self.general(name)
+        )
         self.take(")")
         return value
 
@@ -191,7 +213,11 @@ class _Parser:
             plain = {"DZ": lambda s: s.heights, "VZ": lambda s: s.velocities}
             of = plain.get(name, lambda s: s.along[name])
             return lambda s: of(s)[first] - (of(s)[second] if second is not None else 0.0)
-        known: Mapping[str, object] = {"SENVAL": scope.sensors, "VARVAL": scope.variables, "SFORCE": scope.forces}[name]
+        known: Mapping[str, object] = {
+            "SENVAL": scope.sensors,
+            "VARVAL": scope.variables,
+            "SFORCE": scope.forces,
+        }[name]
         if ids[0] not in known:
             raise Refused(f"{name}: there is no {ids[0]}")
         if name == "SFORCE":

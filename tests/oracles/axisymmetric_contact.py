@@ -1,16 +1,20 @@
-"""An elastic sphere against a rigid frictionless plane, by axisymmetric finite elements (an oracle: imports nothing of vibroimpact).
+"""An elastic sphere against a rigid frictionless plane, by axisymmetric finite elements (an oracle:
+imports nothing of vibroimpact).
 
-How it works. Six-node triangles with curved edges mesh the half disc, fine near the pole (scikit-fem only refines the triangles). Small
-strain, isotropic, linear. A node of the surface may not pass the plane: its height on the true sphere plus its vertical displacement is not
-negative, which for a flat plane is exact. Forces and gaps at these nodes solve a linear complementarity problem by block pivoting.
-`static_approach` holds the mean vertical displacement; the multiplier is a uniform body force. `impact` steps the sphere explicitly (lumped
-mass, scaled diagonal), with no mass in the vertical motion of the surface nodes near the pole, so that contact loses no energy.
+How it works. Six-node triangles with curved edges mesh the half disc, fine near the pole
+(scikit-fem only refines the triangles). Small strain, isotropic, linear. A node of the surface may
+not pass the plane: its height on the true sphere plus its vertical displacement is not negative,
+which for a flat plane is exact. Forces and gaps at these nodes solve a linear complementarity
+problem by block pivoting. `static_approach` holds the mean vertical displacement; the multiplier is
+a uniform body force. `impact` steps the sphere explicitly (lumped mass, scaled diagonal), with no
+mass in the vertical motion of the surface nodes near the pole, so that contact loses no energy.
 
-What it is good to, measured for R = 25 mm, E = 2.26 GPa, nu = 0.28, density 1380, with n elements in a contact radius. Static, approach =
-Hertz + c F / (E R): c = -0.382, -0.402, -0.411, -0.415 at Hertz radii 1, 2, 3, 4.5 mm; from n = 12 to 24 c moves by 4e-4 at most and the
-force at a given approach (0.36 mm; n = 8, 16, 32) by 4e-5. The coefficient is no constant: it falls towards small contacts, -0.358 at 0.5
-mm and -0.334 (to 0.002) at 0.25 mm. The contact radius returned is only good to half a node spacing, a / (4 n) to a / (2 n).
-Impact at 8.826664 m/s, on one core:
+What it is good to, measured for R = 25 mm, E = 2.26 GPa, nu = 0.28, density 1380, with n elements
+in a contact radius. Static, approach = Hertz + c F / (E R): c = -0.382, -0.402, -0.411, -0.415 at
+Hertz radii 1, 2, 3, 4.5 mm; from n = 12 to 24 c moves by 4e-4 at most and the force at a given
+approach (0.36 mm; n = 8, 16, 32) by 4e-5. The coefficient is no constant: it falls towards small
+contacts, -0.358 at 0.5 mm and -0.334 (to 0.002) at 0.25 mm. The contact radius returned is only
+good to half a node spacing, a / (4 n) to a / (2 n). Impact at 8.826664 m/s, on one core:
 
     n    nodes   peak force   duration     peak approach   restitution   vibration   energy error   run time
     4     3482   12170.8 N    246.383 us   0.73708 mm      0.999054      0.1892 %    9e-8             1.4 s
@@ -18,10 +22,11 @@ Impact at 8.826664 m/s, on one core:
     16    9422   12165.7 N    246.431 us   0.73705 mm      0.999064      0.1870 %    7e-9              11 s
     32   25188   12167.1 N    246.477 us   0.73704 mm      0.999062      0.1874 %    2e-9              68 s
 
-Convergence in force is not monotone: it scatters by 2 N (1e-4), and the duration by 0.1 us, with the mesh and the step (halving the step at
-n = 8 moves them by 0.2 N and 0.03 us). The body itself: volume and uniform strain states to 4e-9, its breathing mode to 1e-4 of the closed
-form (24.20 kHz), rigid motions without force to rounding. What it leaves out: finite strain, damping, friction; a quasi-static model with
-the static c above gives 1.2 % more force than the impact.
+Convergence in force is not monotone: it scatters by 2 N (1e-4), and the duration by 0.1 us, with
+the mesh and the step (halving the step at n = 8 moves them by 0.2 N and 0.03 us). The body itself:
+volume and uniform strain states to 4e-9, its breathing mode to 1e-4 of the closed form (24.20 kHz),
+rigid motions without force to rounding. What it leaves out: finite strain, damping, friction; a
+quasi-static model with the static c above gives 1.2 % more force than the impact.
 """
 
 from __future__ import annotations
@@ -43,8 +48,9 @@ Booleans = NDArray[np.bool_]
 class Body:
     """The discrete sphere: nodes (r, z) with its pole at (0, -radius), stiffness and nodal volumes.
 
-    Degree of freedom 2 n is the radial and 2 n + 1 the vertical displacement of node n. The volumes are those a node carries: `volume`
-    by its shape function, which makes a centre of mass, and `lumped`, all positive, which makes a diagonal mass matrix.
+    Degree of freedom 2 n is the radial and 2 n + 1 the vertical displacement of node n. The volumes
+    are those a node carries: `volume` by its shape function, which makes a centre of mass, and
+    `lumped`, all positive, which makes a diagonal mass matrix.
     """
 
     nodes: Floats
@@ -86,8 +92,12 @@ class Impact:
     time_step: float
 
 
-def triangulate_half_disc(radius: float, fine_radius: float, spacing: float, growth: float = 0.4) -> tuple[Floats, Integers]:
-    """Nodes (r, z) and six-node triangles of a half disc, of size `spacing` within `fine_radius` of the lower pole, then growing."""
+def triangulate_half_disc(
+    radius: float, fine_radius: float, spacing: float, growth: float = 0.4
+) -> tuple[Floats, Integers]:
+    """Nodes (r, z) and six-node triangles of a half disc, of size `spacing` within
+    `fine_radius` of the lower pole, then growing.
+    """
     angle = np.linspace(-np.pi / 2, np.pi / 2, 7)
     points = np.vstack([[0.0, 0.0], radius * np.column_stack([np.cos(angle), np.sin(angle)])])
     points[[1, -1], 0] = 0.0
@@ -118,18 +128,26 @@ def curved_facets(mesh: MeshTri, radius: float) -> Integers:
 
 
 def shape_functions(first: Floats, second: Floats) -> tuple[Floats, Floats]:
-    """Values (point, 6) and derivatives (point, 6, 2) of the quadratic triangle; middles are those of edges 01, 12 and 02."""
+    """Values (point, 6) and derivatives (point, 6, 2) of the quadratic triangle; middles
+    are those of edges 01, 12 and 02.
+    """
     third = 1 - first - second
     zero = np.zeros_like(first)
     values = [third * (2 * third - 1), first * (2 * first - 1), second * (2 * second - 1)]
     values += [4 * third * first, 4 * first * second, 4 * third * second]
     by_first = [1 - 4 * third, 4 * first - 1, zero, 4 * (third - first), 4 * second, -4 * second]
     by_second = [1 - 4 * third, zero, 4 * second - 1, -4 * first, 4 * first, 4 * (third - second)]
-    return np.stack(values, axis=1), np.stack([np.stack(by_first, axis=1), np.stack(by_second, axis=1)], axis=2)
+    return np.stack(values, axis=1), np.stack(
+        [np.stack(by_first, axis=1), np.stack(by_second, axis=1)], axis=2
+    )
 
 
-def assemble(radius: float, youngs_modulus: float, poissons_ratio: float, fine_radius: float, spacing: float) -> Body:
-    """Mesh the sphere and integrate its stiffness and nodal volumes with a seven-point rule, exact to the fifth degree."""
+def assemble(
+    radius: float, youngs_modulus: float, poissons_ratio: float, fine_radius: float, spacing: float
+) -> Body:
+    """Mesh the sphere and integrate its stiffness and nodal volumes with a seven-point
+    rule, exact to the fifth degree.
+    """
     nodes, triangles = triangulate_half_disc(radius, fine_radius, spacing)
     root = np.sqrt(15.0)
     inner, outer = (6 - root) / 21, (6 + root) / 21
@@ -152,8 +170,16 @@ def assemble(radius: float, youngs_modulus: float, poissons_ratio: float, fine_r
     strain[:, :, 3, 1::2] = gradients[..., 0]
     shear_modulus = youngs_modulus / (2 * (1 + poissons_ratio))
     elasticity = np.diag([2.0, 2.0, 2.0, 1.0]) * shear_modulus
-    elasticity[:3, :3] += youngs_modulus * poissons_ratio / ((1 + poissons_ratio) * (1 - 2 * poissons_ratio))
-    stiffness = np.einsum("epai,ep,epaj->eij", strain, volumes, np.einsum("ab,epbj->epaj", elasticity, strain), optimize=True)
+    elasticity[:3, :3] += (
+        youngs_modulus * poissons_ratio / ((1 + poissons_ratio) * (1 - 2 * poissons_ratio))
+    )
+    stiffness = np.einsum(
+        "epai,ep,epaj->eij",
+        strain,
+        volumes,
+        np.einsum("ab,epbj->epaj", elasticity, strain),
+        optimize=True,
+    )
 
     freedoms = (2 * triangles[:, :, None] + np.arange(2)).reshape(len(triangles), 12)
     rows, columns = np.repeat(freedoms, 12, axis=1).ravel(), np.tile(freedoms, (1, 12)).ravel()
@@ -174,10 +200,11 @@ def assemble(radius: float, youngs_modulus: float, poissons_ratio: float, fine_r
 
 
 def solve_contact(compliance: Floats, gap: Floats, active: Booleans) -> tuple[Floats, Booleans]:
-    """Forces f >= 0 with gap + compliance f >= 0, one of the two zero at each point, from a first guess of the points in contact.
+    """Forces f >= 0 with gap + compliance f >= 0, one of the two zero at each point, from a first
+    guess of the points in contact.
 
-    Block principal pivoting: all the points that violate a condition change sides at once, or only the last of them
-    when that has not made them fewer for four times in a row, which cannot cycle.
+    Block principal pivoting: all the points that violate a condition change sides at once, or only
+    the last of them when that has not made them fewer for four times in a row, which cannot cycle.
     """
     active, fewest, tries = active.copy(), len(gap) + 1, 3
     tolerance = 1e-13 * max(float(np.abs(gap).max()), 1e-300)
@@ -199,20 +226,36 @@ def solve_contact(compliance: Floats, gap: Floats, active: Booleans) -> tuple[Fl
 
 
 def static_approach(
-    radius: float, youngs_modulus: float, poissons_ratio: float, approach: float, elements_per_contact_radius: float = 12.0
+    radius: float,
+    youngs_modulus: float,
+    poissons_ratio: float,
+    approach: float,
+    elements_per_contact_radius: float = 12.0,
 ) -> StaticContact:
-    """Static contact at an approach of the centre of mass, the force balanced by a uniform body force.
+    """Static contact at an approach of the centre of mass, the force balanced by a uniform body
+    force.
 
-    The multiplier of "the mean vertical displacement is minus the approach" is that body force, so the force needs no iteration.
+    The multiplier of "the mean vertical displacement is minus the approach" is that body force, so
+    the force needs no iteration.
     """
     estimate = np.sqrt(radius * approach)
-    body = assemble(radius, youngs_modulus, poissons_ratio, 1.25 * estimate, estimate / elements_per_contact_radius)
-    free = np.setdiff1d(np.arange(body.stiffness.shape[0]), 2 * np.flatnonzero(body.nodes[:, 0] < 1e-9 * radius))
+    body = assemble(
+        radius,
+        youngs_modulus,
+        poissons_ratio,
+        1.25 * estimate,
+        estimate / elements_per_contact_radius,
+    )
+    free = np.setdiff1d(
+        np.arange(body.stiffness.shape[0]), 2 * np.flatnonzero(body.nodes[:, 0] < 1e-9 * radius)
+    )
     mean = np.zeros(body.stiffness.shape[0])
     mean[1::2] = body.volume / body.volume.sum()
     scale = youngs_modulus * radius
     border = sparse.csr_matrix(mean[free][:, None] * scale)
-    system = splu(sparse.bmat([[body.stiffness[free][:, free], border], [border.T, None]], format="csc"))
+    system = splu(
+        sparse.bmat([[body.stiffness[free][:, free], border], [border.T, None]], format="csc")
+    )
     contact = np.searchsorted(free, 2 * body.surface + 1)
     loads = np.zeros((len(free) + 1, len(contact)))
     loads[contact, np.arange(len(contact))] = 1.0
@@ -233,25 +276,36 @@ def impact(
     elements_per_contact_radius: float = 8.0,
     steps_per_limit: float = 1.25,
 ) -> Impact:
-    """Undamped impact at `speed` from first touch to shortly after the sphere has left, by explicit central differences.
+    """Undamped impact at `speed` from first touch to shortly after the sphere has left, by explicit
+    central differences.
 
-    The vertical motion of the surface nodes near the pole carries no mass (its share is spread over the rest), so these nodes are at
-    every moment in static equilibrium under unilateral contact: nothing strikes the plane with a mass, and no energy is lost to that.
+    The vertical motion of the surface nodes near the pole carries no mass (its share is spread over
+    the rest), so these nodes are at every moment in static equilibrium under unilateral contact:
+    nothing strikes the plane with a mass, and no energy is lost to that.
     """
     modulus = youngs_modulus / (1 - poissons_ratio**2)
     mass = 4 / 3 * np.pi * radius**3 * density
     hertz_approach = (15 * mass * speed**2 / (16 * modulus * np.sqrt(radius))) ** 0.4
     hertz_duration = 2.943275 * hertz_approach / speed
     estimate = np.sqrt(radius * hertz_approach)
-    body = assemble(radius, youngs_modulus, poissons_ratio, 1.25 * estimate, estimate / elements_per_contact_radius)
+    body = assemble(
+        radius,
+        youngs_modulus,
+        poissons_ratio,
+        1.25 * estimate,
+        estimate / elements_per_contact_radius,
+    )
 
     masses = np.repeat(density * body.lumped, 2)
     contact = 2 * body.surface + 1
     axis = 2 * np.flatnonzero(body.nodes[:, 0] < 1e-9 * radius)
     moving = np.setdiff1d(np.arange(len(masses)), np.concatenate([contact, axis]))
-    # the limit with the surface's mass in place is the lower one: condensing these freedoms or holding them raises no frequency
+    # the limit with the surface's mass in place is the lower one: condensing these freedoms or
+    # holding them raises no frequency
     scaling = sparse.diags(1 / np.sqrt(masses))
-    largest = eigsh(scaling @ body.stiffness @ scaling, k=1, which="LA", tol=1e-3, return_eigenvectors=False)[0]
+    largest = eigsh(
+        scaling @ body.stiffness @ scaling, k=1, which="LA", tol=1e-3, return_eigenvectors=False
+    )[0]
     step = 2 / np.sqrt(largest) / steps_per_limit
 
     masses[1::2] *= masses[1::2].sum() / (masses[1::2].sum() - masses[contact].sum())

@@ -1,4 +1,6 @@
-"""A sphere that bounces in air or a liquid: Newton's second law over time by SciPy, with the drag coefficient of every moment."""
+"""A sphere that bounces in air or a liquid: Newton's second law over time by SciPy, with
+the drag coefficient of every moment.
+"""
 
 from __future__ import annotations
 
@@ -12,7 +14,9 @@ DENSITY, VISCOSITY = 1.2, 1.81e-5
 
 
 class Medium(NamedTuple):
-    """Density [kg/m^3] and viscosity [Pa s] around a sphere, and the parts of the displaced mass that lift it and that move along."""
+    """Density [kg/m^3] and viscosity [Pa s] around a sphere, and the parts of the
+    displaced mass that lift it and that move along.
+    """
 
     density: float
     viscosity: float
@@ -24,7 +28,9 @@ AIR = Medium(DENSITY, VISCOSITY, 0.0, 0.0)
 
 
 class Bounces(NamedTuple):
-    """Times of touch, speeds before and after, heights of the centre at the tops between; and the height at any times."""
+    """Times of touch, speeds before and after, heights of the centre at the tops between;
+    and the height at any times.
+    """
 
     touches: np.ndarray
     before: np.ndarray
@@ -55,7 +61,9 @@ def bounces(
     contact: float = 0.0,
     medium: Medium = AIR,
 ) -> Bounces:
-    """A drop from a height of the centre, with `number` rebounds; each contact takes a time in which the sphere stands still."""
+    """A drop from a height of the centre, with `number` rebounds; each contact takes a
+    time in which the sphere stands still.
+    """
     area, volume = np.pi * radius**2, 4.0 / 3.0 * np.pi * radius**3
     weight = gravity * volume * (density - medium.lifting * medium.density)
     mass = volume * (density + medium.added * medium.density)

@@ -1,4 +1,5 @@
-"""The rim of a held plate in plane strain: a half strip of scikit-fem's second-order quadrilaterals, graded to where stress is singular.
+"""The rim of a held plate in plane strain: a half strip of scikit-fem's second-order
+quadrilaterals, graded to where stress is singular.
 
 Lengths are in thicknesses, stresses in E / (1 - nu^2).
 """
@@ -25,7 +26,8 @@ def graded(length: float, smallest: float) -> np.ndarray:
 
 
 def rim_compliance(nu: float, held: str) -> np.ndarray:
-    """What the rim adds to the compliance of a plate beyond it, (3, 3), for membrane force, transverse force and moment there.
+    """What the rim adds to the compliance of a plate beyond it, (3, 3), for membrane force,
+    transverse force and moment there.
 
     `held` is "lower", the lower face for x < 0, or "end", the side at x = 0.
     """
@@ -46,22 +48,34 @@ def rim_compliance(nu: float, held: str) -> np.ndarray:
         one, other = sym_grad(u), sym_grad(v)
         return lame * trace(one) * trace(other) + 2 * mu * ddot(one, other)
 
-    end = skfem.FacetBasis(mesh, element, facets=mesh.facets_satisfying(lambda at: np.isclose(at[0], LENGTH)), intorder=8)
+    end = skfem.FacetBasis(
+        mesh,
+        element,
+        facets=mesh.facets_satisfying(lambda at: np.isclose(at[0], LENGTH)),
+        intorder=8,
+    )
     loads = []
     for membrane, across, moment in np.eye(3):
 
         @skfem.LinearForm
         def work(v, w, membrane=membrane, across=across, there=moment + across * LENGTH):  # type: ignore[no-untyped-def]
             height = w.x[1] - 0.5
-            return v[0] * (membrane + 12 * there * height) + v[1] * 1.5 * across * (1 - 4 * height**2)
+            return v[0] * (membrane + 12 * there * height) + v[1] * 1.5 * across * (
+                1 - 4 * height**2
+            )
 
         loads.append(work.assemble(end))
     load = np.array(loads).T
-    still = (lambda at: np.isclose(at[1], 0.0) & (at[0] <= 1e-12)) if held == "lower" else (lambda at: np.isclose(at[0], 0.0))
+    still = (
+        (lambda at: np.isclose(at[1], 0.0) & (at[0] <= 1e-12))
+        if held == "lower"
+        else (lambda at: np.isclose(at[0], 0.0))
+    )
     fixed = basis.get_dofs(mesh.facets_satisfying(still)).all()
     matrix = energy.assemble(basis)
     free = np.setdiff1d(np.arange(matrix.shape[0]), fixed)
     whole = load[free].T @ splu(matrix[free][:, free].tocsc()).solve(load[free])
-    beam = np.diag([LENGTH, 4 * LENGTH**3 + 1.2 * LENGTH / mu, 12 * LENGTH])  # exact for these stresses
+    # exact for these stresses
+    beam = np.diag([LENGTH, 4 * LENGTH**3 + 1.2 * LENGTH / mu, 12 * LENGTH])
     beam[1, 2] = beam[2, 1] = 6 * LENGTH**2
     return np.asarray(whole - beam)

@@ -1,4 +1,6 @@
-"""The commands of a LAMMPS input file, by the parsing rules of its manual (Commands_parse) and by nothing that writes one."""
+"""The commands of a LAMMPS input file, by the parsing rules of its manual
+(Commands_parse) and by nothing that writes one.
+"""
 
 from __future__ import annotations
 
@@ -8,7 +10,9 @@ class Refused(Exception):
 
 
 def commands(text: str) -> list[str]:
-    """Return the commands: lines joined where they go on, without comments, with single blanks outside quotes."""
+    """Return the commands: lines joined where they go on, without comments, with single
+    blanks outside quotes.
+    """
     if not text.isascii() or any(letter < " " and letter not in "\n\t" for letter in text):
         raise Refused("a letter that is no printable ASCII")
     joined, line = [], ""

@@ -1,8 +1,10 @@
-"""A mass that falls on modes, step by step with scipy's DOP853 (an oracle: imports nothing of vibroimpact).
+"""A mass that falls on modes, step by step with scipy's DOP853 (an oracle: imports nothing of
+vibroimpact).
 
-In contact the equations of motion are integrated at 1e-12 until the approach is back at zero; apart, everything moves in closed form, by
-the exponential of each mode's 2 by 2 matrix, and the next touch is where the gap changes sign between samples an eightieth of the
-shortest period apart. A law is what it is: a static force and a factor on the rate."""
+In contact the equations of motion are integrated at 1e-12 until the approach is back at zero;
+apart, everything moves in closed form, by the exponential of each mode's 2 by 2 matrix, and the
+next touch is where the gap changes sign between samples an eightieth of the shortest period apart.
+A law is what it is: a static force and a factor on the rate."""
 
 from __future__ import annotations
 
@@ -33,10 +35,11 @@ class Touch:
 class Drop:
     """The mass, what it meets, and where all of it is.
 
-    `law(indentation, speed at touch)` returns the static force and the dashpot's constant. `series`: linear compliance in series with
-    the static force. `local`: stiffness and damping of an element in series with the whole force. `inside`: modes that only the static
-    force drives, and whose motion the dashpot does not feel. `clip`: may it not pull? Where it would, it does nothing, to the modes inside
-    either.
+    `law(indentation, speed at touch)` returns the static force and the dashpot's constant.
+    `series`: linear compliance in series with the static force. `local`: stiffness and damping of
+    an element in series with the whole force. `inside`: modes that only the static force drives,
+    and whose motion the dashpot does not feel. `clip`: may it not pull? Where it would, it does
+    nothing, to the modes inside either.
     """
 
     mass: float
@@ -59,7 +62,8 @@ class Drop:
         count = len(self.omega)
         self.inside = np.zeros(count, dtype=bool) if self.inside is None else self.inside
         self.outer = np.where(self.inside, 0.0, self.shape)
-        self.y = np.zeros(2 * count + 3)  # approach, speed, displacements, velocities, the local element
+        # approach, speed, displacements, velocities, the local element
+        self.y = np.zeros(2 * count + 3)
         self.y[1], self.time = self.speed, 0.0
 
     def approach(self, y: Floats) -> float:
@@ -73,12 +77,19 @@ class Drop:
         if self.series and indentation:
             whole = indentation
             settings = {"xtol": 1e-18, "rtol": 1e-14}
-            indentation = brentq(lambda delta: delta + self.series * self.law(delta, at_touch)[0] - whole, 0.0, whole, **settings)
+            indentation = brentq(
+                lambda delta: delta + self.series * self.law(delta, at_touch)[0] - whole,
+                0.0,
+                whole,
+                **settings,
+            )
         static, dashpot = self.law(indentation, at_touch)
         rate = y[1] + self.outer @ y[2 + count : 2 + 2 * count]
         if self.local:
             stiffness, damping = self.local
-            force = (static + dashpot * (rate - stiffness / damping * y[-1])) / (1.0 + dashpot / damping)
+            force = (static + dashpot * (rate - stiffness / damping * y[-1])) / (
+                1.0 + dashpot / damping
+            )
         else:
             force = static + dashpot * rate
         return (0.0, 0.0) if self.clip and force < 0.0 else (force, static)
@@ -104,9 +115,22 @@ class Drop:
 
         apart.terminal, apart.direction = True, -1  # type: ignore[attr-defined]
         forces: list[float] = []
-        settings = {"method": "DOP853", "rtol": 1e-12, "atol": 1e-16, "args": (at_touch,), "dense_output": True}
+        settings = {
+            "method": "DOP853",
+            "rtol": 1e-12,
+            "atol": 1e-16,
+            "args": (at_touch,),
+            "dense_output": True,
+        }
         first = solve_ivp(self.slopes, (self.time, self.time + 1e-8), self.y, **settings)
-        whole = solve_ivp(self.slopes, (first.t[-1], begin + self.longest), first.y[:, -1], events=apart, max_step=self.step, **settings)
+        whole = solve_ivp(
+            self.slopes,
+            (first.t[-1], begin + self.longest),
+            first.y[:, -1],
+            events=apart,
+            max_step=self.step,
+            **settings,
+        )
         times = np.linspace(whole.t[0], whole.t[-1], 2001)
         for _ in range(3):  # closer and closer
             forces = [self.forces(whole.sol(time), at_touch)[0] for time in times]
@@ -116,14 +140,22 @@ class Drop:
         return Touch(begin, self.time, -float(self.y[1]), max(forces))
 
     def flight(self, until: float) -> bool:
-        """Let everything move freely until the next touch; return whether there is one before a time."""
+        """Let everything move freely until the next touch; return whether there is one
+        before a time.
+        """
         step = 2.0 * np.pi / max(float(self.omega.max(initial=0.0)), 1e3) / 80.0
         before, start = self.y.copy(), self.time
         while self.time < until:
             first = self.time == start
             self.y, self.time = self.free(before, step), self.time + step
             if self.approach(self.y) > 0.0 and not first:
-                length = brentq(lambda length: self.approach(self.free(before, length)), 0.0, step, xtol=1e-17, rtol=1e-14)  # noqa: B023
+                length = brentq(
+                    lambda length: self.approach(self.free(before, length)),  # noqa: B023
+                    0.0,
+                    step,
+                    xtol=1e-17,
+                    rtol=1e-14,
+                )
                 self.y, self.time = self.free(before, length), self.time - step + length
                 return True
             before = self.y
@@ -145,7 +177,10 @@ class Drop:
         if length not in self.__dict__.setdefault("_kept", {}):
             if len(self._kept) > 4:
                 self._kept.clear()
-            matrices = [[[0.0, 1.0], [-(w * w), -2.0 * z * w]] for w, z in zip(self.omega, self.damping, strict=True)]
+            matrices = [
+                [[0.0, 1.0], [-(w * w), -2.0 * z * w]]
+                for w, z in zip(self.omega, self.damping, strict=True)
+            ]
             self._kept[length] = [expm(length * np.array(matrix)) for matrix in matrices]
         return self._kept[length]
 

@@ -1,4 +1,6 @@
-"""Several bodies with several contacts by scipy's DOP853, in the coordinates of each body: places, rotations, modes."""
+"""Several bodies with several contacts by scipy's DOP853, in the coordinates of each
+body: places, rotations, modes.
+"""
 
 from __future__ import annotations
 
@@ -21,12 +23,20 @@ class Moved:
 def integrate(system: vi.System, duration: float, max_step: float = np.inf) -> Moved:
     """Integrate a system whose laws know no speed of first touch and remember nothing."""
     bodies, contacts = system.bodies, list(system.contacts.values())
-    counts = {name: 6 + (0 if body.modes is None else len(body.modes.frequencies)) for name, body in bodies.items()}
+    counts = {
+        name: 6 + (0 if body.modes is None else len(body.modes.frequencies))
+        for name, body in bodies.items()
+    }
     ends = np.cumsum(list(counts.values()))
     places = {name: slice(end - counts[name], end) for name, end in zip(bodies, ends, strict=True)}
     number = int(ends[-1])
 
-    mobility, weight, viscous, elastic = np.zeros((number, number)), np.zeros(number), np.zeros(number), np.zeros(number)
+    mobility, weight, viscous, elastic = (
+        np.zeros((number, number)),
+        np.zeros(number),
+        np.zeros(number),
+        np.zeros(number),
+    )
     start = np.zeros(2 * number)
     for name, body in bodies.items():
         own = places[name]
@@ -37,13 +47,20 @@ def integrate(system: vi.System, duration: float, max_step: float = np.inf) -> M
                 mobility[own, own][3:6, 3:6] = np.linalg.inv(body.inertia)
         if body.modes is not None:
             omega, ratio = body.modes.angular_frequencies, body.modes.damping_ratios
-            mobility[own, own][6:, 6:], viscous[own][6:], elastic[own][6:] = np.eye(len(omega)), 2.0 * ratio * omega, omega**2
+            mobility[own, own][6:, 6:], viscous[own][6:], elastic[own][6:] = (
+                np.eye(len(omega)),
+                2.0 * ratio * omega,
+                omega**2,
+            )
 
     opening = np.zeros((len(contacts), number))  # of each contact's gap, by each coordinate
     for row, (name, contact) in zip(opening, system.contacts.items(), strict=True):
         for of, sign in ((contact.above, 1.0), (contact.below, -1.0)):
             body, own = bodies[of], row[places[of]]
-            own[:3], own[3:6] = sign * contact.normal, sign * np.cross(contact.point - body.centre, contact.normal)
+            own[:3], own[3:6] = (
+                sign * contact.normal,
+                sign * np.cross(contact.point - body.centre, contact.normal),
+            )
             if body.modes is not None:
                 own[6:] = sign * (body.modes.points[name] @ contact.normal)
     gaps = np.array([contact.gap for contact in contacts])
@@ -58,7 +75,14 @@ def integrate(system: vi.System, duration: float, max_step: float = np.inf) -> M
         place, speed = y[:number], y[number:]
         depths, rates = -(gaps + opening @ place), -(opening @ speed)
         pushes = np.array([force(*at) for at in zip(contacts, depths, rates, strict=True)])
-        return np.concatenate([speed, weight + mobility @ (pushes @ opening) - viscous * speed - elastic * place])
+        return np.concatenate(
+            [speed, weight + mobility @ (pushes @ opening) - viscous * speed - elastic * place]
+        )
 
-    last = solve_ivp(slopes, (0.0, duration), start, "DOP853", rtol=1e-13, atol=1e-17, max_step=max_step).y[number:, -1]
-    return Moved({name: last[places[name]][:3] for name in bodies}, {name: last[places[name]][3:6] for name in bodies})
+    last = solve_ivp(
+        slopes, (0.0, duration), start, "DOP853", rtol=1e-13, atol=1e-17, max_step=max_step
+    ).y[number:, -1]
+    return Moved(
+        {name: last[places[name]][:3] for name in bodies},
+        {name: last[places[name]][3:6] for name in bodies},
+    )

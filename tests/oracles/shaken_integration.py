@@ -1,8 +1,10 @@
-"""A lump that falls on a deck on springs, on a frame that shakes, by scipy's DOP853 (an oracle: imports nothing of vibroimpact).
+"""A lump that falls on a deck on springs, on a frame that shakes, by scipy's DOP853 (an oracle:
+imports nothing of vibroimpact).
 
-The deck has one degree of freedom, or none if it is stiff: z'' = -2 zeta omega (z' - s') - omega^2 (z - s) - F/M, from where it hangs in
-its springs, on a frame that moves by s(t) = A sin(2 pi f t + phase). The lump falls with gravity, and is pushed by the viscoelastic contact
-F = max(0, K (d^1.5 + 1.5 T d^0.5 d')) while d = z - y > 0. The integration stops wherever d passes zero.
+The deck has one degree of freedom, or none if it is stiff: z'' = -2 zeta omega (z' - s') - omega^2
+(z - s) - F/M, from where it hangs in its springs, on a frame that moves by s(t) = A sin(2 pi f t +
+phase). The lump falls with gravity, and is pushed by the viscoelastic contact F = max(0, K (d^1.5 +
+1.5 T d^0.5 d')) while d = z - y > 0. The integration stops wherever d passes zero.
 """
 
 from __future__ import annotations
@@ -18,10 +20,11 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class ShakenDeck:
-    """Masses [kg], the deck's own frequency [Hz] and damping ratio, the contact's K [N/m^1.5] and T [s], and the shaking of the frame.
+    """Masses [kg], the deck's own frequency [Hz] and damping ratio, the contact's K [N/m^1.5] and T
+    [s], and the shaking of the frame.
 
-    A deck of infinite mass moves with the frame. Where nothing pushes the lump, air slows it down by `drag` [1/m] times the square of
-    its velocity.
+    A deck of infinite mass moves with the frame. Where nothing pushes the lump, air slows it down
+    by `drag` [1/m] times the square of its velocity.
     """
 
     mass: float
@@ -49,14 +52,19 @@ class ShakenDeck:
         omega, own = 2.0 * np.pi * self.shaking, 2.0 * np.pi * self.frequency
         if np.isinf(self.deck):
             return self.frame(0.0)[:2]
-        transmitted = (own**2 + 2j * self.damping * own * omega) / (own**2 - omega**2 + 2j * self.damping * own * omega)
+        transmitted = (own**2 + 2j * self.damping * own * omega) / (
+            own**2 - omega**2 + 2j * self.damping * own * omega
+        )
         phasor = self.amplitude * transmitted
         return float(phasor.imag), float(omega * phasor.real)
 
     def push(self, y: Floats) -> float:
         """The contact force in a state (y, y', z, z')."""
         depth, rate = max(y[2] - y[0], 0.0), y[3] - y[1]
-        return max(float(self.stiffness * (depth**1.5 + 1.5 * self.relaxation * np.sqrt(depth) * rate)), 0.0)
+        return max(
+            float(self.stiffness * (depth**1.5 + 1.5 * self.relaxation * np.sqrt(depth) * rate)),
+            0.0,
+        )
 
     def slopes(self, time: float, y: Floats, pushes: bool) -> list[float]:
         """Time derivative of the state."""
@@ -65,12 +73,23 @@ class ShakenDeck:
         if np.isinf(self.deck):
             return [y[1], force / self.mass - self.gravity - slowed, y[3], acceleration]
         own = 2.0 * np.pi * self.frequency
-        pull = -2.0 * self.damping * own * (y[3] - speed) - own**2 * (y[2] - place) - force / self.deck
+        pull = (
+            -2.0 * self.damping * own * (y[3] - speed) - own**2 * (y[2] - place) - force / self.deck
+        )
         return [y[1], force / self.mass - self.gravity - slowed, y[3], pull]
 
-    def follow(self, height: float, times: Floats, tolerance: float = 3e-14) -> tuple[Floats, list[float]]:
-        """States at times (T, 4) of a lump that starts at rest at a height of its lowest point, and when it leaves the deck."""
-        state, time, end, apart = np.array([height, 0.0, *self.steady()]), 0.0, float(times[-1]), True
+    def follow(
+        self, height: float, times: Floats, tolerance: float = 3e-14
+    ) -> tuple[Floats, list[float]]:
+        """States at times (T, 4) of a lump that starts at rest at a height of its lowest
+        point, and when it leaves the deck.
+        """
+        state, time, end, apart = (
+            np.array([height, 0.0, *self.steady()]),
+            0.0,
+            float(times[-1]),
+            True,
+        )
         found, left, scale = np.empty((len(times), 4)), [], np.array([1e-6, 1e-3, 1e-6, 1e-3])
         while True:
 

@@ -1,7 +1,9 @@
-"""A circular plate that deflects far under a force at its centre: von Karman by SciPy (an oracle: imports nothing of vibroimpact).
+"""A circular plate that deflects far under a force at its centre: von Karman by SciPy (an oracle:
+imports nothing of vibroimpact).
 
-Timoshenko and Woinowsky-Krieger 1959, eq. (231), for radius 1, in thicknesses: slope and displacement along the radius. The linear
-deflections, P a^2 / (16 pi D) clamped and (3 + nu) / (1 + nu) times that supported, are met to 1e-3.
+Timoshenko and Woinowsky-Krieger 1959, eq. (231), for radius 1, in thicknesses: slope and
+displacement along the radius. The linear deflections, P a^2 / (16 pi D) clamped and (3 + nu) / (1 +
+nu) times that supported, are met to 1e-3.
 """
 
 from __future__ import annotations
@@ -15,10 +17,14 @@ Floats = NDArray[np.float64]
 _CENTRE = 1e-4  # where the plate begins; the slope goes as r ln r
 
 
-def stiffening(load: float, *, clamped: bool, held: bool, nu: float = 0.3, thickness: float = 0.01) -> tuple[float, float]:
-    """Return the deflection at the centre over the thickness, and by which part the plate is stiffer than when it is hardly loaded.
+def stiffening(
+    load: float, *, clamped: bool, held: bool, nu: float = 0.3, thickness: float = 0.01
+) -> tuple[float, float]:
+    """Return the deflection at the centre over the thickness, and by which part the plate is
+    stiffer than when it is hardly loaded.
 
-    The load is P a^2 / (16 pi D h), the deflection of a clamped plate over its thickness if it were small.
+    The load is P a^2 / (16 pi D h), the deflection of a clamped plate over its thickness if it were
+    small.
     """
 
     def equations(r: Floats, y: Floats) -> Floats:

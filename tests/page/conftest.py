@@ -1,6 +1,7 @@
 """A browser for the tests of pages, and servers of the live page.
 
-The tests drive a Chromium that is installed: that of Debian, or the program named by VIBROIMPACT_CHROMIUM. They wait on conditions.
+The tests drive a Chromium that is installed: that of Debian, or the program named by
+VIBROIMPACT_CHROMIUM. They wait on conditions.
 """
 
 from __future__ import annotations
@@ -43,7 +44,9 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 @pytest.fixture(scope="session", autouse=True)
 def compiled() -> None:
-    """Compile the solver before a page waits for it: that may take longer than a page is given to show a drop."""
+    """Compile the solver before a page waits for it: that may take longer than a page is
+    given to show a drop.
+    """
     for table in (RIGID, ELASTIC):
         vi.simulate(vi.read_case(table).to_problem())
 
@@ -51,9 +54,14 @@ def compiled() -> None:
 @pytest.fixture(scope="module")
 def browser() -> Iterator[Browser]:
     # one for each file: other tests of the same process need the event loop for themselves
-    playwright = pytest.importorskip("playwright.sync_api", reason="make test-page installs Playwright")
+    playwright = pytest.importorskip(
+        "playwright.sync_api", reason="make test-page installs Playwright"
+    )
     if not Path(CHROMIUM).exists():
-        pytest.skip(f"there is no {CHROMIUM}; make test-page installs it, and VIBROIMPACT_CHROMIUM names another one")
+        pytest.skip(
+            f"there is no {CHROMIUM}; make test-page installs it, and VIBROIMPACT_CHROMIUM "
+            "names another one"
+        )
     with playwright.sync_playwright() as driver:
         launched = driver.chromium.launch(executable_path=CHROMIUM, args=ARGUMENTS)
         yield launched
@@ -62,7 +70,9 @@ def browser() -> Iterator[Browser]:
 
 @pytest.fixture
 def complaints() -> list[str]:
-    """What pages complain of: messages on the console, errors, and requests to elsewhere. A test empties it of what it expects."""
+    """What pages complain of: messages on the console, errors, and requests to elsewhere.
+    A test empties it of what it expects.
+    """
     return []
 
 
@@ -72,7 +82,9 @@ def new_page(browser: Browser, complaints: list[str]) -> Iterator[MakePage]:
     contexts: list[BrowserContext] = []
 
     def make(width: int = 1280, height: int = 900, **options: Any) -> Page:
-        context = browser.new_context(viewport={"width": width, "height": height}, accept_downloads=True, **options)
+        context = browser.new_context(
+            viewport={"width": width, "height": height}, accept_downloads=True, **options
+        )
         context.set_default_timeout(60_000)
         contexts.append(context)
         context.on("console", lambda message: complaints.append(f"{message.type}: {message.text}"))
@@ -87,7 +99,9 @@ def new_page(browser: Browser, complaints: list[str]) -> Iterator[MakePage]:
 
 
 def _elsewhere(request: Request) -> list[str]:
-    own = request.url.startswith(("http://127.0.0.1:", "ws://127.0.0.1:", "file://", "data:", "blob:"))
+    own = request.url.startswith(
+        ("http://127.0.0.1:", "ws://127.0.0.1:", "file://", "data:", "blob:")
+    )
     return [] if own else [f"request: {request.url}"]
 
 

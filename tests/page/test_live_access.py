@@ -1,4 +1,6 @@
-"""The live page for everybody: by keyboard alone, with names for screen readers, in the dark, on small windows, and for long."""
+"""The live page for everybody: by keyboard alone, with names for screen readers, in the
+dark, on small windows, and for long.
+"""
 
 from __future__ import annotations
 
@@ -34,7 +36,9 @@ def focused(page: Page) -> str:
 
 
 @pytest.mark.parametrize("case", ["rigid", "elastic"])
-def test_tab_reaches_every_control_in_the_order_of_the_page(case: str, page: Page, server: Server) -> None:
+def test_tab_reaches_every_control_in_the_order_of_the_page(
+    case: str, page: Page, server: Server
+) -> None:
     open_live(page, server, {"rigid": RIGID, "elastic": ELASTIC}[case])
     wanted = page.evaluate(
         f"""() => [...document.querySelectorAll("{CONTROLS}")]
@@ -45,17 +49,21 @@ def test_tab_reaches_every_control_in_the_order_of_the_page(case: str, page: Pag
     order: list[int] = []
     while len(order) < wanted:
         page.keyboard.press("Tab")
-        place = page.evaluate(f"""() => [...document.querySelectorAll("{CONTROLS}")].indexOf(document.activeElement)""")
+        place = page.evaluate(
+            f"""() => [...document.querySelectorAll("{CONTROLS}")].indexOf(document.activeElement)"""
+        )
         if place < 0:  # what can be scrolled is reached as well
             assert page.evaluate(
-                "() => { const at = document.activeElement; return at.scrollWidth > at.clientWidth || at.scrollHeight > at.clientHeight; }"
+                "() => { const at = document.activeElement; return at.scrollWidth > "
+                "at.clientWidth || at.scrollHeight > at.clientHeight; }"
             )
             continue
         seen.append(focused(page))
         order.append(place)
         # what has the focus can be seen
         look = (
-            "() => { const at = document.activeElement; return getComputedStyle(at.id === 'file' ? at.parentElement : at).outlineStyle; }"
+            "() => { const at = document.activeElement; return getComputedStyle(at.id === "
+            "'file' ? at.parentElement : at).outlineStyle; }"
         )
         assert page.evaluate(look) != "none", seen[-1]
     assert order == sorted(order)
@@ -115,17 +123,31 @@ def test_every_control_has_a_name(page: Page, server: Server) -> None:
     assert all(len(name) > 20 for role, name in found if role == "img")
     assert {("region", "Impacts"), ("region", "Energy at the end")} <= set(found)
     # a slider tells its value with the unit
-    assert row(page, "sphere.radius").locator("input[type=range]").get_attribute("aria-valuetext") == "10 mm"
+    assert (
+        row(page, "sphere.radius").locator("input[type=range]").get_attribute("aria-valuetext")
+        == "10 mm"
+    )
     labels = page.evaluate(
-        "() => [...document.querySelectorAll('#controls input, #controls select')].every((one) => one.labels.length || one.ariaLabel)"
+        "() => [...document.querySelectorAll('#controls input, #controls "
+        "select')].every((one) => one.labels.length || one.ariaLabel)"
     )
     assert labels
     identities = page.evaluate("() => [...document.querySelectorAll('[id]')].map((one) => one.id)")
     assert len(identities) == len(set(identities))
     groups = [
-        one.get_attribute("aria-label") or one.locator("legend").text_content() for one in page.locator("fieldset, [role=group]").all()
+        one.get_attribute("aria-label") or one.locator("legend").text_content()
+        for one in page.locator("fieldset, [role=group]").all()
     ]
-    assert groups == ["Sphere", "Drop", "Contact", "Plate", "Supports", "Sensors", "Sensor a1", "Run"]
+    assert groups == [
+        "Sphere",
+        "Drop",
+        "Contact",
+        "Plate",
+        "Supports",
+        "Sensors",
+        "Sensor a1",
+        "Run",
+    ]
 
 
 def test_status_is_told_politely_and_work_is_told(page: Page, server: Server) -> None:
@@ -153,12 +175,16 @@ def test_light_and_dark(scheme: str, new_page: MakePage, server: Server) -> None
     def looks() -> tuple[Any, ...]:
         show(page, "force")
         ground = page.evaluate("() => getComputedStyle(document.body).backgroundColor")
-        return ground, page.evaluate("() => vibroimpact.live.charts.get('force').element._fullLayout.font.color")
+        return ground, page.evaluate(
+            "() => vibroimpact.live.charts.get('force').element._fullLayout.font.color"
+        )
 
     assert page.locator("html").get_attribute("data-theme") == scheme
     before = looks()
     page.get_by_role("button", name="Light or dark").click()
-    assert page.locator("html").get_attribute("data-theme") == ("light" if scheme == "dark" else "dark")
+    assert page.locator("html").get_attribute("data-theme") == (
+        "light" if scheme == "dark" else "dark"
+    )
     after = looks()
     assert before[0] != after[0]
     assert before[1] != after[1]
@@ -168,7 +194,9 @@ def test_light_and_dark(scheme: str, new_page: MakePage, server: Server) -> None
 
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])
-def test_text_stands_out_and_headings_are_in_order(scheme: str, new_page: MakePage, server: Server) -> None:
+def test_text_stands_out_and_headings_are_in_order(
+    scheme: str, new_page: MakePage, server: Server
+) -> None:
     page = new_page(color_scheme=scheme)
     open_live(page, server, ELASTIC)
     page.locator("#hold").click()
@@ -183,7 +211,9 @@ def test_text_stands_out_and_headings_are_in_order(scheme: str, new_page: MakePa
 
 @pytest.mark.parametrize("case", ["rigid", "elastic", "long names"])
 @pytest.mark.parametrize("size", [(390, 844), (1024, 768), (1440, 900)])
-def test_the_page_does_not_scroll_sideways(case: str, size: tuple[int, int], new_page: MakePage, server: Server) -> None:
+def test_the_page_does_not_scroll_sideways(
+    case: str, size: tuple[int, int], new_page: MakePage, server: Server
+) -> None:
     page = new_page(*size)
     open_live(page, server, {"rigid": RIGID, "elastic": ELASTIC, "long names": LONG_NAMES}[case])
     page.locator("#hold").click()
@@ -205,7 +235,10 @@ def test_touch_leaves_charts_to_scrolling(new_page: MakePage, server: Server) ->
     page = new_page(390, 844, has_touch=True, is_mobile=True)
     open_live(page, server, RIGID)
     show(page, "force")
-    assert page.evaluate("() => vibroimpact.live.charts.get('force').element._fullLayout.dragmode") is False
+    assert (
+        page.evaluate("() => vibroimpact.live.charts.get('force').element._fullLayout.dragmode")
+        is False
+    )
     row(page, "drop.height").locator("input[type=range]").scroll_into_view_if_needed()
     row(page, "drop.height").locator("input[type=range]").tap()
     settle(page)
@@ -213,19 +246,27 @@ def test_touch_leaves_charts_to_scrolling(new_page: MakePage, server: Server) ->
 
 
 @pytest.mark.slow
-def test_two_thousand_moves_take_no_more_memory(page: Page, server: Server, population: Callable[[int], int]) -> None:
+def test_two_thousand_moves_take_no_more_memory(
+    page: Page, server: Server, population: Callable[[int], int]
+) -> None:
     open_live(page, server, RIGID)
     devtools = page.context.new_cdp_session(page)
     devtools.send("Performance.enable")
 
     def used() -> dict[str, float]:
         devtools.send("HeapProfiler.collectGarbage")
-        found = {one["name"]: one["value"] for one in devtools.send("Performance.getMetrics")["metrics"]}
-        (resident,) = re.findall(r"VmRSS:\s*(\d+) kB", Path(f"/proc/{server.process.pid}/status").read_text())
+        found = {
+            one["name"]: one["value"] for one in devtools.send("Performance.getMetrics")["metrics"]
+        }
+        (resident,) = re.findall(
+            r"VmRSS:\s*(\d+) kB", Path(f"/proc/{server.process.pid}/status").read_text()
+        )
         return {**found, "server": 1024 * float(resident)}
 
     def move(count: int) -> None:
-        """Move the height, and wait for the drawing of each draft; every hundredth time it is let go, and computed in full."""
+        """Move the height, and wait for the drawing of each draft; every hundredth time
+        it is let go, and computed in full.
+        """
         for _ in range(count // 100):
             page.evaluate(
                 """async () => {

@@ -9,7 +9,18 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pytest
 
-from live_page import ELASTIC, PATCHES, RIGID, faults, open_live, row, settle, shown, type_value, value_at
+from live_page import (
+    ELASTIC,
+    PATCHES,
+    RIGID,
+    faults,
+    open_live,
+    row,
+    settle,
+    shown,
+    type_value,
+    value_at,
+)
 from vibroimpact.contact.registry import contact_laws
 
 if TYPE_CHECKING:
@@ -24,7 +35,10 @@ SIZES = {"mm": 1e-3, "GPa": 1e9, "MPa": 1e6, "µs": 1e-6, "deg": np.pi / 180.0}
 
 
 def keys(page: Page, kind: str) -> list[str]:
-    return [one.get_attribute("data-key") or "" for one in page.locator(".row", has=page.locator(kind)).all()]
+    return [
+        one.get_attribute("data-key") or ""
+        for one in page.locator(".row", has=page.locator(kind)).all()
+    ]
 
 
 def told(line: Locator) -> float:
@@ -34,7 +48,9 @@ def told(line: Locator) -> float:
 
 
 def assert_is_shown(page: Page, key: str, before: float) -> None:
-    """Check that the case computed has the value that the row of a key shows, and that it is another one than before."""
+    """Check that the case computed has the value that the row of a key shows, and that it
+    is another one than before.
+    """
     assert faults(page) == []
     now = value_at(shown(page), key)
     assert now == pytest.approx(told(row(page, key)), rel=2e-5)
@@ -51,7 +67,9 @@ def move_by_mouse(page: Page, key: str) -> None:
     place = float(slider.input_value())
     page.mouse.move(box["x"] + (0.1 + 0.8 * place) * box["width"], box["y"] + 0.5 * box["height"])
     page.mouse.down()
-    page.mouse.move(box["x"] + (0.45 if place > 0.55 else 0.6) * box["width"], box["y"] + 0.5 * box["height"])
+    page.mouse.move(
+        box["x"] + (0.45 if place > 0.55 else 0.6) * box["width"], box["y"] + 0.5 * box["height"]
+    )
     page.mouse.up()
     settle(page)
     assert_is_shown(page, key, before)
@@ -71,7 +89,11 @@ def test_every_slider_by_keyboard(case: str, page: Page, server: Server) -> None
     open_live(page, server, CASES[case])
     for key in keys(page, "input[type=range]"):
         slider = row(page, key).locator("input[type=range]")
-        for press in ("ArrowRight", "PageUp") if float(slider.input_value()) < 0.85 else ("ArrowLeft", "PageDown"):
+        for press in (
+            ("ArrowRight", "PageUp")
+            if float(slider.input_value()) < 0.85
+            else ("ArrowLeft", "PageDown")
+        ):
             before = value_at(shown(page), key)
             row(page, key).locator("input[type=range]").press(press)
             settle(page)
@@ -87,7 +109,8 @@ def test_every_field_takes_all_digits(case: str, page: Page, server: Server) -> 
     open_live(page, server, CASES[case])
     for key in keys(page, "input[type=number]"):
         field = row(page, key).locator("input[type=number]")
-        if not field.input_value():  # a parameter that is not given, such as a dissipation beside a restitution
+        # a parameter that is not given, such as a dissipation beside a restitution
+        if not field.input_value():
             continue
         whole = key.split(".")[-1] in ("modes", "impacts")
         value = float(field.input_value()) or 1.0
@@ -99,7 +122,9 @@ def test_every_field_takes_all_digits(case: str, page: Page, server: Server) -> 
 
 
 @pytest.mark.parametrize("case", CASES)
-def test_every_choice(case: str, page: Page, server: Server, population: Callable[..., int]) -> None:
+def test_every_choice(
+    case: str, page: Page, server: Server, population: Callable[..., int]
+) -> None:
     open_live(page, server, CASES[case])
     for key in keys(page, "select"):
         if key == "contact.law":
@@ -118,9 +143,12 @@ def test_every_choice(case: str, page: Page, server: Server, population: Callabl
                 assert ("speed" in case_shown["drop"]) == (value == "speed")
             elif key.endswith("supports"):
                 given = case_shown["plate"]["supports"]
-                assert {"patches": "patches", "free": "free", "clamped": "clamped", "simply-supported": "simply-supported"}[value] in str(
-                    given
-                )
+                assert {
+                    "patches": "patches",
+                    "free": "free",
+                    "clamped": "clamped",
+                    "simply-supported": "simply-supported",
+                }[value] in str(given)
             elif key.endswith("damping"):
                 assert (value_at(case_shown, key) == "adams-default") == (value == "adams-default")
             elif key == "drop.air":
@@ -150,7 +178,9 @@ def test_patches_are_moved_and_stay_on_the_plate(page: Page, server: Server) -> 
 
 def test_every_law(page: Page, server: Server) -> None:
     open_live(page, server, RIGID)
-    assert {one.get_attribute("value") for one in row(page, "contact.law").locator("option").all()} == set(contact_laws())
+    assert {
+        one.get_attribute("value") for one in row(page, "contact.law").locator("option").all()
+    } == set(contact_laws())
     for law in contact_laws():
         row(page, "contact.law").locator("select").select_option(law)
         settle(page)
@@ -158,20 +188,38 @@ def test_every_law(page: Page, server: Server) -> None:
         assert shown(page)["contact"]["law"] == law
     row(page, "contact.law").locator("select").select_option("hertz")
     settle(page)
-    assert [one for one in keys(page, "input[type=range]") if one.startswith("contact.")] == ["contact.stiffness", "contact.exponent"]
+    assert [one for one in keys(page, "input[type=range]") if one.startswith("contact.")] == [
+        "contact.stiffness",
+        "contact.exponent",
+    ]
 
 
-@pytest.mark.parametrize(("law", "key", "unit"), [("thornton", "yield_pressure", "MPa"), ("meyer", "yield_strength", "MPa")])
-def test_a_law_that_needs_what_the_materials_do_not_tell(law: str, key: str, unit: str, page: Page, server: Server) -> None:
+@pytest.mark.parametrize(
+    ("law", "key", "unit"),
+    [("thornton", "yield_pressure", "MPa"), ("meyer", "yield_strength", "MPa")],
+)
+def test_a_law_that_needs_what_the_materials_do_not_tell(
+    law: str, key: str, unit: str, page: Page, server: Server
+) -> None:
     stone = {"density": "2700 kg/m^3", "youngs_modulus": "60 GPa", "poissons_ratio": 0.2}
-    open_live(page, server, {**RIGID, "sphere": {"radius": "20 mm", "material": stone}, "plate": {**RIGID["plate"], "material": stone}})
+    open_live(
+        page,
+        server,
+        {
+            **RIGID,
+            "sphere": {"radius": "20 mm", "material": stone},
+            "plate": {**RIGID["plate"], "material": stone},
+        },
+    )
     row(page, "contact.law").locator("select").select_option(law)
     settle(page)
     assert faults(page)[0].startswith(f"contact.{key}: ")
     field = row(page, f"contact.{key}")
     assert field.locator(".unit").text_content() == unit
     assert field.locator(".fault-here").count() == 1
-    assert page.locator("#controls .note").text_content() == page.evaluate(f"() => vibroimpact.live.state.offer.laws['{law}'].equation")
+    assert page.locator("#controls .note").text_content() == page.evaluate(
+        f"() => vibroimpact.live.state.offer.laws['{law}'].equation"
+    )
     type_value(page, f"contact.{key}", 400)
     assert faults(page) == []
     assert shown(page)["contact"][key] == pytest.approx(400e6)
@@ -192,32 +240,72 @@ def test_patches_come_back_where_they_were(page: Page, server: Server) -> None:
     ("change", "field"),
     [
         ({"drop": {"height": "0.2 m", "position": ["150 mm", 0]}}, "drop.position.0"),
-        ({"sensors": [{"name": "a1", "position": [0, 0]}, {"name": "the 2nd: b", "position": ["150 mm", 0]}]}, "sensors.1.position.0"),
-        ({"sensors": [{"name": "a1", "position": [0, 0], "rate": "20 kHz"}, {"name": "", "position": [0, 0]}]}, "sensors.1.name"),
-        ({"sensors": [{"name": "a1", "position": [0, 0]}, {"name": "a1", "position": ["9 mm", 0]}]}, "sensors.1.name"),
+        (
+            {
+                "sensors": [
+                    {"name": "a1", "position": [0, 0]},
+                    {"name": "the 2nd: b", "position": ["150 mm", 0]},
+                ]
+            },
+            "sensors.1.position.0",
+        ),
+        (
+            {
+                "sensors": [
+                    {"name": "a1", "position": [0, 0], "rate": "20 kHz"},
+                    {"name": "", "position": [0, 0]},
+                ]
+            },
+            "sensors.1.name",
+        ),
+        (
+            {
+                "sensors": [
+                    {"name": "a1", "position": [0, 0]},
+                    {"name": "a1", "position": ["9 mm", 0]},
+                ]
+            },
+            "sensors.1.name",
+        ),
     ],
 )
-def test_a_message_stands_at_the_field_that_it_is_about(change: dict[str, Any], field: str, page: Page, server: Server) -> None:
-    kept = {"sensors": [{"name": "a1", "position": [0, 0]}, {"name": "a2", "position": ["9 mm", 0]}]}
+def test_a_message_stands_at_the_field_that_it_is_about(
+    change: dict[str, Any], field: str, page: Page, server: Server
+) -> None:
+    kept = {
+        "sensors": [{"name": "a1", "position": [0, 0]}, {"name": "a2", "position": ["9 mm", 0]}]
+    }
     open_live(page, server, {**ELASTIC, **kept})
-    edit = "(change) => vibroimpact.live.controls.change((table) => Object.assign(table, change), true)"
+    edit = (
+        "(change) => vibroimpact.live.controls.change((table) "
+        "=> Object.assign(table, change), true)"
+    )
     page.evaluate(edit, change)
     settle(page)
     (words,) = faults(page)
     assert row(page, field).locator(".fault-here").all_text_contents() == [words]
     marked = page.locator("[aria-invalid=true]")
-    assert (marked.count(), page.locator(f"#{marked.get_attribute('aria-describedby')}").text_content()) == (1, words)
+    assert (
+        marked.count(),
+        page.locator(f"#{marked.get_attribute('aria-describedby')}").text_content(),
+    ) == (1, words)
     page.evaluate(edit, kept | {"drop": ELASTIC["drop"]})
     settle(page)
     assert page.locator("[aria-invalid], [aria-describedby], .fault-here").count() == 0
 
 
 def test_an_oblique_drop(page: Page, server: Server) -> None:
-    """Angle, friction and inclination have controls, and the ball moves along the plate, also along one that vibrates."""
+    """Angle, friction and inclination have controls, and the ball moves along the plate,
+    also along one that vibrates.
+    """
     open_live(
         page,
         server,
-        {**RIGID, "drop": {"speed": 3.0, "angle": 0.3}, "contact": {**RIGID["contact"], "friction": {"law": "mdr", "coefficient": 0.2}}},
+        {
+            **RIGID,
+            "drop": {"speed": 3.0, "angle": 0.3},
+            "contact": {**RIGID["contact"], "friction": {"law": "mdr", "coefficient": 0.2}},
+        },
     )
     assert faults(page) == []
     type_value(page, "drop.angle", 30)
@@ -225,7 +313,10 @@ def test_an_oblique_drop(page: Page, server: Server) -> None:
     type_value(page, "plate.inclination", 5)
     case = shown(page)
     assert case["drop"]["angle"] == pytest.approx(np.radians(30))
-    assert (case["contact"]["friction"]["law"], case["contact"]["friction"]["coefficient"]) == ("mdr", 0.1)
+    assert (case["contact"]["friction"]["law"], case["contact"]["friction"]["coefficient"]) == (
+        "mdr",
+        0.1,
+    )
     assert page.locator("#chart-along_plate").count() == 1
     path = page.evaluate("() => Array.from(vibroimpact.live.state.last.scene.path[0])")
     assert path[-1] > path[0] + 0.01
@@ -241,12 +332,18 @@ def test_an_oblique_drop(page: Page, server: Server) -> None:
 
 @pytest.mark.parametrize("case", CASES)
 def test_a_plate_that_is_shaken(case: str, page: Page, server: Server) -> None:
-    """Amplitude, frequency, phase and direction have controls, and impacts and charts are those of the plate that moves."""
+    """Amplitude, frequency, phase and direction have controls, and impacts and charts are
+    those of the plate that moves.
+    """
     open_live(page, server, CASES[case])
     before, columns = shown(page), set(page.locator("table th").all_text_contents())
     row(page, "plate.motion").locator("select").select_option("shaken")
     settle(page)
-    for key, value, told_as in (("amplitude", 0.5, 5e-4), ("frequency", 40, 40.0), ("phase", 90, np.pi / 2.0)):
+    for key, value, told_as in (
+        ("amplitude", 0.5, 5e-4),
+        ("frequency", 40, 40.0),
+        ("phase", 90, np.pi / 2.0),
+    ):
         type_value(page, f"plate.motion.{key}", value)
         assert faults(page) == []
         assert value_at(shown(page), f"plate.motion.{key}") == pytest.approx(told_as)
@@ -273,7 +370,9 @@ def test_a_body_that_becomes_elastic_and_rigid_again(page: Page, server: Server)
 
 
 def test_a_ball_that_is_hollow_and_again_solid(page: Page, server: Server) -> None:
-    """Mass and inertia are given, kept while other values change, put aside for an elastic sphere, which is solid, and come back."""
+    """Mass and inertia are given, kept while other values change, put aside for an
+    elastic sphere, which is solid, and come back.
+    """
     open_live(page, server, RIGID)
     row(page, "contact.friction.law").locator("select").select_option("mdr")
     settle(page)
@@ -283,7 +382,11 @@ def test_a_ball_that_is_hollow_and_again_solid(page: Page, server: Server) -> No
     type_value(page, "sphere.radius", 20)
     assert faults(page) == []
     case = shown(page)
-    assert (case["sphere"]["radius"], case["sphere"]["mass"], case["sphere"]["inertia"]) == (0.02, 0.0027, "hollow")
+    assert (case["sphere"]["radius"], case["sphere"]["mass"], case["sphere"]["inertia"]) == (
+        0.02,
+        0.0027,
+        "hollow",
+    )
     for value in ("elastic", "rigid"):
         row(page, "sphere.model").locator("select").select_option(value)
         settle(page)
@@ -332,7 +435,9 @@ def test_what_is_typed_is_kept_while_results_arrive(page: Page, server: Server) 
     assert field.input_value() == "31"
 
 
-def test_moving_on_while_a_result_is_under_way_ends_at_the_last_place(page: Page, server: Server) -> None:
+def test_moving_on_while_a_result_is_under_way_ends_at_the_last_place(
+    page: Page, server: Server
+) -> None:
     """A slider that is dragged does not jump back when an earlier place of it is shown."""
     open_live(page, server, ELASTIC)
     slider = row(page, "drop.height").locator("input[type=range]")
@@ -342,21 +447,36 @@ def test_moving_on_while_a_result_is_under_way_ends_at_the_last_place(page: Page
     page.mouse.move(box["x"] + 0.2 * box["width"], box["y"] + 0.5 * box["height"])
     page.mouse.down()
     for step in range(40):
-        page.mouse.move(box["x"] + (0.2 + 0.015 * step) * box["width"], box["y"] + 0.5 * box["height"])
+        page.mouse.move(
+            box["x"] + (0.2 + 0.015 * step) * box["width"], box["y"] + 0.5 * box["height"]
+        )
         wanted = slider.input_value()
         page.evaluate("() => new Promise((done) => requestAnimationFrame(done))")
         assert slider.input_value() == wanted
     page.mouse.up()
     settle(page)
-    assert slider.input_value() == pytest.approx(wanted) or abs(float(slider.input_value()) - float(wanted)) < 0.01
+    assert (
+        slider.input_value() == pytest.approx(wanted)
+        or abs(float(slider.input_value()) - float(wanted)) < 0.01
+    )
     assert_is_shown(page, "drop.height", 0.2)
 
 
 def test_a_case_with_values_that_the_controls_have_no_words_for(page: Page, server: Server) -> None:
     table: dict[str, Any] = {
         **ELASTIC,
-        "plate": {**ELASTIC["plate"], "modes": None, "max_frequency": "3 kHz", "damping": {"rayleigh": [1.0, 1e-6]}, "supports": "clamped"},
-        "contact": {"law": "adams-impact", "damping_max": [20.0, 10.0], "full_damping_penetration": "0.1 mm"},
+        "plate": {
+            **ELASTIC["plate"],
+            "modes": None,
+            "max_frequency": "3 kHz",
+            "damping": {"rayleigh": [1.0, 1e-6]},
+            "supports": "clamped",
+        },
+        "contact": {
+            "law": "adams-impact",
+            "damping_max": [20.0, 10.0],
+            "full_damping_penetration": "0.1 mm",
+        },
         "run": {"duration": "0.5 s"},
     }
     del table["plate"]["modes"]

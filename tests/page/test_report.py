@@ -1,4 +1,6 @@
-"""The report of a run in a browser: what it draws is what was computed, and its controls do what they say."""
+"""The report of a run in a browser: what it draws is what was computed, and its controls
+do what they say.
+"""
 
 from __future__ import annotations
 
@@ -69,7 +71,9 @@ CASES: dict[str, Any] = {
             "material": "steel",
             "model": "elastic",
             "modes": 6,
-            "supports": [{"type": "point", "position": [x, y]} for x in (-0.09, 0.09) for y in (-0.07, 0.07)],
+            "supports": [
+                {"type": "point", "position": [x, y]} for x in (-0.09, 0.09) for y in (-0.07, 0.07)
+            ],
         },
         "drop": {"height": 0.2},
         "contact": {"law": "hertz"},
@@ -82,7 +86,15 @@ CASES: dict[str, Any] = {
     "long names": LONG_NAMES,
 }
 CHARTS = {
-    "type1": ["setup", "position", "force", "velocity", "acceleration", "force_indentation", "energy"],
+    "type1": [
+        "setup",
+        "position",
+        "force",
+        "velocity",
+        "acceleration",
+        "force_indentation",
+        "energy",
+    ],
     "newton": ["setup", "position", "velocity", "energy"],
     "no impact": ["setup", "position", "velocity", "energy"],
 }
@@ -96,7 +108,13 @@ def report(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], tuple[Re
 
     def make(name: str) -> tuple[Result, Path]:
         if name not in made:
-            result = result_of(vi.simulate(vi.load_case(CASES[name]) if isinstance(CASES[name], str) else vi.read_case(CASES[name])))
+            result = result_of(
+                vi.simulate(
+                    vi.load_case(CASES[name])
+                    if isinstance(CASES[name], str)
+                    else vi.read_case(CASES[name])
+                )
+            )
             path = folder / f"{name}.html"
             path.write_text(run_page(result), encoding="utf-8")
             made[name] = result, path
@@ -111,10 +129,15 @@ def open_report(page: Page, path: Path) -> None:
 
 
 @pytest.mark.parametrize("case", CASES)
-def test_every_chart_is_drawn_with_the_numbers_of_the_result(case: str, page: Page, report: Any) -> None:
+def test_every_chart_is_drawn_with_the_numbers_of_the_result(
+    case: str, page: Page, report: Any
+) -> None:
     result, path = report(case)
     open_report(page, path)
-    assert page.evaluate("document.title") == f"{result.name[:1].upper()}{result.name[1:]} \u2013 vibroimpact report"
+    assert (
+        page.evaluate("document.title")
+        == f"{result.name[:1].upper()}{result.name[1:]} \u2013 vibroimpact report"
+    )
     found = names(page)
     if case in CHARTS:
         assert found == CHARTS[case]
@@ -128,7 +151,9 @@ def test_every_chart_is_drawn_with_the_numbers_of_the_result(case: str, page: Pa
     for name in ("sphere_energy", "plate_motion", "plate_energy"):
         if name in found:
             assert_rows_are_drawn(page, name, history)
-    for name, chart in zip(result.signals, [one for one in found if one.startswith("sensor_")], strict=True):
+    for name, chart in zip(
+        result.signals, [one for one in found if one.startswith("sensor_")], strict=True
+    ):
         assert_sensor_is_drawn(page, result, name, chart)
     sketch = plotted(page, "setup")
     assert any("radius" in note for note in sketch.notes)
@@ -136,7 +161,10 @@ def test_every_chart_is_drawn_with_the_numbers_of_the_result(case: str, page: Pa
     for name in found:
         show(page, name)
         assert page.locator(f'[data-chart="{name}"] svg path').count() > 3
-        assert page.locator(f'[data-chart="{name}"] .js-line, [data-chart="{name}"] .point, [data-chart="{name}"] .js-fill').count()
+        assert page.locator(
+            f'[data-chart="{name}"] .js-line, [data-chart="{name}"] .point, '
+            f'[data-chart="{name}"] .js-fill'
+        ).count()
 
 
 def rows_of(page: Page, name: str, view: int | None = None) -> list[tuple[str, Any]]:
@@ -145,8 +173,16 @@ def rows_of(page: Page, name: str, view: int | None = None) -> list[tuple[str, A
     found = []
     for number, title in enumerate(panels):
         panel = "y" if number == 0 else f"y{number + 1}"
-        key = f"{title} of the plate" if name == "plate_energy" and title.endswith("strain and kinetic") else title
-        unit = next(one for one in ("m/s2", "m/s", "m", "J") if chart.titles[panel].replace("²", "2").endswith(one))
+        key = (
+            f"{title} of the plate"
+            if name == "plate_energy" and title.endswith("strain and kinetic")
+            else title
+        )
+        unit = next(
+            one
+            for one in ("m/s2", "m/s", "m", "J")
+            if chart.titles[panel].replace("²", "2").endswith(one)
+        )
         found.append((key, plotted(page, name, {panel: ("s", unit)}).lines(panel)))
     return found
 
@@ -175,21 +211,40 @@ def test_views_show_every_point_of_a_contact(case: str, page: Page, report: Any)
     for number in range(len(impacts["impact"])):
         page.select_option("#view", str(number))
         touch = impacts["time_s"][number]
-        until(page, "(wanted) => document.querySelector('[data-headline=force]').textContent.startsWith(wanted)", f"Impact {number + 1}:")
+        until(
+            page,
+            "(wanted) => "
+            "document.querySelector('[data-headline=force]').textContent.startsWith(wanted)",
+            f"Impact {number + 1}:",
+        )
         for name, column in COLUMNS.items():
             chart = plotted(page, name, ("s", UNITS[name]))
             assert chart.titles["x"].startswith(f"Time since first touch of impact {number + 1} [")
             (line,) = chart.lines()
-            level = history["position_m"][np.searchsorted(history["time_s"], impacts["time_s"][0])] if name == "position" else 0.0
-            assert_is_line(line, history["time_s"] - touch, history[column] - level, whole=False, tolerance=2e-6)
+            level = (
+                history["position_m"][np.searchsorted(history["time_s"], impacts["time_s"][0])]
+                if name == "position"
+                else 0.0
+            )
+            assert_is_line(
+                line,
+                history["time_s"] - touch,
+                history[column] - level,
+                whole=False,
+                tolerance=2e-6,
+            )
             # all of the contact is there, and it fills the window
             assert line.x[0] <= 0.0
             assert line.x[-1] >= impacts["duration_s"][number]
             wide = chart.ranges["x"][1] - chart.ranges["x"][0]
             # and its values fill the height
-            high = (chart.ranges["y"][1] - chart.ranges["y"][0]) * unit_size(chart.titles["y"], UNITS[name])
+            high = (chart.ranges["y"][1] - chart.ranges["y"][0]) * unit_size(
+                chart.titles["y"], UNITS[name]
+            )
             assert high < 1.5 * np.ptp(line.y)
-            scale = {"s": 1.0, "ms": 1e-3, "µs": 1e-6}[re.search(r"\[(.+)\]", chart.titles["x"]).group(1)]
+            scale = {"s": 1.0, "ms": 1e-3, "µs": 1e-6}[
+                re.search(r"\[(.+)\]", chart.titles["x"]).group(1)
+            ]
             assert 1.29 <= wide * scale / impacts["duration_s"][number] <= 1.31
         headline = page.locator("[data-headline=force]").text_content()
         force = float(re.search(r"force ([\d.]+)", headline).group(1))
@@ -205,8 +260,11 @@ def test_views_of_what_the_plate_does(page: Page, report: Any) -> None:
     touch, history = result.impacts["time_s"][2], result.history
     for name in ("sphere_energy", "plate_motion", "plate_energy"):
         for title, (line,) in rows_of(page, name):
-            # a view of the plate holds more points than are drawn at once: of these there are the extremes
-            inside = (history["time_s"] - touch >= line.x[0] - 1e-9) & (history["time_s"] - touch <= line.x[-1] + 1e-9)
+            # a view of the plate holds more points than are drawn at once: of these there are the
+            # extremes
+            inside = (history["time_s"] - touch >= line.x[0] - 1e-9) & (
+                history["time_s"] - touch <= line.x[-1] + 1e-9
+            )
             values = ROWS[title](history)
             assert_is_line(
                 line,
@@ -222,12 +280,18 @@ def test_buttons_of_the_table_show_the_impact(page: Page, report: Any) -> None:
     open_report(page, path)
     table = impact_table(result)
     rows = page.locator("table.impacts tbody tr")
-    assert [[cell.strip() for cell in row.locator("td").all_text_contents()] for row in rows.all()] == table.head
+    assert [
+        [cell.strip() for cell in row.locator("td").all_text_contents()] for row in rows.all()
+    ] == table.head
     page.get_by_role("button", name="Show impact 3 in the charts").click()
     assert page.locator("#view").input_value() == "2"
     assert page.locator("tr.chosen td").first.text_content().strip() == "3"
     until(page, "() => document.getElementById('charts').getBoundingClientRect().top < 200")
-    assert plotted(page, "force", ("s", "N")).titles["x"].startswith("Time since first touch of impact 3")
+    assert (
+        plotted(page, "force", ("s", "N"))
+        .titles["x"]
+        .startswith("Time since first touch of impact 3")
+    )
     page.get_by_role("button", name="Later").click()
     assert page.locator("#view").input_value() == "3"
     page.get_by_role("button", name="Later").click()
@@ -238,7 +302,10 @@ def test_buttons_of_the_table_show_the_impact(page: Page, report: Any) -> None:
     assert page.get_by_role("button", name="Earlier").is_disabled()
     ledger = [
         row.all_text_contents()
-        for row in (page.locator(f"table.ledger tbody tr:nth-child({n + 1}) > *") for n in range(len(ledger_table(result)[1])))
+        for row in (
+            page.locator(f"table.ledger tbody tr:nth-child({n + 1}) > *")
+            for n in range(len(ledger_table(result)[1]))
+        )
     ]
     assert ledger == [[row.title, row.energy, row.part] for row in ledger_table(result)[1]]
 
@@ -279,15 +346,27 @@ def test_a_zoom_of_logarithmic_axes_survives_the_theme(page: Page, report: Any) 
     result, path = report("type3")
     open_report(page, path)
     name = next(one for one in names(page) if one.startswith("sensor_"))
-    plotted(page, name, {"y": ("s", next(iter(result.signals.values())).sensor.unit), "y2": ("Hz", "")})
+    plotted(
+        page, name, {"y": ("s", next(iter(result.signals.values())).sensor.unit), "y2": ("Hz", "")}
+    )
     ranges = """(name) => { const { layout } = vibroimpact.charts.get(name).element;
         return Object.keys(layout).filter((key) => layout[key].type === "log").map((key) => [key, Array.from(layout[key].range)]); }"""
     whole = dict(page.evaluate(ranges, name))
     assert whole
-    inside = {key: [low + 0.2 * (high - low), high - 0.3 * (high - low)] for key, (low, high) in whole.items()}
+    inside = {
+        key: [low + 0.2 * (high - low), high - 0.3 * (high - low)]
+        for key, (low, high) in whole.items()
+    }
     page.evaluate(
         """([name, change]) => Plotly.relayout(vibroimpact.charts.get(name).element, change)""",
-        [name, {f"{key}.range[{end}]": value for key, ends in inside.items() for end, value in enumerate(ends)}],
+        [
+            name,
+            {
+                f"{key}.range[{end}]": value
+                for key, ends in inside.items()
+                for end, value in enumerate(ends)
+            },
+        ],
     )
     page.get_by_role("button", name="Light or dark").click()
     page.evaluate("(name) => vibroimpact.charts.get(name).drawing", name)
@@ -357,7 +436,9 @@ def test_theme_follows_the_system_and_the_button(new_page: MakePage, report: Any
             assert page.locator("html").get_attribute("data-theme") == theme
             show(page, "force")
             ground = page.evaluate("() => getComputedStyle(document.body).backgroundColor")
-            line = page.evaluate("() => vibroimpact.charts.get('force').element._fullLayout.font.color")
+            line = page.evaluate(
+                "() => vibroimpact.charts.get('force').element._fullLayout.font.color"
+            )
             grounds.append((ground, line))
             page.get_by_role("button", name="Light or dark").click()
         assert grounds[0][0] != grounds[1][0]
@@ -384,16 +465,27 @@ def test_scene_plays_pauses_scrubs_and_turns(page: Page, report: Any) -> None:
     _, path = report("type3")
     open_report(page, path)
     page.locator("#scene").scroll_into_view_if_needed()
-    play, place, clock = page.locator("[data-scene=play]"), page.locator("[data-scene=place]"), page.locator("[data-scene=clock]")
-    until(page, "() => document.querySelector('[data-scene=play]').textContent === 'Pause'")  # it begins as it comes into sight
+    play, place, clock = (
+        page.locator("[data-scene=play]"),
+        page.locator("[data-scene=place]"),
+        page.locator("[data-scene=clock]"),
+    )
+    # it begins as it comes into sight
+    until(page, "() => document.querySelector('[data-scene=play]').textContent === 'Pause'")
     before = clock.text_content()
-    until(page, "(before) => document.querySelector('[data-scene=clock]').textContent !== before", before)
+    until(
+        page,
+        "(before) => document.querySelector('[data-scene=clock]').textContent !== before",
+        before,
+    )
     play.click()
     assert play.text_content() == "Play"
     still = clock.text_content()
     picture = "() => document.querySelector('#scene canvas').toDataURL()"
     first = page.evaluate(picture)
-    page.evaluate("() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
+    page.evaluate(
+        "() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))"
+    )
     assert page.evaluate(picture) == first
     place.fill("800")
     assert clock.text_content() != still
@@ -443,7 +535,9 @@ def test_less_motion_is_respected(new_page: MakePage, report: Any) -> None:
     _, path = report("type3")
     open_report(page, path)
     page.locator("#scene").scroll_into_view_if_needed()
-    page.evaluate("() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
+    page.evaluate(
+        "() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))"
+    )
     assert page.locator("[data-scene=play]").text_content() == "Play"
 
 
@@ -455,7 +549,10 @@ def test_case_can_be_copied(new_page: MakePage, report: Any) -> None:
     button = page.locator("button[data-copy]")
     button.click()
     until(page, "() => document.querySelector('button[data-copy]').textContent !== 'Copy'")
-    found = {"Copied": "() => navigator.clipboard.readText()", "Selected: press Ctrl+C": "() => getSelection().toString()"}
+    found = {
+        "Copied": "() => navigator.clipboard.readText()",
+        "Selected: press Ctrl+C": "() => getSelection().toString()",
+    }
     copied = page.evaluate(found[button.text_content()])
     assert vi.read_case(tomllib.loads(copied)) == vi.read_case(result.case)
 
@@ -485,10 +582,14 @@ def test_hostile_texts_are_shown_as_they_are(page: Page, report: Any) -> None:
     assert "'unsafe-inline'" not in policy.split("style-src")[0]
 
 
-def test_a_script_that_is_put_into_the_page_does_not_run(page: Page, report: Any, tmp_path: Path, complaints: list[str]) -> None:
+def test_a_script_that_is_put_into_the_page_does_not_run(
+    page: Page, report: Any, tmp_path: Path, complaints: list[str]
+) -> None:
     _, path = report("type1")
     text = path.read_text(encoding="utf-8").replace(
-        "</main>", "<script>document.title = 'taken'</script><img src='https://example.org/a.png' onerror='document.title = 2'></main>"
+        "</main>",
+        "<script>document.title = 'taken'</script><img src='https://example.org/a.png' "
+        "onerror='document.title = 2'></main>",
     )
     (tmp_path / "changed.html").write_text(text, encoding="utf-8")
     open_report(page, tmp_path / "changed.html")
@@ -499,7 +600,9 @@ def test_a_script_that_is_put_into_the_page_does_not_run(page: Page, report: Any
 
 
 @pytest.mark.parametrize("case", ["type1", "type3"])
-def test_without_scripts_there_are_tables_and_a_notice(case: str, new_page: MakePage, report: Any, complaints: list[str]) -> None:
+def test_without_scripts_there_are_tables_and_a_notice(
+    case: str, new_page: MakePage, report: Any, complaints: list[str]
+) -> None:
     result, path = report(case)
     page = new_page(java_script_enabled=False)
     page.goto(path.as_uri())
@@ -508,7 +611,9 @@ def test_without_scripts_there_are_tables_and_a_notice(case: str, new_page: Make
     assert notice.is_visible()
     assert page.locator("table.impacts tbody tr").count() == len(result.impacts["impact"])
     assert page.locator("#case-text").is_visible()
-    assert page.locator(":not(td) > button, select, canvas, .chart").filter(visible=True).count() == 0
+    assert (
+        page.locator(":not(td) > button, select, canvas, .chart").filter(visible=True).count() == 0
+    )
     complaints[:] = [one for one in complaints if "script" not in one.lower()]
 
 
@@ -536,7 +641,9 @@ def test_on_paper_everything_is_there(new_page: MakePage, report: Any) -> None:
     assert page.locator("[data-impact] td:first-child").first.is_visible()
     assert page.locator("[data-impact] button").first.is_visible()
     assert page.locator("#theme, .tools, .player").filter(visible=True).count() == 0
-    widths = page.evaluate("() => [...vibroimpact.charts].map(([name, one]) => [name, one.element._fullLayout.width])")
+    widths = page.evaluate(
+        "() => [...vibroimpact.charts].map(([name, one]) => [name, one.element._fullLayout.width])"
+    )
     assert dict(widths) == {name: 680 if name == "setup" else 330 for name in names(page)}
     page.emulate_media(media="screen", color_scheme="dark")
     page.evaluate("() => dispatchEvent(new Event('afterprint'))")
@@ -548,7 +655,9 @@ def test_on_paper_everything_is_there(new_page: MakePage, report: Any) -> None:
 
 @pytest.mark.parametrize("size", [(390, 844), (1024, 768), (1440, 900)])
 @pytest.mark.parametrize("case", ["type3", "hostile", "long names"])
-def test_the_page_does_not_scroll_sideways(case: str, size: tuple[int, int], new_page: MakePage, report: Any) -> None:
+def test_the_page_does_not_scroll_sideways(
+    case: str, size: tuple[int, int], new_page: MakePage, report: Any
+) -> None:
     _, path = report(case)
     page = new_page(*size)
     open_report(page, path)
@@ -564,6 +673,7 @@ def test_charts_follow_the_width_of_the_window(page: Page, report: Any) -> None:
     page.set_viewport_size({"width": 700, "height": 800})
     until(
         page,
-        "() => { const at = vibroimpact.charts.get('force').element; return Math.abs(at._fullLayout.width - at.clientWidth) < 2; }",
+        "() => { const at = vibroimpact.charts.get('force').element; return "
+        "Math.abs(at._fullLayout.width - at.clientWidth) < 2; }",
     )
     assert page.evaluate("() => vibroimpact.charts.get('force').element.clientWidth") < 700

@@ -38,7 +38,8 @@ PAGES = [ROOT / "README.md", *sorted([*DOCS.glob("*.md"), *DOCS.glob("guides/*.m
 GUIDES = [DOCS / "first-steps.md", *sorted(DOCS.glob("guides/*.md"))]
 LAW_PAGES = sorted(DOCS.glob("laws/*.md"))
 
-# what blocks of the pages are: these are run or read by the tests below, a text is what is printed, and "sh" has its own list
+# what blocks of the pages are: these are run or read by the tests below, a text is what is printed,
+# and "sh" has its own list
 LANGUAGES = {"console", "python", "toml", "text", "sh", "math"}
 DIRECTIVES = {"{toctree}", "{eval-rst}", "{include}"}
 SMALLER = {
@@ -55,12 +56,15 @@ SMALLER = {
     "vibroimpact modes responses.uff -o measured": "",
     "vibroimpact modes plate.toml --measured responses.uff -o beside": "",
 }
-"""Commands of the pages that take minutes, or files of the reader, and what makes them small here."""
+"""Commands of the pages that take minutes, or files of the reader, and what makes them
+small here.
+"""
 
 NOT_RUN = {
     "make demo": "installs, and CI runs each part",
     "make test": "CI runs it",
-    "vibroimpact run paper:type1-theory -o theory --json | jq '.impacts[0].max_force_N'": "tests/contract/test_json.py reads it",
+    "vibroimpact run paper:type1-theory -o theory --json | jq "
+    "'.impacts[0].max_force_N'": "tests/contract/test_json.py reads it",
     "vibroimpact --install-completion": "changes the settings of a shell; tests/unit/test_completion.py tries it",
     "vibroimpact --show-completion": "tests/unit/test_completion.py tries it",
     "python3 -m venv .venv": "installs; tests/project/test_packaging.py tries the package",
@@ -78,7 +82,9 @@ NOT_RUN = {
     'pip install "vibroimpact[app]"': "installs",
     "vibroimpact serve": "runs until it is ended; tests/page tries it",
 }
-"""Commands of the pages that no test here runs, and why: they install, change a shell, or run until they are ended."""
+"""Commands of the pages that no test here runs, and why: they install, change a shell, or
+run until they are ended.
+"""
 
 
 def name_of(page: Path) -> str:
@@ -101,35 +107,79 @@ def commands(pages: list[Path]) -> list[str]:
 
 
 def printed_blocks(page: Path) -> list[str]:
-    """Return the blocks of text that follow a block of commands: what these print, or write into files."""
+    """Return the blocks of text that follow a block of commands: what these print, or
+    write into files.
+    """
     text = page.read_text(encoding="utf-8")
-    sections = re.split(r"^#+ .*$", re.sub(r"^# (?=\S+\.toml$)", "  # ", text, flags=re.M), flags=re.M)
-    every = [re.findall(r"^```(\w+)\n(.*?)^```", section, flags=re.M | re.S) for section in sections]
+    sections = re.split(
+        r"^#+ .*$", re.sub(r"^# (?=\S+\.toml$)", "  # ", text, flags=re.M), flags=re.M
+    )
+    every = [
+        re.findall(r"^```(\w+)\n(.*?)^```", section, flags=re.M | re.S) for section in sections
+    ]
     pairs = itertools.chain.from_iterable(map(itertools.pairwise, every))
-    return [block for (before, _), (language, block) in pairs if (before, language) == ("console", "text")]
+    return [
+        block
+        for (before, _), (language, block) in pairs
+        if (before, language) == ("console", "text")
+    ]
 
 
 def unsaid(block: str, output: str, folder: Path) -> list[str]:
-    """Return the lines of a block that are neither in an output nor in a file of a folder; spaces and broken lines do not count."""
-    written = [path.read_text(errors="replace") for path in sorted(folder.rglob("*")) if path.suffix in (".py", ".in", ".adm", ".toml")]
+    """Return the lines of a block that are neither in an output nor in a file of a
+    folder; spaces and broken lines do not count.
+    """
+    written = [
+        path.read_text(errors="replace")
+        for path in sorted(folder.rglob("*"))
+        if path.suffix in (".py", ".in", ".adm", ".toml")
+    ]
     everything = " ".join("\n".join([output, *written]).split())
-    return [line for line in block.splitlines() for part in line.split("...") if " ".join(part.split()) not in everything]
+    return [
+        line
+        for line in block.splitlines()
+        for part in line.split("...")
+        if " ".join(part.split()) not in everything
+    ]
 
 
 def is_quick(command: str) -> bool:
-    """Modes of elastic bodies, studies, and figures for print take longer than all that the other commands do."""
-    slow = {"paper:type3", "elastic.toml", "figures", "features", "dataset", "bound", "reproduce", "sweep", "bounces.wav"}
+    """Modes of elastic bodies, studies, and figures for print take longer than all that
+    the other commands do.
+    """
+    slow = {
+        "paper:type3",
+        "elastic.toml",
+        "figures",
+        "features",
+        "dataset",
+        "bound",
+        "reproduce",
+        "sweep",
+        "bounces.wav",
+    }
     return not slow & set(command.split())
 
 
 def write_records(folder: Path) -> None:
     """Write the records of bounces and the tables that commands and examples name."""
     sound = heard(0, 0.7, 7, decibels=30.0).record
-    wavfile.write(folder / "bounces.wav", round(sound.rate), (0.5 * sound.value / np.abs(sound.value).max()).astype("f4"))
+    wavfile.write(
+        folder / "bounces.wav",
+        round(sound.rate),
+        (0.5 * sound.value / np.abs(sound.value).max()).astype("f4"),
+    )
     plate = heard(1, 0.6, 6, decibels=30.0, rate=8e3).record
-    rows = (f"{at!r},{value!r}\n" for at, value in zip(plate.time.tolist(), plate.value.tolist(), strict=True))
+    rows = (
+        f"{at!r},{value!r}\n"
+        for at, value in zip(plate.time.tolist(), plate.value.tolist(), strict=True)
+    )
     (folder / "plate.csv").write_text("time [s],geophone [V]\n" + "".join(rows))
-    table = next(block for block in blocks(DOCS / "calibration.md", "text") if block.startswith("speed [m/s],restitution"))
+    table = next(
+        block
+        for block in blocks(DOCS / "calibration.md", "text")
+        if block.startswith("speed [m/s],restitution")
+    )
     (folder / "ev.csv").write_text(table)
     np.savetxt(folder / "sound.txt", sound.value)
     np.savetxt(folder / "force.txt", np.stack([plate.time, plate.time, plate.value], axis=1))
@@ -137,7 +187,10 @@ def write_records(folder: Path) -> None:
 
 def write_cases(folder: Path) -> None:
     """Write the cases that the pages show under the names that they say, or as `case.toml`."""
-    for block in [*blocks(DOCS / "case-file.md", "toml"), *(block for guide in GUIDES for block in blocks(guide, "toml"))]:
+    for block in [
+        *blocks(DOCS / "case-file.md", "toml"),
+        *(block for guide in GUIDES for block in blocks(guide, "toml")),
+    ]:
         name = re.match(r"# (\S+\.toml)\n", block)
         (folder / (name[1] if name else "case.toml")).write_text(block)
 
@@ -154,16 +207,28 @@ class NarrowAndWide(TerminalConsole):
             super().print(*objects, **options)
 
 
-@pytest.mark.parametrize("all_pages", [False, pytest.param(True, marks=pytest.mark.slow)], ids=["README, quick", "all pages"])
+@pytest.mark.parametrize(
+    "all_pages",
+    [False, pytest.param(True, marks=pytest.mark.slow)],
+    ids=["README, quick", "all pages"],
+)
 def test_documented_commands_run(
-    all_pages: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+    all_pages: bool,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capfd: pytest.CaptureFixture[str],
 ) -> None:
-    """Those of the README, and in another folder those of all other pages; what was computed once is copied."""
+    """Those of the README, and in another folder those of all other pages; what was
+    computed once is copied.
+    """
     monkeypatch.setattr(console, "TerminalConsole", NarrowAndWide)
     made: dict[str, Path | None] = {}
     printed: dict[str, str] = {}
     wrong: list[str] = []
-    for place, pages in {"readme": PAGES[:1], **({"docs": [*PAGES[1:], *LAW_PAGES]} if all_pages else {})}.items():
+    for place, pages in {
+        "readme": PAGES[:1],
+        **({"docs": [*PAGES[1:], *LAW_PAGES]} if all_pages else {}),
+    }.items():
         folder = tmp_path / place
         folder.mkdir()
         monkeypatch.chdir(folder)
@@ -185,39 +250,67 @@ def test_documented_commands_run(
             printed[words] = out + err
             assert not left.value.code, f"{command}\n{err}"
         for page in pages if all_pages else ():
-            output = "\n".join(printed[command.partition(" -o ")[0]] for command in commands([page]))
-            wrong += [f"{name_of(page)}: {line}" for block in printed_blocks(page) for line in unsaid(block, output, folder)]
+            output = "\n".join(
+                printed[command.partition(" -o ")[0]] for command in commands([page])
+            )
+            wrong += [
+                f"{name_of(page)}: {line}"
+                for block in printed_blocks(page)
+                for line in unsaid(block, output, folder)
+            ]
     assert not wrong, "\n".join(wrong)
 
 
 def write_table(path: Path, columns: dict[str, np.ndarray]) -> None:
-    np.savetxt(path, np.column_stack([*columns.values()]), delimiter=",", header=",".join(columns), comments="")
+    np.savetxt(
+        path,
+        np.column_stack([*columns.values()]),
+        delimiter=",",
+        header=",".join(columns),
+        comments="",
+    )
 
 
 def write_recorded_impacts(folder: Path) -> None:
-    """Write the records of sensors, and their cases, that commands name: a ball of coal on a plate, and taps of a hammer."""
+    """Write the records of sensors, and their cases, that commands name: a ball of coal
+    on a plate, and taps of a hammer.
+    """
     (folder / "coal.toml").write_text(tomli_w.dumps(resolved_case(an_impact_case(60))))
     records = records_of(an_impact(0.02, 3.0, (0.05, 0.03)), 50.0, 1)
     sensors = {f"{record.name} [m/s^2]": record.value for record in records}
-    write_table(folder / "records.csv", {"time [s]": np.arange(len(records[0].value)) / records[0].rate, **sensors})
+    write_table(
+        folder / "records.csv",
+        {"time [s]": np.arange(len(records[0].value)) / records[0].rate, **sensors},
+    )
     (folder / "plate.toml").write_text(tomli_w.dumps(hammered.TABLE))
     force, value = hammered.hammered()
     taps = {f"{record.name} [m/s^2]": record.value for record in hammered.records(value)}
-    write_table(folder / "taps.csv", {"time [s]": np.arange(len(force)) / hammered.RATE, "force [N]": force, **taps})
+    write_table(
+        folder / "taps.csv",
+        {"time [s]": np.arange(len(force)) / hammered.RATE, "force [N]": force, **taps},
+    )
     frequency = np.arange(200.0, 3000.0)
     of_case = vi.responses_of_case(hammered.a_case(), frequency)
     by_pyuff(
         folder / "responses.uff",
-        *({"rsp_node": 1, "rsp_ent_name": one.name, "x": frequency, "data": -one.value} for one in of_case),
+        *(
+            {"rsp_node": 1, "rsp_ent_name": one.name, "x": frequency, "data": -one.value}
+            for one in of_case
+        ),
     )
 
 
 @pytest.mark.slow
-def test_commands_of_studies_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]) -> None:
+def test_commands_of_studies_run(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
     """Those that take minutes as they stand, on less."""
     monkeypatch.chdir(tmp_path)
     write_recorded_impacts(tmp_path)
-    for command in ["vibroimpact dataset signals:coal-gangue --samples 16 -o today", *map(" ".join, SMALLER.items())]:
+    for command in [
+        "vibroimpact dataset signals:coal-gangue --samples 16 -o today",
+        *map(" ".join, SMALLER.items()),
+    ]:
         monkeypatch.setattr(sys, "argv", shlex.split(command))
         with pytest.raises(SystemExit) as left:
             main()
@@ -228,7 +321,12 @@ def test_reasons_name_what_exists() -> None:
     for command, reason in NOT_RUN.items():
         for name in re.findall(r"tests/[\w/]+(?:\.py)?", reason):
             assert (ROOT / name).exists(), f"{command}: {reason}"
-    shown = {line.split("  #")[0].strip() for page in PAGES for block in blocks(page, "sh") for line in block.splitlines()}
+    shown = {
+        line.split("  #")[0].strip()
+        for page in PAGES
+        for block in blocks(page, "sh")
+        for line in block.splitlines()
+    }
     shown |= {
         line.removeprefix("$ ").split("  #")[0].strip()
         for page in PAGES
@@ -259,12 +357,16 @@ LONG_PAGES = {"coal-from-rock.md", "elastic-drops.md", "river-geophone.md"}
 @pytest.mark.parametrize(
     "page",
     [
-        pytest.param(page, id=name_of(page), marks=pytest.mark.slow if page.name in LONG_PAGES else ())
+        pytest.param(
+            page, id=name_of(page), marks=pytest.mark.slow if page.name in LONG_PAGES else ()
+        )
         for page in PAGES
         if blocks(page, "python")
     ],
 )
-def test_documented_python_runs(page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_documented_python_runs(
+    page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.chdir(tmp_path)
     write_records(tmp_path)
     names: dict = {}
@@ -288,14 +390,28 @@ def test_every_block_is_run_or_has_a_reason(pages: list[Path]) -> None:
         text = page.read_text(encoding="utf-8")
         fences = re.findall(r"^\s*(?:```|~~~)[ \t]*([^\s`]*)", text, flags=re.M)
         opened = [fence for fence in fences if fence]
-        assert len(fences) == 2 * len(opened), f"{name_of(page)}: a block without a language, or one that is not closed"
+        assert len(fences) == 2 * len(opened), (
+            f"{name_of(page)}: a block without a language, or one that is not closed"
+        )
         assert set(opened) <= LANGUAGES | DIRECTIVES, name_of(page)
         for language in ("console", "python", "toml"):  # what the tests find is all there is
             assert opened.count(language) == len(blocks(page, language)), name_of(page)
-        asked = [line.removeprefix("$ ") for block in blocks(page, "console") for line in block.splitlines() if line.startswith("$ ")]
+        asked = [
+            line.removeprefix("$ ")
+            for block in blocks(page, "console")
+            for line in block.splitlines()
+            if line.startswith("$ ")
+        ]
         run = {command.split("  #")[0].strip() for command in asked} - {*NOT_RUN, *SMALLER}
-        assert run - {command for command in run if command.startswith("vibroimpact serve")} == set(commands([page])), name_of(page)
-        typed = {line.split("  #")[0].strip() for block in blocks(page, "sh") for line in block.splitlines() if line.strip()}
+        assert run - {command for command in run if command.startswith("vibroimpact serve")} == set(
+            commands([page])
+        ), name_of(page)
+        typed = {
+            line.split("  #")[0].strip()
+            for block in blocks(page, "sh")
+            for line in block.splitlines()
+            if line.strip()
+        }
         assert typed <= {*NOT_RUN, *SMALLER}, name_of(page)
 
 
@@ -307,7 +423,11 @@ def test_links_lead_somewhere() -> None:
         if not target.startswith("https://")
     ]
     assert len(links) > 200
-    assert [f"{name_of(page)}: {target}" for page, target in links if not (page.parent / target).exists()] == []
+    assert [
+        f"{name_of(page)}: {target}"
+        for page, target in links
+        if not (page.parent / target).exists()
+    ] == []
 
 
 # modes of a plate, studies
@@ -323,9 +443,18 @@ def _marks(example: Path) -> tuple[pytest.MarkDecorator, ...]:
 
 
 @pytest.mark.parametrize(
-    "example", [pytest.param(path, id=path.stem, marks=_marks(path)) for path in sorted((ROOT / "examples").glob("*.py"))]
+    "example",
+    [
+        pytest.param(path, id=path.stem, marks=_marks(path))
+        for path in sorted((ROOT / "examples").glob("*.py"))
+    ],
 )
-def test_examples_run(example: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+def test_examples_run(
+    example: Path,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
     monkeypatch.chdir(tmp_path)
     runpy.run_path(str(example), run_name="__main__")
     assert capsys.readouterr().out.strip()
@@ -356,7 +485,9 @@ def test_public_names_are_documented() -> None:
         assert len(text) > 20, name
         parameters = list(inspect.signature(thing).parameters) if inspect.isfunction(thing) else []
         if len(parameters) > 1:
-            assert [parameter for parameter in parameters if not re.search(rf"\b{parameter}\b", text)] == [], name
+            assert [
+                parameter for parameter in parameters if not re.search(rf"\b{parameter}\b", text)
+            ] == [], name
 
 
 def test_materials_have_a_source_for_each_number() -> None:
@@ -382,8 +513,8 @@ def test_help_is_light() -> None:
     code = (
         "import sys\nfrom vibroimpact.cli import app\nfrom typer.testing import CliRunner\n"
         "assert CliRunner().invoke(app, ['--help']).exit_code == 0\n"
-        "heavy = {'numpy', 'scipy', 'pydantic', 'matplotlib', 'h5py', 'pint', 'jinja2', 'skfem', 'numba'} & set(sys.modules)\n"
-        "assert not heavy, heavy\n"
+        "heavy = {'numpy', 'scipy', 'pydantic', 'matplotlib', 'h5py', 'pint', 'jinja2', "
+        "'skfem', 'numba'} & set(sys.modules)\nassert not heavy, heavy\n"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
@@ -396,13 +527,21 @@ def test_schema_accepts_the_shipped_cases() -> None:
     for name in vi.shipped_cases():
         schema.validate(resolved_case(vi.load_case(name)))
     with pytest.raises(jsonschema.ValidationError):
-        schema.validate({**resolved_case(vi.load_case(name)), "contact": {"law": "hertz", "damping": 1}})
+        schema.validate(
+            {**resolved_case(vi.load_case(name)), "contact": {"law": "hertz", "damping": 1}}
+        )
 
 
 def test_no_file_holds_a_merge_conflict() -> None:
     folders = ["docs", "src", "tests", "examples", "benchmarks", "packaging"]
     kinds = {".md", ".py", ".toml", ".yaml", ".yml", ".j2", ".rst", ".txt"}
-    files = [file for folder in folders for file in (ROOT / folder).rglob("*") if file.suffix in kinds]
+    files = [
+        file for folder in folders for file in (ROOT / folder).rglob("*") if file.suffix in kinds
+    ]
     files += [file for file in ROOT.iterdir() if file.suffix in kinds]
     marks = re.compile(r"^(<{7}|>{7}) ", re.MULTILINE)
-    assert [str(file.relative_to(ROOT)) for file in files if marks.search(file.read_text(encoding="utf-8", errors="ignore"))] == []
+    assert [
+        str(file.relative_to(ROOT))
+        for file in files
+        if marks.search(file.read_text(encoding="utf-8", errors="ignore"))
+    ] == []

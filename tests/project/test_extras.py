@@ -11,7 +11,9 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[2]
-EXTRAS: dict[str, list[str]] = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["optional-dependencies"]
+EXTRAS: dict[str, list[str]] = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))[
+    "project"
+]["optional-dependencies"]
 _IMPORTED_AS = {"dask": "distributed", "scikit-learn": "sklearn"}  # of dask the scheduler is used
 
 _PACKAGE_OF = {
@@ -36,7 +38,11 @@ def test_an_extra_is_imported_by_something(extra: str) -> None:
 
 def test_no_text_names_an_extra_that_is_not_there() -> None:
     files = [*(ROOT / "src").rglob("*.py"), *(ROOT / "docs").glob("*.md"), ROOT / "README.md"]
-    named = {extra for file in files for extra in re.findall(r"vibroimpact\[(\w+)\]", file.read_text(encoding="utf-8"))}
+    named = {
+        extra
+        for file in files
+        for extra in re.findall(r"vibroimpact\[(\w+)\]", file.read_text(encoding="utf-8"))
+    }
     assert named <= EXTRAS.keys()
 
 

@@ -24,5 +24,14 @@ def test_the_table_is_not_stale() -> None:
 def test_the_table_of_reasons_is_whole() -> None:
     from vibroimpact.signals.reasons import Reason
 
-    reasons = PAGE.read_text(encoding="utf-8").split("| reason | when |")[1].split("\n\n")[0].replace("...", "there are fewer than")
-    assert [reason.text for reason in Reason if reason not in (Reason.NONE, Reason.UNDEFINED) and reason.text not in reasons] == []
+    reasons = (
+        PAGE.read_text(encoding="utf-8")
+        .split("| reason | when |")[1]
+        .split("\n\n")[0]
+        .replace("...", "there are fewer than")
+    )
+    assert [
+        reason.text
+        for reason in Reason
+        if reason not in (Reason.NONE, Reason.UNDEFINED) and reason.text not in reasons
+    ] == []

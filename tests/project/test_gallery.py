@@ -1,4 +1,6 @@
-"""The gallery: each example has a title, prose, an assertion and a figure; `make docs-site` runs them, and fails where one fails."""
+"""The gallery: each example has a title, prose, an assertion and a figure; `make
+docs-site` runs them, and fails where one fails.
+"""
 
 from __future__ import annotations
 

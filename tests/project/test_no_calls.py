@@ -1,4 +1,6 @@
-"""Nothing leaves the machine: every command runs under a guard on sockets, and leaves its own cache alone in the home."""
+"""Nothing leaves the machine: every command runs under a guard on sockets, and leaves its
+own cache alone in the home.
+"""
 
 from __future__ import annotations
 
@@ -48,7 +50,8 @@ QUICK: tuple[tuple[str, ...], ...] = (
 """Commands that take no time: among them the one that loads onnxruntime."""
 
 ALL: tuple[tuple[str, ...], ...] = (
-    ("recognise", "data", "-o", "recognised", "--folds", "2", "--seeds", "1"),  # first, since onnxruntime calls half a minute later
+    # first, since onnxruntime calls half a minute later
+    ("recognise", "data", "-o", "recognised", "--folds", "2", "--seeds", "1"),
     *QUICK,
     ("demo",),
     ("check", "elastic.toml"),
@@ -64,7 +67,17 @@ ALL: tuple[tuple[str, ...], ...] = (
     ("bound", "falls", "-o", "bound"),
     ("run", "three.toml", "-o", "three"),
     ("identify", "three.toml", "three", "-o", "identified", "--place", "20 mm, 10 mm"),
-    ("correlate", "elastic.toml", "tap.csv", "--hammer", "hammer", "-o", "correlated", "--band", "300 Hz, 1.7 kHz"),
+    (
+        "correlate",
+        "elastic.toml",
+        "tap.csv",
+        "--hammer",
+        "hammer",
+        "-o",
+        "correlated",
+        "--band",
+        "300 Hz, 1.7 kHz",
+    ),
     *(("export", "rigid", "--to", name) for name in ("parquet", "uff58", "adams")),
     ("reproduce", "-o", "paper", "--only", "table1"),
     ("cases",),
@@ -76,7 +89,9 @@ ALL: tuple[tuple[str, ...], ...] = (
 )
 
 OWN = (".cache/vibroimpact/", ".cache/matplotlib/")
-"""What may be written in the home: this program's store of modes, and matplotlib's list of the fonts of the machine."""
+"""What may be written in the home: this program's store of modes, and matplotlib's list
+of the fonts of the machine.
+"""
 
 
 @pytest.fixture
@@ -95,8 +110,16 @@ def folder(tmp_path: Path, tiny_models: Path) -> Path:
     tables: dict[str, dict[str, Any]] = {
         "rigid": plain_case(),
         "elastic": TABLE,
-        "three": {**TABLE, "sphere": coal_on_steel()["sphere"], "plate": {**PLATE, "modes": 30}, "sensors": _sensors()},
-        "calibrated": plain_case(contact={"law": "adams-impact", "damping_max": 100.0}, calibrate={"target": {"restitution": 0.6}}),
+        "three": {
+            **TABLE,
+            "sphere": coal_on_steel()["sphere"],
+            "plate": {**PLATE, "modes": 30},
+            "sensors": _sensors(),
+        },
+        "calibrated": plain_case(
+            contact={"law": "adams-impact", "damping_max": 100.0},
+            calibrate={"target": {"restitution": 0.6}},
+        ),
         "study": {**plain_case(), "sweep": {"over": over}},
         "population": _population(),
     }
@@ -104,7 +127,13 @@ def folder(tmp_path: Path, tiny_models: Path) -> Path:
         (work / f"{name}.toml").write_text(tomli_w.dumps(table))
     force, value = hammered((0.02,), 0.2)
     columns = np.column_stack([np.arange(len(force)) / RATE, force, value.T / 9.80665])
-    np.savetxt(work / "tap.csv", columns, delimiter=",", header="time [s],hammer [N],a1 [g],a2 [g]", comments="")
+    np.savetxt(
+        work / "tap.csv",
+        columns,
+        delimiter=",",
+        header="time [s],hammer [N],a1 [g],a2 [g]",
+        comments="",
+    )
     vi.save_result(vi.simulate(vi.read_case(TABLE)), work / "run")
     return work
 
@@ -126,8 +155,14 @@ def _population() -> dict[str, Any]:
         "over": {"drop.height": {"from": "0.8 m", "to": "1 m"}},
         "classes": {"coal": {"over": over}, "gangue": {"over": over}},
     }
-    base = plain_case(**coal_on_steel(), contact={"law": "tsuji", "restitution": 0.5}, run={"duration": "0.5 s"})
-    return {**base, "sensors": [{"name": "a1", "position": [0.05, 0.05], "rate": "20 kHz"}], "sweep": sweep}
+    base = plain_case(
+        **coal_on_steel(), contact={"law": "tsuji", "restitution": 0.5}, run={"duration": "0.5 s"}
+    )
+    return {
+        **base,
+        "sensors": [{"name": "a1", "position": [0.05, 0.05], "rate": "20 kHz"}],
+        "sweep": sweep,
+    }
 
 
 def check_silence(guard: Guard) -> None:
@@ -137,12 +172,22 @@ def check_silence(guard: Guard) -> None:
 
 def test_the_guard_sees_calls(guard: Guard, tmp_path: Path) -> None:
     """Those of Python, of compiled code, and of processes that are started."""
-    python = "import socket, contextlib\nwith contextlib.suppress(OSError): socket.getaddrinfo('example.invalid', 80)"
+    python = (
+        "import socket, contextlib\nwith contextlib.suppress(OSError): "
+        "socket.getaddrinfo('example.invalid', 80)"
+    )
     guard.run(python, folder=tmp_path)
     assert "socket.getaddrinfo 'example.invalid'" in guard.calls[0]
     if guard.sees_compiled_code:
-        compiled = "import ctypes; assert ctypes.CDLL(None).getaddrinfo(b'compiled.invalid', None, None, ctypes.byref(ctypes.c_void_p()))"
-        guard.run(f"import subprocess, sys; subprocess.run([sys.executable, '-c', {compiled!r}], check=True)", folder=tmp_path)
+        compiled = (
+            "import ctypes; assert ctypes.CDLL(None).getaddrinfo(b'compiled.invalid', None, "
+            "None, ctypes.byref(ctypes.c_void_p()))"
+        )
+        guard.run(
+            f"import subprocess, sys; subprocess.run([sys.executable, '-c', {compiled!r}], "
+            "check=True)",
+            folder=tmp_path,
+        )
         assert "getaddrinfo compiled.invalid by compiled code" in guard.calls
 
 
@@ -155,8 +200,24 @@ def test_quick_commands_call_nobody(guard: Guard, folder: Path) -> None:
 @pytest.mark.slow
 def test_no_command_calls_anybody(guard: Guard, folder: Path) -> None:
     guard.run(RUN_ALL, json.dumps([words for words in ALL if words[0] != "serve"]), folder=folder)
-    command = [sys.executable, "-m", "vibroimpact", "serve", "--port", "0", "--no-browser", "rigid.toml"]
-    with subprocess.Popen(command, env=guard.environment, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as server:
+    command = [
+        sys.executable,
+        "-m",
+        "vibroimpact",
+        "serve",
+        "--port",
+        "0",
+        "--no-browser",
+        "rigid.toml",
+    ]
+    with subprocess.Popen(
+        command,
+        env=guard.environment,
+        cwd=folder,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    ) as server:
         assert server.stdout is not None
         address = server.stdout.readline().split()[5].split("#")[0].rstrip(";")
         with urllib.request.urlopen(address) as page:
@@ -172,15 +233,20 @@ def test_all_commands_are_among_them() -> None:
 
 def test_onnxruntime_is_imported_by_one_module_alone() -> None:
     package = Path(vi.__file__).parent
-    named = [file for file in package.rglob("*.py") if "import onnxruntime" in file.read_text(encoding="utf-8")]
+    named = [
+        file
+        for file in package.rglob("*.py")
+        if "import onnxruntime" in file.read_text(encoding="utf-8")
+    ]
     assert [file.name for file in named] == ["onnx_runtime.py"]
 
 
-def test_onnxruntime_is_silent_also_where_the_environment_says_otherwise(guard: Guard, tmp_path: Path) -> None:
+def test_onnxruntime_is_silent_also_where_the_environment_says_otherwise(
+    guard: Guard, tmp_path: Path
+) -> None:
     guard.environment[SWITCH] = "0"
     told = guard.run(
-        "import os\n"
-        "from vibroimpact.recognition.onnx_runtime import silent_onnxruntime\n"
+        "import os\nfrom vibroimpact.recognition.onnx_runtime import silent_onnxruntime\n"
         "silent_onnxruntime()\n"
         f"print(os.environ[{SWITCH!r}], {PLACE!r} in os.environ)",
         folder=tmp_path,

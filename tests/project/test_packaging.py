@@ -16,7 +16,9 @@ NAMES = {"matplotlib-base": "matplotlib"}
 def test_versions_are_one() -> None:
     version = PROJECT["project"]["version"]
     (recipe,) = re.findall(r'^  version: "(.+)"$', RECIPE, re.MULTILINE)
-    (citation,) = re.findall(r"^version: (.+)$", (ROOT / "CITATION.cff").read_text(encoding="utf-8"), re.MULTILINE)
+    (citation,) = re.findall(
+        r"^version: (.+)$", (ROOT / "CITATION.cff").read_text(encoding="utf-8"), re.MULTILINE
+    )
     assert recipe == citation == version
 
 
@@ -24,11 +26,15 @@ def test_the_recipe_needs_what_the_project_needs() -> None:
     run = RECIPE.split("  run:\n")[1].split("\n\n")[0]
     needed = {NAMES.get(name, name): least for name, least in re.findall(r"- (\S+) >=(\S+)", run)}
     assert needed.pop("python") == PROJECT["project"]["requires-python"].removeprefix(">=")
-    assert needed == dict(one.partition(";")[0].split(">=") for one in PROJECT["project"]["dependencies"])
+    assert needed == dict(
+        one.partition(";")[0].split(">=") for one in PROJECT["project"]["dependencies"]
+    )
 
 
 def test_groups_and_extras_allow_the_same_versions() -> None:
-    """A package that several lists name has one lowest version, so that the one that is tested is the one that is allowed."""
+    """A package that several lists name has one lowest version, so that the one that is
+    tested is the one that is allowed.
+    """
     lists = [
         PROJECT["project"]["dependencies"],
         *PROJECT["project"]["optional-dependencies"].values(),
@@ -50,4 +56,13 @@ def test_the_sdist_has_what_the_makefile_and_the_tests_need() -> None:
         "pyproject.toml",
     }
     assert included <= beside
-    assert {"src", "tests", "examples", "benchmarks", "docs", "packaging", "conftest.py", "Makefile"} <= included
+    assert {
+        "src",
+        "tests",
+        "examples",
+        "benchmarks",
+        "docs",
+        "packaging",
+        "conftest.py",
+        "Makefile",
+    } <= included

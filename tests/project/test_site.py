@@ -1,4 +1,6 @@
-"""The documentation site: its reference has every public name with an example, and faults of built pages are found."""
+"""The documentation site: its reference has every public name with an example, and faults
+of built pages are found.
+"""
 
 from __future__ import annotations
 
@@ -22,31 +24,46 @@ from page_faults import page_faults, read_pages  # noqa: E402
 
 def test_every_public_name_stands_in_one_group_of_the_reference() -> None:
     text = (DOCS / "reference.md").read_text(encoding="utf-8")
-    groups = re.findall(r"^## ([^\n]+)\n(?:\n[^#`]+\n)?\n```\{eval-rst\}\n(.*?)```", text, flags=re.S | re.M)
+    groups = re.findall(
+        r"^## ([^\n]+)\n(?:\n[^#`]+\n)?\n```\{eval-rst\}\n(.*?)```", text, flags=re.S | re.M
+    )
     assert len(groups) == text.count("\n## ")
     for title, block in groups:
         assert f":caption: {title}\n" in block
-    grouped = Counter(name for _, block in groups for name in re.findall(r"^   (\w+)$", block, flags=re.M))
+    grouped = Counter(
+        name for _, block in groups for name in re.findall(r"^   (\w+)$", block, flags=re.M)
+    )
     assert grouped == Counter(NAMES)
 
 
 def test_type_checkers_know_the_public_names() -> None:
     text = Path(vi.__file__).read_text(encoding="utf-8")
-    assert sorted(re.findall(r"^    from vibroimpact\S+ import (\w+) as \1$", text, flags=re.M)) == sorted(NAMES)
+    assert sorted(
+        re.findall(r"^    from vibroimpact\S+ import (\w+) as \1$", text, flags=re.M)
+    ) == sorted(NAMES)
 
 
 def test_every_public_name_has_an_example() -> None:
     texts = {name: inspect.getdoc(getattr(vi, name)) or "" for name in NAMES}
-    assert [name for name, text in texts.items() if not re.search(r"^Examples\n--------\n.*>>> ", text, flags=re.S | re.M)] == []
+    assert [
+        name
+        for name, text in texts.items()
+        if not re.search(r"^Examples\n--------\n.*>>> ", text, flags=re.S | re.M)
+    ] == []
 
 
-GOOD = '<h1 id="top">A</h1><a href="b.html#there">b</a><a class="right-next" href="b.html">next</a><img src="a.png" alt="A drop">'
+GOOD = (
+    '<h1 id="top">A</h1><a href="b.html#there">b</a><a class="right-next" '
+    'href="b.html">next</a><img src="a.png" alt="A drop">'
+)
 
 
 @pytest.fixture
 def site(tmp_path: Path) -> Path:
     (tmp_path / "a.html").write_text(GOOD)
-    (tmp_path / "b.html").write_text('<p id="there"><a href="a.html#top">a</a> <a href="https://example.org">elsewhere</a>')
+    (tmp_path / "b.html").write_text(
+        '<p id="there"><a href="a.html#top">a</a> <a href="https://example.org">elsewhere</a>'
+    )
     (tmp_path / "a.png").write_bytes(bytes(100))
     return tmp_path
 
@@ -64,8 +81,14 @@ def test_good_pages_have_no_fault(site: Path) -> None:
         ('<img src="a.png">', "a.html: a picture without words: a.png"),
         ('<img src="a.png" alt=" ">', "a.html: a picture without words: a.png"),
         ('<img src="b.png" alt="B">', "a.html: there is no b.png"),
-        ('<script src="https://example.org/a.js"></script>', "a.html: loaded from a network: https://example.org/a.js"),
-        ('<link rel="stylesheet" href="//example.org/a.css">', "a.html: loaded from a network: //example.org/a.css"),
+        (
+            '<script src="https://example.org/a.js"></script>',
+            "a.html: loaded from a network: https://example.org/a.js",
+        ),
+        (
+            '<link rel="stylesheet" href="//example.org/a.css">',
+            "a.html: loaded from a network: //example.org/a.css",
+        ),
         ("<p>" + 3_000_000 * "x", "a.html: it weighs 3.0 MB with its pictures"),
     ],
 )

@@ -14,21 +14,32 @@ from validation_page import PAGE, page
 def test_the_page_is_made_of_what_is_recorded() -> None:
     rows = read(TOLD)
     assert rows == merged(rows)
-    assert PAGE.read_text(encoding="utf-8") == page(rows), "python tests/validation_page.py writes the page anew"
+    assert PAGE.read_text(encoding="utf-8") == page(rows), (
+        "python tests/validation_page.py writes the page anew"
+    )
 
 
 def test_every_file_of_comparisons_is_on_it() -> None:
-    """But for those that need other programs or a quarter of an hour, which it then says were not run."""
+    """But for those that need other programs or a quarter of an hour, which it then says
+    were not run.
+    """
     compared = {path.name for path in (ROOT / "tests" / "verification").glob("test_*.py")}
     missing = compared - {Path(row["file"]).name for row in read(TOLD)}
-    assert missing <= {"test_vs_peers.py", "test_vs_identified_impacts.py", "test_vs_laboratory.py"}, "make validation records them"
+    assert missing <= {
+        "test_vs_peers.py",
+        "test_vs_identified_impacts.py",
+        "test_vs_laboratory.py",
+    }, "make validation records them"
     assert all(name in PAGE.read_text(encoding="utf-8") for name in missing)
 
 
 def test_every_comparison_is_of_a_test_that_is_there() -> None:
     for row in read(TOLD):
         (function,) = re.findall(r"\w+$", row["test"])
-        assert re.search(rf"def {function}\((self, )?\s*agrees\b", (ROOT / row["file"]).read_text(encoding="utf-8")), row
+        assert re.search(
+            rf"def {function}\((self, )?\s*agrees\b",
+            (ROOT / row["file"]).read_text(encoding="utf-8"),
+        ), row
 
 
 @pytest.mark.parametrize(
@@ -42,7 +53,9 @@ def test_every_comparison_is_of_a_test_that_is_there() -> None:
         ([], 1.0, {"absolute": 1.0}),
     ],
 )
-def test_what_does_not_agree_fails(agrees: Agrees, ours: object, theirs: object, tolerance: dict[str, float]) -> None:
+def test_what_does_not_agree_fails(
+    agrees: Agrees, ours: object, theirs: object, tolerance: dict[str, float]
+) -> None:
     with pytest.raises(AssertionError, match="a case, a quantity"):
         agrees("a case", "a quantity", ours, theirs, **tolerance)
 

@@ -1,4 +1,6 @@
-"""The report of the reproduction as documented: every number in it is the one that the code computes now."""
+"""The report of the reproduction as documented: every number in it is the one that the
+code computes now.
+"""
 
 from __future__ import annotations
 
@@ -80,7 +82,9 @@ def texts(parts: dict[str, RenderedPart]) -> tuple[str, str]:
 
 def check_numbers(before: str, now: str) -> None:
     found = other_numbers(before, now)
-    assert not found, "\n".join(["make reproduce writes the page anew, once the change is understood:", *found[:20]])
+    assert not found, "\n".join(
+        ["make reproduce writes the page anew, once the change is understood:", *found[:20]]
+    )
 
 
 @pytest.mark.slow
@@ -88,15 +92,27 @@ def test_every_number_is_the_one_computed_now(parts: dict[str, RenderedPart]) ->
     check_numbers(*texts(parts))
 
 
-def test_numbers_of_rigid_bodies_are_those_computed_now(rigid_parts: dict[str, RenderedPart]) -> None:
+def test_numbers_of_rigid_bodies_are_those_computed_now(
+    rigid_parts: dict[str, RenderedPart],
+) -> None:
     page, text = texts(rigid_parts)
     first, beyond = f"## {RIGID[0]}\n", f"## {list(CHAPTERS)[len(RIGID)]}\n"
-    check_numbers(page[page.index(first) : page.index(beyond)], text[text.index(first) : text.index("Not made yet: ")])
-    counted = [line for line in text[: text.index(first)].splitlines() if line.startswith("| ") and not line.startswith("| All |")]
-    explained = {row["part"] for row in rows_of(rigid_parts) if row["verdict"] == Verdict.EXPLAINED.value}
+    check_numbers(
+        page[page.index(first) : page.index(beyond)],
+        text[text.index(first) : text.index("Not made yet: ")],
+    )
+    counted = [
+        line
+        for line in text[: text.index(first)].splitlines()
+        if line.startswith("| ") and not line.startswith("| All |")
+    ]
+    explained = {
+        row["part"] for row in rows_of(rigid_parts) if row["verdict"] == Verdict.EXPLAINED.value
+    }
     kinds = {f"| {kind.value.capitalize()} " for kind in Kind}
     of_parts = [line for line in counted if not any(map(line.startswith, kinds))]
-    assert len(counted) - len(of_parts) == len(kinds)  # counts over all parts, which differ from those of these ones
+    # counts over all parts, which differ from those of these ones
+    assert len(counted) - len(of_parts) == len(kinds)
     assert len(of_parts) == 6 + len({row["part"] for row in rows_of(rigid_parts)}) + len(explained)
     assert set(of_parts) <= set(page.splitlines())
 
@@ -114,7 +130,9 @@ def check_figures(parts: dict[str, RenderedPart], figures: dict[str, str]) -> No
         assert parts[name].chart.name == name
         assert parts[name].chart.title.startswith(begins), name
         assert parts[name].chart.caption.endswith("."), name
-        assert all(panel.picture or (panel.x.label and panel.y.label) for panel in parts[name].chart.panels), name
+        assert all(
+            panel.picture or (panel.x.label and panel.y.label) for panel in parts[name].chart.panels
+        ), name
         assert (PAGE.parent / "images" / "reproduction" / f"{name}.png").is_file(), name
 
 
@@ -124,7 +142,9 @@ def test_every_figure_of_rigid_bodies_is_there(rigid_parts: dict[str, RenderedPa
 
 @pytest.mark.slow
 def test_every_figure_is_there(parts: dict[str, RenderedPart]) -> None:
-    figures = {f"fig{number}": f"Figure {number}: " for number in range(3, 24)} | dict.fromkeys(("recovery", "sampling", "unresolved"), "")
+    figures = {f"fig{number}": f"Figure {number}: " for number in range(3, 24)} | dict.fromkeys(
+        ("recovery", "sampling", "unresolved"), ""
+    )
     check_figures(parts, figures)
 
 
@@ -140,18 +160,26 @@ def test_the_page_is_small(parts: dict[str, RenderedPart]) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("shown", [*SPHERE_MOTION, *SPHERE_ENERGY], ids=lambda shown: f"fig{shown.number}")
-def test_lines_of_the_sphere_are_those_simulated(runs: Runs, parts: dict[str, RenderedPart], shown: ComparedQuantity) -> None:
+@pytest.mark.parametrize(
+    "shown", [*SPHERE_MOTION, *SPHERE_ENERGY], ids=lambda shown: f"fig{shown.number}"
+)
+def test_lines_of_the_sphere_are_those_simulated(
+    runs: Runs, parts: dict[str, RenderedPart], shown: ComparedQuantity
+) -> None:
     types = (1, 2, 3) if shown in SPHERE_MOTION else (2, 3)
     for panel, treatment in zip(parts[f"fig{shown.number}"].chart.panels, TREATMENTS, strict=True):
         for line, kind in zip(lines_of(panel), types, strict=True):
-            response = runs.response("type1-variable") if kind == 1 else runs.treated(kind, treatment)
+            response = (
+                runs.response("type1-variable") if kind == 1 else runs.treated(kind, treatment)
+            )
             assert_shows(line, shown.timeline, response, panel)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("shown", PLATE_QUANTITIES, ids=lambda shown: f"fig{shown.number}")
-def test_lines_of_the_plate_are_those_simulated(runs: Runs, parts: dict[str, RenderedPart], shown: ComparedQuantity) -> None:
+def test_lines_of_the_plate_are_those_simulated(
+    runs: Runs, parts: dict[str, RenderedPart], shown: ComparedQuantity
+) -> None:
     (panel,) = parts[f"fig{shown.number}"].chart.panels
     for line, treatment in zip(lines_of(panel), TREATMENTS, strict=True):
         assert_shows(line, shown.timeline, runs.treated(3, treatment), panel)
@@ -169,22 +197,35 @@ def test_meshes_are_drawn_with_all_their_nodes(runs: Runs, parts: dict[str, Rend
         assert np.ptp(values) == pytest.approx(np.ptp(models["plate"].mesh.nodes[:, axis]))
     (facets,) = [mark for mark in sphere.marks if isinstance(mark, Facets)]
     # a sphere is seen as a circle, of which the visible half is drawn
-    radius = np.hypot(*(facets.corners.reshape(-1, 2) - facets.corners.reshape(-1, 2).mean(axis=0)).T).max()
+    radius = np.hypot(
+        *(facets.corners.reshape(-1, 2) - facets.corners.reshape(-1, 2).mean(axis=0)).T
+    ).max()
     assert radius == pytest.approx(0.025, rel=0.05)
     edges = np.roll(facets.corners, -1, axis=1)
-    area = 0.5 * np.abs((facets.corners[..., 0] * edges[..., 1] - facets.corners[..., 1] * edges[..., 0]).sum(axis=1)).sum()
+    area = (
+        0.5
+        * np.abs(
+            (facets.corners[..., 0] * edges[..., 1] - facets.corners[..., 1] * edges[..., 0]).sum(
+                axis=1
+            )
+        ).sum()
+    )
     assert area == pytest.approx(np.pi * 0.025**2, rel=0.02)
 
 
 @pytest.mark.slow
-def test_unresolved_runs_are_drawn_with_their_ranges(runs: Runs, parts: dict[str, RenderedPart]) -> None:
+def test_unresolved_runs_are_drawn_with_their_ranges(
+    runs: Runs, parts: dict[str, RenderedPart]
+) -> None:
     for name, row in zip(COMPARED, parts["unresolved"].chart.rows, strict=True):
         for kind, panel in zip((2, 3), row, strict=True):
             for line, mesh in zip(lines_of(panel), ("coarse", "fine"), strict=True):
                 swept = sweep_steps(superposed(runs, kind, mesh))
                 assert line.x.tolist() == swept.steps.tolist()
                 assert line.y.tolist() == np.median(swept.found[name], axis=1).tolist()
-            level = next(mark for mark in panel.marks if isinstance(mark, Level) and not mark.upright)
+            level = next(
+                mark for mark in panel.marks if isinstance(mark, Level) and not mark.upright
+            )
             assert (level.name, level.value) == ("printed", paper_impact(runs, kind)[name])
 
 
@@ -203,7 +244,9 @@ def test_the_acceleration_of_type_1_is_met_in_every_digit(rows: list[dict]) -> N
 
 def check_reasons(rows: list[dict]) -> None:
     for row in rows:
-        assert row["verdict"] in (Verdict.REPRODUCED.value, Verdict.FITTED.value) or row["why"], row["name"]
+        assert row["verdict"] in (Verdict.REPRODUCED.value, Verdict.FITTED.value) or row["why"], (
+            row["name"]
+        )
 
 
 def test_what_is_not_met_of_rigid_bodies_has_a_reason(rigid_rows: list[dict]) -> None:
@@ -217,7 +260,9 @@ def test_what_is_not_met_has_a_reason(rows: list[dict]) -> None:
 
 @pytest.mark.slow
 def test_what_was_fitted_is_told_apart(rows: list[dict]) -> None:
-    """The local element of the identified treatment and the step of implicit Euler are found from numbers printed of Type 2."""
+    """The local element of the identified treatment and the step of implicit Euler are
+    found from numbers printed of Type 2.
+    """
     fitted = {(row["name"], row["by"]) for row in rows if row["verdict"] == Verdict.FITTED.value}
     assert {(f"type2.{name}", "identified") for name in ("max_force", "rebound_height")} <= fitted
     assert all(by == "identified" or by.startswith("implicit Euler") for _, by in fitted)
@@ -226,15 +271,29 @@ def test_what_was_fitted_is_told_apart(rows: list[dict]) -> None:
 
 def test_rigid_bodies_are_reproduced_or_explained(rigid_rows: list[dict]) -> None:
     """All that the paper computes for rigid bodies, but for two misprints."""
-    assert {row["part"] for row in rigid_rows} == {"table1", "section3.1", "section3.2", "damping", "table2"}
-    open_ones = {row["name"] for row in rigid_rows if row["verdict"] == Verdict.NOT_REPRODUCED.value}
+    assert {row["part"] for row in rigid_rows} == {
+        "table1",
+        "section3.1",
+        "section3.2",
+        "damping",
+        "table2",
+    }
+    open_ones = {
+        row["name"] for row in rigid_rows if row["verdict"] == Verdict.NOT_REPRODUCED.value
+    }
     assert open_ones == {"full_damping_penetration", "worst_compression.variable"}
 
 
 def test_results_of_rigid_bodies_are_counted_apart(rigid_rows: list[dict]) -> None:
-    """The stiffness follows from the inputs; what else is reproduced is an input, or was used to infer restitution and penetration."""
+    """The stiffness follows from the inputs; what else is reproduced is an input, or was
+    used to infer restitution and penetration.
+    """
     by_kind = {
-        kind: [row["name"] for row in rigid_rows if (row["kind"], row["verdict"]) == (kind.value, Verdict.REPRODUCED.value)]
+        kind: [
+            row["name"]
+            for row in rigid_rows
+            if (row["kind"], row["verdict"]) == (kind.value, Verdict.REPRODUCED.value)
+        ]
         for kind in Kind
     }
     assert by_kind[Kind.RESULT] == ["stiffness"]
@@ -244,42 +303,69 @@ def test_results_of_rigid_bodies_are_counted_apart(rigid_rows: list[dict]) -> No
     assert not by_kind[Kind.FITTED_MODEL]
 
 
-def test_what_the_inference_uses_is_inferred(runs: Runs, rigid_rows: list[dict], monkeypatch: pytest.MonkeyPatch) -> None:
-    """A printed number of the kind "inferred" moves the residuals of the inference; no other result does."""
+def test_what_the_inference_uses_is_inferred(
+    runs: Runs, rigid_rows: list[dict], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A printed number of the kind "inferred" moves the residuals of the inference; no
+    other result does.
+    """
     splines, held = impact_splines(runs), printed_values()
 
     def residuals(values: Mapping[str, PrintedValue]) -> np.ndarray:
         monkeypatch.setattr(library, "printed_values", lambda: values)
-        return np.concatenate([np.ravel(one.residuals(0.65, -4.0)) for one in evidence_of(splines) if one.joint])
+        return np.concatenate(
+            [np.ravel(one.residuals(0.65, -4.0)) for one in evidence_of(splines) if one.joint]
+        )
 
     before = residuals(held)
     moved = {
         name
         for name in held
-        if not np.array_equal(before, residuals({**held, name: replace(held[name], text=f"{1.001 * held[name].value}")}))
+        if not np.array_equal(
+            before,
+            residuals({**held, name: replace(held[name], text=f"{1.001 * held[name].value}")}),
+        )
     }
-    inferred = {name for name, value in held.items() if value.role == "inferred"} - {"full_damping_penetration"}
+    inferred = {name for name, value in held.items() if value.role == "inferred"} - {
+        "full_damping_penetration"
+    }
     assert moved == inferred
     assert inferred <= {row["name"] for row in rigid_rows} | {"type1.rebound_height"}
 
 
 @pytest.mark.slow
 def test_results_are_counted_apart(rows: list[dict]) -> None:
-    """Of Types 2 and 3 only bounds and values of one digit are reproduced by a model that was not fitted."""
-    met = [row for row in rows if (row["kind"], row["verdict"]) == (Kind.RESULT.value, Verdict.REPRODUCED.value)]
+    """Of Types 2 and 3 only bounds and values of one digit are reproduced by a model that
+    was not fitted.
+    """
+    met = [
+        row
+        for row in rows
+        if (row["kind"], row["verdict"]) == (Kind.RESULT.value, Verdict.REPRODUCED.value)
+    ]
     one_digit = {"plate.displacement", "plate.velocity"}
     assert {row["name"] for row in met if row["relation"] == "="} == {"stiffness"} | one_digit
     assert all(printed(name).half >= 0.4 * printed(name).value for name in one_digit)
-    assert all(row["by"] in ("consistent", "superposed") for row in met if row["name"] != "stiffness")
+    assert all(
+        row["by"] in ("consistent", "superposed") for row in met if row["name"] != "stiffness"
+    )
 
 
 @pytest.mark.slow
 def test_a_model_that_was_fitted_gives_no_result(rows: list[dict]) -> None:
-    fitted = [row for row in rows if row["by"] == "identified" or row["by"].startswith("implicit Euler")]
+    fitted = [
+        row for row in rows if row["by"] == "identified" or row["by"].startswith("implicit Euler")
+    ]
     assert fitted
     assert {row["kind"] for row in fitted} == {Kind.FITTED_MODEL.value}
-    assert all(row["kind"] == Kind.FITTED_MODEL.value for row in rows if row["verdict"] == Verdict.FITTED.value)
-    told = [row for row in rows if "printed" in row["by"] and row["name"] not in printed_for_inference()]
+    assert all(
+        row["kind"] == Kind.FITTED_MODEL.value
+        for row in rows
+        if row["verdict"] == Verdict.FITTED.value
+    )
+    told = [
+        row for row in rows if "printed" in row["by"] and row["name"] not in printed_for_inference()
+    ]
     assert {row["kind"] for row in told} == {Kind.ARITHMETIC.value}
 
 
@@ -300,6 +386,12 @@ def test_an_explanation_has_its_range(rows: list[dict]) -> None:
 @pytest.mark.slow
 def test_types_2_and_3_have_all_three_treatments(rows: list[dict]) -> None:
     for kind in (2, 3):
-        for quantity in ("max_force", "max_acceleration", "rebound_height", "energy_at_separation", "strain_energy"):
+        for quantity in (
+            "max_force",
+            "max_acceleration",
+            "rebound_height",
+            "energy_at_separation",
+            "strain_energy",
+        ):
             by = {row["by"] for row in rows if row["name"] == f"type{kind}.{quantity}"}
             assert by >= {"consistent", "superposed", "identified"}

@@ -32,24 +32,47 @@ def calibrated(file: Path) -> Calibration:
     )
 
 
-def written(response: vi.Response, file: Path, header: str, column: str, offset: float = 0.0, factor: float = 1.0) -> Path:
+def written(
+    response: vi.Response,
+    file: Path,
+    header: str,
+    column: str,
+    offset: float = 0.0,
+    factor: float = 1.0,
+) -> Path:
     time = np.arange(0.0, float(response.end_time[0]), 2e-5)
     values = factor * (response.at(time)[column] + offset)
-    file.write_text(f"time [s],{header}\n" + "\n".join(f"{at:.9g},{value:.9g}" for at, value in zip(time, values, strict=True)))
+    file.write_text(
+        f"time [s],{header}\n"
+        + "\n".join(f"{at:.9g},{value:.9g}" for at, value in zip(time, values, strict=True))
+    )
     return file
 
 
-@pytest.mark.parametrize(("offset", "unit", "factor"), [(0.0, "m/s^2", 1.0), (9.80665, "m/s^2", 1.0), (0.0, "mm/s^2", 1e3)])
-def test_the_spheres_own_is_a_force(response: vi.Response, tmp_path: Path, offset: float, unit: str, factor: float) -> None:
+@pytest.mark.parametrize(
+    ("offset", "unit", "factor"),
+    [(0.0, "m/s^2", 1.0), (9.80665, "m/s^2", 1.0), (0.0, "mm/s^2", 1e3)],
+)
+def test_the_spheres_own_is_a_force(
+    response: vi.Response, tmp_path: Path, offset: float, unit: str, factor: float
+) -> None:
     """Of a track, -g in flight, or of an accelerometer, which reads nothing there."""
     column = f"sphere_acceleration [{unit}]"
-    found = calibrated(written(response, tmp_path / "a.csv", column, "acceleration_m_s2", offset, factor))
+    found = calibrated(
+        written(response, tmp_path / "a.csv", column, "acceleration_m_s2", offset, factor)
+    )
     np.testing.assert_allclose(found.values, response.impacts["restitution_achieved"], rtol=5e-3)
-    np.testing.assert_allclose(found.observations.wanted["max_force"], response.impacts["max_force_N"], rtol=3e-3)
+    np.testing.assert_allclose(
+        found.observations.wanted["max_force"], response.impacts["max_force_N"], rtol=3e-3
+    )
 
 
-@pytest.mark.parametrize("header", ["acceleration [m/s^2]", "force [m/s^2]", "position [m/s^2]", "Acceleration [mm/s^2]"])
-def test_anothers_is_told_with_what_to_do(response: vi.Response, tmp_path: Path, header: str) -> None:
+@pytest.mark.parametrize(
+    "header", ["acceleration [m/s^2]", "force [m/s^2]", "position [m/s^2]", "Acceleration [mm/s^2]"]
+)
+def test_anothers_is_told_with_what_to_do(
+    response: vi.Response, tmp_path: Path, header: str
+) -> None:
     with pytest.raises(vi.InputError) as caught:
         calibrated(written(response, tmp_path / "a.csv", header, "acceleration_m_s2"))
     told = str(caught.value)

@@ -1,4 +1,6 @@
-"""Bounces heard in records: found among noise, clicks, hum and second contacts, with intervals that hold the truth; refused otherwise."""
+"""Bounces heard in records: found among noise, clicks, hum and second contacts, with
+intervals that hold the truth; refused otherwise.
+"""
 
 from __future__ import annotations
 
@@ -65,12 +67,18 @@ def test_second_contacts_are_told(seed: int) -> None:
     place_of(found, made.touches)
     errors = found.restitution - made.restitution[: len(found.restitution)]
     np.testing.assert_allclose(errors, 0.0, atol=2e-3)
-    assert all(reason.startswith(("it is a click", "it is a second contact")) for reason in found.reasons)
+    assert all(
+        reason.startswith(("it is a click", "it is a second contact")) for reason in found.reasons
+    )
 
 
 def test_a_loud_second_contact_and_another_noise_are_told() -> None:
     made = heard(1, 0.7, 7, decibels=30.0)
-    value = made.record.value + 3.0 * burst(made.record.time, made.touches[2] + 4e-3) + burst(made.record.time, 0.5)
+    value = (
+        made.record.value
+        + 3.0 * burst(made.record.time, made.touches[2] + 4e-3)
+        + burst(made.record.time, 0.5)
+    )
     found = vi.find_bounces(vi.Record("microphone", value, RATE, "Pa"))
     place_of(found, made.touches)
     assert found.others.round(3).tolist() == [0.5, round(made.touches[2] + 4e-3, 3)]
@@ -80,7 +88,9 @@ def test_a_loud_second_contact_and_another_noise_are_told() -> None:
 def test_scale_and_offset_and_start_do_not_matter() -> None:
     made = heard(2, 0.6, 6, decibels=20.0).record
     found = vi.find_bounces(made)
-    moved = vi.find_bounces(vi.Record(made.name, 3.0 - 1e-6 * made.value, made.rate, "V", start=7.0))
+    moved = vi.find_bounces(
+        vi.Record(made.name, 3.0 - 1e-6 * made.value, made.rate, "V", start=7.0)
+    )
     np.testing.assert_allclose(moved.time, found.time + 7.0, atol=1e-9)
     np.testing.assert_allclose(moved.restitution, found.restitution, rtol=1e-7)
     np.testing.assert_allclose(moved.deviation, found.deviation, rtol=1e-3)
@@ -98,7 +108,11 @@ def test_the_first_drop_and_the_last_bounces_may_be_missing() -> None:
     made = heard(4, 0.7, 8, decibels=20.0)
     inside = made.record.time > made.touches[1] - 0.1
     inside &= made.record.time < made.touches[6] - 0.01
-    found = vi.find_bounces(vi.Record("microphone", made.record.value[inside], RATE, "Pa", start=made.record.time[inside][0]))
+    found = vi.find_bounces(
+        vi.Record(
+            "microphone", made.record.value[inside], RATE, "Pa", start=made.record.time[inside][0]
+        )
+    )
     np.testing.assert_allclose(found.time, made.touches[1:6], atol=5e-4)
 
 
@@ -117,7 +131,9 @@ def test_noise_is_refused(seed: int) -> None:
 
 def record_of(*touches: float, duration: float = 1.0) -> vi.Record:
     time = np.arange(int(duration * RATE)) / RATE
-    return vi.Record("microphone", sum((burst(time, at) for at in touches), np.zeros_like(time)), RATE, "Pa")
+    return vi.Record(
+        "microphone", sum((burst(time, at) for at in touches), np.zeros_like(time)), RATE, "Pa"
+    )
 
 
 @pytest.mark.parametrize(
@@ -128,15 +144,28 @@ def record_of(*touches: float, duration: float = 1.0) -> vi.Record:
         (record_of(0.3), "one touch is detected in it, and a restitution needs three"),
         (record_of(0.3, 0.6), "two touches are detected in it"),
         (record_of(0.2, 0.4, 0.7), "the times between 3 touches do not decrease"),
-        (record_of(0.2, 0.5, 0.65, 0.85), "of its 4 touches 3 at best have intervals that shrink as those of bounces, as any three might"),
+        (
+            record_of(0.2, 0.5, 0.65, 0.85),
+            "of its 4 touches 3 at best have intervals that shrink as those of bounces, as "
+            "any three might",
+        ),
         (
             record_of(0.2, 0.5, 0.65, 0.75, 0.95),
-            "of its 5 touches 4 at best have intervals that shrink as those of bounces, as some of as many",
+            "of its 5 touches 4 at best have intervals that shrink as those of bounces, as "
+            "some of as many",
         ),
         (vi.Record("m", np.zeros(0), RATE, "V"), "it has no samples"),
-        (vi.Record("m", np.arange(100.0), RATE, "V"), "it is too short: it has 100 samples, and at 48000 Hz three touches take 288"),
+        (
+            vi.Record("m", np.arange(100.0), RATE, "V"),
+            "it is too short: it has 100 samples, and at 48000 Hz three touches take 288",
+        ),
         (vi.Record("m", np.array([0.0, np.nan]), RATE, "V"), "a sample is not a finite number"),
-        (vi.Record("m", np.clip(20.0 * heard(0, 0.8, 8, hum=0.3).record.value, -1.0, 1.0), RATE, "V"), "it is clipped: "),
+        (
+            vi.Record(
+                "m", np.clip(20.0 * heard(0, 0.8, 8, hum=0.3).record.value, -1.0, 1.0), RATE, "V"
+            ),
+            "it is clipped: ",
+        ),
     ],
 )
 def test_what_tells_no_restitution_is_refused(record: vi.Record, message: str) -> None:
@@ -155,13 +184,17 @@ def test_little_clipping_is_a_doubt() -> None:
 def test_three_touches_are_taken_with_a_doubt() -> None:
     found = vi.find_bounces(record_of(0.2, 0.5, 0.65))
     np.testing.assert_allclose(found.restitution, [0.5], atol=1e-5)
-    assert found.doubts == ("the series has only three touches: they need not be bounces of one ball",)
+    assert found.doubts == (
+        "the series has only three touches: they need not be bounces of one ball",
+    )
 
 
 @pytest.mark.parametrize("seed", range(40))
 def test_hostile_records_are_read_or_refused(seed: int) -> None:
     random = np.random.default_rng(seed)
-    value = random.standard_normal(int(random.integers(1, 3000))) * 10.0 ** random.uniform(-300.0, 150.0)
+    value = random.standard_normal(int(random.integers(1, 3000))) * 10.0 ** random.uniform(
+        -300.0, 150.0
+    )
     value[random.random(len(value)) < random.random()] = 0.0
     if seed % 4 == 0:
         value = np.round(random.uniform(-3.0, 3.0, len(value)))
@@ -184,8 +217,14 @@ def test_the_chain_is_that_of_all_bounces() -> None:
 
 def test_speeds_are_those_of_the_flights() -> None:
     made = heard(5, 0.7, 7, decibels=30.0)
-    found = vi.rebounds_of(vi.find_bounces(made.record), gravity=9.81, height=0.5 * (0.5 * 9.81 * 0.4 / 0.7) ** 2 / 9.81)
-    np.testing.assert_allclose(found.separation_speed[:-1], 0.5 * 9.81 * np.diff(made.touches), rtol=1e-3)
+    found = vi.rebounds_of(
+        vi.find_bounces(made.record),
+        gravity=9.81,
+        height=0.5 * (0.5 * 9.81 * 0.4 / 0.7) ** 2 / 9.81,
+    )
+    np.testing.assert_allclose(
+        found.separation_speed[:-1], 0.5 * 9.81 * np.diff(made.touches), rtol=1e-3
+    )
     np.testing.assert_allclose(found.approach_speed[1:], found.separation_speed[:-1], rtol=1e-12)
     np.testing.assert_allclose(found.restitution[:-1], 0.7, atol=1e-3)
     assert np.isnan(found.restitution[-1])
@@ -256,7 +295,11 @@ def test_a_record_is_calibrated(call, file: Path, tmp_path: Path) -> None:
     status, out, err = call(file)
     assert (status, err) == (0, "")
     folder = tmp_path / "bounces-calibrated"
-    assert sorted(one.name for one in folder.iterdir()) == ["bounces.csv", "report.html", "summary.json"]
+    assert sorted(one.name for one in folder.iterdir()) == [
+        "bounces.csv",
+        "report.html",
+        "summary.json",
+    ]
     summary = json.loads((folder / "summary.json").read_text())["bounces"]
     with (folder / "bounces.csv").open(newline="") as table:
         rows = list(csv.DictReader(table))
@@ -271,16 +314,36 @@ def test_a_record_is_calibrated(call, file: Path, tmp_path: Path) -> None:
     assert "Bounces in bounces" in (folder / "report.html").read_text(encoding="utf-8")
     assert call(file)[0] == 2
     assert call(file, "--force", "--figures")[0] == 0
-    assert sorted(one.name for one in (folder / "figures").iterdir()) == ["record.png", "restitution.png"]
+    assert sorted(one.name for one in (folder / "figures").iterdir()) == [
+        "record.png",
+        "restitution.png",
+    ]
 
 
 def test_json_and_options(call, file: Path) -> None:
-    status, out, _ = call(file, "--json", "--gravity", "1.62", "--height", "20 cm", "--contact", "0.1 ms", "-o", "moon")
+    status, out, _ = call(
+        file,
+        "--json",
+        "--gravity",
+        "1.62",
+        "--height",
+        "20 cm",
+        "--contact",
+        "0.1 ms",
+        "-o",
+        "moon",
+    )
     assert status == 0
     told = json.loads(out)
     assert told["folder"] == "moon"
-    assert (told["bounces"]["gravity_m_s2"], told["bounces"]["drop_height_m"], told["bounces"]["contact_duration_s"]) == (1.62, 0.2, 1e-4)
-    assert told["bounces"]["impacts"][0]["approach_speed_m_s"] == pytest.approx(np.sqrt(2.0 * 1.62 * 0.2))
+    assert (
+        told["bounces"]["gravity_m_s2"],
+        told["bounces"]["drop_height_m"],
+        told["bounces"]["contact_duration_s"],
+    ) == (1.62, 0.2, 1e-4)
+    assert told["bounces"]["impacts"][0]["approach_speed_m_s"] == pytest.approx(
+        np.sqrt(2.0 * 1.62 * 0.2)
+    )
 
 
 @pytest.mark.parametrize(
@@ -288,11 +351,21 @@ def test_json_and_options(call, file: Path) -> None:
     [
         (("bounces.wav", "--gravity", "9.81 m"), "--gravity: "),
         (("bounces.wav", "--height", "-1"), "the height is -1 m; it must be above 0"),
-        (("bounces.wav", "--set", "run.impacts=3"), "--set changes the keys of a case, and a record or a table has none"),
-        (("bounces.wav", "--channel", "bounce"), 'there is no channel "bounce"; it has "bounces". Did you mean "bounces"?'),
+        (
+            ("bounces.wav", "--set", "run.impacts=3"),
+            "--set changes the keys of a case, and a record or a table has none",
+        ),
+        (
+            ("bounces.wav", "--channel", "bounce"),
+            'there is no channel "bounce"; it has "bounces". Did you mean "bounces"?',
+        ),
         (("none.wav",), "there is no such file"),
         (("paper:calibration", "--height", "1 m"), "--height goes with a record of bounces"),
-        (("stereo.wav",), 'it has several channels, "stereo 1", "stereo 2"; name one by --channel (in a case the key channel)'),
+        (
+            ("stereo.wav",),
+            'it has several channels, "stereo 1", "stereo 2"; name one by --channel (in a '
+            "case the key channel)",
+        ),
         (("stereo.wav", "--channel", "stereo 2"), "stereo.wav: it is silent"),
     ],
 )
@@ -306,7 +379,11 @@ def test_what_is_not_allowed(call, file: Path, words: tuple[str, ...], message: 
 
 
 def calibrated(target: object, **changes: object):
-    case = plain_case(contact={"law": "newton", "restitution": 0.5}, calibrate={"target": target, "degree": 0, "air": False}, **changes)
+    case = plain_case(
+        contact={"law": "newton", "restitution": 0.5},
+        calibrate={"target": target, "degree": 0, "air": False},
+        **changes,
+    )
     return calibrate_case(read_calibration(case))
 
 
@@ -325,13 +402,21 @@ def test_a_case_is_calibrated_to_what_is_heard(file: Path) -> None:
 def test_a_channel_of_a_table_is_heard(tmp_path: Path) -> None:
     made = heard(8, 0.6, 5, decibels=30.0, flight=0.2, rate=8e3).record
     table = tmp_path / "plate.csv"
-    lines = (f"{at!r},{value!r},1" for at, value in zip(made.time.tolist(), made.value.tolist(), strict=True))
+    lines = (
+        f"{at!r},{value!r},1"
+        for at, value in zip(made.time.tolist(), made.value.tolist(), strict=True)
+    )
     table.write_text("time [s],geophone [V],force [N]\n" + "\n".join(lines))
-    found = calibrated({"file": str(table), "channel": "geophone"}, drop={"speed": 0.5 * 9.80665 * 0.2 / 0.6})
+    found = calibrated(
+        {"file": str(table), "channel": "geophone"}, drop={"speed": 0.5 * 9.80665 * 0.2 / 0.6}
+    )
     np.testing.assert_allclose(found.values, 0.6, atol=0.01)
     for target, message in (
         ({"file": str(table), "channel": "force"}, "it is silent"),
-        ({"file": str(table), "channel": "geophone", "function": "1"}, "the record is selected by its channel"),
+        (
+            {"file": str(table), "channel": "geophone", "function": "1"},
+            "the record is selected by its channel",
+        ),
         ({"file": str(table), "contact_duration": "1 ms"}, "it applies to a record of bounces"),
     ):
         with pytest.raises(vi.InputError, match=message):

@@ -26,17 +26,27 @@ def bound() -> Bound:
 @pytest.mark.slow
 def test_more_measured_tells_more(bound: Bound) -> None:
     errors = {name: one.upper for name, one in bound.errors.items()}
-    assert errors["one impact"] < errors["one impact, place unknown"] < errors["contact time"] < errors["impulse"] < bound.majority
+    assert (
+        errors["one impact"]
+        < errors["one impact, place unknown"]
+        < errors["contact time"]
+        < errors["impulse"]
+        < bound.majority
+    )
     for one in bound.errors.values():
         assert 0.0 <= one.lower <= one.upper <= bound.majority + 0.02
-    one, more, all_of_it = (bound.remaining[name] for name in ("one impact", "height known", "height, bounce and size"))
+    one, more, all_of_it = (
+        bound.remaining[name] for name in ("one impact", "height known", "height, bounce and size")
+    )
     assert (more <= one + 1e-9).all()
     assert (all_of_it <= more + 1e-9).all()
 
 
 @pytest.mark.parametrize("samples", [64, 300])
 def test_what_is_measured_besides_never_raises_the_bound(samples: int) -> None:
-    """Of few falls each further quantity leaves fewer that are alike; the time to the next impact raised the bound from 0 to 8 %."""
+    """Of few falls each further quantity leaves fewer that are alike; the time to the
+    next impact raised the bound from 0 to 8 %.
+    """
     found = bound_of(vi.load_sweep("signals:coal-gangue", samples))
     more_than = {
         "contact time": "one impact, place unknown",
@@ -68,15 +78,25 @@ def test_noise_and_a_narrow_band_cost(bound: Bound) -> None:
 
 
 def test_the_share_of_the_assumed_scatter(bound: Bound) -> None:
-    """An unknown position is of no account with an exact amplitude, and without one most of the error is of its scatter."""
+    """An unknown position is of no account with an exact amplitude, and without one most
+    of the error is of its scatter.
+    """
     with_it, without = bound.errors, bound.without_scatter
     assert without["one impact, place unknown"] == without["one impact"]
-    assert without["one impact, place unknown"].upper < 0.5 * with_it["one impact, place unknown"].lower
+    assert (
+        without["one impact, place unknown"].upper
+        < 0.5 * with_it["one impact, place unknown"].lower
+    )
     assert without["contact time"] == with_it["contact time"]
-    assert all(without[name].lower <= without[name].upper <= error.upper for name, error in with_it.items())
+    assert all(
+        without[name].lower <= without[name].upper <= error.upper for name, error in with_it.items()
+    )
     exact = bound_of(vi.load_sweep("signals:coal-gangue", 1000), Channel(gain=0.0, place=0.0))
     assert exact.errors["one impact"] == exact.without_scatter["one impact"]
-    assert "Each error holds for classifiers that see only the quantities named, with this scatter." in scatter_words(bound)
+    assert (
+        "Each error holds for classifiers that see only the quantities named, with this scatter."
+        in scatter_words(bound)
+    )
 
 
 def test_the_bound_of_a_computed_data_set(tmp_path: Path) -> None:
@@ -84,7 +104,9 @@ def test_the_bound_of_a_computed_data_set(tmp_path: Path) -> None:
     plate = {"size": [1.2, 0.8, 0.02], "material": "steel"}
     sweep = {**table["sweep"], "samples": 600, "keep": ["peaks"]}
     sweep.pop("window")
-    sweep["over"] = {key: value for key, value in sweep["over"].items() if not key.startswith("plate.")}
+    sweep["over"] = {
+        key: value for key, value in sweep["over"].items() if not key.startswith("plate.")
+    }
     rigid = {**table, "plate": plate, "sensors": [], "run": {"impacts": 1}, "sweep": sweep}
     stated = vi.read_sweep(rigid)
     computed = vi.read_study(vi.run_sweep(stated, tmp_path / "falls"))
@@ -97,7 +119,9 @@ def test_how_sensors_are_mounted_does_not_matter_to_a_bound() -> None:
     table = vi.load_sweep("signals:coal-gangue", 100).whole_table
     over = {**table["sweep"]["over"], "sensors.a1.position.x": {"from": 0.27, "to": 0.29}}
     mounted = vi.read_sweep({**table, "sweep": {**table["sweep"], "over": over}})
-    np.testing.assert_array_equal(falls_of_sweep(mounted).duration, falls_of_sweep(vi.read_sweep(table)).duration)
+    np.testing.assert_array_equal(
+        falls_of_sweep(mounted).duration, falls_of_sweep(vi.read_sweep(table)).duration
+    )
 
 
 def test_the_folder(bound: Bound, tmp_path: Path) -> None:
@@ -108,7 +132,10 @@ def test_the_folder(bound: Bound, tmp_path: Path) -> None:
     assert len((folder / "map.csv").read_text(encoding="utf-8").splitlines()) == bound.map.size + 1
     summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
     assert summary["falls"] == 4000
-    assert summary["bound"][3]["error_upper_without_scatter"] == bound.without_scatter["one impact"].upper
+    assert (
+        summary["bound"][3]["error_upper_without_scatter"]
+        == bound.without_scatter["one impact"].upper
+    )
     page = (folder / "report.html").read_text(encoding="utf-8")
     assert "best possible classifier" in page
     with pytest.raises(vi.InputError, match="is there already"):
@@ -117,5 +144,8 @@ def test_the_folder(bound: Bound, tmp_path: Path) -> None:
 
 
 def test_what_has_no_bound() -> None:
-    with pytest.raises(vi.InputError, match=r"sweep.design: the study has no classes; a bound needs design = \"population\""):
+    with pytest.raises(
+        vi.InputError,
+        match=r"sweep.design: the study has no classes; a bound needs design = \"population\"",
+    ):
         bound_of(vi.load_sweep("paper:sweep"))

@@ -22,7 +22,9 @@ PAPER = {"drop": {"height": 4.0, "gravity": 9.8}, "contact": ADAMS}
 
 
 def to_calibrate(section: dict, **changes: object) -> ToCalibrate:
-    return vi.read_calibration({**plain_case(**{"run": {"impacts": 5}, **PAPER, **changes}), "calibrate": section})
+    return vi.read_calibration(
+        {**plain_case(**{"run": {"impacts": 5}, **PAPER, **changes}), "calibrate": section}
+    )
 
 
 def calibrated(section: dict, **changes: object) -> tuple[vi.Calibration, vi.Response]:
@@ -53,16 +55,22 @@ def test_no_loss_needs_no_damping() -> None:
 
 def test_one_restitution_an_impact() -> None:
     wanted = [0.7, 0.6, 0.5]
-    found, response = calibrated({"target": {"law": "newton", "restitution": wanted}}, run={"impacts": 3})
+    found, response = calibrated(
+        {"target": {"law": "newton", "restitution": wanted}}, run={"impacts": 3}
+    )
     assert response.impacts["restitution_achieved"] == pytest.approx(wanted, rel=1e-8)
     assert found.curve is None, "there is no one restitution at another speed"
     with pytest.raises(vi.InputError, match="has one value per impact"):
-        calibrated({"target": {"law": "newton", "restitution": wanted}, "speeds": {"from": 1, "to": 5}})
+        calibrated(
+            {"target": {"law": "newton", "restitution": wanted}, "speeds": {"from": 1, "to": 5}}
+        )
 
 
 def test_as_many_speeds_as_impacts_are_speeds_all_the_same() -> None:
     speeds = {"from": 1.0, "to": 9.0, "number": 5}
-    found, _ = calibrated({"target": {"law": "lankarani-nikravesh", "restitution": 0.65}, "speeds": speeds})
+    found, _ = calibrated(
+        {"target": {"law": "lankarani-nikravesh", "restitution": 0.65}, "speeds": speeds}
+    )
     assert found.fit.function.slowest == 1.0
     assert found.fit.function.fastest == 9.0
 
@@ -73,27 +81,46 @@ def test_of_two_dampings_with_the_same_force_the_smaller_counts() -> None:
     assert found.values[0] == pytest.approx(540.0, rel=1e-3)
     assert response.impacts["max_force_N"][0] == pytest.approx(8000.0, rel=1e-9)
     stronger = {"law": "adams-impact", "damping_max": 1e3}
-    assert vi.simulate(vi.read_case(plain_case(**{**PAPER, "contact": stronger}))).impacts["max_force_N"][0] > 8000.0
+    assert (
+        vi.simulate(vi.read_case(plain_case(**{**PAPER, "contact": stronger}))).impacts[
+            "max_force_N"
+        ][0]
+        > 8000.0
+    )
 
 
 def test_several_outcomes_are_met_as_nearly_as_one_number_can() -> None:
-    section = {"target": {"law": "lankarani-nikravesh", "restitution": 0.65}, "match": {"separation_speed": 1, "max_force": 0.5}}
+    section = {
+        "target": {"law": "lankarani-nikravesh", "restitution": 0.65},
+        "match": {"separation_speed": 1, "max_force": 0.5},
+    }
     found, _ = calibrated(section, run={"impacts": 1})
 
     def cost(value: float) -> float:
         contact = {"law": "adams-impact", "damping_max": value}
-        impact = vi.simulate(vi.read_case(plain_case(**{**PAPER, "contact": contact, "run": {"impacts": 1}}))).impacts
+        impact = vi.simulate(
+            vi.read_case(plain_case(**{**PAPER, "contact": contact, "run": {"impacts": 1}}))
+        ).impacts
         wanted = found.observations.wanted
-        rebound = (impact["separation_speed_m_s"][0] - wanted["separation_speed"][0]) / found.observations.speeds[0]
-        return float(rebound**2 + 0.5 * (impact["max_force_N"][0] / wanted["max_force"][0] - 1.0) ** 2)
+        rebound = (
+            impact["separation_speed_m_s"][0] - wanted["separation_speed"][0]
+        ) / found.observations.speeds[0]
+        return float(
+            rebound**2 + 0.5 * (impact["max_force_N"][0] / wanted["max_force"][0] - 1.0) ** 2
+        )
 
     best = float(found.values[0])
     assert cost(best) < min(cost(0.999 * best), cost(1.001 * best))
 
 
 def test_a_rebound_height_is_met_by_a_law_that_lets_go_early() -> None:
-    """At zero force, before the overlap is gone: the height is what was measured, not the speed at release."""
-    _, response = calibrated({"target": {"rebound_heights": [2.4, 1.4]}}, contact={"law": "kuwabara-kono", "dissipation_time": 1e-5})
+    """At zero force, before the overlap is gone: the height is what was measured, not the
+    speed at release.
+    """
+    _, response = calibrated(
+        {"target": {"rebound_heights": [2.4, 1.4]}},
+        contact={"law": "kuwabara-kono", "dissipation_time": 1e-5},
+    )
     assert response.impacts["rebound_height_m"][:2] == pytest.approx([2.4, 1.4], rel=1e-9)
 
 
@@ -104,7 +131,12 @@ def test_one_measured_impact_at_another_speed_is_not_the_first_of_the_drop() -> 
 
 
 def test_beyond_the_speeds_that_were_measured_is_told() -> None:
-    found, _ = calibrated({"target": {"restitution": [0.8, 0.79, 0.78], "approach_speed": [1.0, 1.5, 2.0]}, "degree": 1})
+    found, _ = calibrated(
+        {
+            "target": {"restitution": [0.8, 0.79, 0.78], "approach_speed": [1.0, 1.5, 2.0]},
+            "degree": 1,
+        }
+    )
     assert any("there it is an extrapolation" in doubt for doubt in found.doubts)
 
 
@@ -119,11 +151,16 @@ def test_a_jump_is_not_taken_for_a_solution() -> None:
         "run": {"impacts": 4},
     }
     with pytest.raises(vi.InputError, match="jumps over this one"):
-        vi.calibrate_case(vi.read_calibration({**case, "calibrate": {"target": {"restitution": 0.2346}}}))
+        vi.calibrate_case(
+            vi.read_calibration({**case, "calibrate": {"target": {"restitution": 0.2346}}})
+        )
 
 
 def test_a_refusal_is_quick_and_says_what_would_do() -> None:
-    words = r"gives 7859.* with damping_max = 150 N s/m and the rest as given it would take stiffness = 4\.06"
+    words = (
+        r"gives 7859.* with damping_max = 150 N s/m and the rest as given it would take "
+        r"stiffness = 4\.06"
+    )
     with pytest.raises(vi.InputError, match=words) as refused:
         calibrated({"target": {"max_force": 3000.0}})
     assert "or exponent" in str(refused.value)
@@ -145,8 +182,13 @@ def test_the_folder(damping: vi.Calibration, tmp_path: Path) -> None:
     assert [row["impact"] for row in table["impacts"]] == [1, 2, 3, 4, 5]
     assert [row["value"] for row in table["impacts"]] == damping.values.tolist()
     assert table["fit"]["coefficients"] == list(damping.fit.function.coefficients)
-    assert vi.load_case(folder / "case.toml").contact.parameters["damping_max"] == tuple(damping.values)
-    assert {file.name for file in (folder / "figures").iterdir()} == {"parameter.png", "differences.png"}
+    assert vi.load_case(folder / "case.toml").contact.parameters["damping_max"] == tuple(
+        damping.values
+    )
+    assert {file.name for file in (folder / "figures").iterdir()} == {
+        "parameter.png",
+        "differences.png",
+    }
     assert "139.408" in (folder / "report.html").read_text()
     drop = load_drop(folder)
     assert drop.function is not None
@@ -158,8 +200,18 @@ def test_the_folder(damping: vi.Calibration, tmp_path: Path) -> None:
 
 
 def test_the_charts_hold_the_values(damping: vi.Calibration) -> None:
-    """Each impact with its interval, the fit, and the remaining differences in per cent; the parameter in words."""
-    found, _ = calibrated({"target": {"restitution": [0.8, 0.78, 0.77, 0.75], "approach_speed": [1.0, 2.0, 3.0, 4.0]}, "degree": 1})
+    """Each impact with its interval, the fit, and the remaining differences in per cent;
+    the parameter in words.
+    """
+    found, _ = calibrated(
+        {
+            "target": {
+                "restitution": [0.8, 0.78, 0.77, 0.75],
+                "approach_speed": [1.0, 2.0, 3.0, 4.0],
+            },
+            "degree": 1,
+        }
+    )
     (chart,) = calibration_charts(found)
     (panel,) = chart.panels
     assert panel.y.label == "Largest damping C"
@@ -174,8 +226,17 @@ def test_the_charts_hold_the_values(damping: vi.Calibration) -> None:
     assert found.intervals is not None
     np.testing.assert_array_equal(np.transpose([points.low, points.high]), found.intervals)
     last = calibration_charts(damping)[-1]
-    assert [panel.title for panel in last.panels] == ["Largest indentation", "Largest force", "Contact duration", "Rebound height"]
-    for panel, column in zip(last.panels, ("max_indentation_m", "max_force_N", "duration_s", "rebound_height_m"), strict=True):
+    assert [panel.title for panel in last.panels] == [
+        "Largest indentation",
+        "Largest force",
+        "Contact duration",
+        "Rebound height",
+    ]
+    for panel, column in zip(
+        last.panels,
+        ("max_indentation_m", "max_force_N", "duration_s", "rebound_height_m"),
+        strict=True,
+    ):
         drawn = {mark.name: mark.y for mark in panel.marks if isinstance(mark, Line)}
         for way, values in differences(damping)[column].items():
             np.testing.assert_array_equal(drawn[way], 100.0 * values)
@@ -184,10 +245,24 @@ def test_the_charts_hold_the_values(damping: vi.Calibration) -> None:
 @pytest.mark.slow
 def test_the_damping_of_modes_is_found_again_and_is_no_function_of_the_law(tmp_path: Path) -> None:
     """From the rebound that it gives; and an export of it does not hold it."""
-    sphere = {"radius": 0.025, "material": "rock-paper", "model": "elastic", "modes": 20, "damping": 0.3}
-    run = vi.simulate(vi.read_case(plain_case(**{**PAPER, "sphere": sphere, "contact": {"law": "hertz"}}))).impacts
-    section = {"target": {"separation_speed": float(run["separation_speed_m_s"][0])}, "parameter": "sphere.damping", "degree": 0}
-    what = to_calibrate(section, sphere={**sphere, "damping": 0.02}, contact={"law": "hertz"}, run={"impacts": 1})
+    sphere = {
+        "radius": 0.025,
+        "material": "rock-paper",
+        "model": "elastic",
+        "modes": 20,
+        "damping": 0.3,
+    }
+    run = vi.simulate(
+        vi.read_case(plain_case(**{**PAPER, "sphere": sphere, "contact": {"law": "hertz"}}))
+    ).impacts
+    section = {
+        "target": {"separation_speed": float(run["separation_speed_m_s"][0])},
+        "parameter": "sphere.damping",
+        "degree": 0,
+    }
+    what = to_calibrate(
+        section, sphere={**sphere, "damping": 0.02}, contact={"law": "hertz"}, run={"impacts": 1}
+    )
     found = vi.calibrate_case(what)
     assert found.values[0] == pytest.approx(0.3, rel=1e-5)
     folder = vi.save_calibration(what.case, found, tmp_path / "calibrated")
@@ -198,10 +273,18 @@ def test_the_damping_of_modes_is_found_again_and_is_no_function_of_the_law(tmp_p
 @pytest.mark.slow
 def test_what_has_no_influence_is_told() -> None:
     """The first modes of a sphere only twist it."""
-    sphere = {"radius": 0.025, "material": "rock-paper", "model": "elastic", "modes": 5, "damping": 0.3}
+    sphere = {
+        "radius": 0.025,
+        "material": "rock-paper",
+        "model": "elastic",
+        "modes": 5,
+        "damping": 0.3,
+    }
     section = {"target": {"separation_speed": 8.0}, "parameter": "sphere.damping"}
     with pytest.raises(vi.InputError, match=r"whatever sphere\.damping is|has no influence"):
-        vi.calibrate_case(to_calibrate(section, sphere=sphere, contact={"law": "hertz"}, run={"impacts": 1}))
+        vi.calibrate_case(
+            to_calibrate(section, sphere=sphere, contact={"law": "hertz"}, run={"impacts": 1})
+        )
 
 
 def test_the_curve_is_exact(theory: vi.Response) -> None:
@@ -211,24 +294,39 @@ def test_the_curve_is_exact(theory: vi.Response) -> None:
     speed, value = speeds[20], values[20]
     contact = {"law": "adams-impact", "damping_max": float(value)}
     one = {"drop": {"speed": float(speed), "gravity": 9.8}, "run": {"impacts": 1}}
-    adams = vi.simulate(vi.read_case(plain_case(**{**one, "contact": contact}))).impacts["separation_speed_m_s"]
+    adams = vi.simulate(vi.read_case(plain_case(**{**one, "contact": contact}))).impacts[
+        "separation_speed_m_s"
+    ]
     law = {"law": "lankarani-nikravesh", "restitution": 0.65}
-    wanted = vi.simulate(vi.read_case(plain_case(**{**one, "contact": law}))).impacts["separation_speed_m_s"]
+    wanted = vi.simulate(vi.read_case(plain_case(**{**one, "contact": law}))).impacts[
+        "separation_speed_m_s"
+    ]
     assert adams == pytest.approx(wanted, rel=1e-9)
     assert np.all(np.diff(speeds) > 0.0)
 
 
 def test_the_dialog_of_adams_has_its_units(damping: vi.Calibration) -> None:
-    """Stiffness, exponent, damping and penetration in newtons, millimetres and seconds, as the exported force has them."""
+    """Stiffness, exponent, damping and penetration in newtons, millimetres and seconds,
+    as the exported force has them.
+    """
     case = vi.load_case("paper:calibration")
     stiffness = float(case.to_problem().laws[0].stiffness)
     headers, rows = report_of(case, damping).dialog or ([], [])
-    assert headers[1:] == [("Stiffness", "N/mm^n"), ("Force Exponent", ""), ("Damping", "N s/mm"), ("Penetration Depth", "mm")]
+    assert headers[1:] == [
+        ("Stiffness", "N/mm^n"),
+        ("Force Exponent", ""),
+        ("Damping", "N s/mm"),
+        ("Penetration Depth", "mm"),
+    ]
     for row, value in zip(rows, damping.values, strict=True):
         shown = [float(cell) for cell in row[1:]]
-        assert shown == pytest.approx([vi.convert_units(stiffness, "N/m^1.5", "N/mm^1.5"), 1.5, value / 1000.0, 0.1], rel=1e-5)
+        assert shown == pytest.approx(
+            [vi.convert_units(stiffness, "N/m^1.5", "N/mm^1.5"), 1.5, value / 1000.0, 0.1], rel=1e-5
+        )
 
 
 def test_the_dialog_is_that_of_adams_alone() -> None:
-    what = to_calibrate({"target": {"restitution": 0.7}}, contact={"law": "tsuji"}, run={"impacts": 2})
+    what = to_calibrate(
+        {"target": {"restitution": 0.7}}, contact={"law": "tsuji"}, run={"impacts": 2}
+    )
     assert report_of(what.case, vi.calibrate_case(what)).dialog is None

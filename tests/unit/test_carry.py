@@ -13,7 +13,13 @@ from vibroimpact.errors import InputError
 from vibroimpact.structures.store import carry, entries, receive
 
 TABLE = {
-    "sphere": {"radius": "25 mm", "material": "rock-paper", "model": "elastic", "modes": 5, "mesh": {"elements_across": 4}},
+    "sphere": {
+        "radius": "25 mm",
+        "material": "rock-paper",
+        "model": "elastic",
+        "modes": 5,
+        "mesh": {"elements_across": 4},
+    },
     "plate": {
         "size": ["500 mm", "400 mm", "20 mm"],
         "material": "steel-paper",
@@ -44,25 +50,44 @@ def computed(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, dict[str, 
 
 
 @pytest.fixture
-def elsewhere(computed: tuple[Path, dict[str, bytes]], folder: Path, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> dict[str, bytes]:
+def elsewhere(
+    computed: tuple[Path, dict[str, bytes]],
+    folder: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    tmp_path: Path,
+) -> dict[str, bytes]:
     """What a case needs, and a store that is empty."""
     monkeypatch.setenv("VIBROIMPACT_STORE", str(tmp_path / "there"))
     return dict(computed[1])
 
 
 def test_who_receives_computes_nothing(
-    computed: tuple[Path, dict[str, bytes]], elsewhere: dict[str, bytes], monkeypatch: pytest.MonkeyPatch
+    computed: tuple[Path, dict[str, bytes]],
+    elsewhere: dict[str, bytes],
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    assert sorted(name.partition(".")[2] for name in elsewhere) == ["compliance", "compliance", "modes", "modes"]
+    assert sorted(name.partition(".")[2] for name in elsewhere) == [
+        "compliance",
+        "compliance",
+        "modes",
+        "modes",
+    ]
     assert receive(elsewhere) == ""
     for name in ("recipe.computed_model", "static_compliance.computed_compliance"):
-        monkeypatch.setattr(f"vibroimpact.structures.{name}", lambda *_: pytest.fail("computed again"))
-    monkeypatch.setattr("vibroimpact.cases.elastic.coupling.mesh_compliance", lambda *_: pytest.fail("computed again"))
+        monkeypatch.setattr(
+            f"vibroimpact.structures.{name}", lambda *_: pytest.fail("computed again")
+        )
+    monkeypatch.setattr(
+        "vibroimpact.cases.elastic.coupling.mesh_compliance",
+        lambda *_: pytest.fail("computed again"),
+    )
     there = vi.read_case(TABLE).to_problem()
     monkeypatch.setenv("VIBROIMPACT_STORE", str(computed[0]))
     here = vi.read_case(TABLE).to_problem()
     for name in ("sphere", "plate"):
-        np.testing.assert_array_equal(getattr(there, name).modes.contact, getattr(here, name).modes.contact)
+        np.testing.assert_array_equal(
+            getattr(there, name).modes.contact, getattr(here, name).modes.contact
+        )
     assert there.quasi_static == here.quasi_static
 
 
@@ -87,7 +112,9 @@ def test_what_was_damaged_on_its_way_is_refused(elsewhere: dict[str, bytes]) -> 
     assert entries() == []
 
 
-@pytest.mark.parametrize("name", ["../there.modes", "there", "there.txt", ".modes", "a/b.modes", "a.b.modes"])
+@pytest.mark.parametrize(
+    "name", ["../there.modes", "there", "there.txt", ".modes", "a/b.modes", "a.b.modes"]
+)
 def test_only_entries_are_received(elsewhere: dict[str, bytes], name: str, tmp_path: Path) -> None:
     with pytest.raises(InputError, match="not the name of an entry"):
         receive({name: next(iter(elsewhere.values()))})

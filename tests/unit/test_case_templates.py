@@ -14,7 +14,9 @@ from vibroimpact.cases.template import _SECTIONS, case_template
 from vibroimpact.cli import main
 
 
-def command(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], *arguments: str) -> tuple[int, str]:
+def command(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], *arguments: str
+) -> tuple[int, str]:
     monkeypatch.setattr("sys.argv", ["vibroimpact", *arguments])
     with pytest.raises(SystemExit) as left:
         main()
@@ -43,12 +45,25 @@ def test_defaults_in_comments_are_those_of_the_case() -> None:
     text = case_template("paper:type1-theory")
     for line in re.findall(r"^# (\w+ = [^.\n]*?)  ", text, flags=re.MULTILINE):
         key = line.split(" = ")[0]
-        if key in ("exponent", "position", "gravity", "same_spot", "tolerance", "finite_sphere", "attachment_mode"):
+        if key in (
+            "exponent",
+            "position",
+            "gravity",
+            "same_spot",
+            "tolerance",
+            "finite_sphere",
+            "attachment_mode",
+        ):
             changed = text.replace(f"# {line}", line, 1)
-            assert vi.read_case(tomllib.loads(changed)).to_problem().source == vi.load_case("paper:type1-theory").to_problem().source, line
+            assert (
+                vi.read_case(tomllib.loads(changed)).to_problem().source
+                == vi.load_case("paper:type1-theory").to_problem().source
+            ), line
 
 
-def test_new_writes_a_case_that_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+def test_new_writes_a_case_that_runs(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
     monkeypatch.chdir(tmp_path)
     assert command(monkeypatch, capsys, "new", "my rock", "--from", "paper:type1-variable")[0] == 0
     assert vi.load_case("my rock.toml").name == "my rock"
@@ -70,7 +85,11 @@ def test_new_writes_a_case_that_runs(tmp_path: Path, monkeypatch: pytest.MonkeyP
     ],
 )
 def test_wrong_names(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], arguments: list[str], words: str
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+    arguments: list[str],
+    words: str,
 ) -> None:
     monkeypatch.chdir(tmp_path)
     status, said = command(monkeypatch, capsys, "new", *arguments)
@@ -79,52 +98,103 @@ def test_wrong_names(
     assert not list(tmp_path.iterdir())
 
 
-def test_cases_lists_all(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+def test_cases_lists_all(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
     status, words = command(monkeypatch, capsys, "cases")
     assert status == 0
     assert all(name in words for name in vi.shipped_cases())
 
 
-# --set ------------------------------------------------------------------------------------------------
+# --set
+# ------------------------------------------------------------------------------------------------
 
 
 def test_changes_are_those_of_the_file(tmp_path: Path) -> None:
-    text = case_template("paper:type1-theory").replace('"25 mm"', '"30 mm"').replace("impacts = 5", "impacts = 2")
+    text = (
+        case_template("paper:type1-theory")
+        .replace('"25 mm"', '"30 mm"')
+        .replace("impacts = 5", "impacts = 2")
+    )
     (tmp_path / "case.toml").write_text(text)
-    assert vi.load_case(tmp_path / "case.toml") == vi.load_case("paper:type1-theory", {"sphere.radius": "30 mm", "run.impacts": 2})
+    assert vi.load_case(tmp_path / "case.toml") == vi.load_case(
+        "paper:type1-theory", {"sphere.radius": "30 mm", "run.impacts": 2}
+    )
 
 
-def test_files_in_changes_are_found_from_where_the_command_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_files_in_changes_are_found_from_where_the_command_runs(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.chdir(tmp_path)
     corners = ("0.,0.,0.", "1.,0.,0.", "0.,1.,0.", "0.,0.,1.")
     grids = "".join(f"GRID,{number},,{corner}\n" for number, corner in enumerate(corners, 1))
-    (tmp_path / "ball.bdf").write_text(f"BEGIN BULK\n{grids}CTETRA,1,1,1,2,3,4\nPSOLID,1,1\nENDDATA\n")
+    (tmp_path / "ball.bdf").write_text(
+        f"BEGIN BULK\n{grids}CTETRA,1,1,1,2,3,4\nPSOLID,1,1\nENDDATA\n"
+    )
     section = vi.load_case("paper:type2", {"sphere.mesh": "ball.bdf"}).sphere
     assert section.mesh.file == str(tmp_path / "ball.bdf")
 
 
-def test_a_run_takes_them(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_run_takes_them(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
     monkeypatch.chdir(tmp_path)
-    arguments = ["run", "paper:type1-theory", "-o", "out", "--set", "run.impacts=1", "--set", "drop.height=1 m"]
+    arguments = [
+        "run",
+        "paper:type1-theory",
+        "-o",
+        "out",
+        "--set",
+        "run.impacts=1",
+        "--set",
+        "drop.height=1 m",
+    ]
     assert command(monkeypatch, capsys, *arguments)[0] == 0
     result = vi.read_result("out")
     assert len(result.impacts["impact"]) == 1
     assert result.case["drop"]["height"] == 1.0
 
 
-def test_a_calibration_takes_them(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_calibration_takes_them(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
     monkeypatch.chdir(tmp_path)
-    arguments = ["calibrate", "paper:type1-theory", "-o", "out", "--set", "run.impacts=1", "--set", "calibrate.target={restitution=0.7}"]
+    arguments = [
+        "calibrate",
+        "paper:type1-theory",
+        "-o",
+        "out",
+        "--set",
+        "run.impacts=1",
+        "--set",
+        "calibrate.target={restitution=0.7}",
+    ]
     assert command(monkeypatch, capsys, *arguments, "--set", "calibrate.model=adams-impact")[0] == 0
     assert len(json.loads((tmp_path / "out" / "calibration.json").read_text())["impacts"]) == 1
-    assert vi.simulate(vi.load_case(tmp_path / "out" / "case.toml")).impacts["restitution_achieved"] == pytest.approx([0.7], abs=1e-6)
+    assert vi.simulate(vi.load_case(tmp_path / "out" / "case.toml")).impacts[
+        "restitution_achieved"
+    ] == pytest.approx([0.7], abs=1e-6)
 
 
-def test_a_new_case_has_them(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_new_case_has_them(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
     monkeypatch.chdir(tmp_path)
-    settings = ["--set", "plate.size.thickness=10 mm", "--set", "drop.height=2 m", "--set", "contact.law=flores"]
+    settings = [
+        "--set",
+        "plate.size.thickness=10 mm",
+        "--set",
+        "drop.height=2 m",
+        "--set",
+        "contact.law=flores",
+    ]
     assert command(monkeypatch, capsys, "new", "thick", *settings)[0] == 0
-    changes = {"name": "thick", "plate.size.thickness": "10 mm", "drop.height": "2 m", "contact.law": "flores"}
+    changes = {
+        "name": "thick",
+        "plate.size.thickness": "10 mm",
+        "drop.height": "2 m",
+        "contact.law": "flores",
+    }
     assert vi.load_case("thick.toml") == vi.load_case("paper:type1-theory", changes)
     text = (tmp_path / "thick.toml").read_text()
     assert 'size = ["520 mm", "420 mm", "10 mm"]\n' in text
@@ -135,16 +205,28 @@ def test_a_new_case_has_them(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, ca
 @pytest.mark.parametrize(
     ("setting", "words"),
     [
-        ("plate.size.thicknes=10 mm", 'plate.size: there is no thicknes; it takes length, width, thickness. Did you mean "thickness"?'),
+        (
+            "plate.size.thicknes=10 mm",
+            "plate.size: there is no thicknes; it takes length, width, thickness. Did you "
+            'mean "thickness"?',
+        ),
         ("plat.size=3", 'plat: unknown key "plat"'),
         ("sphere.radius=-1", "sphere.radius: -1 is not allowed; it must be greater than 0 m"),
-        ("sphere.radius", '--set "sphere.radius": give KEY=VALUE, such as plate.size.thickness="10 mm"'),
+        (
+            "sphere.radius",
+            '--set "sphere.radius": give KEY=VALUE, such as plate.size.thickness="10 mm"',
+        ),
         ("sphere.radius.x=1", "sphere.radius: "),
         ("drop.speed=3", "drop: give either height or speed; both are given"),
     ],
 )
 def test_wrong_settings(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], name: str, setting: str, words: str
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+    name: str,
+    setting: str,
+    words: str,
 ) -> None:
     """Every command that takes them says the same, and writes nothing."""
     monkeypatch.chdir(tmp_path)

@@ -1,4 +1,6 @@
-"""Other values in the text of a case: it says what the changed case says, and all else stays as it was written."""
+"""Other values in the text of a case: it says what the changed case says, and all else
+stays as it was written.
+"""
 
 from __future__ import annotations
 
@@ -16,7 +18,10 @@ CHANGES: list[dict[str, Any]] = [
     {"name": 'a "name" # of [mine]\twith \\ and é'},
     {"sphere.radius": "30 mm", "drop.height": 2.0, "run.impacts": 3},
     {"plate.size": [1, "2 m", "9 mm"], "drop.position.y": "1 cm"},
-    {"sphere.material.density": 1500, "plate.material": {"density": 1e3, "youngs_modulus": "1 GPa", "poissons_ratio": 0.3}},
+    {
+        "sphere.material.density": 1500,
+        "plate.material": {"density": 1e3, "youngs_modulus": "1 GPa", "poissons_ratio": 0.3},
+    },
     {"plate.supports": [{"type": "point", "position": [0.1, "5 cm"]}], "drop.same_spot": False},
     {"contact": {"law": "newton", "restitution": 0.5}},
     {"sensors": [{"name": "a # b", "position": [0.0, 0.0], "rate": "20 kHz"}]},
@@ -53,7 +58,12 @@ size = "1 cm"
 
 
 def test_comments_and_all_other_lines_stay() -> None:
-    changes = {"name": "b", "sphere.radius": "3 cm", "contact.damping_max": [5.0, 6.0], "contact.full_damping_penetration": 1e-4}
+    changes = {
+        "name": "b",
+        "sphere.radius": "3 cm",
+        "contact.damping_max": [5.0, 6.0],
+        "contact.full_damping_penetration": 1e-4,
+    }
     expected = (
         CASE.replace('"rock"   ', '"b"   ')
         .replace('"25 mm"', '"3 cm"')

@@ -1,4 +1,6 @@
-"""What stands between a chart and what draws it: fewer points of long lines, multiples of units, and arrays as bytes."""
+"""What stands between a chart and what draws it: fewer points of long lines, multiples of
+units, and arrays as bytes.
+"""
 
 from __future__ import annotations
 
@@ -64,7 +66,9 @@ def test_a_line_with_gaps_keeps_its_gaps_and_its_extremes() -> None:
     assert few[0][np.isnan(few[1])].tolist() == [x[20_000], x[20_099], x[70_000]]
 
 
-def test_the_points_of_a_line_in_parts_are_those_of_the_whole(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_points_of_a_line_in_parts_are_those_of_the_whole(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     y = np.round(RANDOM.standard_normal(100_000), 1)  # with many equal extremes
     x = np.sort(np.abs(RANDOM.standard_normal(100_000)))
     whole = decimated(x, y)
@@ -77,7 +81,9 @@ def test_the_points_of_a_line_in_parts_are_those_of_the_whole(monkeypatch: pytes
 # multiples of units
 
 
-def chart(*marks: object, time: Axis | None = None, force: Axis | None = None) -> tuple[Chart, Axis, Axis]:
+def chart(
+    *marks: object, time: Axis | None = None, force: Axis | None = None
+) -> tuple[Chart, Axis, Axis]:
     time, force = time or Axis("Time", "s"), force or Axis("Force", "N")
     return Chart("a", "A", ((Panel(time, force, marks),),)), time, force  # type: ignore[arg-type]
 
@@ -92,45 +98,70 @@ def chart(*marks: object, time: Axis | None = None, force: Axis | None = None) -
         ([], "Force [N]", 1.0),
     ],
 )
-def test_an_axis_is_shown_in_the_unit_of_its_largest_value(values: list[float], title: str, size: float) -> None:
+def test_an_axis_is_shown_in_the_unit_of_its_largest_value(
+    values: list[float], title: str, size: float
+) -> None:
     drawn, _, force = chart(Line(np.arange(len(values), dtype=float), np.array(values)))
     frame = frames_of(drawn)[force]
     assert (frame.title, frame.size) == (title, size)
 
 
 def test_a_range_that_is_given_decides_on_the_unit() -> None:
-    drawn, _, force = chart(Line(np.array([0.0]), np.array([9e6])), force=Axis("Force", "N", range=(0.0, 500.0)))
+    drawn, _, force = chart(
+        Line(np.array([0.0]), np.array([9e6])), force=Axis("Force", "N", range=(0.0, 500.0))
+    )
     assert frame_of(force, drawn.panels).unit == "N"
 
 
 def test_panels_with_one_axis_share_their_unit() -> None:
     time, force = Axis("Time", "s"), Axis("Force", "N")
-    few, many = (Panel(time, force, (Line(np.array([0.0, 1.0]), np.array([0.0, top])),)) for top in (5.0, 5e3))
+    few, many = (
+        Panel(time, force, (Line(np.array([0.0, 1.0]), np.array([0.0, top])),))
+        for top in (5.0, 5e3)
+    )
     frames = frames_of(Chart("a", "A", ((few,), (many,))))
     assert frames[force].unit == "kN"
     assert values_on(force, (few, many)).tolist() == [0.0, 5.0, 0.0, 5e3]
     other = Axis("Force", "N")
-    assert frames_of(Chart("a", "A", ((Panel(time, other, few.marks),), (many,))))[other].unit == "N"
+    assert (
+        frames_of(Chart("a", "A", ((Panel(time, other, few.marks),), (many,))))[other].unit == "N"
+    )
 
 
 def test_views_have_units_of_what_is_seen_in_them() -> None:
     x = np.linspace(0.0, 1.0, 1001)
     force = np.where((x > 0.5) & (x < 0.503), 5e-3, 2e3)
-    part = View("A", 0.501, 0.502, 0.501, "Since first touch", level=4e-3, level_label="From first touch")
+    part = View(
+        "A", 0.501, 0.502, 0.501, "Since first touch", level=4e-3, level_label="From first touch"
+    )
     time = Axis("Time", "s", views=(part,))
-    drawn, _, _ = chart(Line(x, force), Points(x[:2], np.array([9e9, 9e9])), Band(x, force, force), time=time)
+    drawn, _, _ = chart(
+        Line(x, force), Points(x[:2], np.array([9e9, 9e9])), Band(x, force, force), time=time
+    )
     figure = plotly_chart(drawn)
     across, upwards = (figure["views"][0]["frames"][side] for side in "xy")
-    assert (across["title"], across["origin"], across["size"]) == ("Since first touch [ms]", 0.501, 1e-3)
-    assert (upwards["title"], upwards["origin"], upwards["size"]) == ("From first touch [mN]", 4e-3, 1e-3)
+    assert (across["title"], across["origin"], across["size"]) == (
+        "Since first touch [ms]",
+        0.501,
+        1e-3,
+    )
+    assert (upwards["title"], upwards["origin"], upwards["size"]) == (
+        "From first touch [mN]",
+        4e-3,
+        1e-3,
+    )
     assert across["range"] == pytest.approx([0.0, 1.0])
     assert figure["frames"]["y"]["title"] == "Force [MN]"
 
 
 def test_a_view_of_nothing_that_has_values_keeps_the_unit() -> None:
-    drawn, _, _ = chart(Level(5e3), Stack(np.zeros(0), ()), time=Axis("Time", "s", views=(View("A", 0.2, 0.3),)))
+    drawn, _, _ = chart(
+        Level(5e3), Stack(np.zeros(0), ()), time=Axis("Time", "s", views=(View("A", 0.2, 0.3),))
+    )
     figure = plotly_chart(drawn)
-    assert figure["views"][0]["frames"]["y"]["title"] == figure["frames"]["y"]["title"] == "Force [kN]"
+    assert (
+        figure["views"][0]["frames"]["y"]["title"] == figure["frames"]["y"]["title"] == "Force [kN]"
+    )
 
 
 def test_labels_in_a_corner_have_no_place_on_the_axes() -> None:
@@ -148,9 +179,13 @@ def test_a_logarithmic_scale_needs_positive_values() -> None:
 
 
 def test_lines_of_equal_value_avoid_what_rests() -> None:
-    """A held edge rests but for rounding, and inside the plate bends down: no line of zero runs along the edge."""
+    """A held edge rests but for rounding, and inside the plate bends down: no line of
+    zero runs along the edge.
+    """
     y, x = np.meshgrid(np.linspace(-1.0, 1.0, 41), np.linspace(-1.0, 1.0, 61), indexing="ij")
-    values = np.where(np.hypot(x, y) < 0.6, -np.cos(0.5 * np.pi * np.hypot(x, y) / 0.6), 0.0) + 1e-17 * RANDOM.choice([-1.0, 1.0], x.shape)
+    values = np.where(
+        np.hypot(x, y) < 0.6, -np.cos(0.5 * np.pi * np.hypot(x, y) / 0.6), 0.0
+    ) + 1e-17 * RANDOM.choice([-1.0, 1.0], x.shape)
     found = {lines.dashed: lines for lines in contours_of(values)}
     assert found[True].levels == pytest.approx((-0.9, -0.6, -0.3), rel=0.01)
     rest = [lines for lines in contours_of(values) if lines.levels == (0.0,)]
@@ -193,7 +228,11 @@ def test_a_document_is_read_back() -> None:
         "number": 2.5,
     }
     assert found["list"][:2] == [1, "two"]
-    for ours, theirs in ((found["list"][2]["three"], single), (found["again"], single), (found["whole"], document["whole"])):
+    for ours, theirs in (
+        (found["list"][2]["three"], single),
+        (found["again"], single),
+        (found["whole"], document["whole"]),
+    ):
         np.testing.assert_array_equal(ours, theirs)
     np.testing.assert_allclose(found["even"], document["even"], rtol=0.0, atol=1e-12)
     np.testing.assert_allclose(found["grid"], document["grid"], rtol=1e-6)
@@ -202,7 +241,9 @@ def test_a_document_is_read_back() -> None:
 
 
 def test_times_late_in_a_run_stay_apart() -> None:
-    """Of a contact of microseconds after a hundred seconds single precision would leave one point."""
+    """Of a contact of microseconds after a hundred seconds single precision would leave
+    one point.
+    """
     time = 100.0 + np.cumsum(RANDOM.uniform(1e-8, 2e-8, 200))
     found = unpack(pack({"time": time, "even": 100.0 + 1e-8 * np.arange(200.0)}))
     np.testing.assert_allclose(np.diff(found["time"]), np.diff(time), rtol=1e-5)
@@ -219,13 +260,21 @@ def test_an_array_is_stored_once_and_values_in_single_precision() -> None:
 
 def test_arrays_that_are_made_on_the_way_are_not_confused() -> None:
     """Identities of arrays that are no longer there are given again."""
-    found = unpack(pack([np.full(3, float(number)) + np.array([0.0, 0.3, 1.0]) for number in range(50)]))
+    found = unpack(
+        pack([np.full(3, float(number)) + np.array([0.0, 0.3, 1.0]) for number in range(50)])
+    )
     assert [values[0] for values in found] == list(range(50))
 
 
 def test_evenly_spaced_values_are_described() -> None:
     header = pack({"time": np.arange(1e5) / 48e3})
     assert len(header) < 200
-    assert json.loads(header[4 : 4 + int.from_bytes(header[:4], "little")])["time"]["$"][0] == "even"
-    for odd in (np.array([0.0, 1.0, 2.0, 3.001]), np.array([1.0, 1.0, 1.0]), np.array([0.0, np.nan, 2.0])):
+    assert (
+        json.loads(header[4 : 4 + int.from_bytes(header[:4], "little")])["time"]["$"][0] == "even"
+    )
+    for odd in (
+        np.array([0.0, 1.0, 2.0, 3.001]),
+        np.array([1.0, 1.0, 1.0]),
+        np.array([0.0, np.nan, 2.0]),
+    ):
         np.testing.assert_array_equal(unpack(pack({"a": odd}))["a"], odd.astype(np.float32))

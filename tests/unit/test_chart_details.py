@@ -1,4 +1,6 @@
-"""Charts of plates and sensors: no lines from rounding, the range of an accelerometer, the spectrum; doubts said once."""
+"""Charts of plates and sensors: no lines from rounding, the range of an accelerometer,
+the spectrum; doubts said once.
+"""
 
 from __future__ import annotations
 
@@ -21,14 +23,33 @@ from vibroimpact.runs.spectrum import amplitude_spectrum, first_response
 
 @pytest.fixture(scope="module")
 def struck() -> Result:
-    """A plate with two accelerometers at one point, one of them overdriven, and a third beside them."""
+    """A plate with two accelerometers at one point, one of them overdriven, and a third
+    beside them.
+    """
     meters = ({"range": 100.0}, {"range": 1e6}, {})
     sensors = [
-        {"name": f"a{place}", "position": [0.1, 0.05], "rate": 50e3, **({"accelerometer": meter} if meter else {})}
+        {
+            "name": f"a{place}",
+            "position": [0.1, 0.05],
+            "rate": 50e3,
+            **({"accelerometer": meter} if meter else {}),
+        }
         for place, meter in enumerate(meters, 1)
     ]
-    plate = {"model": "elastic", "material": "steel", "size": [0.3, 0.2, 0.01], "modes": 12, "damping": 0.01, "supports": "clamped"}
-    case = plain_case(plate=plate, drop={"height": 0.1, "position": [0.02, 0.01]}, run={"impacts": 1}, sensors=sensors)
+    plate = {
+        "model": "elastic",
+        "material": "steel",
+        "size": [0.3, 0.2, 0.01],
+        "modes": 12,
+        "damping": 0.01,
+        "supports": "clamped",
+    }
+    case = plain_case(
+        plate=plate,
+        drop={"height": 0.1, "position": [0.02, 0.01]},
+        run={"impacts": 1},
+        sensors=sensors,
+    )
     return result_of(vi.simulate(vi.read_case(case)))
 
 
@@ -38,7 +59,11 @@ def words_of(chart: Chart) -> list[str]:
 
 def test_a_held_edge_shows_no_lines_from_rounding() -> None:
     """Edges that rest, but for rounding of either sign, and inside a plate that bends down."""
-    x, y, time = np.linspace(-0.15, 0.15, 31), np.linspace(-0.1, 0.1, 21), np.linspace(0.0, 1e-3, 12)
+    x, y, time = (
+        np.linspace(-0.15, 0.15, 31),
+        np.linspace(-0.1, 0.1, 21),
+        np.linspace(0.0, 1e-3, 12),
+    )
     bend = -1e-5 * np.outer(np.cos(np.pi * y / 0.2), np.cos(np.pi * x / 0.3))
     noise = 1e-20 * np.random.default_rng(3).choice([-1.0, 1.0], size=(12, 21, 31))
     inside = np.zeros((21, 31))
@@ -52,8 +77,14 @@ def test_a_held_edge_shows_no_lines_from_rounding() -> None:
     for one in maps:
         assert np.all(one.values[[0, -1]] == 0.0)
         assert np.all(one.values[:, [0, -1]] == 0.0)
-        assert [lines.dashed for lines in contours_of(one.values)] == [True]  # it is drawn where it bends, and nowhere else
-    lines = [one for axes in matplotlib_figure(chart).axes for one in axes.collections if isinstance(one, QuadContourSet)]
+        # it is drawn where it bends, and nowhere else
+        assert [lines.dashed for lines in contours_of(one.values)] == [True]
+    lines = [
+        one
+        for axes in matplotlib_figure(chart).axes
+        for one in axes.collections
+        if isinstance(one, QuadContourSet)
+    ]
     assert len(lines) == len(maps)
     assert all(sum(len(path.vertices) for path in one.get_paths()) for one in lines)
     ranges = [words for words in words_of(chart) if " to " in words]
@@ -66,8 +97,12 @@ def levels_of(panel: Panel) -> list[float]:
     return sorted(mark.value for mark in panel.marks if isinstance(mark, Level))
 
 
-def test_the_range_of_an_accelerometer_is_drawn_where_the_signal_comes_near_it(struck: Result) -> None:
-    overdriven, calm, bare = (sensor_chart(struck, "a", f"a{place}", "a caption").panels[0] for place in (1, 2, 3))
+def test_the_range_of_an_accelerometer_is_drawn_where_the_signal_comes_near_it(
+    struck: Result,
+) -> None:
+    overdriven, calm, bare = (
+        sensor_chart(struck, "a", f"a{place}", "a caption").panels[0] for place in (1, 2, 3)
+    )
     assert levels_of(overdriven) == [-100.0, 100.0]
     assert "(range ±100 m/s²)" in overdriven.title
     assert "range ±" in calm.title

@@ -1,4 +1,6 @@
-"""Views of charts: lines that count from origins of their own, the range of what a view shows, and what is kept of long lines."""
+"""Views of charts: lines that count from origins of their own, the range of what a view
+shows, and what is kept of long lines.
+"""
 
 from __future__ import annotations
 
@@ -8,7 +10,13 @@ import pytest
 from vibroimpact.charts.axis import Axis, View
 from vibroimpact.charts.chart import Chart, Panel
 from vibroimpact.charts.decimation import thinned
-from vibroimpact.charts.frame import frames_of, own_view, panels_without_label, view_frames, view_range
+from vibroimpact.charts.frame import (
+    frames_of,
+    own_view,
+    panels_without_label,
+    view_frames,
+    view_range,
+)
 from vibroimpact.charts.marks import Level, Line, Points
 from vibroimpact.charts.matplotlib import matplotlib_figure
 from vibroimpact.charts.notebook import plotly_figure
@@ -20,13 +28,19 @@ TOUCHES = (0.4, 0.5)
 
 def pulse(touch: float, height: float) -> Line:
     time = np.linspace(0.0, 1.0, 100_001)
-    values = np.where((time >= touch) & (time <= touch + 1e-3), height * np.sin(np.pi * (time - touch) / 1e-3), 0.0)
+    values = np.where(
+        (time >= touch) & (time <= touch + 1e-3),
+        height * np.sin(np.pi * (time - touch) / 1e-3),
+        0.0,
+    )
     return Line(time, values, f"at {touch}", origins=(touch,))
 
 
 @pytest.fixture
 def chart() -> Chart:
-    view = View("Impact 1", TOUCHES[0] - 1e-4, TOUCHES[0] + 1.1e-3, TOUCHES[0], "Time since first touch")
+    view = View(
+        "Impact 1", TOUCHES[0] - 1e-4, TOUCHES[0] + 1.1e-3, TOUCHES[0], "Time since first touch"
+    )
     time, force = Axis("Time", "s", views=(view,)), Axis("Force", "N")
     pulses = [pulse(touch, height) for touch, height in zip(TOUCHES, (800.0, 2000.0), strict=True)]
     rows = tuple((Panel(time, force, (one,), one.name),) for one in pulses)
@@ -36,7 +50,9 @@ def chart() -> Chart:
 def test_a_line_counts_from_its_own_origin(chart: Chart) -> None:
     for panel, touch in zip(chart.panels, TOUCHES, strict=True):
         own = own_view(panel.marks[0], panel, panel.x.views[0])
-        assert [own.start, own.end, own.origin] == pytest.approx([touch - 1e-4, touch + 1.1e-3, touch])
+        assert [own.start, own.end, own.origin] == pytest.approx(
+            [touch - 1e-4, touch + 1.1e-3, touch]
+        )
     points = Points(np.array([0.4]), np.array([1.0]))
     assert own_view(points, chart.panels[0], chart.views[0]) is chart.views[0]
 
@@ -55,12 +71,19 @@ def test_a_range_has_the_values_at_the_ends_of_a_view_and_levels_near() -> None:
     axis, height = Axis("Time", "s", views=(view,)), Axis("Height", "m")
 
     def found(*levels: float) -> tuple[float, float] | None:
-        panel = Panel(axis, height, (Line(np.array([0.0, 1.0]), np.array([0.0, 8.0])), *map(Level, levels)))
+        panel = Panel(
+            axis, height, (Line(np.array([0.0, 1.0]), np.array([0.0, 8.0])), *map(Level, levels))
+        )
         return view_range(panel, view, (panel,))
 
     assert found() == pytest.approx((2.0 - 0.24, 6.0 + 0.24))
-    assert found(7.0, 7.5) == pytest.approx((2.0 - 0.3, 7.0 + 0.3))  # the second is farther than 0.35 of the range
-    given = Panel(axis, Axis("Height", "m", range=(0.0, 9.0)), (Line(np.array([0.0, 1.0]), np.array([0.0, 8.0])),))
+    # the second is farther than 0.35 of the range
+    assert found(7.0, 7.5) == pytest.approx((2.0 - 0.3, 7.0 + 0.3))
+    given = Panel(
+        axis,
+        Axis("Height", "m", range=(0.0, 9.0)),
+        (Line(np.array([0.0, 1.0]), np.array([0.0, 8.0])),),
+    )
     assert view_range(given, view, (given,)) is None
     flat = Panel(axis, height, (Line(np.array([0.0, 1.0]), np.zeros(2)),))
     assert view_range(flat, view, (flat,)) is None
@@ -90,7 +113,11 @@ def test_print_lays_first_touches_upon_each_other(chart: Chart) -> None:
 
 def test_a_level_far_from_a_view_is_not_in_it() -> None:
     view = View("end", 0.9, 1.0)
-    line, near, far = Line(np.array([0.0, 1.0]), np.array([0.0, 1.0])), Level(0.95, "near"), Level(0.2, "far")
+    line, near, far = (
+        Line(np.array([0.0, 1.0]), np.array([0.0, 1.0])),
+        Level(0.95, "near"),
+        Level(0.2, "far"),
+    )
     panel = Panel(Axis("Time", "s", views=(view,)), Axis("Height", "m"), (line, near, far))
     whole, enlarged = matplotlib_figure(Chart("levels", "Levels", ((panel,),))).axes
     assert [len(axes.lines) for axes in (whole, enlarged)] == [3, 2]
@@ -98,15 +125,26 @@ def test_a_level_far_from_a_view_is_not_in_it() -> None:
 
 def test_a_label_is_not_repeated_beside_itself() -> None:
     line = Line(np.array([0.0, 1.0]), np.array([0.0, 1.0]))
-    left, right, other = (Panel(Axis("Step", "s"), Axis("Force", unit), (line,)) for unit in ("N", "N", "m"))
+    left, right, other = (
+        Panel(Axis("Step", "s"), Axis("Force", unit), (line,)) for unit in ("N", "N", "m")
+    )
     chart = Chart("row", "Row", ((left, right, other),))
     assert panels_without_label(chart, frames_of(chart)) == {right}
     layout = plotly_chart(chart)["layout"]
-    assert [layout[f"yaxis{number}"]["title"]["text"] for number in ("", 2, 3)] == ["Force [N]", "", "Force [m]"]
-    assert [axes.get_ylabel() for axes in matplotlib_figure(chart).axes] == ["Force [N]", "", "Force [m]"]
+    assert [layout[f"yaxis{number}"]["title"]["text"] for number in ("", 2, 3)] == [
+        "Force [N]",
+        "",
+        "Force [m]",
+    ]
+    assert [axes.get_ylabel() for axes in matplotlib_figure(chart).axes] == [
+        "Force [N]",
+        "",
+        "Force [m]",
+    ]
 
 
-# what is kept of long lines -------------------------------------------------------------------------------------------
+# what is kept of long lines
+# -------------------------------------------------------------------------------------------
 
 
 def test_a_thinned_line_is_the_line_in_the_whole_and_in_windows() -> None:
@@ -119,7 +157,9 @@ def test_a_thinned_line_is_the_line_in_the_whole_and_in_windows() -> None:
     assert np.array_equal(y, values[np.isin(time, x)])
     assert (x[0], x[-1]) == (0.0, 1.0)
     inside = (time >= window[0]) & (time <= window[1])
-    assert np.abs(np.interp(time[inside], x, y) - values[inside]).max() < 1e-3 * np.ptp(values[inside])
+    assert np.abs(np.interp(time[inside], x, y) - values[inside]).max() < 1e-3 * np.ptp(
+        values[inside]
+    )
     assert np.abs(np.interp(time, x, y) - values).max() < 2e-3 * np.ptp(values)
     assert max(y.max() - values.max(), values.min() - y.min()) == 0.0
 

@@ -1,4 +1,6 @@
-"""Sound as phones keep it: files of known sound, coded by FFmpeg, give its samples, or its bounces within what coding leaves of them."""
+"""Sound as phones keep it: files of known sound, coded by FFmpeg, give its samples, or
+its bounces within what coding leaves of them.
+"""
 
 from __future__ import annotations
 
@@ -15,7 +17,12 @@ from vibroimpact.calibration.calibrate_case import calibrate_case, read_calibrat
 from vibroimpact.signals.read_records import read_records
 
 RATE, GRAVITY, HEIGHT, RESTITUTION = 48_000, 9.81, 0.3, 0.8
-LOSSY = {"a.m4a": ("aac", "ipod"), "a.mp3": ("libmp3lame", "mp3"), "a.ogg": ("libopus", "ogg"), "a.opus": ("libopus", "ogg")}
+LOSSY = {
+    "a.m4a": ("aac", "ipod"),
+    "a.mp3": ("libmp3lame", "mp3"),
+    "a.ogg": ("libopus", "ogg"),
+    "a.opus": ("libopus", "ogg"),
+}
 LOSSLESS = {"a.flac": ("flac", "flac"), "a.m4a": ("alac", "ipod")}
 
 
@@ -28,13 +35,16 @@ def bounces(seed: int, noise: float = 3e-4) -> tuple[np.ndarray, np.ndarray]:
     for number, touch in enumerate(touches):
         since = (time - touch).clip(0.0)
         ringing = sum(
-            np.exp(-since / fade) * np.sin(2.0 * np.pi * pitch * since) for pitch, fade in ((1800, 0.02), (4300, 0.012), (9100, 6e-3))
+            np.exp(-since / fade) * np.sin(2.0 * np.pi * pitch * since)
+            for pitch, fade in ((1800, 0.02), (4300, 0.012), (9100, 6e-3))
         )
         sound += np.where(time >= touch, 0.24 * RESTITUTION**number * ringing, 0.0)
     return sound, touches
 
 
-def coded(path: Path, sound: np.ndarray, codec: str, container: str, bit_rate: int = 64_000) -> Path:
+def coded(
+    path: Path, sound: np.ndarray, codec: str, container: str, bit_rate: int = 64_000
+) -> Path:
     """Write a sound, (samples,) or (channels, samples), with a codec."""
     channels = np.atleast_2d(sound)
     layout = {1: "mono", 2: "stereo"}[len(channels)]
@@ -55,15 +65,21 @@ def test_without_losses_the_samples_are_kept(tmp_path: Path, name: str) -> None:
     left, _ = bounces(1)
     both = np.stack([left, 0.5 * left[::-1]])
     found = list(read_records(coded(tmp_path / name, both, *LOSSLESS[name])))
-    assert [(one.name, one.rate, one.unit, one.doubts, one.blur) for one in found] == [(f"a {n}", RATE, "1", (), 0.0) for n in (1, 2)]
+    assert [(one.name, one.rate, one.unit, one.doubts, one.blur) for one in found] == [
+        (f"a {n}", RATE, "1", (), 0.0) for n in (1, 2)
+    ]
     for one, sent in zip(found, both, strict=True):
         np.testing.assert_allclose(one.value, sent.clip(-1.0, 1.0), atol=1.1 / 32768)
 
 
 @pytest.mark.parametrize("name", LOSSY)
 @pytest.mark.parametrize("bit_rate", [32_000, 64_000, 128_000])
-def test_restitutions_hold_whatever_the_coder_lost(tmp_path: Path, name: str, bit_rate: int) -> None:
-    """All five restitutions lie within three and a half of their standard deviations; those of the WAV file are exact to 1e-6."""
+def test_restitutions_hold_whatever_the_coder_lost(
+    tmp_path: Path, name: str, bit_rate: int
+) -> None:
+    """All five restitutions lie within three and a half of their standard deviations;
+    those of the WAV file are exact to 1e-6.
+    """
     sound, touches = bounces(2)
     (record,) = read_records(coded(tmp_path / name, sound, *LOSSY[name], bit_rate))
     found = vi.find_bounces(record)
@@ -87,8 +103,18 @@ def test_calibrate_takes_a_phone_recording(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("name", [*LOSSY, "a.flac"])
-@pytest.mark.parametrize("content", [b"", b"#EXTM3U\nhttp://127.0.0.1:9/a.mp3\n", b"RIFF\x10\0\0\0WAVEfmt ", bytes(range(256)) * 40])
-def test_what_is_no_sound_is_refused(tmp_path: Path, name: str, content: bytes, capfd: pytest.CaptureFixture[str]) -> None:
+@pytest.mark.parametrize(
+    "content",
+    [
+        b"",
+        b"#EXTM3U\nhttp://127.0.0.1:9/a.mp3\n",
+        b"RIFF\x10\0\0\0WAVEfmt ",
+        bytes(range(256)) * 40,
+    ],
+)
+def test_what_is_no_sound_is_refused(
+    tmp_path: Path, name: str, content: bytes, capfd: pytest.CaptureFixture[str]
+) -> None:
     file = tmp_path / name
     file.write_bytes(content)
     with pytest.raises(vi.InputError) as error:
@@ -107,8 +133,14 @@ def test_a_file_that_is_cut_off_is_read_as_far_as_it_goes(tmp_path: Path, name: 
     assert 0.5 < len(cut.value) / len(whole.value) < 0.8
 
 
-def test_the_extra_is_named_where_it_is_missing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_extra_is_named_where_it_is_missing(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     (tmp_path / "a.m4a").write_bytes(b"\0" * 100)
     monkeypatch.setitem(sys.modules, "av", None)
-    with pytest.raises(vi.InputError, match=r'sound in \.m4a needs PyAV, which is not installed: pip install "vibroimpact\[audio\]"'):
+    with pytest.raises(
+        vi.InputError,
+        match=r"sound in \.m4a needs PyAV, which is not installed: pip install "
+        r'"vibroimpact\[audio\]"',
+    ):
         list(read_records(tmp_path / "a.m4a"))

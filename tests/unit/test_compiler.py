@@ -1,4 +1,6 @@
-"""Compiled functions: equal to interpreted ones, kept on the disk whatever happens to it, and none where there is no compiler."""
+"""Compiled functions: equal to interpreted ones, kept on the disk whatever happens to it,
+and none where there is no compiler.
+"""
 
 from __future__ import annotations
 
@@ -23,7 +25,15 @@ import pytest
 
 import vibroimpact as vi
 import vibroimpact.dynamics.core
-from vibroimpact.compiled import SWITCH, compiled, force_at, law_addresses, law_coefficients, law_function, why_not_compiled
+from vibroimpact.compiled import (
+    SWITCH,
+    compiled,
+    force_at,
+    law_addresses,
+    law_coefficients,
+    law_function,
+    why_not_compiled,
+)
 from vibroimpact.compiler import code_store, notice
 from vibroimpact.compiler.code_store import PLACE, load_code, save_code
 from vibroimpact.compiler.deferred import DeferredFunction
@@ -174,7 +184,11 @@ def largest_of(values: np.ndarray) -> float:
 # laws
 
 
-@pytest.mark.parametrize("law", [HuntCrossley(stiffness=1e9, restitution=0.6), Hertz(stiffness=1e9)], ids=lambda law: law.name)
+@pytest.mark.parametrize(
+    "law",
+    [HuntCrossley(stiffness=1e9, restitution=0.6), Hertz(stiffness=1e9)],
+    ids=lambda law: law.name,
+)
 def test_a_law_is_called_by_value_and_by_address(law: vi.ContactLaw) -> None:
     expected = pytest.approx(work_of_arrays(law), rel=1e-14)
     assert work(10, law_function(type(law)), law_coefficients(law)) == expected
@@ -187,12 +201,16 @@ class OfArrays(Hertz):
 
     name = "of-arrays"
 
-    def forces(self, delta: np.ndarray, delta_dot: np.ndarray, approach_speed: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def forces(
+        self, delta: np.ndarray, delta_dot: np.ndarray, approach_speed: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
         static, dissipative = super().forces(delta, delta_dot, approach_speed)
         return static, dissipative + 0.1 * delta_dot
 
 
-def of_dictionaries(delta: Any, delta_dot: Any, approach_speed: Any, coefficients: Any) -> tuple[Any, Any]:
+def of_dictionaries(
+    delta: Any, delta_dot: Any, approach_speed: Any, coefficients: Any
+) -> tuple[Any, Any]:
     forces = dict.fromkeys(("static", "dissipative"), coefficients[0] * delta)
     return forces["static"], dict(**forces)["dissipative"]
 
@@ -206,9 +224,14 @@ class NotCompilable(Hertz):
 
 
 @needs_compiler
-@pytest.mark.parametrize("law", [OfArrays(stiffness=1e9), NotCompilable(stiffness=1e9)], ids=lambda law: law.name)
+@pytest.mark.parametrize(
+    "law", [OfArrays(stiffness=1e9), NotCompilable(stiffness=1e9)], ids=lambda law: law.name
+)
 def test_a_law_that_is_not_compiled_is_called_and_says_so_once(law: vi.ContactLaw) -> None:
-    with pytest.warns(vi.errors.SlowLawWarning, match=f"the law {law.name} is not compiled, and its force takes microseconds"):
+    with pytest.warns(
+        vi.errors.SlowLawWarning,
+        match=f"the law {law.name} is not compiled, and its force takes microseconds",
+    ):
         address = law_addresses(type(law))[0]
     coefficients = law_coefficients(law)
     expected = pytest.approx(work_of_arrays(law), rel=1e-14)
@@ -217,7 +240,9 @@ def test_a_law_that_is_not_compiled_is_called_and_says_so_once(law: vi.ContactLa
         warnings.simplefilter("error")
         assert work_of_law(10, law_addresses(type(law))[0], coefficients) == expected
     with ThreadPoolExecutor(4) as threads:
-        assert set(threads.map(lambda _: work_of_law(500, address, coefficients), range(8))) == {work_of_law(500, address, coefficients)}
+        assert set(threads.map(lambda _: work_of_law(500, address, coefficients), range(8))) == {
+            work_of_law(500, address, coefficients)
+        }
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -226,7 +251,9 @@ class Failing(Hertz):
 
     name = "failing"
 
-    def forces(self, delta: np.ndarray, delta_dot: np.ndarray, approach_speed: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def forces(
+        self, delta: np.ndarray, delta_dot: np.ndarray, approach_speed: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
         raise vi.InputError("no force")
 
 
@@ -250,9 +277,13 @@ def test_code_is_loaded_by_the_next_process(toy: Toy) -> None:
 
 @needs_compiler
 def test_a_large_function_is_called_by_its_symbol(toy: Toy) -> None:
-    toy.program.write_text("from vibroimpact.compiler import symbols\nsymbols.LARGE = 1\n" + _MODULE)
+    toy.program.write_text(
+        "from vibroimpact.compiler import symbols\nsymbols.LARGE = 1\n" + _MODULE
+    )
     assert toy.run() == ["24.0", "compiled"]
-    (caller,), (callee,) = ([path for path in toy.files() if path.name.startswith(name)] for name in ("twice", "total"))
+    (caller,), (callee,) = (
+        [path for path in toy.files() if path.name.startswith(name)] for name in ("twice", "total")
+    )
     assert toy.run() == ["24.0", "loaded"]
     callee.unlink()  # the caller needs it, so that it is compiled again, under the same symbol
     assert toy.run() == ["24.0", "loaded"]
@@ -272,7 +303,12 @@ def test_functions_of_one_name_from_several_processes_are_told_apart(tmp_path: P
 
     def run(*laws: str) -> list[str]:
         return subprocess.run(
-            [sys.executable, str(program), *laws], env=environment, capture_output=True, text=True, check=True, timeout=300
+            [sys.executable, str(program), *laws],
+            env=environment,
+            capture_output=True,
+            text=True,
+            check=True,
+            timeout=300,
         ).stdout.split()
 
     assert run("thornton") == ["True"]
@@ -298,7 +334,10 @@ def test_a_damaged_file_is_replaced(toy: Toy) -> None:
     assert toy.run() == ["24.0", "loaded"]
 
 
-@pytest.mark.parametrize("damage", [lambda data: data[:500], lambda data: b"", lambda data: data[:99] + b"+" + data[100:]])
+@pytest.mark.parametrize(
+    "damage",
+    [lambda data: data[:500], lambda data: b"", lambda data: data[:99] + b"+" + data[100:]],
+)
 def test_damage_is_seen(tmp_path: Path, damage: Callable[[bytes], bytes]) -> None:
     assert save_code(tmp_path, "name", bytes(1000)) == ""
     (path,) = tmp_path.iterdir()
@@ -340,7 +379,9 @@ def test_a_killed_process_leaves_nothing_in_the_way(toy: Toy) -> None:
     assert all(path.suffix == ".code" for path in toy.files())
 
 
-def test_the_least_recently_used_code_is_removed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_least_recently_used_code_is_removed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setenv(PLACE, str(tmp_path))
     monkeypatch.setattr(code_store, "LARGEST", 2500)
     old, new = tmp_path / "old", tmp_path / "new"
@@ -350,7 +391,11 @@ def test_the_least_recently_used_code_is_removed(tmp_path: Path, monkeypatch: py
     assert load_code(old, "first") == bytes(1000)  # and is thereby the last that was used
     os.utime(next(new.iterdir()), (1, 1))
     assert save_code(new, "third", bytes(1000)) == ""
-    assert (load_code(old, "first"), load_code(new, "second"), load_code(new, "third")) == (bytes(1000), None, bytes(1000))
+    assert (load_code(old, "first"), load_code(new, "second"), load_code(new, "third")) == (
+        bytes(1000),
+        None,
+        bytes(1000),
+    )
     assert code_store.code_size() == 2064
     assert code_store.clear_code() == 2
     assert list(tmp_path.iterdir()) == []
@@ -361,7 +406,10 @@ def test_a_full_disk_is_said(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) ->
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr(code_store, "write_file", fail)
-    assert save_code(tmp_path / "new", "name", b"") == f"{tmp_path / 'new'} can't be written to: No space left on device"
+    assert (
+        save_code(tmp_path / "new", "name", b"")
+        == f"{tmp_path / 'new'} can't be written to: No space left on device"
+    )
 
 
 @needs_compiler
@@ -385,13 +433,18 @@ def test_all_functions_of_the_core_can_be_kept() -> None:
 
     for module in pkgutil.iter_modules(vibroimpact.dynamics.core.__path__):
         importlib.import_module(f"vibroimpact.dynamics.core.{module.name}")
-    functions = [function for function in DEFERRED if function.py_func.__module__.startswith("vibroimpact.dynamics.core.")]
+    functions = [
+        function
+        for function in DEFERRED
+        if function.py_func.__module__.startswith("vibroimpact.dynamics.core.")
+    ]
     assert len(functions) > 10
     for function in functions:
         function.compiled.is_on_disk()
         assert function.compiled.is_kept, function
         words = Digest(function, _REPLACED)._words
-        assert not [word for word in words if " at 0x" in word], function  # an address, which differs between processes
+        # an address, which differs between processes
+        assert not [word for word in words if " at 0x" in word], function
 
 
 @needs_compiler
@@ -399,7 +452,9 @@ def test_the_digest_heeds_signatures_and_members_of_named_tuples() -> None:
     def digest(members: str, kind: str) -> str:
         row = namedtuple("row", members)
         row.__annotations__ = dict.fromkeys(row._fields, ForwardRef("Real"))
-        callee = DeferredFunction(lambda pair: pair.a, lambda t: getattr(t, kind)(t.of(row)), lambda: "")
+        callee = DeferredFunction(
+            lambda pair: pair.a, lambda t: getattr(t, kind)(t.of(row)), lambda: ""
+        )
         assert callee.compiled.py_func is callee.py_func
         return Digest(callee, {}).text
 
@@ -410,17 +465,23 @@ def test_the_digest_heeds_signatures_and_members_of_named_tuples() -> None:
 # what is said
 
 
-def test_a_long_compilation_is_told_to_a_listener_each_time(capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_long_compilation_is_told_to_a_listener_each_time(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
     sentences: list[str] = []
     with notice.heard_by(sentences.append):
         for seconds in (42.0, 1.0, 23.0):
             notice.say_how_long(lambda seconds=seconds: seconds)
     notice.say_how_long(lambda: 42.0)
-    assert sentences == [f"Compiling the solver for this machine, once; about {seconds} s." for seconds in (40, 25)]
+    assert sentences == [
+        f"Compiling the solver for this machine, once; about {seconds} s." for seconds in (40, 25)
+    ]
     assert capsys.readouterr() == ("", "")
 
 
-def test_a_long_compilation_is_said_once_in_a_terminal(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_long_compilation_is_said_once_in_a_terminal(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
     monkeypatch.setattr(notice, "_SAID", set())
     notice.say_how_long(lambda: 23.0)
     notice.say_trouble("no room")
@@ -448,23 +509,33 @@ def test_a_switch_leaves_functions_in_python(toy: Toy, switch: str) -> None:
 
 def test_without_numba_functions_stay_in_python(toy: Toy) -> None:
     finder = "import sys; sys.modules['numba'] = None"
-    toy.program.write_text(f"{finder}\n{_MODULE}\nfrom vibroimpact.compiled import why_not_compiled; print(why_not_compiled())")
+    toy.program.write_text(
+        f"{finder}\n{_MODULE}\nfrom vibroimpact.compiled import why_not_compiled; "
+        "print(why_not_compiled())"
+    )
     assert toy.run() == ["24.0", *["numba", "is", "not", "installed"]]
 
 
 def test_numba_that_does_not_load_is_done_without(toy: Toy) -> None:
-    (toy.program.parent / "numba.py").write_text("raise ImportError('Numba needs NumPy 2.6 or less')")
-    toy.program.write_text(f"{_MODULE}\nfrom vibroimpact.compiled import why_not_compiled; print(why_not_compiled())")
+    (toy.program.parent / "numba.py").write_text(
+        "raise ImportError('Numba needs NumPy 2.6 or less')"
+    )
+    toy.program.write_text(
+        f"{_MODULE}\nfrom vibroimpact.compiled import why_not_compiled; print(why_not_compiled())"
+    )
     assert " ".join(toy.run()) == "24.0 numba cannot be loaded: Numba needs NumPy 2.6 or less"
 
 
 def test_commands_that_compute_no_drop_load_no_compiler() -> None:
     program = (
         "import sys\nfrom vibroimpact.cli import main\n"
-        "for words in (['--help'], ['check', 'paper:type3'], ['laws'], ['laws', 'hertz'], ['units', '1 mm']):\n"
+        "for words in (['--help'], ['check', 'paper:type3'], ['laws'], ['laws', 'hertz'], "
+        "['units', '1 mm']):\n"
         "    sys.argv = ['vibroimpact', *words]\n"
         "    try:\n        main()\n    except SystemExit:\n        pass\n"
         "assert 'numba' not in sys.modules\n"
     )
-    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=120, check=False)
+    done = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, timeout=120, check=False
+    )
     assert (done.returncode, done.stderr) == (0, "")

@@ -11,13 +11,19 @@ from vibroimpact.contact.quasi_static import QuasiStatic
 from vibroimpact.dynamics.core.law import law_indentation
 from vibroimpact.dynamics.vibrating.local import LocalContact
 
-STEEL_ON_ALUMINIUM = Thornton(effective_modulus=5.77e10, effective_radius=0.01, yield_pressure=3.76e8)
+STEEL_ON_ALUMINIUM = Thornton(
+    effective_modulus=5.77e10, effective_radius=0.01, yield_pressure=3.76e8
+)
 
 
 @pytest.mark.parametrize("share", np.linspace(0.02, 0.98, 13))
 def test_unloading_is_not_mistaken_for_loading(share: float) -> None:
-    """Newton's method went to and fro between zero force and loading beyond the deepest indentation, and found neither."""
-    contact = LocalContact(STEEL_ON_ALUMINIUM, QuasiStatic(linear=2.37e-8), 2.0).after_indentation(8.09e-5)
+    """Newton's method went to and fro between zero force and loading beyond the deepest
+    indentation, and found neither.
+    """
+    contact = LocalContact(STEEL_ON_ALUMINIUM, QuasiStatic(linear=2.37e-8), 2.0).after_indentation(
+        8.09e-5
+    )
     delta = contact.release_indentation + share * (8.09e-5 - contact.release_indentation)
     approach = float(contact.approach_at(np.asarray(delta)))
     assert law_indentation(contact.with_levels, approach) == pytest.approx(delta, rel=1e-8)
@@ -40,4 +46,6 @@ def test_a_ball_that_yields_rubs_on_a_plate() -> None:
     }
     rubbed = vi.simulate(vi.read_case(case)).impacts["separation_speed_m_s"]
     del case["contact"]["friction"]
-    assert rubbed == pytest.approx(vi.simulate(vi.read_case(case)).impacts["separation_speed_m_s"], rel=1e-8)
+    assert rubbed == pytest.approx(
+        vi.simulate(vi.read_case(case)).impacts["separation_speed_m_s"], rel=1e-8
+    )

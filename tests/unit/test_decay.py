@@ -15,12 +15,17 @@ RATIOS = (0.008, 0.004, 0.006, 0.01, 0.02)
 
 def tone(frequency: float, ratio: float, phase: float = 0.4) -> np.ndarray:
     time = np.arange(SAMPLES) / RATE
-    decay, omega = 2.0 * np.pi * ratio * frequency, 2.0 * np.pi * frequency * np.sqrt(1.0 - ratio**2)
+    decay, omega = (
+        2.0 * np.pi * ratio * frequency,
+        2.0 * np.pi * frequency * np.sqrt(1.0 - ratio**2),
+    )
     return np.asarray(np.exp(-decay * time) * np.sin(omega * time + phase))
 
 
 def record(value: np.ndarray, noise: float = 0.0, seed: int = 0) -> Record:
-    return Record("a", value + noise * np.random.default_rng(seed).standard_normal(len(value)), RATE, "m/s2")
+    return Record(
+        "a", value + noise * np.random.default_rng(seed).standard_normal(len(value)), RATE, "m/s2"
+    )
 
 
 def test_a_sum_without_noise() -> None:
@@ -33,7 +38,9 @@ def test_a_sum_without_noise() -> None:
 
 def test_a_sum_in_noise() -> None:
     value = sum(map(tone, FREQUENCIES, RATIOS))
-    found = vi.modes_in_decay([record(value, 0.01 * np.sqrt(np.mean(value**2)), seed=3)], (200.0, 5000.0))
+    found = vi.modes_in_decay(
+        [record(value, 0.01 * np.sqrt(np.mean(value**2)), seed=3)], (200.0, 5000.0)
+    )
     assert [mode.frequency.value for mode in found] == pytest.approx(FREQUENCIES, rel=1e-4)
     for mode, frequency, ratio in zip(found, FREQUENCIES, RATIOS, strict=True):
         assert abs(mode.frequency.value - frequency) < 3.5 * mode.frequency.deviation
@@ -72,7 +79,8 @@ def test_noise_has_no_modes(seed: int) -> None:
 
 
 def test_deviations_are_near_the_bound_of_cramer_and_rao() -> None:
-    """Of one tone that has decayed, of unit amplitude: var(decay) = var(omega) = 16 decay^3 v under white noise of variance v.
+    """Of one tone that has decayed, of unit amplitude: var(decay) = var(omega) = 16 decay^3 v under
+    white noise of variance v.
 
     The fit does not see what lies outside the band, nor what its polynomial takes of the tails.
     """
@@ -89,9 +97,21 @@ def test_deviations_are_near_the_bound_of_cramer_and_rao() -> None:
         ([], (200.0, 500.0), "no record"),
         ([record(np.zeros(SAMPLES))], (200.0, 5000.0), '"a" is constant'),
         ([record(np.full(SAMPLES, np.nan))], (200.0, 5000.0), "not a finite number"),
-        ([record(tone(800.0, 0.01)), record(tone(800.0, 0.01)[1:])], (200.0, 5000.0), "different rates or numbers of samples"),
-        ([record(tone(800.0, 0.01))], (500.0, 200.0), "its ends must rise, from above 0 to 6400 Hz"),
-        ([record(tone(800.0, 0.01))], (500.0, 7000.0), "its ends must rise, from above 0 to 6400 Hz"),
+        (
+            [record(tone(800.0, 0.01)), record(tone(800.0, 0.01)[1:])],
+            (200.0, 5000.0),
+            "different rates or numbers of samples",
+        ),
+        (
+            [record(tone(800.0, 0.01))],
+            (500.0, 200.0),
+            "its ends must rise, from above 0 to 6400 Hz",
+        ),
+        (
+            [record(tone(800.0, 0.01))],
+            (500.0, 7000.0),
+            "its ends must rise, from above 0 to 6400 Hz",
+        ),
         ([record(tone(800.0, 0.01)[:100])], (700.0, 900.0), "take a longer decay or a wider band"),
     ],
 )

@@ -13,13 +13,22 @@ from vibroimpact.cases.pair import contact_pair
 from vibroimpact.cases.rigid import contact_laws_of
 from vibroimpact.cases.schema import SECTIONS, SensorSection
 from vibroimpact.contact.law import ContactLaw
-from vibroimpact.resolved_case import ResolvedCase, ResolvedDrop, ResolvedPlate, ResolvedRun, ResolvedSensor, ResolvedSphere
+from vibroimpact.resolved_case import (
+    ResolvedCase,
+    ResolvedDrop,
+    ResolvedPlate,
+    ResolvedRun,
+    ResolvedSensor,
+    ResolvedSphere,
+)
 
 
 def test_a_run_makes_the_laws_of_a_case_once(monkeypatch: pytest.MonkeyPatch) -> None:
     made: list[str] = []
     checked = ContactLaw.__post_init__
-    monkeypatch.setattr(ContactLaw, "__post_init__", lambda law: made.append(law.name) or checked(law))
+    monkeypatch.setattr(
+        ContactLaw, "__post_init__", lambda law: made.append(law.name) or checked(law)
+    )
     case = vi.load_case("paper:type1-variable")
     case.to_problem()
     assert made == 5 * ["adams-impact"]
@@ -35,7 +44,9 @@ def test_a_changed_copy_has_its_own() -> None:
     laws, pair = contact_laws_of(case), contact_pair(case)
     larger = case.model_copy(update={"sphere": case.sphere.model_copy(update={"radius": 0.05})})
     assert contact_pair(larger).effective_radius == 2.0 * pair.effective_radius
-    assert contact_laws_of(larger)[0].stiffness == pytest.approx(2.0**0.5 * laws[0].stiffness, rel=1e-12)
+    assert contact_laws_of(larger)[0].stiffness == pytest.approx(
+        2.0**0.5 * laws[0].stiffness, rel=1e-12
+    )
     assert contact_laws_of(case) is laws
 
 
@@ -48,7 +59,12 @@ def test_they_are_no_part_of_the_case() -> None:
 
 
 def test_the_types_of_a_resolved_case_have_the_keys_of_its_sections() -> None:
-    tables = {"sphere": ResolvedSphere, "plate": ResolvedPlate, "drop": ResolvedDrop, "run": ResolvedRun}
+    tables = {
+        "sphere": ResolvedSphere,
+        "plate": ResolvedPlate,
+        "drop": ResolvedDrop,
+        "run": ResolvedRun,
+    }
     assert tables.keys() == SECTIONS.keys()
     for name, table in tables.items():
         assert get_type_hints(table).keys() == SECTIONS[name].model_fields.keys(), name

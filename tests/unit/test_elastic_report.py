@@ -1,4 +1,6 @@
-"""What is kept and shown of a drop whose bodies vibrate: the folder, the charts, the files for ParaView."""
+"""What is kept and shown of a drop whose bodies vibrate: the folder, the charts, the
+files for ParaView.
+"""
 
 from __future__ import annotations
 
@@ -46,7 +48,14 @@ from vibroimpact.runs.tables import impact_table
 from vibroimpact.runs.text import result_summary
 from vibroimpact.structures.lattice import box_mesh
 
-SPHERE = {"radius": "25 mm", "material": "rock-paper", "model": "elastic", "modes": 6, "damping": 0.02, "mesh": {"elements_across": 4}}
+SPHERE = {
+    "radius": "25 mm",
+    "material": "rock-paper",
+    "model": "elastic",
+    "modes": 6,
+    "damping": 0.02,
+    "mesh": {"elements_across": 4},
+}
 PLATE = {
     "size": ["300 mm", "200 mm", "6 mm"],
     "material": "steel",
@@ -111,19 +120,40 @@ def names_of(result: Result) -> set[str]:
 
 
 def test_charts_are_those_of_what_vibrates(result: Result) -> None:
-    expected = {"position", "force", "velocity", "acceleration", "force_indentation", "energy", "sphere_energy", "plate_motion"}
-    assert names_of(result) == expected | {"plate_energy", "deflection", "sensor_fast_one", "sensor_slow_one"}
+    expected = {
+        "position",
+        "force",
+        "velocity",
+        "acceleration",
+        "force_indentation",
+        "energy",
+        "sphere_energy",
+        "plate_motion",
+    }
+    assert names_of(result) == expected | {
+        "plate_energy",
+        "deflection",
+        "sensor_fast_one",
+        "sensor_slow_one",
+    }
 
 
 def test_folder_holds_what_it_should(folder: Path) -> None:
     names = {str(path.relative_to(folder)) for path in folder.rglob("*") if path.is_file()}
     expected = {"case.toml", "impacts.csv", "summary.json", "result.nc", "report.html"}
-    expected |= {"sensors/fast_one.csv", "sensors/slow_one.csv", "paraview/plate.pvd", "paraview/sphere.pvd"}
+    expected |= {
+        "sensors/fast_one.csv",
+        "sensors/slow_one.csv",
+        "paraview/plate.pvd",
+        "paraview/sphere.pvd",
+    }
     assert {name for name in names if not name.endswith(".vtu")} == expected
     assert len([name for name in names if name.endswith(".vtu")]) == 80
 
 
-def test_a_result_prints_the_same_from_memory_as_from_its_folder(result: Result, response: vi.Response) -> None:
+def test_a_result_prints_the_same_from_memory_as_from_its_folder(
+    result: Result, response: vi.Response
+) -> None:
     assert printed(result_of(response)) == printed(result)
 
 
@@ -133,29 +163,60 @@ def test_the_energy_lost_is_told_to_be_that_of_the_contact(result: Result) -> No
     assert words in printed(result)
     assert words in " ".join(run_page(result).split())
     assert "Energy lost is" not in printed(result, 60)
-    assert "Energy lost is" not in printed(result_of(vi.simulate(vi.load_case("paper:type1-theory"))))
+    assert "Energy lost is" not in printed(
+        result_of(vi.simulate(vi.load_case("paper:type1-theory")))
+    )
 
 
 def test_summary_has_the_promised_peaks(folder: Path, response: vi.Response) -> None:
     summary = json.loads((folder / "summary.json").read_text())
     assert list(summary["impacts"][0]) == [*IMPACT_COLUMNS, *VIBRATION_IMPACT_COLUMNS]
-    assert set(summary["energy"]) == {"input_J", *LEDGER, *VIBRATION_LEDGER, "closure_J", "closure_relative"}
-    for body, basis in (("sphere", response.problem.sphere.modes), ("plate", response.problem.plate.modes)):
+    assert set(summary["energy"]) == {
+        "input_J",
+        *LEDGER,
+        *VIBRATION_LEDGER,
+        "closure_J",
+        "closure_relative",
+    }
+    for body, basis in (
+        ("sphere", response.problem.sphere.modes),
+        ("plate", response.problem.plate.modes),
+    ):
         peaks = summary[body]
         assert basis is not None
         assert peaks["frequencies_Hz"] == basis.frequencies.tolist()
-        names = ("max_displacement_m", "max_velocity_m_s", "max_acceleration_m_s2", "max_kinetic_energy_J", "max_strain_energy_J")
+        names = (
+            "max_displacement_m",
+            "max_velocity_m_s",
+            "max_acceleration_m_s2",
+            "max_kinetic_energy_J",
+            "max_strain_energy_J",
+        )
         assert all(peaks[name] > 0.0 for name in names)
         assert summary["truncation"][body] == response.truncation[body]
     assert summary["deformation"]["treatment"] == "consistent"
     sensor = summary["sensors"]["slow/one"]
-    assert (sensor["filter"], sensor["overload_time_s"], sensor["peak_before_range"]) == ("sigma-delta", 0.0, None)
-    assert 0.0 < sensor["relative_uncertainty"] < 0.1 < summary["sensors"]["fast one"]["relative_uncertainty"]
-    assert summary["sphere"]["max_acceleration_m_s2"] == response.impacts["max_acceleration_m_s2"].max()
+    assert (sensor["filter"], sensor["overload_time_s"], sensor["peak_before_range"]) == (
+        "sigma-delta",
+        0.0,
+        None,
+    )
+    assert (
+        0.0
+        < sensor["relative_uncertainty"]
+        < 0.1
+        < summary["sensors"]["fast one"]["relative_uncertainty"]
+    )
+    assert (
+        summary["sphere"]["max_acceleration_m_s2"]
+        == response.impacts["max_acceleration_m_s2"].max()
+    )
     assert summary["sphere"]["max_velocity_m_s"] == pytest.approx(3.0, rel=1e-3)
 
 
-def test_peaks_of_the_plate_are_those_of_a_very_fine_history(folder: Path, response: vi.Response) -> None:
+def test_peaks_of_the_plate_are_those_of_a_very_fine_history(
+    folder: Path, response: vi.Response
+) -> None:
     peaks = json.loads((folder / "summary.json").read_text())["plate"]
     touch = float(response.impacts["time_s"][0])
     fine = response.at(np.linspace(touch, touch + 0.01, 20001))
@@ -181,16 +242,26 @@ def test_groups_open_in_xarray_with_units(folder: Path, response: vi.Response) -
 
     with opened("history") as history:
         for name, (unit, meaning) in meanings(VIBRATION_HISTORY_COLUMNS).items():
-            assert (history[name].attrs["units"], history[name].attrs["long_name"]) == (unit, meaning)
+            assert (history[name].attrs["units"], history[name].attrs["long_name"]) == (
+                unit,
+                meaning,
+            )
         assert bool((np.diff(history["time_s"]) >= 0.0).all())
     with opened("sensors/slow_one") as sensor:
-        assert (sensor.attrs["name"], sensor.attrs["quantity"], sensor.attrs["rate_Hz"]) == ("slow/one", "velocity", 2000.0)
+        assert (sensor.attrs["name"], sensor.attrs["quantity"], sensor.attrs["rate_Hz"]) == (
+            "slow/one",
+            "velocity",
+            2000.0,
+        )
         assert sensor["value"].attrs["units"] == "m/s"
         np.testing.assert_array_equal(sensor["value"], response.signals()["slow/one"].value)
     with opened("deflection") as group:
         assert group["deflection_m"].dims == ("time_s", "y_m", "x_m")
         assert group["deflection_m"].dtype == np.float32
-        assert all(group[name].attrs["units"] in ("s", "m") and group[name].attrs["long_name"] for name in group.variables)
+        assert all(
+            group[name].attrs["units"] in ("s", "m") and group[name].attrs["long_name"]
+            for name in group.variables
+        )
         at_contact = group["deflection_m"].interp(x_m=0.02, y_m=0.01)
         scale = float(np.abs(group["contact_deflection_m"]).max())
         np.testing.assert_allclose(at_contact, group["contact_deflection_m"], atol=0.01 * scale)
@@ -200,7 +271,11 @@ def test_result_reads_back(result: Result, response: vi.Response) -> None:
     fresh = result_of(response)
     for name, values in fresh.history.items():
         np.testing.assert_array_equal(result.history[name], values)
-    assert (result.deformation, result.truncation, result.peaks) == (fresh.deformation, fresh.truncation, fresh.peaks)
+    assert (result.deformation, result.truncation, result.peaks) == (
+        fresh.deformation,
+        fresh.truncation,
+        fresh.peaks,
+    )
     assert result.doubts == fresh.doubts
     assert list(result.signals) == [sensor["name"] for sensor in SENSORS]
     for name, signal in fresh.signals.items():
@@ -221,7 +296,9 @@ def test_signals_as_csv(folder: Path, response: vi.Response) -> None:
     np.testing.assert_allclose(values[:, 0], signal.time, rtol=1e-11)
 
 
-def test_a_sensor_faster_than_the_modes_is_doubted_with_numbers(result: Result, folder: Path) -> None:
+def test_a_sensor_faster_than_the_modes_is_doubted_with_numbers(
+    result: Result, folder: Path
+) -> None:
     (doubt,) = [doubt for doubt in result.doubts if "sensor" in doubt]
     highest, part = result.frequencies("plate")[-1], result.signals["fast one"].uncertainty
     for words in (
@@ -261,10 +338,13 @@ def test_paraview_reads_how_the_bodies_move(folder: Path, response: vi.Response)
     fall = sphere.point_data["displacement_m"] - sphere.point_data["deformation_m"]
     np.testing.assert_allclose(fall[:, 2], response.at(at)["position_m"][0] - 0.025, rtol=1e-4)
     middle = 0.5 * (sphere.points.min(axis=0) + sphere.points.max(axis=0))
-    np.testing.assert_allclose(middle, [0.02, 0.01, 0.003 + 0.025], atol=1e-6)  # it just touches the upper side
+    # it just touches the upper side
+    np.testing.assert_allclose(middle, [0.02, 0.01, 0.003 + 0.025], atol=1e-6)
 
 
-def test_paraview_takes_fewer_frames_of_a_fine_mesh(response: vi.Response, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_paraview_takes_fewer_frames_of_a_fine_mesh(
+    response: vi.Response, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setattr(paraview, "_MOST_BYTES", 4e5)
     write_paraview(response, tmp_path)
     files = list(tmp_path.rglob("*.vtu"))
@@ -296,7 +376,9 @@ def test_the_page_has_the_plate_in_motion(result: Result, folder: Path) -> None:
     assert scene.keys() == scene_of(result).keys()
     frames, rows, columns = deflection.height.shape
     np.testing.assert_array_equal(scene["height"].reshape(frames, rows, columns), deflection.height)
-    np.testing.assert_allclose(scene["time"], deflection.time - result.impacts["time_s"][0], rtol=1e-6)
+    np.testing.assert_allclose(
+        scene["time"], deflection.time - result.impacts["time_s"][0], rtol=1e-6
+    )
     np.testing.assert_allclose(scene["sphere"], deflection.sphere_position, rtol=1e-6)
     assert scene["radius"] == pytest.approx(0.025)
     assert scene["contact"] == [0.02, 0.01]
@@ -311,30 +393,52 @@ def test_bands_of_the_ledger_add_up(result: Result) -> None:
     np.testing.assert_allclose(total, result.energy["input_J"], rtol=1e-7)
 
 
-def test_page_and_console_tell_the_treatment_and_the_truncation(result: Result, folder: Path) -> None:
+def test_page_and_console_tell_the_treatment_and_the_truncation(
+    result: Result, folder: Path
+) -> None:
     page, console = (folder / "report.html").read_text().replace("&#39;", "'"), printed(result)
     assert treatment_sentence(result).startswith("Consistent")
-    for words in (treatment_sentence(result), *(row for rows in deformation_rows(result) for row in rows)):
+    for words in (
+        treatment_sentence(result),
+        *(row for rows in deformation_rows(result) for row in rows),
+    ):
         assert words in page
         assert " ".join(words.split()) in console
-    assert {"sphere", "plate"} == {body for body in ("sphere", "plate") if f"due to the modes of the {body} left out" in page}
+    assert {"sphere", "plate"} == {
+        body for body in ("sphere", "plate") if f"due to the modes of the {body} left out" in page
+    }
     assert "plate damping" in console
     assert math.isnan(counted_twice(result))
 
 
 def test_superposed_says_how_much_is_counted_twice() -> None:
-    response = vi.simulate(elastic_case(contact={"law": "hertz", "local_compliance": "superposed"}, sensors=[], run={"impacts": 1}))
+    response = vi.simulate(
+        elastic_case(
+            contact={"law": "hertz", "local_compliance": "superposed"},
+            sensors=[],
+            run={"impacts": 1},
+        )
+    )
     result = result_of(response)
     law = result.impacts["max_indentation_m"][0] / result.impacts["max_force_N"][0]
-    assert counted_twice(result) == pytest.approx(float(response.problem.facts["sphere_modal_compliance_m_N"]) / law)
+    assert counted_twice(result) == pytest.approx(
+        float(response.problem.facts["sphere_modal_compliance_m_N"]) / law
+    )
     assert f"{100.0 * counted_twice(result):.1f} %" in printed(result)
     assert not result.signals
 
 
 def test_identified_tells_its_element(tmp_path: Path) -> None:
-    contact = {"law": "hertz", "local_compliance": "identified", "local_stiffness": 2e6, "local_damping": 500.0}
+    contact = {
+        "law": "hertz",
+        "local_compliance": "identified",
+        "local_stiffness": 2e6,
+        "local_damping": 500.0,
+    }
     sphere = {"radius": "25 mm", "material": "rock-paper"}
-    response = vi.simulate(elastic_case(contact=contact, sphere=sphere, sensors=[], run={"impacts": 1}))
+    response = vi.simulate(
+        elastic_case(contact=contact, sphere=sphere, sensors=[], run={"impacts": 1})
+    )
     write_result(result_of(response), tmp_path)
     write_paraview(response, tmp_path)
     result = vi.read_result(tmp_path)
@@ -345,7 +449,13 @@ def test_identified_tells_its_element(tmp_path: Path) -> None:
 
 
 def test_a_sphere_alone_has_no_pictures_of_a_plate() -> None:
-    result = result_of(vi.simulate(elastic_case(plate={"material": "rigid"}, drop={"speed": 3.0}, sensors=[], run={"impacts": 1})))
+    result = result_of(
+        vi.simulate(
+            elastic_case(
+                plate={"material": "rigid"}, drop={"speed": 3.0}, sensors=[], run={"impacts": 1}
+            )
+        )
+    )
     assert result.deflection is None
     assert list(result.peaks) == ["sphere"]
     assert not {"plate_motion", "deflection"} & names_of(result)
@@ -363,7 +473,9 @@ def test_a_problem_made_in_python_has_no_deflection(response: vi.Response, tmp_p
 
 
 def test_a_run_without_impact_is_saved(response: vi.Response, tmp_path: Path) -> None:
-    problem = replace(response.problem, speed=None, height=1.0, gravity=9.8, impacts=None, duration=0.1)
+    problem = replace(
+        response.problem, speed=None, height=1.0, gravity=9.8, impacts=None, duration=0.1
+    )
     response = vi.simulate(problem)
     write_result(result_of(response), tmp_path)
     write_paraview(response, tmp_path)

@@ -52,7 +52,10 @@ class Usurper(Foreign):
 
 
 def bring(monkeypatch: pytest.MonkeyPatch, *values: str) -> dict:
-    points = [EntryPoint(name=f"law{number}", value=value, group="vibroimpact.contact_laws") for number, value in enumerate(values)]
+    points = [
+        EntryPoint(name=f"law{number}", value=value, group="vibroimpact.contact_laws")
+        for number, value in enumerate(values)
+    ]
     monkeypatch.setattr(module, "entry_points", lambda group: points)
     return dict(module.contact_laws.__wrapped__())
 
@@ -65,7 +68,10 @@ def test_a_law_is_brought_by_an_entry_point(monkeypatch: pytest.MonkeyPatch) -> 
 
 def test_parameters_are_documented_from_their_declarations() -> None:
     assert Foreign.__doc__ is not None
-    assert "\nstiffness : float or array\n    Contact stiffness :math:`K`.\n    In N/m^n, greater than 0.\n" in Foreign.__doc__
+    assert (
+        "\nstiffness : float or array\n    Contact stiffness :math:`K`.\n    In N/m^n, "
+        "greater than 0.\n" in Foreign.__doc__
+    )
     assert "\nexponent : float or array, default 1.5\n" in Foreign.__doc__
     assert "| `restitution` | Restitution asked for, $`e`$. |" in law_page(Foreign)
 
@@ -77,7 +83,9 @@ def test_a_parameters_section_in_the_docstring_is_kept() -> None:
     text = law_text(Documented)
     assert text.title == "A law with a Parameters section of its own."
     assert text.references == ("Nobody, N. (2020). Nowhere.",)
-    assert [item.meaning for item in text.parameters] == [item.meaning for item in law_text(Foreign).parameters]
+    assert [item.meaning for item in text.parameters] == [
+        item.meaning for item in law_text(Foreign).parameters
+    ]
 
 
 def test_a_duplicate_name_raises(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -87,8 +95,14 @@ def test_a_duplicate_name_raises(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.mark.parametrize(
     ("value", "message"),
-    [("no.such.module:Law", "can't be loaded"), (f"{__name__}:Nothing", "can't be loaded"), ("math:pi", "is not a contact law")],
+    [
+        ("no.such.module:Law", "can't be loaded"),
+        (f"{__name__}:Nothing", "can't be loaded"),
+        ("math:pi", "is not a contact law"),
+    ],
 )
-def test_a_broken_entry_point_is_named(monkeypatch: pytest.MonkeyPatch, value: str, message: str) -> None:
+def test_a_broken_entry_point_is_named(
+    monkeypatch: pytest.MonkeyPatch, value: str, message: str
+) -> None:
     with pytest.raises(vi.InputError, match=message):
         bring(monkeypatch, value)

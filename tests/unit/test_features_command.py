@@ -25,7 +25,12 @@ def taps(tmp_path: Path) -> Path:
     """Return a WAV file with two taps on the left, and silence on the right."""
     time = np.arange(8000) / 8000
     left = sum(
-        peak * np.where(time >= at, np.exp(-(time - at).clip(0.0) / 5e-3) * np.sin(1e3 * np.pi * (time - at)), 0.0)
+        peak
+        * np.where(
+            time >= at,
+            np.exp(-(time - at).clip(0.0) / 5e-3) * np.sin(1e3 * np.pi * (time - at)),
+            0.0,
+        )
         for at, peak in ((0.2, 0.9), (0.6, 0.45))
     )
     path = tmp_path / "taps.wav"
@@ -44,17 +49,26 @@ def test_a_table_is_written(call, taps: Path, tmp_path: Path) -> None:
     assert "wrote" in out
     left, right = rows_of(tmp_path / "table.csv")
     expected = vi.feature_table([next(vi.read_records(taps)).value], 8000.0)
-    assert (left["channel"], left["signal"], left["unit"], left["file"]) == ("taps 1", "1", "1", str(taps))
+    assert (left["channel"], left["signal"], left["unit"], left["file"]) == (
+        "taps 1",
+        "1",
+        "1",
+        str(taps),
+    )
     assert float(left["packets"]) == 2.0
     assert float(left["peak_ratio"]) == pytest.approx(0.5, abs=1e-3)
     assert float(left["bounce_interval_s"]) == pytest.approx(0.4, abs=2e-4)
-    assert [left[name] for name in ("rms", "kurtosis")] == [repr(float(expected[name][0])) for name in ("rms", "kurtosis")]
+    assert [left[name] for name in ("rms", "kurtosis")] == [
+        repr(float(expected[name][0])) for name in ("rms", "kurtosis")
+    ]
     assert left["lacking"] == "there are fewer than three packets: bounce_restitution"
     assert (right["peak"], right["kurtosis"]) == ("0.0", "")
     assert right["lacking"].startswith("all samples are the same: crest_factor ")
     header = list(left)
     assert [left[name] for name in header[-3:-1]] == ["0.0", "0.0"]
-    assert [name.startswith(one) for name, one in zip(header[6:-3], vi.features(), strict=True)] == len(vi.features()) * [True]
+    assert [
+        name.startswith(one) for name, one in zip(header[6:-3], vi.features(), strict=True)
+    ] == len(vi.features()) * [True]
 
 
 def test_an_existing_file_stays(call, taps: Path, tmp_path: Path) -> None:
@@ -65,11 +79,15 @@ def test_an_existing_file_stays(call, taps: Path, tmp_path: Path) -> None:
     assert "exists; take another name, or --force" in err
     assert target.read_text() == "mine"
     assert call(taps, "-o", target, "--force", "--only", "rms")[0] == 0
-    assert target.read_text().startswith("file,channel,signal,start_s,rate_Hz,unit,rms,offset,drift,lacking\n")
+    assert target.read_text().startswith(
+        "file,channel,signal,start_s,rate_Hz,unit,rms,offset,drift,lacking\n"
+    )
 
 
 def test_json_is_the_table(call, taps: Path, tmp_path: Path) -> None:
-    status, out, err = call(taps, "--only", "kurtosis,peak,rise_time", "--json", "-o", tmp_path / "t.csv")
+    status, out, err = call(
+        taps, "--only", "kurtosis,peak,rise_time", "--json", "-o", tmp_path / "t.csv"
+    )
     assert status == 0
     assert "wrote" in err
     left, right = json.loads(out)["signals"]
@@ -84,7 +102,16 @@ def test_json_is_the_table(call, taps: Path, tmp_path: Path) -> None:
 def test_it_is_shown(call, taps: Path) -> None:
     _, out, _ = call(taps, "--only", "peak,kurtosis")
     lines = out.splitlines()
-    assert lines[0].split() == ["feature", "least", "median", "largest", "unit", "signals", "without", "it"]
+    assert lines[0].split() == [
+        "feature",
+        "least",
+        "median",
+        "largest",
+        "unit",
+        "signals",
+        "without",
+        "it",
+    ]
     assert "1: all samples are the same" in lines[2]
     _, alone, _ = call(taps.parent, "--packets", "--only", "peak", "--threshold", "0.6")
     assert alone.splitlines()[0].split() == ["feature", "value", "unit"]
@@ -100,7 +127,10 @@ def test_packets_are_rows(call, taps: Path, tmp_path: Path) -> None:
 
 
 def test_windows_begin_at_the_onset(call, taps: Path, tmp_path: Path) -> None:
-    assert call(taps, "--window", "50 ms", "--only", "packets,energy", "-o", tmp_path / "w.csv")[0] == 0
+    assert (
+        call(taps, "--window", "50 ms", "--only", "packets,energy", "-o", tmp_path / "w.csv")[0]
+        == 0
+    )
     left, _ = rows_of(tmp_path / "w.csv")
     assert float(left["start_s"]) == pytest.approx(0.2, abs=1e-3)
     assert float(left["packets"]) == 1.0
@@ -132,9 +162,12 @@ def test_the_list(call) -> None:
         (("TAPS", "--list"), "takes no files"),
     ],
 )
-def test_what_is_not_allowed_is_said(words: tuple[str, ...], message: str, call, taps: Path, tmp_path: Path) -> None:
+def test_what_is_not_allowed_is_said(
+    words: tuple[str, ...], message: str, call, taps: Path, tmp_path: Path
+) -> None:
     status, out, err = call(
-        *(taps if word == "TAPS" else word for word in words), *(() if "--list" in words else ("-o", tmp_path / "t.csv"))
+        *(taps if word == "TAPS" else word for word in words),
+        *(() if "--list" in words else ("-o", tmp_path / "t.csv")),
     )
     assert (status, out) == (2, "")
     assert message in err.replace("\n", " ")

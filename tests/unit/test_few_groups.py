@@ -1,4 +1,6 @@
-"""What few rocks tell: intervals that hold the true error, parts with equal shares of the classes, and what can't be told."""
+"""What few rocks tell: intervals that hold the true error, parts with equal shares of the
+classes, and what can't be told.
+"""
 
 from __future__ import annotations
 
@@ -26,8 +28,12 @@ DISTANCE, FEATURES = 2.0, 6
 """Distance of the classes in standard deviations, along one of some features."""
 
 
-def drawn(rocks: int, share: float, random: np.random.Generator) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return features, classes and rocks of falls: normal with variance 1, a share of which is of the rock."""
+def drawn(
+    rocks: int, share: float, random: np.random.Generator
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return features, classes and rocks of falls: normal with variance 1, a share of
+    which is of the rock.
+    """
     rock = np.repeat(np.arange(rocks), FALLS)
     classes = rock % 2
     values = np.sqrt(share) * random.standard_normal((rocks, FEATURES))[rock]
@@ -51,7 +57,9 @@ def true_error(normal: np.ndarray, offset: float) -> float:
 
 
 def held(rocks: int, share: float, sets: int, seed: int) -> float:
-    """Return the part of the intervals of tested errors that hold the true error of the classifier trained on all rocks."""
+    """Return the part of the intervals of tested errors that hold the true error of the
+    classifier trained on all rocks.
+    """
     random, found = np.random.default_rng(seed), 0
     for number in range(sets):
         values, classes, rock = drawn(rocks, share, random)
@@ -72,7 +80,9 @@ def held(rocks: int, share: float, sets: int, seed: int) -> float:
 @pytest.mark.parametrize("share", [0.1, 0.9])
 @pytest.mark.parametrize("rocks", [6, 8, 12])
 def test_intervals_of_few_rocks_hold_the_true_error(rocks: int, share: float) -> None:
-    """By the bootstrap alone 70 to 90 % of them did. Of 150 intervals of 95 % fewer than 136 hold it once in a hundred times."""
+    """By the bootstrap alone 70 to 90 % of them did. Of 150 intervals of 95 % fewer than
+    136 hold it once in a hundred times.
+    """
     assert held(rocks, share, 150, rocks) >= 136 / 150
 
 
@@ -80,7 +90,11 @@ def test_intervals_of_few_rocks_hold_the_true_error(rocks: int, share: float) ->
 def test_the_page_says_how_many_hold_it() -> None:
     sets = 400
     says("docs/recognition.md", "Of {} simulated data sets of {} rocks", sets, 8)
-    says("docs/recognition.md", "variance between rocks, {} % of the intervals hold the true error", 100.0 * held(8, 0.9, sets, 56))
+    says(
+        "docs/recognition.md",
+        "variance between rocks, {} % of the intervals hold the true error",
+        100.0 * held(8, 0.9, sets, 56),
+    )
 
 
 @pytest.mark.slow
@@ -105,7 +119,9 @@ def test_of_many_rocks_it_is_that_of_the_bootstrap_and_of_the_training_sets() ->
     alone, trained = (Bootstrap(rocks, rocks % 2, 0, folds).mean(wrong) for folds in (None, 5))
     low, high = np.percentile(alone.draws, (2.5, 97.5))
     assert alone.high - alone.low == pytest.approx(high - low, rel=0.06)
-    assert trained.high - trained.low == pytest.approx(np.sqrt(1.25) * (alone.high - alone.low), rel=0.02)
+    assert trained.high - trained.low == pytest.approx(
+        np.sqrt(1.25) * (alone.high - alone.low), rel=0.02
+    )
 
 
 def test_no_error_of_few_rocks_is_no_certainty() -> None:
@@ -140,7 +156,9 @@ def test_plates_that_both_classes_fall_on_count_once() -> None:
 
 @pytest.mark.parametrize("rocks", [12, 14, 18, 22])
 def test_parts_have_equal_shares_of_the_classes(rocks: int) -> None:
-    """Trained on 4 rocks of coal and 5 of gangue the majority was wrong in 58 % of two equal classes."""
+    """Trained on 4 rocks of coal and 5 of gangue the majority was wrong in 58 % of two
+    equal classes.
+    """
     rock = np.repeat(np.arange(rocks), FALLS)
     classes = rock % 2
     for seed in range(10):
@@ -170,7 +188,9 @@ def test_parts_of_many_rocks_are_as_they_were() -> None:
 
 def test_eight_rocks_are_not_refused(tmp_path: Path) -> None:
     """They were: "coal is in 4 rocks, too few for 5 folds"."""
-    signals = vi.read_labelled_signals(write_knocks(tmp_path / "data", rocks=8, falls=4, samples=128))
+    signals = vi.read_labelled_signals(
+        write_knocks(tmp_path / "data", rocks=8, falls=4, samples=128)
+    )
     check_signals(signals, "rock")
     with pytest.raises(vi.InputError, match="coal is in 4 rocks, too few for 5 folds"):
         check_signals(signals, "rock", 5)
@@ -186,20 +206,26 @@ def leaks(rocks: int, offset: float, seed: int) -> list[str]:
     value[data["class"] == 1] += offset
     sensors = {"a1": SensorSignals(value.astype(np.float32), 20e3, "V")}
     signals = LabelledSignals("knocks", sensors, None, ("coal", "gangue"))
-    return recorder_leaks(signals, data["class"].astype(np.intp), data["rock"].astype(np.intp), "rock", seed)
+    return recorder_leaks(
+        signals, data["class"].astype(np.intp), data["rock"].astype(np.intp), "rock", seed
+    )
 
 
 def test_eight_rocks_are_too_few_to_find_a_leak_of_the_recorder_and_that_is_said() -> None:
-    """Of 70 ways to give four of eight rocks a class two separate them as these do; nothing was said."""
+    """Of 70 ways to give four of eight rocks a class two separate them as these do;
+    nothing was said.
+    """
     (doubt,) = leaks(8, 1e-3, 0)
     assert doubt == (
-        "leaks of the recorder can't be told from chance with 8 rocks: chance separates classes fully in at least 2.9 % of data sets; 5 "
-        "rocks of each class suffice"
+        "leaks of the recorder can't be told from chance with 8 rocks: chance separates "
+        "classes fully in at least 2.9 % of data sets; 5 rocks of each class suffice"
     )
 
 
 def test_of_ten_rocks_a_leak_is_always_found() -> None:
-    """All 252 ways are tried; of 999 that were drawn at random a leak seemed to be chance in a quarter of the data sets."""
+    """All 252 ways are tried; of 999 that were drawn at random a leak seemed to be chance
+    in a quarter of the data sets.
+    """
     for seed in range(8):
         assert any("the level before the onset" in one for one in leaks(10, 2e-3, seed))
     assert leaks(12, 0.0, 0) == []
@@ -210,7 +236,9 @@ def test_of_ten_rocks_a_leak_is_always_found() -> None:
 
 @pytest.fixture(scope="module")
 def few(tmp_path_factory: pytest.TempPathFactory) -> vi.Recognition:
-    place = write_knocks(tmp_path_factory.mktemp("few") / "data", rocks=6, falls=3, samples=128, plates=1)
+    place = write_knocks(
+        tmp_path_factory.mktemp("few") / "data", rocks=6, falls=3, samples=128, plates=1
+    )
     return vi.recognise(place, seeds=1, workers=1)
 
 
@@ -220,11 +248,18 @@ def test_what_few_rocks_can_not_tell_is_said(few: vi.Recognition) -> None:
     error: Any = few.scores[few.best].error
     (needed,) = (one for one in told if "can't be told apart" in one)
     assert needed.startswith(
-        f"With 6 rocks errors between {100 * error.low:.0f} and {100 * error.high:.0f} % can't be told apart; for +-5 % "
+        f"With 6 rocks errors between {100 * error.low:.0f} and {100 * error.high:.0f} % "
+        "can't be told apart; for +-5 % "
     )
     assert f"some {groups_for_error(error, 6):,} rocks are needed" in needed
-    assert any(one.startswith("With 6 rocks no classifier can be shown to be better than this bound") for one in told)
-    assert any(one.startswith("leaks of the recorder can't be told from chance with 6 rocks") for one in few.doubts)
+    assert any(
+        one.startswith("With 6 rocks no classifier can be shown to be better than this bound")
+        for one in told
+    )
+    assert any(
+        one.startswith("leaks of the recorder can't be told from chance with 6 rocks")
+        for one in few.doubts
+    )
 
 
 def test_scores_of_few_rocks_have_no_decimals(few: vi.Recognition) -> None:
@@ -234,7 +269,9 @@ def test_scores_of_few_rocks_have_no_decimals(few: vi.Recognition) -> None:
 
 @pytest.mark.parametrize("rocks", [8, 40])
 def test_as_many_rocks_as_are_asked_for_have_the_interval(rocks: int) -> None:
-    """Of falls of a rock that are right or wrong together, and of independent ones, one error in four."""
+    """Of falls of a rock that are right or wrong together, and of independent ones, one
+    error in four.
+    """
     for own, falls in ((True, 4), (False, 4)):
         wide = _error(rocks, falls, own)
         needed = groups_for_error(wide, rocks)

@@ -45,14 +45,18 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def elsewhere(folder: Path, tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, list[float]]:
-    """The figures of the folder in all formats at another place, and how far they were while they were drawn."""
+    """The figures of the folder in all formats at another place, and how far they were
+    while they were drawn.
+    """
     fractions: list[float] = []
     place = tmp_path_factory.mktemp("elsewhere") / "deep" / "there"
     assert vi.save_figures(folder, ["png", "svg", "pdf"], place, fractions.append) == place
     return place, fractions
 
 
-def run(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], *arguments: object) -> tuple[int, str]:
+def run(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], *arguments: object
+) -> tuple[int, str]:
     monkeypatch.setattr("sys.argv", ["vibroimpact", *map(str, arguments)])
     with pytest.raises(SystemExit) as left:
         main()
@@ -72,7 +76,9 @@ def test_figures_of_a_folder(
     monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    """They are the same byte for byte, wherever and in whichever order of formats they are drawn."""
+    """They are the same byte for byte, wherever and in whichever order of formats they
+    are drawn.
+    """
     copy = Path(shutil.copytree(folder, tmp_path / "copy"))
     before = {path.name: path.read_bytes() for path in copy.iterdir()}
     assert run(monkeypatch, capsys, "figures", copy) == (0, f"wrote {copy / 'figures'}\n")
@@ -97,7 +103,11 @@ def test_figures_of_a_folder(
 def test_formats_do_not_depend_on_each_other(tmp_path: Path) -> None:
     """What is drawn as pixels has one resolution in all formats, whichever was written first."""
     x = np.linspace(0.0, 1.0, 400)
-    chart = Chart("points", "Points", ((Panel(Axis("x", "m"), Axis("y", "m"), (Points(x, np.sin(9.0 * x)),)),),))
+    chart = Chart(
+        "points",
+        "Points",
+        ((Panel(Axis("x", "m"), Axis("y", "m"), (Points(x, np.sin(9.0 * x)),)),),),
+    )
     for name, formats in (("a", ["svg", "pdf", "png"]), ("b", ["png", "pdf", "svg"])):
         (tmp_path / name).mkdir()
         save_charts([chart], tmp_path / name, formats)
@@ -113,11 +123,19 @@ def test_figures_may_go_elsewhere(folder: Path, elsewhere: tuple[Path, list[floa
     assert not (folder / "figures").exists()
 
 
-def test_a_run_writes_them_when_it_is_asked(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
-    (tmp_path / "case.toml").write_text(tomli_w.dumps(elastic(sensors=[sensor("a 1")], run={"impacts": 1})))
-    status, written = run(monkeypatch, capsys, "run", tmp_path / "case.toml", "-o", tmp_path / "out", "--figures")
+def test_a_run_writes_them_when_it_is_asked(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "case.toml").write_text(
+        tomli_w.dumps(elastic(sensors=[sensor("a 1")], run={"impacts": 1}))
+    )
+    status, written = run(
+        monkeypatch, capsys, "run", tmp_path / "case.toml", "-o", tmp_path / "out", "--figures"
+    )
     assert status == 0
-    assert written.rstrip().endswith(f"wrote {tmp_path / 'out' / 'report.html'}, and figures beside it")
+    assert written.rstrip().endswith(
+        f"wrote {tmp_path / 'out' / 'report.html'}, and figures beside it"
+    )
     names = {path.name for path in (tmp_path / "out" / "figures").iterdir()}
     assert names == {f"{name}.png" for name in ELASTIC} | {"plate.gif"}
     with Image.open(tmp_path / "out" / "figures" / "plate.gif") as picture:
@@ -137,12 +155,23 @@ def test_those_of_a_run_are_those_of_its_folder(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(
     ("formats", "words"),
-    [("svgg", 'no figures of the format "svgg"; there are png, svg, pdf. Did you mean "svg"?'), (",", "name a format"), ("png,gif", "gif")],
+    [
+        ("svgg", 'no figures of the format "svgg"; there are png, svg, pdf. Did you mean "svg"?'),
+        (",", "name a format"),
+        ("png,gif", "gif"),
+    ],
 )
 def test_a_format_that_there_is_not(
-    formats: str, words: str, folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    formats: str,
+    words: str,
+    folder: Path,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
 ) -> None:
-    status, written = run(monkeypatch, capsys, "figures", folder, "--format", formats, "-o", tmp_path / "none")
+    status, written = run(
+        monkeypatch, capsys, "figures", folder, "--format", formats, "-o", tmp_path / "none"
+    )
     assert status == 2
     assert words in written
     assert not (tmp_path / "none").exists()
@@ -163,7 +192,9 @@ def test_folders_without_charts_are_refused(folder: Path, tmp_path: Path) -> Non
     assert not list(tmp_path.rglob(".*"))
 
 
-def test_a_failure_leaves_what_was_there(folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_failure_leaves_what_was_there(
+    folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     copy = Path(shutil.copytree(folder, tmp_path / "copy"))
     (copy / "figures").mkdir()
     (copy / "figures" / "force.png").write_bytes(b"older")
@@ -174,7 +205,9 @@ def test_a_failure_leaves_what_was_there(folder: Path, tmp_path: Path, monkeypat
     monkeypatch.setattr("vibroimpact.runs.figures.save_charts", breaks)
     with pytest.raises(vi.InputError, match="can't be written"):
         vi.save_figures(copy)
-    assert {path.name: path.read_bytes() for path in (copy / "figures").iterdir()} == {"force.png": b"older"}
+    assert {path.name: path.read_bytes() for path in (copy / "figures").iterdir()} == {
+        "force.png": b"older"
+    }
     assert not list(copy.rglob(".*"))
 
 

@@ -1,4 +1,6 @@
-"""Figures for print are tidy: no words collide or are cut, no unit is said twice, maps fill their places and hold their names."""
+"""Figures for print are tidy: no words collide or are cut, no unit is said twice, maps
+fill their places and hold their names.
+"""
 
 from __future__ import annotations
 
@@ -38,8 +40,17 @@ def titles(figure: Figure) -> list[str]:
 
 def words_in(figure: Figure) -> list[tuple[str, Bbox]]:
     """What is written, but for the numbers at the axes."""
-    numbers = {id(text) for axes in figure.axes for line in (axes.xaxis, axes.yaxis) for text in line.get_ticklabels()}
-    found = [text for text in figure.findobj(Text) if text.get_visible() and text.get_text().strip() and id(text) not in numbers]
+    numbers = {
+        id(text)
+        for axes in figure.axes
+        for line in (axes.xaxis, axes.yaxis)
+        for text in line.get_ticklabels()
+    }
+    found = [
+        text
+        for text in figure.findobj(Text)
+        if text.get_visible() and text.get_text().strip() and id(text) not in numbers
+    ]
     return [(text.get_text(), text.get_window_extent()) for text in found]
 
 
@@ -59,7 +70,9 @@ def figures(theory: vi.Response) -> dict[str, Figure]:
 
 
 def test_pictures_are_to_scale() -> None:
-    """A small ball on a plate of metres: both axes have the same unit, whatever the extent across."""
+    """A small ball on a plate of metres: both axes have the same unit, whatever the
+    extent across.
+    """
     steel = {"density": 7850, "youngs_modulus": "210 GPa", "poissons_ratio": 0.3}
     case = {
         "sphere": {"radius": "2.5 mm", "material": steel},
@@ -87,7 +100,9 @@ def test_a_small_panel_tells_its_number_below_its_name(figures: dict[str, Figure
 
 
 def test_a_unit_is_said_once(figures: dict[str, Figure]) -> None:
-    """With the number, or at the label of the first small panel; only where neither has it behind the name."""
+    """With the number, or at the label of the first small panel; only where neither has
+    it behind the name.
+    """
     for figure in figures.values():
         assert not any("[" in title for title in titles(figure))
     x = np.array([0.0, 1e-3, 1.0001e-3, 2e-3, 2.0001e-3, 3e-3])
@@ -98,15 +113,25 @@ def test_a_unit_is_said_once(figures: dict[str, Figure]) -> None:
         ("peak 7 N", "Part 2: peak 7 N"),
         ("7 kN", "Part 2 [N]: 7 kN"),
     ):
-        parts = tuple(View(f"Part {number}", 1e-3 * number + 1e-5, 1e-3 * number + 1e-3, headline=headline) for number in range(3))
-        chart = Chart("a", "A", ((Panel(Axis("Time", "s", views=parts), Axis("Force", "N"), (line,)),),))
+        parts = tuple(
+            View(f"Part {number}", 1e-3 * number + 1e-5, 1e-3 * number + 1e-3, headline=headline)
+            for number in range(3)
+        )
+        chart = Chart(
+            "a", "A", ((Panel(Axis("Time", "s", views=parts), Axis("Force", "N"), (line,)),),)
+        )
         assert titles(matplotlib_figure(chart))[-1] == last
 
 
 def test_a_span_thinner_than_a_dot_is_drawn_in_its_view_alone() -> None:
     view = View("contact", 0.4999, 0.5003)
-    marks = Line(np.array([0.0, 1.0]), np.array([0.0, 1.0])), Spans(np.array([0.5]), np.array([0.5002]), "in contact")
-    whole, enlarged = matplotlib_figure(Chart("a", "A", ((Panel(Axis("Time", "s", views=(view,)), Axis(), marks),),))).axes
+    marks = (
+        Line(np.array([0.0, 1.0]), np.array([0.0, 1.0])),
+        Spans(np.array([0.5]), np.array([0.5002]), "in contact"),
+    )
+    whole, enlarged = matplotlib_figure(
+        Chart("a", "A", ((Panel(Axis("Time", "s", views=(view,)), Axis(), marks),),))
+    ).axes
     assert (len(whole.patches), len(enlarged.patches)) == (0, 1)
 
 
@@ -124,7 +149,9 @@ def deflected(size: tuple[float, float], frames: int = 40) -> Chart:
     # rounding of either sign where it is held
     noise = 1e-10 * np.random.default_rng(3).choice([-1.0, 1.0], size=(frames, *bend.shape))
     held = np.hypot(*np.meshgrid(x + 0.25 * length, y)) <= 0.05
-    height = np.where(held, noise, bend * np.linspace(0.2, 1.0, frames)[:, None, None]).astype(np.float32)
+    height = np.where(held, noise, bend * np.linspace(0.2, 1.0, frames)[:, None, None]).astype(
+        np.float32
+    )
     places = ((0.0, 0.0), (0.4 * length, 0.3 * width), (-0.4 * length, -0.3 * width))
     sensors = [{"name": name, "position": place} for name, place in zip(NAMES, places, strict=True)]
     supports = [{"type": "patch", "position": (-0.25 * length, 0.0), "radius": 0.05}]
@@ -159,9 +186,15 @@ def test_maps_fill_the_figure() -> None:
 
 
 def test_maps_of_a_row_that_is_not_full_are_as_large_as_the_others() -> None:
-    boxes = [axes.get_window_extent() for axes in drawn(deflected(PLATES[0], frames=12)).axes if axes.images]
+    boxes = [
+        axes.get_window_extent()
+        for axes in drawn(deflected(PLATES[0], frames=12)).axes
+        if axes.images
+    ]
     assert len(boxes) == 5
-    assert max(box.width for box in boxes) == pytest.approx(min(box.width for box in boxes), rel=1e-3)
+    assert max(box.width for box in boxes) == pytest.approx(
+        min(box.width for box in boxes), rel=1e-3
+    )
 
 
 def test_a_support_at_rest_has_no_lines_from_rounding() -> None:
@@ -173,7 +206,12 @@ def test_a_support_at_rest_has_no_lines_from_rounding() -> None:
         inner = np.hypot(*np.meshgrid(x + 0.13, y)) <= 0.045  # the outline is a polygon
         assert held.sum() > inner.sum() > 20
         assert np.all(values[inner] == 0.0)
-        assert np.all(values[~held & (np.abs(np.meshgrid(x, y)[0]) < 0.25) & (np.abs(np.meshgrid(x, y)[1]) < 0.2)] < 0.0)
+        assert np.all(
+            values[
+                ~held & (np.abs(np.meshgrid(x, y)[0]) < 0.25) & (np.abs(np.meshgrid(x, y)[1]) < 0.2)
+            ]
+            < 0.0
+        )
 
 
 def test_a_chart_is_drawn_into_a_given_figure(theory: vi.Response) -> None:
@@ -191,5 +229,10 @@ def test_figures_of_ones_own_may_have_the_style_of_print() -> None:
     with print_style():
         look = dict(plt.rcParams)
     with plt.style.context("vibroimpact.charts.print"):
-        assert {name for name in look if plt.rcParams[name] != look[name]} <= {"backend", "backend_fallback"}
-        assert plt.rcParams["axes.prop_cycle"].by_key()["color"] == [LOOKS[f"series {number}"].light for number in range(SERIES)]
+        assert {name for name in look if plt.rcParams[name] != look[name]} <= {
+            "backend",
+            "backend_fallback",
+        }
+        assert plt.rcParams["axes.prop_cycle"].by_key()["color"] == [
+            LOOKS[f"series {number}"].light for number in range(SERIES)
+        ]

@@ -1,4 +1,6 @@
-"""Whatever is named in place of a file: it is read or refused with a sentence, and never waited for."""
+"""Whatever is named in place of a file: it is read or refused with a sentence, and never
+waited for.
+"""
 
 from __future__ import annotations
 
@@ -23,11 +25,21 @@ KIND = FileKind("a note is a text file", 1_000_000, "write less")
 
 
 def elastic(mesh: str) -> dict:
-    return plain_case(plate={"material": "steel", "model": "elastic", "mesh": mesh, "supports": "free", "modes": 2})
+    return plain_case(
+        plate={
+            "material": "steel",
+            "model": "elastic",
+            "mesh": mesh,
+            "supports": "free",
+            "modes": 2,
+        }
+    )
 
 
 def calibrated(target: str) -> object:
-    return vi.calibrate_case(read_calibration(plain_case(contact={"law": "adams-impact"}, calibrate={"target": target})))
+    return vi.calibrate_case(
+        read_calibration(plain_case(contact={"law": "adams-impact"}, calibrate={"target": target}))
+    )
 
 
 READERS: dict[str, tuple[str, Callable[[str], object]]] = {
@@ -53,11 +65,18 @@ def told(reader: str, path: str) -> Iterator[str]:
 @pytest.mark.parametrize("reader", READERS)
 def test_what_is_no_file_is_refused(reader: str, tmp_path: Path) -> None:
     ending = READERS[reader][0]
-    pipe, folder, zero, nothing = (tmp_path / f"{name}{ending}" for name in ("pipe", "folder", "zero", "nothing"))
+    pipe, folder, zero, nothing = (
+        tmp_path / f"{name}{ending}" for name in ("pipe", "folder", "zero", "nothing")
+    )
     os.mkfifo(pipe)
     folder.mkdir()
     zero.symlink_to("/dev/zero")
-    for path, words in ((pipe, "this is a pipe"), (folder, "this is a directory"), (zero, "this is a device"), (nothing, "no such file")):
+    for path, words in (
+        (pipe, "this is a pipe"),
+        (folder, "this is a directory"),
+        (zero, "this is a device"),
+        (nothing, "no such file"),
+    ):
         with told(reader, str(path)) as message:
             assert f"{path}: " in message
             assert words in message
@@ -66,7 +85,11 @@ def test_what_is_no_file_is_refused(reader: str, tmp_path: Path) -> None:
 @pytest.mark.parametrize("reader", READERS)
 def test_names_that_no_file_can_have(reader: str, tmp_path: Path) -> None:
     ending = READERS[reader][0]
-    for name, words in (("a\0b", "no file can have such a name"), ("a\ud800b", "no file can have such a name"), ("a" * 300, "too long")):
+    for name, words in (
+        ("a\0b", "no file can have such a name"),
+        ("a\ud800b", "no file can have such a name"),
+        ("a" * 300, "too long"),
+    ):
         with told(reader, f"{tmp_path}/{name}{ending}") as message:
             assert words in message
 
@@ -85,7 +108,10 @@ def test_a_large_file_of_zeros_is_not_read_whole(tmp_path: Path) -> None:
     with file.open("wb") as out:
         out.truncate(1_900_000_000)
     with told("nastran", str(file)) as message:
-        assert "this is not a text file; a mesh is a file of nodes and elements, in plain text" in message
+        assert (
+            "this is not a text file; a mesh is a file of nodes and elements, in plain text"
+            in message
+        )
 
 
 def test_a_socket_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -96,10 +122,13 @@ def test_a_socket_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) ->
             read_bytes("socket", KIND)
 
 
-def test_a_file_that_grows_while_it_is_read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_file_that_grows_while_it_is_read(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     file = tmp_path / "growing"
     file.write_bytes(b"a" * 10)
-    monkeypatch.setattr("vibroimpact.files.reading._check", lambda *_: None)  # as if it had been small when it was looked at
+    # as if it had been small when it was looked at
+    monkeypatch.setattr("vibroimpact.files.reading._check", lambda *_: None)
     with pytest.raises(vi.InputError, match="the file is larger than 9e-06 MB; write less"):
         read_bytes(file, KIND._replace(largest=9))
     assert read_bytes(file, KIND._replace(largest=10)) == b"a" * 10
@@ -124,4 +153,7 @@ def test_texts(tmp_path: Path) -> None:
 def test_digests(tmp_path: Path) -> None:
     file = tmp_path / "data"
     file.write_bytes(b"abc")  # of which FIPS 180-2, appendix B.1, gives the digest
-    assert input_file_digest(file, MESH) == "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad"
+    assert (
+        input_file_digest(file, MESH)
+        == "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad"
+    )

@@ -1,4 +1,6 @@
-"""Force records: when contacts begin and end, the largest force between samples, and records that are clipped."""
+"""Force records: when contacts begin and end, the largest force between samples, and
+records that are clipped.
+"""
 
 from __future__ import annotations
 
@@ -24,13 +26,26 @@ Floats = np.ndarray
 @cache
 def forces(law: str) -> tuple[vi.Response, Floats, Floats]:
     """Four impacts, and the force over time in steps of a 3000th of the contacts."""
-    response = vi.simulate(vi.read_case(plain_case(contact=LAWS[law], drop={"height": 1.0}, run={"impacts": 4})))
+    response = vi.simulate(
+        vi.read_case(plain_case(contact=LAWS[law], drop={"height": 1.0}, run={"impacts": 4}))
+    )
     touches, lasting = response.impacts["time_s"], response.impacts["duration_s"]
-    fine = [np.linspace(touch, touch + duration, 3001) for touch, duration in zip(touches, lasting, strict=True)]
-    time = np.concatenate([[0.0], *(part for touch in fine for part in ([touch[0] - 1e-9], touch, [touch[-1] + 1e-9]))])
+    fine = [
+        np.linspace(touch, touch + duration, 3001)
+        for touch, duration in zip(touches, lasting, strict=True)
+    ]
+    time = np.concatenate(
+        [
+            [0.0],
+            *(part for touch in fine for part in ([touch[0] - 1e-9], touch, [touch[-1] + 1e-9])),
+        ]
+    )
     force = response.at(time)["force_N"]
     for touch in fine:
-        force[np.isclose(time, touch[0] - 1e-9, rtol=0.0, atol=1e-12) | np.isclose(time, touch[-1] + 1e-9, rtol=0.0, atol=1e-12)] = 0.0
+        force[
+            np.isclose(time, touch[0] - 1e-9, rtol=0.0, atol=1e-12)
+            | np.isclose(time, touch[-1] + 1e-9, rtol=0.0, atol=1e-12)
+        ] = 0.0
     return response, np.append(time, touches[-1] + 0.02), np.append(force, 0.0)
 
 
@@ -39,12 +54,19 @@ def seen_in(law: str, rate: float, noise: float, seed: int, most: float = np.inf
     random = np.random.default_rng(seed)
     time = np.arange(random.uniform() / rate, times[-1], 1.0 / rate)
     sampled = np.interp(time, times, force) + noise * force.max() * random.normal(size=len(time))
-    given = {"mass": float(response.problem.sphere.mass), "gravity": float(response.problem.gravity)}
+    given = {
+        "mass": float(response.problem.sphere.mass),
+        "gravity": float(response.problem.gravity),
+    }
     record = np.minimum(sampled, most * force.max())
-    return impacts_in_force(time, record, **given, first_speed=float(response.impacts["approach_speed_m_s"][0]))
+    return impacts_in_force(
+        time, record, **given, first_speed=float(response.impacts["approach_speed_m_s"][0])
+    )
 
 
-def off(law: str, rate: float, noise: float, times: int, name: str, column: str) -> tuple[Floats, Floats]:
+def off(
+    law: str, rate: float, noise: float, times: int, name: str, column: str
+) -> tuple[Floats, Floats]:
     """Relative errors and standard deviations of the impacts but the last, one row per record."""
     exact = forces(law)[0].impacts[column][:3]
     seen = [seen_in(law, rate, noise, seed) for seed in range(times)]
@@ -58,8 +80,12 @@ def off(law: str, rate: float, noise: float, times: int, name: str, column: str)
 @pytest.mark.parametrize("law", list(LAWS))
 @pytest.mark.parametrize("noise", [0.0, 0.02])
 def test_flights_begin_and_end_with_the_contacts(law: str, noise: float) -> None:
-    """With the contacts cut at a threshold the speeds were up to 0.04 % too high, and with noise of 2 % no interval held."""
-    apart, deviations = off(law, 1e5, noise, 60 if noise else 6, "separation_speed", "separation_speed_m_s")
+    """With the contacts cut at a threshold the speeds were up to 0.04 % too high, and
+    with noise of 2 % no interval held.
+    """
+    apart, deviations = off(
+        law, 1e5, noise, 60 if noise else 6, "separation_speed", "separation_speed_m_s"
+    )
     assert np.all(np.abs(apart.mean(axis=0)) < 1e-4)
     assert np.all(np.mean(np.abs(apart) <= 1.96 * deviations, axis=0) >= 0.85)
     assert np.mean(np.abs(apart) <= 1.96 * deviations) >= 0.93
@@ -72,13 +98,18 @@ def test_edges_at_once() -> None:
 
 
 def test_the_noise_is_part_of_the_deviation() -> None:
-    quiet, noisy = (standard_deviations(seen_in("hertz", 1e5, noise, 1).noise["separation_speed"])[0] for noise in (0.0, 0.04))
+    quiet, noisy = (
+        standard_deviations(seen_in("hertz", 1e5, noise, 1).noise["separation_speed"])[0]
+        for noise in (0.0, 0.04)
+    )
     assert noisy > 1.02 * quiet
 
 
 @pytest.mark.parametrize("law", list(LAWS))
 def test_the_largest_force_between_few_samples(law: str) -> None:
-    """At 20 kHz a contact of 0.3 ms has six samples: the largest force was 1.6 % too small, and half of the intervals held."""
+    """At 20 kHz a contact of 0.3 ms has six samples: the largest force was 1.6 % too
+    small, and half of the intervals held.
+    """
     apart, deviations = off(law, 2e4, 0.0, 20, "max_force", "max_force_N")
     assert np.all(np.abs(apart.mean(axis=0)) < 4e-3)
     assert np.mean(np.abs(apart) <= 1.96 * deviations) >= 0.93
@@ -87,10 +118,17 @@ def test_the_largest_force_between_few_samples(law: str) -> None:
 
 
 def test_a_clipped_record() -> None:
-    """At 0.8 of the largest force: the first forces were 9 % too small, and mass or gravity was doubted."""
-    seen, exact = seen_in("hertz", 1e5, 0.005, 1, most=0.8), forces("hertz")[0].impacts["separation_speed_m_s"]
+    """At 0.8 of the largest force: the first forces were 9 % too small, and mass or
+    gravity was doubted.
+    """
+    seen, exact = (
+        seen_in("hertz", 1e5, 0.005, 1, most=0.8),
+        forces("hertz")[0].impacts["separation_speed_m_s"],
+    )
     assert "max_force" not in seen.wanted
-    np.testing.assert_allclose(seen.wanted["separation_speed"], exact[: len(seen.speeds)], rtol=2e-4)
+    np.testing.assert_allclose(
+        seen.wanted["separation_speed"], exact[: len(seen.speeds)], rtol=2e-4
+    )
     (doubt,) = seen.doubts
     assert doubt.startswith("the force is clipped in ")
     assert not any("clipped" in doubt for doubt in seen_in("hertz", 1e5, 0.005, 1).doubts)
@@ -98,18 +136,33 @@ def test_a_clipped_record() -> None:
 
 def test_one_clipped_impact_is_refused() -> None:
     time = np.arange(0.0, 2e-3, 1e-5)
-    pulse = np.minimum(np.where((time > 5e-4) & (time < 1e-3), 100.0 * np.sin(np.pi * (time - 5e-4) / 5e-4), 0.0), 80.0)
-    with pytest.raises(vi.InputError, match=r"the force is clipped at sample 5.*record again with a larger range$"):
-        impacts_in_force(time, pulse, mass=0.01, gravity=0.0, first_speed=2.0)  # from which the sphere does not come back
-    with pytest.raises(vi.InputError, match=r"the force is clipped at sample 5.*, or up to the next impact, from whose time"):
+    pulse = np.minimum(
+        np.where((time > 5e-4) & (time < 1e-3), 100.0 * np.sin(np.pi * (time - 5e-4) / 5e-4), 0.0),
+        80.0,
+    )
+    with pytest.raises(
+        vi.InputError, match=r"the force is clipped at sample 5.*record again with a larger range$"
+    ):
+        # from which the sphere does not come back
+        impacts_in_force(time, pulse, mass=0.01, gravity=0.0, first_speed=2.0)
+    with pytest.raises(
+        vi.InputError,
+        match=r"the force is clipped at sample 5.*, or up to the next impact, from whose time",
+    ):
         impacts_in_force(time, pulse, mass=0.01, gravity=9.8, first_speed=2.0)
 
 
 def test_a_flight_too_long_is_none_of_the_force() -> None:
     """Speeds that follow from the times of flight do not depend on force and mass."""
     time = np.arange(0.0, 1.0, 1e-5)
-    pulse = sum(np.where((time > at) & (time < at + 5e-4), 100.0 * np.sin(np.pi * (time - at) / 5e-4), 0.0) for at in (0.1, 0.3, 0.8))
-    with pytest.raises(vi.InputError, match=r"impact at sample 300.*; the times can't be right, an impact is missing or is none") as told:
+    pulse = sum(
+        np.where((time > at) & (time < at + 5e-4), 100.0 * np.sin(np.pi * (time - at) / 5e-4), 0.0)
+        for at in (0.1, 0.3, 0.8)
+    )
+    with pytest.raises(
+        vi.InputError,
+        match=r"impact at sample 300.*; the times can't be right, an impact is missing or is none",
+    ) as told:
         impacts_in_force(time, pulse, mass=0.01, gravity=9.8, first_speed=2.0)
     assert "the mass" not in str(told.value)
 
@@ -119,6 +172,11 @@ def test_a_coarse_converter_is_not_clipped() -> None:
     time = np.arange(0.0, times[-1], 1e-5)
     step = force.max() / 128.0
     record = step * np.round(np.interp(time, times, force) / step)
-    given = {"mass": float(response.problem.sphere.mass), "gravity": float(response.problem.gravity)}
-    seen = impacts_in_force(time, record, **given, first_speed=float(response.impacts["approach_speed_m_s"][0]))
+    given = {
+        "mass": float(response.problem.sphere.mass),
+        "gravity": float(response.problem.gravity),
+    }
+    seen = impacts_in_force(
+        time, record, **given, first_speed=float(response.impacts["approach_speed_m_s"][0])
+    )
     assert not any("clipped" in doubt for doubt in seen.doubts)

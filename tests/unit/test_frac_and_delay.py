@@ -14,12 +14,23 @@ def resonance(frequency: np.ndarray, natural: float, ratio: float) -> np.ndarray
 
 
 def test_frac_of_shifted_resonances() -> None:
-    """Of two light resonances, wide apart from the band's ends: 4 d1 d2 / ((d1 + d2)^2 + shift^2) with half widths d."""
+    """Of two light resonances, wide apart from the band's ends: 4 d1 d2 / ((d1 + d2)^2 +
+    shift^2) with half widths d.
+    """
     frequency = np.linspace(500.0, 1500.0, 400_001)
-    for shift, one, other in ((0.0, 0.001, 0.001), (2.0, 0.001, 0.001), (0.0, 0.001, 0.004), (3.0, 0.002, 0.001)):
-        found = vi.frac(resonance(frequency, 1000.0, one), resonance(frequency, 1000.0 + shift, other))
+    for shift, one, other in (
+        (0.0, 0.001, 0.001),
+        (2.0, 0.001, 0.001),
+        (0.0, 0.001, 0.004),
+        (3.0, 0.002, 0.001),
+    ):
+        found = vi.frac(
+            resonance(frequency, 1000.0, one), resonance(frequency, 1000.0 + shift, other)
+        )
         widths = 1000.0 * one, 1000.0 * other
-        assert found == pytest.approx(4.0 * widths[0] * widths[1] / (sum(widths) ** 2 + shift**2), rel=0.01)
+        assert found == pytest.approx(
+            4.0 * widths[0] * widths[1] / (sum(widths) ** 2 + shift**2), rel=0.01
+        )
 
 
 def test_frac_knows_no_scale() -> None:
@@ -27,7 +38,9 @@ def test_frac_knows_no_scale() -> None:
     other = resonance(np.linspace(500.0, 1500.0, 1001), 1010.0, 0.02)
     assert vi.frac(response, response) == pytest.approx(1.0, abs=1e-12)
     for factor in (1e-200, -3.0, 2.0j, 1e200):
-        assert vi.frac(response, factor * other) == pytest.approx(float(vi.frac(response, other)), rel=1e-12)
+        assert vi.frac(response, factor * other) == pytest.approx(
+            float(vi.frac(response, other)), rel=1e-12
+        )
     assert vi.frac(np.stack([response, other]), np.stack([other, other])).shape == (2,)
     assert np.isnan(vi.frac(np.zeros(3), np.ones(3)))
 
@@ -45,7 +58,9 @@ def test_the_delay_of_noisy_signals(shift: float) -> None:
     def ringing(at: float) -> np.ndarray:
         since = np.arange(1000) - 300.0 - at
         # a smooth beginning, so that it has no frequencies above half the rate
-        return np.asarray(np.exp(-since / 100.0) * np.sin(0.8 * since) / (1.0 + np.exp(-0.5 * since)))
+        return np.asarray(
+            np.exp(-since / 100.0) * np.sin(0.8 * since) / (1.0 + np.exp(-0.5 * since))
+        )
 
     earlier = np.stack([ringing(0.0), np.roll(ringing(0.0), 20)])
     later = np.stack([ringing(shift), -2.0 * np.roll(ringing(shift), 20)])

@@ -1,4 +1,6 @@
-""" "g" is standard gravity where an acceleration is wanted, as in the data sheets of accelerometers, and the gram where a mass is."""
+""" "g" is standard gravity where an acceleration is wanted, as in the data sheets of
+accelerometers, and the gram where a mass is.
+"""
 
 from __future__ import annotations
 
@@ -17,7 +19,15 @@ from vibroimpact.units.reading import to_si
 
 
 @pytest.mark.parametrize(
-    ("text", "times"), [("500 g", 500.0), ("500 g0", 500.0), ("2 mg", 2e-3), ("3 ug", 3e-6), ("3 µg", 3e-6), ("1 gravity", 1.0)]
+    ("text", "times"),
+    [
+        ("500 g", 500.0),
+        ("500 g0", 500.0),
+        ("2 mg", 2e-3),
+        ("3 ug", 3e-6),
+        ("3 µg", 3e-6),
+        ("1 gravity", 1.0),
+    ],
 )
 def test_of_an_acceleration(text: str, times: float) -> None:
     assert to_si(text, "m/s^2") == pytest.approx(times * standard_gravity, rel=1e-14)
@@ -33,8 +43,18 @@ def test_of_anything_else_it_is_the_gram() -> None:
 
 
 def test_check_and_schema_say_which() -> None:
-    sensor: dict[str, Any] = {"name": "a1", "position": [0.1, 0.05], "accelerometer": {"range": "500 g"}}
-    plate = {"size": [0.52, 0.42, 0.008], "material": "steel", "model": "elastic", "modes": 5, "supports": "clamped"}
+    sensor: dict[str, Any] = {
+        "name": "a1",
+        "position": [0.1, 0.05],
+        "accelerometer": {"range": "500 g"},
+    }
+    plate = {
+        "size": [0.52, 0.42, 0.008],
+        "material": "steel",
+        "model": "elastic",
+        "modes": 5,
+        "supports": "clamped",
+    }
     case = vi.read_case(plain_case(plate=plate, sensors=[sensor]))
     assert case.sensors[0].accelerometer is not None
     assert case.sensors[0].accelerometer.range == pytest.approx(4903.325)

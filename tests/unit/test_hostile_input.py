@@ -1,4 +1,6 @@
-"""Input that means harm, or is damaged: refused in a few clean lines before work is done, or done."""
+"""Input that means harm, or is damaged: refused in a few clean lines before work is done,
+or done.
+"""
 
 from __future__ import annotations
 
@@ -48,7 +50,7 @@ TOO_LARGE = [
     ({"contact__restitution": [0.5] * 10_001}, "contact.restitution: there are 10001 values; 10000 are the most"),
     ({"name": "x" * 300}, "name: the name has 300 characters; 200 are the most"),
     ({"name": "x" * 5000}, "name: the text has 5000 characters; 4096 are the most"),
-    ({"name": f"a{ESCAPE}b"}, 'name: "a\\x1b[31mb" has characters that can\'t be shown; a name is one line of text'),
+    ({"name": f"a{ESCAPE}b"}, 'name: "a\\x1b[31mb" has characters that can\'t be shown; a name is one ' 'line of ' '' 'text'),
     ({"name": "a\nb"}, 'name: "a\\nb" has characters'),
     ({"plate": PLATE, "sensors": [{**SENSOR, "name": "a\u202eb"}]}, "sensors.name"),
     ({"k" * 300: 1}, "a key has 300 characters; 200 are the most"),
@@ -66,14 +68,24 @@ TOO_LARGE = [
 ]  # fmt: skip
 
 
-@pytest.mark.parametrize(("changes", "words"), TOO_LARGE, ids=[words[:40] for _, words in TOO_LARGE])
+@pytest.mark.parametrize(
+    ("changes", "words"), TOO_LARGE, ids=[words[:40] for _, words in TOO_LARGE]
+)
 def test_cases_beyond_what_a_case_can_be(changes: dict, words: str) -> None:
     (outcome,) = attack(vi.read_case, [plain_case(**changes)])
     assert outcome.kind == "refused", outcome
     assert words in outcome.text
 
 
-@pytest.mark.parametrize("text", ["a." * 100_000 + "b = 1", "[" + "a." * 100_000 + "b]", '"a" . ' * 100_000 + "b = 1", "x." * 30 + "y = 1"])
+@pytest.mark.parametrize(
+    "text",
+    [
+        "a." * 100_000 + "b = 1",
+        "[" + "a." * 100_000 + "b]",
+        '"a" . ' * 100_000 + "b = 1",
+        "x." * 30 + "y = 1",
+    ],
+)
 def test_keys_of_very_many_parts(text: str, tmp_path: Path) -> None:
     file = tmp_path / "case.toml"
     file.write_text(text)
@@ -90,7 +102,9 @@ def test_texts_with_many_points_are_no_keys() -> None:
 
 
 def test_faults_are_few_short_and_clean() -> None:
-    case = plain_case(sphere={str(number): number for number in range(5000)}, **{f"x{'y' * 150}{ESCAPE}": 1})
+    case = plain_case(
+        sphere={str(number): number for number in range(5000)}, **{f"x{'y' * 150}{ESCAPE}": 1}
+    )
     with pytest.raises(InputError) as caught:
         vi.read_case(case)
     lines = str(caught.value).split("\n")
@@ -103,7 +117,9 @@ def test_faults_are_few_short_and_clean() -> None:
 def test_faults_that_are_not_shown_are_counted(tmp_path: Path) -> None:
     """Also where the name of the file takes the place of some."""
     file = tmp_path / "case.toml"
-    file.write_text(tomli_w.dumps(plain_case(run={f"wrong_{number}": number for number in range(30)})))
+    file.write_text(
+        tomli_w.dumps(plain_case(run={f"wrong_{number}": number for number in range(30)}))
+    )
     with pytest.raises(InputError) as caught:
         vi.load_case(file)
     *lines, rest = str(caught.value).split("\n")
@@ -112,30 +128,50 @@ def test_faults_that_are_not_shown_are_counted(tmp_path: Path) -> None:
 
 
 def test_errors_are_clean_whatever_they_are_made_of() -> None:
-    for error in (InputError(f"a\n{ESCAPE}" + "x" * 10_000, "key\n" * 100), ComputationError(f"a\r{ESCAPE}" + "x" * 10_000)):
+    for error in (
+        InputError(f"a\n{ESCAPE}" + "x" * 10_000, "key\n" * 100),
+        ComputationError(f"a\r{ESCAPE}" + "x" * 10_000),
+    ):
         assert str(error).isprintable()
         assert len(str(error)) <= LONGEST
     several = InputError.of_several(["a: 1", "b: 2", f"c{ESCAPE}"])
     assert str(several).split("\n") == ["a: 1", "b: 2", "c\\x1b[31m"]
-    assert str(pickle.loads(pickle.dumps(several))) == str(several)  # as it comes out of another process
+    # as it comes out of another process
+    assert str(pickle.loads(pickle.dumps(several))) == str(several)
 
 
-@pytest.mark.parametrize("key", ["plate.size.thickness", "drop.position.x", "plate.material.density", "sphere.material.tensile_strength"])
+@pytest.mark.parametrize(
+    "key",
+    [
+        "plate.size.thickness",
+        "drop.position.x",
+        "plate.material.density",
+        "sphere.material.tensile_strength",
+    ],
+)
 def test_a_swept_key_that_moves_nothing(key: str) -> None:
     values = [0.01, 0.02, 0.04]
-    table = study_table({"over": {key: values}}, plate={"size": [0.5, 0.4, 0.01], "material": "steel"})
+    table = study_table(
+        {"over": {key: values}}, plate={"size": [0.5, 0.4, 0.01], "material": "steel"}
+    )
     study = vi.read_sweep(table)
     found = compute_points(study.table, ("impacts",), 0, study.plan.points(0, 3))
     assert not found.failures
     alone = vi.simulate(study.case_of(2)).impacts["max_force_N"]
-    np.testing.assert_allclose(found.arrays["max_force_N"], np.broadcast_to(alone, (3, 3)), rtol=1e-8)
+    np.testing.assert_allclose(
+        found.arrays["max_force_N"], np.broadcast_to(alone, (3, 3)), rtol=1e-8
+    )
 
 
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
         ({"plate": 0.025}, "plate: 0.025 is not a table, so that it has no size"),
-        ({"plate__size": [0.1]}, "plate.size: [0.1] does not have the right number of values; it takes length, width, thickness"),
+        (
+            {"plate__size": [0.1]},
+            "plate.size: [0.1] does not have the right number of values; it takes length, "
+            "width, thickness",
+        ),
     ],
 )
 def test_swept_keys_of_what_is_no_table(changes: dict, words: str) -> None:
@@ -161,14 +197,21 @@ def test_studies_beyond_what_a_study_can_be(sweep: dict, words: str) -> None:
 
 
 def test_levels_of_a_long_range_are_not_compared_as_texts() -> None:
-    study = study_table({"over": {"sphere.radius": {"from": 0.01, "to": 0.02, "number": 9_000_000}}})
+    study = study_table(
+        {"over": {"sphere.radius": {"from": 0.01, "to": 0.02, "number": 9_000_000}}}
+    )
     (outcome,) = attack(vi.read_sweep, [study])
     assert outcome.kind == "accepted", outcome
 
 
 @pytest.mark.parametrize(
     ("name", "words"),
-    [("/", "this is the root of the file system"), ("a\0b", "NUL"), ("x" * 300, "200 bytes at most"), ("x" * 250, "200 bytes at most")],
+    [
+        ("/", "this is the root of the file system"),
+        ("a\0b", "NUL"),
+        ("x" * 300, "200 bytes at most"),
+        ("x" * 250, "200 bytes at most"),
+    ],
 )
 def test_folders_that_can_not_be(name: str, words: str) -> None:
     with pytest.raises(InputError) as caught:
@@ -177,7 +220,9 @@ def test_folders_that_can_not_be(name: str, words: str) -> None:
     assert str(caught.value).isprintable()
 
 
-def run(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], *arguments: str) -> tuple[int, str]:
+def run(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], *arguments: str
+) -> tuple[int, str]:
     monkeypatch.setattr("sys.argv", ["vibroimpact", *arguments])
     with pytest.raises(SystemExit) as left:
         main()
@@ -197,7 +242,12 @@ def run(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], *ar
     ],
     ids=lambda arguments: " ".join(arguments)[:20].encode("unicode_escape").decode(),
 )  # fmt: skip
-def test_arguments(arguments: tuple[str, ...], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+def test_arguments(
+    arguments: tuple[str, ...],
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+    tmp_path: Path,
+) -> None:
     monkeypatch.chdir(tmp_path)
     status, written = run(monkeypatch, capsys, *arguments)
     assert status == 2
@@ -205,7 +255,9 @@ def test_arguments(arguments: tuple[str, ...], monkeypatch: pytest.MonkeyPatch, 
     assert not list(tmp_path.iterdir())
 
 
-def test_a_case_of_a_long_name_gets_a_folder(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+def test_a_case_of_a_long_name_gets_a_folder(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
     monkeypatch.chdir(tmp_path)
     file = tmp_path / f"{'x' * 200}{ESCAPE}.toml"
     file.write_text(tomli_w.dumps(plain_case(name="[red]a[/red]", run={"impacts": 1})))
@@ -223,7 +275,14 @@ def test_figures_take_no_notice_of_settings_of_others(theory: vi.Response) -> No
         return render_png(matplotlib_figure(run_charts(result_of(theory))[0]))
 
     plain = picture()
-    with mpl.rc_context({"text.usetex": True, "font.family": "No Such Font", "figure.autolayout": True, "axes.xmargin": 0.4}):
+    with mpl.rc_context(
+        {
+            "text.usetex": True,
+            "font.family": "No Such Font",
+            "figure.autolayout": True,
+            "axes.xmargin": 0.4,
+        }
+    ):
         assert picture() == plain
         assert mpl.rcParams["text.usetex"]
 

@@ -1,4 +1,6 @@
-"""What recognition is given and must not trust: each fault of a data set, of a card and of a graph is named before anything is computed."""
+"""What recognition is given and must not trust: each fault of a data set, of a card and
+of a graph is named before anything is computed.
+"""
 
 from __future__ import annotations
 
@@ -55,9 +57,13 @@ def signals(tiny_models: Path) -> vi.LabelledSignals:
     ],
 )  # fmt: skip
 def test_what_a_person_may_write_wrongly_is_named(
-    change: Callable[[h5py.File], Any], message: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    change: Callable[[h5py.File], Any],
+    message: str,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr("vibroimpact.files.damaged_part.endures", lambda path: True)  # HDF5 endures them, and a process takes time
+    # HDF5 endures them, and a process takes time
+    monkeypatch.setattr("vibroimpact.files.damaged_part.endures", lambda path: True)
     place = write_knocks(tmp_path / "data", **TINY)
     with h5py.File(place / "dataset.nc", "a") as file:
         change(file)
@@ -76,13 +82,22 @@ def replace_variable(file: h5py.File, name: str, values: Any) -> None:
 def test_a_study_is_verified_before_it_is_opened(tmp_path: Path) -> None:
     place = write_knocks(tmp_path / "data", **TINY)
     (place / "summary.json").write_bytes(sealed({CHECK_SUMS: {"dataset.nc": "0" * 64}}))
-    with pytest.raises(vi.InputError, match=r"dataset\.nc: the file is damaged, or was changed after it was written"):
+    with pytest.raises(
+        vi.InputError,
+        match=r"dataset\.nc: the file is damaged, or was changed after it was written",
+    ):
         vi.read_labelled_signals(place)
 
 
-def test_a_file_on_which_hdf5_hangs_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("vibroimpact.files.damaged_part._TIMEOUT", 0.001)  # no process starts so fast
-    with pytest.raises(vi.InputError, match=r"HDF5 did not get through the file within 0\.001 s: it is damaged, or its disk"):
+def test_a_file_on_which_hdf5_hangs_is_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    # no process starts so fast
+    monkeypatch.setattr("vibroimpact.files.damaged_part._TIMEOUT", 0.001)
+    with pytest.raises(
+        vi.InputError,
+        match=r"HDF5 did not get through the file within 0\.001 s: it is damaged, or its disk",
+    ):
         vi.read_labelled_signals(write_knocks(tmp_path / "data", **TINY))
 
 
@@ -100,7 +115,7 @@ def change_card(model: Path, tmp_path: Path, **changes: Any) -> Path:
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        ({"classes": 5}, "classes of the card is 5; it must be a list of different names, from 2 to 100"),
+        ({"classes": 5}, "classes of the card is 5; it must be a list of different names, from 2 " "" "" "to " "100"),
         ({"features": ["a", "a"]}, "features of the card is .*; it must be a list of different names"),
         ({"sensors": {"a1": {"rate_Hz": "1", "unit": "V", "samples": 128}}}, 'sensors.a1.rate_Hz of the card is "1"'),
         ({"confusion": {"coal": {"true_rate": [2.0], "false_rate": [0.1]}}}, "confusion.coal.true_rate of the card is .2.0."),
@@ -108,7 +123,9 @@ def change_card(model: Path, tmp_path: Path, **changes: Any) -> Path:
         ({CHECK_SUMS: {}}, "the card has no check sum of model.onnx"),
     ],
 )  # fmt: skip
-def test_a_card_of_wrong_types_is_refused(change: dict[str, Any], message: str, model: Path, tmp_path: Path) -> None:
+def test_a_card_of_wrong_types_is_refused(
+    change: dict[str, Any], message: str, model: Path, tmp_path: Path
+) -> None:
     place = change_card(model, tmp_path, **change)
     with pytest.raises(vi.InputError, match=f"card.json: {message}") as raised:
         vi.load_recogniser(place)
@@ -119,7 +136,10 @@ def test_a_card_of_wrong_types_is_refused(change: dict[str, Any], message: str, 
     ("text", "message"),
     [
         (b"[" * 100_000, "it has tables and lists more than 100 deep in one another"),
-        (b'{"a":' * 200 + b"1" + b"}" * 200, "it has tables and lists more than 100 deep in one another"),
+        (
+            b'{"a":' * 200 + b"1" + b"}" * 200,
+            "it has tables and lists more than 100 deep in one another",
+        ),
         (b"[" + b"1," * 5_000_001 + b"1]", "it has more than 5,000,000 values and keys"),
         (b'{"a": NaN}', "it is not JSON"),
         (b'{"a": "\\ud800"}', "it is not JSON"),
@@ -146,8 +166,12 @@ def with_graph(model: Path, change: Callable[[Any], Any]) -> vi.Recogniser:
 
 def with_probabilities(factor: float) -> Callable[[Any], None]:
     def change(model: Any) -> None:
-        model.graph.initializer.append(numpy_helper.from_array(np.array(factor, np.float32), "factor"))
-        after_probabilities(model, helper.make_node("Mul", ["inner_probabilities", "factor"], ["probabilities"]))
+        model.graph.initializer.append(
+            numpy_helper.from_array(np.array(factor, np.float32), "factor")
+        )
+        after_probabilities(
+            model, helper.make_node("Mul", ["inner_probabilities", "factor"], ["probabilities"])
+        )
 
     return change
 
@@ -163,12 +187,16 @@ def with_large_tensor(model: Any) -> None:
 
 def doubled(model: Any) -> None:
     names = ["inner_probabilities", *(f"doubled{number}" for number in range(40))]
-    nodes = [helper.make_node("Concat", [one, one], [other], axis=0) for one, other in pairwise(names)]
+    nodes = [
+        helper.make_node("Concat", [one, one], [other], axis=0) for one, other in pairwise(names)
+    ]
     after_probabilities(model, *nodes, helper.make_node("Identity", [names[-1]], ["probabilities"]))
 
 
 def with_external_data(model: Any) -> None:
-    tensor = model.graph.initializer.add(name="more", data_type=1, data_location=onnx.TensorProto.EXTERNAL)
+    tensor = model.graph.initializer.add(
+        name="more", data_type=1, data_location=onnx.TensorProto.EXTERNAL
+    )
     tensor.external_data.add(key="location", value="/dev/zero")
 
 
@@ -179,19 +207,40 @@ def without_features(model: Any) -> None:
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        (with_probabilities(np.nan), "the model gives .nan, nan. for a signal; probabilities are from 0 to 1, and add up to 1"),
-        (with_probabilities(-1.0), "the model gives .* for a signal; probabilities are from 0 to 1"),
+        (
+            with_probabilities(np.nan),
+            "the model gives .nan, nan. for a signal; probabilities are from 0 "
+            "to 1, and add up to 1",
+        ),
+        (
+            with_probabilities(-1.0),
+            "the model gives .* for a signal; probabilities are from 0 to 1",
+        ),
         (with_probabilities(1.5), "the model gives .* for a signal; probabilities are from 0 to 1"),
-        (with_loop, 'the operator "Loop" of the graph has an attribute "body" that is no number or text'),
-        (with_large_tensor, 'the graph uses the operator "ConstantOfShape" as no classifier of this program does'),
+        (
+            with_loop,
+            'the operator "Loop" of the graph has an attribute "body" that is no number or text',
+        ),
+        (
+            with_large_tensor,
+            'the graph uses the operator "ConstantOfShape" as no classifier of this program does',
+        ),
         (doubled, "the results of the graph have more than 40000 numbers a signal"),
         (with_external_data, 'the constant "more" of the graph lies in another file'),
         (without_features, "the graph does not take the .* features of the card"),
-        (lambda model: model.ClearField("graph"), "the graph takes 0 arrays; a model takes the features alone"),
-        (lambda model: model.graph.output.pop(), "the graph does not give a class and the probabilities of the 2 classes of the card"),
+        (
+            lambda model: model.ClearField("graph"),
+            "the graph takes 0 arrays; a model takes the features alone",
+        ),
+        (
+            lambda model: model.graph.output.pop(),
+            "the graph does not give a class and the probabilities of the 2 classes of the card",
+        ),
     ],
 )
-def test_a_graph_is_checked_before_it_runs(change: Callable[[Any], None], message: str, model: Path, signals: vi.LabelledSignals) -> None:
+def test_a_graph_is_checked_before_it_runs(
+    change: Callable[[Any], None], message: str, model: Path, signals: vi.LabelledSignals
+) -> None:
     with pytest.raises(vi.InputError, match=message) as raised:
         vi.apply_recogniser(with_graph(model, change), signals)
     assert len(str(raised.value)) < 500
@@ -199,9 +248,17 @@ def test_a_graph_is_checked_before_it_runs(change: Callable[[Any], None], messag
 
 def test_trees_are_followed_to_their_leaves() -> None:
     """A branch that leads back would be followed without end."""
-    nodes = {"treeids": [0, 0, 0], "nodeids": [0, 1, 2], "featureids": [0, 0, 0], "values": [0.5, 0.0, 0.0]}
+    nodes = {
+        "treeids": [0, 0, 0],
+        "nodeids": [0, 1, 2],
+        "featureids": [0, 0, 0],
+        "values": [0.5, 0.0, 0.0],
+    }
     trees: dict[str, Any] = {f"nodes_{name}": np.array(values) for name, values in nodes.items()}
-    trees |= {"nodes_modes": [b"BRANCH_LEQ", b"LEAF", b"LEAF"], "classlabels_int64s": np.array([0, 1])}
+    trees |= {
+        "nodes_modes": [b"BRANCH_LEQ", b"LEAF", b"LEAF"],
+        "classlabels_int64s": np.array([0, 1]),
+    }
     trees |= {
         "class_treeids": np.zeros(2, int),
         "class_nodeids": np.array([1, 2]),
@@ -227,7 +284,14 @@ def test_trees_are_followed_to_their_leaves() -> None:
 def test_bytes_that_would_grow_are_refused_before_they_are_parsed() -> None:
     """Two million nodes of two bytes each take 300 MB as objects."""
     nodes = b"\x0a\x00" * 2_100_000
-    size = bytes([len(nodes) & 127 | 128, len(nodes) >> 7 & 127 | 128, len(nodes) >> 14 & 127 | 128, len(nodes) >> 21])
+    size = bytes(
+        [
+            len(nodes) & 127 | 128,
+            len(nodes) >> 7 & 127 | 128,
+            len(nodes) >> 14 & 127 | 128,
+            len(nodes) >> 21,
+        ]
+    )
     with pytest.raises(vi.InputError, match="the graph has a table of 200,000 fields or more"):
         check_size(b"\x3a" + size + nodes)
     with pytest.raises(vi.InputError, match="the graph has more than 4 MB beside its numbers"):

@@ -1,4 +1,6 @@
-"""Every command killed at its file operations leaves the old result or the new one, and the next command finds no litter."""
+"""Every command killed at its file operations leaves the old result or the new one, and
+the next command finds no litter.
+"""
 
 from __future__ import annotations
 
@@ -27,17 +29,30 @@ pytestmark = pytest.mark.skipif(not can_trace(), reason="no process can be watch
 BOUNCE = plain_case(contact={"law": "newton", "restitution": 0.5}, run={"impacts": 1})
 ELASTIC = plain_case(
     sphere__radius="10 mm",
-    plate={"material": "steel", "model": "elastic", "size": ["60 mm", "40 mm", "6 mm"], "modes": 3, "supports": "clamped"},
+    plate={
+        "material": "steel",
+        "model": "elastic",
+        "size": ["60 mm", "40 mm", "6 mm"],
+        "modes": 3,
+        "supports": "clamped",
+    },
     run={"impacts": 1},
 )
-STUDY = {**BOUNCE, "sweep": {"over": {"drop.height": ["1 m", "2 m", "3 m"], "contact.restitution": [0.4, 0.6]}}}
+STUDY = {
+    **BOUNCE,
+    "sweep": {"over": {"drop.height": ["1 m", "2 m", "3 m"], "contact.restitution": [0.4, 0.6]}},
+}
 CALIBRATION = plain_case(
-    contact={"law": "adams-impact", "damping_max": 100.0}, run={"impacts": 1}, calibrate={"target": {"restitution": 0.6}}
+    contact={"law": "adams-impact", "damping_max": 100.0},
+    run={"impacts": 1},
+    calibrate={"target": {"restitution": 0.6}},
 )
 UNSTEADY = {"ledger.sqlite"}  # which has the time at which a chunk was done
 
 EVERY = int(os.environ.get("VIBROIMPACT_EVERY", "96"))
-"""Which of the file operations the slow tests try: each (1), each second, ...; of the last ones eight times as many."""
+"""Which of the file operations the slow tests try: each (1), each second, ...; of the
+last ones eight times as many.
+"""
 
 _LAST = 40
 
@@ -48,7 +63,11 @@ def tree(folder: Path) -> Tree:
     """Return the files of a folder, or the file, by their names."""
     if folder.is_file():
         return {"": folder.read_bytes()}
-    return {str(one.relative_to(folder)): one.read_bytes() for one in folder.rglob("*") if one.is_file() and one.name not in UNSTEADY}
+    return {
+        str(one.relative_to(folder)): one.read_bytes()
+        for one in folder.rglob("*")
+        if one.is_file() and one.name not in UNSTEADY
+    }
 
 
 def command(*arguments: object) -> None:
@@ -74,7 +93,9 @@ class Scene:
     next: tuple[object, ...] = ()
     target: str = "out"
     begins_at_once: bool = False
-    """Does a begun study, or reproduction, take the place of what was there? The next command ends it."""
+    """Does a begun study, or reproduction, take the place of what was there? The next
+    command ends it.
+    """
 
 
 def older(folder: Path) -> None:
@@ -109,27 +130,61 @@ def a_picture(folder: Path) -> None:
 
 
 def a_study(folder: Path) -> None:
-    vi.run_sweep(vi.read_sweep({**BOUNCE, "sweep": {"over": {"drop.height": ["1 m", "4 m"]}}}), folder / "out")
+    vi.run_sweep(
+        vi.read_sweep({**BOUNCE, "sweep": {"over": {"drop.height": ["1 m", "4 m"]}}}),
+        folder / "out",
+    )
 
 
 SCENES = {
     "run": Scene(("run", "bounce.toml", "-o", "out"), next=("run", "bounce.toml", "-o", "out")),
-    "run --force": Scene(("run", "bounce.toml", "-o", "out", "--force"), older, ("export", "out", "--to", "csv", "-o", "elsewhere")),
-    "report": Scene(("report", "out"), with_an_older_report, ("export", "out", "--to", "csv", "-o", "elsewhere")),
-    "figures": Scene(("figures", "out"), with_older_figures, ("export", "out", "--to", "csv", "-o", "elsewhere")),
-    "export": Scene(("export", "drop", "--to", "csv", "-o", "out"), a_drop, ("export", "drop", "--to", "csv", "-o", "out")),
+    "run --force": Scene(
+        ("run", "bounce.toml", "-o", "out", "--force"),
+        older,
+        ("export", "out", "--to", "csv", "-o", "elsewhere"),
+    ),
+    "report": Scene(
+        ("report", "out"), with_an_older_report, ("export", "out", "--to", "csv", "-o", "elsewhere")
+    ),
+    "figures": Scene(
+        ("figures", "out"), with_older_figures, ("export", "out", "--to", "csv", "-o", "elsewhere")
+    ),
+    "export": Scene(
+        ("export", "drop", "--to", "csv", "-o", "out"),
+        a_drop,
+        ("export", "drop", "--to", "csv", "-o", "out"),
+    ),
     "export --force": Scene(
-        ("export", "drop", "--to", "csv", "-o", "out", "--force"), exported, ("export", "drop", "--to", "csv", "-o", "out")
+        ("export", "drop", "--to", "csv", "-o", "out", "--force"),
+        exported,
+        ("export", "drop", "--to", "csv", "-o", "out"),
     ),
     "export FILE": Scene(
-        ("export", "drop", "--to", "mat", "-o", "out.mat"), a_drop, ("export", "drop", "--to", "mat", "-o", "out.mat"), "out.mat"
+        ("export", "drop", "--to", "mat", "-o", "out.mat"),
+        a_drop,
+        ("export", "drop", "--to", "mat", "-o", "out.mat"),
+        "out.mat",
     ),
-    "laws": Scene(("laws", "hertz", "-o", "out.png", "--force"), a_picture, ("laws", "hertz", "-o", "out.png", "--force"), "out.png"),
-    "compare": Scene(("compare", "bounce.toml", "--laws", "newton", "-o", "out"), next=("run", "bounce.toml", "-o", "out")),
-    "calibrate": Scene(("calibrate", "calibration.toml", "-o", "out"), next=("run", "bounce.toml", "-o", "out")),
-    "modes": Scene(("modes", "elastic.toml", "-o", "out"), next=("modes", "elastic.toml", "-o", "out")),
+    "laws": Scene(
+        ("laws", "hertz", "-o", "out.png", "--force"),
+        a_picture,
+        ("laws", "hertz", "-o", "out.png", "--force"),
+        "out.png",
+    ),
+    "compare": Scene(
+        ("compare", "bounce.toml", "--laws", "newton", "-o", "out"),
+        next=("run", "bounce.toml", "-o", "out"),
+    ),
+    "calibrate": Scene(
+        ("calibrate", "calibration.toml", "-o", "out"), next=("run", "bounce.toml", "-o", "out")
+    ),
+    "modes": Scene(
+        ("modes", "elastic.toml", "-o", "out"), next=("modes", "elastic.toml", "-o", "out")
+    ),
     "sweep": Scene(
-        ("sweep", "study.toml", "-o", "out", "--processes", "1"), next=("sweep", "study.toml", "-o", "out", "--resume"), begins_at_once=True
+        ("sweep", "study.toml", "-o", "out", "--processes", "1"),
+        next=("sweep", "study.toml", "-o", "out", "--resume"),
+        begins_at_once=True,
     ),
     "sweep --resume": Scene(
         ("sweep", "study.toml", "-o", "out", "--resume", "--processes", "1"),
@@ -147,7 +202,9 @@ SCENES = {
         next=("reproduce", "-o", "out", "--only", "table1,corrections"),
         begins_at_once=True,
     ),
-    "demo": Scene(("demo", "-o", "out", "--force"), older, ("export", "out", "--to", "csv", "-o", "elsewhere")),
+    "demo": Scene(
+        ("demo", "-o", "out", "--force"), older, ("export", "out", "--to", "csv", "-o", "elsewhere")
+    ),
 }
 
 
@@ -157,7 +214,12 @@ class Stage:
     def __init__(self, scene: Scene, place: Path) -> None:
         self.scene, self.place, self.start = scene, place / "here", place / "start"
         self.start.mkdir()
-        for name, case in (("bounce", BOUNCE), ("elastic", ELASTIC), ("study", STUDY), ("calibration", CALIBRATION)):
+        for name, case in (
+            ("bounce", BOUNCE),
+            ("elastic", ELASTIC),
+            ("study", STUDY),
+            ("calibration", CALIBRATION),
+        ):
             (self.start / f"{name}.toml").write_text(tomli_w.dumps(case))
         scene.before(self.start)
         self.told = place
@@ -183,17 +245,23 @@ class Stage:
         return traced(lambda: command_status(*self.scene.arguments), self.told, **how)
 
     def check_after_a_kill(self, last: str) -> None:
-        """Look at what there is: the old result or the new one, and after the next command no more than that."""
+        """Look at what there is: the old result or the new one, and after the next
+        command no more than that.
+        """
         found = self.found(self.place)
         whole = found in (self.old, self.new)
-        mixed = all(data in (self.old.get(name), self.new.get(name)) for name, data in found.items() if ".vibroimpact" not in name)
+        mixed = all(
+            data in (self.old.get(name), self.new.get(name))
+            for name, data in found.items()
+            if ".vibroimpact" not in name
+        )
         may_mix = mixed and self.scene.arguments[0] in ("report", "figures", "export")
         assert whole or self.scene.begins_at_once or may_mix, (last, sorted(found))
         command(*self.scene.next)
         again = self.found(self.place)
-        assert again in ((self.new,) if self.scene.begins_at_once or not self.old else (self.old, self.new)) or (
-            self.scene.next[0] == "run" and "summary.json" in again
-        ), (last, sorted(again))
+        assert again in (
+            (self.new,) if self.scene.begins_at_once or not self.old else (self.old, self.new)
+        ) or (self.scene.next[0] == "run" and "summary.json" in again), (last, sorted(again))
         names = {path.name for path in self.place.iterdir()} - {"elsewhere"}
         assert names <= self.names, (last, names)
         assert not list(self.place.rglob("*-journal")), last
@@ -224,8 +292,12 @@ def moments(operations: int) -> list[int]:
     return sorted({*last, *range(operations, 0, -EVERY)})
 
 
-def try_each(stage: Stage, chosen: Callable[[int], list[int]], attempt: Callable[[int, str], None]) -> None:
-    """Attempt something at chosen operations of a command; fail with all that went wrong, and of how many."""
+def try_each(
+    stage: Stage, chosen: Callable[[int], list[int]], attempt: Callable[[int, str], None]
+) -> None:
+    """Attempt something at chosen operations of a command; fail with all that went wrong,
+    and of how many.
+    """
     whole = stage.run()
     assert whole.status == 0, whole.told
     assert stage.found(stage.place) == stage.new
@@ -256,16 +328,24 @@ def test_a_command_that_is_killed_leaves_the_old_result_or_the_new_one(stage: St
 
 @pytest.mark.slow
 @pytest.mark.parametrize("stage", SCENES, indirect=True)
-def test_a_command_that_is_killed_at_any_file_operation_leaves_the_old_result_or_the_new_one(stage: Stage) -> None:
+def test_a_command_that_is_killed_at_any_file_operation_leaves_the_old_result_or_the_new_one(
+    stage: Stage,
+) -> None:
     kill_at(stage, moments)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    "error", [pytest.param(errno.ENOSPC, id="full disk"), pytest.param(errno.EACCES, id="no permission", marks=pytest.mark.whole)]
+    "error",
+    [
+        pytest.param(errno.ENOSPC, id="full disk"),
+        pytest.param(errno.EACCES, id="no permission", marks=pytest.mark.whole),
+    ],
 )
 @pytest.mark.parametrize("stage", SCENES, indirect=True)
-def test_a_command_whose_file_operation_fails_says_so_once_and_leaves_the_old_result(stage: Stage, error: int) -> None:
+def test_a_command_whose_file_operation_fails_says_so_once_and_leaves_the_old_result(
+    stage: Stage, error: int
+) -> None:
     def fails(moment: int, which: str) -> None:
         ended = stage.run(fail=moment, error=error)
         where = f"{which} failed, {ended.last}: {ended.status}, {ended.told}"

@@ -49,7 +49,9 @@ def test_the_table_names_every_law_whole(width: int) -> None:
 def test_the_sheet_reads_well(name: str) -> None:
     for width in (80, 160):
         text = printed(law_sheet(name), width)
-        assert not any(mark in text for mark in ("\\", ":math:", ".. math", "`", "{", "}", "$", "\u2026"))
+        assert not any(
+            mark in text for mark in ("\\", ":math:", ".. math", "`", "{", "}", "$", "\u2026")
+        )
         assert max(map(len, text.splitlines())) <= width
     words = " ".join(text.split())
     for item in (*law_text(LAWS[name]).parameters, *law_text(LAWS[name]).state):
@@ -77,7 +79,9 @@ def test_every_law_is_drawn(name: str, tmp_path: Path, monkeypatch: pytest.Monke
 
 @pytest.mark.parametrize("name", ["flores", "thornton", "jkr", "newton"])
 def test_a_loop_encloses_the_energy_that_is_lost(name: str) -> None:
-    """As the restitution beside it says, at the speeds of the loops; and all parameters are below the title."""
+    """As the restitution beside it says, at the speeds of the loops; and all parameters
+    are below the title.
+    """
     law = LAWS[name]
     chart = law_chart(law)
     *left, right = chart.panels
@@ -88,7 +92,9 @@ def test_a_loop_encloses_the_energy_that_is_lost(name: str) -> None:
     loops = {mark.role: mark for panel in left for mark in panel.marks if isinstance(mark, Line)}
     for point in marked:
         speed, restitution = float(point.x[0]), float(point.y[0])
-        assert restitution == pytest.approx(np.interp(np.log(speed), np.log(curve.x), curve.y), abs=0.12 if name == "jkr" else 5e-3)
+        assert restitution == pytest.approx(
+            np.interp(np.log(speed), np.log(curve.x), curve.y), abs=0.12 if name == "jkr" else 5e-3
+        )
         loop = loops[point.role]
         lost = np.trapezoid(loop.y, loop.x)
         density = vi.find_material("steel" if name == "thornton" else "rock-paper").density
@@ -100,14 +106,18 @@ def test_a_loop_encloses_the_energy_that_is_lost(name: str) -> None:
     assert plotly_figure(chart).layout.title.text == name
 
 
-def test_a_sheet_alone_writes_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_sheet_alone_writes_nothing(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
     monkeypatch.chdir(tmp_path)
     assert run(monkeypatch, "hertz") == 0
     assert "Elastic contact" in capsys.readouterr().out
     assert not list(tmp_path.iterdir())
 
 
-def test_a_picture_that_is_there_is_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_picture_that_is_there_is_kept(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
     target = tmp_path / "mine.png"
     target.write_bytes(b"mine")
     assert run(monkeypatch, "hertz", "-o", str(target)) == 2
@@ -128,7 +138,11 @@ def test_a_picture_that_is_there_is_kept(tmp_path: Path, monkeypatch: pytest.Mon
     ],
 )
 def test_what_is_refused(
-    arguments: tuple[str, ...], message: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    arguments: tuple[str, ...],
+    message: str,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
 ) -> None:
     monkeypatch.chdir(tmp_path)
     (tmp_path / "folder.png").mkdir()

@@ -1,4 +1,6 @@
-"""Limits of the theory: each is doubted from its stated threshold on, with a number, and not below it."""
+"""Limits of the theory: each is doubted from its stated threshold on, with a number, and
+not below it.
+"""
 
 from __future__ import annotations
 
@@ -31,7 +33,13 @@ from vibroimpact.units.reading import to_si
 
 STEEL = {"density": 7850, "youngs_modulus": 2.1e11, "poissons_ratio": 0.3, "yield_strength": 1e12}
 """One that never yields, so that nothing is said of strength."""
-ELASTIC = {"size": [0.4, 0.3, 0.005], "material": STEEL, "model": "elastic", "supports": "clamped", "modes": 10}
+ELASTIC = {
+    "size": [0.4, 0.3, 0.005],
+    "material": STEEL,
+    "model": "elastic",
+    "supports": "clamped",
+    "modes": 10,
+}
 
 
 def quiet(**changes: Any) -> dict[str, Any]:
@@ -54,7 +62,11 @@ def test_there_is_nothing_to_doubt_of_a_calm_drop() -> None:
 
 def number(case: dict[str, Any], name: str, **seen: float) -> float:
     read = vi.read_case(case)
-    return float(numbers_of(Conditions(resolved_case(read), DropSummary(**{**vars(expected_of(read)), **seen}))).get(name, math.nan))
+    return float(
+        numbers_of(
+            Conditions(resolved_case(read), DropSummary(**{**vars(expected_of(read)), **seen}))
+        ).get(name, math.nan)
+    )
 
 
 ROCK = {"density": 2600, "youngs_modulus": 5e10, "poissons_ratio": 0.25}
@@ -65,7 +77,9 @@ def viscous(time: float) -> dict[str, Any]:
 
 
 def fading(depth: str) -> dict[str, Any]:
-    return {"contact": {"law": "adams-impact", "damping_max": 10.0, "full_damping_penetration": depth}}
+    return {
+        "contact": {"law": "adams-impact", "damping_max": 10.0, "full_damping_penetration": depth}
+    }
 
 
 def near_edge(x: float) -> dict[str, Any]:
@@ -79,7 +93,10 @@ def small(radius: float) -> dict[str, Any]:
 def given_up_to(speed: float) -> dict[str, Any]:
     """A restitution that is given from 0.01 m/s to a speed, and a drop that comes at 1 m/s."""
     restitution = {"speed": [0.01, speed], "value": [0.6, 0.5]}
-    return {"contact": {"law": "tsuji", "restitution": restitution}, "drop": {"height": 0.025 + 1.0 / 19.6133}}
+    return {
+        "contact": {"law": "tsuji", "restitution": restitution},
+        "drop": {"height": 0.025 + 1.0 / 19.6133},
+    }
 
 
 def in_air(speed: float, **changes: Any) -> dict[str, Any]:
@@ -87,29 +104,77 @@ def in_air(speed: float, **changes: Any) -> dict[str, Any]:
 
 
 def light(density: float) -> dict[str, Any]:
-    return in_air(2.0, sphere__material={"density": density, "youngs_modulus": 1e7, "poissons_ratio": 0.3})
+    return in_air(
+        2.0, sphere__material={"density": density, "youngs_modulus": 1e7, "poissons_ratio": 0.3}
+    )
 
 
 def in_water(speed: float) -> dict[str, Any]:
-    return {"drop": {"speed": speed}, "contact": {"law": "tsuji", "restitution": 0.6, "liquid": True}}
+    return {
+        "drop": {"speed": speed},
+        "contact": {"law": "tsuji", "restitution": 0.6, "liquid": True},
+    }
 
 
 @pytest.mark.parametrize(
     ("name", "threshold", "below", "beyond", "words"),
     [
-        ("air_drag", 0.01, {"drop": {"height": 17.0}}, {"drop": {"height": 19.0}}, ["slower", "vacuum", "drop.air", "drop.speed = "]),
-        ("finite_sphere", 0.02, {"drop": {"speed": 4.0}}, {"drop": {"speed": 5.0}}, ["too small", "finite_sphere = true"]),
+        (
+            "air_drag",
+            0.01,
+            {"drop": {"height": 17.0}},
+            {"drop": {"height": 19.0}},
+            ["slower", "vacuum", "drop.air", "drop.speed = "],
+        ),
+        (
+            "finite_sphere",
+            0.02,
+            {"drop": {"speed": 4.0}},
+            {"drop": {"speed": 5.0}},
+            ["too small", "finite_sphere = true"],
+        ),
         ("relaxation", 0.1, viscous(2.6e-5), viscous(2.9e-5), ["first order", "shorter time"]),
         ("adhesion", 0.01, small(2e-5), small(1e-5), ["J/m^2", "stick below", '"jkr"']),
-        ("plate_edge", 1.0, near_edge(0.045), near_edge(0.0453), ["half space is too stiff", "choose drop.position"]),
+        (
+            "plate_edge",
+            1.0,
+            near_edge(0.045),
+            near_edge(0.0453),
+            ["half space is too stiff", "choose drop.position"],
+        ),
         ("full_damping", 1.0, fading("9 um"), fading("10 um"), ["never acts in full", "calibrate"]),
-        # Reynolds number 1.2 v 2 R / 1.81e-5 in air, 998 v 2 R / 1e-3 in water, of a radius of 25 mm
-        ("drag_coefficient", 1.0, in_air(90.0), in_air(91.0), ["Reynolds number", "drop.air.drag_coefficient"]),
+        # Reynolds number 1.2 v 2 R / 1.81e-5 in air, 998 v 2 R / 1e-3 in water, of a radius of 25
+        # mm
+        (
+            "drag_coefficient",
+            1.0,
+            in_air(90.0),
+            in_air(91.0),
+            ["Reynolds number", "drop.air.drag_coefficient"],
+        ),
         ("drag_coefficient", 1.0, in_water(5.9), in_water(6.1), ["Reynolds number", "uncertain"]),
         # 1 - (rho - 1.2) / (rho + 0.6) of a density rho
-        ("air_buoyancy", 0.01, light(180.0), light(179.0), ["buoyancy", "contact.liquid = { density = 1.2, viscosity = 1.81e-05 }"]),
-        ("mach", 0.3, in_air(102.0), in_air(104.0), ["speed of sound", "take the rebounds for uncertain"]),
-        ("speeds_given", 1.05, given_up_to(0.96), given_up_to(0.95), ["is given for approach speeds", "the nearest one holds"]),
+        (
+            "air_buoyancy",
+            0.01,
+            light(180.0),
+            light(179.0),
+            ["buoyancy", "contact.liquid = { density = 1.2, viscosity = 1.81e-05 }"],
+        ),
+        (
+            "mach",
+            0.3,
+            in_air(102.0),
+            in_air(104.0),
+            ["speed of sound", "take the rebounds for uncertain"],
+        ),
+        (
+            "speeds_given",
+            1.05,
+            given_up_to(0.96),
+            given_up_to(0.95),
+            ["is given for approach speeds", "the nearest one holds"],
+        ),
     ],
 )
 def test_a_limit_is_doubted_from_its_threshold_on(
@@ -126,11 +191,19 @@ def test_a_limit_is_doubted_from_its_threshold_on(
 def test_a_stiffness_of_another_exponent_is_doubted() -> None:
     """Hertz's number of N/m^1.5 was taken as one of N/m^1.8 without a word."""
     words = "which no theory gives"
-    for law in ({"law": "hertz"}, {"law": "hertz", "exponent": 1.5}, {"law": "hertz", "exponent": 1.8, "stiffness": 1e10}):
+    for law in (
+        {"law": "hertz"},
+        {"law": "hertz", "exponent": 1.5},
+        {"law": "hertz", "exponent": 1.8, "stiffness": 1e10},
+    ):
         assert not any(words in doubt for doubt in told(quiet(contact=law)))
-    (doubt,) = (doubt for doubt in told(quiet(contact={"law": "hertz", "exponent": 1.8})) if words in doubt)
+    (doubt,) = (
+        doubt for doubt in told(quiet(contact={"law": "hertz", "exponent": 1.8})) if words in doubt
+    )
     assert "in N/m^1.8" in doubt
-    assert number(quiet(contact={"law": "hertz", "exponent": 1.8}), "stiffness_of_exponent") == pytest.approx(0.3)
+    assert number(
+        quiet(contact={"law": "hertz", "exponent": 1.8}), "stiffness_of_exponent"
+    ) == pytest.approx(0.3)
 
 
 def test_a_deep_contact_is_doubted_with_its_strain() -> None:
@@ -156,9 +229,16 @@ def test_a_deep_contact_of_two_spheres_is_one_of_their_effective_radius() -> Non
         ({"height": 1.0, "velocity": [0, 0, -15.0]}, {}),
     ],
 )
-def test_the_loss_by_drag_is_that_of_a_fall_in_air(drop: dict[str, Any], plate: dict[str, Any]) -> None:
+def test_the_loss_by_drag_is_that_of_a_fall_in_air(
+    drop: dict[str, Any], plate: dict[str, Any]
+) -> None:
     def touches(**flight: Any) -> float:
-        case = quiet(sphere__radius=0.002, drop={**drop, **flight}, plate={"material": STEEL, **plate}, run={"impacts": 1})
+        case = quiet(
+            sphere__radius=0.002,
+            drop={**drop, **flight},
+            plate={"material": STEEL, **plate},
+            run={"impacts": 1},
+        )
         return float(vi.simulate(vi.read_case(case)).impacts["approach_speed_m_s"][0])
 
     case = quiet(sphere__radius=0.002, drop=drop, plate={"material": STEEL, **plate})
@@ -169,12 +249,21 @@ def test_the_loss_by_drag_is_that_of_a_fall_in_air(drop: dict[str, Any], plate: 
 
 def test_a_ball_that_is_too_light_for_drag_alone_is_sent_into_air_as_a_liquid() -> None:
     foam = {"density": 30, "youngs_modulus": 1e7, "poissons_ratio": 0.3}
-    (doubt,) = (doubt for doubt in told(quiet(sphere__material=foam, drop={"height": 1.0})) if "in air the first touch" in doubt)
+    (doubt,) = (
+        doubt
+        for doubt in told(quiet(sphere__material=foam, drop={"height": 1.0}))
+        if "in air the first touch" in doubt
+    )
     liquid = {"density": 1.2, "viscosity": 1.81e-05}
-    assert "give contact.liquid = { density = 1.2, viscosity = 1.81e-05 } with a law that takes a restitution" in doubt
+    assert (
+        "give contact.liquid = { density = 1.2, viscosity = 1.81e-05 } with a law that "
+        "takes a restitution" in doubt
+    )
     with pytest.raises(vi.InputError, match=r"drop\.air\.density"):
         vi.read_case(quiet(sphere__material=foam, drop={"height": 1.0, "air": True}))
-    vi.read_case(quiet(sphere__material=foam, contact={"law": "tsuji", "restitution": 0.6, "liquid": liquid}))
+    vi.read_case(
+        quiet(sphere__material=foam, contact={"law": "tsuji", "restitution": 0.6, "liquid": liquid})
+    )
 
 
 def test_no_law_that_a_liquid_refuses_is_proposed_in_one() -> None:
@@ -199,13 +288,23 @@ def test_an_edge_is_as_near_as_an_oblique_drop_flies_to_it() -> None:
     landed = float(vi.simulate(vi.read_case(case)).impacts["position_x_m"][0])
     (doubt,) = (doubt for doubt in told(case) if "from the edge" in doubt)
     assert f"the first contact is about {0.5 - landed:.3g} m from the edge of the plate" in doubt
-    assert not any("from the edge" in doubt for doubt in told(quiet(drop={**case["drop"], "velocity": [-0.2, 0.0, 0.0]}, **size)))
+    assert not any(
+        "from the edge" in doubt
+        for doubt in told(quiet(drop={**case["drop"], "velocity": [-0.2, 0.0, 0.0]}, **size))
+    )
 
 
 def test_a_rigid_plate_is_doubted_where_the_contact_reaches_over_its_edge() -> None:
     rigid = {"plate__material": "rigid", "plate__size": [0.1, 0.1, 0.01]}
-    assert not any("edge" in doubt for doubt in told(quiet(drop={"speed": 0.1, "position": [0.049, 0.0]}, **rigid)))
-    (doubt,) = (doubt for doubt in told(quiet(drop={"speed": 0.1, "position": [0.04999, 0.0]}, **rigid)) if "edge" in doubt)
+    assert not any(
+        "edge" in doubt
+        for doubt in told(quiet(drop={"speed": 0.1, "position": [0.049, 0.0]}, **rigid))
+    )
+    (doubt,) = (
+        doubt
+        for doubt in told(quiet(drop={"speed": 0.1, "position": [0.04999, 0.0]}, **rigid))
+        if "edge" in doubt
+    )
     assert "it reaches over the edge" in doubt
 
 
@@ -216,12 +315,16 @@ def test_a_plate_with_no_place_far_from_its_edges_is_too_small() -> None:
 
 
 def test_light_balls_that_fall_on_a_sphere_are_not_sent_into_a_liquid() -> None:
-    (doubt,) = (doubt for doubt in told(quiet(**light(100.0), plate__radius=0.1)) if "buoyancy" in doubt)
+    (doubt,) = (
+        doubt for doubt in told(quiet(**light(100.0), plate__radius=0.1)) if "buoyancy" in doubt
+    )
     assert doubt.endswith("take the speeds of impacts for too high")
 
 
 def test_what_a_thin_plate_gives_way_is_no_contact_radius() -> None:
-    """Hertz's contact radius at 0.3 N is 0.0007 of the radius; the indentation of a foil would stand for 0.4 of it."""
+    """Hertz's contact radius at 0.3 N is 0.0007 of the radius; the indentation of a foil
+    would stand for 0.4 of it.
+    """
     case = quiet(plate=ELASTIC)
     assert not any("strains" in doubt for doubt in told(case, depth=0.4**2 * 0.025, force=0.3))
     assert any("strains" in doubt for doubt in told(case, depth=0.4**2 * 0.025, force=3e8))
@@ -234,7 +337,12 @@ def test_a_plate_that_stretches_is_doubted_with_how_much_stiffer_it_is() -> None
     assert "0.5 of its thickness" in doubt
     assert "about 5 % if its edges may slide" in doubt
     assert "11 % if they are held" in doubt
-    assert not any("stretches" in doubt for doubt in told(quiet(plate={"material": STEEL, "size": [0.4, 0.3, 0.005]}), deflection=0.01))
+    assert not any(
+        "stretches" in doubt
+        for doubt in told(
+            quiet(plate={"material": STEEL, "size": [0.4, 0.3, 0.005]}), deflection=0.01
+        )
+    )
 
 
 def test_a_run_knows_how_far_its_plate_gives_way_and_a_check_expects_it() -> None:
@@ -247,7 +355,9 @@ def test_a_run_knows_how_far_its_plate_gives_way_and_a_check_expects_it() -> Non
 
 
 def test_near_an_edge_an_elastic_plate_asks_for_two_thicknesses() -> None:
-    places = {at: quiet(plate=ELASTIC, drop={"speed": 0.1, "position": [0.0, at]}) for at in (0.13, 0.145)}
+    places = {
+        at: quiet(plate=ELASTIC, drop={"speed": 0.1, "position": [0.0, at]}) for at in (0.13, 0.145)
+    }
     assert number(places[0.13], "plate_edge") == pytest.approx(0.5)
     (doubt,) = (doubt for doubt in told(places[0.145]) if "edge" in doubt)
     assert "1 thicknesses" in doubt
@@ -257,20 +367,29 @@ def test_near_an_edge_an_elastic_plate_asks_for_two_thicknesses() -> None:
 
 def strengths(sphere: dict[str, Any], plate: Any, **changes: Any) -> list[str]:
     """What is said of strength where a ball of 25 mm strikes at 10 m/s."""
-    found = told(quiet(sphere__material=sphere, plate__material=plate, drop={"speed": 10.0}, **changes))
+    found = told(
+        quiet(sphere__material=sphere, plate__material=plate, drop={"speed": 10.0}, **changes)
+    )
     return [doubt for doubt in found if "peak pressure" in doubt]
 
 
 def test_each_body_is_held_to_its_own_strength() -> None:
-    """The pressure is Hertz's, in closed form; yield is at 1.6 times the strength, a crack where (1 - 2 nu) p / 3 is that in tension."""
-    mass, modulus = 4 / 3 * math.pi * 0.025**3 * 2600, 1 / ((1 - 0.25**2) / 5e10 + (1 - 0.3**2) / 2.1e11)
+    """The pressure is Hertz's, in closed form; yield is at 1.6 times the strength, a
+    crack where (1 - 2 nu) p / 3 is that in tension.
+    """
+    mass, modulus = (
+        4 / 3 * math.pi * 0.025**3 * 2600,
+        1 / ((1 - 0.25**2) / 5e10 + (1 - 0.3**2) / 2.1e11),
+    )
     depth = (15 * mass * 10.0**2 / (16 * modulus * math.sqrt(0.025))) ** 0.4
     pressure = 2 * modulus / math.pi * math.sqrt(depth / 0.025)
     for part, plate_yields in ((0.99, True), (1.01, False)):
         plate = {**STEEL, "yield_strength": part * pressure / 1.6}
         found = strengths({**ROCK, "tensile_strength": 1.01 * pressure / 6}, plate)
         assert [doubt.startswith("the plate yields") for doubt in found] == [True] * plate_yields
-    (cracks,) = strengths({**ROCK, "tensile_strength": 0.99 * pressure / 6, "name": "my rock"}, STEEL)
+    (cracks,) = strengths(
+        {**ROCK, "tensile_strength": 0.99 * pressure / 6, "name": "my rock"}, STEEL
+    )
     assert cracks.startswith("the sphere (my rock) cracks under")
     assert "leaves this out: take the force for an upper bound" in cracks
     assert pressure > 1e9
@@ -281,7 +400,9 @@ def test_each_body_is_held_to_its_own_strength() -> None:
 
 
 def test_a_strength_that_is_not_known_is_said_so() -> None:
-    (unknown,) = strengths(ROCK, {key: STEEL[key] for key in ("density", "youngs_modulus", "poissons_ratio")})
+    (unknown,) = strengths(
+        ROCK, {key: STEEL[key] for key in ("density", "youngs_modulus", "poissons_ratio")}
+    )
     assert "whether the sphere and the plate yield or crack" in unknown
     assert "is not known" in unknown
     (unknown,) = strengths(ROCK, "rigid")
@@ -292,16 +413,36 @@ def test_a_strength_that_is_not_known_is_said_so() -> None:
 def test_laws_that_know_of_it_are_not_doubted() -> None:
     plastic = {"law": "thornton", "yield_pressure": 1e9}
     assert strengths(ROCK, STEEL, contact=plastic) == []
-    sticky = quiet(sphere__radius=1e-5, drop={"speed": 0.05}, contact={"law": "jkr", "work_of_adhesion": 0.05})
+    sticky = quiet(
+        sphere__radius=1e-5, drop={"speed": 0.05}, contact={"law": "jkr", "work_of_adhesion": 0.05}
+    )
     assert not any("adhesion" in doubt for doubt in told(sticky))
-    assert not any("too small" in doubt for doubt in told(quiet(drop={"speed": 300.0}, contact={"law": "hertz", "stiffness": 1e8})))
+    assert not any(
+        "too small" in doubt
+        for doubt in told(quiet(drop={"speed": 300.0}, contact={"law": "hertz", "stiffness": 1e8}))
+    )
 
 
 def test_materials_take_strengths_and_refuse_what_is_none() -> None:
-    case = vi.read_case(quiet(sphere__material={**ROCK, "tensile_strength": "12 MPa", "compressive_strength": "140 MPa"}))
-    assert (case.sphere.material.tensile_strength, case.sphere.material.compressive_strength) == (12e6, 140e6)
+    case = vi.read_case(
+        quiet(
+            sphere__material={
+                **ROCK,
+                "tensile_strength": "12 MPa",
+                "compressive_strength": "140 MPa",
+            }
+        )
+    )
+    assert (case.sphere.material.tensile_strength, case.sphere.material.compressive_strength) == (
+        12e6,
+        140e6,
+    )
     assert resolved_case(vi.read_case(resolved_case(case))) == resolved_case(case)
-    with pytest.raises(vi.InputError, match=r"sphere\.material\.tensile_strength: -12 is not allowed; it must be greater than 0 Pa"):
+    with pytest.raises(
+        vi.InputError,
+        match=r"sphere\.material\.tensile_strength: -12 is not allowed; it must be greater than "
+        r"0 Pa",
+    ):
         vi.read_case(quiet(sphere__material={**ROCK, "tensile_strength": -12}))
 
 
@@ -313,15 +454,24 @@ def kept(study: vi.Study, name: str) -> np.ndarray:
 
 
 def test_a_study_holds_each_drop_to_each_limit_as_a_run_does(tmp_path: Path) -> None:
-    over = {"sphere.radius": {"from": "1 mm", "to": "50 mm", "number": 3, "scale": "log"}, "drop.height": ["0.2 m", "4 m"]}
-    sweep = vi.read_sweep(study_table({"over": over}, plate__size=[0.1, 0.1, 0.01], drop__position=[0.0499, 0.0]))
+    over = {
+        "sphere.radius": {"from": "1 mm", "to": "50 mm", "number": 3, "scale": "log"},
+        "drop.height": ["0.2 m", "4 m"],
+    }
+    sweep = vi.read_sweep(
+        study_table({"over": over}, plate__size=[0.1, 0.1, 0.01], drop__position=[0.0499, 0.0])
+    )
     study = vi.read_study(compute_study(sweep, tmp_path / "study"))
     flags = dict(zip(*told_flags(study), strict=True))
     for drop in range(sweep.size):
         result = result_of(vi.simulate(sweep.case_of(drop)))
         place = np.unravel_index(drop, (3, 2))
         beyond = {name for name, mask in flags.items() if study.values("doubts")[place] & mask}
-        assert beyond == {name for name in limits() if any(doubt == sentence(result, name) for doubt in result.doubts)}
+        assert beyond == {
+            name
+            for name in limits()
+            if any(doubt == sentence(result, name) for doubt in result.doubts)
+        }
         for name, value in numbers_of(Conditions(result.case, result._seen)).items():
             assert kept(study, name)[place] == pytest.approx(float(value), rel=1e-5)
 
@@ -335,17 +485,27 @@ def told_flags(study: vi.Study) -> tuple[list[str], list[int]]:
 def sentence(result: Any, name: str) -> str:
     conditions = Conditions(result.case, result._seen)
     number = numbers_of(conditions).get(name, math.nan)
-    return limits()[name].sentence(conditions, float(number)) if number > limits()[name].threshold else ""
+    return (
+        limits()[name].sentence(conditions, float(number))
+        if number > limits()[name].threshold
+        else ""
+    )
 
 
 def test_a_study_says_how_many_drops_which_and_the_worst(tmp_path: Path) -> None:
     over = {"sphere.radius": ["2 mm", "25 mm", "50 mm"]}
-    study = vi.read_study(vi.run_sweep(vi.read_sweep(study_table({"over": over}, drop__height=4.0)), tmp_path / "study"))
+    study = vi.read_study(
+        vi.run_sweep(
+            vi.read_sweep(study_table({"over": over}, drop__height=4.0)), tmp_path / "study"
+        )
+    )
     drag = kept(study, "air_drag")
     (found,) = (doubt for doubt in study.doubts if doubt.limit == "air_drag")
     assert (found.drops, found.worst) == (int((drag > 0.01).sum()), 0) == (2, 0)
     assert found.number == pytest.approx(float(drag[0]))
-    said = f"air drag: 2 of 3 drops, worst -{100 * drag[0]:.2g} % at drop 0 (sphere.radius 2.000 mm)"
+    said = (
+        f"air drag: 2 of 3 drops, worst -{100 * drag[0]:.2g} % at drop 0 (sphere.radius 2.000 mm)"
+    )
     console = Console(width=200)
     with console.capture() as printed:
         console.print(study_summary(study, 200))
@@ -358,7 +518,9 @@ def test_a_study_says_how_many_drops_which_and_the_worst(tmp_path: Path) -> None
 
 
 def test_a_study_of_plates_keeps_how_far_they_give_way(tmp_path: Path) -> None:
-    sweep = vi.read_sweep({**quiet(plate=ELASTIC, run={"impacts": 1}), "sweep": {"over": {"drop.speed": [0.1, 6.0]}}})
+    sweep = vi.read_sweep(
+        {**quiet(plate=ELASTIC, run={"impacts": 1}), "sweep": {"over": {"drop.speed": [0.1, 6.0]}}}
+    )
     study = vi.read_study(compute_study(sweep, tmp_path / "study"))
     (deflection,) = (doubt for doubt in study.doubts if doubt.limit == "plate_deflection")
     assert (deflection.drops, deflection.worst) == (1, 1)
@@ -368,25 +530,40 @@ def test_a_study_of_plates_keeps_how_far_they_give_way(tmp_path: Path) -> None:
 
 # the finite size of a rigid sphere ---------------------------------------------------------------
 
-ELEMENT = {"law": "hertz", "local_compliance": "identified", "local_stiffness": 1e6, "local_damping": 1.0}
+ELEMENT = {
+    "law": "hertz",
+    "local_compliance": "identified",
+    "local_stiffness": 1e6,
+    "local_damping": 1.0,
+}
 
 
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
-        ({"contact": {"law": "newton", "restitution": 0.5, "finite_sphere": True}}, "finite_sphere: newton gives no force"),
-        ({"sphere__model": "elastic", "contact__finite_sphere": True}, "an elastic sphere deforms in its modes"),
+        (
+            {"contact": {"law": "newton", "restitution": 0.5, "finite_sphere": True}},
+            "finite_sphere: newton gives no force",
+        ),
+        (
+            {"sphere__model": "elastic", "contact__finite_sphere": True},
+            "an elastic sphere deforms in its modes",
+        ),
         ({"contact": {**ELEMENT, "finite_sphere": True}}, "represents the whole deformation"),
         ({"contact__finite_sphere": 1}, "it must be true or false"),
     ],
 )
-def test_a_finite_sphere_is_refused_where_it_is_counted_already(changes: dict[str, Any], words: str) -> None:
+def test_a_finite_sphere_is_refused_where_it_is_counted_already(
+    changes: dict[str, Any], words: str
+) -> None:
     with pytest.raises(vi.InputError, match=words):
         vi.read_case(plain_case(**changes)).to_problem()
 
 
 def test_a_finite_sphere_can_be_swept_and_leaves_nothing_to_doubt_of_it(tmp_path: Path) -> None:
-    sweep = vi.read_sweep(study_table({"over": {"contact.finite_sphere": [False, True], "drop.height": [0.5, 1.0]}}))
+    sweep = vi.read_sweep(
+        study_table({"over": {"contact.finite_sphere": [False, True], "drop.height": [0.5, 1.0]}})
+    )
     study = vi.read_study(compute_study(sweep, tmp_path / "study"))
     force = study.values("largest_force_N")
     assert np.all(force[1] > 1.03 * force[0])
@@ -397,8 +574,12 @@ def test_a_finite_sphere_can_be_swept_and_leaves_nothing_to_doubt_of_it(tmp_path
 
 
 @pytest.mark.slow
-def test_too_few_modes_are_doubted_in_studies_and_of_problems_made_in_python(tmp_path: Path) -> None:
-    sweep = vi.read_sweep({**quiet(plate=ELASTIC, run={"impacts": 1}), "sweep": {"over": {"plate.modes": [2, 120]}}})
+def test_too_few_modes_are_doubted_in_studies_and_of_problems_made_in_python(
+    tmp_path: Path,
+) -> None:
+    sweep = vi.read_sweep(
+        {**quiet(plate=ELASTIC, run={"impacts": 1}), "sweep": {"over": {"plate.modes": [2, 120]}}}
+    )
     study = vi.read_study(compute_study(sweep, tmp_path / "study"))
     (few,) = (doubt for doubt in study.doubts if doubt.limit == "plate_modes")
     assert (few.drops, few.worst) == (1, 0)
@@ -410,39 +591,72 @@ def test_too_few_modes_are_doubted_in_studies_and_of_problems_made_in_python(tmp
 def test_a_visit_of_several_contacts_asks_for_the_modes_of_one() -> None:
     """It is far longer than any of its contacts, and more modes are asked for than there are."""
     law = LankaraniNikravesh(stiffness=STIFFNESS, restitution=0.5)
-    response = vi.simulate(drop_on(law, modes_of([200.0, 900.0], [5.0, -4.0], 0.03), height=0.2, impacts=1))
+    response = vi.simulate(
+        drop_on(law, modes_of([200.0, 900.0], [5.0, -4.0], 0.03), height=0.2, impacts=1)
+    )
     assert response.impacts["contacts"][0] > 1
-    (doubt,) = (doubt for doubt in result_of(response).doubts if doubt.startswith("the modes of the plate end at "))
+    (doubt,) = (
+        doubt
+        for doubt in result_of(response).doubts
+        if doubt.startswith("the modes of the plate end at ")
+    )
     lasts, asked = re.search(r"contact lasts ([^:]+):.*max_frequency = \"(\S+) kHz", doubt).groups()  # type: ignore[union-attr]
     assert to_si(lasts, "s") < 0.2 * response.impacts["duration_s"][0]
     assert float(asked) > 0.9
 
 
 def test_a_comparison_says_once_what_is_so_under_every_law() -> None:
-    found = comparison_doubts(vi.compare_laws(vi.read_case(plain_case(drop__height=4.0)), ["hertz", "flores"], {"restitution": 0.7}))
+    found = comparison_doubts(
+        vi.compare_laws(
+            vi.read_case(plain_case(drop__height=4.0)), ["hertz", "flores"], {"restitution": 0.7}
+        )
+    )
     assert sum("in air" in doubt for doubt in found) == 1
     assert any(doubt.startswith("every law: in air") for doubt in found)
     assert any(doubt.startswith("hertz: Hertz's half space") for doubt in found)
 
 
 def test_a_plate_that_moves_on_its_springs_does_not_bend() -> None:
-    """A thick plate on soft springs gives way by more than its thickness, as a whole: nothing stretches."""
+    """A thick plate on soft springs gives way by more than its thickness, as a whole:
+    nothing stretches.
+    """
     springs = [
         {"type": "spring", "position": [x, y], "stiffness": 200.0, "horizontal_stiffness": 1e3}
         for x in ("-0.15 m", "0.15 m")
         for y in ("-0.1 m", "0.1 m")
     ]
-    plate = {"size": [0.4, 0.3, 0.02], "material": STEEL, "model": "elastic", "supports": springs, "modes": 12}
+    plate = {
+        "size": [0.4, 0.3, 0.02],
+        "material": STEEL,
+        "model": "elastic",
+        "supports": springs,
+        "modes": 12,
+    }
     ball = {"radius": "40 mm", "material": STEEL}
-    result = result_of(vi.simulate(vi.read_case(quiet(sphere=ball, plate=plate, drop={"speed": 6.0}, run={"impacts": 1, "duration": 0.3}))))
+    result = result_of(
+        vi.simulate(
+            vi.read_case(
+                quiet(
+                    sphere=ball,
+                    plate=plate,
+                    drop={"speed": 6.0},
+                    run={"impacts": 1, "duration": 0.3},
+                )
+            )
+        )
+    )
     assert np.abs(result.history["plate_deflection_m"]).max() > 0.2 * 0.02
     assert result.peaks["plate"]["max_bending_m"] < 0.02 * 0.02
     assert not any("it also stretches" in doubt for doubt in result.doubts)
 
 
 @pytest.mark.parametrize(("radius", "thicknesses"), [(0.2, 0.249), (0.5, 1.074)])
-def test_a_heavy_sphere_bends_the_plate_most_long_after_it_touches(radius: float, thicknesses: float, tmp_path: Path) -> None:
-    """Its contact lasts ten to forty periods of the plate; a run and a study find the largest deflection of the history, and doubt it."""
+def test_a_heavy_sphere_bends_the_plate_most_long_after_it_touches(
+    radius: float, thicknesses: float, tmp_path: Path
+) -> None:
+    """Its contact lasts ten to forty periods of the plate; a run and a study find the
+    largest deflection of the history, and doubt it.
+    """
     plate = {
         "size": [0.2, 0.2, 0.01],
         "material": "steel",
@@ -453,7 +667,11 @@ def test_a_heavy_sphere_bends_the_plate_most_long_after_it_touches(radius: float
     }
     contact = {"law": "tsuji", "restitution": 0.7}
     table = plain_case(
-        sphere={"radius": radius, "material": "steel"}, plate=plate, drop={"speed": 1.0}, contact=contact, run={"impacts": 2}
+        sphere={"radius": radius, "material": "steel"},
+        plate=plate,
+        drop={"speed": 1.0},
+        contact=contact,
+        run={"impacts": 2},
     )
     response = vi.simulate(vi.read_case(table))
     largest = np.abs(response.history(columns=["plate_deflection_m"])["plate_deflection_m"]).max()
@@ -461,5 +679,11 @@ def test_a_heavy_sphere_bends_the_plate_most_long_after_it_touches(radius: float
     result = vi.result_of(response)
     assert result.peaks["plate"]["max_bending_m"] == pytest.approx(largest, rel=0.01)
     assert any("the plate deflects by" in doubt for doubt in result.doubts)
-    study = vi.read_study(vi.run_sweep(vi.read_sweep({**table, "sweep": {"over": {"drop.speed": [1.0]}}}), tmp_path / "study"))
-    assert float(study.values("limit_plate_deflection").squeeze()) == pytest.approx(thicknesses, rel=0.01)
+    study = vi.read_study(
+        vi.run_sweep(
+            vi.read_sweep({**table, "sweep": {"over": {"drop.speed": [1.0]}}}), tmp_path / "study"
+        )
+    )
+    assert float(study.values("limit_plate_deflection").squeeze()) == pytest.approx(
+        thicknesses, rel=0.01
+    )

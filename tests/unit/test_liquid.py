@@ -43,7 +43,8 @@ def test_a_check_tells_what_is_left_and_a_run_achieves_it() -> None:
     told = case_document(case)["first_impact"]
     first = {name: values[0] for name, values in vi.simulate(case).impacts.items()}
     assert first["restitution_asked"] == pytest.approx(told["restitution_asked"], rel=1e-12)
-    assert first["restitution_achieved"] == pytest.approx(told["restitution_achieved"], rel=1e-2)  # gravity
+    # gravity
+    assert first["restitution_achieved"] == pytest.approx(told["restitution_achieved"], rel=1e-2)
     assert case_document(case)["case"]["contact"]["restitution"] == 0.8
     assert 0.2 < told["restitution_asked"] < 0.7
 
@@ -51,7 +52,9 @@ def test_a_check_tells_what_is_left_and_a_run_achieves_it() -> None:
 def test_a_check_tells_what_to_ask_in_air() -> None:
     contact = {"law": "hunt-crossley", "restitution": 0.8, "liquid": {"viscosity": "0.1 Pa s"}}
     told = case_document(vi.read_case(wet(contact=contact)))["first_impact"]
-    again = case_document(vi.read_case(wet(contact={**contact, "restitution": told["restitution_to_ask"]})))["first_impact"]
+    again = case_document(
+        vi.read_case(wet(contact={**contact, "restitution": told["restitution_to_ask"]}))
+    )["first_impact"]
     assert told["restitution_achieved"] > told["restitution_asked"] + 0.02
     assert again["restitution_achieved"] == pytest.approx(told["restitution_asked"], rel=1e-6)
 
@@ -63,18 +66,32 @@ def test_the_ledger_and_the_history_know_of_it() -> None:
     assert response.history()["contact_dissipated_J"].max() == pytest.approx(lost, rel=1e-6)
 
 
-GLASS = {"radius": 0.005, "material": {"density": 2500.0, "youngs_modulus": 70e9, "poissons_ratio": 0.22}}
-PLATE = {"size": [0.4, 0.3, 0.02], "material": "steel", "model": "elastic", "supports": "clamped", "modes": 5, "damping": 0.02}
+GLASS = {
+    "radius": 0.005,
+    "material": {"density": 2500.0, "youngs_modulus": 70e9, "poissons_ratio": 0.22},
+}
+PLATE = {
+    "size": [0.4, 0.3, 0.02],
+    "material": "steel",
+    "model": "elastic",
+    "supports": "clamped",
+    "modes": 5,
+    "damping": 0.02,
+}
 FRICTION = {"law": "mdr", "coefficient": 0.1}
 
 
 @pytest.mark.parametrize("number", [None, "500 mm"])
 def test_a_sphere_that_falls_in_it_does_not_fall_in_a_vacuum(number: str | None) -> None:
-    """10 mm of glass in water: 0.70 m/s, not the 4.42 m/s of a fall of 1 m in a vacuum; a check tells it as well."""
+    """10 mm of glass in water: 0.70 m/s, not the 4.42 m/s of a fall of 1 m in a vacuum; a
+    check tells it as well.
+    """
     case = vi.read_case(wet(sphere=GLASS, drop={"height": number or 1.0}, run={"impacts": 1}))
     response = vi.simulate(case)
     assert response.impacts["approach_speed_m_s"][0] == pytest.approx(0.7025, abs=1e-4)
-    assert case_document(case)["first_impact"]["approach_speed_m_s"] == pytest.approx(response.impacts["approach_speed_m_s"][0], rel=1e-9)
+    assert case_document(case)["first_impact"]["approach_speed_m_s"] == pytest.approx(
+        response.impacts["approach_speed_m_s"][0], rel=1e-9
+    )
 
 
 @pytest.mark.parametrize(
@@ -88,7 +105,10 @@ def test_a_sphere_that_falls_in_it_does_not_fall_in_a_vacuum(number: str | None)
             "plate": {"material": "steel", "inclination": "5 deg", "size": [2.0, 2.0, 0.02]},
         },
         pytest.param({"plate": PLATE}, marks=pytest.mark.slow),
-        pytest.param({"plate": {**PLATE, "motion": {"amplitude": "0.1 mm", "frequency": "30 Hz"}}}, marks=pytest.mark.slow),
+        pytest.param(
+            {"plate": {**PLATE, "motion": {"amplitude": "0.1 mm", "frequency": "30 Hz"}}},
+            marks=pytest.mark.slow,
+        ),
     ],
 )
 def test_histories_keep_energy_with_what_the_liquid_takes(changes: dict[str, Any]) -> None:
@@ -100,17 +120,30 @@ def test_histories_keep_energy_with_what_the_liquid_takes(changes: dict[str, Any
     response = vi.simulate(vi.read_case(wet(**{**drop, **changes})))
     assert response.energy["closure_relative"] < 1e-9
     history = response.history()
-    entries = [name for name in response.energy if name in history and not name.startswith(("microslip", "gross"))]
-    np.testing.assert_allclose(sum(history[name] for name in entries), response.energy["input_J"], rtol=1e-7)
+    entries = [
+        name
+        for name in response.energy
+        if name in history and not name.startswith(("microslip", "gross"))
+    ]
+    np.testing.assert_allclose(
+        sum(history[name] for name in entries), response.energy["input_J"], rtol=1e-7
+    )
     assert history["liquid_J"][-1] == pytest.approx(response.energy["liquid_J"], rel=1e-9)
     assert response.energy["liquid_J"] > 0.0
     assert np.all(response.impacts["liquid_lost_J"] >= 0.0)
-    assert history["liquid_J"].min() >= -1e-5 * response.energy["input_J"], "gravity goes on in the contact"
-    assert response.history(columns=["kinetic_J"])["kinetic_J"].tolist() == history["kinetic_J"].tolist()
+    assert history["liquid_J"].min() >= -1e-5 * response.energy["input_J"], (
+        "gravity goes on in the contact"
+    )
+    assert (
+        response.history(columns=["kinetic_J"])["kinetic_J"].tolist()
+        == history["kinetic_J"].tolist()
+    )
 
 
 def test_at_rest_it_presses_with_its_weight_less_buoyancy() -> None:
-    response = vi.simulate(vi.read_case(wet(sphere=GLASS, drop={"height": 0.1}, run={"impacts": "all"})))
+    response = vi.simulate(
+        vi.read_case(wet(sphere=GLASS, drop={"height": 0.1}, run={"impacts": "all"}))
+    )
     assert response.outcomes[0].at_rest
     history = response.history(columns=["force_N"])
     volume = 4.0 / 3.0 * np.pi * 0.005**3
@@ -119,9 +152,17 @@ def test_at_rest_it_presses_with_its_weight_less_buoyancy() -> None:
 
 def test_a_heavy_liquid_bears_the_sphere() -> None:
     mercury = {"density": 13534.0, "viscosity": "1.5 mPa s"}
-    with pytest.raises(vi.InputError, match=r"contact\.liquid\.density: .* 5\.414 times the density of the sphere, which floats in it"):
+    with pytest.raises(
+        vi.InputError,
+        match=r"contact\.liquid\.density: .* 5\.414 times the density of the sphere, which "
+        r"floats in it",
+    ):
         vi.read_case(wet(mercury, sphere=GLASS))
-    response = vi.simulate(vi.read_case(wet(mercury, sphere=GLASS, drop={"speed": 1.0, "gravity": 0.0}, run={"impacts": 1})))
+    response = vi.simulate(
+        vi.read_case(
+            wet(mercury, sphere=GLASS, drop={"speed": 1.0, "gravity": 0.0}, run={"impacts": 1})
+        )
+    )
     assert response.impacts["restitution_asked"][0] == pytest.approx(0.8, rel=1e-2)
     problem = vi.read_case(wet(sphere=GLASS)).to_problem()
     parts = {"sphere": problem.sphere, "plate": problem.plate, "laws": problem.laws, "speed": 1.0}
@@ -133,28 +174,48 @@ def test_a_heavy_liquid_bears_the_sphere() -> None:
 
 def test_a_law_is_calibrated_along_a_drop_in_it() -> None:
     table = wet(
-        sphere=GLASS, drop={"height": 0.5}, contact={"law": "hunt-crossley", "restitution": 0.8, "liquid": True}, run={"impacts": 4}
+        sphere=GLASS,
+        drop={"height": 0.5},
+        contact={"law": "hunt-crossley", "restitution": 0.8, "liquid": True},
+        run={"impacts": 4},
     )
-    found = calibrate_case(read_calibration({**table, "calibrate": {"target": {"restitution": 0.7}, "model": "hunt-crossley"}}))
-    newton = vi.simulate(vi.read_case({**table, "contact": {"law": "newton", "restitution": 0.7, "liquid": True}})).impacts
+    found = calibrate_case(
+        read_calibration(
+            {**table, "calibrate": {"target": {"restitution": 0.7}, "model": "hunt-crossley"}}
+        )
+    )
+    newton = vi.simulate(
+        vi.read_case({**table, "contact": {"law": "newton", "restitution": 0.7, "liquid": True}})
+    ).impacts
     for drop, tolerance in (("target", 1e-9), ("variable", 3e-4)):
-        np.testing.assert_allclose(found.drops[drop]["approach_speed_m_s"], newton["approach_speed_m_s"], rtol=tolerance)
+        np.testing.assert_allclose(
+            found.drops[drop]["approach_speed_m_s"], newton["approach_speed_m_s"], rtol=tolerance
+        )
 
 
 def test_rebound_heights_measured_in_it_give_the_restitution_back() -> None:
-    table = wet(sphere=GLASS, drop={"height": 0.5}, contact={"law": "newton", "restitution": 0.8, "liquid": True}, run={"impacts": 4})
+    table = wet(
+        sphere=GLASS,
+        drop={"height": 0.5},
+        contact={"law": "newton", "restitution": 0.8, "liquid": True},
+        run={"impacts": 4},
+    )
     heights = vi.simulate(vi.read_case(table)).impacts["rebound_height_m"].tolist()
     measured = {**table, "calibrate": {"target": {"rebound_heights": heights}, "degree": 0}}
     found = calibrate_case(read_calibration(measured))
     np.testing.assert_allclose(found.values, 0.8, rtol=1e-6)
     assert "buoyancy, drag and added mass of the liquid" in found.observations.notes[0]
     with pytest.raises(vi.InputError, match=r"flies through a liquid, as given by contact\.liquid"):
-        calibrate_case(read_calibration({**table, "calibrate": {**measured["calibrate"], "air": True}}))
+        calibrate_case(
+            read_calibration({**table, "calibrate": {**measured["calibrate"], "air": True}})
+        )
 
 
 def test_an_elastic_plate_is_hit_in_it() -> None:
     impacts = {
-        viscosity: vi.simulate(vi.read_case(wet({"viscosity": viscosity}, plate=PLATE, run={"impacts": 1}))).impacts
+        viscosity: vi.simulate(
+            vi.read_case(wet({"viscosity": viscosity}, plate=PLATE, run={"impacts": 1}))
+        ).impacts
         for viscosity in (1e-9, 0.5)
     }
     thin, thick = (found["restitution_achieved"][0] for found in impacts.values())
@@ -165,12 +226,30 @@ def test_an_elastic_plate_is_hit_in_it() -> None:
 @pytest.mark.parametrize(
     ("change", "words"),
     [
-        ({"contact": {"law": "hertz", "liquid": True}}, "contact.liquid: hertz takes no restitution, of which a liquid leaves a part"),
-        ({"plate": {"material": "steel", "radius": 0.1}}, "contact.liquid: what a liquid leaves of the restitution is known for a sphere"),
-        ({"drop": {"height": 1.0, "air": True}}, "drop.air: the sphere meets the plate in a liquid"),
-        ({"contact": {"law": "tsuji", "restitution": 0.8, "liquid": "water"}}, "contact.liquid: .*it must be true, false, or a table"),
-        ({"contact": {"law": "tsuji", "restitution": 0.8, "liquid": {"viscosty": 1.0}}}, "Did you mean"),
-        ({"contact": {"law": "tsuji", "restitution": 0.8, "liquid": {"viscosity": 0.0}}}, "contact.liquid.viscosity"),
+        (
+            {"contact": {"law": "hertz", "liquid": True}},
+            "contact.liquid: hertz takes no restitution, of which a liquid leaves a part",
+        ),
+        (
+            {"plate": {"material": "steel", "radius": 0.1}},
+            "contact.liquid: what a liquid leaves of the restitution is known for a sphere",
+        ),
+        (
+            {"drop": {"height": 1.0, "air": True}},
+            "drop.air: the sphere meets the plate in a liquid",
+        ),
+        (
+            {"contact": {"law": "tsuji", "restitution": 0.8, "liquid": "water"}},
+            "contact.liquid: .*it must be true, false, or a table",
+        ),
+        (
+            {"contact": {"law": "tsuji", "restitution": 0.8, "liquid": {"viscosty": 1.0}}},
+            "Did you mean",
+        ),
+        (
+            {"contact": {"law": "tsuji", "restitution": 0.8, "liquid": {"viscosity": 0.0}}},
+            "contact.liquid.viscosity",
+        ),
     ],
 )
 def test_what_is_not_known_is_refused(change: dict[str, Any], words: str) -> None:
@@ -186,20 +265,36 @@ def test_problems_check_their_liquid() -> None:
     with pytest.raises(vi.InputError, match="hertz takes no restitution"):
         vi.Problem(**parts, laws=(vi.find_contact_law("hertz")(stiffness=1e9),), liquid=vi.Liquid())
     damped = vi.find_contact_law("linear-spring-dashpot")(stiffness=1e6, damping=10.0)
-    with pytest.raises(vi.InputError, match=r"is given without a restitution, .*; give it one in place of damping, or take another law"):
+    with pytest.raises(
+        vi.InputError,
+        match=r"is given without a restitution, .*; give it one in place of damping, or take "
+        r"another law",
+    ):
         vi.Problem(**parts, laws=(damped,), liquid=vi.Liquid())
-    with pytest.raises(vi.InputError, match="viscosity of a liquid must be a finite number greater than 0"):
+    with pytest.raises(
+        vi.InputError, match="viscosity of a liquid must be a finite number greater than 0"
+    ):
         vi.Liquid(viscosity=[1.0, -1.0])
 
 
 def test_studies_sweep_it_as_arrays(tmp_path: Path) -> None:
-    over = {"contact.liquid.viscosity": ["1 mPa s", "100 mPa s", "10 Pa s"], "drop.speed": [1.0, 2.0]}
+    over = {
+        "contact.liquid.viscosity": ["1 mPa s", "100 mPa s", "10 Pa s"],
+        "drop.speed": [1.0, 2.0],
+    }
     sweep = vi.read_sweep({**wet(run={"impacts": 1}), "sweep": {"over": over}})
     study = vi.read_study(vi.run_sweep(sweep, tmp_path / "study"))
-    singly = [float(vi.simulate(sweep.case_of(drop)).impacts["restitution_achieved"][0]) for drop in range(6)]
-    np.testing.assert_allclose(study.values("first_restitution_achieved").ravel(), singly, rtol=1e-9)
+    singly = [
+        float(vi.simulate(sweep.case_of(drop)).impacts["restitution_achieved"][0])
+        for drop in range(6)
+    ]
+    np.testing.assert_allclose(
+        study.values("first_restitution_achieved").ravel(), singly, rtol=1e-9
+    )
     stokes = 10.0 / study.values("limit_no_rebound")
-    np.testing.assert_allclose(study.values("first_restitution_asked"), 0.8 * restitution_kept(stokes), rtol=1e-5)
+    np.testing.assert_allclose(
+        study.values("first_restitution_asked"), 0.8 * restitution_kept(stokes), rtol=1e-5
+    )
     assert study.values("limit_no_rebound").argmax() == 4
 
 
@@ -210,7 +305,8 @@ def test_too_slow_an_impact_is_doubted() -> None:
 
     assert number("0.5 Pa s") < 1.0 < number("2 Pa s")
     assert any(
-        "spheres were seen to stay on the wall" in doubt for doubt in case_document(vi.read_case(wet({"viscosity": "2 Pa s"})))["doubts"]
+        "spheres were seen to stay on the wall" in doubt
+        for doubt in case_document(vi.read_case(wet({"viscosity": "2 Pa s"})))["doubts"]
     )
 
 

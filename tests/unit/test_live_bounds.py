@@ -1,4 +1,6 @@
-"""What the live page refuses, and how little it takes to know: bounds on cases and messages, and the names of its server."""
+"""What the live page refuses, and how little it takes to know: bounds on cases and
+messages, and the names of its server.
+"""
 
 from __future__ import annotations
 
@@ -22,12 +24,28 @@ from vibroimpact.structures.recipe import PlateOfPlates, PlateOfSolids, SphereOf
 
 RIGID = load_table("paper:type1-theory")
 BALL = {"radius": "10 mm", "material": "steel"}
-PLATE = {"size": ["200 mm", "150 mm", "5 mm"], "material": "steel", "model": "elastic", "supports": "simply-supported"}
-PATCHES = [{"type": "patch", "position": [0.005 * x, 0.005 * y], "radius": "2 mm"} for x in range(-10, 11, 2) for y in range(-10, 11, 2)]
+PLATE = {
+    "size": ["200 mm", "150 mm", "5 mm"],
+    "material": "steel",
+    "model": "elastic",
+    "supports": "simply-supported",
+}
+PATCHES = [
+    {"type": "patch", "position": [0.005 * x, 0.005 * y], "radius": "2 mm"}
+    for x in range(-10, 11, 2)
+    for y in range(-10, 11, 2)
+]
 
 
-def a_case(sphere: dict[str, Any] | None = None, plate: dict[str, Any] | None = None, **sections: Any) -> vi.Case:
-    table = {"sphere": {**BALL, **(sphere or {})}, "plate": {**PLATE, **(plate or {})}, "drop": {"speed": 1.0}, "contact": {"law": "hertz"}}
+def a_case(
+    sphere: dict[str, Any] | None = None, plate: dict[str, Any] | None = None, **sections: Any
+) -> vi.Case:
+    table = {
+        "sphere": {**BALL, **(sphere or {})},
+        "plate": {**PLATE, **(plate or {})},
+        "drop": {"speed": 1.0},
+        "contact": {"law": "hertz"},
+    }
     return vi.read_case({**table, **sections})
 
 
@@ -43,21 +61,43 @@ def no_mesh(monkeypatch: pytest.MonkeyPatch) -> None:
     [
         ({"plate": {"max_frequency": "200 kHz"}}, "plate.max_frequency", "modes"),
         ({"plate": {"max_frequency": 1e50}}, "plate.max_frequency", "modes"),
-        ({"plate": {"max_frequency": "200 kHz", "element": "solid"}}, "plate.max_frequency", "modes"),
-        ({"sphere": {"model": "elastic", "max_frequency": "1 MHz"}}, "sphere.max_frequency", "modes"),
+        (
+            {"plate": {"max_frequency": "200 kHz", "element": "solid"}},
+            "plate.max_frequency",
+            "modes",
+        ),
+        (
+            {"sphere": {"model": "elastic", "max_frequency": "1 MHz"}},
+            "sphere.max_frequency",
+            "modes",
+        ),
         ({"sphere": {"model": "elastic", "modes": MOST_MODES + 1}}, "sphere.modes", "modes"),
-        ({"sphere": {"model": "elastic", "mesh": {"elements_across": 100}}}, "sphere.mesh", "nodes"),
+        (
+            {"sphere": {"model": "elastic", "mesh": {"elements_across": 100}}},
+            "sphere.mesh",
+            "nodes",
+        ),
         ({"sphere": {"model": "elastic", "mesh": {"grading": 50.0}}}, "sphere.mesh", "nodes"),
         ({"plate": {"mesh": {"element_size": 1e-4}}}, "plate.mesh", "nodes"),
-        ({"plate": {"size": [1e6, 1e-6, 1e-6], "mesh": {"element_size": 1.0}}}, "plate.mesh", "nodes"),
+        (
+            {"plate": {"size": [1e6, 1e-6, 1e-6], "mesh": {"element_size": 1.0}}},
+            "plate.mesh",
+            "nodes",
+        ),
         ({"plate": {"element": "solid", "mesh": {"layers": 10**9}}}, "plate.mesh", "nodes"),
         ({"plate": {"supports": PATCHES}}, "plate.mesh", "nodes"),
     ],
     ids=str,
 )
-def test_bodies_that_are_too_large_are_refused_before_they_are_meshed(case: dict[str, Any], key: str, what: str) -> None:
+def test_bodies_that_are_too_large_are_refused_before_they_are_meshed(
+    case: dict[str, Any], key: str, what: str
+) -> None:
     most = {"modes": MOST_MODES, "nodes": MOST_NODES}[what]
-    with pytest.raises(InputError, match=rf"^{key}: \S+ {what} are more than the {most:,} of the live page; vibroimpact run takes more$"):
+    with pytest.raises(
+        InputError,
+        match=rf"^{key}: \S+ {what} are more than the {most:,} of the live page; vibroimpact "
+        r"run takes more$",
+    ):
         check_bounds(a_case(**case))
 
 
@@ -71,10 +111,19 @@ def watched(rate: str, **sections: Any) -> vi.Case:
 
 
 def test_samples_are_those_of_the_expected_length() -> None:
-    """Of ten seconds, which was a guess once, the first would have 16 million samples, the second 0.4 million."""
+    """Of ten seconds, which was a guess once, the first would have 16 million samples,
+    the second 0.4 million.
+    """
     check_bounds(watched("200 kHz", run={"impacts": 2}))
     with pytest.raises(InputError, match=r"sensors: \S+ samples in all are more"):
-        check_bounds(watched("5 kHz", drop={"height": "4 m"}, contact={"law": "newton", "restitution": 0.999}, run={"impacts": 300}))
+        check_bounds(
+            watched(
+                "5 kHz",
+                drop={"height": "4 m"},
+                contact={"law": "newton", "restitution": 0.999},
+                run={"impacts": 300},
+            )
+        )
 
 
 def test_many_impacts_that_soon_end_have_few_samples() -> None:
@@ -82,8 +131,12 @@ def test_many_impacts_that_soon_end_have_few_samples() -> None:
     check_bounds(watched("50 kHz", **bounce, run={"impacts": 30}))
 
 
-def test_no_contact_is_integrated_where_few_impacts_are_allowed(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(costs, "achieved_restitution", lambda *_: pytest.fail("a contact is integrated"))
+def test_no_contact_is_integrated_where_few_impacts_are_allowed(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(
+        costs, "achieved_restitution", lambda *_: pytest.fail("a contact is integrated")
+    )
     check_bounds(vi.load_case("paper:type1-variable"))
     check_bounds(watched("5 kHz", run={"impacts": 5}))
 
@@ -101,7 +154,9 @@ def test_a_contact_is_integrated_once(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_a_message_is_measured_in_bytes() -> None:
-    message = json.dumps({"type": "open", "number": 1, "text": "€" * (LONGEST // 2)}, ensure_ascii=False)
+    message = json.dumps(
+        {"type": "open", "number": 1, "text": "€" * (LONGEST // 2)}, ensure_ascii=False
+    )
     assert len(message) < LONGEST < len(message.encode())
     with pytest.raises(InputError, match=f"the message has {len(message.encode())} bytes"):
         read_message(message)
@@ -113,7 +168,10 @@ def test_a_message_is_measured_in_bytes() -> None:
     [
         ({**RIGID, "sphere": None}, "sphere"),
         ({**RIGID, "drop": {**RIGID["drop"], "speed": None}}, "drop.speed"),
-        ({**RIGID, "contact": {**RIGID["contact"], "restitution": [0.5, None]}}, "contact.restitution (the 2nd)"),
+        (
+            {**RIGID, "contact": {**RIGID["contact"], "restitution": [0.5, None]}},
+            "contact.restitution (the 2nd)",
+        ),
         ({**RIGID, "sensors": [{"name": None}]}, "sensors.name"),
     ],
     ids=["section", "key", "list", "table in a list"],
@@ -147,7 +205,9 @@ def answers(*messages: str) -> list[dict[str, Any]]:
 
 @pytest.mark.parametrize("depth", [30, 90, 200, 900, 980, 5000, 90_000])
 def test_deep_nesting_is_refused_in_one_sentence(depth: int) -> None:
-    (found,) = answers('{"type": "case", "number": 7, "case": {"sphere": ' + "[" * depth + "]" * depth + "}}")
+    (found,) = answers(
+        '{"type": "case", "number": 7, "case": {"sphere": ' + "[" * depth + "]" * depth + "}}"
+    )
     assert found["type"] == "fault"
     (line,) = found["lines"]
     assert "deep in one another" in line
@@ -155,7 +215,10 @@ def test_deep_nesting_is_refused_in_one_sentence(depth: int) -> None:
 
 
 def test_half_of_a_surrogate_pair_is_refused_and_the_window_goes_on() -> None:
-    broken, whole = (json.dumps({"type": "open", "number": 1, "text": f'name = "{text}"'}) for text in ("\ud800", "\U0001f600"))
+    broken, whole = (
+        json.dumps({"type": "open", "number": 1, "text": f'name = "{text}"'})
+        for text in ("\ud800", "\U0001f600")
+    )
     first, second = answers(broken, whole)
     assert first["lines"] == ["the message is not JSON"]
     assert second["case"] == {"name": "\U0001f600"}
@@ -184,7 +247,10 @@ def test_a_host_without_a_port_is_that_of_port_80(port: int, host: str, status: 
     assert answered[0]["status"] == status
 
 
-@pytest.mark.parametrize(("port", "origin", "answer"), [(80, "http://localhost", "accept"), (8421, "http://localhost", "close")])
+@pytest.mark.parametrize(
+    ("port", "origin", "answer"),
+    [(80, "http://localhost", "accept"), (8421, "http://localhost", "close")],
+)
 def test_an_origin_without_a_port_is_that_of_port_80(port: int, origin: str, answer: str) -> None:
     answered = asked(port, {"type": "websocket", "subprotocols": []}, f"localhost:{port}", origin)
     assert answered[0]["type"] == f"websocket.{answer}"
@@ -192,7 +258,13 @@ def test_an_origin_without_a_port_is_that_of_port_80(port: int, origin: str, ans
 
 def asked(port: int, scope: dict[str, Any], host: str, origin: str = "") -> list[Any]:
     """What the application answers at a port."""
-    received = iter([{"type": "websocket.connect"} if scope["type"] == "websocket" else {"type": "http.request"}])
+    received = iter(
+        [
+            {"type": "websocket.connect"}
+            if scope["type"] == "websocket"
+            else {"type": "http.request"}
+        ]
+    )
     answered: list[Any] = []
 
     async def receive() -> Any:
@@ -203,6 +275,12 @@ def asked(port: int, scope: dict[str, Any], host: str, origin: str = "") -> list
 
     path = "/live" if scope["type"] == "websocket" else "/"
     headers = [(b"host", host.encode()), (b"origin", origin.encode())]
-    place = {"path": path, "raw_path": path.encode(), "root_path": "", "query_string": b"", "headers": headers}
+    place = {
+        "path": path,
+        "raw_path": path.encode(),
+        "root_path": "",
+        "query_string": b"",
+        "headers": headers,
+    }
     asyncio.run(application(port)({**scope, **place}, receive, send))  # type: ignore[arg-type]
     return answered

@@ -1,4 +1,6 @@
-"""The server of the live page: for this machine alone, and what `vibroimpact serve` says when it can't serve."""
+"""The server of the live page: for this machine alone, and what `vibroimpact serve` says
+when it can't serve.
+"""
 
 from __future__ import annotations
 
@@ -52,7 +54,17 @@ def test_the_page_loads_what_is_its_own_alone(server: Server) -> None:
     assert "http" not in page.replace("http-equiv", "")
 
 
-@pytest.mark.parametrize("host", ["example.org", "127.0.0.1", "127.0.0.1:1", "localhost.example.org:{port}", "0.0.0.0:{port}", ""])
+@pytest.mark.parametrize(
+    "host",
+    [
+        "example.org",
+        "127.0.0.1",
+        "127.0.0.1:1",
+        "localhost.example.org:{port}",
+        "0.0.0.0:{port}",
+        "",
+    ],
+)
 def test_another_host_is_refused(host: str, server: Server) -> None:
     status, _, words = asked(server, "/", Host=host.format(port=server.port))
     assert status in (400, 403)
@@ -60,7 +72,15 @@ def test_another_host_is_refused(host: str, server: Server) -> None:
 
 
 @pytest.mark.parametrize(
-    "path", ["/scripts/../server.py", "/scripts/%2e%2e/server.py", "/scripts/live.py", "/etc/passwd", "/live", "/scripts/"]
+    "path",
+    [
+        "/scripts/../server.py",
+        "/scripts/%2e%2e/server.py",
+        "/scripts/live.py",
+        "/etc/passwd",
+        "/live",
+        "/scripts/",
+    ],
 )
 def test_there_are_no_other_files(path: str, server: Server) -> None:
     status, _, words = asked(server, path)
@@ -69,7 +89,14 @@ def test_there_are_no_other_files(path: str, server: Server) -> None:
 
 
 @pytest.mark.parametrize(
-    "origin", ["http://example.org", "https://127.0.0.1:{port}", "http://127.0.0.1:1", "null", "http://localhost.example.org:{port}"]
+    "origin",
+    [
+        "http://example.org",
+        "https://127.0.0.1:{port}",
+        "http://127.0.0.1:1",
+        "null",
+        "http://localhost.example.org:{port}",
+    ],
 )
 def test_another_origin_is_refused(origin: str, server: Server) -> None:
     with pytest.raises(InvalidStatus):
@@ -82,7 +109,11 @@ def test_a_program_without_an_origin_is_refused(server: Server) -> None:
 
 
 def window(server: Server):  # type: ignore[no-untyped-def]
-    return connect(f"ws://127.0.0.1:{server.port}/live", origin=f"http://127.0.0.1:{server.port}", max_size=None)  # type: ignore[arg-type]
+    return connect(
+        f"ws://127.0.0.1:{server.port}/live",
+        origin=f"http://127.0.0.1:{server.port}",
+        max_size=None,
+    )  # type: ignore[arg-type]
 
 
 def test_a_window_is_welcomed_and_served(server: Server) -> None:
@@ -93,7 +124,8 @@ def test_a_window_is_welcomed_and_served(server: Server) -> None:
         case = unpack(socket.recv())["case"]
         socket.send(json.dumps({"type": "case", "number": 2, "case": case}))
         answers = iter(lambda: unpack(socket.recv()), None)
-        state = next(one for one in answers if one["type"] != "progress")  # which a busy machine tells
+        # which a busy machine tells
+        state = next(one for one in answers if one["type"] != "progress")
         assert state["status"].startswith("Stopped after 5 impacts")
 
 
@@ -116,8 +148,18 @@ def test_there_is_a_largest_number_of_windows(server: Server) -> None:
 
 
 def serve(*arguments: str, **more: str) -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, *more.get("options", "").split(), "-m", "vibroimpact", "serve", "--no-browser", *arguments]
-    return subprocess.run(command, capture_output=True, text=True, timeout=300, cwd=more.get("folder"))
+    command = [
+        sys.executable,
+        *more.get("options", "").split(),
+        "-m",
+        "vibroimpact",
+        "serve",
+        "--no-browser",
+        *arguments,
+    ]
+    return subprocess.run(
+        command, capture_output=True, text=True, timeout=300, cwd=more.get("folder")
+    )
 
 
 def test_a_port_in_use(server: Server) -> None:
@@ -141,12 +183,19 @@ def test_a_case_that_is_none() -> None:
 
 def test_who_opens_the_page_is_told_the_address_with_the_case() -> None:
     with Server("paper:type1-theory") as other:
-        assert other.said == f"the live page is at {other.address}{fragment_of(load_table('paper:type1-theory'))}; Ctrl-C ends it\n"
+        assert (
+            other.said == "the live page is at "
+            f"{other.address}{fragment_of(load_table('paper:type1-theory'))}; Ctrl-C ends it\n"
+        )
 
 
 def test_without_the_extra(tmp_path: Path) -> None:
-    """A module of this name in the folder that is looked into first stands for one that is not installed."""
-    (tmp_path / "starlette.py").write_text("raise ModuleNotFoundError(\"No module named 'starlette'\", name='starlette')\n")
+    """A module of this name in the folder that is looked into first stands for one that
+    is not installed.
+    """
+    (tmp_path / "starlette.py").write_text(
+        "raise ModuleNotFoundError(\"No module named 'starlette'\", name='starlette')\n"
+    )
     found = serve(folder=str(tmp_path))
     assert found.returncode == 2
     assert 'pip install "vibroimpact[app]"' in found.stderr
@@ -154,7 +203,9 @@ def test_without_the_extra(tmp_path: Path) -> None:
 
 
 def test_it_is_bound_to_this_machine(server: Server) -> None:
-    for family, *_, address in socket.getaddrinfo(socket.gethostname(), server.port, type=socket.SOCK_STREAM):
+    for family, *_, address in socket.getaddrinfo(
+        socket.gethostname(), server.port, type=socket.SOCK_STREAM
+    ):
         if address[0].startswith("127.") or address[0] == "::1":
             continue
         with socket.socket(family, socket.SOCK_STREAM) as other:
@@ -163,21 +214,32 @@ def test_it_is_bound_to_this_machine(server: Server) -> None:
 
 
 def test_ctrl_c_ends_it_whoever_does_not_read_and_whatever_it_computes() -> None:
-    """A client that never reads a script, and a window whose modes take a minute: neither holds the server."""
+    """A client that never reads a script, and a window whose modes take a minute: neither
+    holds the server.
+    """
     plate = {**ELASTIC["plate"], "modes": 60, "mesh": {"element_size": "5 mm"}}
     with Server() as server, ExitStack() as clients:
         deaf = clients.enter_context(socket.socket())
         deaf.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
         deaf.connect(("127.0.0.1", server.port))
-        deaf.sendall(f"GET /scripts/plotly.js HTTP/1.1\r\nHost: 127.0.0.1:{server.port}\r\n\r\n".encode())
+        deaf.sendall(
+            f"GET /scripts/plotly.js HTTP/1.1\r\nHost: 127.0.0.1:{server.port}\r\n\r\n".encode()
+        )
         address = f"ws://127.0.0.1:{server.port}/live"
-        window = clients.enter_context(connect(address, origin=f"http://127.0.0.1:{server.port}", max_size=None))
-        window.send(json.dumps({"type": "case", "number": 1, "case": {**ELASTIC, "plate": plate}, "detail": "full"}))
+        window = clients.enter_context(
+            connect(address, origin=f"http://127.0.0.1:{server.port}", max_size=None)
+        )
+        window.send(
+            json.dumps(
+                {"type": "case", "number": 1, "case": {**ELASTIC, "plate": plate}, "detail": "full"}
+            )
+        )
         time.sleep(1.0)  # so that it computes, or has begun to
         server.stopped = True
         server.process.send_signal(signal.SIGINT)
         try:
-            wrote = server.process.communicate(timeout=20)[1]  # about a second; a guard against a hang
+            # about a second; a guard against a hang
+            wrote = server.process.communicate(timeout=20)[1]
         finally:
             server.process.kill()
         assert server.process.returncode == 130

@@ -1,4 +1,6 @@
-"""Sessions of the live page: one computation at a time, the last one wins, and nothing that comes in does harm."""
+"""Sessions of the live page: one computation at a time, the last one wins, and nothing
+that comes in does harm.
+"""
 
 from __future__ import annotations
 
@@ -26,7 +28,13 @@ from vibroimpact.errors import InputError
 RIGID = load_table("paper:type1-theory")
 PLATE = {
     "sphere": {"radius": "10 mm", "material": "steel"},
-    "plate": {"size": ["200 mm", "150 mm", "5 mm"], "material": "steel", "model": "elastic", "modes": 6, "supports": "simply-supported"},
+    "plate": {
+        "size": ["200 mm", "150 mm", "5 mm"],
+        "material": "steel",
+        "model": "elastic",
+        "modes": 6,
+        "supports": "simply-supported",
+    },
     "drop": {"speed": 1.0},
     "contact": {"law": "hertz"},
     "run": {"impacts": 1},
@@ -34,7 +42,10 @@ PLATE = {
 
 
 def changed(table: dict[str, Any], **sections: dict[str, Any]) -> dict[str, Any]:
-    return {**table, **{name: {**table.get(name, {}), **values} for name, values in sections.items()}}
+    return {
+        **table,
+        **{name: {**table.get(name, {}), **values} for name, values in sections.items()},
+    }
 
 
 def told(talk: Callable[[Session, list[dict[str, Any]]], Awaitable[None]]) -> list[dict[str, Any]]:
@@ -48,7 +59,8 @@ def told(talk: Callable[[Session, list[dict[str, Any]]], Awaitable[None]]) -> li
         session = Session(send)
         work = asyncio.create_task(session.work())
         try:
-            await asyncio.wait_for(talk(session, heard), 120.0)  # a session that has died answers nothing
+            # a session that has died answers nothing
+            await asyncio.wait_for(talk(session, heard), 120.0)
         finally:
             work.cancel()
             await asyncio.gather(work, return_exceptions=True)
@@ -58,7 +70,13 @@ def told(talk: Callable[[Session, list[dict[str, Any]]], Awaitable[None]]) -> li
 
 
 async def until(heard: list[dict[str, Any]], number: int, *kinds: str) -> dict[str, Any]:
-    while not (found := [one for one in heard if one["number"] == number and one["type"] in (kinds or ("state", "fault", "files"))]):
+    while not (
+        found := [
+            one
+            for one in heard
+            if one["number"] == number and one["type"] in (kinds or ("state", "fault", "files"))
+        ]
+    ):
         await asyncio.sleep(0.005)
     return found[-1]
 
@@ -75,7 +93,9 @@ def test_a_case_comes_as_the_library_computes_it() -> None:
     found = told(talk)[-1]
     response = vi.simulate(vi.load_case("paper:type1-theory"))
     line = next(
-        trace for trace in found["charts"][0]["data"] if trace["type"] == "scatter" and trace["mode"] == "lines" and len(trace["x"]) > 9
+        trace
+        for trace in found["charts"][0]["data"]
+        if trace["type"] == "scatter" and trace["mode"] == "lines" and len(trace["x"]) > 9
     )
     assert found["status"] == response.status
     assert line["y"] == pytest.approx(response.history()["position_m"], rel=1e-6, abs=1e-9)
@@ -114,10 +134,14 @@ def test_the_last_case_wins(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.parametrize("same", [False, True], ids=["of another plate", "of the same plate"])
-def test_modes_are_given_up_for_another_plate_alone(same: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_modes_are_given_up_for_another_plate_alone(
+    same: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
     given_up = []
 
-    def modes(table: dict[str, Any], detail: str, tell: Callable[[str, float], None], *_: Any) -> Any:
+    def modes(
+        table: dict[str, Any], detail: str, tell: Callable[[str, float], None], *_: Any
+    ) -> Any:
         try:
             for step in range(40):
                 tell("computing modes", step / 40)
@@ -138,11 +162,14 @@ def test_modes_are_given_up_for_another_plate_alone(same: bool, monkeypatch: pyt
 
     heard = told(talk)
     assert given_up == ([] if same else ["first"])
-    assert any(one["type"] == "progress" and one["number"] == 2 for one in heard)  # of what was asked for last
+    # of what was asked for last
+    assert any(one["type"] == "progress" and one["number"] == 2 for one in heard)
 
 
 def test_cancel_gives_up(monkeypatch: pytest.MonkeyPatch) -> None:
-    def long(table: dict[str, Any], detail: str, tell: Callable[[str, float], None], *_: Any) -> Any:
+    def long(
+        table: dict[str, Any], detail: str, tell: Callable[[str, float], None], *_: Any
+    ) -> Any:
         while True:
             tell("computing modes", 0.0)
             time.sleep(0.01)
@@ -168,7 +195,9 @@ def test_cancel_gives_up(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_a_long_draft_is_given_up(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sessions, "_SHORT", 0.2)
 
-    def long(table: dict[str, Any], detail: str, tell: Callable[[str, float], None], *_: Any) -> Any:
+    def long(
+        table: dict[str, Any], detail: str, tell: Callable[[str, float], None], *_: Any
+    ) -> Any:
         while table["name"] == "long":
             tell("computing the drop", 0.0)
             time.sleep(0.01)
@@ -187,14 +216,18 @@ def test_a_long_draft_is_given_up(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_cancel_does_not_wait_for_a_report(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Further reports wait in order, each of the case that was the last one when it was asked for; the cancel overtakes them."""
+    """Further reports wait in order, each of the case that was the last one when it was
+    asked for; the cancel overtakes them.
+    """
     done = Event()
 
     def slow(result: Any) -> str:
         assert done.wait(60.0)
         return str(result.name)
 
-    def long_second(table: dict[str, Any], detail: str, tell: Callable[[str, float], None], *_: Any) -> Any:
+    def long_second(
+        table: dict[str, Any], detail: str, tell: Callable[[str, float], None], *_: Any
+    ) -> Any:
         while table["name"] == "second":
             tell("computing modes", 0.0)
             time.sleep(0.01)
@@ -261,7 +294,15 @@ def test_report_and_signals_are_those_of_the_last_case() -> None:
     async def talk(session: Session, heard: list[dict[str, Any]]) -> None:
         await session.receive('{"type": "report", "number": 1}')
         await until(heard, 1)
-        await session.receive(case(2, changed({**PLATE, "sensors": [{"name": "a/1", "position": [0.02, 0.0]}]}, run={"duration": "2 ms"})))
+        await session.receive(
+            case(
+                2,
+                changed(
+                    {**PLATE, "sensors": [{"name": "a/1", "position": [0.02, 0.0]}]},
+                    run={"duration": "2 ms"},
+                ),
+            )
+        )
         await until(heard, 2)
         await session.receive('{"type": "signals", "number": 3}')
         await session.receive('{"type": "report", "number": 4}')
@@ -297,12 +338,25 @@ def test_no_file_is_read(table: dict[str, Any], monkeypatch: pytest.MonkeyPatch)
     monkeypatch.setattr("vibroimpact.files.reading.read_bytes", opened)
     monkeypatch.setattr("vibroimpact.files.reading.read_text", opened)
     monkeypatch.setattr("vibroimpact.files.reading.input_file_digest", opened)
-    merged = {**RIGID, **{name: {**RIGID.get(name, {}), **values} for name, values in table.items()}}
+    merged = {
+        **RIGID,
+        **{name: {**RIGID.get(name, {}), **values} for name, values in table.items()},
+    }
     with pytest.raises(InputError, match="live page"):
         state_of(merged, "full", lambda what, part: None)
 
 
-@pytest.mark.parametrize("source", ["/etc/passwd", "paper:../../../etc/passwd", "paper:type3.toml", "type3", "file:///etc/passwd", ""])
+@pytest.mark.parametrize(
+    "source",
+    [
+        "/etc/passwd",
+        "paper:../../../etc/passwd",
+        "paper:type3.toml",
+        "type3",
+        "file:///etc/passwd",
+        "",
+    ],
+)
 def test_a_source_is_a_shipped_case(source: str) -> None:
     async def talk(session: Session, heard: list[dict[str, Any]]) -> None:
         await session.receive(json.dumps({"type": "open", "number": 1, "source": source}))
@@ -322,10 +376,28 @@ def test_a_source_is_a_shipped_case(source: str) -> None:
         ({**RIGID, "contact": {"law": "hertz"}, "run": {"impacts": MOST_IMPACTS + 1}}, "impacts"),
         (changed(RIGID, run={"impacts": "all"}, contact={"restitution": 0.999999}), "impacts"),
         (changed(RIGID, run={"duration": f"{2 * LONGEST_RUN} s"}), "run.duration"),
-        ({**PLATE, "sensors": [{"name": str(one), "position": [0.0, 0.0]} for one in range(MOST_SENSORS + 1)]}, "sensors"),
+        (
+            {
+                **PLATE,
+                "sensors": [
+                    {"name": str(one), "position": [0.0, 0.0]} for one in range(MOST_SENSORS + 1)
+                ],
+            },
+            "sensors",
+        ),
         ({**PLATE, "sensors": [{"name": "a", "position": [0.0, 0.0], "rate": "1 GHz"}]}, "samples"),
     ],
-    ids=["modes", "element size", "elements", "elements across", "impacts", "all impacts", "duration", "sensors", "rate"],
+    ids=[
+        "modes",
+        "element size",
+        "elements",
+        "elements across",
+        "impacts",
+        "all impacts",
+        "duration",
+        "sensors",
+        "rate",
+    ],
 )
 def test_what_takes_long_is_refused_at_once(table: dict[str, Any], words: str) -> None:
     with pytest.raises(InputError) as refused:
@@ -334,9 +406,15 @@ def test_what_takes_long_is_refused_at_once(table: dict[str, Any], words: str) -
 
 
 def test_broken_messages_are_answered_by_a_fault() -> None:
-    """Two thousand of them, most of which are valid ones with something changed; then a case is computed."""
+    """Two thousand of them, most of which are valid ones with something changed; then a
+    case is computed.
+    """
     dice = random.Random(21)
-    valid = [case(1, RIGID), '{"type": "open", "number": 1, "source": "paper:type3"}', '{"type": "report", "number": 1}']
+    valid = [
+        case(1, RIGID),
+        '{"type": "open", "number": 1, "source": "paper:type3"}',
+        '{"type": "report", "number": 1}',
+    ]
     odd = [
         "NaN",
         "1e999",
@@ -363,7 +441,9 @@ def test_broken_messages_are_answered_by_a_fault() -> None:
                 return text[:place] + dice.choice(odd) + text[place + dice.randrange(30) :]
             case 3:
                 found = json.loads(text)
-                found[dice.choice(["type", "number", "case", "detail", "charts", "source", "extra"])] = json.loads(dice.choice(odd[4:]))
+                found[
+                    dice.choice(["type", "number", "case", "detail", "charts", "source", "extra"])
+                ] = json.loads(dice.choice(odd[4:]))
                 return json.dumps(found)
             case 4:
                 found = json.loads(valid[0])
@@ -389,7 +469,14 @@ def test_broken_messages_are_answered_by_a_fault() -> None:
 
     heard = told(talk)
     assert heard[-1]["type"] == "state"
-    assert {one["type"] for one in heard} <= {"fault", "state", "opened", "files", "cancelled", "progress"}
+    assert {one["type"] for one in heard} <= {
+        "fault",
+        "state",
+        "opened",
+        "files",
+        "cancelled",
+        "progress",
+    }
 
 
 def test_a_message_has_a_largest_size() -> None:

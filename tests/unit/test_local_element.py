@@ -19,11 +19,17 @@ def problem() -> vi.Problem:
 
 
 def separation_speed(problem: vi.Problem, element: tuple[float, float]) -> float:
-    return float(vi.simulate(replace(problem, impacts=1, local_element=element)).impacts["separation_speed_m_s"][0])
+    return float(
+        vi.simulate(replace(problem, impacts=1, local_element=element)).impacts[
+            "separation_speed_m_s"
+        ][0]
+    )
 
 
 @pytest.mark.slow
-def test_deviations_are_those_of_elements_identified_from_other_readings(problem: vi.Problem) -> None:
+def test_deviations_are_those_of_elements_identified_from_other_readings(
+    problem: vi.Problem,
+) -> None:
     """The element is identified again from a force, and from a rebound, that is off by a little."""
     element = vi.identify_local_element(problem, FORCE, rebound_height=REBOUND)
     speed, part = separation_speed(problem, element), 1e-3
@@ -32,7 +38,9 @@ def test_deviations_are_those_of_elements_identified_from_other_readings(problem
         other = vi.identify_local_element(problem, force, separation_speed=rebound)
         changes.append(np.array(other) - element)
     expected = np.hypot(*changes)
-    assert vi.local_element_deviations(problem, element, part * FORCE, part * speed) == pytest.approx(expected, rel=5e-3)
+    assert vi.local_element_deviations(
+        problem, element, part * FORCE, part * speed
+    ) == pytest.approx(expected, rel=5e-3)
 
 
 def test_a_case_says_how_well_its_element_is_known() -> None:
@@ -52,13 +60,19 @@ def test_a_case_says_how_well_its_element_is_known() -> None:
     element = (facts["local_stiffness_N_m"], facts["local_damping_N_s_m"])
     of_speed = 0.01 * REBOUND * 9.8 / separation_speed(problem, element)  # g dh = v dv
     told = (facts["local_stiffness_deviation_N_m"], facts["local_damping_deviation_N_s_m"])
-    assert told == pytest.approx(vi.local_element_deviations(problem, element, 0.01 * FORCE, of_speed), rel=1e-6)
+    assert told == pytest.approx(
+        vi.local_element_deviations(problem, element, 0.01 * FORCE, of_speed), rel=1e-6
+    )
     assert 0.01 < told[0] / element[0] < 0.05
 
 
-@pytest.mark.parametrize("heights", [8, pytest.param(400, marks=[pytest.mark.slow, pytest.mark.whole])])
+@pytest.mark.parametrize(
+    "heights", [8, pytest.param(400, marks=[pytest.mark.slow, pytest.mark.whole])]
+)
 def test_contacts_that_end_a_step_at_the_penetration_depth_go_on_from_it(heights: int) -> None:
-    """The end of a step is solved to rounding, and the next one begins on the breakpoint; 13 of 400 drops failed there."""
+    """The end of a step is solved to rounding, and the next one begins on the breakpoint;
+    13 of 400 drops failed there.
+    """
     element = {"local_compliance": "identified", "local_stiffness": 2e7, "local_damping": 500.0}
     failing = [0.8583959899749374, 0.9010025062656641, 0.9912280701754386, 1.0]
     for height in [*failing, *np.linspace(0.5, 1.5, heights)]:
@@ -73,8 +87,12 @@ def test_contacts_that_end_a_step_at_the_penetration_depth_go_on_from_it(heights
 
 
 @pytest.mark.slow  # soft elements ring for long
-def test_a_reading_in_the_wrong_unit_is_not_said_to_leave_a_range_of_nan(problem: vi.Problem) -> None:
+def test_a_reading_in_the_wrong_unit_is_not_said_to_leave_a_range_of_nan(
+    problem: vi.Problem,
+) -> None:
     with pytest.raises(
-        vi.InputError, match=r"no local element was found that gives both a largest force of 0\.001 N and a rebound of 0\.2 m"
+        vi.InputError,
+        match=r"no local element was found that gives both a largest force of 0\.001 N and a "
+        r"rebound of 0\.2 m",
     ):
         vi.identify_local_element(problem, 1e-3, rebound_height=0.2)

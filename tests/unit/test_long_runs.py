@@ -91,7 +91,9 @@ def _same(one: object, other: object) -> None:
 
 
 def test_the_history_of_a_drop_is_that_of_the_same_drop_in_a_batch() -> None:
-    """A batch keeps its legs as they are and solves its contacts together, one drop packs them and follows its contacts."""
+    """A batch keeps its legs as they are and solves its contacts together, one drop packs
+    them and follows its contacts.
+    """
     law = LankaraniNikravesh(stiffness=np.array([5e8, 1e7]), restitution=np.array([0.9, 0.5]))
     together, alone = vi.simulate(drop(6, law)).drop(0), vi.simulate(drop(6, law.take(0)))
     times = np.linspace(0.0, 0.999 * alone.end_time, 5000)
@@ -109,11 +111,17 @@ def test_a_history_that_is_too_long_keeps_its_first_impacts_whole_and_every_even
     first = int(np.searchsorted(kept_of_it["time_s"], response.impacts["time_s"][4]))
     for name, values in kept_of_it.items():
         np.testing.assert_array_equal(values[:first], whole[name][:first], err_msg=name)
-    for name in ("time_s", "time_of_max_indentation_s"):  # the ends of each flight and the deepest point of each contact are there
-        assert np.abs(kept_of_it["time_s"] - response.impacts[name][:, None]).min(axis=1).max() < 1e-12
+    # the ends of each flight and the deepest point of each contact are there
+    for name in ("time_s", "time_of_max_indentation_s"):
+        assert (
+            np.abs(kept_of_it["time_s"] - response.impacts[name][:, None]).min(axis=1).max() < 1e-12
+        )
     told = response.at(kept_of_it["time_s"])
-    inside = np.abs(kept_of_it["time_s"] - response.impacts["time_s"][:, None]).min(axis=0) > 1e-9  # where the two sides of an event differ
-    np.testing.assert_allclose(kept_of_it["position_m"][inside], told["position_m"][inside], atol=1e-12)
+    # where the two sides of an event differ
+    inside = np.abs(kept_of_it["time_s"] - response.impacts["time_s"][:, None]).min(axis=0) > 1e-9
+    np.testing.assert_allclose(
+        kept_of_it["position_m"][inside], told["position_m"][inside], atol=1e-12
+    )
 
 
 def test_what_is_written_of_a_history_is_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -124,7 +132,9 @@ def test_what_is_written_of_a_history_is_bounded(monkeypatch: pytest.MonkeyPatch
 
 
 def test_a_table_of_no_impact_has_all_columns() -> None:
-    assert {name: column.shape for name, column in ImpactRows(["impact", "time_s"], 3).table().items()} == {
+    assert {
+        name: column.shape for name, column in ImpactRows(["impact", "time_s"], 3).table().items()
+    } == {
         "impact": (3, 0),
         "time_s": (3, 0),
     }

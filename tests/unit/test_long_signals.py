@@ -18,13 +18,17 @@ SIGNAL = Signal(Sensor("a", rate=50e3), RANDOM)
 
 def test_times_are_those_of_the_rate() -> None:
     np.testing.assert_array_equal(SIGNAL.time, np.arange(COUNT) / 50e3)
-    np.testing.assert_array_equal(SIGNAL.times(COUNT - 3, COUNT + 9), np.arange(COUNT - 3, COUNT) / 50e3)
+    np.testing.assert_array_equal(
+        SIGNAL.times(COUNT - 3, COUNT + 9), np.arange(COUNT - 3, COUNT) / 50e3
+    )
 
 
 @pytest.mark.parametrize("rate", [50e3, 48e3, 44100.0, 1e5 / 3.0])
 def test_the_first_sample_at_a_time_is_the_one_that_a_search_finds(rate: float) -> None:
     signal = Signal(Sensor("a", rate=rate), np.zeros(5000))
-    times = np.concatenate([[-1.0, 0.0, 1e-12, 1.0, 99.0], signal.time[::37], np.nextafter(signal.time[1::41], 1.0)])
+    times = np.concatenate(
+        [[-1.0, 0.0, 1e-12, 1.0, 99.0], signal.time[::37], np.nextafter(signal.time[1::41], 1.0)]
+    )
     assert [signal.first_at(time) for time in times] == np.searchsorted(signal.time, times).tolist()
 
 

@@ -1,4 +1,6 @@
-"""What a run has computed is written whatever a chart does: the chart that is lost is named by the page and by the command."""
+"""What a run has computed is written whatever a chart does: the chart that is lost is
+named by the page and by the command.
+"""
 
 from __future__ import annotations
 
@@ -29,8 +31,19 @@ def fails(*_: object, **__: object) -> Any:
 
 
 def elastic_case(**changes: object) -> dict:
-    plate = {"size": [0.52, 0.42, 0.008], "material": "steel", "model": "elastic", "modes": 6, "supports": "clamped", "damping": 0.01}
-    given = {"sensors": [{"name": "a1", "position": [0.1, 0.05], "rate": "5 kHz"}], "run__impacts": 1, **changes}
+    plate = {
+        "size": [0.52, 0.42, 0.008],
+        "material": "steel",
+        "model": "elastic",
+        "modes": 6,
+        "supports": "clamped",
+        "damping": 0.01,
+    }
+    given = {
+        "sensors": [{"name": "a1", "position": [0.1, 0.05], "rate": "5 kHz"}],
+        "run__impacts": 1,
+        **changes,
+    }
     return plain_case(plate=plate, **given)
 
 
@@ -44,15 +57,30 @@ def run(case: dict, folder: Path, *options: str, monkeypatch: pytest.MonkeyPatch
     return ended.value.code
 
 
-def test_a_sensor_without_a_sample_after_the_touch(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A quarter of a sample a second, in half a second: its signal is one sample, before the touch, and has no spectrum."""
+def test_a_sensor_without_a_sample_after_the_touch(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A quarter of a sample a second, in half a second: its signal is one sample, before
+    the touch, and has no spectrum.
+    """
     slow = {"name": "slow", "position": [0.1, 0.05], "rate": 0.25}
-    assert run(elastic_case(run__impacts=None, run__duration=0.5, sensors=[slow]), tmp_path, monkeypatch=monkeypatch) == 0
+    assert (
+        run(
+            elastic_case(run__impacts=None, run__duration=0.5, sensors=[slow]),
+            tmp_path,
+            monkeypatch=monkeypatch,
+        )
+        == 0
+    )
     assert "could not be drawn" not in (tmp_path / "out/report.html").read_text()
 
 
-def test_charts_that_raise(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
-    """One that can't be made, one that can't be drawn in the page, one that can't be drawn as a file, and the plate in motion."""
+def test_charts_that_raise(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """One that can't be made, one that can't be drawn in the page, one that can't be
+    drawn as a file, and the plate in motion.
+    """
 
     def draws_no_energy(chart: vi.charts.chart.Chart) -> Any:
         return fails() if chart.name == "energy" and chart.panels[0].marks else plotly_chart(chart)
@@ -69,8 +97,13 @@ def test_charts_that_raise(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caps
     assert run(elastic_case(), tmp_path, "--figures", monkeypatch=monkeypatch) == 0
     told, page = capsys.readouterr().err, (tmp_path / "out/report.html").read_text()
     for name in ("sensor_a1", "energy", "force", "plate_in_motion"):
-        assert f"vibroimpact: the chart {name} could not be drawn: ZeroDivisionError: no width" in told
-    assert page.count('<p class="note">This chart could not be drawn: ZeroDivisionError: no width</p>') == 3
+        assert (
+            f"vibroimpact: the chart {name} could not be drawn: ZeroDivisionError: no width" in told
+        )
+    assert (
+        page.count('<p class="note">This chart could not be drawn: ZeroDivisionError: no width</p>')
+        == 3
+    )
     for name in ("sensor_a1", "energy", "plate_in_motion"):
         assert f'<figure id="{name}">' in page
     result = vi.read_result(tmp_path / "out")
@@ -91,17 +124,27 @@ def test_a_calibration_whose_chart_raises(tmp_path: Path, monkeypatch: pytest.Mo
 
 
 def test_every_list_of_charts_and_every_page_is_made_so() -> None:
-    """Of run, sweep, calibrate, modes, dataset, recognise, identify, correlate, bound and compare, and of what comes later."""
+    """Of run, sweep, calibrate, modes, dataset, recognise, identify, correlate, bound and
+    compare, and of what comes later.
+    """
     lists = 0
     for path in SOURCE.rglob("*.py"):
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-            if isinstance(node, ast.FunctionDef) and node.returns is not None and ast.unparse(node.returns) == "list[Chart]":
-                assert node.name == "made_charts" or "made_charts(" in ast.unparse(node), f"{path}: {node.name}"
+            if (
+                isinstance(node, ast.FunctionDef)
+                and node.returns is not None
+                and ast.unparse(node.returns) == "list[Chart]"
+            ):
+                assert node.name == "made_charts" or "made_charts(" in ast.unparse(node), (
+                    f"{path}: {node.name}"
+                )
                 lists += 1
     assert lists > 10
 
 
-@pytest.mark.parametrize("error", [MemoryError(), vi.InputError("too many"), RecursionError("x" * 5000)])
+@pytest.mark.parametrize(
+    "error", [MemoryError(), vi.InputError("too many"), RecursionError("x" * 5000)]
+)
 def test_any_error_is_one_sentence(error: Exception) -> None:
     def raises() -> Any:
         raise error
@@ -112,7 +155,11 @@ def test_any_error_is_one_sentence(error: Exception) -> None:
         scene, (instead,) = made_scene(raises)
     page = drawn(lost, plotly_chart)
     assert scene is None
-    assert (lost.title, instead.title, page["name"]) == ("Force indentation", "Plate in motion", "force_indentation")
+    assert (lost.title, instead.title, page["name"]) == (
+        "Force indentation",
+        "Plate in motion",
+        "force_indentation",
+    )
     assert all(len(str(one.message)) < 300 for one in (*seen, *seen_too))
 
 

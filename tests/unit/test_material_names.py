@@ -30,7 +30,9 @@ NAMES = {
 def test_another_name_leads_to_that_of_the_library(name: str) -> None:
     with pytest.raises(vi.InputError) as raised:
         vi.read_case(plain_case(sphere__material=name))
-    assert str(raised.value).startswith(f'sphere.material: there is no material "{name}" in the library')
+    assert str(raised.value).startswith(
+        f'sphere.material: there is no material "{name}" in the library'
+    )
     assert str(raised.value).endswith(f'Did you mean "{NAMES[name]}"?')
 
 
@@ -45,7 +47,11 @@ def test_every_material_is_found_by_its_own_name_and_no_other_name_is_two_materi
     from vibroimpact.materials import _known_by, _library_file, _plain
 
     assert all(vi.find_material(name).name == name for name in vi.material_library())
-    others = [_plain(other) for entry in _library_file().values() for other in entry.get("other_names", ())]
+    others = [
+        _plain(other)
+        for entry in _library_file().values()
+        for other in entry.get("other_names", ())
+    ]
     assert len(others) == len(set(others))
     assert not {_plain(name) for name in vi.material_library()} & set(others)
     assert set(_known_by().values()) == set(vi.material_library())

@@ -1,4 +1,6 @@
-"""What a process keeps in its memory: many drops on one plate read it, factorise it and find its modes once."""
+"""What a process keeps in its memory: many drops on one plate read it, factorise it and
+find its modes once.
+"""
 
 from __future__ import annotations
 
@@ -27,8 +29,17 @@ from vibroimpact.structures.supports.edge import EDGES, Edge
 
 ROCK = Material(1380.0, 2.26e9, 0.28)
 CLAMPED = tuple(Edge(edge, "clamped") for edge in EDGES)
-PLATE = Recipe(PlateOfPlates((0.5, 0.4, 0.02), 0.1), 7850.0, 210e9, 0.3, CLAMPED, Reduction(modes=3))
-SPHERE = Recipe(SphereOfSolids(0.025, 4, "hex20"), ROCK.density, ROCK.youngs_modulus, ROCK.poissons_ratio, (), Reduction(modes=10))
+PLATE = Recipe(
+    PlateOfPlates((0.5, 0.4, 0.02), 0.1), 7850.0, 210e9, 0.3, CLAMPED, Reduction(modes=3)
+)
+SPHERE = Recipe(
+    SphereOfSolids(0.025, 4, "hex20"),
+    ROCK.density,
+    ROCK.youngs_modulus,
+    ROCK.poissons_ratio,
+    (),
+    Reduction(modes=10),
+)
 
 
 @pytest.fixture(autouse=True)
@@ -56,7 +67,9 @@ def test_what_was_used_last_stays() -> None:
     assert cache.get("a") is None
 
 
-def test_a_model_is_read_once(monkeypatch: pytest.MonkeyPatch, folder: Path, tmp_path: Path) -> None:
+def test_a_model_is_read_once(
+    monkeypatch: pytest.MonkeyPatch, folder: Path, tmp_path: Path
+) -> None:
     modal_model_of(PLATE)
     read = modal_model_of(PLATE)
     assert not read.shapes.flags.writeable  # it is shared
@@ -67,7 +80,9 @@ def test_a_model_is_read_once(monkeypatch: pytest.MonkeyPatch, folder: Path, tmp
     assert modal_model_of(PLATE) is not read  # another store has nothing yet
 
 
-def test_what_the_store_does_not_take_is_computed_once(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_what_the_store_does_not_take_is_computed_once(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
     (tmp_path / "file").write_text("in the way")
     monkeypatch.setenv("VIBROIMPACT_STORE", str(tmp_path / "file" / "store"))
     first = modal_model_of(PLATE)
@@ -87,9 +102,15 @@ def test_a_plate_is_factorised_once_for_all_places(monkeypatch: pytest.MonkeyPat
     assert computed_compliance(softer, places[0]) == pytest.approx(3.0 * fresh[0], rel=1e-9)
 
 
-@pytest.mark.parametrize("more", [{}, {"attachment": ((None, "lower"),)}], ids=["modal", "attachment"])
-def test_spheres_that_are_similar_share_their_modes(folder: Path, more: dict[str, tuple[tuple[None, str], ...]]) -> None:
-    """Of any size, density and modulus they are those that would be computed for it, to rounding."""
+@pytest.mark.parametrize(
+    "more", [{}, {"attachment": ((None, "lower"),)}], ids=["modal", "attachment"]
+)
+def test_spheres_that_are_similar_share_their_modes(
+    folder: Path, more: dict[str, tuple[tuple[None, str], ...]]
+) -> None:
+    """Of any size, density and modulus they are those that would be computed for it, to
+    rounding.
+    """
     recipe = replace(SPHERE, reduction=Reduction(modes=10, **more))  # type: ignore[arg-type]
     assert not stored(recipe)
     for other in (
@@ -103,17 +124,29 @@ def test_spheres_that_are_similar_share_their_modes(folder: Path, more: dict[str
         np.testing.assert_allclose(found.mesh.nodes, direct.mesh.nodes, rtol=1e-12, atol=1e-15)
         for name in ("mass", "centre", "inertia"):
             values = [getattr(model.properties, name) for model in (found, direct)]
-            np.testing.assert_allclose(*values, rtol=1e-9, atol=1e-9 * np.abs(direct.properties.inertia).max())
+            np.testing.assert_allclose(
+                *values, rtol=1e-9, atol=1e-9 * np.abs(direct.properties.inertia).max()
+            )
         # equal frequencies let modes mix, but not what they carry together
         places = other.shape.radius * np.array([[0.0, 0.0], [0.1, 0.2]])  # type: ignore[attr-defined]
         flexibility = []
         for model in (found, direct):
-            shapes = model.at(places, "lower")[0].reshape(len(model.shapes), -1) / model.angular_frequencies[:, None]
+            shapes = (
+                model.at(places, "lower")[0].reshape(len(model.shapes), -1)
+                / model.angular_frequencies[:, None]
+            )
             flexibility.append(shapes.T @ shapes)
-        np.testing.assert_allclose(*flexibility, rtol=1e-6, atol=1e-8 * np.abs(flexibility[1]).max())
+        np.testing.assert_allclose(
+            *flexibility, rtol=1e-6, atol=1e-8 * np.abs(flexibility[1]).max()
+        )
         momenta = [np.abs(model.participation).max(axis=0) for model in (found, direct)]
         np.testing.assert_allclose(*momenta, atol=1e-8 * found.properties.mass**0.5)
-        assert np.linalg.matrix_rank(found.rigid_coefficients / np.abs(found.rigid_coefficients).max(axis=0)) == 6
+        assert (
+            np.linalg.matrix_rank(
+                found.rigid_coefficients / np.abs(found.rigid_coefficients).max(axis=0)
+            )
+            == 6
+        )
     assert len(entries()) == 1
 
 

@@ -17,7 +17,13 @@ from vibroimpact.structures.mirror import mirror_planes, symmetry_bases
 from vibroimpact.structures.mirrored import MirroredSystem, elastic_system
 from vibroimpact.structures.modes import ElasticSystem
 from vibroimpact.structures.plate_mesh import plate_mesh, solid_plate_mesh
-from vibroimpact.structures.recipe import Recipe, Reduction, SphereOfSolids, computed_model, mesh_features
+from vibroimpact.structures.recipe import (
+    Recipe,
+    Reduction,
+    SphereOfSolids,
+    computed_model,
+    mesh_features,
+)
 from vibroimpact.structures.sphere_mesh import sphere_mesh
 from vibroimpact.structures.structure import plate_structure, solid_structure
 from vibroimpact.structures.supports.constraints import HeldStructure
@@ -45,27 +51,46 @@ def sphere(across: int = 6, grading: float = 1.0, kind: str = "hex20") -> HeldSt
 
 @cache
 def bricks(*supports: Support) -> HeldStructure:
-    return held_by(solid_structure(solid_plate_mesh(SIZE, 0.08, 1, "hex20", *mesh_features(supports)), STEEL), supports)
+    return held_by(
+        solid_structure(solid_plate_mesh(SIZE, 0.08, 1, "hex20", *mesh_features(supports)), STEEL),
+        supports,
+    )
 
 
 @pytest.mark.parametrize(
     ("held", "axes"),
     [
-        (lambda: plate(*CORNERS), [0, 1]),  # whose lower face is held: that couples bending and stretching
+        # whose lower face is held: that couples bending and stretching
+        (lambda: plate(*CORNERS), [0, 1]),
         (lambda: plate(), [0, 1, 2]),
         (lambda: plate(theory="thin"), [0, 1, 2]),
         (lambda: plate(*CORNERS[:2]), [1]),
         (lambda: plate(CORNERS[0], Patch(0.2292, 0.17, 0.02)), []),
-        (lambda: plate(*CORNERS, Spring(0.1, 0.05, 1e6)), []),  # on a mesh that is symmetric but for it
+        # on a mesh that is symmetric but for it
+        (lambda: plate(*CORNERS, Spring(0.1, 0.05, 1e6)), []),
         (lambda: sphere(), [0, 1, 2]),
         (lambda: sphere(grading=2.0), [0, 1]),
         (lambda: sphere(kind="tet10"), []),
         (lambda: bricks(), [0, 1, 2]),
         (lambda: bricks(*CORNERS), [0, 1]),
     ],
-    ids=["patches", "free", "thin", "two", "askew", "spring", "sphere", "graded", "tetrahedra", "bricks", "held bricks"],
+    ids=[
+        "patches",
+        "free",
+        "thin",
+        "two",
+        "askew",
+        "spring",
+        "sphere",
+        "graded",
+        "tetrahedra",
+        "bricks",
+        "held bricks",
+    ],
 )
-def test_the_mirror_planes_of_a_structure(held: Callable[[], HeldStructure], axes: list[int]) -> None:
+def test_the_mirror_planes_of_a_structure(
+    held: Callable[[], HeldStructure], axes: list[int]
+) -> None:
     assert [mirror.axis for mirror in mirror_planes(held())] == axes
 
 
@@ -87,10 +112,23 @@ def test_modes_are_those_that_arpack_finds(held: Callable[[], HeldStructure]) ->
     structure = held()
     found = elastic_system(structure).modes(30)
     assert isinstance(elastic_system(structure), MirroredSystem)
-    expected = np.sqrt(eigsh(structure.stiffness.tocsc(), 30, structure.mass.tocsc(), sigma=0.0, return_eigenvectors=False)[::-1])
+    expected = np.sqrt(
+        eigsh(
+            structure.stiffness.tocsc(),
+            30,
+            structure.mass.tocsc(),
+            sigma=0.0,
+            return_eigenvectors=False,
+        )[::-1]
+    )
     np.testing.assert_allclose(found.angular_frequencies, np.sort(expected), rtol=1e-9)
-    np.testing.assert_allclose(found.shapes.T @ (structure.mass @ found.shapes), np.eye(30), atol=1e-8)
-    left = structure.stiffness @ found.shapes - structure.mass @ found.shapes * found.angular_frequencies**2
+    np.testing.assert_allclose(
+        found.shapes.T @ (structure.mass @ found.shapes), np.eye(30), atol=1e-8
+    )
+    left = (
+        structure.stiffness @ found.shapes
+        - structure.mass @ found.shapes * found.angular_frequencies**2
+    )
     assert np.abs(left).max() < 1e-6 * np.abs(structure.stiffness @ found.shapes).max()
 
 
@@ -98,24 +136,40 @@ def test_modes_are_those_that_arpack_finds(held: Callable[[], HeldStructure]) ->
 def test_modes_of_a_sphere_are_those_of_the_whole() -> None:
     """Many are equal, and a number of modes may end among equal ones."""
     structure = sphere()
-    whole = ElasticSystem(structure.stiffness, structure.mass, structure.rigid, structure.order).modes(40)
+    whole = ElasticSystem(
+        structure.stiffness, structure.mass, structure.rigid, structure.order
+    ).modes(40)
     for number in (1, 5, 7, 40):
         found = elastic_system(structure).modes(number)
-        np.testing.assert_allclose(found.angular_frequencies, whole.angular_frequencies[:number], rtol=1e-8)
-        assert np.abs(structure.rigid.T @ (structure.mass @ found.shapes)).max() < 1e-9 * np.abs(structure.rigid).max()
+        np.testing.assert_allclose(
+            found.angular_frequencies, whole.angular_frequencies[:number], rtol=1e-8
+        )
+        assert (
+            np.abs(structure.rigid.T @ (structure.mass @ found.shapes)).max()
+            < 1e-9 * np.abs(structure.rigid).max()
+        )
 
 
 def test_one_part_may_have_most_of_the_modes() -> None:
     """A long strip bends up and down in each half more often than it does anything else."""
     mesh = plate_mesh((2.0, 0.02), 0.02)
     structure = held_by(plate_structure(mesh, STEEL, 0.01))
-    whole = ElasticSystem(structure.stiffness, structure.mass, structure.rigid, structure.order).modes(12)
-    np.testing.assert_allclose(elastic_system(structure).modes(12).angular_frequencies, whole.angular_frequencies, rtol=1e-6)
+    whole = ElasticSystem(
+        structure.stiffness, structure.mass, structure.rigid, structure.order
+    ).modes(12)
+    np.testing.assert_allclose(
+        elastic_system(structure).modes(12).angular_frequencies,
+        whole.angular_frequencies,
+        rtol=1e-6,
+    )
 
 
 def test_statics_and_counts_are_those_of_the_whole() -> None:
     structure = sphere()
-    whole, found = ElasticSystem(structure.stiffness, structure.mass, structure.rigid, structure.order), elastic_system(structure)
+    whole, found = (
+        ElasticSystem(structure.stiffness, structure.mass, structure.rigid, structure.order),
+        elastic_system(structure),
+    )
     loads = np.random.default_rng(0).standard_normal((len(structure.free), 2))
     expected = whole.static(loads)
     np.testing.assert_allclose(found.static(loads), expected, atol=1e-9 * np.abs(expected).max())
@@ -140,6 +194,13 @@ def test_the_factors_of_a_sphere_are_those_of_its_eighths(monkeypatch: pytest.Mo
             entries.append(self.entries)
 
     monkeypatch.setattr(of_modes, "Factors", Counted)
-    recipe = Recipe(SphereOfSolids(0.025, 6, "hex27"), STEEL.density, STEEL.youngs_modulus, STEEL.poissons_ratio, (), Reduction(modes=30))
+    recipe = Recipe(
+        SphereOfSolids(0.025, 6, "hex27"),
+        STEEL.density,
+        STEEL.youngs_modulus,
+        STEEL.poissons_ratio,
+        (),
+        Reduction(modes=30),
+    )
     computed_model(recipe)
     assert max(entries[1:]) < entries[0] / 8.0

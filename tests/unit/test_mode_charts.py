@@ -1,4 +1,6 @@
-"""The shapes of modes as they are drawn: those of the finite elements, on a grid and on facets; and the page that shows them."""
+"""The shapes of modes as they are drawn: those of the finite elements, on a grid and on
+facets; and the page that shows them.
+"""
 
 from __future__ import annotations
 
@@ -26,7 +28,13 @@ HOSTILE = ["<img src=x onerror=alert(1)>", r"$\frac{a$", "s" * 200]
 
 
 def plate_case(**changes: Any) -> vi.Case:
-    plate = {"size": [0.3, 0.2, 0.004], "material": "steel", "model": "elastic", "modes": 6, "supports": "simply-supported"}
+    plate = {
+        "size": [0.3, 0.2, 0.004],
+        "material": "steel",
+        "model": "elastic",
+        "modes": 6,
+        "supports": "simply-supported",
+    }
     return vi.read_case(plain_case(plate={**plate, **changes.pop("plate", {})}, **changes))
 
 
@@ -43,7 +51,9 @@ def simple() -> tuple[vi.BodyModes, Chart]:
 
 
 @pytest.mark.slow
-def test_the_shapes_of_a_simply_supported_plate_are_sines(simple: tuple[vi.BodyModes, Chart]) -> None:
+def test_the_shapes_of_a_simply_supported_plate_are_sines(
+    simple: tuple[vi.BodyModes, Chart],
+) -> None:
     """Between the nodes too; and panels are numbered with their frequencies."""
     body, chart = simple
     halves = [(1, 1), (2, 1), (1, 2), (3, 1), (2, 2), (3, 2)]
@@ -56,7 +66,9 @@ def test_the_shapes_of_a_simply_supported_plate_are_sines(simple: tuple[vi.BodyM
         assert np.abs(shape.values - wanted).max() < 0.01
         assert panel.title.startswith(f"{number + 1}: ")
         _, frequency, unit = panel.title.split()
-        assert float(frequency) * {"Hz": 1.0, "kHz": 1e3}[unit] == pytest.approx(body.model.frequencies[number], rel=1e-4)
+        assert float(frequency) * {"Hz": 1.0, "kHz": 1e3}[unit] == pytest.approx(
+            body.model.frequencies[number], rel=1e-4
+        )
     assert len({shape.scale for panel in chart.panels for shape in marks(panel, Map)}) == 1
 
 
@@ -65,7 +77,9 @@ def test_the_grid_is_that_of_the_elements(simple: tuple[vi.BodyModes, Chart]) ->
     body, chart = simple
     (shape,) = marks(chart.panels[4], Map)
     places = np.random.default_rng(1).integers(0, [len(shape.y), len(shape.x)], size=(40, 2))
-    exact = body.model.at(np.array([[shape.x[column], shape.y[row]] for row, column in places]))[0][4, :, 2]
+    exact = body.model.at(np.array([[shape.x[column], shape.y[row]] for row, column in places]))[0][
+        4, :, 2
+    ]
     drawn = np.array([shape.values[row, column] for row, column in places])
     ratio = np.abs(exact).max() / np.abs(drawn).max()
     np.testing.assert_allclose(exact * np.sign(exact @ drawn) / ratio, drawn, atol=2e-3)
@@ -73,8 +87,14 @@ def test_the_grid_is_that_of_the_elements(simple: tuple[vi.BodyModes, Chart]) ->
 
 @pytest.mark.slow
 def test_edge_supports_contact_and_sensors_are_marked() -> None:
-    supports = [{"type": "patches", "spacing": [0.2, 0.12], "radius": 0.01}, {"type": "edge", "edge": "x-max", "condition": "clamped"}]
-    sensors = [{"name": name, "position": [0.05, 0.01 * place], "rate": 50e3} for place, name in enumerate(HOSTILE)]
+    supports = [
+        {"type": "patches", "spacing": [0.2, 0.12], "radius": 0.01},
+        {"type": "edge", "edge": "x-max", "condition": "clamped"},
+    ]
+    sensors = [
+        {"name": name, "position": [0.05, 0.01 * place], "rate": 50e3}
+        for place, name in enumerate(HOSTILE)
+    ]
     plate = {"supports": supports, "mesh": {"element_size": 0.03}}
     case = plate_case(plate=plate, drop={"speed": 1.0, "position": [0.03, -0.02]}, sensors=sensors)
     modes = vi.compute_modes(case)
@@ -84,7 +104,12 @@ def test_edge_supports_contact_and_sensors_are_marked() -> None:
         assert len(drawn) == 5
         assert {round(float(np.mean(one.x[:-1])), 9) for one in drawn[:4]} == {-0.1, 0.1}
         edge = next(mark for mark in marks(panel, Line))
-        assert (np.nanmin(edge.x), np.nanmax(edge.x), np.nanmin(edge.y), np.nanmax(edge.y)) == pytest.approx((-0.15, 0.15, -0.1, 0.1))
+        assert (
+            np.nanmin(edge.x),
+            np.nanmax(edge.x),
+            np.nanmin(edge.y),
+            np.nanmax(edge.y),
+        ) == pytest.approx((-0.15, 0.15, -0.1, 0.1))
         contact, sensor = marks(panel, Points)
         assert (contact.x[0], contact.y[0]) == (0.03, -0.02)
         np.testing.assert_allclose(sensor.y, [0.0, 0.01, 0.02])
@@ -101,7 +126,10 @@ def test_edge_supports_contact_and_sensors_are_marked() -> None:
 
 
 def test_a_mode_in_the_plane_is_a_deformed_grid() -> None:
-    case = plate_case(plate={"size": [0.12, 0.1, 0.02], "supports": "free", "modes": 11}, drop={"speed": 1.0, "gravity": 0.0})
+    case = plate_case(
+        plate={"size": [0.12, 0.1, 0.02], "supports": "free", "modes": 11},
+        drop={"speed": 1.0, "gravity": 0.0},
+    )
     modes = vi.compute_modes(case)
     (chart,) = mode_charts(modes)
     shown = [panel for panel in chart.panels if panel.marks]
@@ -113,7 +141,8 @@ def test_a_mode_in_the_plane_is_a_deformed_grid() -> None:
         (words,) = marks(panel, Label)
         assert words.words == "in its plane"
         grid, edge = marks(panel, Line)
-        assert 1.01 < max(np.nanmax(np.abs(grid.x)) / 0.06, np.nanmax(np.abs(grid.y)) / 0.05) < 1.13  # displaced by 6 mm at most
+        # displaced by 6 mm at most
+        assert 1.01 < max(np.nanmax(np.abs(grid.x)) / 0.06, np.nanmax(np.abs(grid.y)) / 0.05) < 1.13
         assert np.nanmax(edge.x) == pytest.approx(0.06)
     scene = mode_scene(modes["plate"], 11)
     assert scene is not None
@@ -125,19 +154,32 @@ def test_a_mode_in_the_plane_is_a_deformed_grid() -> None:
 
 @pytest.fixture(scope="module")
 def sphere() -> tuple[dict[str, vi.BodyModes], Chart]:
-    body = {"radius": 0.025, "material": "rock-paper", "model": "elastic", "modes": 12, "mesh": {"elements_across": 4}}
+    body = {
+        "radius": 0.025,
+        "material": "rock-paper",
+        "model": "elastic",
+        "modes": 12,
+        "mesh": {"elements_across": 4},
+    }
     modes = vi.compute_modes(vi.read_case(plain_case(sphere=body)))
     (chart,) = mode_charts(modes)
     return modes, chart
 
 
-def test_facets_of_a_sphere_are_those_that_are_seen(sphere: tuple[dict[str, vi.BodyModes], Chart]) -> None:
-    """They cover its disc once, and tell how far the surface moves outwards, relative to where it moves most."""
+def test_facets_of_a_sphere_are_those_that_are_seen(
+    sphere: tuple[dict[str, vi.BodyModes], Chart],
+) -> None:
+    """They cover its disc once, and tell how far the surface moves outwards, relative to
+    where it moves most.
+    """
     modes, chart = sphere
     model = modes["sphere"].model
     for mode, panel in enumerate(chart.panels):
         (facets,) = marks(panel, Facets)
-        a, b = facets.corners[:, 2] - facets.corners[:, 0], facets.corners[:, 3] - facets.corners[:, 1]
+        a, b = (
+            facets.corners[:, 2] - facets.corners[:, 0],
+            facets.corners[:, 3] - facets.corners[:, 1],
+        )
         area = 0.5 * np.abs(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]).sum()
         (rest,) = marks(panel, Line)
         np.testing.assert_allclose(np.hypot(rest.x, rest.y), 0.025, rtol=5e-3)
@@ -154,7 +196,9 @@ def test_facets_of_a_sphere_are_those_that_are_seen(sphere: tuple[dict[str, vi.B
     assert any(marks(panel, Label) for panel in chart.panels)
 
 
-def test_facets_with_a_scale_have_its_bar_and_tell_their_values(sphere: tuple[dict[str, vi.BodyModes], Chart]) -> None:
+def test_facets_with_a_scale_have_its_bar_and_tell_their_values(
+    sphere: tuple[dict[str, vi.BodyModes], Chart],
+) -> None:
     _, chart = sphere
     drawn = plotly_chart(chart)
     assert drawn["layout"]["coloraxis"]["cmax"] == pytest.approx(1.0)
@@ -164,17 +208,26 @@ def test_facets_with_a_scale_have_its_bar_and_tell_their_values(sphere: tuple[di
     assert -1.0 <= min(told) < -0.9
     assert 0.9 < max(told) <= 1.0
     figure = matplotlib_figure(chart)
-    assert [axes.get_xlabel() for axes in figure.axes if axes.get_xlabel()] == ["Displacement outwards, part of the largest"]
+    assert [axes.get_xlabel() for axes in figure.axes if axes.get_xlabel()] == [
+        "Displacement outwards, part of the largest"
+    ]
 
 
-def test_a_sphere_alone_has_a_page_without_a_plate_in_motion(sphere: tuple[dict[str, vi.BodyModes], Chart]) -> None:
+def test_a_sphere_alone_has_a_page_without_a_plate_in_motion(
+    sphere: tuple[dict[str, vi.BodyModes], Chart],
+) -> None:
     modes, chart = sphere
-    case = vi.read_case(plain_case(name="<script>alert(1)</script>", sphere={"radius": 0.025, "material": "rock-paper"}))
+    case = vi.read_case(
+        plain_case(
+            name="<script>alert(1)</script>", sphere={"radius": 0.025, "material": "rock-paper"}
+        )
+    )
     page = modes_page(case, modes, [chart])
     assert "<script>alert" not in page
     assert "Plate in motion" not in page
     headers, rows = mode_table(modes["sphere"])
-    assert [name for name, _ in headers] == ["mode", "frequency", "shape at contact"]  # free, undamped, of a mesh too coarse for estimates
+    # free, undamped, of a mesh too coarse for estimates
+    assert [name for name, _ in headers] == ["mode", "frequency", "shape at contact"]
     assert len(rows) == 12
     assert all(f"<td>{row[1]}</td>" in page for row in rows)
 
@@ -189,7 +242,11 @@ def test_the_outline_goes_around_holes_and_follows_curved_edges() -> None:
         x, y = outline(mesh)
         assert np.nansum(np.hypot(np.diff(x), np.diff(y))) == pytest.approx(length)
     bent = Mesh(
-        whole.nodes + np.column_stack([0.0 * whole.nodes[:, 0], 0.1 * whole.nodes[:, 0] ** 2, 0.0 * whole.nodes[:, 0]]), whole.blocks
+        whole.nodes
+        + np.column_stack(
+            [0.0 * whole.nodes[:, 0], 0.1 * whole.nodes[:, 0] ** 2, 0.0 * whole.nodes[:, 0]]
+        ),
+        whole.blocks,
     )
     x, y = outline(bent)
     upper = np.isfinite(y) & (y > 0.2499) & (np.abs(x) < 0.2499)

@@ -1,4 +1,6 @@
-"""The estimated number of modes below a frequency, compared with that of the finite elements, counted by the signs of the pivots."""
+"""The estimated number of modes below a frequency, compared with that of the finite
+elements, counted by the signs of the pivots.
+"""
 
 from __future__ import annotations
 
@@ -18,7 +20,9 @@ from vibroimpact.structures.recipe import Recipe, Reduction, elastic_system, hel
 def counted(recipe: Recipe, frequency: float) -> int:
     material = Material(recipe.density, recipe.youngs_modulus, recipe.poissons_ratio)
     structure = recipe.shape.structure(recipe.shape.mesh(recipe.supports), material)
-    return elastic_system(held_by(structure, recipe.supports)).count_below(2.0 * math.pi * frequency)
+    return elastic_system(held_by(structure, recipe.supports)).count_below(
+        2.0 * math.pi * frequency
+    )
 
 
 def estimated(recipe: Recipe, frequency: float) -> float:
@@ -28,7 +32,12 @@ def estimated(recipe: Recipe, frequency: float) -> float:
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("case", "body", "frequency"),
-    [("paper:type2", "sphere", 25e3), ("paper:type2", "sphere", 30e3), ("paper:type3", "plate", 5e3), ("paper:type3", "plate", 20e3)],
+    [
+        ("paper:type2", "sphere", 25e3),
+        ("paper:type2", "sphere", 30e3),
+        ("paper:type3", "plate", 5e3),
+        ("paper:type3", "plate", 20e3),
+    ],
 )
 def test_of_shipped_cases(case: str, body: str, frequency: float) -> None:
     recipe = elastic_bodies(vi.load_case(case))[body].recipe
@@ -42,13 +51,21 @@ BRICKS = {"element": "solid", "mesh": {"element_size": 0.016, "layers": 3, "spli
 
 @pytest.mark.parametrize(
     ("size", "supports", "more"),
-    [(THIN, "free", {}), (THIN, "simply-supported", {}), (THIN, "clamped", {}), ([0.2, 0.02, 0.005], "free", {}), (THICK, "free", BRICKS)],
+    [
+        (THIN, "free", {}),
+        (THIN, "simply-supported", {}),
+        (THIN, "clamped", {}),
+        ([0.2, 0.02, 0.005], "free", {}),
+        (THICK, "free", BRICKS),
+    ],
     ids=["free", "simply supported", "clamped", "narrow", "thick"],
 )
 def test_of_plates(size: list[float], supports: str, more: dict[str, Any]) -> None:
     plate = {"size": size, "material": "steel", "model": "elastic", "supports": supports, **more}
     sphere, drop = {"radius": 0.01, "material": "steel"}, {"speed": 1.0, "gravity": 0.0}
-    recipe = elastic_bodies(vi.read_case({"sphere": sphere, "plate": plate, "drop": drop, "contact": {"law": "hertz"}}))["plate"].recipe
+    recipe = elastic_bodies(
+        vi.read_case({"sphere": sphere, "plate": plate, "drop": drop, "contact": {"law": "hertz"}})
+    )["plate"].recipe
     frequency = 60e3 if more else 30e3
     number = counted(recipe, frequency)
     assert number > 20

@@ -15,7 +15,12 @@ from vibroimpact.structures.mesh import ElementBlock, Mesh
 from vibroimpact.structures.modes import ElasticSystem
 from vibroimpact.structures.plate_mesh import plate_mesh, solid_plate_mesh
 from vibroimpact.structures.sphere_mesh import sphere_mesh
-from vibroimpact.structures.structure import Structure, node_adjacency, plate_structure, solid_structure
+from vibroimpact.structures.structure import (
+    Structure,
+    node_adjacency,
+    plate_structure,
+    solid_structure,
+)
 from vibroimpact.structures.supports.edge import EDGES, Edge
 from vibroimpact.structures.supports.point import Point
 from vibroimpact.structures.supports.spring import Spring
@@ -35,9 +40,15 @@ def elastic(structure: Structure, supports: tuple[Support, ...] = ()) -> Elastic
 
 
 @pytest.mark.parametrize("structure", [PLATE, BRICKS])
-@pytest.mark.parametrize(("supports", "rigid"), [((), 6), (EDGE, 0), (SPRINGS, 3), ((Point(0.1, 0.1, "xyz"),), 3)])
-def test_every_mode_is_found_once(structure: Structure, supports: tuple[Support, ...], rigid: int) -> None:
-    """As many as Sylvester's law of inertia counts; orthonormal, free of rigid motions, each solving its equation."""
+@pytest.mark.parametrize(
+    ("supports", "rigid"), [((), 6), (EDGE, 0), (SPRINGS, 3), ((Point(0.1, 0.1, "xyz"),), 3)]
+)
+def test_every_mode_is_found_once(
+    structure: Structure, supports: tuple[Support, ...], rigid: int
+) -> None:
+    """As many as Sylvester's law of inertia counts; orthonormal, free of rigid motions,
+    each solving its equation.
+    """
     system = elastic(structure, supports)
     assert system.rigid.shape[1] == rigid
     found = system.modes(12)
@@ -51,7 +62,9 @@ def test_every_mode_is_found_once(structure: Structure, supports: tuple[Support,
     np.testing.assert_allclose(shapes.T @ (system.mass @ shapes), np.eye(12), atol=1e-7)
     np.testing.assert_allclose(system.rigid.T @ (system.mass @ shapes), 0.0, atol=1e-7)
     inertia = (system.mass @ shapes) * omega**2
-    residual = np.linalg.norm(system.stiffness @ shapes - inertia, axis=0) / np.linalg.norm(inertia, axis=0)
+    residual = np.linalg.norm(system.stiffness @ shapes - inertia, axis=0) / np.linalg.norm(
+        inertia, axis=0
+    )
     assert residual.max() < 1e-5
 
 
@@ -62,12 +75,19 @@ def test_double_modes_of_a_square_plate(supports: tuple[Support, ...]) -> None:
     every = system.modes(16).angular_frequencies
     assert (np.abs(np.diff(every) / every[1:]) < 1e-8).sum() >= 4
     for number in range(1, 10):
-        np.testing.assert_allclose(system.modes(number).angular_frequencies, every[:number], rtol=1e-8)
+        np.testing.assert_allclose(
+            system.modes(number).angular_frequencies, every[:number], rtol=1e-8
+        )
 
 
 @pytest.mark.parametrize("supports", [(), EDGE, SPRINGS])
-def test_dense_and_sparse_agree(supports: tuple[Support, ...], monkeypatch: pytest.MonkeyPatch) -> None:
-    system = elastic(solid_structure(box_mesh((1.0, 0.5, 0.2), (4, 2, 1)), STEEL), () if supports == SPRINGS else supports)
+def test_dense_and_sparse_agree(
+    supports: tuple[Support, ...], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    system = elastic(
+        solid_structure(box_mesh((1.0, 0.5, 0.2), (4, 2, 1)), STEEL),
+        () if supports == SPRINGS else supports,
+    )
     assert system.stiffness.shape[0] < 400
     dense = system.modes(15)
     monkeypatch.setattr(modes, "_DENSE", 0)
@@ -94,8 +114,14 @@ def two_bricks(shared: int) -> Mesh:
         same = np.flatnonzero(np.linalg.norm(cube.nodes - at, axis=1) < 1e-9)
         if len(same):
             number[index] = same[0]
-    used, connectivity = np.unique(np.concatenate([cube.blocks[0].connectivity, number[cube.blocks[0].connectivity]]), return_inverse=True)
-    return Mesh(np.concatenate([cube.nodes, other])[used], (ElementBlock("hex8", connectivity.reshape(-1, 8)),))
+    used, connectivity = np.unique(
+        np.concatenate([cube.blocks[0].connectivity, number[cube.blocks[0].connectivity]]),
+        return_inverse=True,
+    )
+    return Mesh(
+        np.concatenate([cube.nodes, other])[used],
+        (ElementBlock("hex8", connectivity.reshape(-1, 8)),),
+    )
 
 
 @pytest.mark.parametrize("shared", [1, 2])
@@ -109,7 +135,10 @@ def test_a_mechanism_is_refused(shared: int, supports: tuple[Support, ...]) -> N
 
 def test_springs_that_are_next_to_none_are_named() -> None:
     springs = tuple(Spring(x, y, 1e-6, 1e-6) for x in (-0.2, 0.2) for y in (-0.1, 0.1))
-    with pytest.raises(ComputationError, match="all of it can on springs that are next to none; look for such springs"):
+    with pytest.raises(
+        ComputationError,
+        match="all of it can on springs that are next to none; look for such springs",
+    ):
         elastic(PLATE, springs)
 
 
@@ -122,13 +151,21 @@ def test_too_many_modes_or_none(number: int) -> None:
 def test_as_many_modes_as_a_small_mesh_has() -> None:
     small = elastic(solid_structure(box_mesh((1.0, 1.0, 1.0), (1, 1, 1), "hex8"), STEEL))
     assert len(small.modes(18).angular_frequencies) == 18
-    with pytest.raises(InputError, match="19 modes are not to be had from 24 degrees of freedom; ask for 1 to 18"):
+    with pytest.raises(
+        InputError, match="19 modes are not to be had from 24 degrees of freedom; ask for 1 to 18"
+    ):
         small.modes(19)
 
 
-def test_memory_that_is_not_known_to_be_free_is_not_said_to_be(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_memory_that_is_not_known_to_be_free_is_not_said_to_be(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     monkeypatch.setattr(free_memory, "_available", lambda: None)
-    with pytest.raises(InputError, match=r"need about 1e\+09 GB of memory, and \d[\d.e+]* GB are built in, of which 80 % may be used"):
+    with pytest.raises(
+        InputError,
+        match=r"need about 1e\+09 GB of memory, and \d[\d.e+]* GB are built in, of which 80 % "
+        r"may be used",
+    ):
         free_memory.check_memory(1e18, "they need")
 
 
@@ -137,7 +174,8 @@ def test_too_little_memory(monkeypatch: pytest.MonkeyPatch) -> None:
     structure = plate_structure(plate_mesh((0.5, 0.4), 0.05), STEEL, 0.01)
     with pytest.raises(
         InputError,
-        match=r"the factors of 6765 degrees of freedom need about 0\.0\d+ GB of memory, and 0\.001 GB are free, .*; use larger elements",
+        match=r"the factors of 6765 degrees of freedom need about 0\.0\d+ GB of memory, and "
+        r"0\.001 GB are free, .*; use larger elements",
     ):
         elastic(structure)
 
@@ -156,9 +194,11 @@ def test_too_little_memory(monkeypatch: pytest.MonkeyPatch) -> None:
     ids=["plate", "strip", "bricks", "tetrahedra", "ball", "linear ball", "cube"],
 )
 def test_estimate_of_the_factors(mesh: Mesh) -> None:
-    """What is estimated before, beside what there is after: never too little, and 30 % too much at most.
+    """What is estimated before, beside what there is after: never too little, and 30 % too much at
+    most.
 
-    Of the 25 numbers of a pair of nodes of a plate 12 are zero, as bending does not move its middle plane; the estimate counts them.
+    Of the 25 numbers of a pair of nodes of a plate 12 are zero, as bending does not move its middle
+    plane; the estimate counts them.
     """
     structure = plate_structure(mesh, STEEL, 0.01) if mesh.is_flat else solid_structure(mesh, STEEL)
     adjacency = node_adjacency(mesh)
@@ -172,13 +212,17 @@ def test_estimate_of_the_factors(mesh: Mesh) -> None:
 def test_statics_are_the_sum_over_all_modes() -> None:
     """Of a free body too: flexibility is the sum of phi phi^T / omega^2."""
     for supports in ((), EDGE):
-        system = elastic(solid_structure(box_mesh((1.0, 0.5, 0.2), (2, 1, 1), "hex8"), STEEL), supports)
+        system = elastic(
+            solid_structure(box_mesh((1.0, 0.5, 0.2), (2, 1, 1), "hex8"), STEEL), supports
+        )
         size = system.stiffness.shape[0]
         found = system.modes(size - system.rigid.shape[1])
         expected = (found.shapes / found.angular_frequencies**2) @ found.shapes.T
         static = system.static(np.eye(size))
         np.testing.assert_allclose(static, expected, atol=1e-9 * np.abs(expected).max())
-        np.testing.assert_allclose(static[:, 2], system.static(np.eye(size)[2]), atol=1e-12 * np.abs(expected).max())
+        np.testing.assert_allclose(
+            static[:, 2], system.static(np.eye(size)[2]), atol=1e-12 * np.abs(expected).max()
+        )
 
 
 @pytest.mark.parametrize("asked", [4, 12, 20])
@@ -198,4 +242,6 @@ def test_mass_at_a_few_degrees_of_freedom() -> None:
     chain = csr_array(2.001 * np.eye(size) - np.eye(size, k=1) - np.eye(size, k=-1))
     condensed = np.linalg.inv(np.linalg.inv(chain.toarray())[:heavy, :heavy])
     found = ElasticSystem(chain, csr_array(np.diag(mass))).modes(10)
-    np.testing.assert_allclose(found.angular_frequencies**2, np.linalg.eigvalsh(condensed)[:10], rtol=1e-9)
+    np.testing.assert_allclose(
+        found.angular_frequencies**2, np.linalg.eigvalsh(condensed)[:10], rtol=1e-9
+    )

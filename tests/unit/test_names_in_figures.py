@@ -1,4 +1,6 @@
-"""Names of sensors that are no names: pictures, files and groups of a result of them, and the way back."""
+"""Names of sensors that are no names: pictures, files and groups of a result of them, and
+the way back.
+"""
 
 from __future__ import annotations
 
@@ -41,9 +43,20 @@ IN_A_CASE = [r"a$\frac{$b", "a" * 200, "../../up", "$", "CON"]
 
 @pytest.fixture(scope="module")
 def response() -> vi.Response:
-    plate = {"size": [0.52, 0.42, 0.008], "material": "steel-paper", "model": "elastic", "supports": "clamped", "modes": 4}
-    sensors = [{"name": name, "position": [0.01 * place, 0.05], "rate": 20e3} for place, name in enumerate(IN_A_CASE)]
-    return vi.simulate(vi.read_case(plain_case(plate=plate, sensors=sensors, run={"impacts": 1, "duration": 0.33})))
+    plate = {
+        "size": [0.52, 0.42, 0.008],
+        "material": "steel-paper",
+        "model": "elastic",
+        "supports": "clamped",
+        "modes": 4,
+    }
+    sensors = [
+        {"name": name, "position": [0.01 * place, 0.05], "rate": 20e3}
+        for place, name in enumerate(IN_A_CASE)
+    ]
+    return vi.simulate(
+        vi.read_case(plain_case(plate=plate, sensors=sensors, run={"impacts": 1, "duration": 0.33}))
+    )
 
 
 @pytest.fixture(scope="module")
@@ -67,9 +80,19 @@ def test_the_folder_holds_a_picture_and_a_table_of_each(folder: Path) -> None:
     assert list(vi.read_result(folder).signals) == IN_A_CASE  # as they were given
     for place, ending in (("sensors", ".csv"), ("figures", ".png"), ("figures", ".svg")):
         begins = "" if place == "sensors" else "sensor_"
-        files = [name for name in os.listdir(folder / place) if name.endswith(ending) and name.startswith(begins)]
+        files = [
+            name
+            for name in os.listdir(folder / place)
+            if name.endswith(ending) and name.startswith(begins)
+        ]
         assert len(files) == len(IN_A_CASE)
-        assert all(name.isascii() and name.isprintable() and len(name) < 100 and not name.startswith((".", "-")) for name in files)
+        assert all(
+            name.isascii()
+            and name.isprintable()
+            and len(name) < 100
+            and not name.startswith((".", "-"))
+            for name in files
+        )
     assert {path.parent for path in folder.parent.rglob("*.csv")} <= {folder, folder / "sensors"}
     with h5py.File(folder / "result.nc") as file:
         assert len(file["sensors"]) == len(IN_A_CASE)
@@ -81,7 +104,11 @@ def test_figures_show_every_name_in_one_line(result: Result) -> None:
     charts = {chart.name: chart for chart in (setup_chart(result), *run_charts(result))}
     names = drawn_sensors(result)
     assert len(names) == len(IN_A_CASE)
-    for chart, name in [*((charts[one], name) for one, name in names.items()), (charts["deflection"], ""), (charts["setup"], "")]:
+    for chart, name in [
+        *((charts[one], name) for one, name in names.items()),
+        (charts["deflection"], ""),
+        (charts["setup"], ""),
+    ]:
         check_figure(chart, name)
 
 
@@ -112,7 +139,15 @@ def test_lettering_is_read_letter_by_letter(name: str) -> None:
 
 
 def test_plain_names_differ_and_can_be_files(tmp_path: Path) -> None:
-    names = [*NAMES, *(f"{name}!" for name in NAMES), "A1", "a1", "a1_2", "a1 ", *(f"s{'/' * number}" for number in range(2000))]
+    names = [
+        *NAMES,
+        *(f"{name}!" for name in NAMES),
+        "A1",
+        "a1",
+        "a1_2",
+        "a1 ",
+        *(f"s{'/' * number}" for number in range(2000)),
+    ]
     found = plain_names(names)
     assert list(found) == list(dict.fromkeys(names))
     assert len({plain.lower() for plain in found.values()}) == len(found)

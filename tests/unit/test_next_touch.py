@@ -1,4 +1,6 @@
-"""The next meeting with a surface that moves is the first one: against fine sampling, of motions made to be missed."""
+"""The next meeting with a surface that moves is the first one: against fine sampling, of
+motions made to be missed.
+"""
 
 from __future__ import annotations
 
@@ -23,10 +25,15 @@ def motion(
     damping: float = 0.0,
     local: tuple[float, float] | None = None,
 ) -> FreeMotion:
-    """A sphere that leaves a surface that is the sum of its oscillators; `local`: how far an element is pressed in, and its rate."""
-    omega, displacement, velocity = (np.atleast_1d(np.asarray(part, dtype=float)) for part in (omega, displacement, velocity))
+    """A sphere that leaves a surface that is the sum of its oscillators; `local`: how far
+    an element is pressed in, and its rate.
+    """
+    omega, displacement, velocity = (
+        np.atleast_1d(np.asarray(part, dtype=float)) for part in (omega, displacement, velocity)
+    )
     pressed, rate = (np.array([value]) for value in local) if local else (NONE, NONE)
-    ground = np.arange(len(omega) + 1) > 0  # the first coordinate is the fall of the sphere, of 1 kg
+    # the first coordinate is the fall of the sphere, of 1 kg
+    ground = np.arange(len(omega) + 1) > 0
     of = LinearSystem(
         np.append(0.0, omega),
         np.append(0.0, np.full(len(omega), damping)),
@@ -39,7 +46,9 @@ def motion(
         np.ones(len(rate)),
         np.zeros(len(rate), dtype=np.intp),
     )
-    return FreeMotion(of, State(np.append(approach, displacement), np.append(speed, velocity), pressed))
+    return FreeMotion(
+        of, State(np.append(approach, displacement), np.append(speed, velocity), pressed)
+    )
 
 
 def first_meeting(free: FreeMotion, level: float, end: float, number: int = 1_000_001) -> float:
@@ -54,7 +63,9 @@ def first_meeting(free: FreeMotion, level: float, end: float, number: int = 1_00
 
 @pytest.mark.parametrize("seed", one_in(2, range(11, -1, -1)))
 def test_against_brute_force(seed: int) -> None:
-    """Surfaces of one to twelve modes of 30 Hz to 5 kHz that nearly reach, or just do not reach, a sphere that comes and goes."""
+    """Surfaces of one to twelve modes of 30 Hz to 5 kHz that nearly reach, or just do not
+    reach, a sphere that comes and goes.
+    """
     random = np.random.default_rng(seed)
     number = seed + 1
     omega = 2.0 * np.pi * np.exp(random.uniform(np.log(30.0), np.log(5e3), number))
@@ -75,21 +86,26 @@ def test_against_brute_force(seed: int) -> None:
 
 
 def test_a_wave_that_grazes() -> None:
-    """A wave that reaches a nanometre beyond the sphere meets it, one that stays as far below does not: but a later one does."""
+    """A wave that reaches a nanometre beyond the sphere meets it, one that stays as far
+    below does not: but a later one does.
+    """
     omega, size = 2.0 * np.pi * 1e4, 1e-5
     quarter = 0.5 * np.pi / omega
     for excess, meets in ((1e-9, True), (-1e-9, False)):
         free = motion(omega, 0.0, size * omega, approach=-size + excess, speed=0.0, gravity=0.0)
         found = next_touch(free, 0.0, 10.0)
         assert (found < quarter) if meets else np.isinf(found)
-    falling = motion(omega, 0.0, size * omega, approach=-size - 1e-9, speed=0.0, gravity=1e-3)  # and comes down a nanometre in 1.4 ms
+    # and comes down a nanometre in 1.4 ms
+    falling = motion(omega, 0.0, size * omega, approach=-size - 1e-9, speed=0.0, gravity=1e-3)
     found = next_touch(falling, 0.0, np.inf)
     assert found == pytest.approx(first_meeting(falling, 0.0, 2e-3, 2_000_001), abs=2e-9)
     assert 1e-3 < found < 1.5e-3
 
 
 def test_many_waves_before_the_touch() -> None:
-    """A small fast ripple under a long flight: found within a hundred steps, not by following every wave."""
+    """A small fast ripple under a long flight: found within a hundred steps, not by
+    following every wave.
+    """
     free = motion(2.0 * np.pi * 2e5, 0.0, 1e-9 * 2.0 * np.pi * 2e5, approach=0.0, speed=-5.0)
     calls = 0
     counted = FreeMotion.state
@@ -108,29 +124,39 @@ def test_many_waves_before_the_touch() -> None:
 
 def test_without_modes_it_is_the_parabola() -> None:
     free = motion(NONE, NONE, NONE, approach=-0.5, speed=-2.0)
-    assert next_touch(free, 0.0, np.inf) == pytest.approx((2.0 + np.sqrt(4.0 + 2.0 * 9.8 * 0.5)) / 9.8, rel=1e-14)
+    assert next_touch(free, 0.0, np.inf) == pytest.approx(
+        (2.0 + np.sqrt(4.0 + 2.0 * 9.8 * 0.5)) / 9.8, rel=1e-14
+    )
     assert np.isinf(next_touch(free, 0.0, 0.1))
     assert np.isinf(next_touch(motion(NONE, NONE, NONE, gravity=0.0), 0.0, np.inf))
-    assert next_touch(motion(NONE, NONE, NONE, speed=2.0, gravity=0.0), 0.0, np.inf) == pytest.approx(5e-4, rel=1e-14)
+    assert next_touch(
+        motion(NONE, NONE, NONE, speed=2.0, gravity=0.0), 0.0, np.inf
+    ) == pytest.approx(5e-4, rel=1e-14)
 
 
 def test_right_after_a_release_it_is_not_the_release_again() -> None:
     """From approach zero, however slowly the surfaces part."""
     for speed in (-1.0, -1e-3, -1e-6):
         free = motion(2.0 * np.pi * 300.0, 0.0, -0.1, approach=0.0, speed=speed)
-        assert next_touch(free, 0.0, np.inf) == pytest.approx(first_meeting(free, 0.0, 1.0, 4_000_001), abs=3e-7)
+        assert next_touch(free, 0.0, np.inf) == pytest.approx(
+            first_meeting(free, 0.0, 1.0, 4_000_001), abs=3e-7
+        )
 
 
 def test_a_dent_that_the_next_contact_does_not_find_again() -> None:
     """Surfaces that overlap beyond the level part first."""
     free = motion(2.0 * np.pi * 300.0, 0.0, 0.0, approach=2e-4, speed=-1.0)
-    assert next_touch(free, 0.0, np.inf) == pytest.approx((1.0 + np.sqrt(1.0 - 2.0 * 9.8 * 2e-4)) / 9.8, rel=1e-9)
+    assert next_touch(free, 0.0, np.inf) == pytest.approx(
+        (1.0 + np.sqrt(1.0 - 2.0 * 9.8 * 2e-4)) / 9.8, rel=1e-9
+    )
     gone = motion(2.0 * np.pi * 300.0, 0.0, 0.0, approach=2e-4, speed=0.0, gravity=0.0)
     assert np.isinf(next_touch(gone, 0.0, np.inf))
 
 
 def test_a_local_element_creeps_back() -> None:
-    """Slower than the sphere leaves: a gap opens and closes when the sphere comes back to the recovered element."""
+    """Slower than the sphere leaves: a gap opens and closes when the sphere comes back to
+    the recovered element.
+    """
     free = motion(NONE, NONE, NONE, approach=-3e-4, speed=-0.1, local=(3e-4, 2000.0))
     found = next_touch(free, 0.0, np.inf)
     assert found == pytest.approx(first_meeting(free, 0.0, 0.1), abs=1.1e-7)
@@ -138,6 +164,15 @@ def test_a_local_element_creeps_back() -> None:
 
 @pytest.mark.parametrize("approach", [0.0, 1e-22, -1e-22])
 def test_what_leaves_and_is_not_turned_back_never_meets_again(approach: float) -> None:
-    """Without gravity and without anything that vibrates, also where rounding leaves the surfaces just together."""
-    assert next_touch(motion(NONE, NONE, NONE, approach=approach, speed=-30.0, gravity=0.0), 0.0, np.inf) == np.inf
-    assert next_touch(motion(NONE, NONE, NONE, approach=-1e-3, speed=2.0, gravity=0.0), 0.0, np.inf) == pytest.approx(5e-4)
+    """Without gravity and without anything that vibrates, also where rounding leaves the
+    surfaces just together.
+    """
+    assert (
+        next_touch(
+            motion(NONE, NONE, NONE, approach=approach, speed=-30.0, gravity=0.0), 0.0, np.inf
+        )
+        == np.inf
+    )
+    assert next_touch(
+        motion(NONE, NONE, NONE, approach=-1e-3, speed=2.0, gravity=0.0), 0.0, np.inf
+    ) == pytest.approx(5e-4)

@@ -36,7 +36,11 @@ def test_a_chart_is_plotted_by_its_name(theory: vi.Response) -> None:
     assert figure.layout.yaxis.title.text == "Force [kN]"
     line = max(figure.data, key=lambda trace: len(trace.y))
     np.testing.assert_allclose(1e3 * np.max(line.y), theory.impacts["max_force_N"].max(), rtol=1e-3)
-    marked = next(trace for trace in figure.data if trace.name == "largest force of a contact" and trace.x[0] is not None)
+    marked = next(
+        trace
+        for trace in figure.data
+        if trace.name == "largest force of a contact" and trace.x[0] is not None
+    )
     np.testing.assert_allclose(1e3 * np.asarray(marked.y), theory.impacts["max_force_N"])
     assert theory.plot().layout.title.text == "Height of the sphere's centre above the plate"
 
@@ -55,7 +59,9 @@ def test_a_sensor_is_plotted_by_its_own_name() -> None:
     figure = result.plot("sensor v")
     assert figure.layout.title.text == "Sensor v"
     values = result.signals["v"].value
-    signal = max((trace for trace in figure.data if trace.yaxis == "y"), key=lambda trace: len(trace.y))
+    signal = max(
+        (trace for trace in figure.data if trace.yaxis == "y"), key=lambda trace: len(trace.y)
+    )
     assert len(signal.x) == len(values)
     assert figure == result.plot("sensor_v")
 
@@ -103,7 +109,9 @@ def test_a_summary_has_name_status_table_and_doubts(name: str) -> None:
     assert set(cells.tags) <= {"p", "strong", "br", "table", "thead", "tbody", "tr", "th", "td"}
     assert result.name in text
     assert result.status in text
-    assert cells.tags.count("tr") == (len(result.impacts["impact"]) + 1 if len(result.impacts["impact"]) else 0)
+    assert cells.tags.count("tr") == (
+        len(result.impacts["impact"]) + 1 if len(result.impacts["impact"]) else 0
+    )
     assert text.count("Doubt: ") == len(result.doubts)
     for row in impact_table(result).head:
         assert all(cell in cells.texts for cell in row)
@@ -126,7 +134,9 @@ def test_a_response_shows_what_its_result_does(theory: vi.Response) -> None:
     assert theory._repr_html_() == vi.result_of(theory)._repr_html_()
     law = vi.find_contact_law("hertz")(stiffness=1e8)
     ball = vi.Body(mass=0.1, contact_offset=0.02)
-    batch = vi.Problem(sphere=ball, plate=vi.rigid_plate(), laws=(law,), height=[0.5, 1.0], impacts=1)
+    batch = vi.Problem(
+        sphere=ball, plate=vi.rigid_plate(), laws=(law,), height=[0.5, 1.0], impacts=1
+    )
     assert vi.simulate(batch)._repr_html_() is None  # its repr is shown instead
     assert vi.simulate(batch).drop(0)._repr_html_()
     assert vi.tabulate(batch).drop(0)._repr_html_() is None

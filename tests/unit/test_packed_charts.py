@@ -24,7 +24,11 @@ def same(one: Any, other: Any) -> bool:
         alike = isinstance(other, np.ndarray) and one.shape == other.shape
         return alike and bool(np.allclose(one, other, rtol=1e-7, atol=0.0, equal_nan=True))
     if isinstance(one, dict):
-        return isinstance(other, dict) and one.keys() == other.keys() and all(same(one[key], other[key]) for key in one)
+        return (
+            isinstance(other, dict)
+            and one.keys() == other.keys()
+            and all(same(one[key], other[key]) for key in one)
+        )
     if isinstance(one, list | tuple):
         return isinstance(other, list) and len(one) == len(other) and all(map(same, one, other))
     return bool(one == other)
@@ -35,28 +39,63 @@ def some_chart() -> Chart:
     time = np.sort(rng.uniform(0.0, 5.0, 500))
     axis = Axis("Time", "s", views=(View("Impact 1", 1.0, 2.0, 1.0, "Since", "largest 5 N"),))
     line = Line(time, rng.normal(size=500), 'of "it" & <that>', "under", origins=(1.0,))
-    points = Points(time[:40], time[:40], "marked", texts=tuple(f"point {number}" for number in range(40)), keys={"mass": time[:40]})
-    upper = Panel(axis, Axis("Force", "N"), (line, points, Bars(np.array([1.0, 2.0]), np.array([3.0, np.nan]), "bars")))
+    points = Points(
+        time[:40],
+        time[:40],
+        "marked",
+        texts=tuple(f"point {number}" for number in range(40)),
+        keys={"mass": time[:40]},
+    )
+    upper = Panel(
+        axis,
+        Axis("Force", "N"),
+        (line, points, Bars(np.array([1.0, 2.0]), np.array([3.0, np.nan]), "bars")),
+    )
     values = rng.normal(size=(3, 4))
     values[1, 2] = np.nan
     lower = Panel(
-        Axis("x", "m"), Axis("y", "m"), (Map(np.arange(4.0), np.arange(3.0), values, Axis("Height", "m")), Outline(time[:4], time[:4]))
+        Axis("x", "m"),
+        Axis("y", "m"),
+        (
+            Map(np.arange(4.0), np.arange(3.0), values, Axis("Height", "m")),
+            Outline(time[:4], time[:4]),
+        ),
     )
     return Chart("some", "Some chart", ((upper,), (lower,)), "With a caption.")
 
 
 DOCUMENTS = [
-    {"text": "µ \U0001f4a5", "none": None, "true": True, "number": -1.5, "list": [1, [2.0, "three"]], "empty": {}, "nothing": []},
+    {
+        "text": "µ \U0001f4a5",
+        "none": None,
+        "true": True,
+        "number": -1.5,
+        "list": [1, [2.0, "three"]],
+        "empty": {},
+        "nothing": [],
+    },
     {"texts": [f"text {number}" for number in range(100)]},
-    {"even": np.linspace(-1.0, 1.0, 101), "double": 3.0 + 1e-9 * np.arange(7.0) ** 2, "single": np.array([1.0, np.nan, -np.inf])},
-    {"whole": np.arange(5), "flags": np.array([True, False]), "empty": np.empty(0), "one": np.array([0.1])},
+    {
+        "even": np.linspace(-1.0, 1.0, 101),
+        "double": 3.0 + 1e-9 * np.arange(7.0) ** 2,
+        "single": np.array([1.0, np.nan, -np.inf]),
+    },
+    {
+        "whole": np.arange(5),
+        "flags": np.array([True, False]),
+        "empty": np.empty(0),
+        "one": np.array([0.1]),
+    },
     {"table": np.arange(6.0).reshape(2, 3) ** 2, "cube": np.arange(24.0).reshape(2, 3, 4) ** 2},
 ]
 
 
 @pytest.mark.parametrize("document", DOCUMENTS, ids=lambda document: "-".join(document))
 def test_a_document_comes_back(document: dict[str, Any]) -> None:
-    expected = {key: value.reshape(-1, value.shape[-1]) if key == "cube" else value for key, value in document.items()}
+    expected = {
+        key: value.reshape(-1, value.shape[-1]) if key == "cube" else value
+        for key, value in document.items()
+    }
     found = unpack(pack(document))
     assert same(expected, found)
     assert same(found, unpack(pack(found)))
@@ -76,7 +115,10 @@ def test_an_array_that_is_stored_once_stays_one() -> None:
 
 
 def test_not_finite_numbers_are_none() -> None:
-    assert unpack(pack({"range": [0.0, np.nan], "most": np.float64("inf")})) == {"range": [0.0, None], "most": None}
+    assert unpack(pack({"range": [0.0, np.nan], "most": np.float64("inf")})) == {
+        "range": [0.0, None],
+        "most": None,
+    }
 
 
 def test_a_chart_comes_back() -> None:
@@ -94,9 +136,15 @@ def test_a_page_of_packed_charts_is_that_of_the_charts() -> None:
     chart = some_chart()
     values = {"name": "name", "opening": "", "pieces": [("<p>before</p>", "some")]}
     direct = render_page("vibroimpact.paper.report", [chart], **values)
-    packed = render_drawn_page("vibroimpact.paper.report", [unpack(pack(plotly_chart(chart)))], **values)
+    packed = render_drawn_page(
+        "vibroimpact.paper.report", [unpack(pack(plotly_chart(chart)))], **values
+    )
     assert same(data_of(direct), data_of(packed))
-    head, before, data = '<option value="0">Impact 1</option>', "<p>before</p>", re.compile(r'id="data">[^<]*<')
+    head, before, data = (
+        '<option value="0">Impact 1</option>',
+        "<p>before</p>",
+        re.compile(r'id="data">[^<]*<'),
+    )
     assert head in packed
     assert before in packed
     assert "<option>mass</option>" in packed

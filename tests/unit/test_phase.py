@@ -22,11 +22,19 @@ from vibroimpact.dynamics.encounter import encounter_of
 from vibroimpact.dynamics.rigid.line_contact import RecordedContact, _manner
 from vibroimpact.dynamics.rigid.phase_rules import normal_grid, phase_rules
 
-SOLVED = sorted(law.name for law in contact_laws().values() if issubclass(law, CompliantLaw) and law.contact_end != "pull-off")
+SOLVED = sorted(
+    law.name
+    for law in contact_laws().values()
+    if issubclass(law, CompliantLaw) and law.contact_end != "pull-off"
+)
 
 
-def collocated(law: CompliantLaw, speed: float, gravity: float = 9.8, tolerance: float = 1e-10) -> tuple[bool, LineContact, LineContact]:
-    """Return whether a contact of 0.1 kg is solved, that contact, and the one that is followed in steps."""
+def collocated(
+    law: CompliantLaw, speed: float, gravity: float = 9.8, tolerance: float = 1e-10
+) -> tuple[bool, LineContact, LineContact]:
+    """Return whether a contact of 0.1 kg is solved, that contact, and the one that is
+    followed in steps.
+    """
     solved, contact, recorded, _ = with_normal_motion(law, speed, gravity, tolerance, 0)
     return solved, contact, recorded.contact
 
@@ -34,12 +42,16 @@ def collocated(law: CompliantLaw, speed: float, gravity: float = 9.8, tolerance:
 def with_normal_motion(
     law: CompliantLaw, speed: float, gravity: float, tolerance: float, steps: int
 ) -> tuple[bool, LineContact, RecordedContact, np.ndarray]:
-    """Return the same with the steps, and the normal motion with some steps in each segment (6, G)."""
+    """Return the same with the steps, and the normal motion with some steps in each
+    segment (6, G).
+    """
     encounter = encounter_of(law, np.array([0.1]), np.array([gravity]), np.array([speed]))
     rules, grid = phase_rules(law.root, tolerance), normal_grid(steps)
     at_touch = law_at_touch(law_addresses(type(law)), law_coefficients(law), np.zeros(7), speed)
     room = np.zeros((ROWS, rules.vectors.shape[2]))
-    solved, contact = collocate_contact(at_touch, _manner(encounter, 0, tolerance), rules, grid, room)
+    solved, contact = collocate_contact(
+        at_touch, _manner(encounter, 0, tolerance), rules, grid, room
+    )
     return solved, contact, RecordedContact.of(encounter, 1e-13), grid.motion[:, : grid.extent[1]]
 
 
@@ -55,7 +67,9 @@ def test_a_row_times_a_matrix(width: int, columns: int) -> None:
     room, matrices = random.normal(size=(5, 32)), random.normal(size=(3, 24, 32))
     before = room.copy()
     multiply(room, matrices, width, columns)
-    np.testing.assert_allclose(room[3, :columns], before[1, :width] @ matrices[2, :width, :columns], rtol=0, atol=1e-13)
+    np.testing.assert_allclose(
+        room[3, :columns], before[1, :width] @ matrices[2, :width, :columns], rtol=0, atol=1e-13
+    )
     room[3, :columns] = before[3, :columns]
     np.testing.assert_array_equal(room, before)
 
@@ -76,7 +90,8 @@ def test_hertz_without_gravity() -> None:
 def test_contact_is_that_followed_in_steps(name: str, speed: float) -> None:
     law = contact_laws()[name].example(ContactPair(2.4e9, 0.02, 0.1, 8e7, 0.3))
     solved, contact, exact = collocated(law, speed)
-    assert solved or name == "adams-poisson"  # whose force is another function of the rate at once after the deepest point
+    # whose force is another function of the rate at once after the deepest point
+    assert solved or name == "adams-poisson"
     if solved:
         energy = 0.05 * speed**2
         assert contact.end.rate == pytest.approx(exact.end.rate, rel=0, abs=1e-10 * speed)
@@ -86,7 +101,9 @@ def test_contact_is_that_followed_in_steps(name: str, speed: float) -> None:
         assert contact.deepest == pytest.approx(exact.deepest, rel=1e-9)
         assert contact.time_of_deepest == pytest.approx(exact.time_of_deepest, rel=1e-9)
         assert contact.peak_force == pytest.approx(exact.peak_force, rel=1e-9)
-        assert contact.time_of_peak_force == pytest.approx(exact.time_of_peak_force, rel=0, abs=1e-6 * exact.end.time)
+        assert contact.time_of_peak_force == pytest.approx(
+            exact.time_of_peak_force, rel=0, abs=1e-6 * exact.end.time
+        )
         assert contact.plastic == pytest.approx(exact.plastic, rel=0, abs=1e-9 * energy)
         assert contact.stored == pytest.approx(exact.stored, rel=0, abs=1e-9 * energy)
 
@@ -104,23 +121,44 @@ def test_the_normal_motion_is_that_followed_in_steps(name: str, speed: float) ->
     assert (np.diff(time) >= -1e-12 * time[-1]).all()
     assert (motion[PACE] >= -1e-7 * time[-1]).all()
     rate = speed + 9.8 * time - impulse / 0.1
-    np.testing.assert_allclose(rate, recorded.motion(np.minimum(time, recorded.contact.end.time))[1], rtol=0, atol=1e-7 * speed)
+    np.testing.assert_allclose(
+        rate,
+        recorded.motion(np.minimum(time, recorded.contact.end.time))[1],
+        rtol=0,
+        atol=1e-7 * speed,
+    )
     assert force.max() == pytest.approx(contact.peak_force, rel=0.02)
 
 
 def test_what_is_not_smooth_is_not_taken_for_solved() -> None:
-    """A law that says more energy than its force stores: the work of the force is not that energy."""
+    """A law that says more energy than its force stores: the work of the force is not
+    that energy.
+    """
     law = Hertz(stiffness=1e9, exponent=1.5)
-    addresses = np.array([law_addresses(Hertz)[0], law_addresses(contact_laws()["linear-spring-dashpot"])[1], *law_addresses(Hertz)[2:]])
+    addresses = np.array(
+        [
+            law_addresses(Hertz)[0],
+            law_addresses(contact_laws()["linear-spring-dashpot"])[1],
+            *law_addresses(Hertz)[2:],
+        ]
+    )
     encounter = encounter_of(law, np.array([0.1]), np.array([9.8]), np.array([1.0]))
     rules = phase_rules(2, 1e-9)
     at_touch = law_at_touch(addresses, law_coefficients(law), np.zeros(7), 1.0)
-    solved, _ = collocate_contact(at_touch, _manner(encounter, 0, 1e-9), rules, normal_grid(0), np.zeros((ROWS, rules.vectors.shape[2])))
+    solved, _ = collocate_contact(
+        at_touch,
+        _manner(encounter, 0, 1e-9),
+        rules,
+        normal_grid(0),
+        np.zeros((ROWS, rules.vectors.shape[2])),
+    )
     assert not solved
 
 
 def test_a_soft_touch_is_left_to_steps() -> None:
     """It is captured."""
-    solved, contact, _ = collocated(contact_laws()["hunt-crossley"](stiffness=1e5, restitution=0.05), speed=1e-4)
+    solved, contact, _ = collocated(
+        contact_laws()["hunt-crossley"](stiffness=1e5, restitution=0.05), speed=1e-4
+    )
     assert not solved
     assert math.isfinite(contact.deepest)

@@ -33,22 +33,40 @@ LAWS = {
 
 
 def numbers() -> dict[str, dict[str, list[float]]]:
-    """The first impacts of each law on a plate with two modes and a compliance in series; and oblique drops on a rigid plate, and on it."""
-    plate = ModalBasis(np.array([300.0, 2e3]), np.array([0.01, 0.02]), np.array([1.0, 0.5]), np.zeros((2, 3)))
+    """The first impacts of each law on a plate with two modes and a compliance in series;
+    and oblique drops on a rigid plate, and on it.
+    """
+    plate = ModalBasis(
+        np.array([300.0, 2e3]), np.array([0.01, 0.02]), np.array([1.0, 0.5]), np.zeros((2, 3))
+    )
     found = {}
     for name, law in LAWS.items():
         problem = drop_on(law, plate, speed=1.0, impacts=1, quasi_static=QuasiStatic(linear=1e-10))
-        found[name] = {column: values.tolist() for column, values in vi.simulate(problem).impacts.items()}
-    moduli = {"effective_modulus": 1.8e10, "effective_shear_modulus": 1.4e10, "effective_radius": 0.025}
+        found[name] = {
+            column: values.tolist() for column, values in vi.simulate(problem).impacts.items()
+        }
+    moduli = {
+        "effective_modulus": 1.8e10,
+        "effective_shear_modulus": 1.4e10,
+        "effective_radius": 0.025,
+    }
     for name, rolling in itertools.product(("mdr", "mindlin", "mindlin-rescale"), (0.0, 0.02)):
-        friction = vi.find_friction_law(name)(coefficient=0.2, rolling_coefficient=rolling, **moduli)
+        friction = vi.find_friction_law(name)(
+            coefficient=0.2, rolling_coefficient=rolling, **moduli
+        )
         oblique = vi.Oblique(velocity=(0.6, 0.1), spin=(0.0, -20.0, 5.0), friction=friction)
         problem = drop_on(LAWS["hysteretic"], speed=2.0, impacts=1, oblique=oblique)
-        found[f"{name}, {rolling}"] = {column: values.tolist() for column, values in vi.simulate(problem).impacts.items()}
+        found[f"{name}, {rolling}"] = {
+            column: values.tolist() for column, values in vi.simulate(problem).impacts.items()
+        }
         if name != "mindlin-rescale":
             moving = replace(plate, along=np.array([[0.3, -0.1], [0.1, 0.2]]))
-            on_plate = drop_on(LAWS["hysteretic"], moving, speed=2.0, impacts=1, oblique=oblique, tolerance=1e-6)
-            found[f"{name}, {rolling}, on a plate"] = {column: values.tolist() for column, values in vi.simulate(on_plate).impacts.items()}
+            on_plate = drop_on(
+                LAWS["hysteretic"], moving, speed=2.0, impacts=1, oblique=oblique, tolerance=1e-6
+            )
+            found[f"{name}, {rolling}, on a plate"] = {
+                column: values.tolist() for column, values in vi.simulate(on_plate).impacts.items()
+            }
     return found
 
 
@@ -59,11 +77,16 @@ def test_plain_python_gives_the_same() -> None:
     folders = (source, Path(__file__).parent, Path(__file__).parents[1])
     environment = {**os.environ, SWITCH: "0", "PYTHONPATH": os.pathsep.join(map(str, folders))}
     script = "import json; from test_plain_python import numbers; print(json.dumps(numbers()))"
-    told = subprocess.run([sys.executable, "-c", script], env=environment, capture_output=True, text=True, check=True)
+    told = subprocess.run(
+        [sys.executable, "-c", script], env=environment, capture_output=True, text=True, check=True
+    )
     plain = json.loads(told.stdout)
     for name, columns in numbers().items():
         for column, values in columns.items():
             if column == "sensitivity":  # by finite differences
                 continue
-            within = 1e-9 if column.startswith("time_of_max") else 1e-12  # a top is flat: rounding shifts it further
-            np.testing.assert_allclose(plain[name][column], values, rtol=within, atol=1e-15, err_msg=f"{name}: {column}")
+            # a top is flat: rounding shifts it further
+            within = 1e-9 if column.startswith("time_of_max") else 1e-12
+            np.testing.assert_allclose(
+                plain[name][column], values, rtol=within, atol=1e-15, err_msg=f"{name}: {column}"
+            )

@@ -1,4 +1,6 @@
-"""The face of a plate of plate elements: which shapes a ball meets, under which treatment, and what is said of it."""
+"""The face of a plate of plate elements: which shapes a ball meets, under which
+treatment, and what is said of it.
+"""
 
 from __future__ import annotations
 
@@ -31,7 +33,9 @@ PMMA = {"density": 1190.0, "youngs_modulus": 3.3e9, "poissons_ratio": 0.37}
 
 def model(size: tuple[float, float, float], element: float, condition: Any, modes: int) -> Any:
     edges = tuple(Edge(edge, condition) for edge in EDGES)
-    return modal_model_of(Recipe(PlateOfPlates(size, element), 7850.0, 210e9, 0.3, edges, Reduction(modes=modes)))
+    return modal_model_of(
+        Recipe(PlateOfPlates(size, element), 7850.0, 210e9, 0.3, edges, Reduction(modes=modes))
+    )
 
 
 def case(plate: dict[str, Any] | None = None, radius: float = 0.01, **more: Any) -> vi.Case:
@@ -54,17 +58,24 @@ def case(plate: dict[str, Any] | None = None, radius: float = 0.01, **more: Any)
     )
 
 
-@pytest.mark.parametrize("place", [(0.0, 0.0), (0.013, 0.007)], ids=["where elements meet", "inside one"])
+@pytest.mark.parametrize(
+    "place", [(0.0, 0.0), (0.013, 0.007)], ids=["where elements meet", "inside one"]
+)
 def test_on_simple_supports_each_mode_is_one_wave(place: tuple[float, float]) -> None:
     size = (0.12, 0.1, 0.01)
     found = model(size, 0.01, "simply-supported", 30)
     point = found.at(np.array([place]))[0][:, 0, 2]
     face = face_shapes(found, STEEL, place, point)
     waves = wave_numbers(found.angular_frequencies, size[2], STEEL)
-    seen = np.abs(point) > 0.05 * np.abs(point).max()  # not those within the plane, nor those with a node there
+    # not those within the plane, nor those with a node there
+    seen = np.abs(point) > 0.05 * np.abs(point).max()
     assert seen.sum() > 5
-    np.testing.assert_allclose(face[seen] / point[seen], bending_factor(waves[seen] * size[2], 0.3), rtol=2e-4)
-    pairs = math.pi * np.hypot(np.arange(1, 9)[:, None] / size[0], np.arange(1, 9) / size[1]).ravel()
+    np.testing.assert_allclose(
+        face[seen] / point[seen], bending_factor(waves[seen] * size[2], 0.3), rtol=2e-4
+    )
+    pairs = (
+        math.pi * np.hypot(np.arange(1, 9)[:, None] / size[0], np.arange(1, 9) / size[1]).ravel()
+    )
     assert np.abs(pairs - waves[seen][:, None]).min(axis=1).max() < 1e-4 * waves[seen].max()
 
 
@@ -76,10 +87,16 @@ def test_near_a_clamped_edge_it_is_the_average_over_a_disc() -> None:
     average = plate_theory_average(0.75 * thickness, thickness, 0.3, 5 / 5.7)
     rings, weights = np.polynomial.legendre.leggauss(6)
     radii, angles = np.sqrt(0.5 * (rings + 1.0)), 2.0 * np.pi * (np.arange(12) + 0.5) / 12
-    discs = (radii[:, None, None] * np.stack([np.cos(angles), np.sin(angles)], axis=-1)).reshape(-1, 2)
+    discs = (radii[:, None, None] * np.stack([np.cos(angles), np.sin(angles)], axis=-1)).reshape(
+        -1, 2
+    )
     weight = np.repeat(0.5 * weights / 12, 12) * average.weights(discs)
     disc = found.at(np.array(place) + average.radius * discs)[0][:, :, 2] @ weight
-    np.testing.assert_allclose(face_shapes(found, STEEL, place, point) - point, disc - point, atol=0.04 * np.abs(disc - point).max())
+    np.testing.assert_allclose(
+        face_shapes(found, STEEL, place, point) - point,
+        disc - point,
+        atol=0.04 * np.abs(disc - point).max(),
+    )
 
 
 def test_beside_the_plate() -> None:
@@ -104,7 +121,14 @@ def test_which_treatment_has_a_face() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("more", one_in(2, [{"reduction": "craig-bampton"}, {"attachment_mode": True}], lambda more: next(iter(more))))
+@pytest.mark.parametrize(
+    "more",
+    one_in(
+        2,
+        [{"reduction": "craig-bampton"}, {"attachment_mode": True}],
+        lambda more: next(iter(more)),
+    ),
+)
 def test_other_bases_meet_the_same_face(more: dict[str, Any]) -> None:
     """Modes that stand for the statics are no waves, which matters little."""
     plain, other = (vi.simulate(case({"modes": 30, **changes})).impacts for changes in ({}, more))
@@ -113,14 +137,24 @@ def test_other_bases_meet_the_same_face(more: dict[str, Any]) -> None:
 
 
 def test_a_contact_too_short_for_plate_elements_is_doubted_with_a_number() -> None:
-    """0.54 % of steel, 0.5 mm, on 10 mm of PMMA is what the other waves of the exact solution do; half the ball, about twice of it."""
+    """0.54 % of steel, 0.5 mm, on 10 mm of PMMA is what the other waves of the exact
+    solution do; half the ball, about twice of it.
+    """
     short = result_of(vi.simulate(case(radius=0.0005)))
     estimate = plate_theory_error(short.deformation, short.impacts)
     assert 0.5 * 0.0054 < estimate < 1.5 * 0.0054
     shorter = result_of(vi.simulate(case(radius=0.00025))).doubts
-    (doubt,) = (text for text in shorter if "waves through the thickness of the plate, which plate elements do not have" in text)
+    (doubt,) = (
+        text
+        for text in shorter
+        if "waves through the thickness of the plate, which plate elements do not have" in text
+    )
     assert 'take plate.element = "solid"' in doubt
-    assert doubts({}, DropSummary(plate_theory=0.004, duration=1e-5)) == doubts({}, DropSummary()) == []
+    assert (
+        doubts({}, DropSummary(plate_theory=0.004, duration=1e-5))
+        == doubts({}, DropSummary())
+        == []
+    )
 
 
 def test_bricks_lack_nothing_of_that() -> None:
@@ -138,15 +172,27 @@ def test_how_far_plate_theory_is_off_in_frequency_is_said() -> None:
 
 
 def test_the_time_of_a_visit_of_several_contacts() -> None:
-    row = {"duration_s": [1e-2], "max_indentation_m": [1e-5], "approach_speed_m_s": [1.0], "contacts": [1]}
+    row = {
+        "duration_s": [1e-2],
+        "max_indentation_m": [1e-5],
+        "approach_speed_m_s": [1.0],
+        "contacts": [1],
+    }
     assert time_of_contact(row) == 1e-2
     assert time_of_contact({**row, "contacts": [3]}) == pytest.approx(2.9433e-5, rel=1e-5)
 
 
 def test_bricks_lie_in_as_many_layers_as_their_waves_want() -> None:
     layers = [
-        plate_recipe((0.5, 0.4, 0.01), STEEL, Reduction(max_frequency=highest), element="solid").shape.layers  # type: ignore[attr-defined]
+        plate_recipe(
+            (0.5, 0.4, 0.01), STEEL, Reduction(max_frequency=highest), element="solid"
+        ).shape.layers  # type: ignore[attr-defined]
         for highest in (100.0, 40e3, 100e3)
     ]
     assert layers == [1, 3, 3]
-    assert plate_recipe((0.5, 0.4, 0.01), STEEL, Reduction(modes=5), element="solid", layers=1).shape.layers == 1  # type: ignore[attr-defined]
+    assert (
+        plate_recipe(
+            (0.5, 0.4, 0.01), STEEL, Reduction(modes=5), element="solid", layers=1
+        ).shape.layers
+        == 1
+    )  # type: ignore[attr-defined]

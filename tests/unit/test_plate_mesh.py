@@ -1,4 +1,6 @@
-"""What plate elements lack of the compliance at the contact, what is told of it, and what is doubted."""
+"""What plate elements lack of the compliance at the contact, what is told of it, and what
+is doubted.
+"""
 
 from __future__ import annotations
 
@@ -35,8 +37,17 @@ SUPPORTS: dict[str, tuple[Support, ...]] = {
 }
 
 
-def case(size: tuple[float, float, float] = SIZE, local: str = "consistent", **plate: Any) -> vi.Case:
-    table = {"size": list(size), "material": "steel", "model": "elastic", "supports": "simply-supported", "modes": 8, "damping": 0.01}
+def case(
+    size: tuple[float, float, float] = SIZE, local: str = "consistent", **plate: Any
+) -> vi.Case:
+    table = {
+        "size": list(size),
+        "material": "steel",
+        "model": "elastic",
+        "supports": "simply-supported",
+        "modes": 8,
+        "damping": 0.01,
+    }
     return vi.read_case(
         {
             "sphere": {"radius": 0.002, "material": "steel"},
@@ -51,11 +62,19 @@ def case(size: tuple[float, float, float] = SIZE, local: str = "consistent", **p
 @pytest.mark.parametrize("theory", ["thick", "thin"])
 @pytest.mark.parametrize("supports", SUPPORTS)
 def test_it_is_what_smaller_elements_add(supports: str, theory: str) -> None:
-    """Of elements of nine thicknesses, beside elements of three: within 5 %. Of supports within the plate nothing is asked."""
+    """Of elements of nine thicknesses, beside elements of three: within 5 %. Of supports
+    within the plate nothing is asked.
+    """
     coarse, fine = (
-        plate_recipe(SIZE, STEEL, Reduction(modes=4), SUPPORTS[supports], element_size=size, theory=theory) for size in (0.009, 0.003)
+        plate_recipe(
+            SIZE, STEEL, Reduction(modes=4), SUPPORTS[supports], element_size=size, theory=theory
+        )
+        for size in (0.009, 0.003)
     )
-    lacking = [mesh_compliance(recipe.shape.mesh(recipe.supports), STEEL, SIZE[2], PLACE, theory == "thin") for recipe in (coarse, fine)]
+    lacking = [
+        mesh_compliance(recipe.shape.mesh(recipe.supports), STEEL, SIZE[2], PLACE, theory == "thin")
+        for recipe in (coarse, fine)
+    ]
     added = computed_compliance(fine, PLACE) - computed_compliance(coarse, PLACE)
     assert lacking[0] - lacking[1] == pytest.approx(added, rel=0.05)
     assert lacking[1] < 0.1 * lacking[0]
@@ -81,14 +100,18 @@ def test_beside_the_plate() -> None:
 
 
 def test_the_error_of_the_force_is_that_of_a_spring_in_series() -> None:
-    """A spring beside Hertz's law, in closed form: E = 2/5 F d + C F^2 / 2 is that of the ball, with and without 1 % more of C."""
+    """A spring beside Hertz's law, in closed form: E = 2/5 F d + C F^2 / 2 is that of the
+    ball, with and without 1 % more of C.
+    """
     stiffness, energy, series = 1e9, 1e-2, 2e-8
 
     def force(compliance: float) -> float:
         low, high = 0.0, 1e6
         for _ in range(200):
             middle = 0.5 * (low + high)
-            stored = 0.4 * middle * (middle / stiffness) ** (2.0 / 3.0) + 0.5 * compliance * middle**2
+            stored = (
+                0.4 * middle * (middle / stiffness) ** (2.0 / 3.0) + 0.5 * compliance * middle**2
+            )
             low, high = (middle, high) if stored < energy else (low, middle)
         return low
 
@@ -97,7 +120,9 @@ def test_the_error_of_the_force_is_that_of_a_spring_in_series() -> None:
     depth = (force(series) / law.stiffness) ** (2.0 / 3.0)
     facts = {PLATE_MESH_COMPLIANCE: more, "series_compliance_m_N": series}
     impacts = {"impact": [1], "max_force_N": [force(series)], "max_indentation_m": [depth]}
-    assert plate_mesh_error(facts, impacts) == pytest.approx(force(series) / force(series + more) - 1.0, rel=0.02)
+    assert plate_mesh_error(facts, impacts) == pytest.approx(
+        force(series) / force(series + more) - 1.0, rel=0.02
+    )
 
 
 def test_only_plate_elements_with_their_statics_have_it() -> None:
@@ -115,7 +140,11 @@ def test_it_is_told_and_doubted_and_the_remedy_is_one(tmp_path: Path) -> None:
     words = "Estimated error of the largest force due to the mesh of the plate"
     (told,) = (value for row, value in deformation_rows(result) if row == words)
     assert told == f"{100.0 * error:.2g}\u00a0%"
-    (doubt,) = (text for text in result.doubts if "elements of the plate are large for its thickness" in text)
+    (doubt,) = (
+        text
+        for text in result.doubts
+        if "elements of the plate are large for its thickness" in text
+    )
     assert f"about {100.0 * error:.1f} % too large" in doubt
     size = doubt.split('give plate.mesh.element_size = "')[1].split('"')[0]
     finer = result_of(vi.simulate(case(mesh={"element_size": size})))

@@ -1,4 +1,6 @@
-"""Studies of populations: rocks of several classes, falls that share a rock and a plate, and signals cut around the first touch."""
+"""Studies of populations: rocks of several classes, falls that share a rock and a plate,
+and signals cut around the first touch.
+"""
 
 from __future__ import annotations
 
@@ -35,7 +37,12 @@ def test_falls_share_what_belongs_to_rock_and_plate() -> None:
     columns, labels = POPULATION.draw(COMMON, 4000, 1)
     assert labels["rock"].tolist() == [fall // 4 for fall in range(4000)]
     assert labels["plate"].tolist() == [fall // 200 for fall in range(4000)]
-    for key, number in (("sphere.radius", 1000), ("drop.height", 4000), ("plate.size.thickness", 20), ("sphere.material.density", 1000)):
+    for key, number in (
+        ("sphere.radius", 1000),
+        ("drop.height", 4000),
+        ("plate.size.thickness", 20),
+        ("sphere.material.density", 1000),
+    ):
         assert len(set(columns[key].tolist())) == number
     for key, group in (
         ("sphere.radius", "rock"),
@@ -55,7 +62,10 @@ def test_classes_have_their_shares_and_distributions() -> None:
     density = columns["sphere.material.density"][rocks]
     assert stats.kstest(density[coal], stats.norm(1380.0, 60.0).cdf).pvalue > 1e-3
     assert stats.kstest(density[~coal], stats.norm(2600.0, 100.0).cdf).pvalue > 1e-3
-    assert abs(stats.spearmanr(density[coal], columns["sphere.radius"][rocks][coal]).statistic) < 0.03  # keys are independent
+    # keys are independent
+    assert (
+        abs(stats.spearmanr(density[coal], columns["sphere.radius"][rocks][coal]).statistic) < 0.03
+    )
 
 
 def test_more_falls_and_other_keys_leave_what_was_drawn() -> None:
@@ -64,7 +74,9 @@ def test_more_falls_and_other_keys_leave_what_was_drawn() -> None:
     for key, values in some.items():
         np.testing.assert_array_equal(more[key][:400], values)
     np.testing.assert_array_equal(further["class"][:400], labels["class"])
-    assert not np.array_equal(POPULATION.draw(COMMON, 400, 3)[0]["sphere.radius"], some["sphere.radius"])
+    assert not np.array_equal(
+        POPULATION.draw(COMMON, 400, 3)[0]["sphere.radius"], some["sphere.radius"]
+    )
 
 
 def test_the_window_is_cut_at_the_last_sample_before_it() -> None:
@@ -76,9 +88,14 @@ def test_the_window_is_cut_at_the_last_sample_before_it() -> None:
         assert 0.0 <= touch - begin / 20e3 - 1e-3 < 1.0 / 20e3 + 1e-9
     with pytest.raises(ComputationError, match="no impact"):
         window.samples(np.array([]), 20e3, 4000)
-    with pytest.raises(ComputationError, match=r"touches 0 s after the start, less than the 0.001 s"):
+    with pytest.raises(
+        ComputationError, match=r"touches 0 s after the start, less than the 0.001 s"
+    ):
         window.samples(np.array([0.0]), 20e3, 4000)
-    with pytest.raises(ComputationError, match=r"ends at 0.2 s, before the window does, at 0.204 s; give a longer run.duration"):
+    with pytest.raises(
+        ComputationError,
+        match=r"ends at 0.2 s, before the window does, at 0.204 s; give a longer run.duration",
+    ):
         window.samples(np.array([0.2]), 20e3, 4000)
 
 
@@ -87,8 +104,13 @@ def test_a_window_after_the_last_impact_asks_for_more_impacts() -> None:
     case = {**table(), "run": {"duration": 0.6, "impacts": 1}}
     sweep = {"over": {"drop.height": [0.1]}, "keep": ["signals"], "window": {"length": 0.25}}
     study = vi.read_sweep({**case, "sweep": sweep})
-    failures = compute_points(study.table, ("signals",), 0, study.plan.points(0, 1), study.window).failures
-    assert "as the run ended before run.duration; where run.impacts ended it, allow more" in failures[0]
+    failures = compute_points(
+        study.table, ("signals",), 0, study.plan.points(0, 1), study.window
+    ).failures
+    assert (
+        "as the run ended before run.duration; where run.impacts ended it, allow more"
+        in failures[0]
+    )
 
 
 def table(**sweep: Any) -> dict[str, Any]:
@@ -97,7 +119,15 @@ def table(**sweep: Any) -> dict[str, Any]:
         **coal_on_steel(),
         "drop": {"height": 0.1},
         "contact": {"law": "tsuji", "restitution": 0.5},
-        "sensors": [{"name": "a1", "position": [0.1, 0.05], "rate": 20e3, "filter": "butterworth", "accelerometer": {"noise": 0.1}}],
+        "sensors": [
+            {
+                "name": "a1",
+                "position": [0.1, 0.05],
+                "rate": 20e3,
+                "filter": "butterworth",
+                "accelerometer": {"noise": 0.1},
+            }
+        ],
         "run": {"duration": 0.3},
         "sweep": {
             "design": "population",
@@ -107,7 +137,10 @@ def table(**sweep: Any) -> dict[str, Any]:
             "falls_per_rock": 2,
             "rocks_per_plate": 3,
             "window": {"before": "1 ms", "length": "10 ms"},
-            "over": {"drop.height": {"from": 0.05, "to": 0.15}, "plate.size.thickness": {"from": 0.007, "to": 0.009}},
+            "over": {
+                "drop.height": {"from": 0.05, "to": 0.15},
+                "plate.size.thickness": {"from": 0.007, "to": 0.009},
+            },
             "classes": {
                 "coal": {"over": {"sphere.material.density": [1300.0, 1400.0]}},
                 "dull gangue": {"over": {"sphere.material.density": [2500.0, 2700.0]}},
@@ -145,27 +178,64 @@ def test_a_population_is_computed_and_read(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("change", "words"),
     [
-        ({"classes": {"coal": {"over": {"sphere.radius": [0.01]}}}}, "sweep.classes: there is only one class"),
-        ({"classes": {"a": {"over": {"sphere.radius": [0.01]}}, "b": {"over": {"sphere.density": [1.0]}}}}, "no such key is swept"),
-        ({"design": "grid", "samples": None}, 'sweep.design: grid has no classes; give design = "population"'),
+        (
+            {"classes": {"coal": {"over": {"sphere.radius": [0.01]}}}},
+            "sweep.classes: there is only one class",
+        ),
+        (
+            {
+                "classes": {
+                    "a": {"over": {"sphere.radius": [0.01]}},
+                    "b": {"over": {"sphere.density": [1.0]}},
+                }
+            },
+            "no such key is swept",
+        ),
+        (
+            {"design": "grid", "samples": None},
+            'sweep.design: grid has no classes; give design = "population"',
+        ),
         ({"classes": None}, "sweep.classes: they are missing; a population has classes"),
         (
-            {"classes": {"a": {"over": {"sphere.radius": [0.01]}}, "b": {"over": {"contact.restitution": [0.4]}}}},
+            {
+                "classes": {
+                    "a": {"over": {"sphere.radius": [0.01]}},
+                    "b": {"over": {"contact.restitution": [0.4]}},
+                }
+            },
             'sweep.classes."b".over: "contact.restitution" is not there for all classes',
         ),
         (
-            {"classes": {"a": {"over": {"drop.height": [0.1]}}, "b": {"over": {"drop.height": [0.4]}}}},
+            {
+                "classes": {
+                    "a": {"over": {"drop.height": [0.1]}},
+                    "b": {"over": {"drop.height": [0.4]}},
+                }
+            },
             'sweep.classes."a".over."drop.height": it stands in [sweep.over] too',
         ),
         (
-            {"classes": {"a": {"over": {"plate.damping": [0.1]}}, "b": {"over": {"plate.damping": [0.4]}}}},
+            {
+                "classes": {
+                    "a": {"over": {"plate.damping": [0.1]}},
+                    "b": {"over": {"plate.damping": [0.4]}},
+                }
+            },
             'sweep.classes."a".over."plate.damping": the plate is not of a class',
         ),
         (
             {
                 "classes": {
                     "a": {"over": {"sphere.radius": [0.01]}},
-                    "b": {"over": {"sphere.radius": {"distribution": "normal", "mean": 0.01, "standard_deviation": 0.1}}},
+                    "b": {
+                        "over": {
+                            "sphere.radius": {
+                                "distribution": "normal",
+                                "mean": 0.01,
+                                "standard_deviation": 0.1,
+                            }
+                        }
+                    },
                 }
             },
             'sweep.classes."b".over."sphere.radius": -0.',

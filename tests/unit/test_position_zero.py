@@ -1,4 +1,6 @@
-"""Position records whose zero, drift and clock are off: what the record itself determines is corrected, and is part of the intervals."""
+"""Position records whose zero, drift and clock are off: what the record itself determines
+is corrected, and is part of the intervals.
+"""
 
 from __future__ import annotations
 
@@ -49,7 +51,9 @@ def track(
     clock: float = 1.0,
     phase: float = 0.0,
 ) -> Track:
-    """A drop by Galilei's law, with contacts of Hertz's duration over the speed in which the sphere dips; the last flight is cut short."""
+    """A drop by Galilei's law, with contacts of Hertz's duration over the speed in which
+    the sphere dips; the last flight is cut short.
+    """
     fall = float(np.sqrt(2.0 * (height - RADIUS) / GRAVITY))
     speeds, pieces, begin = [GRAVITY * fall], [], fall
     for _ in range(number):
@@ -62,14 +66,22 @@ def track(
     position = height - 0.5 * GRAVITY * np.maximum(time, 0.0) ** 2
     for touch, leave, before, after in pieces:
         since = time - leave
-        position = np.where(since >= 0.0, RADIUS + after * since - 0.5 * GRAVITY * since**2, position)
+        position = np.where(
+            since >= 0.0, RADIUS + after * since - 0.5 * GRAVITY * since**2, position
+        )
         inside = (time >= touch) & (time < leave)
         part = (time[inside] - touch) / max(leave - touch, 1e-30)
-        position[inside] = RADIUS - np.sin(np.pi * part) * (leave - touch) / np.pi * (before + (after - before) * part)
-    return Track(clock * time, position + (zero(time) if callable(zero) else zero), np.array(speeds))
+        position[inside] = RADIUS - np.sin(np.pi * part) * (leave - touch) / np.pi * (
+            before + (after - before) * part
+        )
+    return Track(
+        clock * time, position + (zero(time) if callable(zero) else zero), np.array(speeds)
+    )
 
 
-def seen_in(made: Track, noise: Floats | float = 0.0, contact: float | None = HERTZ) -> Observations:
+def seen_in(
+    made: Track, noise: Floats | float = 0.0, contact: float | None = HERTZ
+) -> Observations:
     return impacts_in_position(
         made.time,
         made.position + noise,
@@ -81,10 +93,14 @@ def seen_in(made: Track, noise: Floats | float = 0.0, contact: float | None = HE
 
 
 def restitutions(seen: Observations) -> tuple[Floats, Floats]:
-    """Restitutions and their standard deviations, from the heights, the speeds and their common noise."""
+    """Restitutions and their standard deviations, from the heights, the speeds and their
+    common noise.
+    """
     left = np.sqrt(2.0 * GRAVITY * (seen.wanted["rebound_height"] - RADIUS))
     found = left / seen.speeds
-    noise = scaled(GRAVITY / left / seen.speeds, seen.noise["rebound_height"]) - scaled(found / seen.speeds, seen.speed_noise)
+    noise = scaled(GRAVITY / left / seen.speeds, seen.noise["rebound_height"]) - scaled(
+        found / seen.speeds, seen.speed_noise
+    )
     return found, standard_deviations(noise)
 
 
@@ -101,11 +117,16 @@ def random_track(random: np.random.Generator) -> tuple[Track, Observations]:
         clock=1.0 + 3e-3 * random.normal(),
         phase=random.uniform(),
     )
-    return made, seen_in(made, np.exp(random.uniform(np.log(3e-5), np.log(4e-4))) * random.normal(size=len(made.time)))
+    return made, seen_in(
+        made,
+        np.exp(random.uniform(np.log(3e-5), np.log(4e-4))) * random.normal(size=len(made.time)),
+    )
 
 
 def deviates() -> Floats:
-    """How far restitutions of random records are off, in standard deviations, one of each record."""
+    """How far restitutions of random records are off, in standard deviations, one of each
+    record.
+    """
     found = []
     for seed in range(TIMES):
         random = np.random.default_rng(seed)
@@ -130,7 +151,9 @@ def test_a_zero_that_is_off(zero: float) -> None:
 
 @pytest.mark.parametrize("zero", [1e-3, -1e-3])
 def test_a_zero_that_is_off_under_noise(zero: float) -> None:
-    values, deviations = restitutions(seen_in(track(zero=zero), 3e-4 * np.random.default_rng(7).normal(size=len(track().time))))
+    values, deviations = restitutions(
+        seen_in(track(zero=zero), 3e-4 * np.random.default_rng(7).normal(size=len(track().time)))
+    )
     assert np.all(np.abs(values - 0.7) <= 2.6 * deviations)
     assert np.all(deviations < 0.02)
 
@@ -149,7 +172,9 @@ def test_one_impact_determines_the_zero_and_says_that_it_takes_it_as_constant() 
 
 
 def test_one_flight_alone_takes_the_zero_as_right_and_says_so() -> None:
-    """The record begins two samples before the first touch, so that nothing meets the flight after it."""
+    """The record begins two samples before the first touch, so that nothing meets the
+    flight after it.
+    """
     made = track(1, restitution=0.9, contact=HERTZ)
     begin = int(np.argmin(made.position[:100])) - 2
     seen = seen_in(made._replace(time=made.time[begin:], position=made.position[begin:]))
@@ -160,7 +185,9 @@ def test_one_flight_alone_takes_the_zero_as_right_and_says_so() -> None:
 
 
 def test_a_clock_that_runs_fast() -> None:
-    """By 3 %: such a record was refused. Heights of rebound do not depend on the clock, and speeds follow from them."""
+    """By 3 %: such a record was refused. Heights of rebound do not depend on the clock,
+    and speeds follow from them.
+    """
     made = track(zero=1e-3, clock=1.03)
     seen = seen_in(made)
     np.testing.assert_allclose(restitutions(seen)[0], 0.7, rtol=1e-7)
@@ -172,10 +199,17 @@ def test_a_clock_that_runs_fast() -> None:
 
 
 def test_lengths_that_are_wrong_make_the_speeds_wrong_by_what_is_said() -> None:
-    """A scale that is 2 % too large looks like a clock that runs 1 % too slowly, and makes the speeds 1 % too high."""
+    """A scale that is 2 % too large looks like a clock that runs 1 % too slowly, and
+    makes the speeds 1 % too high.
+    """
     made = track(zero=1e-3)
     seen = impacts_in_position(
-        made.time, 1.02 * made.position, radius=1.02 * RADIUS, gravity=GRAVITY, first_speed=float(made.speeds[0]), contact_duration=HERTZ
+        made.time,
+        1.02 * made.position,
+        radius=1.02 * RADIUS,
+        gravity=GRAVITY,
+        first_speed=float(made.speeds[0]),
+        contact_duration=HERTZ,
     )
     too_fast = 100.0 * float(np.mean(seen.speeds / made.speeds[:4]) - 1.0)
     (doubt,) = (doubt for doubt in seen.doubts if "curve as under" in doubt)
@@ -185,14 +219,18 @@ def test_lengths_that_are_wrong_make_the_speeds_wrong_by_what_is_said() -> None:
 
 def test_a_clock_in_another_unit_is_refused() -> None:
     made = track()
-    with pytest.raises(vi.InputError, match=r"curve as under .* its unit, time and gravity those of the record"):
+    with pytest.raises(
+        vi.InputError, match=r"curve as under .* its unit, time and gravity those of the record"
+    ):
         seen_in(made._replace(time=1.5 * made.time))
 
 
 def test_a_sphere_that_is_held_before_it_falls() -> None:
     """The fall begins where it is released; such a record was refused."""
     made = track(held=0.5, zero=1e-3)
-    values, deviations = restitutions(seen_in(made, 1e-4 * np.random.default_rng(0).normal(size=len(made.time))))
+    values, deviations = restitutions(
+        seen_in(made, 1e-4 * np.random.default_rng(0).normal(size=len(made.time)))
+    )
     assert np.all(np.abs(values - 0.7) <= 2.6 * deviations)
     assert values[0] == pytest.approx(0.7, abs=3e-4)
 
@@ -210,7 +248,9 @@ def test_a_sphere_that_comes_to_rest(zero: float) -> None:
 
 
 def test_contacts_that_are_long() -> None:
-    """Rubber: successive flights cross below the plate; if that is taken as the zero, the fourth restitution is off by 0.02."""
+    """Rubber: successive flights cross below the plate; if that is taken as the zero, the
+    fourth restitution is off by 0.02.
+    """
     made = track(contact=3e-3)
     seen = seen_in(made, 1e-5 * np.random.default_rng(2).normal(size=len(made.time)), contact=4e-3)
     values, deviations = restitutions(seen)
@@ -220,7 +260,9 @@ def test_contacts_that_are_long() -> None:
 
 def test_many_samples_in_a_contact() -> None:
     made = track(contact=HERTZ, rate=1e5, zero=1e-3)
-    values, deviations = restitutions(seen_in(made, 1e-4 * np.random.default_rng(3).normal(size=len(made.time))))
+    values, deviations = restitutions(
+        seen_in(made, 1e-4 * np.random.default_rng(3).normal(size=len(made.time)))
+    )
     assert np.all(np.abs(values - 0.7) <= 2.6 * deviations)
     assert np.all(deviations < 1e-4)
 
@@ -243,7 +285,9 @@ def test_intervals_with_zero_drift_and_clock_free() -> None:
 
 @pytest.mark.slow
 def test_no_dependence_on_speed_appears() -> None:
-    """Under noise of 0.3 mm and a zero that is off by 1 mm, the slope of the restitution over the speed is 0 within 95 % as often."""
+    """Under noise of 0.3 mm and a zero that is off by 1 mm, the slope of the restitution
+    over the speed is 0 within 95 % as often.
+    """
     inside = []
     for seed in range(TIMES):
         random = np.random.default_rng(seed)
@@ -251,7 +295,9 @@ def test_no_dependence_on_speed_appears() -> None:
         seen = seen_in(made, 3e-4 * random.normal(size=len(made.time)))
         left = np.sqrt(2.0 * GRAVITY * (seen.wanted["rebound_height"] - RADIUS))
         values = left / seen.speeds
-        noise = scaled(GRAVITY / left / seen.speeds, seen.noise["rebound_height"]) - scaled(values / seen.speeds, seen.speed_noise)
+        noise = scaled(GRAVITY / left / seen.speeds, seen.noise["rebound_height"]) - scaled(
+            values / seen.speeds, seen.speed_noise
+        )
         covariance = (noise @ noise.T).toarray()
         powers, weights = np.vander(seen.speeds, 2), np.linalg.inv(covariance)
         spread = np.linalg.inv(powers.T @ weights @ powers)
@@ -260,8 +306,13 @@ def test_no_dependence_on_speed_appears() -> None:
     assert 0.91 <= np.mean(inside) <= 0.98
 
 
-def calibrated(folder: Path, made: Track, noise: Floats | float = 0.0, height: float = 0.5) -> tuple[Calibration, dict]:
-    rows = "".join(f"{at:.9g},{value:.9g}\n" for at, value in zip(made.time, made.position + noise, strict=True))
+def calibrated(
+    folder: Path, made: Track, noise: Floats | float = 0.0, height: float = 0.5
+) -> tuple[Calibration, dict]:
+    rows = "".join(
+        f"{at:.9g},{value:.9g}\n"
+        for at, value in zip(made.time, made.position + noise, strict=True)
+    )
     (folder / "track.csv").write_text("time_s,position_m\n" + rows)
     case = plain_case(
         sphere={"radius": RADIUS, "material": "steel"},
@@ -285,11 +336,15 @@ def test_calibration_to_a_record_whose_zero_is_off(tmp_path: Path) -> None:
     assert document["corrections"]["zero"]["unit"] == "m"
     assert "meet 1.000" in (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
     apart = found.overlays[0].measured[1] - found.overlays[0].simulated[1]
-    assert np.nanmax(np.abs(apart)) < 1e-6, "what is drawn over the simulation is the corrected record"
+    assert np.nanmax(np.abs(apart)) < 1e-6, (
+        "what is drawn over the simulation is the corrected record"
+    )
 
 
 def test_what_remains_is_of_the_drop_that_was_measured(tmp_path: Path) -> None:
-    """The first touch is at 1.40 m/s, and the case says 0.3 m: up to 165 % remained of a record without a flaw."""
+    """The first touch is at 1.40 m/s, and the case says 0.3 m: up to 165 % remained of a
+    record without a flaw.
+    """
     found, document = calibrated(tmp_path, track(height=0.108), height=0.3)
     assert found.observations.speeds[0] == pytest.approx(1.4005, abs=1e-4)
     off = document["differences"]["rebound_height_m"]
@@ -298,21 +353,30 @@ def test_what_remains_is_of_the_drop_that_was_measured(tmp_path: Path) -> None:
     (doubt,) = (doubt for doubt in found.doubts if "first impact that was measured" in doubt)
     assert "is at 1.4 m/s, and that of the drop at 2.393 m/s" in doubt
     speeds = [row["approach_speed_m_s"] for row in document["impacts"]]
-    assert speeds[0] == pytest.approx(2.393, abs=1e-3), "the case that is written is the drop of the case"
+    assert speeds[0] == pytest.approx(2.393, abs=1e-3), (
+        "the case that is written is the drop of the case"
+    )
 
 
 def test_what_remains_of_the_same_drop(tmp_path: Path) -> None:
     """A record of the drop of the case, with noise, is of that drop."""
     made = track()
-    found, document = calibrated(tmp_path, made, 3e-4 * np.random.default_rng(5).normal(size=len(made.time)))
+    found, document = calibrated(
+        tmp_path, made, 3e-4 * np.random.default_rng(5).normal(size=len(made.time))
+    )
     assert not any("first impact that was measured" in doubt for doubt in found.doubts)
     assert [row["value"] for row in document["impacts"]] == found.values.tolist()
     assert np.max(np.abs(document["differences"]["rebound_height_m"]["variable"])) < 1e-6
 
 
-def test_calibration_on_the_command_line(tmp_path: Path, command: Callable[..., tuple[int, str, str]]) -> None:
+def test_calibration_on_the_command_line(
+    tmp_path: Path, command: Callable[..., tuple[int, str, str]]
+) -> None:
     calibrated(tmp_path, track(zero=-1e-3))
-    case = plain_case(contact={"law": "newton", "restitution": 0.5}, calibrate={"target": "track.csv", "degree": 0, "air": False})
+    case = plain_case(
+        contact={"law": "newton", "restitution": 0.5},
+        calibrate={"target": "track.csv", "degree": 0, "air": False},
+    )
     case["sphere"] = {"radius": RADIUS, "material": "steel"}
     (tmp_path / "case.toml").write_text(tomli_w.dumps(case))
     status, out, _ = command("calibrate", "case.toml", "-o", "found")

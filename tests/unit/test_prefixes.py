@@ -29,5 +29,8 @@ def test_a_prefix_is_that_of_the_unit_that_is_wanted() -> None:
 
 
 def test_the_usual_units_need_no_pint() -> None:
-    code = "import sys, vibroimpact as vi; [vi.load_case(name) for name in vi.shipped_cases()]; assert 'pint' not in sys.modules"
+    code = (
+        "import sys, vibroimpact as vi; [vi.load_case(name) for name in vi.shipped_cases()]; "
+        "assert 'pint' not in sys.modules"
+    )
     subprocess.run([sys.executable, "-c", code], check=True, timeout=60)

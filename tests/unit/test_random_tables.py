@@ -1,4 +1,6 @@
-"""Two hundred tables at random: separators, decimal signs, headers, units, lines above, encodings, and cells without numbers."""
+"""Two hundred tables at random: separators, decimal signs, headers, units, lines above,
+encodings, and cells without numbers.
+"""
 
 from __future__ import annotations
 
@@ -43,14 +45,20 @@ def table_at_random(seed: int) -> Table:
     for row in cells[:cut]:
         row[1] = str(random.choice(["", "NaN"]))
     if mark != " " and is_so(0.3):
-        cells[int(random.integers(20, count - 20))][1] = str(random.choice(["", "nan", "-", "#N/A"]))
+        cells[int(random.integers(20, count - 20))][1] = str(
+            random.choice(["", "nan", "-", "#N/A"])
+        )
     if mark != "," and is_so(0.4):
         cells = [[cell.replace(".", ",") for cell in row] for row in cells]
     if mark in ",;" and is_so(0.2):
         cells = [[f'"{cell}"' for cell in row] for row in cells]
     unit = str(random.choice(list(UNITS)))
     times = str(random.choice(["time", "t", "Zeit", "Time", "temps"]))
-    name = "CH1" if mark == " " else str(random.choice(["force", "Kraft", "CH1", "Acc x", "Beschleunigung (z)"]))
+    name = (
+        "CH1"
+        if mark == " "
+        else str(random.choice(["force", "Kraft", "CH1", "Acc x", "Beschleunigung (z)"]))
+    )
     form = 0 if mark == " " else int(random.integers(4))
     header = [
         [mark.join([f"{times} [s]", f"{name} [{unit}]"])],
@@ -65,7 +73,12 @@ def table_at_random(seed: int) -> Table:
         rows.insert(30, rows[29])
     lines = [*above, *(line + end if line else line for line in header), *rows, ""]
     encoding = str(random.choice(["utf-8", "utf-8-sig", "utf-16", "latin-1"]))
-    return Table(str(random.choice(["\n", "\r\n"])).join(lines).encode(encoding), rate, float(time[cut]), UNITS[unit] * value[cut:])
+    return Table(
+        str(random.choice(["\n", "\r\n"])).join(lines).encode(encoding),
+        rate,
+        float(time[cut]),
+        UNITS[unit] * value[cut:],
+    )
 
 
 @pytest.mark.parametrize("tens", range(20))
@@ -77,5 +90,7 @@ def test_tables_at_random_are_read_right(tens: int, tmp_path: Path) -> None:
         (record,) = vi.read_records(tmp_path / "table.csv")
         assert record.rate == pytest.approx(made.rate, rel=1e-6), seed
         assert record.start == pytest.approx(made.start, abs=1e-9), seed
-        np.testing.assert_allclose(record.value, made.value, atol=0.02 * np.ptp(made.value), err_msg=str(seed))
+        np.testing.assert_allclose(
+            record.value, made.value, atol=0.02 * np.ptp(made.value), err_msg=str(seed)
+        )
         assert np.sum(np.abs(record.value - made.value) > 1e-5 * np.ptp(made.value)) <= 1, seed

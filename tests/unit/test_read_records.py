@@ -24,10 +24,17 @@ def only(path: Path) -> vi.Record:
 
 def test_a_table_with_units(tmp_path: Path) -> None:
     path = tmp_path / "hammer.csv"
-    rows = "\n".join(f"{0.02 * place:.3f};{value};{2 * value}" for place, value in enumerate(SIGNAL))
+    rows = "\n".join(
+        f"{0.02 * place:.3f};{value};{2 * value}" for place, value in enumerate(SIGNAL)
+    )
     path.write_text(f"# a test\ntime [ms];geophone [mV];Plate acceleration (g)\n{rows}\n")
     geophone, plate = vi.read_records(path)
-    assert (geophone.name, geophone.unit, geophone.rate, geophone.start) == ("geophone", "V", 50e3, 0.0)
+    assert (geophone.name, geophone.unit, geophone.rate, geophone.start) == (
+        "geophone",
+        "V",
+        50e3,
+        0.0,
+    )
     np.testing.assert_allclose(geophone.value, 1e-3 * SIGNAL)
     assert (plate.name, plate.unit) == ("plate_acceleration", "m/s2")
     np.testing.assert_allclose(plate.value, 2.0 * 9.80665 * SIGNAL)
@@ -61,10 +68,18 @@ def test_a_table_of_this_program(tmp_path: Path) -> None:
     path = tmp_path / "a1.csv"
     path.write_text("time_s,acceleration_m_s2\n0,1.5\n0.00002,-2.5\n0.00004,0\n")
     record = only(path)
-    assert (record.name, record.unit, record.rate, record.value.tolist()) == ("acceleration", "m/s2", 50e3, [1.5, -2.5, 0.0])
+    assert (record.name, record.unit, record.rate, record.value.tolist()) == (
+        "acceleration",
+        "m/s2",
+        50e3,
+        [1.5, -2.5, 0.0],
+    )
 
 
-@pytest.mark.parametrize(("kind", "step"), [("int16", 2**-15), ("int32", 2**-31), ("uint8", 2**-7), ("float32", 1e-7), ("float64", 1e-15)])
+@pytest.mark.parametrize(
+    ("kind", "step"),
+    [("int16", 2**-15), ("int32", 2**-31), ("uint8", 2**-7), ("float32", 1e-7), ("float64", 1e-15)],
+)
 def test_wav_files(kind: str, step: float, tmp_path: Path) -> None:
     path = tmp_path / "taps.wav"
     full = {"int16": 2**15 - 1, "int32": 2**31 - 1, "uint8": 127}.get(kind, 1)
@@ -77,8 +92,27 @@ def test_wav_files(kind: str, step: float, tmp_path: Path) -> None:
 def test_wav_of_24_bits_with_two_channels(tmp_path: Path) -> None:
     path = tmp_path / "taps.wav"
     left = np.round(SIGNAL * (2**23 - 1)).astype(int)
-    data = b"".join(int(value).to_bytes(3, "little", signed=True) for pair in zip(left, -left, strict=True) for value in pair)
-    head = struct.pack("<4sI4s4sIHHIIHH4sI", b"RIFF", 36 + len(data), b"WAVE", b"fmt ", 16, 1, 2, 48000, 288000, 6, 24, b"data", len(data))
+    data = b"".join(
+        int(value).to_bytes(3, "little", signed=True)
+        for pair in zip(left, -left, strict=True)
+        for value in pair
+    )
+    head = struct.pack(
+        "<4sI4s4sIHHIIHH4sI",
+        b"RIFF",
+        36 + len(data),
+        b"WAVE",
+        b"fmt ",
+        16,
+        1,
+        2,
+        48000,
+        288000,
+        6,
+        24,
+        b"data",
+        len(data),
+    )
     path.write_bytes(head + data)
     one, other = vi.read_records(path)
     assert (one.name, other.name) == ("taps 1", "taps 2")
@@ -86,7 +120,9 @@ def test_wav_of_24_bits_with_two_channels(tmp_path: Path) -> None:
     np.testing.assert_array_equal(other.value, -one.value)
 
 
-@pytest.mark.parametrize("data", [b"", b"no sound", b"RIFF\0\0\0\0WAVEfmt ", b"RIFF" + 200 * b"\xff"])
+@pytest.mark.parametrize(
+    "data", [b"", b"no sound", b"RIFF\0\0\0\0WAVEfmt ", b"RIFF" + 200 * b"\xff"]
+)
 def test_damaged_wav_files(data: bytes, tmp_path: Path) -> None:
     path = tmp_path / "damaged.wav"
     path.write_bytes(data)
@@ -112,22 +148,38 @@ def elastic(tmp_path_factory: pytest.TempPathFactory) -> Path:
             "drop": {"speed": "1 m/s"},
             "contact": {"law": "hunt-crossley", "restitution": 0.5},
             "run": {"duration": "20 ms"},
-            "sensors": [{"name": "a1", "position": ["50 mm", "20 mm"], "quantity": "velocity", "rate": "20 kHz"}],
+            "sensors": [
+                {
+                    "name": "a1",
+                    "position": ["50 mm", "20 mm"],
+                    "quantity": "velocity",
+                    "rate": "20 kHz",
+                }
+            ],
         }
     )
     vi.save_result(vi.simulate(case), place)
     return place
 
 
-@pytest.mark.parametrize(("format", "file", "close"), [("uff58", "*.uff", 1e-12), ("wav", "*.wav", 1e-7), ("mat", None, 0.0)])
-def test_what_this_program_exports(format: str, file: str | None, close: float, elastic: Path, tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    ("format", "file", "close"),
+    [("uff58", "*.uff", 1e-12), ("wav", "*.wav", 1e-7), ("mat", None, 0.0)],
+)
+def test_what_this_program_exports(
+    format: str, file: str | None, close: float, elastic: Path, tmp_path: Path
+) -> None:
     signal = vi.read_result(elastic).signals["a1"]
     vi.export_result(elastic, format, tmp_path / "out")
     if file is None:
         with pytest.raises(vi.InputError, match="no file of records in this folder"):
             list(vi.read_records(tmp_path / "out"))
         return
-    found = [one for one in vi.read_records(next((tmp_path / "out").glob(file))) if one.unit == "m/s" and "sphere" not in one.name]
+    found = [
+        one
+        for one in vi.read_records(next((tmp_path / "out").glob(file)))
+        if one.unit == "m/s" and "sphere" not in one.name
+    ]
     assert len(found) == 1
     assert found[0].rate == pytest.approx(signal.sensor.rate)
     np.testing.assert_allclose(found[0].value, signal.value, atol=close * signal.largest)
@@ -169,7 +221,11 @@ def test_a_data_set(tmp_path: Path) -> None:
 def test_signals_that_are_filled_at_their_ends(tmp_path: Path) -> None:
     signals = dataset(tmp_path / "study.nc")
     with h5py.File(tmp_path / "study.nc", "r+") as file:
-        file["signal_geophone"][1, 30:], file["signal_geophone"][2], file["signal_geophone"][3, 10] = np.nan, np.nan, np.nan
+        (
+            file["signal_geophone"][1, 30:],
+            file["signal_geophone"][2],
+            file["signal_geophone"][3, 10],
+        ) = np.nan, np.nan, np.nan
     whole, cut, none, spoilt, *_ = vi.read_records(tmp_path)
     assert [len(one.value) for one in (whole, cut, none, spoilt)] == [50, 30, 0, 50]
     np.testing.assert_array_equal(cut.value, signals[1, :30])
@@ -184,21 +240,30 @@ def test_a_channel_that_is_filled_at_its_end(tmp_path: Path) -> None:
         for name, length in (("long", 50), ("short", 30)):
             data = file.create_dataset(name, data=np.where(np.arange(50) < length, SIGNAL, np.nan))
             data.dims[0].attach_scale(time)
-    assert {one.name: len(one.value) for one in vi.read_records(tmp_path / "channels.nc")} == {"long": 50, "short": 30}
+    assert {one.name: len(one.value) for one in vi.read_records(tmp_path / "channels.nc")} == {
+        "long": 50,
+        "short": 30,
+    }
 
 
 def test_netcdf_by_xarray(tmp_path: Path) -> None:
     xarray = pytest.importorskip("xarray")
     time = ("time", 0.5 + np.arange(50) / 1e3, {"units": "s"})
-    data = xarray.Dataset({"acc": (("sensor", "time"), np.stack([SIGNAL, -SIGNAL]), {"units": "m s-2"})}, {"time": time})
-    with pytest.importorskip("dask").config.set(scheduler="synchronous"):  # whatever a cluster of another test has left set
+    data = xarray.Dataset(
+        {"acc": (("sensor", "time"), np.stack([SIGNAL, -SIGNAL]), {"units": "m s-2"})},
+        {"time": time},
+    )
+    # whatever a cluster of another test has left set
+    with pytest.importorskip("dask").config.set(scheduler="synchronous"):
         data.to_netcdf(tmp_path / "x.nc", engine="h5netcdf")
     one, other = vi.read_records(tmp_path / "x.nc")
     assert (one.name, one.unit, one.rate, one.start) == ("acc", "m/s2", 1e3, 0.5)
     np.testing.assert_array_equal(other.value, -SIGNAL)
 
 
-def test_netcdf_packed_by_a_filter_that_is_not_installed_is_not_called_damaged(tmp_path: Path) -> None:
+def test_netcdf_packed_by_a_filter_that_is_not_installed_is_not_called_damaged(
+    tmp_path: Path,
+) -> None:
     blosc, optional, path = 32001, h5py.h5z.FLAG_OPTIONAL, tmp_path / "packed.nc"
     with h5py.File(path, "w") as file:
         time = file.create_dataset("time", data=np.arange(100) / 1e3)
@@ -208,10 +273,14 @@ def test_netcdf_packed_by_a_filter_that_is_not_installed_is_not_called_damaged(t
         properties.set_chunk((100,))
         properties.set_filter(blosc, optional, (3,))
         space = h5py.h5s.create_simple((100,))
-        data = h5py.Dataset(h5py.h5d.create(file.id, b"acceleration", h5py.h5t.IEEE_F64LE, space, properties))
+        data = h5py.Dataset(
+            h5py.h5d.create(file.id, b"acceleration", h5py.h5t.IEEE_F64LE, space, properties)
+        )
         data.id.write_direct_chunk((0,), b"packed", 0)
         data.dims[0].attach_scale(time)
-    with pytest.raises(vi.InputError, match=r"packed\.nc: acceleration is packed by a filter that HDF5 lacks here"):
+    with pytest.raises(
+        vi.InputError, match=r"packed\.nc: acceleration is packed by a filter that HDF5 lacks here"
+    ):
         list(vi.read_records(path))
 
 
@@ -235,10 +304,32 @@ def test_wrong_netcdf(tmp_path: Path) -> None:
 def test_a_universal_file_without_units(tmp_path: Path) -> None:
     pyuff = pytest.importorskip("pyuff")
     path = str(tmp_path / "x.uff")
-    numbers = {"binary": 0, "func_type": 1, "rsp_node": 1, "rsp_dir": 3, "ref_node": 1, "ref_dir": 3, "ver_num": 0, "load_case_id": 0}
-    axis = {"abscissa_spec_data_type": 17, "abscissa_inc": 1e-3, "abscissa_min": 0.0, "abscissa_spacing": 1, "orddenom_spec_data_type": 0}
+    numbers = {
+        "binary": 0,
+        "func_type": 1,
+        "rsp_node": 1,
+        "rsp_dir": 3,
+        "ref_node": 1,
+        "ref_dir": 3,
+        "ver_num": 0,
+        "load_case_id": 0,
+    }
+    axis = {
+        "abscissa_spec_data_type": 17,
+        "abscissa_inc": 1e-3,
+        "abscissa_min": 0.0,
+        "abscissa_spacing": 1,
+        "orddenom_spec_data_type": 0,
+    }
     # data type 0 is general, such as the voltage of a channel that was not calibrated
-    channel = pyuff.prepare_58(**numbers, **axis, id1="channel 1", x=np.arange(50) / 1e3, data=SIGNAL, ordinate_spec_data_type=0)
+    channel = pyuff.prepare_58(
+        **numbers,
+        **axis,
+        id1="channel 1",
+        x=np.arange(50) / 1e3,
+        data=SIGNAL,
+        ordinate_spec_data_type=0,
+    )
     pyuff.UFF(path).write_sets(channel, "overwrite")
     (record,) = vi.read_records(path)
     assert (record.name, record.unit, record.rate) == ("channel 1", "1", 1000.0)
@@ -247,7 +338,11 @@ def test_a_universal_file_without_units(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(
     ("name", "message"),
-    [("nothing.csv", "there is no such file"), ("photo.png", "records are read from files ending in"), ("", "no file of records")],
+    [
+        ("nothing.csv", "there is no such file"),
+        ("photo.png", "records are read from files ending in"),
+        ("", "no file of records"),
+    ],
 )
 def test_what_is_no_record_is_said(name: str, message: str, tmp_path: Path) -> None:
     (tmp_path / "photo.png").write_bytes(b"\x89PNG")

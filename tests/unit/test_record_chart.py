@@ -28,11 +28,19 @@ def response() -> vi.Response:
     return vi.simulate(vi.read_case(plain_case(contact=CONTACT, run={"impacts": 3})))
 
 
-def found_in(response: vi.Response, file: Path, column: str, header: str, step: float) -> Calibration:
+def found_in(
+    response: vi.Response, file: Path, column: str, header: str, step: float
+) -> Calibration:
     time = np.arange(0.0, float(response.end_time[0]), step)
-    rows = "\n".join(f"{at:.9g},{value:.9g}" for at, value in zip(time, response.at(time)[column], strict=True))
+    rows = "\n".join(
+        f"{at:.9g},{value:.9g}" for at, value in zip(time, response.at(time)[column], strict=True)
+    )
     file.write_text(f"time_s,{header}\n{rows}\n")
-    table = plain_case(contact=CONTACT, run={"impacts": 3}, calibrate={"target": str(file), "degree": 0, "air": False})
+    table = plain_case(
+        contact=CONTACT,
+        run={"impacts": 3},
+        calibrate={"target": str(file), "degree": 0, "air": False},
+    )
     return calibrate_case(read_calibration(table))
 
 
@@ -53,12 +61,16 @@ def test_forces(response: vi.Response, tmp_path: Path) -> None:
     folder = save_calibration(case, found, tmp_path / "out")
     page = (folder / "report.html").read_text()
     assert 'data-chart="record"' in page
-    assert all(f'<option value="{number}">Impact {number + 1}</option>' in page for number in range(3))
+    assert all(
+        f'<option value="{number}">Impact {number + 1}</option>' in page for number in range(3)
+    )
     assert not (folder / "figures").exists()
 
 
 def test_a_force_is_shown_where_it_was_measured(response: vi.Response, tmp_path: Path) -> None:
-    """At the times of the record, all samples of it, with the difference below and each contact enlarged."""
+    """At the times of the record, all samples of it, with the difference below and each
+    contact enlarged.
+    """
     found = found_in(response, tmp_path / "force.csv", "force_N", "force_N", 1e-5)
     chart = chart_of(found, "record")
     (upper,), (lower,) = chart.rows
@@ -72,7 +84,9 @@ def test_a_force_is_shown_where_it_was_measured(response: vi.Response, tmp_path:
     touches = response.impacts["time_s"]
     for number, view in enumerate(chart.views):
         assert view.origin == pytest.approx(touches[number], abs=3e-6)
-        np.testing.assert_allclose(measured[number].y, response.at(measured[number].x)["force_N"], atol=1e-5)
+        np.testing.assert_allclose(
+            measured[number].y, response.at(measured[number].x)["force_N"], atol=1e-5
+        )
         assert view.start < measured[number].x[np.argmax(measured[number].y)] < view.end
         largest = response.impacts["max_force_N"][number]
         assert simulated[number].y.max() == pytest.approx(largest, rel=5e-3)
@@ -87,7 +101,13 @@ def test_a_long_record_is_shown_with_its_extremes() -> None:
     height = 1.0 + 0.1 * np.sin(time)
     height[[12_345, 222_222]] = 3.0, -3.0
     simulated = np.where(time > 1.0, height - 1e-3, np.nan)
-    chart = record_chart((Overlay("", "position", (time, height), (time, simulated), flights=((1.0, 5.0), (5.0, 9.0))),))
+    chart = record_chart(
+        (
+            Overlay(
+                "", "position", (time, height), (time, simulated), flights=((1.0, 5.0), (5.0, 9.0))
+            ),
+        )
+    )
     (upper,), (lower,) = chart.rows
     drawn = upper.marks[0]
     assert isinstance(drawn, Line)
@@ -111,13 +131,19 @@ def test_positions(response: vi.Response, tmp_path: Path) -> None:
     (difference,) = lower.marks
     assert isinstance(difference, Line)
     assert np.abs(difference.y).max() == np.abs(apart).max()
-    assert [mark.name for mark in upper.marks if isinstance(mark, (Line, Points))] == ["measured", "simulated"]
+    assert [mark.name for mark in upper.marks if isinstance(mark, (Line, Points))] == [
+        "measured",
+        "simulated",
+    ]
     for view, touch in zip(chart.views, response.impacts["time_s"], strict=True):
         assert view.origin == pytest.approx(touch, abs=1e-3)  # contacts are not resolved
 
 
 def test_no_record_no_picture() -> None:
-    table = plain_case(contact={"law": "newton", "restitution": 0.5}, calibrate={"target": {"rebound_heights": [0.3]}, "air": False})
+    table = plain_case(
+        contact={"law": "newton", "restitution": 0.5},
+        calibrate={"target": {"rebound_heights": [0.3]}, "air": False},
+    )
     found = calibrate_case(read_calibration(table))
     assert found.overlays == ()
     assert [chart.name for chart in calibration_charts(found)] == ["parameter"]
@@ -126,7 +152,14 @@ def test_no_record_no_picture() -> None:
 def test_a_law_without_a_force_has_none_to_draw(response: vi.Response, tmp_path: Path) -> None:
     time = np.arange(0.0, float(response.end_time[0]), 2e-5)
     (tmp_path / "f.csv").write_text(
-        "time_s,force_N\n" + "\n".join(f"{at:.9g},{value:.9g}" for at, value in zip(time, response.at(time)["force_N"], strict=True))
+        "time_s,force_N\n"
+        + "\n".join(
+            f"{at:.9g},{value:.9g}"
+            for at, value in zip(time, response.at(time)["force_N"], strict=True)
+        )
     )
-    table = plain_case(contact={"law": "newton", "restitution": 0.5}, calibrate={"target": str(tmp_path / "f.csv"), "air": False})
+    table = plain_case(
+        contact={"law": "newton", "restitution": 0.5},
+        calibrate={"target": str(tmp_path / "f.csv"), "air": False},
+    )
     assert calibrate_case(read_calibration(table)).overlays == ()

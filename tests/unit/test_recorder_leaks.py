@@ -1,4 +1,6 @@
-"""Traces of the recorder that tell classes, planted and found; clean data without an alarm; and copies that differ a little."""
+"""Traces of the recorder that tell classes, planted and found; clean data without an
+alarm; and copies that differ a little.
+"""
 
 from __future__ import annotations
 
@@ -49,22 +51,30 @@ def planted(kind: str, seed: int) -> np.ndarray:
         value[gangue] += 1.5e-3 * random.standard_normal(value[gangue].shape)  # 1.8 times as much
     if kind == "length":
         for number in range(len(value)):
-            value[number, samples - random.integers(*((0, 40) if gangue[number] else (10, 60))) :] = np.nan
+            value[
+                number, samples - random.integers(*((0, 40) if gangue[number] else (10, 60))) :
+            ] = np.nan
     if kind == "gain":
         value[gangue] *= 1.3
     if kind == "filter":
         value[gangue] = [np.convolve(row, [0.2, 0.6, 0.2], "same") for row in value[gangue]]
     if kind == "clock":
         time = np.arange(samples)
-        value[gangue] = [np.interp(BEFORE + 1.01 * (time - BEFORE), time, row) for row in value[gangue]]
+        value[gangue] = [
+            np.interp(BEFORE + 1.01 * (time - BEFORE), time, row) for row in value[gangue]
+        ]
     return value
 
 
 def leaks(value: np.ndarray, seed: int) -> list[str]:
     data = recorded(seed)[1]
     sensors = {"a1": SensorSignals(value.astype(np.float32), 20e3, "V")}
-    signals = LabelledSignals("knocks", sensors, None, ("coal", "gangue"), {"plate": data["plate"].astype(np.intp)})
-    return recorder_leaks(signals, data["class"].astype(np.intp), data["rock"].astype(np.intp), "rock", seed)
+    signals = LabelledSignals(
+        "knocks", sensors, None, ("coal", "gangue"), {"plate": data["plate"].astype(np.intp)}
+    )
+    return recorder_leaks(
+        signals, data["class"].astype(np.intp), data["rock"].astype(np.intp), "rock", seed
+    )
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -80,7 +90,11 @@ def test_the_step_between_sample_values_is_told_with_its_unit() -> None:
     """Its logarithm was told."""
     value, data = recorded(0)
     step = np.where(data["class"] == 1, 2e-3, 1e-3)[:, None]
-    (leak,) = (one for one in leaks(np.round(value / step) * step, 0) if "the step between sample values" in one)
+    (leak,) = (
+        one
+        for one in leaks(np.round(value / step) * step, 0)
+        if "the step between sample values" in one
+    )
     assert "(medians 0.001 V for coal, 0.002 V for gangue;" in leak
 
 
@@ -97,7 +111,9 @@ def test_clean_data_raise_no_alarm() -> None:
 
 @pytest.mark.slow
 def test_alarms_on_clean_data_are_as_rare_as_is_stated() -> None:
-    """One in a hundred by chance, in as many data sets four at most with a probability of 99.7 %."""
+    """One in a hundred by chance, in as many data sets four at most with a probability of
+    99.7 %.
+    """
     assert sum(bool(leaks(recorded(seed)[0], seed)) for seed in range(100)) <= 4
 
 
@@ -105,9 +121,13 @@ def test_what_one_class_does_not_have_can_not_be_exchanged_within_a_group() -> N
     """Where a plate is hit by both classes, the classes are exchanged within it."""
     value, data = planted("offset", 0), recorded(0)[1]
     sensors = {"a1": SensorSignals(value.astype(np.float32), 20e3, "V")}
-    signals = LabelledSignals("knocks", sensors, None, ("coal", "gangue"), {"plate": data["plate"].astype(np.intp)})
+    signals = LabelledSignals(
+        "knocks", sensors, None, ("coal", "gangue"), {"plate": data["plate"].astype(np.intp)}
+    )
     classes, plates = data["class"].astype(np.intp), data["plate"].astype(np.intp)
-    assert any("the level before" in one for one in recorder_leaks(signals, classes, plates, "plate"))
+    assert any(
+        "the level before" in one for one in recorder_leaks(signals, classes, plates, "plate")
+    )
     shuffled = np.random.default_rng(0).permutation(classes)
     assert recorder_leaks(signals, shuffled, plates, "plate") == []
 
@@ -116,9 +136,19 @@ def test_what_one_class_does_not_have_can_not_be_exchanged_within_a_group() -> N
 def test_near_copies_are_copies(difference: float) -> None:
     value, data = recorded(0)
     value, groups = value.copy(), data["rock"].astype(np.intp)
-    value[100] = value[3] * (1.0 + difference * np.random.default_rng(1).standard_normal(value.shape[1]))
-    signals = LabelledSignals("knocks", {"a1": SensorSignals(value.astype(np.float32), 20e3, "V")}, None, ("coal", "gangue"))
-    words = r"signals 3 and 100, counted from 0, (are the same|differ by only .* of their size) and lie in two rocks \(0 and 16\)"
+    value[100] = value[3] * (
+        1.0 + difference * np.random.default_rng(1).standard_normal(value.shape[1])
+    )
+    signals = LabelledSignals(
+        "knocks",
+        {"a1": SensorSignals(value.astype(np.float32), 20e3, "V")},
+        None,
+        ("coal", "gangue"),
+    )
+    words = (
+        r"signals 3 and 100, counted from 0, (are the same|differ by only .* of their size) "
+        r"and lie in two rocks \(0 and 16\)"
+    )
     with pytest.raises(vi.InputError, match=words):
         check_duplicates(signals, groups, "rock")
 
@@ -128,4 +158,8 @@ def test_signals_that_are_only_alike_are_not_copies() -> None:
     value = value.copy()
     value[100] = 1.001 * value[3]
     sensors = {"a1": SensorSignals(value.astype(np.float32), 20e3, "V")}
-    check_duplicates(LabelledSignals("knocks", sensors, None, ("coal", "gangue")), data["rock"].astype(np.intp), "rock")
+    check_duplicates(
+        LabelledSignals("knocks", sensors, None, ("coal", "gangue")),
+        data["rock"].astype(np.intp),
+        "rock",
+    )

@@ -9,7 +9,14 @@ from support import one_in
 from vibroimpact.errors import InputError
 from vibroimpact.materials import Material
 from vibroimpact.structures.modes import ElasticSystem
-from vibroimpact.structures.recipe import PlateOfPlates, PlateOfSolids, Recipe, Reduction, SphereOfSolids, computed_model
+from vibroimpact.structures.recipe import (
+    PlateOfPlates,
+    PlateOfSolids,
+    Recipe,
+    Reduction,
+    SphereOfSolids,
+    computed_model,
+)
 from vibroimpact.structures.reduction import attachment_modes, craig_bampton, projected
 from vibroimpact.structures.structure import Structure
 from vibroimpact.structures.supports.constraints import HeldStructure
@@ -35,7 +42,9 @@ CASES = [
 ]
 
 
-def held(shape: PlateOfPlates | PlateOfSolids | SphereOfSolids, supports: tuple[Support, ...]) -> HeldStructure:
+def held(
+    shape: PlateOfPlates | PlateOfSolids | SphereOfSolids, supports: tuple[Support, ...]
+) -> HeldStructure:
     return held_by(shape.structure(shape.mesh(supports), STEEL), supports)
 
 
@@ -53,18 +62,37 @@ def vertical(structure: Structure, place: tuple[float, float], side: str) -> np.
 def test_attachment_modes_make_the_statics_at_a_point_exact(
     shape: PlateOfPlates, supports: tuple[Support, ...], place: tuple[float, float], modes: int
 ) -> None:
-    """The compliance of the contact point in the modes kept is that of all of them, which the factors give."""
+    """The compliance of the contact point in the modes kept is that of all of them, which
+    the factors give.
+    """
     reduction = Reduction(modes=modes, attachment=((place, "lower"),))
-    model = computed_model(Recipe(shape, STEEL.density, STEEL.youngs_modulus, STEEL.poissons_ratio, supports, reduction))
+    model = computed_model(
+        Recipe(
+            shape, STEEL.density, STEEL.youngs_modulus, STEEL.poissons_ratio, supports, reduction
+        )
+    )
     assert len(model.angular_frequencies) == modes + 1
     seen = model.at(np.array([place]), "lower")[0][:, 0, 2]
     system = held(shape, supports)
     load = system.expansion.T @ vertical(system.structure, place, "lower")
     exact = load @ elastic(system).static(load)
     assert (seen**2 / model.angular_frequencies**2).sum() == pytest.approx(exact, rel=1e-6)
-    truncated = computed_model(Recipe(shape, STEEL.density, STEEL.youngs_modulus, STEEL.poissons_ratio, supports, Reduction(modes=modes)))
-    np.testing.assert_allclose(model.angular_frequencies[:modes], truncated.angular_frequencies, rtol=1e-7)
-    assert (truncated.at(np.array([place]), "lower")[0][:, 0, 2] ** 2 / truncated.angular_frequencies**2).sum() < exact
+    truncated = computed_model(
+        Recipe(
+            shape,
+            STEEL.density,
+            STEEL.youngs_modulus,
+            STEEL.poissons_ratio,
+            supports,
+            Reduction(modes=modes),
+        )
+    )
+    np.testing.assert_allclose(
+        model.angular_frequencies[:modes], truncated.angular_frequencies, rtol=1e-7
+    )
+    assert (
+        truncated.at(np.array([place]), "lower")[0][:, 0, 2] ** 2 / truncated.angular_frequencies**2
+    ).sum() < exact
 
 
 def test_two_attachment_modes_at_one_point_are_one() -> None:
@@ -85,9 +113,13 @@ def test_attachment_modes_are_free_of_the_modes_kept() -> None:
     np.testing.assert_allclose(solved.rigid.T @ (solved.mass @ found) / size, 0.0, atol=1e-6)
 
 
-@pytest.mark.parametrize(("shape", "supports"), [(PLATE, EDGE), (BRICKS, EDGE), (PLATE, ()), (BRICKS, ())])
+@pytest.mark.parametrize(
+    ("shape", "supports"), [(PLATE, EDGE), (BRICKS, EDGE), (PLATE, ()), (BRICKS, ())]
+)
 def test_craig_bampton_of_a_plate(shape: PlateOfPlates, supports: tuple[Support, ...]) -> None:
-    """Frequencies come from above and converge; where the plate is held, the statics of the interface are exact."""
+    """Frequencies come from above and converge; where the plate is held, the statics of
+    the interface are exact.
+    """
     system = held(shape, supports)
     solved = elastic(system)
     exact = solved.modes(5).angular_frequencies
@@ -106,7 +138,11 @@ def test_craig_bampton_of_a_plate(shape: PlateOfPlates, supports: tuple[Support,
 def test_craig_bampton_statics_of_a_plate() -> None:
     system = held(PLATE, EDGE)
     interface = np.array([100, 333, 334, 500])
-    modes = projected(system.stiffness, system.mass, craig_bampton(system.stiffness, system.mass, interface, 3, system.order))
+    modes = projected(
+        system.stiffness,
+        system.mass,
+        craig_bampton(system.stiffness, system.mass, interface, 3, system.order),
+    )
     loads = np.eye(system.stiffness.shape[0])[:, interface]
     found = modes.shapes @ ((modes.shapes.T @ loads) / modes.angular_frequencies[:, None] ** 2)
     exact = elastic(system).static(loads)
@@ -121,17 +157,31 @@ def test_no_interface_is_refused() -> None:
 
 def test_all_modes_up_to_a_frequency() -> None:
     model = computed_model(Recipe(PLATE, 7850.0, 210e9, 0.3, EDGE, Reduction(max_frequency=600.0)))
-    more = computed_model(Recipe(PLATE, 7850.0, 210e9, 0.3, EDGE, Reduction(modes=len(model.frequencies) + 1)))
+    more = computed_model(
+        Recipe(PLATE, 7850.0, 210e9, 0.3, EDGE, Reduction(modes=len(model.frequencies) + 1))
+    )
     assert model.frequencies[-1] < 600 < more.frequencies[-1]
     np.testing.assert_allclose(model.frequencies, more.frequencies[:-1], rtol=1e-9)
     with pytest.raises(InputError, match="there is no mode below 1 Hz"):
         computed_model(Recipe(PLATE, 7850.0, 210e9, 0.3, EDGE, Reduction(max_frequency=1.0)))
 
 
-@pytest.mark.parametrize(("radius", "density", "modulus"), [(1.0, 1.0, 1.0), (0.025, 1380.0, 2.26e9), (3e-3, 7850.0, 2.1e11)])
-def test_a_rigid_motion_leaves_no_mode_of_rounding(radius: float, density: float, modulus: float) -> None:
-    # the motion with one point of a free body is rigid: what is left of it has no frequency, let alone one below the lowest
+@pytest.mark.parametrize(
+    ("radius", "density", "modulus"),
+    [(1.0, 1.0, 1.0), (0.025, 1380.0, 2.26e9), (3e-3, 7850.0, 2.1e11)],
+)
+def test_a_rigid_motion_leaves_no_mode_of_rounding(
+    radius: float, density: float, modulus: float
+) -> None:
+    # the motion with one point of a free body is rigid: what is left of it has no frequency, let
+    # alone one below the lowest
     reduction = Reduction(modes=6, method="craig-bampton", interface=((None, "lower"),))
-    reduced = computed_model(Recipe(SphereOfSolids(radius, 4), density, modulus, 0.3, (), reduction))
-    whole = computed_model(Recipe(SphereOfSolids(radius, 4), density, modulus, 0.3, (), Reduction(modes=6)))
-    np.testing.assert_allclose(reduced.angular_frequencies[:3], whole.angular_frequencies[:3], rtol=1e-3)
+    reduced = computed_model(
+        Recipe(SphereOfSolids(radius, 4), density, modulus, 0.3, (), reduction)
+    )
+    whole = computed_model(
+        Recipe(SphereOfSolids(radius, 4), density, modulus, 0.3, (), Reduction(modes=6))
+    )
+    np.testing.assert_allclose(
+        reduced.angular_frequencies[:3], whole.angular_frequencies[:3], rtol=1e-3
+    )

@@ -1,4 +1,6 @@
-"""The folder of a reproduction: part by part, each whole or not at all, and what the commands make of it."""
+"""The folder of a reproduction: part by part, each whole or not at all, and what the
+commands make of it.
+"""
 
 from __future__ import annotations
 
@@ -35,7 +37,13 @@ from vibroimpact.paper.report.folder import (
     write_reproduction_report,
 )
 from vibroimpact.paper.report.outline import PARTS, ReportPart, find_parts, render_part
-from vibroimpact.paper.report.page import kind_counts, range_widths, report_html, report_text, verdict_counts
+from vibroimpact.paper.report.page import (
+    kind_counts,
+    range_widths,
+    report_html,
+    report_text,
+    verdict_counts,
+)
 from vibroimpact.paper.report_section import ComparedValue, Kind, ReportSection, Verdict
 from vibroimpact.paper.runs import Runs
 from vibroimpact.report.page import plotly_script
@@ -82,12 +90,23 @@ def command(monkeypatch: pytest.MonkeyPatch, *words: str | Path) -> int:
     return int(left.value.code or 0)
 
 
-# what it holds --------------------------------------------------------------------------------------------------------
+# what it holds
+#
+#
+#
+# --------------------------------------------------------------------------------------------------------
 
 
 def test_holds_what_it_should(made: Path) -> None:
     figures = {"figures/fig4.png", "parts/fig4.chart"}
-    assert names(made) == {"summary.json", "report.md", "report.html", "values.csv", *(f"parts/{name}.json" for name in QUICK), *figures}
+    assert names(made) == {
+        "summary.json",
+        "report.md",
+        "report.html",
+        "values.csv",
+        *(f"parts/{name}.json" for name in QUICK),
+        *figures,
+    }
     assert [path.name for path in made.parent.iterdir()] == ["paper"]
     assert is_reproduction(made)
     assert json.loads((made / "summary.json").read_text())["version"] == vi.__version__
@@ -138,10 +157,21 @@ def test_the_page_needs_nothing_else(made: Path) -> None:
     assert unescape(policy[1]).startswith("default-src 'none'; script-src 'sha256-")
     assert "<img" not in page
     links = re.findall(r'href="#([^"]*)"', page)
-    assert links == re.findall(r'<h2 id="([^"]*)"', page) == ["the-inputs", "type-1-repeated-impacts-of-rigid-bodies"]
-    assert not re.search(r"""(?:src|href)=["'](?!data:|#)|url\(|https?://|<link|@import""", page.partition("<script")[0])
+    assert (
+        links
+        == re.findall(r'<h2 id="([^"]*)"', page)
+        == ["the-inputs", "type-1-repeated-impacts-of-rigid-bodies"]
+    )
+    assert not re.search(
+        r"""(?:src|href)=["'](?!data:|#)|url\(|https?://|<link|@import""",
+        page.partition("<script")[0],
+    )
     assert page.count('<td class="reproduced">reproduced</td>') == 16
-    assert re.search(r'<td class="not_reproduced">not reproduced: with the printed one the first rebound would be [^<]*</td>', page)
+    assert re.search(
+        r'<td class="not_reproduced">not reproduced: with the printed one the first '
+        r"rebound would be [^<]*</td>",
+        page,
+    )
     assert len(page) < len(plotly_script())
 
 
@@ -149,7 +179,11 @@ def test_the_page_has_the_chart_in_the_place_of_its_image(made: Path) -> None:
     page = (made / "report.html").read_text(encoding="utf-8")
     (chart,) = data_of(page)["charts"]
     kept = unpack((made / "parts" / "fig4.chart").read_bytes())
-    assert (chart["name"], chart["title"], chart["caption"]) == (kept["name"], kept["title"], kept["caption"])
+    assert (chart["name"], chart["title"], chart["caption"]) == (
+        kept["name"],
+        kept["title"],
+        kept["caption"],
+    )
     for drawn, there in zip(chart["data"], kept["data"], strict=True):
         assert drawn["y"].tolist() == there["y"].tolist()
         assert drawn["origins"] == there["origins"]
@@ -159,45 +193,88 @@ def test_the_page_has_the_chart_in_the_place_of_its_image(made: Path) -> None:
     assert page.count(f"<h3>{title}</h3>") == page.count(f"<figcaption>{caption}</figcaption>") == 1
     assert chart["title"] not in page
     assert page.count(f"<p>{caption}</p>") == 0
-    assert re.findall(r"<option value=\"(-?\d)\">([^<]*)<", page)[:2] == [("-1", "whole run"), ("0", "Impact 1")]
+    assert re.findall(r"<option value=\"(-?\d)\">([^<]*)<", page)[:2] == [
+        ("-1", "whole run"),
+        ("0", "Impact 1"),
+    ]
 
 
 def test_a_page_keeps_its_text_around_charts() -> None:
     image = '![Title: a "b"](figures/fig4.png)\n\nThe caption.\n'
-    text = f'# Top\n\n## Chapter\n\n### Title: a "b"\n\n{image}\nBetween.\n\n### Other\n\n{image}\nAfter.\n'
+    text = (
+        f'# Top\n\n## Chapter\n\n### Title: a "b"\n\n{image}\nBetween.\n\n### '
+        f"Other\n\n{image}\nAfter.\n"
+    )
     words = {"name": "fig4", "title": 'Title: a "b"', "subtitle": "", "caption": "The caption."}
     chart = {**words, "data": [], "layout": {"height": 1}, "views": [], "rows": [[["", 1]]]}
     page = report_html(text, [chart])
     body = page[page.index("<h1>") : page.index("</main>")]
     # a heading that is the title of the chart is not repeated, another one stays
-    assert re.findall(r"<h3>([^<]*)</h3>", body) == ["Title: a &#34;b&#34;", "Other", "Title: a &#34;b&#34;"]
+    assert re.findall(r"<h3>([^<]*)</h3>", body) == [
+        "Title: a &#34;b&#34;",
+        "Other",
+        "Title: a &#34;b&#34;",
+    ]
     assert re.findall(r"<p>([^<]*)</p>", body) == ["Between.", "After."]
     assert body.count("<figcaption>The caption.</figcaption>") == 2
 
 
 def test_verdicts_have_classes_and_words_have_none() -> None:
-    cells = ["reproduced", "explained: by |samples|", "fitted", "not reproduced", "not reproduced: x < 1", "explained here", "not fitted"]
-    text = "| Verdict |\n| --- |\n" + "".join(f"| {cell.replace('|', chr(92) + '|')} |\n" for cell in cells)
+    cells = [
+        "reproduced",
+        "explained: by |samples|",
+        "fitted",
+        "not reproduced",
+        "not reproduced: x < 1",
+        "explained here",
+        "not fitted",
+    ]
+    text = "| Verdict |\n| --- |\n" + "".join(
+        f"| {cell.replace('|', chr(92) + '|')} |\n" for cell in cells
+    )
     page = report_html(text, [])
     assert all(f".{verdict.name.lower()} {{ color" in page for verdict in Verdict)
     classes = re.findall(r"<td(?: class=\"(\w+)\")?>", page)
-    assert classes == ["reproduced", "explained", "fitted", "not_reproduced", "not_reproduced", "", ""]
+    assert classes == [
+        "reproduced",
+        "explained",
+        "fitted",
+        "not_reproduced",
+        "not_reproduced",
+        "",
+        "",
+    ]
 
 
 def test_counts_tell_each_verdict_apart() -> None:
     def part(*verdicts: Verdict) -> dict[str, Any]:
         ranges = {"kind": "result", "printed": "-2", "range_low": -3.0, "range_high": -2.0}
-        return {"title": "T|1", "text": "A text.\n", "rows": [{"verdict": verdict.value, **ranges} for verdict in verdicts]}
+        return {
+            "title": "T|1",
+            "text": "A text.\n",
+            "rows": [{"verdict": verdict.value, **ranges} for verdict in verdicts],
+        }
 
-    parts = {"table1": part(*Verdict), "fig3": part(), "section3.2": part(Verdict.FITTED, Verdict.FITTED)}
+    parts = {
+        "table1": part(*Verdict),
+        "fig3": part(),
+        "section3.2": part(Verdict.FITTED, Verdict.FITTED),
+    }
     assert {name: list(by.values()) for name, by in verdict_counts(parts).items()} == {
         "table1": [1, 1, 1, 1],
         "section3.2": [0, 0, 2, 0],
         "all": [1, 1, 3, 1],
     }
     assert "| T\\|1 | 1 | 1 | 1 | 1 |" in report_text(parts)
-    assert verdict_counts({"fig3": part()}) == kind_counts({"fig3": part()}) == range_widths({"fig3": part()}) == {}
-    assert {name: list(by.values()) for name, by in kind_counts(parts).items() if any(by.values())} == {"result": [1, 1, 3, 1]}
+    assert (
+        verdict_counts({"fig3": part()})
+        == kind_counts({"fig3": part()})
+        == range_widths({"fig3": part()})
+        == {}
+    )
+    assert {
+        name: list(by.values()) for name, by in kind_counts(parts).items() if any(by.values())
+    } == {"result": [1, 1, 3, 1]}
     assert list(kind_counts(parts)) == [kind.value for kind in Kind]
     assert range_widths(parts) == {"table1": (1, 0.5, 0.5)}
     assert "| T\\|1 | 1 | 50 % | 50 % |" in report_text(parts)
@@ -223,15 +300,29 @@ def test_a_part_is_text_values_and_figure(made: Path) -> None:
 
 
 def test_a_bound_has_neither_difference_nor_allowance() -> None:
-    bound = ComparedValue(printed("type2.energy_left"), 88.0, by="a calculation", otherwise="unknown")
-    value = ComparedValue(printed("type2.max_force"), 4000.0, by="a calculation", otherwise="unknown")
-    rows = render_part(ReportPart("both", lambda runs: ReportSection("A title", rows=(bound, value))), Runs()).rows
+    bound = ComparedValue(
+        printed("type2.energy_left"), 88.0, by="a calculation", otherwise="unknown"
+    )
+    value = ComparedValue(
+        printed("type2.max_force"), 4000.0, by="a calculation", otherwise="unknown"
+    )
+    rows = render_part(
+        ReportPart("both", lambda runs: ReportSection("A title", rows=(bound, value))), Runs()
+    ).rows
     assert [row["relation"] for row in rows] == ["<", "="]
-    assert [row["difference"] is None for row in rows] == [row["allowed"] is None for row in rows] == [True, False]
-    assert [(row["printed"], row["computed"], row["why"]) for row in rows] == [("6", 88.0, "unknown"), ("3582.036", 4000.0, "unknown")]
+    assert (
+        [row["difference"] is None for row in rows]
+        == [row["allowed"] is None for row in rows]
+        == [True, False]
+    )
+    assert [(row["printed"], row["computed"], row["why"]) for row in rows] == [
+        ("6", 88.0, "unknown"),
+        ("3582.036", 4000.0, "unknown"),
+    ]
 
 
-# adding to it, and replacing it ---------------------------------------------------------------------------------------
+# adding to it, and replacing it
+# ---------------------------------------------------------------------------------------
 
 
 def test_parts_are_added_and_the_others_stay(copy: Path) -> None:
@@ -254,7 +345,9 @@ def test_it_goes_on_with_what_is_missing(copy: Path) -> None:
     assert after.keys() - before.keys() == {"parts/corrections.json"}
     assert after["parts/table1.json"] == before["parts/table1.json"]
     assert told == [0.0, 1.0]
-    with pytest.raises(vi.InputError, match=r"all parts are there already; .* --only, or all with --force"):
+    with pytest.raises(
+        vi.InputError, match=r"all parts are there already; .* --only, or all with --force"
+    ):
         reproduce_paper(copy)
     assert contents(copy) == after
 
@@ -263,7 +356,9 @@ def test_it_goes_on_with_what_is_missing(copy: Path) -> None:
 def test_parts_of_another_version_are_missing(copy: Path) -> None:
     part = copy / "parts" / "table1.json"
     whole = part.read_text(encoding="utf-8")
-    part.write_text(whole.replace(f'"version": "{vi.__version__}"', '"version": "0"'), encoding="utf-8")
+    part.write_text(
+        whole.replace(f'"version": "{vi.__version__}"', '"version": "0"'), encoding="utf-8"
+    )
     assert missing_parts(copy) == ["table1", "corrections"]
     reproduce_paper(copy)
     assert part.read_text(encoding="utf-8") == whole
@@ -274,7 +369,14 @@ def test_parts_of_another_version_are_missing(copy: Path) -> None:
 def test_force_makes_all_anew(copy: Path) -> None:
     told: list[float] = []
     reproduce_paper(copy, force=True, progress=told.append)
-    assert names(copy) == {"summary.json", "report.md", "report.html", "values.csv", "parts/table1.json", "parts/corrections.json"}
+    assert names(copy) == {
+        "summary.json",
+        "report.md",
+        "report.html",
+        "values.csv",
+        "parts/table1.json",
+        "parts/corrections.json",
+    }
     assert told == [0.0, 0.5, 1.0]
     reproduce_paper(copy, "corrections", force=True)  # which has no values
     assert names(copy) == {"summary.json", "report.md", "report.html", "parts/corrections.json"}
@@ -308,7 +410,9 @@ def test_the_result_of_a_run_is_not_added_to(tmp_path: Path, theory: vi.Response
 def test_unknown_parts_are_told_before_anything_is_made(tmp_path: Path) -> None:
     with pytest.raises(vi.InputError) as refused:
         reproduce_paper(tmp_path / "paper", ["table1", "tabel2"])
-    assert str(refused.value).startswith('there is no part "tabel2"; there are table2, table1, section3.1, ')
+    assert str(refused.value).startswith(
+        'there is no part "tabel2"; there are table2, table1, section3.1, '
+    )
     assert str(refused.value).endswith('. Did you mean "table2"?')
     with pytest.raises(vi.InputError, match="name at least one of table1, "):
         reproduce_paper(tmp_path / "paper", [])
@@ -316,27 +420,47 @@ def test_unknown_parts_are_told_before_anything_is_made(tmp_path: Path) -> None:
     assert [part.name for part in find_parts(["fig4", "fig4", "table1"])] == ["table1", "fig4"]
 
 
-# what goes wrong ------------------------------------------------------------------------------------------------------
+# what goes wrong
+#
+#
+#
+# ------------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("error", [vi.ComputationError("the ledger is open"), KeyboardInterrupt(), ValueError("a bug")])
-def test_earlier_parts_stay_when_a_part_fails(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, error: BaseException) -> None:
+@pytest.mark.parametrize(
+    "error", [vi.ComputationError("the ledger is open"), KeyboardInterrupt(), ValueError("a bug")]
+)
+def test_earlier_parts_stay_when_a_part_fails(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, error: BaseException
+) -> None:
     monkeypatch.setitem(PARTS, "fig3", ReportPart("fig3", chart=raises(error)))
     with pytest.raises(type(error)):
         reproduce_paper(tmp_path / "paper", ["table1", "section3.1", "fig3", "corrections"])
-    kept = {"summary.json", "report.md", "report.html", "values.csv", "parts/table1.json", "parts/section3.1.json"}
+    kept = {
+        "summary.json",
+        "report.md",
+        "report.html",
+        "values.csv",
+        "parts/table1.json",
+        "parts/section3.1.json",
+    }
     assert names(tmp_path / "paper") == kept
     assert not list((tmp_path / "paper").rglob(".*"))
     missing = missing_parts(tmp_path / "paper")
     assert missing[0] == "fig3"
-    assert f"Not made yet: {', '.join(missing)}." in (tmp_path / "paper" / "report.md").read_text(encoding="utf-8")
+    assert f"Not made yet: {', '.join(missing)}." in (tmp_path / "paper" / "report.md").read_text(
+        encoding="utf-8"
+    )
     monkeypatch.undo()
     reproduce_paper(tmp_path / "paper", ["fig3"])  # goes on
     assert "fig3" in read_parts(tmp_path / "paper")
 
 
 @pytest.mark.parametrize("error", [OSError(28, "No space left on device"), KeyboardInterrupt()])
-@pytest.mark.parametrize("step", ["charts.files.save_charts", "paper.report.folder.pack", "paper.report.folder.json.dumps"])
+@pytest.mark.parametrize(
+    "step",
+    ["charts.files.save_charts", "paper.report.folder.pack", "paper.report.folder.json.dumps"],
+)
 def test_a_part_is_there_with_its_figure_or_not_at_all(
     copy: Path, monkeypatch: pytest.MonkeyPatch, step: str, error: BaseException
 ) -> None:
@@ -345,35 +469,58 @@ def test_a_part_is_there_with_its_figure_or_not_at_all(
     with pytest.raises((vi.InputError, KeyboardInterrupt)) as failed:
         reproduce_paper(copy, ["fig3"])
     if isinstance(error, OSError):
-        assert str(failed.value) == f"{copy}: the part fig3 can't be written: No space left on device"
+        assert (
+            str(failed.value) == f"{copy}: the part fig3 can't be written: No space left on device"
+        )
     assert contents(copy) == before
     assert not list(copy.rglob(".*"))
 
 
-def test_what_stopped_the_run_is_told_and_not_what_else_is_damaged(copy: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_stopped_the_run_is_told_and_not_what_else_is_damaged(
+    copy: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     (copy / "parts" / "table1.json").write_text("")
-    monkeypatch.setitem(PARTS, "fig3", ReportPart("fig3", chart=raises(vi.ComputationError("the ledger is open"))))
+    monkeypatch.setitem(
+        PARTS, "fig3", ReportPart("fig3", chart=raises(vi.ComputationError("the ledger is open")))
+    )
     with pytest.raises(vi.ComputationError, match="the ledger is open"):
         reproduce_paper(copy, ["fig3"])
 
 
 @pytest.mark.parametrize(
-    "damage", ["", "\x00", "[]", "null", '{"text": "", "rows": []}', '{"title": "", "text": ""}', '{"title": "", "text": "", "rows": [{}]}']
+    "damage",
+    [
+        "",
+        "\x00",
+        "[]",
+        "null",
+        '{"text": "", "rows": []}',
+        '{"title": "", "text": ""}',
+        '{"title": "", "text": "", "rows": [{}]}',
+    ],
 )
-def test_a_damaged_part_is_told_and_mended_by_the_command_it_names(copy: Path, monkeypatch: pytest.MonkeyPatch, damage: str) -> None:
+def test_a_damaged_part_is_told_and_mended_by_the_command_it_names(
+    copy: Path, monkeypatch: pytest.MonkeyPatch, damage: str
+) -> None:
     (copy / "parts" / "table1.json").write_text(damage)
-    with pytest.raises(vi.InputError, match="the file is damaged; make it anew: vibroimpact reproduce") as told:
+    with pytest.raises(
+        vi.InputError, match="the file is damaged; make it anew: vibroimpact reproduce"
+    ) as told:
         read_parts(copy)
     assert str(told.value).startswith(f"{copy / 'parts' / 'table1.json'}: ")
     assert "table1" in missing_parts(copy)
-    assert command(monkeypatch, *shlex.split(str(told.value).partition("anew: vibroimpact ")[2])) == 0
+    assert (
+        command(monkeypatch, *shlex.split(str(told.value).partition("anew: vibroimpact ")[2])) == 0
+    )
     assert list(read_parts(copy)) == ["table1", "section3.1", "fig4"]
 
 
 @pytest.fixture(scope="module")
 def drawn(made: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """With a chart that takes little time too."""
-    return reproduce_paper(shutil.copytree(made, tmp_path_factory.mktemp("drawn") / "paper"), ["fig3"])
+    return reproduce_paper(
+        shutil.copytree(made, tmp_path_factory.mktemp("drawn") / "paper"), ["fig3"]
+    )
 
 
 def without_chart(chart: Path) -> None:
@@ -391,44 +538,70 @@ def with_half_a_chart(chart: Path) -> None:
 def as_of_an_earlier_version(chart: Path) -> None:
     """The charts were files alone."""
     part = chart.with_suffix(".json")
-    part.write_bytes(sealed({key: value for key, value in read_sealed(part).items() if key != "check_sums"}))
+    part.write_bytes(
+        sealed({key: value for key, value in read_sealed(part).items() if key != "check_sums"})
+    )
 
 
-@pytest.mark.parametrize("damage", [without_chart, with_another_chart, with_half_a_chart, as_of_an_earlier_version])
+@pytest.mark.parametrize(
+    "damage", [without_chart, with_another_chart, with_half_a_chart, as_of_an_earlier_version]
+)
 def test_a_missing_chart_is_told_and_mended_by_the_command_it_names(
     drawn: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, damage: Callable[[Path], None]
 ) -> None:
     copy = Path(shutil.copytree(drawn, tmp_path / "paper"))
     assert "fig3" not in missing_parts(copy)
     damage(copy / "parts" / "fig3.chart")
-    with pytest.raises(vi.InputError, match="the chart is missing or damaged; make it anew: vibroimpact reproduce") as told:
+    with pytest.raises(
+        vi.InputError, match="the chart is missing or damaged; make it anew: vibroimpact reproduce"
+    ) as told:
         write_reproduction_report(copy)
     assert str(told.value).startswith(f"{copy / 'parts' / 'fig3.chart'}: ")
     assert "fig3" in missing_parts(copy)
-    assert command(monkeypatch, *shlex.split(str(told.value).partition("anew: vibroimpact ")[2])) == 0
+    assert (
+        command(monkeypatch, *shlex.split(str(told.value).partition("anew: vibroimpact ")[2])) == 0
+    )
     assert "fig3" not in missing_parts(copy)
     assert [chart["name"] for chart in read_charts(copy, read_parts(copy))] == ["fig3", "fig4"]
 
 
-def test_all_missing_charts_are_told_at_once(drawn: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_all_missing_charts_are_told_at_once(
+    drawn: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     copy = Path(shutil.copytree(drawn, tmp_path / "paper"))
-    monkeypatch.setitem(PARTS, "fig5", ReportPart("fig5", chart=PARTS["fig3"].chart))  # which takes less time
+    # which takes less time
+    monkeypatch.setitem(PARTS, "fig5", ReportPart("fig5", chart=PARTS["fig3"].chart))
     reproduce_paper(copy, ["fig5"])
     (copy / "parts" / "fig3.chart").unlink()
     (copy / "parts" / "fig5.chart").write_text("")
-    with pytest.raises(vi.InputError, match=r"damaged, and those of fig5; make them anew: .* --only fig3,fig5$") as told:
+    with pytest.raises(
+        vi.InputError, match=r"damaged, and those of fig5; make them anew: .* --only fig3,fig5$"
+    ) as told:
         write_reproduction_report(copy)
-    assert command(monkeypatch, *shlex.split(str(told.value).partition("anew: vibroimpact ")[2])) == 0
+    assert (
+        command(monkeypatch, *shlex.split(str(told.value).partition("anew: vibroimpact ")[2])) == 0
+    )
     assert (copy / "report.html").read_text(encoding="utf-8").count("<figcaption>") == 3
 
 
-# the commands ---------------------------------------------------------------------------------------------------------
+# the commands
+#
+#
+#
+# ---------------------------------------------------------------------------------------------------------
 
 
-def test_the_command_prints_the_counts(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
-    assert command(monkeypatch, "reproduce", "--only", "table1, section3.1", "-o", tmp_path / "paper") == 0
+def test_the_command_prints_the_counts(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert (
+        command(monkeypatch, "reproduce", "--only", "table1, section3.1", "-o", tmp_path / "paper")
+        == 0
+    )
     *lines, last = capsys.readouterr().out.splitlines()
-    by_part, by_kind, note = ([*rows] for blank, rows in groupby(lines, key=lambda line: not line.strip()) if not blank)
+    by_part, by_kind, note = (
+        [*rows] for blank, rows in groupby(lines, key=lambda line: not line.strip()) if not blank
+    )
     for (head, *_), first in ((by_part, "part"), (by_kind, "kind")):
         assert re.split(r"  +", head.strip()) == [first, *(verdict.value for verdict in Verdict)]
     assert [row.split() for row in by_part[1:]] == [
@@ -447,31 +620,51 @@ def test_the_command_prints_the_counts(tmp_path: Path, monkeypatch: pytest.Monke
     assert last == f"wrote {tmp_path / 'paper' / 'report.html'}"
 
 
-@pytest.mark.parametrize(("only", "words"), [("tabel2", 'Did you mean "table2"?'), (" ,", "name at least one of table1, ")])
+@pytest.mark.parametrize(
+    ("only", "words"),
+    [("tabel2", 'Did you mean "table2"?'), (" ,", "name at least one of table1, ")],
+)
 def test_bad_names_end_with_status_2(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], only: str, words: str
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+    only: str,
+    words: str,
 ) -> None:
     assert command(monkeypatch, "reproduce", "--only", only, "-o", tmp_path / "paper") == 2
     assert words in capsys.readouterr().err
     assert not list(tmp_path.iterdir())
 
 
-def test_an_interrupt_tells_how_to_go_on(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+def test_an_interrupt_tells_how_to_go_on(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
     monkeypatch.setitem(PARTS, "fig3", ReportPart("fig3", chart=raises(KeyboardInterrupt())))
-    assert command(monkeypatch, "reproduce", "--only", "table1,fig3", "-o", tmp_path / "paper") == 130
-    assert f"continue with: vibroimpact reproduce -o {tmp_path / 'paper'} --only fig3\n" in capsys.readouterr().err
+    assert (
+        command(monkeypatch, "reproduce", "--only", "table1,fig3", "-o", tmp_path / "paper") == 130
+    )
+    assert (
+        f"continue with: vibroimpact reproduce -o {tmp_path / 'paper'} --only fig3\n"
+        in capsys.readouterr().err
+    )
 
 
 def test_an_interrupt_of_parts_made_anew_tells_to_make_them(
     copy: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Parts that are there already are not those that are missing, which a command without --only would make."""
+    """Parts that are there already are not those that are missing, which a command
+    without --only would make.
+    """
     monkeypatch.setitem(PARTS, "table1", ReportPart("table1", chart=raises(KeyboardInterrupt())))
     assert command(monkeypatch, "reproduce", "--only", "table1", "-o", copy) == 130
-    assert f"continue with: vibroimpact reproduce -o {copy} --only table1\n" in capsys.readouterr().err
+    assert (
+        f"continue with: vibroimpact reproduce -o {copy} --only table1\n" in capsys.readouterr().err
+    )
 
 
-def test_the_report_is_remade_and_other_files_stay(copy: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_report_is_remade_and_other_files_stay(
+    copy: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     before = contents(copy)
     for name in ("report.md", "report.html", "values.csv"):
         (copy / name).unlink()
@@ -492,4 +685,6 @@ def test_the_page_of_the_documentation(made: Path, tmp_path: Path) -> None:
     assert files[0].stat().st_size < 0.6 * files[1].stat().st_size
     text = page.read_text(encoding="utf-8")
     assert re.findall(r"\]\(([^)]*png)\)", text) == ["images/reproduction/fig4.png"]
-    assert text.replace("images/reproduction/", "figures/") == (made / "report.md").read_text(encoding="utf-8")
+    assert text.replace("images/reproduction/", "figures/") == (made / "report.md").read_text(
+        encoding="utf-8"
+    )

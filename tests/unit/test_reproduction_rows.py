@@ -1,4 +1,6 @@
-"""A printed value beside the computed one: how far rounding reaches, what the verdict is, and how a table shows it."""
+"""A printed value beside the computed one: how far rounding reaches, what the verdict is,
+and how a table shows it.
+"""
 
 from __future__ import annotations
 
@@ -13,7 +15,14 @@ from markdown_it import MarkdownIt
 
 from vibroimpact.errors import InputError
 from vibroimpact.paper import printed as library
-from vibroimpact.paper.printed import PrintedValue, Relation, Role, corrections, printed, printed_values
+from vibroimpact.paper.printed import (
+    PrintedValue,
+    Relation,
+    Role,
+    corrections,
+    printed,
+    printed_values,
+)
 from vibroimpact.paper.report.markdown import (
     allowed_text,
     computed_text,
@@ -25,10 +34,19 @@ from vibroimpact.paper.report.markdown import (
     table,
     verdict_text,
 )
-from vibroimpact.paper.report_section import ComparedValue, Explanation, Kind, ReportSection, TextTable, Verdict
+from vibroimpact.paper.report_section import (
+    ComparedValue,
+    Explanation,
+    Kind,
+    ReportSection,
+    TextTable,
+    Verdict,
+)
 
 
-def value(text: str, relation: Relation = "=", digits: int | None = None, unit: str = "m") -> PrintedValue:
+def value(
+    text: str, relation: Relation = "=", digits: int | None = None, unit: str = "m"
+) -> PrintedValue:
     return PrintedValue("a.value", "a value", text, unit, "section 1", "text", relation, digits)
 
 
@@ -36,7 +54,11 @@ def row(computed: float, text: str = "2.5", relation: Relation = "=", **more: An
     return ComparedValue(value(text, relation), computed, by="a calculation", **more)
 
 
-# what is printed ------------------------------------------------------------------------------------------------------
+# what is printed
+#
+#
+#
+# ------------------------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(
@@ -64,7 +86,9 @@ def test_half_a_unit_of_the_last_digit(text: str, digits: int | None, half: floa
 def test_every_value_is_whole() -> None:
     for name, held in printed_values().items():
         assert held.name == name
-        assert all(isinstance(part, str) and part for part in (held.what, held.unit, held.place, held.read)), name
+        assert all(
+            isinstance(part, str) and part for part in (held.what, held.unit, held.place, held.read)
+        ), name
         assert re.fullmatch(r"-?\d+(\.\d+)?(e-?\d+)?", held.text), name
         assert held.value == float(Decimal(held.text)), name
         assert held.relation in get_args(Relation), name
@@ -86,21 +110,31 @@ def test_a_list_is_held_one_by_one() -> None:
     assert printed("plate.size.2").what.startswith("size 2 of the plate")
 
 
-@pytest.mark.parametrize("second", [{"name": "twice", "text": "2"}, {"name": "twice", "text": ["2", "3"]}])
+@pytest.mark.parametrize(
+    "second", [{"name": "twice", "text": "2"}, {"name": "twice", "text": ["2", "3"]}]
+)
 def test_names_are_held_once(monkeypatch: pytest.MonkeyPatch, second: dict[str, Any]) -> None:
     about = {"what": "a length", "unit": "m", "place": "Table 1", "read": "table"}
-    entries = [{"name": "twice", "text": "1", **about}, {"name": "twice.2", "text": "1", **about}, {**second, **about}]
+    entries = [
+        {"name": "twice", "text": "1", **about},
+        {"name": "twice.2", "text": "1", **about},
+        {**second, **about},
+    ]
     monkeypatch.setattr(library, "_library", lambda: {"value": entries})
     with pytest.raises(ValueError, match=r"twice(\.2)? is held twice"):
         printed_values.__wrapped__()
 
 
 def test_an_unknown_name_is_told() -> None:
-    with pytest.raises(InputError, match=r'no value "type1.rebound_hight" here. Did you mean "type1.rebound_height"'):
+    with pytest.raises(
+        InputError,
+        match=r'no value "type1.rebound_hight" here. Did you mean "type1.rebound_height"',
+    ):
         printed("type1.rebound_hight")
 
 
-# what a difference means ----------------------------------------------------------------------------------------------
+# what a difference means
+# ----------------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(
@@ -111,7 +145,9 @@ def test_an_unknown_name_is_told() -> None:
         ("2.26e9", (2.255e9, 2.265e9), (2.2549e9, 2.2651e9)),
     ],
 )
-def test_a_value_is_reproduced_up_to_half_a_unit(text: str, inside: tuple[float, ...], outside: tuple[float, ...]) -> None:
+def test_a_value_is_reproduced_up_to_half_a_unit(
+    text: str, inside: tuple[float, ...], outside: tuple[float, ...]
+) -> None:
     assert {row(computed, text).verdict for computed in inside} == {Verdict.REPRODUCED}
     assert {row(computed, text).verdict for computed in outside} == {Verdict.NOT_REPRODUCED}
 
@@ -155,7 +191,9 @@ def test_a_tolerance_takes_the_place_of_the_digits() -> None:
         (3.0, 2.0, False),
     ],
 )
-def test_an_account_holds_if_the_printed_value_lies_in_its_range(low: float, high: float, holds: bool) -> None:
+def test_an_account_holds_if_the_printed_value_lies_in_its_range(
+    low: float, high: float, holds: bool
+) -> None:
     explanation = Explanation("read off samples", low, high)
     assert explanation.holds(value("2.5")) == holds
     found = row(9.0, explanations=(explanation,), otherwise="unknown")
@@ -164,13 +202,19 @@ def test_an_account_holds_if_the_printed_value_lies_in_its_range(low: float, hig
 
 
 def test_the_first_account_that_holds_counts() -> None:
-    fails, first, second = Explanation("fails", 0.0, 1.0), Explanation("first", 2.0, 3.0), Explanation("second", 2.0, 3.0)
+    fails, first, second = (
+        Explanation("fails", 0.0, 1.0),
+        Explanation("first", 2.0, 3.0),
+        Explanation("second", 2.0, 3.0),
+    )
     assert row(9.0, explanations=(fails, first, second)).reason == "first"
     assert row(9.0, explanations=(fails,)).reason == ""
 
 
 def test_what_agrees_needs_no_reason() -> None:
-    agrees = row(2.5, explanations=(Explanation("read off samples", 2.0, 3.0),), otherwise="unknown")
+    agrees = row(
+        2.5, explanations=(Explanation("read off samples", 2.0, 3.0),), otherwise="unknown"
+    )
     assert agrees.verdict == Verdict.REPRODUCED
     assert agrees.explanation is None
     assert agrees.reason == ""
@@ -178,13 +222,22 @@ def test_what_agrees_needs_no_reason() -> None:
 
 @pytest.mark.parametrize("computed", [2.5, 9.0])
 def test_what_was_fitted_proves_nothing(computed: float) -> None:
-    found = row(computed, explanations=(Explanation("read off samples", 2.0, 3.0),), otherwise="unknown", fitted=True)
+    found = row(
+        computed,
+        explanations=(Explanation("read off samples", 2.0, 3.0),),
+        otherwise="unknown",
+        fitted=True,
+    )
     assert found.verdict == Verdict.FITTED
     assert found.reason == ""
     assert verdict_text(found) == "fitted"
 
 
-# how it is shown ------------------------------------------------------------------------------------------------------
+# how it is shown
+#
+#
+#
+# ------------------------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(
@@ -213,7 +266,9 @@ def test_a_printed_value_is_shown_as_printed(held: PrintedValue, shown: str) -> 
         ("3582.036", 3751.3724, 4, "3751\u00a0m"),
     ],
 )
-def test_a_computed_value_has_one_digit_more(text: str, computed: float, digits: int, shown: str) -> None:
+def test_a_computed_value_has_one_digit_more(
+    text: str, computed: float, digits: int, shown: str
+) -> None:
     assert computed_text(row(computed, text, digits=digits)) == shown
 
 
@@ -226,20 +281,31 @@ def test_a_difference_has_its_sign_and_a_bound_has_none() -> None:
     assert difference_text(row(-1.0, "-0.5")) == "+100\u00a0%"
     assert allowed_text(row(3.0)) == allowed_text(row(3.0, "-2.5")) == "±\u00a02\u00a0%"
     assert allowed_text(row(3.0, tolerance=0.25)) == "±\u00a010\u00a0%"
-    assert difference_text(row(3.0, relation="<")) == allowed_text(row(3.0, relation="<")) == "\u2013"
+    assert (
+        difference_text(row(3.0, relation="<")) == allowed_text(row(3.0, relation="<")) == "\u2013"
+    )
 
 
 def test_verdicts_in_words() -> None:
     assert verdict_text(row(2.5)) == "reproduced"
     assert verdict_text(row(9.0)) == "not reproduced"
-    assert verdict_text(row(9.0, otherwise="a mesh of our own")) == "not reproduced: a mesh of our own"
-    assert verdict_text(row(9.0, explanations=(Explanation("read off samples", 2.0, 3.0),))) == "explained: read off samples"
+    assert (
+        verdict_text(row(9.0, otherwise="a mesh of our own")) == "not reproduced: a mesh of our own"
+    )
+    assert (
+        verdict_text(row(9.0, explanations=(Explanation("read off samples", 2.0, 3.0),)))
+        == "explained: read off samples"
+    )
 
 
 def test_a_value_is_said_once_where_several_things_compute_it() -> None:
     held, other = value("2.5"), value("2.5")
     lines = rows_table(
-        [ComparedValue(held, 2.5, by="one"), ComparedValue(held, 9.0, by="another"), ComparedValue(other, 2.5, by="a third")]
+        [
+            ComparedValue(held, 2.5, by="one"),
+            ComparedValue(held, 9.0, by="another"),
+            ComparedValue(other, 2.5, by="a third"),
+        ]
     ).splitlines()
     said = [line.strip("|").split("|")[:4] for line in lines[2:]]
     whole = [" a value ", " section 1 ", " 2.5\u00a0m "]
@@ -247,15 +313,23 @@ def test_a_value_is_said_once_where_several_things_compute_it() -> None:
 
 
 @pytest.mark.parametrize("role", get_args(Role))
-def test_the_role_of_a_printed_value_is_its_kind_unless_it_was_computed_otherwise(role: Role) -> None:
+def test_the_role_of_a_printed_value_is_its_kind_unless_it_was_computed_otherwise(
+    role: Role,
+) -> None:
     held = PrintedValue("a.value", "a value", "2.5", "m", "section 1", "text", role=role)
     assert ComparedValue(held, 2.5, by="a calculation").kind.value == role
-    assert ComparedValue(held, 2.5, by="a model", made_by=Kind.FITTED_MODEL).kind == Kind.FITTED_MODEL
-    (line,) = rows_table([ComparedValue(held, 2.5, by="a sum", made_by=Kind.ARITHMETIC)]).splitlines()[2:]
+    assert (
+        ComparedValue(held, 2.5, by="a model", made_by=Kind.FITTED_MODEL).kind == Kind.FITTED_MODEL
+    )
+    (line,) = rows_table(
+        [ComparedValue(held, 2.5, by="a sum", made_by=Kind.ARITHMETIC)]
+    ).splitlines()[2:]
     assert line.endswith("| arithmetic | reproduced |")
 
 
-@pytest.mark.parametrize("text", ["a|b", "*a* and _b_", "a \\| b", "1 < 2 <b>", "[a](b)", "`a`", "\u22122\u00a0%"])
+@pytest.mark.parametrize(
+    "text", ["a|b", "*a* and _b_", "a \\| b", "1 < 2 <b>", "[a](b)", "`a`", "\u22122\u00a0%"]
+)
 def test_words_come_through_markdown_as_they_stand(text: str) -> None:
     page = MarkdownIt("commonmark", {"html": False}).enable("table")
     assert page.render(escape_markdown(text)).strip() == f"<p>{escape(text)}</p>"
@@ -265,7 +339,17 @@ def test_words_come_through_markdown_as_they_stand(text: str) -> None:
 
 def test_a_section_keeps_its_order() -> None:
     further = TextTable(("one", "two"), (("1", "2"),), "Further")
-    text = section_text(ReportSection("A title", ("First.", "Second."), (row(2.5),), (further,), ("At last.",)))
-    pieces = ["### A title\n", "First.\n", "Second.\n", "| What |", "**Further**\n", "| one | two |", "At last.\n"]
+    text = section_text(
+        ReportSection("A title", ("First.", "Second."), (row(2.5),), (further,), ("At last.",))
+    )
+    pieces = [
+        "### A title\n",
+        "First.\n",
+        "Second.\n",
+        "| What |",
+        "**Further**\n",
+        "| one | two |",
+        "At last.\n",
+    ]
     assert sorted(pieces, key=text.index) == pieces
     assert section_text(ReportSection("A title", ("First.",))) == "### A title\n\nFirst.\n"

@@ -36,7 +36,9 @@ def runs() -> Runs:
         ("force", "variable", [5.178, 5.019, 4.814, 4.551, 4.256]),
     ],
 )
-def test_with_no_time_between_samples_the_errors_are_exact(runs: Runs, quantity: str, damping: str, errors: list[float]) -> None:
+def test_with_no_time_between_samples_the_errors_are_exact(
+    runs: Runs, quantity: str, damping: str, errors: list[float]
+) -> None:
     for impact, error in zip(IMPACTS, errors, strict=True):
         low, high = error_range(runs, 0.0, quantity, damping, impact)
         assert low == high == pytest.approx(error, abs=6e-4)
@@ -47,7 +49,9 @@ def test_the_range_grows_with_the_step(runs: Runs) -> None:
     lows, highs = zip(*ranges, strict=True)
     assert np.all(np.diff(lows) < 0.0)
     assert np.all(np.diff(highs) > 0.0)
-    assert error_range(runs, 1.0, "force", "constant", 2) == (-math.inf, 100.0), "no sample need fall on either contact"
+    assert error_range(runs, 1.0, "force", "constant", 2) == (-math.inf, 100.0), (
+        "no sample need fall on either contact"
+    )
 
 
 def test_the_range_is_what_samples_at_many_phases_give(runs: Runs) -> None:
@@ -60,7 +64,9 @@ def test_the_range_is_what_samples_at_many_phases_give(runs: Runs) -> None:
         readings[name] = np.interp(samples, peak.times, peak.values, right=0.0).max(axis=1)
     low = 100.0 * (1.0 - readings["variable"].max() / readings["theory"].min())
     high = 100.0 * (1.0 - readings["variable"].min() / readings["theory"].max())
-    assert error_range(runs, step, "compression", "variable", 4) == pytest.approx((low, high), abs=0.01)
+    assert error_range(runs, step, "compression", "variable", 4) == pytest.approx(
+        (low, high), abs=0.01
+    )
 
 
 def test_the_spacing(runs: Runs) -> None:
@@ -76,12 +82,17 @@ def test_the_printed_output_step_gives_other_errors(runs: Runs) -> None:
     assert len(times) == 1
     assert forces == pytest.approx(7426.0, rel=1e-3)
     assert grid_error(runs, output_step(), "force", "constant", 1) == pytest.approx(13.1, abs=0.05)
-    assert max(grid_error(runs, output_step(), "force", "constant", impact) for impact in IMPACTS) > 50.0
+    assert (
+        max(grid_error(runs, output_step(), "force", "constant", impact) for impact in IMPACTS)
+        > 50.0
+    )
     assert math.isnan(grid_error(runs, 10.0, "force", "constant", 1)), "no sample in the contact"
 
 
 def test_a_level_above_the_peak_is_never_passed(runs: Runs) -> None:
-    """The third and the fifth impact: what the printed force errors imply is more than there was."""
+    """The third and the fifth impact: what the printed force errors imply is more than
+    there was.
+    """
     assert np.isnan(implied_instants(runs, "force", "constant", 5)).all()
     peak = contact_pulses(runs)["constant", "force", 5]
     up, down = peak.instants(0.5 * peak.value)

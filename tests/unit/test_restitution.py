@@ -36,25 +36,38 @@ def test_many_drops_are_integrated_in_pieces_with_the_same_result() -> None:
     law = AdamsImpact(stiffness=5e8, damping_max=np.linspace(50.0, 200.0, 2500))
     whole = vi.achieved_restitution(law, 0.09, speeds)
     for index in (0, 1234, 2499):
-        assert whole[index] == pytest.approx(vi.achieved_restitution(law.take(index), 0.09, speeds[index]), rel=1e-9)
+        assert whole[index] == pytest.approx(
+            vi.achieved_restitution(law.take(index), 0.09, speeds[index]), rel=1e-9
+        )
 
 
 def test_what_can_not_be_achieved_is_named() -> None:
     law = LankaraniNikravesh(stiffness=5e8, restitution=0.7)
-    with pytest.raises(vi.InputError, match=r"lankarani-nikravesh reaches restitutions from 0\.663 to 1 at 3 m/s, not 0\.5"):
+    with pytest.raises(
+        vi.InputError,
+        match=r"lankarani-nikravesh reaches restitutions from 0\.663 to 1 at 3 m/s, not 0\.5",
+    ):
         vi.law_achieving(law, 0.5, mass=0.09, speed=3.0)
-    adhesive = vi.find_contact_law("krijt")(effective_modulus=1e9, effective_radius=1e-3, work_of_adhesion=0.1, dissipation_time=1e-6)
-    with pytest.raises(vi.InputError, match=r"krijt reaches restitutions up to 0\.9999\d+ at 3 m/s, not 1$"):
+    adhesive = vi.find_contact_law("krijt")(
+        effective_modulus=1e9, effective_radius=1e-3, work_of_adhesion=0.1, dissipation_time=1e-6
+    )
+    with pytest.raises(
+        vi.InputError, match=r"krijt reaches restitutions up to 0\.9999\d+ at 3 m/s, not 1$"
+    ):
         vi.law_achieving(adhesive, 1.0, mass=0.09, speed=3.0)
     with pytest.raises(vi.InputError, match=r"not 0\.5"):
         vi.law_achieving(law, np.array([0.9, 0.5]), mass=0.09, speed=3.0)
-    with pytest.raises(vi.InputError, match=r"hertz has no loss parameter; it achieves 1, not 0\.5"):
+    with pytest.raises(
+        vi.InputError, match=r"hertz has no loss parameter; it achieves 1, not 0\.5"
+    ):
         vi.law_achieving(Hertz(stiffness=5e8), 0.5, mass=0.09, speed=3.0)
     assert vi.law_achieving(Hertz(stiffness=5e8), 1.0, mass=0.09, speed=3.0) == Hertz(stiffness=5e8)
 
 
 def test_a_few_drops_have_the_restitution_of_many() -> None:
-    """They are collocated in plain Python, and followed by compiled code where that does not come out, as under much damping."""
+    """They are collocated in plain Python, and followed by compiled code where that does
+    not come out, as under much damping.
+    """
     speeds = np.array([1e-4, 0.01, 0.5, 3.0])
     laws: tuple[vi.ContactLaw, ...] = (
         AdamsImpact(stiffness=5e8, damping_max=170.0, full_damping_penetration=1e-4),
@@ -75,7 +88,8 @@ def test_impossible_restitution(wanted: float) -> None:
 
 
 @pytest.mark.parametrize(
-    ("mass", "speed", "key"), [(0.0, 1.0, "mass"), (1.0, -1.0, "speed"), (np.inf, 1.0, "mass"), (1.0, np.nan, "speed")]
+    ("mass", "speed", "key"),
+    [(0.0, 1.0, "mass"), (1.0, -1.0, "speed"), (np.inf, 1.0, "mass"), (1.0, np.nan, "speed")],
 )
 def test_impossible_mass_or_speed(mass: float, speed: float, key: str) -> None:
     law = Flores(stiffness=5e8, restitution=0.7)
@@ -87,15 +101,27 @@ def test_impossible_mass_or_speed(mass: float, speed: float, key: str) -> None:
 
 
 def test_the_ends_of_the_range() -> None:
-    assert vi.law_achieving(LankaraniNikravesh(stiffness=5e8, restitution=0.7), 1.0, 0.09, 3.0).restitution == 1.0
-    assert vi.law_achieving(AdamsImpact(stiffness=5e8, damping_max=100.0), 1.0, 0.09, 3.0).damping_max == 0.0
-    stuck = vi.law_achieving(JKR(effective_modulus=3e8, effective_radius=2e-4, work_of_adhesion=0.3), 0.0, 5e-8, 0.1)
+    assert (
+        vi.law_achieving(
+            LankaraniNikravesh(stiffness=5e8, restitution=0.7), 1.0, 0.09, 3.0
+        ).restitution
+        == 1.0
+    )
+    assert (
+        vi.law_achieving(AdamsImpact(stiffness=5e8, damping_max=100.0), 1.0, 0.09, 3.0).damping_max
+        == 0.0
+    )
+    stuck = vi.law_achieving(
+        JKR(effective_modulus=3e8, effective_radius=2e-4, work_of_adhesion=0.3), 0.0, 5e-8, 0.1
+    )
     assert vi.achieved_restitution(stuck, 5e-8, 0.1) == 0.0
 
 
 def test_a_parameter_for_each_speed() -> None:
     speeds = np.array([2.0, 4.0, 8.0])
-    law = vi.law_achieving(KuwabaraKono(stiffness=5e8, dissipation_time=1e-6), 0.7, mass=0.09, speed=speeds)
+    law = vi.law_achieving(
+        KuwabaraKono(stiffness=5e8, dissipation_time=1e-6), 0.7, mass=0.09, speed=speeds
+    )
     assert law.dissipation_time.shape == (3,)
     np.testing.assert_allclose(vi.integrated_restitution(law, 0.09, speeds), 0.7, atol=1e-10)
 
@@ -103,7 +129,9 @@ def test_a_parameter_for_each_speed() -> None:
 @pytest.mark.parametrize("tolerance", [1e-1, 1e-14, np.nan])
 def test_tolerances_out_of_range_are_refused(tolerance: float) -> None:
     with pytest.raises(vi.InputError, match="tolerance must lie between 1e-13 and 1e-6"):
-        vi.integrated_restitution(AdamsImpact(stiffness=1e6, damping_max=0.1), 1e-3, 1.0, tolerance=tolerance)
+        vi.integrated_restitution(
+            AdamsImpact(stiffness=1e6, damping_max=0.1), 1e-3, 1.0, tolerance=tolerance
+        )
 
 
 def test_a_pull_between_two_nodes_is_cut() -> None:
@@ -122,23 +150,33 @@ wishes = given(
 
 
 @settings(max_examples=15, deadline=None)
-@example(AdamsImpact, 0.9340729747981871, -3.2543028886997925, 0.7045442911229172, 7.095838841638937)
+@example(
+    AdamsImpact, 0.9340729747981871, -3.2543028886997925, 0.7045442911229172, 7.095838841638937
+)
 @example(vi.find_contact_law("krijt"), 0.5, -5.0, -1.5, 7.0)
 @wishes
-def test_round_trip(law: type[vi.ContactLaw], wanted: float, mass: float, speed: float, modulus: float) -> None:
+def test_round_trip(
+    law: type[vi.ContactLaw], wanted: float, mass: float, speed: float, modulus: float
+) -> None:
     check_round_trip(law, wanted, mass, speed, modulus)
 
 
 @pytest.mark.slow
 @settings(max_examples=200, deadline=None)
 @wishes
-def test_many_round_trips(law: type[vi.ContactLaw], wanted: float, mass: float, speed: float, modulus: float) -> None:
+def test_many_round_trips(
+    law: type[vi.ContactLaw], wanted: float, mass: float, speed: float, modulus: float
+) -> None:
     check_round_trip(law, wanted, mass, speed, modulus)
 
 
-def check_round_trip(law: type[vi.ContactLaw], wanted: float, mass: float, speed: float, modulus: float) -> None:
+def check_round_trip(
+    law: type[vi.ContactLaw], wanted: float, mass: float, speed: float, modulus: float
+) -> None:
     radius = (10**mass / 6000.0) ** (1 / 3)
-    pair = ContactPair(10**modulus, radius, 10**mass, yield_strength=2e-3 * 10**modulus, poissons_ratio=0.3)
+    pair = ContactPair(
+        10**modulus, radius, 10**mass, yield_strength=2e-3 * 10**modulus, poissons_ratio=0.3
+    )
     try:
         tuned = vi.law_achieving(law.example(pair), wanted, 10**mass, 10**speed)
     except vi.InputError as error:
@@ -155,8 +193,12 @@ def check_round_trip(law: type[vi.ContactLaw], wanted: float, mass: float, speed
         ("tsuji", "effective_mass", "that of the pair is infinite"),
     ],
 )
-def test_what_a_pair_can_not_give_is_asked_for_with_its_cause(law: str, key: str, words: str) -> None:
-    pair = ContactPair(np.inf if key == "stiffness" else 1e9, 0.01, 0.01 if key == "stiffness" else np.inf)
+def test_what_a_pair_can_not_give_is_asked_for_with_its_cause(
+    law: str, key: str, words: str
+) -> None:
+    pair = ContactPair(
+        np.inf if key == "stiffness" else 1e9, 0.01, 0.01 if key == "stiffness" else np.inf
+    )
     given = {"restitution": 0.5} if law == "tsuji" else {}
     with pytest.raises(vi.InputError, match=rf"^{key}: it must be given, since {words}$"):
         vi.find_contact_law(law).for_pair(pair, **given)

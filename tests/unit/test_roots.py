@@ -1,4 +1,6 @@
-"""Roots for whole arrays at once: against SciPy's brentq on random functions, and on those that are hard."""
+"""Roots for whole arrays at once: against SciPy's brentq on random functions, and on
+those that are hard.
+"""
 
 from __future__ import annotations
 
@@ -41,19 +43,25 @@ def test_as_brentq_finds_it(shape: str) -> None:
     assert np.all(np.abs(found - root) <= 1e-12 * ends)
     if "flat" not in shape:  # on which brentq does not settle
         each = zip(root, low, high, strict=True)
-        theirs = [brentq(lambda x, r=r: float(function(np.float64(x), r)), a, b, xtol=1e-15, maxiter=1000) for r, a, b in each]
+        theirs = [
+            brentq(lambda x, r=r: float(function(np.float64(x), r)), a, b, xtol=1e-15, maxiter=1000)
+            for r, a, b in each
+        ]
         np.testing.assert_allclose(found, theirs, rtol=0.0, atol=1e-12 * float(ends.max()))
 
 
 @pytest.mark.parametrize("shape", SHAPES)
 def test_it_does_not_matter_which_bracket_is_the_larger(shape: str) -> None:
     root, low, high = brackets(3)
-    found = find_root(lambda x: -SHAPES[shape](x, root), high, low)  # falls: it is positive at the smaller
+    # falls: it is positive at the smaller
+    found = find_root(lambda x: -SHAPES[shape](x, root), high, low)
     assert np.all(np.abs(found - root) <= 1e-12 * np.maximum(np.abs(low), np.abs(high)))
 
 
 def test_the_function_is_positive_where_it_is_found() -> None:
-    """Of the two sides of a step, the one that was asked for, and at most two numbers from the other."""
+    """Of the two sides of a step, the one that was asked for, and at most two numbers
+    from the other.
+    """
     root, low, high = brackets(5)
     found = find_root(lambda x: np.where(x > root, 1.0, -1.0), low, high, tolerance=0.0)
     assert np.all(found > root)
@@ -69,14 +77,28 @@ def test_polynomials_at_random() -> None:
         a, b, c = factors[:, which]
         return a * x + b * x**3 + c * x**5 - shift[which]
 
-    low, high = -np.maximum(1.0, np.abs(shift) / factors[0]), np.maximum(1.0, np.abs(shift) / factors[0])
+    low, high = (
+        -np.maximum(1.0, np.abs(shift) / factors[0]),
+        np.maximum(1.0, np.abs(shift) / factors[0]),
+    )
     found = find_root(function, low, high, tolerance=1e-15)
-    theirs = [brentq(lambda x, i=i: float(function(np.float64(x), i)), low[i], high[i], xtol=1e-300, rtol=1e-14) for i in range(200)]
+    theirs = [
+        brentq(
+            lambda x, i=i: float(function(np.float64(x), i)),
+            low[i],
+            high[i],
+            xtol=1e-300,
+            rtol=1e-14,
+        )
+        for i in range(200)
+    ]
     np.testing.assert_allclose(found, theirs, rtol=1e-12)
 
 
 def test_zeros_at_the_ends() -> None:
-    """Zero counts as not positive: the other end moves down to it; where zeros are taken as such, it is met exactly."""
+    """Zero counts as not positive: the other end moves down to it; where zeros are taken
+    as such, it is met exactly.
+    """
     low, high = np.array([0.0, -1.0]), np.array([1.0, 0.0])
 
     def ends(x: np.ndarray) -> np.ndarray:
@@ -107,12 +129,19 @@ def test_close_is_a_bound_of_the_function() -> None:
 
 
 def test_no_more_calls_than_bisection() -> None:
-    """However badly a function is behaved: about fifty halvings find a double, and three times as many calls are the worst."""
+    """However badly a function is behaved: about fifty halvings find a double, and three
+    times as many calls are the worst.
+    """
     for name, function in SHAPES.items():
         root, low, high = brackets(11)
         calls = []
 
-        def counted(x: np.ndarray, function: Callable = function, calls: list = calls, root: np.ndarray = root) -> np.ndarray:
+        def counted(
+            x: np.ndarray,
+            function: Callable = function,
+            calls: list = calls,
+            root: np.ndarray = root,
+        ) -> np.ndarray:
             calls.append(1)
             return function(x, root)
 
@@ -120,7 +149,11 @@ def test_no_more_calls_than_bisection() -> None:
         assert len(calls) < 150, name
 
 
-# --- solve_monotonic ---------------------------------------------------------------------------------------------------------------------
+# --- solve_monotonic
+#
+#
+#
+# ---------------------------------------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("seed", range(4))
@@ -140,18 +173,24 @@ def test_wanted_values_over_many_orders_of_magnitude(seed: int, falls: bool) -> 
 
 def test_what_is_out_of_reach_is_told_and_the_others_are_found() -> None:
     wanted = np.array([0.5, 1.5, -0.1, 0.25])
-    found = solve_monotonic(lambda x: 1.0 / (1.0 + x), wanted, np.ones(4), Range(at_least=0), falls=True)
+    found = solve_monotonic(
+        lambda x: 1.0 / (1.0 + x), wanted, np.ones(4), Range(at_least=0), falls=True
+    )
     assert np.isnan(found.place).tolist() == [False, True, True, False]
     np.testing.assert_allclose(found.place[[0, 3]], [1.0, 3.0], rtol=1e-9)
     assert found.most[1] == 1.0
     assert np.all(found.least >= 0.0)
-    nothing = solve_monotonic(lambda x: 1.0 / (1.0 + x), np.array([2.0, 3.0]), np.ones(2), Range(at_least=0), falls=True)
+    nothing = solve_monotonic(
+        lambda x: 1.0 / (1.0 + x), np.array([2.0, 3.0]), np.ones(2), Range(at_least=0), falls=True
+    )
     assert np.isnan(nothing.place).all()
 
 
 @pytest.mark.parametrize("allowed", [Range(at_least=0, at_most=1), Range(above=0, at_most=1)])
 def test_ends_of_the_range(allowed: Range) -> None:
-    """What is wanted at an end that belongs to the range is found there, and nothing outside the range is ever tried."""
+    """What is wanted at an end that belongs to the range is found there, and nothing
+    outside the range is ever tried.
+    """
 
     def inside(x: np.ndarray) -> np.ndarray:
         assert np.all((x >= 0.0) & (x <= 1.0))
@@ -170,7 +209,9 @@ def test_values_that_can_not_be_computed_are_passed_over() -> None:
     bad = np.arange(4) == 2
 
     def function(x: np.ndarray) -> np.ndarray:
-        return np.where(bad | ((np.arange(4) > 2) & (x < 0.1)), np.nan, np.log(np.maximum(x, 1e-300)))
+        return np.where(
+            bad | ((np.arange(4) > 2) & (x < 0.1)), np.nan, np.log(np.maximum(x, 1e-300))
+        )
 
     found = solve_monotonic(function, np.full(4, 1.0), np.full(4, 0.5), Range(above=0))
     assert np.isnan(found.place).tolist() == [False, False, True, False]
@@ -178,6 +219,13 @@ def test_values_that_can_not_be_computed_are_passed_over() -> None:
 
 
 def test_flat_where_it_begins() -> None:
-    """A value that only counts beyond a threshold, as a damping that is cut off: flat on both sides of a slope."""
-    found = solve_monotonic(lambda x: 1.0 - np.clip(np.log10(x / 1e3), 0.0, 1.0), np.array([0.3, 0.9]), np.ones(2), Range(above=0))
+    """A value that only counts beyond a threshold, as a damping that is cut off: flat on
+    both sides of a slope.
+    """
+    found = solve_monotonic(
+        lambda x: 1.0 - np.clip(np.log10(x / 1e3), 0.0, 1.0),
+        np.array([0.3, 0.9]),
+        np.ones(2),
+        Range(above=0),
+    )
     np.testing.assert_allclose(found.place, [10.0**3.7, 10.0**3.1], rtol=1e-8)

@@ -1,4 +1,6 @@
-"""The page of a run of every kind: it holds its charts and numbers, what has names is shown as it is, and no other script runs."""
+"""The page of a run of every kind: it holds its charts and numbers, what has names is
+shown as it is, and no other script runs.
+"""
 
 from __future__ import annotations
 
@@ -41,7 +43,9 @@ def test_a_run_of_every_kind_has_a_page(name: str) -> None:
     assert {"position", "velocity", "energy"} <= set(names)
     assert len(set(names)) == len(names)
     assert ("force" in names) == bool(np.any(result.impacts["duration_s"] > 0.0))
-    assert ("plate_motion" in names) == ("plate" in result.peaks and len(result.impacts["impact"]) > 0)
+    assert ("plate_motion" in names) == (
+        "plate" in result.peaks and len(result.impacts["impact"]) > 0
+    )
     assert [value for key, value in page.attributes if key == "data-chart"] == names
     assert (data["scene"] is None) == (result.deflection is None)
     traces = next(chart for chart in data["charts"] if chart["name"] == "position")["data"]
@@ -53,16 +57,24 @@ def test_a_run_of_every_kind_has_a_page(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", one_in(6, RUNS))
-def test_the_charts_of_every_kind_are_drawn_for_print(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_charts_of_every_kind_are_drawn_for_print(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setattr("vibroimpact.charts.files._DPI", 30)
     charts = [setup_chart(run_of(name)), *run_charts(run_of(name))]
-    assert [path.name for path in save_charts(charts, tmp_path)] == [f"{chart.name}.png" for chart in charts]
+    assert [path.name for path in save_charts(charts, tmp_path)] == [
+        f"{chart.name}.png" for chart in charts
+    ]
 
 
 def test_what_runs_in_a_page_is_what_its_policy_allows() -> None:
     text = run_page(run_of("sensors"))
     page = Page(text)
-    policy = next(value for key, value in page.attributes if key == "content" and value and value.startswith("default-src"))
+    policy = next(
+        value
+        for key, value in page.attributes
+        if key == "content" and value and value.startswith("default-src")
+    )
     allowed = set(re.findall(r"'sha256-([^']+)'", policy))
     plotly = zlib.decompress(b64decode(page.script("plotly"))).decode()
     run = [script for attributes, script in page.scripts if not attributes]
@@ -71,8 +83,12 @@ def test_what_runs_in_a_page_is_what_its_policy_allows() -> None:
     assert set(digests) == allowed
     assert re.findall(r"(?:script|default|connect)-src ([^;]*)", policy)[0] == "'none'"
     assert "unsafe-inline" not in policy.split("style-src")[0]
-    assert not [key for key, _ in page.attributes if key.startswith("on") or key in ("src", "srcdoc")]
-    assert not [value for key, value in page.attributes if key == "href" and not str(value).startswith("#")]
+    assert not [
+        key for key, _ in page.attributes if key.startswith("on") or key in ("src", "srcdoc")
+    ]
+    assert not [
+        value for key, value in page.attributes if key == "href" and not str(value).startswith("#")
+    ]
     assert "plotly.js" in plotly[:300]
 
 
@@ -86,7 +102,9 @@ def test_names_that_are_scripts_are_shown_as_text() -> None:
     assert "b" not in page.tags
     data = page.data()
     for chart in data["charts"]:
-        for words in texts_of(chart["layout"]) + [word for trace in chart["data"] for word in texts_of(trace)]:
+        for words in texts_of(chart["layout"]) + [
+            word for trace in chart["data"] for word in texts_of(trace)
+        ]:
             assert "<script" not in words, words
             assert "<b>" not in words, words
     sensor = next(chart for chart in data["charts"] if chart["title"].startswith("Sensor <script>"))
@@ -98,27 +116,47 @@ def test_names_that_are_scripts_are_shown_as_text() -> None:
 def texts_of(part: Any) -> list[str]:
     """The words that plotly reads as HTML."""
     if isinstance(part, dict):
-        own = [value for key, value in part.items() if key in ("text", "name", "ticktext", "hovertemplate") and isinstance(value, str)]
-        many = [word for key, value in part.items() if key in ("text", "ticktext") and isinstance(value, list) for word in value]
+        own = [
+            value
+            for key, value in part.items()
+            if key in ("text", "name", "ticktext", "hovertemplate") and isinstance(value, str)
+        ]
+        many = [
+            word
+            for key, value in part.items()
+            if key in ("text", "ticktext") and isinstance(value, list)
+            for word in value
+        ]
         return own + many + [word for value in part.values() for word in texts_of(value)]
     return [word for one in part for word in texts_of(one)] if isinstance(part, list) else []
 
 
 def test_a_name_without_end_does_not_fill_the_page() -> None:
     result = run_of("hostile names")
-    setup = setup_rows(replace(result, case={**result.case, "sensors": [{**result.case["sensors"][0], "name": "x" * 10_000}]}))
+    setup = setup_rows(
+        replace(
+            result,
+            case={**result.case, "sensors": [{**result.case["sensors"][0], "name": "x" * 10_000}]},
+        )
+    )
     assert all(len(name) < 100 and len(words) < 400 for name, words in setup)
     for chart in run_charts(result):
         assert len(chart.title) < 100
 
 
 @pytest.mark.parametrize("name", SUPPORTS)
-def test_supports_of_every_kind_are_drawn_below_the_plate_and_on_it(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_supports_of_every_kind_are_drawn_below_the_plate_and_on_it(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setattr("vibroimpact.charts.files._DPI", 30)
     result = held(name)
     chart = setup_chart(result)
     side, above = chart.panels
-    supports = [mark for mark in side.marks if isinstance(mark, Outline) and mark.role in ("support", "held")]
+    supports = [
+        mark
+        for mark in side.marks
+        if isinstance(mark, Outline) and mark.role in ("support", "held")
+    ]
     outlines = [mark for mark in above.marks if isinstance(mark, Outline) and mark.role == "held"]
     assert bool(supports) == bool(outlines) == (name != "free")
     for mark in supports:
@@ -127,10 +165,21 @@ def test_supports_of_every_kind_are_drawn_below_the_plate_and_on_it(name: str, t
     for mark in outlines:
         assert -0.15 - 1e-12 <= mark.x.min() < mark.x.max() <= 0.15 + 1e-12
         assert -0.1 - 1e-12 <= mark.y.min() < mark.y.max() <= 0.1 + 1e-12
-    count = {"free": 0, "two edges": 2, "patches of both kinds": 2, "a bar and points": 3, "springs": 2}.get(name, 4)
+    count = {
+        "free": 0,
+        "two edges": 2,
+        "patches of both kinds": 2,
+        "a bar and points": 3,
+        "springs": 2,
+    }.get(name, 4)
     assert len(outlines) == count
     words = dict(setup_rows(result))["Plate"]
-    told = {"two edges": "clamped at x-min", "patches": "4 rigid patches", "bars": "4 elastic columns", "springs": "2 springs"}
+    told = {
+        "two edges": "clamped at x-min",
+        "patches": "4 rigid patches",
+        "bars": "4 elastic columns",
+        "springs": "2 springs",
+    }
     assert told.get(name, "") in words
     save_charts([chart], tmp_path)
     assert run_page(result)
@@ -153,14 +202,22 @@ def test_the_sketch_gives_the_dimensions_as_they_were_given() -> None:
 
 
 def test_parameters_of_the_law_have_their_units() -> None:
-    words = dict(setup_rows(run_of("a sphere on a half space")))["Contact law"].replace("\u00a0", " ")
-    assert words.startswith("lankarani-nikravesh: stiffness 5.11545·10⁸ N/m¹·⁵, exponent 1.5, restitution 0.7")
+    words = dict(setup_rows(run_of("a sphere on a half space")))["Contact law"].replace(
+        "\u00a0", " "
+    )
+    assert words.startswith(
+        "lankarani-nikravesh: stiffness 5.11545·10⁸ N/m¹·⁵, exponent 1.5, restitution 0.7"
+    )
     result = run_of("a sphere on a half space")
-    elsewhere = replace(result, case={**result.case, "contact": {"law": "of another package", "restitution": 0.5}})
+    elsewhere = replace(
+        result, case={**result.case, "contact": {"law": "of another package", "restitution": 0.5}}
+    )
     assert dict(setup_rows(elsewhere))["Contact law"] == "of another package"
 
 
-def test_a_very_long_run_is_drawn_whole_with_its_first_contacts_in_full(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_very_long_run_is_drawn_whole_with_its_first_contacts_in_full(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     case = {
         "sphere": {"radius": 0.025, "material": "rock-paper"},
         "plate": {"material": "steel-paper"},
@@ -185,7 +242,9 @@ def test_a_very_long_run_is_drawn_whole_with_its_first_contacts_in_full(monkeypa
 
 def test_charts_over_time_share_their_range() -> None:
     charts = run_charts(run_of("sensors"))
-    over_time = [panel.x.range for chart in charts for panel in chart.panels if panel.x.label == "Time"]
+    over_time = [
+        panel.x.range for chart in charts for panel in chart.panels if panel.x.label == "Time"
+    ]
     assert len(over_time) > 10
     assert len(set(over_time)) == 1
     low, high = over_time[0] or (0.0, 0.0)
@@ -194,7 +253,9 @@ def test_charts_over_time_share_their_range() -> None:
 
 
 def test_points_of_two_kinds_look_different() -> None:
-    (panel,) = next(chart for chart in run_charts(run_of("a dent")) if chart.name == "position").panels
+    (panel,) = next(
+        chart for chart in run_charts(run_of("a dent")) if chart.name == "position"
+    ).panels
     roles = [mark.role for mark in panel.marks if isinstance(mark, Points)]
     assert len(set(roles)) == len(roles) == 2
 
@@ -205,7 +266,9 @@ def test_every_view_shows_its_contact(theory: vi.Response) -> None:
         if chart.name == "force_indentation":
             continue
         assert [view.name for view in chart.views] == [f"Impact {number}" for number in range(1, 6)]
-        for view, touch, duration in zip(chart.views, result.impacts["time_s"], result.impacts["duration_s"], strict=True):
+        for view, touch, duration in zip(
+            chart.views, result.impacts["time_s"], result.impacts["duration_s"], strict=True
+        ):
             assert view.start < touch < touch + duration < view.end
             assert view.origin == touch
 
@@ -221,11 +284,16 @@ def test_lines_hold_the_whole_history(theory: vi.Response) -> None:
     result = vi.result_of(theory)
     charts = {chart.name: chart for chart in run_charts(result)}
     for column in ("position_m", "force_N", "velocity_m_s", "acceleration_m_s2"):
-        (line,) = (mark for mark in charts[column.split("_")[0]].panels[0].marks if isinstance(mark, Line))
+        (line,) = (
+            mark for mark in charts[column.split("_")[0]].panels[0].marks if isinstance(mark, Line)
+        )
         np.testing.assert_array_equal(line.x, result.history["time_s"])
         np.testing.assert_array_equal(line.y, result.history[column])
 
 
 def test_a_chart_is_named_for_a_file(theory: vi.Response) -> None:
-    names = [chart.name for chart in (*run_charts(vi.result_of(theory)), *run_charts(run_of("hostile names")))]
+    names = [
+        chart.name
+        for chart in (*run_charts(vi.result_of(theory)), *run_charts(run_of("hostile names")))
+    ]
     assert all(re.fullmatch(r"[a-z0-9_-]+", name, flags=re.I) for name in names)

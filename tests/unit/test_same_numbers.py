@@ -1,4 +1,6 @@
-"""The comparison of texts with numbers that guards the documented report: it must not let a change pass."""
+"""The comparison of texts with numbers that guards the documented report: it must not let
+a change pass.
+"""
 
 from __future__ import annotations
 

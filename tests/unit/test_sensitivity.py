@@ -28,7 +28,16 @@ CHANGES = np.array([1e-9, 2e-3, 0.1, 10.0])
 
 @pytest.fixture(scope="module")
 def undamped() -> Result:
-    result = result_of(vi.simulate(drop_on(Hertz(stiffness=STIFFNESS), random_modes(3, 10, 150.0, 15e3, 1.2), speed=3.0, impacts=4)))
+    result = result_of(
+        vi.simulate(
+            drop_on(
+                Hertz(stiffness=STIFFNESS),
+                random_modes(3, 10, 150.0, 15e3, 1.2),
+                speed=3.0,
+                impacts=4,
+            )
+        )
+    )
     return replace(result, impacts={**result.impacts, "sensitivity": CHANGES / 1e-9})
 
 
@@ -53,10 +62,14 @@ def test_the_terminal_prints_only_digits_that_are_there(undamped: Result) -> Non
 
 def test_the_page_prints_only_digits_that_are_there(undamped: Result) -> None:
     headers, rows, *_ = impact_table(undamped)
-    force, time = (next(place for place, (name, _) in enumerate(headers) if name == wanted) for wanted in ("Largest force", "First touch"))
+    force, time = (
+        next(place for place, (name, _) in enumerate(headers) if name == wanted)
+        for wanted in ("Largest force", "First touch")
+    )
     assert [row[force] for row in rows][3] == "?"
     assert len(rows[1][force].replace(".", "").lstrip("0")) == 3
-    assert rows[1][time] == f"{1e3 * undamped.impacts['time_s'][1]:.3f}"  # as certain as what the first impact left
+    # as certain as what the first impact left
+    assert rows[1][time] == f"{1e3 * undamped.impacts['time_s'][1]:.3f}"
     assert headers[-1] == ("Sensitivity", "")
 
 
@@ -70,7 +83,9 @@ def test_the_figures_print_only_digits_that_are_there(undamped: Result) -> None:
 
 
 @pytest.mark.parametrize("width", [60, 80, 100, 130, 160])
-def test_a_narrow_terminal_has_fewer_columns_and_whole_numbers(undamped: Result, width: int) -> None:
+def test_a_narrow_terminal_has_fewer_columns_and_whole_numbers(
+    undamped: Result, width: int
+) -> None:
     lines = printed(undamped, width)
     assert all("\u2026" not in word for line in lines for word in line)
     assert [line[0] for line in lines[2:7]] == ["#", "1", "2", "3", "4"]
@@ -88,17 +103,39 @@ def test_a_narrow_terminal_has_fewer_columns_and_whole_numbers(undamped: Result,
         ("rigid", 0.02, "predictable; judge"),
     ],
 )
-def test_only_what_has_no_damping_is_asked_for_it(sphere: str, damping: float | None, asked: str) -> None:
-    plate = {"model": "elastic", "material": "steel", "size": [0.3, 0.2, 0.01], "supports": "clamped", "damping": damping}
-    case = resolved_case(vi.read_case(plain_case(sphere__model=sphere, plate={key: value for key, value in plate.items() if value})))
-    (found,) = (doubt for doubt in doubts(case, DropSummary(changes=np.array([1e-9, 0.5]))) if "sensitive" in doubt)
+def test_only_what_has_no_damping_is_asked_for_it(
+    sphere: str, damping: float | None, asked: str
+) -> None:
+    plate = {
+        "model": "elastic",
+        "material": "steel",
+        "size": [0.3, 0.2, 0.01],
+        "supports": "clamped",
+        "damping": damping,
+    }
+    case = resolved_case(
+        vi.read_case(
+            plain_case(
+                sphere__model=sphere, plate={key: value for key, value in plate.items() if value}
+            )
+        )
+    )
+    (found,) = (
+        doubt
+        for doubt in doubts(case, DropSummary(changes=np.array([1e-9, 0.5])))
+        if "sensitive" in doubt
+    )
     assert asked in found
     assert found.endswith("them by their distribution in a study over drop.height")
 
 
 def test_the_study_is_over_what_the_case_gives() -> None:
     case = resolved_case(vi.read_case(plain_case(drop={"speed": 1.0})))
-    (found,) = (doubt for doubt in doubts(case, DropSummary(changes=np.array([1e-9, 0.5]))) if "sensitive" in doubt)
+    (found,) = (
+        doubt
+        for doubt in doubts(case, DropSummary(changes=np.array([1e-9, 0.5])))
+        if "sensitive" in doubt
+    )
     assert found.endswith("in a study over drop.speed")
 
 
@@ -115,7 +152,10 @@ def test_the_doubt_names_the_impact_and_the_remedy(undamped: Result) -> None:
     assert "to 0.2 % of impact 2 and to 30 % or more of impact 4" in found
     assert "damping" in found
     assert not doubts({}, DropSummary(changes=np.array([1e-9, 5e-4])))
-    assert "grows to 30 % or more of impact 1," in doubts({}, DropSummary(changes=np.array([np.inf])))[0]
+    assert (
+        "grows to 30 % or more of impact 1,"
+        in doubts({}, DropSummary(changes=np.array([np.inf])))[0]
+    )
 
 
 def test_a_loose_tolerance_counts(undamped: Result) -> None:
@@ -127,5 +167,7 @@ def test_the_summary_has_it(undamped: Result) -> None:
     summary = summary_of(undamped)
     assert summary["change_by_impact"] == pytest.approx(CHANGES)
     assert [row["sensitivity"] for row in summary["impacts"]] == pytest.approx(CHANGES / 1e-9)
-    endless = replace(undamped, impacts={**undamped.impacts, "sensitivity": np.array([1.0, np.inf, np.nan, 1.0])})
+    endless = replace(
+        undamped, impacts={**undamped.impacts, "sensitivity": np.array([1.0, np.inf, np.nan, 1.0])}
+    )
     assert summary_of(endless)["change_by_impact"][1:3] == [None, None]

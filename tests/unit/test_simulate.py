@@ -23,16 +23,23 @@ LAW = LankaraniNikravesh(stiffness=5e8, restitution=0.6)
 
 
 def problem(**changes: object) -> vi.Problem:
-    return vi.Problem(**{"sphere": BALL, "plate": vi.rigid_plate(), "laws": (LAW,), "height": 1.0, **changes})
+    return vi.Problem(
+        **{"sphere": BALL, "plate": vi.rigid_plate(), "laws": (LAW,), "height": 1.0, **changes}
+    )
 
 
-# batches -------------------------------------------------------------------------------------------
+# batches
+# -------------------------------------------------------------------------------------------
 
 
 def batch(size: int) -> vi.Problem:
     random = np.random.default_rng(1)
     radius = random.uniform(0.005, 0.05, size)
-    law = AdamsImpact(stiffness=random.uniform(1e8, 1e9, size), damping_max=random.uniform(0.0, 3e4, size), full_damping_penetration=1e-4)
+    law = AdamsImpact(
+        stiffness=random.uniform(1e8, 1e9, size),
+        damping_max=random.uniform(0.0, 3e4, size),
+        full_damping_penetration=1e-4,
+    )
     sphere = vi.Body(mass=1e4 * radius**3, contact_offset=radius)
     return problem(sphere=sphere, laws=(law,), height=radius + random.uniform(1e-5, 4.0, size))
 
@@ -48,8 +55,20 @@ def test_drops_do_not_depend_on_their_batch(every: int) -> None:
         rows = slice(None, -1 if alone.outcomes == (vi.Outcome.CAPTURED,) else None)
         for name in IMPACT_COLUMNS:
             # a law with kinks may be cut into other stretches; the force peaks between their nodes
-            tolerance = 1e-7 if name in ("max_force_N", "max_acceleration_m_s2") else 1e-5 if name == "time_of_max_force_s" else 2e-10
-            np.testing.assert_allclose(among.impacts[name][rows], alone.impacts[name][rows], rtol=tolerance, atol=1e-13, err_msg=name)
+            tolerance = (
+                1e-7
+                if name in ("max_force_N", "max_acceleration_m_s2")
+                else 1e-5
+                if name == "time_of_max_force_s"
+                else 2e-10
+            )
+            np.testing.assert_allclose(
+                among.impacts[name][rows],
+                alone.impacts[name][rows],
+                rtol=tolerance,
+                atol=1e-13,
+                err_msg=name,
+            )
 
 
 def test_smooth_drops_agree_far_below_the_tolerance_whatever_the_batch() -> None:
@@ -57,9 +76,15 @@ def test_smooth_drops_agree_far_below_the_tolerance_whatever_the_batch() -> None
     restitution = np.linspace(0.2, 1.0, 33)
     many = vi.simulate(problem(laws=(LankaraniNikravesh(stiffness=5e8, restitution=restitution),)))
     for index in (0, 7, 16, 32):
-        one = vi.simulate(problem(laws=(LankaraniNikravesh(stiffness=5e8, restitution=float(restitution[index])),)))
+        one = vi.simulate(
+            problem(
+                laws=(LankaraniNikravesh(stiffness=5e8, restitution=float(restitution[index])),)
+            )
+        )
         for name in ("separation_speed_m_s", "duration_s", "max_indentation_m"):
-            np.testing.assert_allclose(many.impacts[name][index], one.impacts[name], rtol=1e-11, err_msg=name)
+            np.testing.assert_allclose(
+                many.impacts[name][index], one.impacts[name], rtol=1e-11, err_msg=name
+            )
 
 
 def test_histories_of_a_batch_are_those_of_its_drops() -> None:
@@ -76,11 +101,15 @@ def test_histories_of_a_batch_are_those_of_its_drops() -> None:
 
 def test_batch_status_counts_its_drops() -> None:
     response = vi.simulate(problem(height=[0.5, 1.0, 0.0200001]))
-    assert response.status == "2 of 3 drops: number of impacts; 1 of 3 drops: at rest: contact without release"
+    assert (
+        response.status
+        == "2 of 3 drops: number of impacts; 1 of 3 drops: at rest: contact without release"
+    )
     assert np.isnan(response.impacts["time_s"][2, 1])
 
 
-# stop rules ----------------------------------------------------------------------------------------
+# stop rules
+# ----------------------------------------------------------------------------------------
 
 
 def test_stops_after_impacts_at_the_top_of_the_rebound() -> None:
@@ -109,15 +138,23 @@ def test_a_contact_under_way_at_the_end_is_finished() -> None:
 
 
 @pytest.mark.parametrize("rest_speed", [0.0, None])
-def test_a_sphere_that_does_not_leave_is_not_said_to_be_slower_than_a_rest_speed(rest_speed: float | None) -> None:
-    status = vi.simulate(problem(laws=(Newton(restitution=0.0),), impacts=None, rest_speed=rest_speed)).status
+def test_a_sphere_that_does_not_leave_is_not_said_to_be_slower_than_a_rest_speed(
+    rest_speed: float | None,
+) -> None:
+    status = vi.simulate(
+        problem(laws=(Newton(restitution=0.0),), impacts=None, rest_speed=rest_speed)
+    ).status
     assert status == "At rest after 1 impact: it did not leave again (rest-speed rule)."
 
 
 def test_rest_by_speed_is_reported_with_its_threshold() -> None:
     response = vi.simulate(problem(impacts=None, rest_speed=0.5))
     assert response.outcomes == (vi.Outcome.REST_SPEED,)
-    assert response.impacts["separation_speed_m_s"][-1] < 0.5 <= response.impacts["separation_speed_m_s"][-2]
+    assert (
+        response.impacts["separation_speed_m_s"][-1]
+        < 0.5
+        <= response.impacts["separation_speed_m_s"][-2]
+    )
     assert "below the rest speed of 0.5 m/s (rest-speed rule)" in response.status
     at_rest = response.at(response.end_time[0])
     assert at_rest["velocity_m_s"] == 0.0
@@ -128,12 +165,21 @@ def test_rest_goes_on_to_the_duration_asked_for() -> None:
     response = vi.simulate(problem(impacts=None, duration=30.0))
     assert response.outcomes[0].at_rest
     assert response.end_time[0] == 30.0
-    assert response.at(29.0)["position_m"] == pytest.approx(0.02 - (0.1 * 9.80665 / 5e8) ** (2 / 3), rel=1e-12)
+    assert response.at(29.0)["position_m"] == pytest.approx(
+        0.02 - (0.1 * 9.80665 / 5e8) ** (2 / 3), rel=1e-12
+    )
 
 
 @pytest.mark.parametrize("damping", [3.5, 60.0, 1e4])
 def test_a_sphere_that_never_gets_out_is_captured(damping: float) -> None:
-    response = vi.simulate(problem(laws=(LinearSpringDashpot(stiffness=50.0, damping=damping),), height=0.2, impacts=None, duration=2.0))
+    response = vi.simulate(
+        problem(
+            laws=(LinearSpringDashpot(stiffness=50.0, damping=damping),),
+            height=0.2,
+            impacts=None,
+            duration=2.0,
+        )
+    )
     assert response.outcomes == (vi.Outcome.CAPTURED,)
     assert response.impacts["restitution_achieved"][-1] == 0.0
     assert "and stays in it" in response.status
@@ -168,15 +214,20 @@ def test_progress_is_told() -> None:
     assert len(told) >= 4
 
 
-# histories and ledger ------------------------------------------------------------------------------
+# histories and ledger
+# ------------------------------------------------------------------------------
 
 
 def test_peaks_are_located_not_sampled(theory: vi.Response) -> None:
     for index in range(5):
         start, duration = theory.impacts["time_s"][index], theory.impacts["duration_s"][index]
         dense = theory.at(start + np.linspace(0.0, 1.0, 20001) * duration)
-        assert theory.impacts["max_force_N"][index] == pytest.approx(dense["force_N"].max(), rel=1e-7)
-        assert theory.impacts["max_indentation_m"][index] == pytest.approx(dense["indentation_m"].max(), rel=1e-8)
+        assert theory.impacts["max_force_N"][index] == pytest.approx(
+            dense["force_N"].max(), rel=1e-7
+        )
+        assert theory.impacts["max_indentation_m"][index] == pytest.approx(
+            dense["indentation_m"].max(), rel=1e-8
+        )
         at_peak = theory.at(theory.impacts["time_of_max_force_s"][index])["force_N"]
         assert at_peak == pytest.approx(theory.impacts["max_force_N"][index], rel=1e-7)
     coarse = theory.sample(10.0)["force_N"]
@@ -196,7 +247,9 @@ def test_history_joins_up(variable: vi.Response) -> None:
 
 def test_force_belongs_to_the_motion(variable: vi.Response) -> None:
     history = variable.sample(1e5)
-    np.testing.assert_allclose(history["acceleration_m_s2"], history["force_N"] / 0.09032078879 - 9.8, rtol=1e-9, atol=1e-9)
+    np.testing.assert_allclose(
+        history["acceleration_m_s2"], history["force_N"] / 0.09032078879 - 9.8, rtol=1e-9, atol=1e-9
+    )
 
 
 def test_energy_is_constant_at_any_time(variable: vi.Response) -> None:
@@ -247,10 +300,13 @@ def test_times_outside_the_run_are_refused(theory: vi.Response) -> None:
 def test_tolerance_is_kept(tolerance: float) -> None:
     row = vi.simulate(vi.read_case(plain_case(run={"impacts": 3, "tolerance": tolerance}))).impacts
     exact = vi.simulate(vi.read_case(plain_case(run={"impacts": 3, "tolerance": 1e-13}))).impacts
-    np.testing.assert_allclose(row["separation_speed_m_s"], exact["separation_speed_m_s"], rtol=tolerance)
+    np.testing.assert_allclose(
+        row["separation_speed_m_s"], exact["separation_speed_m_s"], rtol=tolerance
+    )
 
 
-# problems ------------------------------------------------------------------------------------------
+# problems
+# ------------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(
@@ -303,7 +359,8 @@ def test_a_law_that_gives_energy_fails_by_its_ledger() -> None:
         vi.simulate(problem(laws=(GivesEnergy(stiffness=5e8),)))
 
 
-# what once went wrong ------------------------------------------------------------------------------
+# what once went wrong
+# ------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("ratio", [1e-3, 3e-3, 0.01, 0.012, 0.02, 0.3])
@@ -313,11 +370,21 @@ def test_a_peak_just_before_the_deepest_point_is_found(ratio: float) -> None:
     natural = np.sqrt(stiffness / mass)
     damped = natural * np.sqrt(1 - ratio**2)
     law = LinearSpringDashpot(stiffness=stiffness, damping=2 * ratio * np.sqrt(stiffness * mass))
-    row = vi.simulate(problem(laws=(law,), height=None, speed=speed, gravity=0.0, impacts=1)).impacts
-    # F = m v w exp(-z w t) sin(w_d t + phase) / sqrt(1 - z^2), with tan(phase) = 2 z sqrt(1 - z^2) / (1 - 2 z^2)
+    row = vi.simulate(
+        problem(laws=(law,), height=None, speed=speed, gravity=0.0, impacts=1)
+    ).impacts
+    # F = m v w exp(-z w t) sin(w_d t + phase) / sqrt(1 - z^2), with tan(phase) = 2 z sqrt(1 - z^2)
+    # / (1 - 2 z^2)
     phase = np.arctan2(2 * ratio * np.sqrt(1 - ratio**2), 1 - 2 * ratio**2)
     time = (np.arctan2(np.sqrt(1 - ratio**2), ratio) - phase) / damped
-    force = mass * speed * natural / np.sqrt(1 - ratio**2) * np.exp(-ratio * natural * time) * np.sin(damped * time + phase)
+    force = (
+        mass
+        * speed
+        * natural
+        / np.sqrt(1 - ratio**2)
+        * np.exp(-ratio * natural * time)
+        * np.sin(damped * time + phase)
+    )
     assert row["max_force_N"][0] == pytest.approx(force, rel=1e-9)
     assert row["time_of_max_force_s"][0] == pytest.approx(time, rel=1e-5)
 
@@ -328,15 +395,23 @@ def test_each_drop_of_a_batch_rests_under_its_own_last_law() -> None:
     assert together.outcomes == (vi.Outcome.CAPTURED, vi.Outcome.IMPACTS)
     alone = vi.simulate(problem(laws=laws, height=0.05, impacts=3).take(0))
     assert together.rest.sag[0] == pytest.approx(0.1 * 9.80665 / 1e3, rel=1e-12)
-    assert together.energy["written_off_at_rest_J"][0] == pytest.approx(alone.energy["written_off_at_rest_J"], rel=1e-9)
+    assert together.energy["written_off_at_rest_J"][0] == pytest.approx(
+        alone.energy["written_off_at_rest_J"], rel=1e-9
+    )
     assert together.energy["closure_relative"].max() < 1e-9
 
 
-@pytest.mark.parametrize(("damping", "speed"), [(1e4, 1e-3), (1e3, 1.0), (30.0, 1e-3), (30.0, 1e-2)])
-def test_a_slow_touch_sinks_at_least_to_its_static_indentation(damping: float, speed: float) -> None:
+@pytest.mark.parametrize(
+    ("damping", "speed"), [(1e4, 1e-3), (1e3, 1.0), (30.0, 1e-3), (30.0, 1e-2)]
+)
+def test_a_slow_touch_sinks_at_least_to_its_static_indentation(
+    damping: float, speed: float
+) -> None:
     ball = vi.Body(mass=1.0, contact_offset=0.02)
     law = LinearSpringDashpot(stiffness=1e4, damping=damping)
-    response = vi.simulate(problem(sphere=ball, laws=(law,), height=None, speed=speed, gravity=9.80665, impacts=3))
+    response = vi.simulate(
+        problem(sphere=ball, laws=(law,), height=None, speed=speed, gravity=9.80665, impacts=3)
+    )
     assert response.outcomes[0].at_rest
     assert response.impacts["max_indentation_m"].max() >= 9.80665e-4 * (1 - 1e-5)
     assert response.energy["closure_relative"] < 1e-9
@@ -344,22 +419,45 @@ def test_a_slow_touch_sinks_at_least_to_its_static_indentation(damping: float, s
 
 @pytest.mark.parametrize("slowness", [1.0, 1e-2, 1e-4])
 def test_a_sphere_put_down_softly(slowness: float) -> None:
-    """Elastic: the deepest point from v^2/2 + g d = K d^2.5 / 2.5 m, where gravity outweighs the approach speed."""
+    """Elastic: the deepest point from v^2/2 + g d = K d^2.5 / 2.5 m, where gravity
+    outweighs the approach speed.
+    """
     from scipy.optimize import brentq
 
     stiffness, mass, gravity = 1.3e8, 0.01, 9.80665
     sag = (mass * gravity / stiffness) ** (2 / 3)
     speed = slowness * np.sqrt(2 * gravity * sag)
     ball = vi.Body(mass=mass, contact_offset=0.01)
-    response = vi.simulate(problem(sphere=ball, laws=(Hertz(stiffness=stiffness),), height=None, speed=speed, impacts=1, rest_speed=0.0))
-    exact = brentq(lambda d: 0.5 * mass * speed**2 + mass * gravity * d - stiffness * d**2.5 / 2.5, sag, 10 * sag, xtol=1e-18, rtol=1e-14)
+    response = vi.simulate(
+        problem(
+            sphere=ball,
+            laws=(Hertz(stiffness=stiffness),),
+            height=None,
+            speed=speed,
+            impacts=1,
+            rest_speed=0.0,
+        )
+    )
+    exact = brentq(
+        lambda d: 0.5 * mass * speed**2 + mass * gravity * d - stiffness * d**2.5 / 2.5,
+        sag,
+        10 * sag,
+        xtol=1e-18,
+        rtol=1e-14,
+    )
     assert response.impacts["max_indentation_m"][0] == pytest.approx(exact, rel=1e-9)
-    assert response.impacts["restitution_achieved"][0] == pytest.approx(1.0, abs=1e-9 + 1e-12 / slowness**2)
+    assert response.impacts["restitution_achieved"][0] == pytest.approx(
+        1.0, abs=1e-9 + 1e-12 / slowness**2
+    )
 
 
 def test_a_marching_drop_gets_past_a_breakpoint() -> None:
-    """A crossing that a stretch of given duration ran over once was never taken, and the drop marched on the spot."""
-    law = AdamsImpact(stiffness=74887983.16821066, damping_max=6702.194915809717, full_damping_penetration=1e-4)
+    """A crossing that a stretch of given duration ran over once was never taken, and the
+    drop marched on the spot.
+    """
+    law = AdamsImpact(
+        stiffness=74887983.16821066, damping_max=6702.194915809717, full_damping_penetration=1e-4
+    )
     ball = vi.Body(mass=3.251292714937344, contact_offset=0.07294224995800092)
     response = vi.simulate(problem(sphere=ball, laws=(law,), height=0.5016709192170816, impacts=5))
     assert response.outcomes == (vi.Outcome.CAPTURED,)

@@ -1,4 +1,6 @@
-"""Slips of units: a number in a wrong or forgotten unit is doubted where a case is checked, with the unit that was likely meant."""
+"""Slips of units: a number in a wrong or forgotten unit is doubted where a case is
+checked, with the unit that was likely meant.
+"""
 
 from __future__ import annotations
 
@@ -30,7 +32,13 @@ ACRYLIC = {"density": 1190, "youngs_modulus": "3.3 GPa", "poissons_ratio": 0.37}
 ADAMS = {"law": "adams-impact", "damping_max": 179.75, "full_damping_penetration": "0.1 mm"}
 SPRING = {"law": "linear-spring-dashpot", "stiffness": 1.4e7, "restitution": 0.6}
 SIZE = ["520 mm", "420 mm", "8 mm"]
-ELASTIC = {"size": SIZE, "material": "steel", "model": "elastic", "supports": "clamped", "modes": 10}
+ELASTIC = {
+    "size": SIZE,
+    "material": "steel",
+    "model": "elastic",
+    "supports": "clamped",
+    "modes": 10,
+}
 
 
 def told(**changes: Any) -> list[str]:
@@ -49,7 +57,9 @@ def elastic(**more: Any) -> dict[str, Any]:
 
 
 def sensor(**more: Any) -> dict[str, Any]:
-    return elastic(sensors=[{"name": "far", "position": [0, 0]}, {"name": "a1", "position": [0, 0], **more}])
+    return elastic(
+        sensors=[{"name": "far", "position": [0, 0]}, {"name": "a1", "position": [0, 0], **more}]
+    )
 
 
 # what is typed, the key that is doubted, and what is proposed instead
@@ -58,7 +68,11 @@ SLIPS: list[tuple[dict[str, Any], str, str]] = [
     (steel(youngs_modulus="210 MPa"), "plate.material.youngs_modulus", "210 GPa"),
     (steel(youngs_modulus=210000), "plate.material.youngs_modulus", "210000 MPa"),
     (steel(youngs_modulus="210e9 GPa"), "plate.material.youngs_modulus", "210 GPa"),
-    ({"sphere__material": {**ACRYLIC, "youngs_modulus": 3300}}, "sphere.material.youngs_modulus", "3300 MPa"),
+    (
+        {"sphere__material": {**ACRYLIC, "youngs_modulus": 3300}},
+        "sphere.material.youngs_modulus",
+        "3300 MPa",
+    ),
     (steel(density=7.85), "plate.material.density", "7.85 g/cm^3"),
     (steel(density="7850 g/cm^3"), "plate.material.density", "7850 kg/m^3"),
     (steel(density=7.85e-9), "plate.material.density", "7.85e-9 t/mm^3"),
@@ -77,37 +91,76 @@ SLIPS: list[tuple[dict[str, Any], str, str]] = [
     ({"contact__stiffness": 16176}, "contact.stiffness", "16176 N/mm^1.5"),
     ({"contact__stiffness": "5.115e8 N/mm^1.5"}, "contact.stiffness", "5.115e8 N/m^1.5"),
     ({"contact__stiffness": 1e5, "contact__exponent": 2.2}, "contact.stiffness", "100000 N/mm^2.2"),
-    ({"contact": {**SPRING, "stiffness": 1e4}, "drop": {"speed": 8.8}}, "contact.stiffness", "10000 N/mm"),
+    (
+        {"contact": {**SPRING, "stiffness": 1e4}, "drop": {"speed": 8.8}},
+        "contact.stiffness",
+        "10000 N/mm",
+    ),
     ({"contact": {**SPRING, "stiffness": "1.4e7 kN/m"}}, "contact.stiffness", "1.4e7 N/m"),
     ({"contact": {**ADAMS, "damping_max": "180 N s/mm"}}, "contact.damping_max", "180 N s/m"),
     ({"contact": {**ADAMS, "damping_max": 0.18}}, "contact.damping_max", "0.18 N s/mm"),
-    ({"contact": {**ADAMS, "full_damping_penetration": 0.1}}, "contact.full_damping_penetration", "0.1 mm"),
-    ({"contact": {"law": "anagnostopoulos", "stiffness": 1e7, "restitution": 0.7, "effective_mass": 90}}, "contact.effective_mass", "90 g"),
+    (
+        {"contact": {**ADAMS, "full_damping_penetration": 0.1}},
+        "contact.full_damping_penetration",
+        "0.1 mm",
+    ),
+    (
+        {
+            "contact": {
+                "law": "anagnostopoulos",
+                "stiffness": 1e7,
+                "restitution": 0.7,
+                "effective_mass": 90,
+            }
+        },
+        "contact.effective_mass",
+        "90 g",
+    ),
     ({"contact": {"law": "jkr", "work_of_adhesion": 50}}, "contact.work_of_adhesion", "50 mJ/m^2"),
-    ({"contact": {"law": "kuwabara-kono", "dissipation_time": 10}}, "contact.dissipation_time", "10 us"),
+    (
+        {"contact": {"law": "kuwabara-kono", "dissipation_time": 10}},
+        "contact.dissipation_time",
+        "10 us",
+    ),
     ({"run": {"duration": "1 ms"}}, "run.duration", "1 s"),
     ({"run": {"duration": 5000}}, "run.duration", "5000 ms"),
     ({"run__rest_speed": 10}, "run.rest_speed", "10 mm/s"),
-    (elastic(supports={"type": "spring", "position": [0, 0], "stiffness": 50}), "plate.supports.stiffness", "50 N/mm"),
+    (
+        elastic(supports={"type": "spring", "position": [0, 0], "stiffness": 50}),
+        "plate.supports.stiffness",
+        "50 N/mm",
+    ),
     (elastic(mesh={"element_size": 20}), "plate.mesh.element_size", "20 mm"),
     (elastic(modes=None, max_frequency=60), "plate.max_frequency", "60 kHz"),
     (sensor(rate=50), 'sensors."a1".rate', "50 kHz"),
     (sensor(filter="butterworth", corner=20), 'sensors."a1".corner', "20 kHz"),
     (sensor(accelerometer={"resonance": 30}), 'sensors."a1".accelerometer.resonance', "30 kHz"),
     ({"calibrate": {"target": {"max_force": 3.6}}}, "calibrate.target.max_force", "3.6 kN"),
-    ({"calibrate": {"target": {"rebound_heights": [2411, 1010]}}}, "calibrate.target.rebound_heights", "2411 mm"),
+    (
+        {"calibrate": {"target": {"rebound_heights": [2411, 1010]}}},
+        "calibrate.target.rebound_heights",
+        "2411 mm",
+    ),
 ]
 
 
-@pytest.mark.parametrize(("changes", "key", "meant"), SLIPS, ids=[f"{key}-{meant}" for _, key, meant in SLIPS])
-def test_a_slip_is_told_once_with_the_unit_that_was_meant(changes: dict[str, Any], key: str, meant: str) -> None:
+@pytest.mark.parametrize(
+    ("changes", "key", "meant"), SLIPS, ids=[f"{key}-{meant}" for _, key, meant in SLIPS]
+)
+def test_a_slip_is_told_once_with_the_unit_that_was_meant(
+    changes: dict[str, Any], key: str, meant: str
+) -> None:
     (said,) = told(**changes)  # nothing else is held to what is wrong
     assert said.startswith(f"{key}: ")
     assert said.endswith(f'; was {meant} meant? Write "{meant}"')
 
 
-@pytest.mark.parametrize(("changes", "key", "meant"), SLIPS, ids=[f"{key}-{meant}" for _, key, meant in SLIPS])
-def test_what_is_proposed_can_be_written_and_is_not_doubted(changes: dict[str, Any], key: str, meant: str) -> None:
+@pytest.mark.parametrize(
+    ("changes", "key", "meant"), SLIPS, ids=[f"{key}-{meant}" for _, key, meant in SLIPS]
+)
+def test_what_is_proposed_can_be_written_and_is_not_doubted(
+    changes: dict[str, Any], key: str, meant: str
+) -> None:
     table = plain_case(**changes)
     inside: Any = table
     *way, last = [part for part in re.split(r'\.?"a1"\.|\.', key) if part]
@@ -120,7 +173,8 @@ def test_what_is_proposed_can_be_written_and_is_not_doubted(changes: dict[str, A
 
 def test_a_stiffness_is_held_to_that_of_hertz() -> None:
     (said,) = told(contact__stiffness=16176)
-    assert "16176 N/m^1.5 is 31,624 times less than Hertz's 5.115e8 N/m^1.5" in said  # 4/3 E* sqrt(R) of the paper's pair
+    # 4/3 E* sqrt(R) of the paper's pair
+    assert "16176 N/m^1.5 is 31,624 times less than Hertz's 5.115e8 N/m^1.5" in said
 
 
 def test_far_too_stiff_without_a_unit_that_explains_it() -> None:
@@ -129,15 +183,29 @@ def test_far_too_stiff_without_a_unit_that_explains_it() -> None:
 
 
 def test_a_run_that_is_over_too_soon_is_told_when_it_should_end() -> None:
-    """A sphere of 25 mm that falls from 0.5 m, centre above surface, touches after sqrt(2 0.475 / 9.80665) s = 0.31125 s."""
-    assert "is over before the sphere touches the plate, at 0.3112 s; give 0.32 s or more" in told(run={"duration": 0.311})[0]
+    """A sphere of 25 mm that falls from 0.5 m, centre above surface, touches after sqrt(2
+    0.475 / 9.80665) s = 0.31125 s.
+    """
+    assert (
+        "is over before the sphere touches the plate, at 0.3112 s; give 0.32 s or more"
+        in told(run={"duration": 0.311})[0]
+    )
     (said,) = told(run={"duration": 0.3113})
-    assert "is over before the first contact is, which by Hertz's theory ends at about 0.311" in said
+    assert (
+        "is over before the first contact is, which by Hertz's theory ends at about 0.311" in said
+    )
     assert told(run={"duration": 0.3125}) == []
     assert "give 0.00034 s or more" in told(drop={"speed": 3.0}, run={"duration": 2e-4})[0]
-    assert "touches the plate, at 0.4402 s" in told(plate__inclination="60 deg", run={"duration": 0.4})[0]  # half of gravity
+    # half of gravity
+    assert (
+        "touches the plate, at 0.4402 s"
+        in told(plate__inclination="60 deg", run={"duration": 0.4})[0]
+    )
     wet = {"contact": {"law": "tsuji", "restitution": 0.7, "liquid": True}}
-    assert "touches the plate, after 0.3112 s; give 0.32 s or more, as the fluid slows the fall" in told(run={"duration": 0.311}, **wet)[0]
+    assert (
+        "touches the plate, after 0.3112 s; give 0.32 s or more, as the fluid slows the fall"
+        in told(run={"duration": 0.311}, **wet)[0]
+    )
     shaken = {"amplitude": "1 mm", "frequency": "20 Hz"}
     assert told(plate__motion=shaken, run={"duration": 0.3}) == []
 
@@ -155,13 +223,26 @@ def test_several_sides_are_each_said() -> None:
 
 @pytest.mark.parametrize("key", ["drop.height", "contact.damping_max", "sphere.material.density"])
 def test_nothing_is_said_of_zero(key: str) -> None:
-    assert swept_slips(resolved_case(vi.read_case(plain_case(contact=ADAMS))), {key: np.array([0.0])}) == []
+    assert (
+        swept_slips(resolved_case(vi.read_case(plain_case(contact=ADAMS))), {key: np.array([0.0])})
+        == []
+    )
 
 
 def numbers_in(table: Any) -> list[tuple[Any, Any]]:
     """Every number of a case: the table or list that it stands in, and its name there."""
-    items = list(table.items()) if isinstance(table, dict) else list(enumerate(table)) if isinstance(table, list) else []
-    here = [(table, name) for name, value in items if isinstance(value, float) and name != "poissons_ratio"]
+    items = (
+        list(table.items())
+        if isinstance(table, dict)
+        else list(enumerate(table))
+        if isinstance(table, list)
+        else []
+    )
+    here = [
+        (table, name)
+        for name, value in items
+        if isinstance(value, float) and name != "poissons_ratio"
+    ]
     return here + [one for _, value in items for one in numbers_in(value)]
 
 
@@ -171,11 +252,32 @@ def test_any_number_can_be_looked_at(value: float) -> None:
     meter = {"resonance": 3e4, "range": 5000.0, "noise": 1.0, "resolution": 0.1}
     spring = {"type": "spring", "position": [0.1, 0.1], "stiffness": 1e6, "radius": 0.01}
     table = plain_case(
-        plate={**ELASTIC, "size": [0.5, 0.4, 0.008], "supports": spring, "mesh": {"element_size": 0.05}},
+        plate={
+            **ELASTIC,
+            "size": [0.5, 0.4, 0.008],
+            "supports": spring,
+            "mesh": {"element_size": 0.05},
+        },
         contact={**ADAMS, "damping_max": [180.0, 170.0], "full_damping_penetration": 1e-4},
-        sensors=[{"name": "a1", "position": [0.0, 0.0], "rate": 5e4, "filter": "butterworth", "corner": 1e4, "accelerometer": meter}],
+        sensors=[
+            {
+                "name": "a1",
+                "position": [0.0, 0.0],
+                "rate": 5e4,
+                "filter": "butterworth",
+                "corner": 1e4,
+                "accelerometer": meter,
+            }
+        ],
         run={"duration": 1.0, "rest_speed": 1e-3},
-        calibrate={"target": {"max_force": 100.0, "duration": 1e-3, "max_indentation": 1e-4, "rebound_height": 0.3}},
+        calibrate={
+            "target": {
+                "max_force": 100.0,
+                "duration": 1e-3,
+                "max_indentation": 1e-4,
+                "rebound_height": 0.3,
+            }
+        },
     )
     case = resolved_case(vi.read_case(table))
     places = numbers_in(case)
@@ -191,10 +293,17 @@ def test_any_number_can_be_looked_at(value: float) -> None:
 
 
 def test_swept_values_are_said_once_with_how_many(tmp_path: Path) -> None:
-    table = study_table({"over": {"sphere.radius": [0.005, 10.0, 25.0]}}, drop={"speed": 3.0}, contact__stiffness=16176)
+    table = study_table(
+        {"over": {"sphere.radius": [0.005, 10.0, 25.0]}},
+        drop={"speed": 3.0},
+        contact__stiffness=16176,
+    )
     study = read_sweep(table)
     (said,) = axis_slips(study)
-    assert said == 'sphere.radius: 2 of 3 values, such as 10 m, which is very large for a sphere; was 10 mm meant? Write "10 mm"'
+    assert (
+        said == "sphere.radius: 2 of 3 values, such as 10 m, which is very large for a sphere; was "
+        '10 mm meant? Write "10 mm"'
+    )
     found = doubt_sentences(read_study(compute_study(study, tmp_path / "out")))
     assert [one.partition(":")[0] for one in found[:2]] == ["contact.stiffness", "sphere.radius"]
 
@@ -202,20 +311,30 @@ def test_swept_values_are_said_once_with_how_many(tmp_path: Path) -> None:
 def test_a_slip_at_the_first_point_is_not_said_twice(tmp_path: Path) -> None:
     file = tmp_path / "study.toml"
     file.write_text(
-        '[sphere]\nradius = 1\nmaterial = "granite"\n[plate]\nmaterial = "steel"\n[drop]\nspeed = 1\n[contact]\nlaw = "hertz"\n'
+        '[sphere]\nradius = 1\nmaterial = "granite"\n[plate]\nmaterial = '
+        '"steel"\n[drop]\nspeed = 1\n[contact]\nlaw = "hertz"\n'
         '[sweep.over]\n"sphere.radius" = [25, 0.05]\n'
     )
     printed = CliRunner().invoke(app, ["check", str(file)]).output
     assert printed.count("was 25 mm meant?") == 1
-    swept = CliRunner().invoke(app, ["sweep", str(file), "-o", str(tmp_path / "out"), "--processes", "1"])
+    swept = CliRunner().invoke(
+        app, ["sweep", str(file), "-o", str(tmp_path / "out"), "--processes", "1"]
+    )
     assert swept.stderr.count("was 25 mm meant?") == 1  # before all is computed
     assert swept.stdout.count("was 25 mm meant?") == 1  # and with what came of it
 
 
 def test_results_and_calibrations_tell_it_too() -> None:
     slip = "contact.stiffness: 16176 N/m^1.5 is"
-    assert result_of(vi.simulate(vi.read_case(plain_case(contact__stiffness=16176)))).doubts[0].startswith(slip)
-    table = plain_case(contact={"law": "hunt-crossley", "restitution": 0.7, "stiffness": 16176}, calibrate={"target": {"restitution": 0.7}})
+    assert (
+        result_of(vi.simulate(vi.read_case(plain_case(contact__stiffness=16176))))
+        .doubts[0]
+        .startswith(slip)
+    )
+    table = plain_case(
+        contact={"law": "hunt-crossley", "restitution": 0.7, "stiffness": 16176},
+        calibrate={"target": {"restitution": 0.7}},
+    )
     assert calibrate_case(read_calibration(table)).doubts[0].startswith(slip)
 
 
@@ -228,7 +347,9 @@ def test_results_and_calibrations_tell_it_too() -> None:
         ({"height": 0.525, "velocity": [1.0, 0.0, 3.0]}, np.sqrt(19.0), 0.3 + np.sqrt(0.19)),
     ],
 )
-def test_every_way_to_state_a_fall_has_an_estimate(drop: dict[str, Any], speed: float, touch: float) -> None:
+def test_every_way_to_state_a_fall_has_an_estimate(
+    drop: dict[str, Any], speed: float, touch: float
+) -> None:
     case = plain_case()
     case["drop"] = {**drop, "gravity": 10.0}
     case["sphere"]["radius"] = 0.025
@@ -240,22 +361,31 @@ def test_every_way_to_state_a_fall_has_an_estimate(drop: dict[str, Any], speed: 
 
 
 def test_a_value_for_each_impact() -> None:
-    """As of a calibration: such a list is compared with what follows from the bodies, impact by impact."""
+    """As of a calibration: such a list is compared with what follows from the bodies,
+    impact by impact.
+    """
     steel = {
         "sphere": {"radius": 0.02, "material": "steel"},
         "plate": {"material": "steel"},
         "drop": {"height": 0.05},
         "run": {"impacts": 2},
     }
-    for contact in ({"law": "thornton", "yield_pressure": [4e8, 5e8]}, {"law": "hertz", "stiffness": [2e10, 1.9e10]}):
+    for contact in (
+        {"law": "thornton", "yield_pressure": [4e8, 5e8]},
+        {"law": "hertz", "stiffness": [2e10, 1.9e10]},
+    ):
         result = result_of(vi.simulate(vi.read_case({**steel, "contact": contact})))
         assert not any("was " in doubt for doubt in result.doubts)
     twice = [HertzEstimate(result.case).stiffness] * 2
-    derived = HertzEstimate({**result.case, "contact": {"law": "hertz", "stiffness": twice}}).derived_parameters
+    derived = HertzEstimate(
+        {**result.case, "contact": {"law": "hertz", "stiffness": twice}}
+    ).derived_parameters
     assert derived == {"stiffness"}
 
 
-@pytest.mark.parametrize("size", [[0.1, 0.1, 0.045], [0.05, 0.2, 0.1], [2.0, 1.0, 0.001], [0.01, 0.01, 0.009]])
+@pytest.mark.parametrize(
+    "size", [[0.1, 0.1, 0.045], [0.05, 0.2, 0.1], [2.0, 1.0, 0.001], [0.01, 0.01, 0.009]]
+)
 @pytest.mark.parametrize("element", ["plate", "solid"])
 def test_what_is_chosen_by_default_is_never_doubted(size: list[float], element: str) -> None:
     mesh = {"element": element} if element == "solid" else {}

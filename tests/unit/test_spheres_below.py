@@ -19,7 +19,9 @@ STEEL, GLASS = "steel-paper", "glass-chung-ooi"
 
 
 def case_of(plate: dict[str, Any], **sections: dict[str, Any]) -> Any:
-    """A ball of 10 mm that comes at 2 m/s without gravity on another, of glass unless said otherwise."""
+    """A ball of 10 mm that comes at 2 m/s without gravity on another, of glass unless
+    said otherwise.
+    """
     table: dict[str, Any] = {
         "sphere": {"radius": 0.01, "material": STEEL},
         "plate": {"material": GLASS, **plate},
@@ -27,7 +29,9 @@ def case_of(plate: dict[str, Any], **sections: dict[str, Any]) -> Any:
         "contact": {"law": "hunt-crossley", "restitution": 0.8},
         "run": {"impacts": 1, "tolerance": 1e-12},
     }
-    return vi.read_case({name: {**table.get(name, {}), **sections.get(name, {})} for name in {**table, **sections}})
+    return vi.read_case(
+        {name: {**table.get(name, {}), **sections.get(name, {})} for name in {**table, **sections}}
+    )
 
 
 def mass_of(radius: float, material: str) -> float:
@@ -40,15 +44,25 @@ def test_a_sphere_that_is_held_has_the_stiffness_of_two_curvatures() -> None:
     assert pair.effective_mass == pytest.approx(mass_of(0.01, STEEL))
     flat = vi.simulate(case_of({}))
     law = flat.problem.laws[0]
-    held, softer = vi.simulate(case_of({"radius": 0.03})), vi.simulate(case_of({}, contact={"stiffness": float(law.stiffness) * 0.75**0.5}))
+    held, softer = (
+        vi.simulate(case_of({"radius": 0.03})),
+        vi.simulate(case_of({}, contact={"stiffness": float(law.stiffness) * 0.75**0.5})),
+    )
     for column in ("max_force_N", "duration_s", "separation_speed_m_s"):
         assert held.impacts[column] == pytest.approx(softer.impacts[column], rel=1e-12)
-    assert vi.simulate(case_of({"radius": 1e9})).impacts["max_force_N"] == pytest.approx(flat.impacts["max_force_N"], rel=1e-8)
+    assert vi.simulate(case_of({"radius": 1e9})).impacts["max_force_N"] == pytest.approx(
+        flat.impacts["max_force_N"], rel=1e-8
+    )
 
 
 @pytest.mark.parametrize("below", [0.003, 0.01, 0.08])
 @pytest.mark.parametrize(
-    "law", [{"law": "hunt-crossley", "restitution": 0.8}, {"law": "thornton", "yield_pressure": 1e9}, {"law": "hertz"}]
+    "law",
+    [
+        {"law": "hunt-crossley", "restitution": 0.8},
+        {"law": "thornton", "yield_pressure": 1e9},
+        {"law": "hertz"},
+    ],
 )
 def test_a_free_one_is_the_reduced_mass(below: float, law: dict[str, Any]) -> None:
     plate = {"radius": below, "supports": "free"}
@@ -56,9 +70,23 @@ def test_a_free_one_is_the_reduced_mass(below: float, law: dict[str, Any]) -> No
     one, other = mass_of(0.01, STEEL), mass_of(below, GLASS)
     reduced = one * other / (one + other)
     ball = vi.Body(mass=reduced, contact_offset=0.01)
-    alone = vi.Problem(sphere=ball, plate=vi.rigid_plate(), laws=response.problem.laws, speed=2.0, gravity=0.0, impacts=1, tolerance=1e-12)
+    alone = vi.Problem(
+        sphere=ball,
+        plate=vi.rigid_plate(),
+        laws=response.problem.laws,
+        speed=2.0,
+        gravity=0.0,
+        impacts=1,
+        tolerance=1e-12,
+    )
     wall = vi.simulate(alone)
-    for column in ("max_force_N", "duration_s", "separation_speed_m_s", "max_indentation_m", "energy_lost_J"):
+    for column in (
+        "max_force_N",
+        "duration_s",
+        "separation_speed_m_s",
+        "max_indentation_m",
+        "energy_lost_J",
+    ):
         assert response.impacts[column] == pytest.approx(wall.impacts[column], rel=1e-9, abs=1e-15)
     end = response.at(response.end_time)
     momentum = one * end["velocity_m_s"] + other * end["plate_velocity_m_s"]
@@ -78,7 +106,10 @@ def _with_law(plate: dict[str, Any], law: dict[str, Any]) -> Any:
 
 
 def test_a_heavy_one_stays_where_it_is() -> None:
-    held, heavy = vi.simulate(case_of({"radius": 5.0})), vi.simulate(case_of({"radius": 5.0, "supports": "free"}))
+    held, heavy = (
+        vi.simulate(case_of({"radius": 5.0})),
+        vi.simulate(case_of({"radius": 5.0, "supports": "free"})),
+    )
     assert heavy.impacts["max_force_N"] == pytest.approx(held.impacts["max_force_N"], rel=1e-7)
 
 
@@ -97,7 +128,9 @@ def test_two_that_stick_fly_on_together() -> None:
 
 
 def test_doubts_know_both_curvatures() -> None:
-    """The peak pressure of two equal spheres is that of a flat under the same force, times 2^(2/3)."""
+    """The peak pressure of two equal spheres is that of a flat under the same force,
+    times 2^(2/3).
+    """
     case = case_of({"radius": 0.01})
     conditions = Conditions(resolved_case(case), DropSummary(force=1000.0))
     flat = Conditions(resolved_case(case_of({})), DropSummary(force=1000.0))
@@ -117,45 +150,93 @@ def test_the_case_reads_back() -> None:
 @pytest.mark.parametrize("supports", [{}, {"supports": "free"}])
 def test_its_radius_can_be_swept(supports: dict[str, str], tmp_path: Path) -> None:
     radii = [0.01, 0.02, 0.04]
-    table = {**resolved_case(case_of({"radius": 0.02, **supports})), "sweep": {"over": {"plate.radius": radii}}}
+    table = {
+        **resolved_case(case_of({"radius": 0.02, **supports})),
+        "sweep": {"over": {"plate.radius": radii}},
+    }
     del table["contact"]["stiffness"]  # which is that of one radius
-    found = vi.read_study(compute_study(vi.read_sweep(table), tmp_path / "study")).values("max_force_N")
-    single = [vi.simulate(case_of({"radius": radius, **supports})).impacts["max_force_N"][0] for radius in radii]
+    found = vi.read_study(compute_study(vi.read_sweep(table), tmp_path / "study")).values(
+        "max_force_N"
+    )
+    single = [
+        vi.simulate(case_of({"radius": radius, **supports})).impacts["max_force_N"][0]
+        for radius in radii
+    ]
     assert found.ravel() == pytest.approx(single, rel=1e-9)
 
 
 def test_it_is_not_exported(tmp_path: Path) -> None:
     folder = vi.save_result(vi.simulate(case_of({"radius": 0.02})), tmp_path / "run")
-    with pytest.raises(vi.InputError, match=r"plate.radius: only a drop on a flat plate can be exported, and this sphere"):
+    with pytest.raises(
+        vi.InputError,
+        match=r"plate.radius: only a drop on a flat plate can be exported, and this sphere",
+    ):
         load_drop(folder)
 
 
 def test_two_spheres_have_no_modes() -> None:
-    with pytest.raises(vi.InputError, match=r"plate\.radius: two spheres are rigid but for their contact, and have no modes"):
+    with pytest.raises(
+        vi.InputError,
+        match=r"plate\.radius: two spheres are rigid but for their contact, and have no modes",
+    ):
         vi.compute_modes(case_of({"radius": 0.02}))
 
 
 @pytest.mark.parametrize(
     ("plate", "sections", "words"),
     [
-        ({"radius": 0.02, "size": [1.0, 1.0, 0.01]}, {}, "plate.size: a sphere takes the place of the plate, and has no size"),
-        ({"radius": 0.02, "model": "elastic", "supports": "free"}, {}, "plate.model: a sphere in the place of the plate is rigid but for"),
-        ({"radius": 0.02, "supports": "clamped"}, {}, 'plate.supports: a sphere in the place of the plate is held fixed, or "free"'),
+        (
+            {"radius": 0.02, "size": [1.0, 1.0, 0.01]},
+            {},
+            "plate.size: a sphere takes the place of the plate, and has no size",
+        ),
+        (
+            {"radius": 0.02, "model": "elastic", "supports": "free"},
+            {},
+            "plate.model: a sphere in the place of the plate is rigid but for",
+        ),
+        (
+            {"radius": 0.02, "supports": "clamped"},
+            {},
+            'plate.supports: a sphere in the place of the plate is held fixed, or "free"',
+        ),
         (
             {"radius": 0.02, "supports": "free"},
             {"drop": {"gravity": 9.8}},
             "plate.supports: under gravity a sphere that is free falls away",
         ),
-        ({"radius": 0.02}, {"drop": {"position": [0.001, 0.0]}}, "drop.position: beside the top of a sphere the impact is oblique"),
-        ({"radius": 0.02}, {"sphere": {"model": "elastic"}}, "sphere.model: two spheres are rigid but for their contact"),
-        ({"radius": 0.02}, {"contact": {"finite_sphere": True}}, "contact.finite_sphere: two spheres are rigid but for their contact"),
-        ({"radius": 0.02, "supports": "free", "material": "rigid"}, {}, 'plate.material: "rigid" has no density'),
+        (
+            {"radius": 0.02},
+            {"drop": {"position": [0.001, 0.0]}},
+            "drop.position: beside the top of a sphere the impact is oblique",
+        ),
+        (
+            {"radius": 0.02},
+            {"sphere": {"model": "elastic"}},
+            "sphere.model: two spheres are rigid but for their contact",
+        ),
+        (
+            {"radius": 0.02},
+            {"contact": {"finite_sphere": True}},
+            "contact.finite_sphere: two spheres are rigid but for their contact",
+        ),
+        (
+            {"radius": 0.02, "supports": "free", "material": "rigid"},
+            {},
+            'plate.material: "rigid" has no density',
+        ),
         ({"radius": -0.02}, {}, "plate.radius: -0.02 is not allowed; it must be greater than 0 m"),
         ({"supports": "free"}, {}, "plate.supports: a rigid body does not take it"),
-        ({"radius": 0.02, "supports": "free"}, {"contact": {"law": "newton", "restitution": 0.5}}, "newton gives no force"),
+        (
+            {"radius": 0.02, "supports": "free"},
+            {"contact": {"law": "newton", "restitution": 0.5}},
+            "newton gives no force",
+        ),
     ],
 )
-def test_what_does_not_fit_is_said(plate: dict[str, Any], sections: dict[str, Any], words: str) -> None:
+def test_what_does_not_fit_is_said(
+    plate: dict[str, Any], sections: dict[str, Any], words: str
+) -> None:
     if sections.get("contact", {}).get("law"):
         with pytest.raises(vi.InputError) as told:
             _with_law(plate, sections["contact"]).to_problem()

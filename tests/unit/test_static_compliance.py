@@ -1,4 +1,6 @@
-"""The static compliance of a plate: computed once, kept, refused; and averages of modes over a disc."""
+"""The static compliance of a plate: computed once, kept, refused; and averages of modes
+over a disc.
+"""
 
 from __future__ import annotations
 
@@ -14,7 +16,15 @@ from vibroimpact.structures import static_compliance as module
 from vibroimpact.structures.disc_quadrature import HERTZ, UNIFORM, pressure_rule
 from vibroimpact.structures.lattice import box_mesh
 from vibroimpact.structures.mesh import Mesh
-from vibroimpact.structures.recipe import ImportedMesh, PlateOfPlates, PlateOfSolids, Recipe, Reduction, SphereOfSolids, modal_model_of
+from vibroimpact.structures.recipe import (
+    ImportedMesh,
+    PlateOfPlates,
+    PlateOfSolids,
+    Recipe,
+    Reduction,
+    SphereOfSolids,
+    modal_model_of,
+)
 from vibroimpact.structures.static_compliance import computed_compliance, static_compliance
 from vibroimpact.structures.store import clear_store, entries, store_size
 from vibroimpact.structures.supports.edge import EDGES, Edge
@@ -45,7 +55,9 @@ def test_places_and_recipes_are_told_apart(folder: Path) -> None:
     asked = [(RECIPE, MIDDLE), (RECIPE, (0.1, 0.0)), (replace(RECIPE, youngs_modulus=70e9), MIDDLE)]
     assert len({static_compliance(*one) for one in asked}) == 3
     assert len(list(folder.glob("*.compliance"))) == 3
-    assert computed_compliance(RECIPE, MIDDLE) == pytest.approx(computed_compliance(asked[2][0], MIDDLE) / 3, rel=1e-9)
+    assert computed_compliance(RECIPE, MIDDLE) == pytest.approx(
+        computed_compliance(asked[2][0], MIDDLE) / 3, rel=1e-9
+    )
 
 
 def test_a_damaged_entry_is_computed_again(folder: Path) -> None:
@@ -80,11 +92,14 @@ def test_clearing_the_store_takes_both_kinds(folder: Path) -> None:
 
 @pytest.mark.parametrize(
     "recipe",
-    [replace(RECIPE, supports=()), replace(SOLIDS, supports=(Edge("x-min", "simply-supported"),))],  # which can turn about its edge
+    # which can turn about its edge
+    [replace(RECIPE, supports=()), replace(SOLIDS, supports=(Edge("x-min", "simply-supported"),))],
     ids=["free", "hinged"],
 )
 def test_what_is_not_held_yields_without_its_rigid_motion(recipe: Recipe) -> None:
-    """Of the order of that of a clamped plate, as its own inertia holds it; `test_free_plates` has it to a per cent."""
+    """Of the order of that of a clamped plate, as its own inertia holds it;
+    `test_free_plates` has it to a per cent.
+    """
     held = static_compliance(replace(recipe, supports=CLAMPED), MIDDLE)
     assert 0.5 < static_compliance(recipe, MIDDLE) / held < 5.0
 
@@ -115,7 +130,9 @@ def test_a_body_with_a_hole() -> None:
     middle = whole.nodes[whole.blocks[0].connectivity].mean(axis=1)
     kept = whole.blocks[0].connectivity[(np.abs(middle[:, :2]) > 0.051).any(axis=1)]
     used, numbers = np.unique(kept, return_inverse=True)
-    mesh = Mesh(whole.nodes[used], (replace(whole.blocks[0], connectivity=numbers.reshape(kept.shape)),))
+    mesh = Mesh(
+        whole.nodes[used], (replace(whole.blocks[0], connectivity=numbers.reshape(kept.shape)),)
+    )
     recipe = replace(RECIPE, shape=ImportedMesh("hole", lambda: mesh))
     assert computed_compliance(recipe, (0.051, 0.01)) > computed_compliance(recipe, (0.07, 0.01))
     with pytest.raises(InputError, match="not on the body"):
@@ -129,10 +146,15 @@ def test_either_side_of_solids() -> None:
 
 
 def test_springs_in_series() -> None:
-    """A plate on soft springs under a load at its middle sinks by what the springs give, and bends besides."""
+    """A plate on soft springs under a load at its middle sinks by what the springs give,
+    and bends besides.
+    """
     springs = tuple(Spring(x, y, 1e4, 1e4) for x in (-0.2, 0.2) for y in (-0.15, 0.15))
     soft, hard = (
-        computed_compliance(replace(RECIPE, supports=tuple(replace(spring, stiffness=value) for spring in springs)), MIDDLE)
+        computed_compliance(
+            replace(RECIPE, supports=tuple(replace(spring, stiffness=value) for spring in springs)),
+            MIDDLE,
+        )
         for value in (1e4, 2e4)
     )
     assert soft - hard == pytest.approx(1 / 4e4 - 1 / 8e4, rel=1e-6)
@@ -159,7 +181,9 @@ def test_modes_averaged_over_a_disc() -> None:
     around = model.at(np.array(AT) + step * np.array([[1, 0], [-1, 0], [0, 1], [0, -1]]))[0]
     curvature = (around.sum(axis=1) - 4 * point) / step**2
     expected = point + 0.25 * 0.4 * radius**2 * curvature  # r^2 is 0.4 on average
-    np.testing.assert_allclose(model.averaged(AT, radius)[:, 2], expected[:, 2], atol=3e-4 * np.abs(expected[:, 2]).max())
+    np.testing.assert_allclose(
+        model.averaged(AT, radius)[:, 2], expected[:, 2], atol=3e-4 * np.abs(expected[:, 2]).max()
+    )
     assert model.averaged(AT, radius).shape == (6, 3)
     with pytest.raises(InputError, match="the patch: "):
         model.averaged((0.249, 0.0), radius, what="the patch")

@@ -42,10 +42,13 @@ def folder(tmp_path_factory: pytest.TempPathFactory, theory: vi.Response) -> Pat
 def test_holds_what_it_should(folder: Path) -> None:
     names = {str(path.relative_to(folder)) for path in folder.rglob("*") if path.is_file()}
     assert names == {"case.toml", "impacts.csv", "summary.json", "result.nc", "report.html"}
-    assert [path.name for path in folder.parent.iterdir()] == ["theory"]  # nothing beside it is left over
+    # nothing beside it is left over
+    assert [path.name for path in folder.parent.iterdir()] == ["theory"]
 
 
-def test_impacts_csv_has_the_promised_header_and_every_digit(folder: Path, theory: vi.Response) -> None:
+def test_impacts_csv_has_the_promised_header_and_every_digit(
+    folder: Path, theory: vi.Response
+) -> None:
     text = (folder / "impacts.csv").read_text()
     assert text.startswith(HEADER + ",")
     rows = list(csv.DictReader(text.splitlines()))
@@ -75,7 +78,9 @@ def test_values_that_do_not_exist_are_null_and_empty(tmp_path: Path) -> None:
     assert row["max_force_N"] is None
     assert row["rebound_height_m"] is None
     assert ",," in (tmp_path / "out" / "impacts.csv").read_text().splitlines()[1]
-    assert not re.search(r"\bnan\b", Page((tmp_path / "out" / "report.html").read_text()).text.lower())
+    assert not re.search(
+        r"\bnan\b", Page((tmp_path / "out" / "report.html").read_text()).text.lower()
+    )
 
 
 def test_netcdf_opens_in_xarray_with_units(folder: Path, theory: vi.Response) -> None:
@@ -85,7 +90,11 @@ def test_netcdf_opens_in_xarray_with_units(folder: Path, theory: vi.Response) ->
             for name, (unit, meaning) in meanings(columns).items():
                 assert data[name].attrs["units"] == unit
                 assert data[name].attrs["long_name"] == meaning
-            assert data.sizes == {"impact": 5} if group == "impacts" else {"time_s": len(theory.history()["time_s"])}
+            assert (
+                data.sizes == {"impact": 5}
+                if group == "impacts"
+                else {"time_s": len(theory.history()["time_s"])}
+            )
     with h5py.File(folder / "result.nc") as file:
         assert file["energy"]["input_J"].attrs["units"] == "J"
         assert file.attrs["status"] == theory.status
@@ -100,23 +109,43 @@ def test_case_reads_back_as_the_same_run(folder: Path, theory: vi.Response) -> N
 def test_a_problem_made_in_python_keeps_its_inputs(tmp_path: Path) -> None:
     law = vi.find_contact_law("newton")(restitution=0.5)
     ball = vi.Body(mass=1.25, contact_offset=0.1)
-    vi.simulate(vi.Problem(sphere=ball, plate=vi.rigid_plate(), laws=(law,), height=1.0)).save(tmp_path / "out")
+    vi.simulate(vi.Problem(sphere=ball, plate=vi.rigid_plate(), laws=(law,), height=1.0)).save(
+        tmp_path / "out"
+    )
     assert not (tmp_path / "out" / "case.toml").exists()
     assert "mass=1.25" in vi.read_result(tmp_path / "out").provenance["problem"]
     assert "mass=1.25" in (tmp_path / "out" / "report.html").read_text()
 
 
-def test_doubts_are_printed_and_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
-    case = {"sphere": {"radius": "5 mm", "material": "steel"}, "plate": {"material": "steel"}, "drop": {"height": "50 m"}}
-    case["contact"] = {"law": "adams-impact", "damping_max": 10.0, "full_damping_penetration": "0.9 mm"}
+def test_doubts_are_printed_and_kept(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    case = {
+        "sphere": {"radius": "5 mm", "material": "steel"},
+        "plate": {"material": "steel"},
+        "drop": {"height": "50 m"},
+    }
+    case["contact"] = {
+        "law": "adams-impact",
+        "damping_max": 10.0,
+        "full_damping_penetration": "0.9 mm",
+    }
     (tmp_path / "hard.toml").write_text(tomli_w.dumps(case))
-    monkeypatch.setattr("sys.argv", ["vibroimpact", "run", str(tmp_path / "hard.toml"), "-o", str(tmp_path / "out")])
+    monkeypatch.setattr(
+        "sys.argv", ["vibroimpact", "run", str(tmp_path / "hard.toml"), "-o", str(tmp_path / "out")]
+    )
     with pytest.raises(SystemExit) as left:
         main()
     assert not left.value.code
     printed = capsys.readouterr().out
     summary = json.loads((tmp_path / "out" / "summary.json").read_text())
-    told = ("air", "full-damping", "half space", "the sphere (steel) yields", "the plate (steel) yields")
+    told = (
+        "air",
+        "full-damping",
+        "half space",
+        "the sphere (steel) yields",
+        "the plate (steel) yields",
+    )
     assert len(summary["doubts"]) == len(told)
     assert all(sum(words in doubt for doubt in summary["doubts"]) == 1 for words in told)
     page = (tmp_path / "out" / "report.html").read_text()
@@ -131,11 +160,18 @@ def test_result_reads_back(folder: Path, theory: vi.Response) -> None:
     assert result.status == theory.status
 
 
-def test_a_folder_from_before_there_was_a_column_is_read(folder: Path, theory: vi.Response, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_folder_from_before_there_was_a_column_is_read(
+    folder: Path, theory: vi.Response, monkeypatch: pytest.MonkeyPatch
+) -> None:
     def without(name: str) -> None:
         def read(path: Path) -> dict:
             groups = read_groups(path)
-            return {**groups, "impacts": {key: values for key, values in groups["impacts"].items() if key != name}}
+            return {
+                **groups,
+                "impacts": {
+                    key: values for key, values in groups["impacts"].items() if key != name
+                },
+            }
 
         monkeypatch.setattr("vibroimpact.results.folder.read_groups", read)
 
@@ -144,7 +180,9 @@ def test_a_folder_from_before_there_was_a_column_is_read(folder: Path, theory: v
     assert np.isnan(found["time_of_max_force_s"]).all()
     np.testing.assert_array_equal(found["max_force_N"], theory.impacts["max_force_N"])
     without("max_force_N")
-    with pytest.raises(vi.InputError, match=r"result.nc: the file is missing or damaged: no max_force_N"):
+    with pytest.raises(
+        vi.InputError, match=r"result.nc: the file is missing or damaged: no max_force_N"
+    ):
         vi.read_result(folder)
 
 
@@ -162,7 +200,10 @@ def test_report_is_remade_and_other_files_stay(tmp_path: Path, theory: vi.Respon
 def test_existing_folder_is_kept(tmp_path: Path, theory: vi.Response) -> None:
     (tmp_path / "out").mkdir()
     (tmp_path / "out" / "thesis.tex").write_text("years")
-    for force, words in ((False, "is there and is not a result folder"), (True, "is not a result folder")):
+    for force, words in (
+        (False, "is there and is not a result folder"),
+        (True, "is not a result folder"),
+    ):
         with pytest.raises(vi.InputError, match=words):
             theory.save(tmp_path / "out", force=force)
     assert (tmp_path / "out" / "thesis.tex").read_text() == "years"
@@ -173,7 +214,9 @@ def test_existing_folder_is_kept(tmp_path: Path, theory: vi.Response) -> None:
         theory.save(tmp_path / "file" / "below")
 
 
-def test_force_replaces_a_result(tmp_path: Path, folder: Path, theory: vi.Response, variable: vi.Response) -> None:
+def test_force_replaces_a_result(
+    tmp_path: Path, folder: Path, theory: vi.Response, variable: vi.Response
+) -> None:
     shutil.copytree(folder, tmp_path / "out")
     with pytest.raises(vi.InputError, match="--force"):
         variable.save(tmp_path / "out")
@@ -213,7 +256,9 @@ def test_an_interrupt_leaves_nothing(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("name", ["summary.json", "case.toml", "result.nc"])
 @pytest.mark.parametrize("damage", [b"", b"\x00garbage", None])
-def test_damaged_results_are_named(name: str, damage: bytes | None, folder: Path, tmp_path: Path) -> None:
+def test_damaged_results_are_named(
+    name: str, damage: bytes | None, folder: Path, tmp_path: Path
+) -> None:
     import shutil
 
     copy = Path(shutil.copytree(folder, tmp_path / "copy"))
@@ -230,7 +275,9 @@ def test_damage_is_named_with_its_part_and_the_remedy(folder: Path, tmp_path: Pa
     copy = Path(shutil.copytree(folder, tmp_path / "a copy"))
     with h5py.File(copy / "result.nc") as file:
         data = file["history/force_N"]
-        assert all(one.fletcher32 for group in ("impacts", "history") for one in file[group].values())
+        assert all(
+            one.fletcher32 for group in ("impacts", "history") for one in file[group].values()
+        )
         place = data.id.get_chunk_info(0).byte_offset
     content = bytearray((copy / "result.nc").read_bytes())
     content[place + 5] ^= 1
@@ -242,8 +289,12 @@ def test_damage_is_named_with_its_part_and_the_remedy(folder: Path, tmp_path: Pa
     assert str(refused.value) == f"{copy / 'result.nc'}: {words}; {remedy}"
 
 
-def test_a_damaged_summary_is_not_mended_by_a_run_of_another_case(folder: Path, tmp_path: Path) -> None:
-    """Without the data of a run beside it, it may be that of a calibration, which a run would replace."""
+def test_a_damaged_summary_is_not_mended_by_a_run_of_another_case(
+    folder: Path, tmp_path: Path
+) -> None:
+    """Without the data of a run beside it, it may be that of a calibration, which a run
+    would replace.
+    """
     copy = Path(shutil.copytree(folder, tmp_path / "copy"))
     (copy / "summary.json").write_text("{")
     with pytest.raises(vi.InputError, match="make it anew with: vibroimpact run"):
@@ -253,7 +304,9 @@ def test_a_damaged_summary_is_not_mended_by_a_run_of_another_case(folder: Path, 
         vi.read_result(copy)
 
 
-def test_results_of_earlier_versions_open(folder: Path, tmp_path: Path, theory: vi.Response) -> None:
+def test_results_of_earlier_versions_open(
+    folder: Path, tmp_path: Path, theory: vi.Response
+) -> None:
     import shutil
 
     copy = Path(shutil.copytree(folder, tmp_path / "copy"))
@@ -263,17 +316,28 @@ def test_results_of_earlier_versions_open(folder: Path, tmp_path: Path, theory: 
     assert vi.read_result(copy).status == theory.status
     summary["energy"], summary["truncation"] = 1.0, {"plate": [1.0]}
     (copy / "summary.json").write_text(json.dumps(summary))
-    with pytest.raises(vi.InputError, match=r"summary.json: the file is missing or damaged: truncation has the wrong type"):
+    with pytest.raises(
+        vi.InputError,
+        match=r"summary.json: the file is missing or damaged: truncation has the wrong type",
+    ):
         vi.read_result(copy)
 
 
-@pytest.mark.parametrize("damage", [{"plate": {"max_displacement_m": 1e-6, "frequencies_Hz": []}}, {"truncation": {"plate": 0.1}}])
-def test_peaks_and_truncation_without_modes_are_refused(folder: Path, tmp_path: Path, damage: dict[str, Any]) -> None:
+@pytest.mark.parametrize(
+    "damage",
+    [{"plate": {"max_displacement_m": 1e-6, "frequencies_Hz": []}}, {"truncation": {"plate": 0.1}}],
+)
+def test_peaks_and_truncation_without_modes_are_refused(
+    folder: Path, tmp_path: Path, damage: dict[str, Any]
+) -> None:
     copy = Path(shutil.copytree(folder, tmp_path / "copy"))
     summary = json.loads((copy / "summary.json").read_text())
     del summary["sha256"], summary["check_sums"]
     (copy / "summary.json").write_text(json.dumps(summary | damage))
-    with pytest.raises(vi.InputError, match=r"summary.json: the file is missing or damaged: frequencies_Hz has the wrong type"):
+    with pytest.raises(
+        vi.InputError,
+        match=r"summary.json: the file is missing or damaged: frequencies_Hz has the wrong type",
+    ):
         vi.read_result(copy)
 
 
@@ -294,7 +358,9 @@ def test_a_large_file_goes_to_the_disk_as_it_grows(tmp_path: Path) -> None:
 
 
 def test_a_file_that_finds_no_room_is_an_error_and_no_more(tmp_path: Path) -> None:
-    ran = subprocess.run([sys.executable, "-c", _NO_ROOM, str(tmp_path)], capture_output=True, text=True, check=True)
+    ran = subprocess.run(
+        [sys.executable, "-c", _NO_ROOM, str(tmp_path)], capture_output=True, text=True, check=True
+    )
     assert ran.stdout.splitlines() == [*["File too large"] * 4, "room again"]
     assert ran.stderr == ""
 

@@ -16,8 +16,24 @@ from vibroimpact.structures import recipe as recipes
 from vibroimpact.structures import store
 from vibroimpact.structures.mesh import ElementBlock, Mesh
 from vibroimpact.structures.modal_model import ModalModel
-from vibroimpact.structures.recipe import ImportedMesh, PlateOfPlates, PlateOfSolids, Recipe, Reduction, SphereOfSolids, modal_model_of
-from vibroimpact.structures.store import clear_store, entries, key_of, load_model, save_model, store_folder, store_size
+from vibroimpact.structures.recipe import (
+    ImportedMesh,
+    PlateOfPlates,
+    PlateOfSolids,
+    Recipe,
+    Reduction,
+    SphereOfSolids,
+    modal_model_of,
+)
+from vibroimpact.structures.store import (
+    clear_store,
+    entries,
+    key_of,
+    load_model,
+    save_model,
+    store_folder,
+    store_size,
+)
 from vibroimpact.structures.supports.bar import Bar
 from vibroimpact.structures.supports.edge import Edge
 from vibroimpact.structures.supports.node_set import NodeSet
@@ -26,7 +42,14 @@ from vibroimpact.structures.supports.point import Point
 from vibroimpact.structures.supports.spring import Spring
 
 STEEL = Material(7850.0, 210e9, 0.3)
-RECIPE = Recipe(PlateOfPlates((0.5, 0.4, 0.01), 0.2), 7850.0, 210e9, 0.3, (Edge("x-min", "clamped"),), Reduction(modes=3))
+RECIPE = Recipe(
+    PlateOfPlates((0.5, 0.4, 0.01), 0.2),
+    7850.0,
+    210e9,
+    0.3,
+    (Edge("x-min", "clamped"),),
+    Reduction(modes=3),
+)
 
 
 @pytest.fixture(autouse=True)
@@ -36,20 +59,31 @@ def folder(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Path:
 
 
 def with_sets(model: ModalModel) -> ModalModel:
-    mesh = replace(model.mesh, node_sets={"a name: ü/..": np.arange(5)}, element_sets={"all": np.arange(2)})
+    mesh = replace(
+        model.mesh, node_sets={"a name: ü/..": np.arange(5)}, element_sets={"all": np.arange(2)}
+    )
     return replace(model, mesh=mesh, facts={"nodes": "many", "ü": "µ"})
 
 
 def same(one: ModalModel, other: ModalModel) -> bool:
     def equal(first: object, second: object) -> bool:
         if is_dataclass(first):
-            return all(equal(getattr(first, item.name), getattr(second, item.name)) for item in fields(first))
+            return all(
+                equal(getattr(first, item.name), getattr(second, item.name))
+                for item in fields(first)
+            )
         if isinstance(first, np.ndarray):
-            return isinstance(second, np.ndarray) and first.dtype == second.dtype and np.array_equal(first, second)
+            return (
+                isinstance(second, np.ndarray)
+                and first.dtype == second.dtype
+                and np.array_equal(first, second)
+            )
         if isinstance(first, tuple):
             return len(first) == len(second) and all(map(equal, first, second))
         if isinstance(first, dict):
-            return set(first) == set(second) and all(equal(first[key], second[key]) for key in first)
+            return set(first) == set(second) and all(
+                equal(first[key], second[key]) for key in first
+            )
         return first == second
 
     return equal(one, other)
@@ -79,8 +113,20 @@ def test_all_that_is_kept_comes_back() -> None:
 
 def damaged_entries(content: bytes) -> list[bytes]:
     random = np.random.default_rng(0)
-    found = [b"", content[:1], content[: len(content) // 2], content[:-1], content[1:], b"\0" * len(content), content[:-22] + content[-21:]]
-    for place in [*random.integers(0, len(content), 150), *range(200), *range(len(content) - 200, len(content))]:
+    found = [
+        b"",
+        content[:1],
+        content[: len(content) // 2],
+        content[:-1],
+        content[1:],
+        b"\0" * len(content),
+        content[:-22] + content[-21:],
+    ]
+    for place in [
+        *random.integers(0, len(content), 150),
+        *range(200),
+        *range(len(content) - 200, len(content)),
+    ]:
         changed = bytearray(content)
         changed[place] ^= 1 << int(random.integers(8))
         found.append(bytes(changed))
@@ -88,7 +134,9 @@ def damaged_entries(content: bytes) -> list[bytes]:
 
 
 def test_a_damaged_entry_is_never_believed(folder: Path) -> None:
-    """Cut short, emptied, or with one bit turned: it is said to be damaged, or it is right to the last bit."""
+    """Cut short, emptied, or with one bit turned: it is said to be damaged, or it is
+    right to the last bit.
+    """
     model = with_sets(modal_model_of(RECIPE))
     save_model("key", model)
     path = folder / "key.modes"
@@ -100,8 +148,12 @@ def test_a_damaged_entry_is_never_believed(folder: Path) -> None:
 
 
 def test_numbers_read_as_shorter_ones_are_not_believed(folder: Path) -> None:
-    """One byte makes 4-byte numbers of 8-byte ones, or fewer rows: a reader that stops early does not verify the sums of zip members."""
-    model = replace(modal_model_of(RECIPE), shapes=np.random.default_rng(0).standard_normal((12, 20_000)))
+    """One byte makes 4-byte numbers of 8-byte ones, or fewer rows: a reader that stops
+    early does not verify the sums of zip members.
+    """
+    model = replace(
+        modal_model_of(RECIPE), shapes=np.random.default_rng(0).standard_normal((12, 20_000))
+    )
     save_model("key", model)
     path = folder / "key.modes"
     content = path.read_bytes()
@@ -138,22 +190,49 @@ def different_recipes() -> list[Recipe]:
         replace(RECIPE, shape=ImportedMesh("abd", lambda: Mesh(np.zeros((0, 3)), ()))),
     ]
     shapes = [
-        (PlateOfPlates((0.5, 0.4, 0.01), 0.2), {"size": (0.4, 0.5, 0.01), "element_size": 0.1, "theory": "thin"}),
-        (PlateOfSolids((0.5, 0.4, 0.01), 0.2), {"size": (0.4, 0.5, 0.01), "element_size": 0.1, "layers": 2, "kind": "hex8"}),
-        (SphereOfSolids(0.02), {"radius": 0.03, "elements_across": 10, "kind": "tet10", "grading": 2.0}),
+        (
+            PlateOfPlates((0.5, 0.4, 0.01), 0.2),
+            {"size": (0.4, 0.5, 0.01), "element_size": 0.1, "theory": "thin"},
+        ),
+        (
+            PlateOfSolids((0.5, 0.4, 0.01), 0.2),
+            {"size": (0.4, 0.5, 0.01), "element_size": 0.1, "layers": 2, "kind": "hex8"},
+        ),
+        (
+            SphereOfSolids(0.02),
+            {"radius": 0.03, "elements_across": 10, "kind": "tet10", "grading": 2.0},
+        ),
     ]
     held = [
         (Edge("x-min", "clamped"), {"edge": "x-max", "condition": "simply-supported"}),
         (Patch(0.1, 0.2, 0.01), {"x": 0.2, "y": 0.1, "radius": 0.02}),
-        (RectangularPatch(0.1, 0.2, 0.01, 0.02), {"x": 0.2, "y": 0.1, "length": 0.02, "width": 0.01}),
+        (
+            RectangularPatch(0.1, 0.2, 0.01, 0.02),
+            {"x": 0.2, "y": 0.1, "length": 0.02, "width": 0.01},
+        ),
         (Point(0.1, 0.2), {"x": 0.2, "y": 0.1}),
-        (Spring(0.1, 0.2, 1e3), {"x": 0.2, "y": 0.1, "stiffness": 1e4, "horizontal_stiffness": 1.0, "radius": 0.01}),
+        (
+            Spring(0.1, 0.2, 1e3),
+            {"x": 0.2, "y": 0.1, "stiffness": 1e4, "horizontal_stiffness": 1.0, "radius": 0.01},
+        ),
         (NodeSet("a"), {"name": "b", "directions": "z"}),
-        (Bar(0.1, 0.2, 0.01, 0.3, STEEL), {"x": 0.2, "y": 0.1, "radius": 0.02, "length": 0.4, "material": replace(STEEL, density=1.0)}),
+        (
+            Bar(0.1, 0.2, 0.01, 0.3, STEEL),
+            {
+                "x": 0.2,
+                "y": 0.1,
+                "radius": 0.02,
+                "length": 0.4,
+                "material": replace(STEEL, density=1.0),
+            },
+        ),
     ]
     place = (((0.0, 0.0), "upper"),)
     kept = [
-        (Reduction(modes=3), {"modes": 4, "method": "craig-bampton", "interface": place, "attachment": place}),
+        (
+            Reduction(modes=3),
+            {"modes": 4, "method": "craig-bampton", "interface": place, "attachment": place},
+        ),
         (Reduction(max_frequency=3e3), {"max_frequency": 4e3}),
         (Reduction(modes=3, attachment=place), {"attachment": (((0.0, 0.0), "lower"),)}),
         (Reduction(modes=3, attachment=((None, "upper"),)), {"attachment": (("a", "upper"),)}),
@@ -161,7 +240,9 @@ def different_recipes() -> list[Recipe]:
     for key, pairs in (("shape", shapes), ("supports", held), ("reduction", kept)):
         for value, others in pairs:
             every = [value, *(replace(value, **{name: other}) for name, other in others.items())]
-            changed += [replace(RECIPE, **{key: (one,) if key == "supports" else one}) for one in every]
+            changed += [
+                replace(RECIPE, **{key: (one,) if key == "supports" else one}) for one in every
+            ]
     return changed
 
 
@@ -188,9 +269,14 @@ def test_a_brought_mesh_is_known_by_its_digest() -> None:
 
 
 def test_keys_are_the_same_in_another_process() -> None:
-    code = "from test_store import *; print(' '.join(key_of(recipe) for recipe in different_recipes()))"
+    code = (
+        "from test_store import *; print(' '.join(key_of(recipe) for recipe in "
+        "different_recipes()))"
+    )
     environment = {**os.environ, "PYTHONHASHSEED": "7", "PYTHONPATH": str(Path(__file__).parent)}
-    printed = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, env=environment).stdout
+    printed = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True, env=environment
+    ).stdout
     assert printed.split() == [key_of(recipe) for recipe in different_recipes()]
 
 
@@ -206,7 +292,9 @@ for _ in range(30):
     trouble = save_model("key", model) if sys.argv[1] == "save" else load_model("key")[1]
     assert not trouble, trouble
 """
-    running = [subprocess.Popen([sys.executable, "-c", code, what]) for what in ("save", "save", "load")]
+    running = [
+        subprocess.Popen([sys.executable, "-c", code, what]) for what in ("save", "save", "load")
+    ]
     assert [process.wait() for process in running] == [0, 0, 0]
     found, trouble = load_model("key")
     assert trouble == ""
@@ -221,7 +309,9 @@ def test_a_folder_that_can_not_be_written(tmp_path: Path, monkeypatch: pytest.Mo
     said: list[str] = []
     model = modal_model_of(RECIPE, tell=said.append)
     assert len(model.frequencies) == 3
-    assert any("the modes can't be kept in" in text and "computed again next time" in text for text in said)
+    assert any(
+        "the modes can't be kept in" in text and "computed again next time" in text for text in said
+    )
 
 
 def test_a_full_disk_leaves_nothing_behind(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -245,7 +335,9 @@ def test_size_and_clearing(folder: Path) -> None:
     assert [path.name for path in folder.iterdir()] == ["notes.txt"]
 
 
-def test_what_was_not_used_for_longest_goes_first(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_was_not_used_for_longest_goes_first(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     model = modal_model_of(RECIPE)
     clear_store()
     for age, key in enumerate(("old", "used", "new")):
@@ -259,8 +351,12 @@ def test_what_was_not_used_for_longest_goes_first(folder: Path, monkeypatch: pyt
     assert {path.stem for path in entries()} == {"used", "last"}
 
 
-def test_a_store_of_thousands_is_not_looked_through_for_every_entry(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A study saves one small entry a drop; only what adds up to a hundredth of the room is worth a look."""
+def test_a_store_of_thousands_is_not_looked_through_for_every_entry(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A study saves one small entry a drop; only what adds up to a hundredth of the room
+    is worth a look.
+    """
     looked: list[int] = []
     monkeypatch.setattr(store, "entries", lambda: looked.append(1) or [])
     monkeypatch.setattr(store, "_written", [0.0])

@@ -1,4 +1,6 @@
-"""The points of a study: axes, designs, plans; and the ledger and the files that keep its chunks."""
+"""The points of a study: axes, designs, plans; and the ledger and the files that keep its
+chunks.
+"""
 
 from __future__ import annotations
 
@@ -19,8 +21,17 @@ from vibroimpact.studies.plan import Plan
 from vibroimpact.studies.population import Population
 
 PARTS = (np.arange(400) + 0.5) / 400
-AXES: dict[str, Axis] = {"a": Spaced(1.0, 3.0, 5), "b": Normal(10.0, 2.0, 4), "c": Listed((0.1, 0.2, 0.4))}
-POPULATION = Population({"x": 1.0, "y": 2.0}, {"x": {"sphere.d": Spaced(0.0, 1.0, 2)}, "y": {"sphere.d": Spaced(5.0, 6.0, 2)}}, 2, 3)
+AXES: dict[str, Axis] = {
+    "a": Spaced(1.0, 3.0, 5),
+    "b": Normal(10.0, 2.0, 4),
+    "c": Listed((0.1, 0.2, 0.4)),
+}
+POPULATION = Population(
+    {"x": 1.0, "y": 2.0},
+    {"x": {"sphere.d": Spaced(0.0, 1.0, 2)}, "y": {"sphere.d": Spaced(5.0, 6.0, 2)}},
+    2,
+    3,
+)
 
 
 @pytest.mark.parametrize(
@@ -44,7 +55,9 @@ def test_a_lognormal_has_the_mean_and_the_deviation_that_were_asked_for() -> Non
 
 
 def test_a_truncated_lognormal_stays_inside() -> None:
-    values = Normal(2.0, 0.5, 5, 1.5, 2.5, lognormal=True).quantiles(np.array([0.0, 0.5, 1.0 - 2**-53]))
+    values = Normal(2.0, 0.5, 5, 1.5, 2.5, lognormal=True).quantiles(
+        np.array([0.0, 0.5, 1.0 - 2**-53])
+    )
     assert values[0] >= 1.5
     assert values[-1] == pytest.approx(2.5)
 
@@ -53,8 +66,14 @@ def test_a_truncated_lognormal_stays_inside() -> None:
     ("make", "words"),
     [
         (lambda: Normal(-1.0, 1.0, 3, lognormal=True), "mean: -1 is not allowed"),
-        (lambda: Normal(1.0, 0.1, 3, at_least=5.0), "at_least: 0 % of the distribution is at least 5"),
-        (lambda: Normal(1.0, 0.1, 3, at_most=-5.0), "at_most: 0 % of the distribution is at most -5"),
+        (
+            lambda: Normal(1.0, 0.1, 3, at_least=5.0),
+            "at_least: 0 % of the distribution is at least 5",
+        ),
+        (
+            lambda: Normal(1.0, 0.1, 3, at_most=-5.0),
+            "at_most: 0 % of the distribution is at most -5",
+        ),
     ],
 )
 def test_impossible_distributions_are_refused(make: object, words: str) -> None:
@@ -85,26 +104,39 @@ def test_whole_numbers_stay_what_they_are() -> None:
 def test_a_grid_has_every_combination_once() -> None:
     plan = find_design("grid").plan(Asked(AXES))
     points = plan.points(0, plan.size)
-    assert len(set(zip(*(values.tolist() for values in points.values()), strict=True))) == plan.size == 5 * 4 * 3
+    assert (
+        len(set(zip(*(values.tolist() for values in points.values()), strict=True)))
+        == plan.size
+        == 5 * 4 * 3
+    )
 
 
 def test_a_latin_hypercube_has_one_point_in_every_part_of_every_axis() -> None:
-    plan = find_design("latin-hypercube").plan(Asked({"a": Spaced(0.0, 1.0, 2), "b": Spaced(0.0, 1.0, 2)}, 50, 1))
+    plan = find_design("latin-hypercube").plan(
+        Asked({"a": Spaced(0.0, 1.0, 2), "b": Spaced(0.0, 1.0, 2)}, 50, 1)
+    )
     for values in plan.columns.values():
         assert sorted((values * 50).astype(int)) == list(range(50))
     assert abs(np.corrcoef(*plan.columns.values())[0, 1]) < 0.3
 
 
 def test_saltelli_takes_over_one_axis_of_the_second_block_at_a_time() -> None:
-    plan = find_design("saltelli").plan(Asked({"a": Spaced(0.0, 1.0, 2), "b": Spaced(0.0, 1.0, 2)}, 8, 1))
-    a, b = (np.stack([plan.columns[key][block * 8 : block * 8 + 8] for block in range(4)]) for key in "ab")
+    plan = find_design("saltelli").plan(
+        Asked({"a": Spaced(0.0, 1.0, 2), "b": Spaced(0.0, 1.0, 2)}, 8, 1)
+    )
+    a, b = (
+        np.stack([plan.columns[key][block * 8 : block * 8 + 8] for block in range(4)])
+        for key in "ab"
+    )
     np.testing.assert_array_equal(a[2], a[1])
     np.testing.assert_array_equal(b[2], b[0])
     np.testing.assert_array_equal(a[3], a[0])
     np.testing.assert_array_equal(b[3], b[1])
 
 
-@pytest.mark.parametrize(("name", "samples", "words"), [("sobol", 100, "take 64 or 128"), ("saltelli", 3, "take 2 or 4")])
+@pytest.mark.parametrize(
+    ("name", "samples", "words"), [("sobol", 100, "take 64 or 128"), ("saltelli", 3, "take 2 or 4")]
+)
 def test_sequences_want_powers_of_two(name: str, samples: int, words: str) -> None:
     with pytest.raises(vi.InputError, match=words):
         find_design(name).size(Asked(AXES, samples))
@@ -112,7 +144,9 @@ def test_sequences_want_powers_of_two(name: str, samples: int, words: str) -> No
 
 def test_an_unknown_design_is_named_with_the_closest() -> None:
     with pytest.raises(
-        vi.InputError, match='there is no design "latin"; there are grid, latin-hypercube, population, saltelli, sobol, zip'
+        vi.InputError,
+        match='there is no design "latin"; there are grid, latin-hypercube, population, saltelli, '
+        "sobol, zip",
     ):
         find_design("latin")
 
@@ -120,7 +154,9 @@ def test_an_unknown_design_is_named_with_the_closest() -> None:
 def test_the_fingerprint_sees_every_value() -> None:
     columns = {"a": np.array([1.0, 2.0]), "b": np.array(["x", "y"], dtype=object)}
     digests = {Plan("zip", columns, False).digest(), Plan("grid", columns, True).digest()}
-    digests.add(Plan("zip", {**columns, "a": np.array([1.0, np.nextafter(2.0, 3.0)])}, False).digest())
+    digests.add(
+        Plan("zip", {**columns, "a": np.array([1.0, np.nextafter(2.0, 3.0)])}, False).digest()
+    )
     digests.add(Plan("zip", {**columns, "b": np.array(["x", "z"], dtype=object)}, False).digest())
     assert len(digests) == 4
 
@@ -131,7 +167,11 @@ def test_the_fingerprint_sees_every_value() -> None:
 def test_a_ledger_keeps_what_was_noted(tmp_path: Path) -> None:
     make_ledger(tmp_path, {"digest": "x"}, 25, 10)
     with open_ledger(tmp_path) as ledger:
-        assert [tuple(chunk) for chunk in ledger.chunks("waiting")] == [(0, 0, 10), (1, 10, 10), (2, 20, 5)]
+        assert [tuple(chunk) for chunk in ledger.chunks("waiting")] == [
+            (0, 0, 10),
+            (1, 10, 10),
+            (2, 20, 5),
+        ]
         ledger.done(ledger.chunks("waiting")[1], "abc", 3)
     with open_ledger(tmp_path) as ledger:
         assert ledger.facts == {"digest": "x", "size": "25"}
@@ -152,7 +192,10 @@ def test_a_ledger_that_is_open_is_held(tmp_path: Path) -> None:
 
 
 def test_a_folder_without_a_ledger_is_no_study(tmp_path: Path) -> None:
-    with pytest.raises(vi.InputError, match="this is not the folder of a study"), open_ledger(tmp_path):
+    with (
+        pytest.raises(vi.InputError, match="this is not the folder of a study"),
+        open_ledger(tmp_path),
+    ):
         pass
 
 
@@ -168,16 +211,31 @@ def test_a_damaged_ledger_is_refused_with_what_to_do(tmp_path: Path, damage: str
         connection.commit()
         connection.close()
     else:
-        path.write_bytes({"text": b"not a database at all" * 100, "torn": data[: len(data) // 2], "empty": b""}[damage])
-    with pytest.raises(vi.InputError, match="delete this file and go on with --resume"), open_ledger(tmp_path):
+        path.write_bytes(
+            {"text": b"not a database at all" * 100, "torn": data[: len(data) // 2], "empty": b""}[
+                damage
+            ]
+        )
+    with (
+        pytest.raises(vi.InputError, match="delete this file and go on with --resume"),
+        open_ledger(tmp_path),
+    ):
         pass
 
 
 def test_a_chunk_comes_back_as_it_was_written(tmp_path: Path) -> None:
-    arrays = {"force": np.array([[1.0, np.nan]]), "outcome": np.array([3], dtype=np.int8), "nothing": np.zeros((1, 0))}
+    arrays = {
+        "force": np.array([[1.0, np.nan]]),
+        "outcome": np.array([3], dtype=np.int8),
+        "nothing": np.zeros((1, 0)),
+    }
     chunk = Span(3, 30, 1)
     found = write_chunk(tmp_path, chunk, ChunkResult(arrays, {0: "it broke"}), "study")
-    assert found == checksum(tmp_path, 3) == write_chunk(tmp_path, chunk, ChunkResult(arrays, {0: "it broke"}), "study")
+    assert (
+        found
+        == checksum(tmp_path, 3)
+        == write_chunk(tmp_path, chunk, ChunkResult(arrays, {0: "it broke"}), "study")
+    )
     back = read_chunk(tmp_path, chunk, "study")
     assert back.failures == {0: "it broke"}
     for name, values in arrays.items():

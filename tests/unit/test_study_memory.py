@@ -18,13 +18,18 @@ def test_memory_with_which_most_of_the_time_would_go_to_chunks_is_refused(tmp_pa
     with pytest.raises(InputError) as told:
         compute_study(LARGE, tmp_path / "study", memory=1e6)
     assert told.value.key == "memory"
-    expected = "1 MB is too little for 100,000 drops: computed 155 at a time they take over a third longer; give 17 MB or more"
+    expected = (
+        "1 MB is too little for 100,000 drops: computed 155 at a time they take over a third "
+        "longer; give 17 MB or more"
+    )
     assert told.value.message == expected
     assert not (tmp_path / "study").exists()
 
 
 def test_the_least_memory_makes_at_most_forty_chunks() -> None:
-    """One takes 50 ms beside its drops, which take 50 us each: 40 for 100,000 drops are two seconds in addition to five."""
+    """One takes 50 ms beside its drops, which take 50 us each: 40 for 100,000 drops are
+    two seconds in addition to five.
+    """
     assert 100_000 / chunk_size(LARGE, least_memory(LARGE)) <= 40
 
 

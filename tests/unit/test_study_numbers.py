@@ -1,4 +1,6 @@
-"""How results spread, how their ranks follow those of a key, and how far they move along an axis of a grid."""
+"""How results spread, how their ranks follow those of a key, and how far they move along
+an axis of a grid.
+"""
 
 from __future__ import annotations
 
@@ -32,6 +34,12 @@ def test_ranks_know_order_alone() -> None:
 
 def test_one_at_a_time_is_about_the_middle_of_sorted_levels() -> None:
     levels = np.array([3.0, 1.0, 2.0])
-    found = one_at_a_time(levels[:, None] * np.array([10.0, 20.0, np.nan]), [np.argsort(levels), np.array([0, 1, 2])])
-    assert (found.middle, found.lowest.tolist(), found.highest.tolist()) == (40.0, [20.0, 20.0], [60.0, 40.0])
+    found = one_at_a_time(
+        levels[:, None] * np.array([10.0, 20.0, np.nan]), [np.argsort(levels), np.array([0, 1, 2])]
+    )
+    assert (found.middle, found.lowest.tolist(), found.highest.tolist()) == (
+        40.0,
+        [20.0, 20.0],
+        [60.0, 40.0],
+    )
     assert found.relative.tolist() == [1.0, 0.5]

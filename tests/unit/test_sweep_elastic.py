@@ -1,4 +1,6 @@
-"""Studies of drops on an elastic plate: signals, noise, failures, and modes that travel to the workers of a Dask scheduler."""
+"""Studies of drops on an elastic plate: signals, noise, failures, and modes that travel
+to the workers of a Dask scheduler.
+"""
 
 from __future__ import annotations
 
@@ -40,7 +42,9 @@ OVER: dict[str, Any] = {"drop.position.x": [0.0, 0.1], "drop.speed": [1.0, 2.0, 
 
 def elastic_table(**sweep: Any) -> dict[str, Any]:
     given = {"keep": ["impacts", "signals"], "over": OVER, **sweep}
-    return study_table(given, plate=PLATE, sensors=SENSORS, drop={"speed": 2.0}, run={"duration": "5 ms"})
+    return study_table(
+        given, plate=PLATE, sensors=SENSORS, drop={"speed": 2.0}, run={"duration": "5 ms"}
+    )
 
 
 @pytest.fixture(scope="module")
@@ -53,7 +57,9 @@ def own_store(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
 
 @pytest.fixture(scope="module")
 def study(own_store: Path, tmp_path_factory: pytest.TempPathFactory) -> vi.Study:
-    return vi.read_study(compute_study(vi.read_sweep(elastic_table()), tmp_path_factory.mktemp("study") / "out"))
+    return vi.read_study(
+        compute_study(vi.read_sweep(elastic_table()), tmp_path_factory.mktemp("study") / "out")
+    )
 
 
 def alone(*place: int) -> vi.Response:
@@ -79,10 +85,13 @@ def test_the_noise_is_that_of_one_drop_alone(study: vi.Study) -> None:
         (sensor,) = (one for one in alone(0, speed).problem.sensors if one.name == "a1")
         assert sensor.instrument is not None
         quiet = vi.Sensor("a1", rate=sensor.rate)
-        noise.append(study.values("signal_a1", 0, speed) - alone(0, speed).signals(quiet)["a1"].value)
+        noise.append(
+            study.values("signal_a1", 0, speed) - alone(0, speed).signals(quiet)["a1"].value
+        )
     for number, values in enumerate(noise):
         drawn = np.random.default_rng([zlib.crc32(b"a1"), 0, number]).standard_normal(len(values))
-        np.testing.assert_allclose(values, drawn, atol=1e-3)  # single precision of some hundred m/s2
+        # single precision of some hundred m/s2
+        np.testing.assert_allclose(values, drawn, atol=1e-3)
 
 
 def test_signals_have_a_time_and_units(study: vi.Study) -> None:
@@ -95,7 +104,9 @@ def test_signals_have_a_time_and_units(study: vi.Study) -> None:
 
 
 def test_what_is_left_in_vibration_is_kept(own_store: Path, tmp_path: Path) -> None:
-    """Of a drop that comes to rest, as a single run has it; there is nothing to say of one that flies."""
+    """Of a drop that comes to rest, as a single run has it; there is nothing to say of
+    one that flies.
+    """
     given = {
         "plate": PLATE,
         "contact": {"law": "lankarani-nikravesh", "restitution": 0.2},
@@ -128,7 +139,9 @@ def test_a_drop_outside_the_plate_fails_by_itself(own_store: Path, tmp_path: Pat
 
 @pytest.fixture
 def scheduler(tmp_path: Path) -> Iterator[tuple[str, list[subprocess.Popen[bytes]], Path]]:
-    """A Dask scheduler with two workers that do not see the store of this process: its address, the workers, their store."""
+    """A Dask scheduler with two workers that do not see the store of this process: its
+    address, the workers, their store.
+    """
     from distributed import Client
 
     store, file = tmp_path / "their store", tmp_path / "scheduler.json"
@@ -139,9 +152,26 @@ def scheduler(tmp_path: Path) -> Iterator[tuple[str, list[subprocess.Popen[bytes
         "cwd": tmp_path,
     }
     dask = [sys.executable, "-m", "distributed.cli."]
-    begin = [sys.executable, "-m", "distributed.cli.dask_scheduler", "--port", "0", "--no-dashboard", "--scheduler-file", str(file)]
+    begin = [
+        sys.executable,
+        "-m",
+        "distributed.cli.dask_scheduler",
+        "--port",
+        "0",
+        "--no-dashboard",
+        "--scheduler-file",
+        str(file),
+    ]
     running = [subprocess.Popen(begin, **quiet)]
-    join = [f"{dask[2]}dask_worker", "--scheduler-file", str(file), "--nthreads", "1", "--no-dashboard", "--no-nanny"]
+    join = [
+        f"{dask[2]}dask_worker",
+        "--scheduler-file",
+        str(file),
+        "--nthreads",
+        "1",
+        "--no-dashboard",
+        "--no-nanny",
+    ]
     running += [subprocess.Popen([*dask[:2], *join], **quiet) for _ in range(2)]
     try:
         wait_until(lambda: file.exists() and file.read_text() != "", *running)
@@ -173,7 +203,8 @@ def test_a_dask_worker_that_is_killed_costs_nothing(
     study: vi.Study, scheduler: tuple[str, list[subprocess.Popen[bytes]], Path], tmp_path: Path
 ) -> None:
     address, workers, _ = scheduler
-    over = {"drop.position.x": [0.0, 0.1], "drop.speed": {"from": 1.0, "to": 3.0, "number": 64}}  # several chunks
+    # several chunks
+    over = {"drop.position.x": [0.0, 0.1], "drop.speed": {"from": 1.0, "to": 3.0, "number": 64}}
     sweep = vi.read_sweep(elastic_table(over=over))
     killed = threading.Event()
 

@@ -1,4 +1,6 @@
-"""What stops a study loses nothing: kills, dead workers, a full disk, a damaged ledger, two sweeps in one folder, Ctrl-C."""
+"""What stops a study loses nothing: kills, dead workers, a full disk, a damaged ledger,
+two sweeps in one folder, Ctrl-C.
+"""
 
 from __future__ import annotations
 
@@ -42,7 +44,18 @@ MANY = {**RANDOM, "samples": 8000}
 
 
 def sweep_command(study: Path, folder: Path, *options: str) -> list[str]:
-    return [sys.executable, "-m", "vibroimpact", "sweep", str(study), "-o", str(folder), "--memory", str(SMALL), *options]
+    return [
+        sys.executable,
+        "-m",
+        "vibroimpact",
+        "sweep",
+        str(study),
+        "-o",
+        str(folder),
+        "--memory",
+        str(SMALL),
+        *options,
+    ]
 
 
 def results(folder: Path) -> tuple[bytes, bytes]:
@@ -54,18 +67,29 @@ def chunks_done(folder: Path) -> int:
 
 
 def killed_again_and_again(tmp_path: Path, kills: int, seed: int) -> None:
-    """Run a study that is killed at random moments, and compare it with one that was left in peace."""
+    """Run a study that is killed at random moments, and compare it with one that was left
+    in peace.
+    """
     study, random_moment = study_file(tmp_path, MANY), random.Random(seed)
     undisturbed = compute_study(vi.load_sweep(study), tmp_path / "undisturbed", memory=SMALL)
     folder, done, progressed, killed = tmp_path / "disturbed", 0, 0, 0
     for number in range(kills):
         begun = (folder / LEDGER).exists()
         options = ["--processes", str(1 + number % 2), *(["--resume"] if begun else [])]
-        running = subprocess.Popen(sweep_command(study, folder, *options), stderr=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
+        running = subprocess.Popen(
+            sweep_command(study, folder, *options),
+            stderr=subprocess.DEVNULL,
+            stdout=subprocess.DEVNULL,
+        )
         if not begun or number % 3:  # else at once, before anything is done
-            wait_until(lambda before=done, it=running: chunks_done(folder) > before or it.poll() is not None)
+            wait_until(
+                lambda before=done, it=running: (
+                    chunks_done(folder) > before or it.poll() is not None
+                )
+            )
         time.sleep(random_moment.uniform(0.0, 0.15))
-        if running.poll() is not None:  # on a busy machine it may do many chunks before it is seen, and be done
+        # on a busy machine it may do many chunks before it is seen, and be done
+        if running.poll() is not None:
             break
         running.kill()
         running.wait()
@@ -84,7 +108,9 @@ def test_a_study_that_is_killed_goes_on_to_the_same_bits(tmp_path: Path) -> None
 
 
 @pytest.mark.slow
-def test_a_study_that_is_killed_twenty_times_goes_on_to_the_same_bits(tmp_path: Path, population: Callable[[int], int]) -> None:
+def test_a_study_that_is_killed_twenty_times_goes_on_to_the_same_bits(
+    tmp_path: Path, population: Callable[[int], int]
+) -> None:
     killed_again_and_again(tmp_path, population(20), seed=2)
 
 
@@ -102,7 +128,11 @@ def test_no_process_outlives_the_one_that_leads(tmp_path: Path) -> None:
 
 
 def _children(parent: int) -> list[int]:
-    return [int(child) for task in Path(f"/proc/{parent}/task").iterdir() for child in (task / "children").read_text().split()]
+    return [
+        int(child)
+        for task in Path(f"/proc/{parent}/task").iterdir()
+        for child in (task / "children").read_text().split()
+    ]
 
 
 def _is_alive(process: int) -> bool:
@@ -115,14 +145,21 @@ def _is_alive(process: int) -> bool:
 @pytest.mark.slow
 def test_ctrl_c_says_how_to_go_on(tmp_path: Path) -> None:
     study, folder = study_file(tmp_path, MANY), tmp_path / "out"
-    running = subprocess.Popen(sweep_command(study, folder, "--processes", "2"), stderr=subprocess.PIPE, text=True, start_new_session=True)
+    running = subprocess.Popen(
+        sweep_command(study, folder, "--processes", "2"),
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+    )
     wait_until(lambda: chunks_done(folder) > 0, running)
     os.killpg(running.pid, signal.SIGINT)  # as a terminal does: all processes of the group get it
     told = running.communicate()[1]
     assert running.returncode == 130
     first, last = told.strip().splitlines()
     assert first == "vibroimpact: stopping after what is under way; Ctrl-C once more stops at once"
-    assert last.startswith("vibroimpact: interrupted; completed drops are kept; continue with: vibroimpact sweep")
+    assert last.startswith(
+        "vibroimpact: interrupted; completed drops are kept; continue with: vibroimpact sweep"
+    )
     assert f"-o {folder} --resume" in last
     assert 0 < chunks_done(folder) < 40
     compute_study(vi.load_sweep(study), folder, resume=True)
@@ -136,7 +173,9 @@ def _nothing() -> None:
 
 
 def _dies(mark: str, always: bool, first: int, points: Any) -> ChunkResult:
-    """Compute a chunk; the one that begins at drop 100 ends its process, always or the first time."""
+    """Compute a chunk; the one that begins at drop 100 ends its process, always or the
+    first time.
+    """
     if first == 100 and (always or not Path(mark).exists()):
         Path(mark).touch()
         os.kill(os.getpid(), signal.SIGKILL)
@@ -152,7 +191,13 @@ def _with_a_death(tmp_path: Path, *, always: bool) -> dict[int, ChunkResult]:
         found[chunk.number] = result
 
     work = partial(_dies, str(tmp_path / "mark"), always)
-    run_chunks(work, lambda chunk: sweep.plan.points(chunk.first, chunk.size), chunks, partial(processes, 2, _nothing, tmp_path), keep)
+    run_chunks(
+        work,
+        lambda chunk: sweep.plan.points(chunk.first, chunk.size),
+        chunks,
+        partial(processes, 2, _nothing, tmp_path),
+        keep,
+    )
     return found
 
 
@@ -162,7 +207,9 @@ def test_a_worker_that_is_killed_costs_nothing(tmp_path: Path) -> None:
     assert (tmp_path / "mark").exists()
     sweep = vi.read_sweep(study_table(RANDOM))
     for number in range(4):
-        alone = compute_points(sweep.table, ("impacts",), 50 * number, sweep.plan.points(50 * number, 50))
+        alone = compute_points(
+            sweep.table, ("impacts",), 50 * number, sweep.plan.points(50 * number, 50)
+        )
         assert not found[number].failures
         for name, values in alone.arrays.items():
             assert values.tobytes() == found[number].arrays[name].tobytes()
@@ -173,17 +220,24 @@ def test_a_chunk_that_kills_every_worker_is_given_up_and_the_rest_go_on(tmp_path
     found = _with_a_death(tmp_path, always=True)
     assert len(found) == 4
     assert found[2].failures == dict.fromkeys(
-        range(50), "the process that computed it died, again and again; it may have run out of memory"
+        range(50),
+        "the process that computed it died, again and again; it may have run out of memory",
     )
     assert not any(found[number].failures for number in (0, 1, 3))
 
 
-def test_a_chunk_of_which_nothing_came_has_its_place_in_the_results(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_chunk_of_which_nothing_came_has_its_place_in_the_results(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     sweep = vi.read_sweep(study_table({**RANDOM, "samples": 500}))
     whole = vi.read_study(compute_study(sweep, tmp_path / "whole", memory=SMALL))
 
     def compute(table: Any, keep: Any, first: int, points: Any, window: Any) -> ChunkResult:
-        return compute_points(table, keep, first, points, window) if first != 200 else ChunkResult({}, dict.fromkeys(range(200), "it died"))
+        return (
+            compute_points(table, keep, first, points, window)
+            if first != 200
+            else ChunkResult({}, dict.fromkeys(range(200), "it died"))
+        )
 
     monkeypatch.setattr(computing, "compute_points", compute)
     study = vi.read_study(compute_study(sweep, tmp_path / "out", memory=SMALL))
@@ -191,7 +245,9 @@ def test_a_chunk_of_which_nothing_came_has_its_place_in_the_results(tmp_path: Pa
     for name in ("max_force_N", "largest_force_N"):
         values, expected = study.values(name), whole.values(name)
         assert np.isnan(values[200:400]).all()
-        np.testing.assert_array_equal(np.delete(values, slice(200, 400), axis=0), np.delete(expected, slice(200, 400), axis=0))
+        np.testing.assert_array_equal(
+            np.delete(values, slice(200, 400), axis=0), np.delete(expected, slice(200, 400), axis=0)
+        )
     assert set(study.values("outcome")[200:400]) == {list(vi.Outcome).index(vi.Outcome.FAILED)}
 
 
@@ -216,14 +272,26 @@ def test_a_worker_that_dies_while_a_chunk_is_kept_costs_nothing() -> None:
 
     kept: list[int] = []
     chunks = [Span(number, number, 1) for number in range(6)]
-    run_chunks(lambda first, points: ChunkResult({}, {}), lambda chunk: {}, chunks, start, lambda chunk, _: kept.append(chunk.number))
+    run_chunks(
+        lambda first, points: ChunkResult({}, {}),
+        lambda chunk: {},
+        chunks,
+        start,
+        lambda chunk, _: kept.append(chunk.number),
+    )
     assert sorted(set(kept)) == list(range(6))
 
 
 @pytest.mark.slow
 def test_processes_that_never_begin_are_told_and_no_chunk_is_blamed(tmp_path: Path) -> None:
     with pytest.raises(vi.ComputationError, match="die before they have computed anything"):
-        run_chunks(_dies, lambda chunk: {}, [Span(0, 0, 1)], partial(processes, 1, _cannot_begin, tmp_path), lambda *_: None)  # type: ignore[arg-type]
+        run_chunks(
+            _dies,
+            lambda chunk: {},
+            [Span(0, 0, 1)],
+            partial(processes, 1, _cannot_begin, tmp_path),
+            lambda *_: None,
+        )  # type: ignore[arg-type]
 
 
 def test_a_scheduler_that_goes_away_is_told() -> None:
@@ -247,8 +315,18 @@ def test_a_scheduler_that_goes_away_is_told() -> None:
 
 def _small_disk() -> bool:
     """Can a process make a file system of its own?"""
-    command = ["unshare", "--map-root-user", "--mount", "sh", "-c", "mount -t tmpfs -o size=1m tmpfs /mnt"]
-    return shutil.which("unshare") is not None and subprocess.run(command, capture_output=True, check=False).returncode == 0
+    command = [
+        "unshare",
+        "--map-root-user",
+        "--mount",
+        "sh",
+        "-c",
+        "mount -t tmpfs -o size=1m tmpfs /mnt",
+    ]
+    return (
+        shutil.which("unshare") is not None
+        and subprocess.run(command, capture_output=True, check=False).returncode == 0
+    )
 
 
 @pytest.mark.slow
@@ -271,10 +349,15 @@ def test_a_full_disk_ends_the_study_and_room_lets_it_go_on(tmp_path: Path) -> No
     assert "No space left on device" in ran.stderr
     assert "see to the disk, then go on with --resume" in ran.stderr
     assert "Traceback" not in ran.stderr
-    lines = [line for line in ran.stdout.splitlines() if line.startswith("status") or line.strip().isdigit()]
+    lines = [
+        line
+        for line in ran.stdout.splitlines()
+        if line.startswith("status") or line.strip().isdigit()
+    ]
     assert lines[0] == "status 1"
     assert 0 < int(lines[1]) < 20
-    assert lines[2:] == ["status 1", "status 0"]  # room for the chunks, not for what they are put together to; then for all
+    # room for the chunks, not for what they are put together to; then for all
+    assert lines[2:] == ["status 1", "status 0"]
     assert results(tmp_path / "resumed") == results(undisturbed)
 
 
@@ -290,7 +373,10 @@ def test_a_disk_that_fills_while_the_results_are_put_together_is_told(tmp_path: 
     with pytest.MonkeyPatch.context() as patched:
         patched.setattr(study_dataset, "_reserve_space", enough_for_now)
         try:
-            with pytest.raises(vi.ComputationError, match=r"the results can't be put together: File too large; see to the disk"):
+            with pytest.raises(
+                vi.ComputationError,
+                match=r"the results can't be put together: File too large; see to the disk",
+            ):
                 compute_study(sweep, tmp_path / "out")
         finally:
             resource.setrlimit(resource.RLIMIT_FSIZE, limits)
@@ -298,7 +384,9 @@ def test_a_disk_that_fills_while_the_results_are_put_together_is_told(tmp_path: 
     assert results(tmp_path / "out") == expected
 
 
-def test_a_chunk_that_can_not_be_written_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_chunk_that_can_not_be_written_is_told(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     sweep = vi.read_sweep(study_table(RANDOM))
 
     def full(descriptor: int) -> None:
@@ -306,7 +394,11 @@ def test_a_chunk_that_can_not_be_written_is_told(tmp_path: Path, monkeypatch: py
 
     with monkeypatch.context() as patched:
         patched.setattr(os, "fsync", full)
-        with pytest.raises(vi.ComputationError, match=r"000000.h5: the chunk can't be written: No space left on device; see to the disk"):
+        with pytest.raises(
+            vi.ComputationError,
+            match=r"000000.h5: the chunk can't be written: No space left on device; see to the "
+            r"disk",
+        ):
             compute_study(sweep, tmp_path / "out")
     assert list((tmp_path / "out" / "chunks").iterdir()) == []
     compute_study(sweep, tmp_path / "out", resume=True)
@@ -339,13 +431,17 @@ def test_a_second_sweep_in_a_folder_is_refused(tmp_path: Path) -> None:
             with pytest.raises(vi.InputError, match="another sweep is at work in this folder"):
                 compute_study(sweep, folder, **options)  # type: ignore[arg-type]
     with pytest.raises(
-        vi.InputError, match=r"a study is there already; continue it with --resume if it is this one, replace it with --force"
+        vi.InputError,
+        match=r"a study is there already; continue it with --resume if it is this one, replace "
+        r"it with --force",
     ):
         compute_study(sweep, folder)
     compute_study(sweep, folder, resume=True)
 
 
-def test_the_journal_of_a_ledger_whose_process_was_killed_goes_with_the_next_opening(tmp_path: Path) -> None:
+def test_the_journal_of_a_ledger_whose_process_was_killed_goes_with_the_next_opening(
+    tmp_path: Path,
+) -> None:
     make_ledger(tmp_path, {}, 10, 10)
     script = f"""
         import os, signal
@@ -367,12 +463,16 @@ def test_a_damaged_ledger_is_refused_and_made_anew_from_the_chunks(tmp_path: Pat
     stopped(folder, sweep, after=600)
     data = (folder / LEDGER).read_bytes()
     (folder / LEDGER).write_bytes(data[:4096] + os.urandom(len(data) - 4096))
-    with pytest.raises(vi.InputError, match=r"the ledger is damaged .* delete this file and go on with --resume"):
+    with pytest.raises(
+        vi.InputError, match=r"the ledger is damaged .* delete this file and go on with --resume"
+    ):
         compute_study(sweep, folder, resume=True)
     (folder / LEDGER).unlink()
     (folder / "chunks" / "000001.h5").write_bytes(b"torn")
     computed = []
-    compute_study(sweep, folder, resume=True, memory=SMALL, progress=lambda done, total: computed.append(done))
+    compute_study(
+        sweep, folder, resume=True, memory=SMALL, progress=lambda done, total: computed.append(done)
+    )
     assert computed == [400, 600, 800, 1000]  # two of the three chunks that were there are taken up
     assert results(folder) == results(compute_study(sweep, tmp_path / "undisturbed", memory=SMALL))
 
@@ -382,11 +482,18 @@ def test_chunks_of_another_size_are_not_taken_up(tmp_path: Path) -> None:
     stopped(folder, sweep, after=600)
     (folder / LEDGER).unlink()
     compute_study(sweep, folder, resume=True, memory=2 * SMALL)
-    np.testing.assert_array_equal(vi.read_study(folder).values("first_restitution_asked"), sweep.plan.columns["contact.restitution"])
+    np.testing.assert_array_equal(
+        vi.read_study(folder).values("first_restitution_asked"),
+        sweep.plan.columns["contact.restitution"],
+    )
 
 
 def test_a_chunk_that_is_not_as_it_was_written_is_computed_again(tmp_path: Path) -> None:
-    sweep, folder, told = vi.read_sweep(study_table({**RANDOM, "samples": 1000})), tmp_path / "out", []
+    sweep, folder, told = (
+        vi.read_sweep(study_table({**RANDOM, "samples": 1000})),
+        tmp_path / "out",
+        [],
+    )
     stopped(folder, sweep, after=600)
     file = folder / "chunks" / "000001.h5"
     file.write_bytes(file.read_bytes()[:-1] + b"x")
@@ -399,21 +506,33 @@ def test_another_study_does_not_go_on_here(tmp_path: Path, monkeypatch: pytest.M
     sweep, folder = vi.read_sweep(study_table({**RANDOM, "samples": 600})), tmp_path / "out"
     stopped(folder, sweep)
     changed = vi.read_sweep(study_table({**RANDOM, "samples": 600, "seed": 1}))
-    with pytest.raises(vi.InputError, match=r"the study has changed since it was begun here.*study.toml in it is what was begun"):
+    with pytest.raises(
+        vi.InputError,
+        match=r"the study has changed since it was begun here.*study.toml in it is what was begun",
+    ):
         compute_study(changed, folder, resume=True)
     with monkeypatch.context() as patched:
         patched.setattr(computing, "__version__", "9.9")
-        with pytest.raises(vi.InputError, match=r"begun with vibroimpact .*, and this is 9.9; go on with that version"):
+        with pytest.raises(
+            vi.InputError,
+            match=r"begun with vibroimpact .*, and this is 9.9; go on with that version",
+        ):
             compute_study(sweep, folder, resume=True)
-    compute_study(vi.load_sweep(folder / "study.toml"), folder, resume=True)  # what was begun is there, and is the same
-    compute_study(vi.load_sweep(folder / "study.toml"), folder, resume=True)  # nothing is left to do
-    with pytest.raises(vi.InputError, match=r"this is a study of many drops, not the result of a run"):
+    # what was begun is there, and is the same
+    compute_study(vi.load_sweep(folder / "study.toml"), folder, resume=True)
+    # nothing is left to do
+    compute_study(vi.load_sweep(folder / "study.toml"), folder, resume=True)
+    with pytest.raises(
+        vi.InputError, match=r"this is a study of many drops, not the result of a run"
+    ):
         vi.read_result(folder)
 
 
 def test_resume_begins_where_nothing_was_begun_and_replaces_nothing(tmp_path: Path) -> None:
     sweep = vi.read_sweep(study_table({**RANDOM, "samples": 10}))
-    begun, again = (compute_study(sweep, tmp_path / name, resume=name == "begun") for name in ("begun", "again"))
+    begun, again = (
+        compute_study(sweep, tmp_path / name, resume=name == "begun") for name in ("begun", "again")
+    )
     assert results(begun) == results(again)
     (tmp_path / "other").mkdir()
     (tmp_path / "other" / "thesis.tex").write_text("years")
@@ -443,9 +562,28 @@ def test_this_process_computes_as_well() -> None:
 
 
 def interrupted_after(seconds: float, study: Path, folder: Path) -> tuple[int, str]:
-    """Run a study of two processes, and send an interrupt to all of them, as a terminal does; return its status and what it told."""
-    command = [sys.executable, "-m", "vibroimpact", "sweep", str(study), "-o", str(folder), "--processes", "2", "--yes"]
-    running = subprocess.Popen(command, stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True, start_new_session=True)
+    """Run a study of two processes, and send an interrupt to all of them, as a terminal
+    does; return its status and what it told.
+    """
+    command = [
+        sys.executable,
+        "-m",
+        "vibroimpact",
+        "sweep",
+        str(study),
+        "-o",
+        str(folder),
+        "--processes",
+        "2",
+        "--yes",
+    ]
+    running = subprocess.Popen(
+        command,
+        stderr=subprocess.PIPE,
+        stdout=subprocess.DEVNULL,
+        text=True,
+        start_new_session=True,
+    )
     time.sleep(seconds)
     os.killpg(running.pid, signal.SIGINT)
     told = running.communicate(timeout=300)[1]
@@ -458,10 +596,13 @@ def test_ctrl_c_is_never_lost(tmp_path: Path, population: Callable[[int], int]) 
     for number in range(0, 24, 24 // population(24)):
         status, told = interrupted_after(0.4 + 0.2 * number, study, tmp_path / f"out{number}")
         assert status in (1, 130), (number, told)  # 1: before the command has begun
-        assert told.count("Traceback") <= (number < 3), (number, told)  # of the interpreter, which was starting
+        # of the interpreter, which was starting
+        assert told.count("Traceback") <= (number < 3), (number, told)
 
 
-def test_an_interrupt_waits_while_a_process_is_started_and_is_not_lost(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_interrupt_waits_while_a_process_is_started_and_is_not_lost(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     from multiprocessing.context import SpawnProcess
 
     from vibroimpact.studies import workers
@@ -469,7 +610,8 @@ def test_an_interrupt_waits_while_a_process_is_started_and_is_not_lost(monkeypat
     seen: list[str] = []
 
     def starts(self: object) -> None:
-        signal.pthread_kill(threading.get_ident(), signal.SIGINT)  # what goes to the process may wake a thread of pytest
+        # what goes to the process may wake a thread of pytest
+        signal.pthread_kill(threading.get_ident(), signal.SIGINT)
         seen.append("started")
 
     monkeypatch.setattr(SpawnProcess, "start", starts)

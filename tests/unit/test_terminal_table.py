@@ -1,4 +1,6 @@
-"""Tables and letters for terminals of any width and encoding: nothing is cut, and nothing fails to be printed."""
+"""Tables and letters for terminals of any width and encoding: nothing is cut, and nothing
+fails to be printed.
+"""
 
 from __future__ import annotations
 
@@ -40,7 +42,13 @@ def test_numbers_that_do_not_fit_go_on_in_a_second_block(width: int) -> None:
 
 def test_numbers_are_aligned_at_their_points() -> None:
     _, *lines = printed(
-        TerminalTable([TerminalColumn("row", list("abcd"), text=True), TerminalColumn("x", ["2.26", "210", "\u221270.5", "\u2013"])]), 60
+        TerminalTable(
+            [
+                TerminalColumn("row", list("abcd"), text=True),
+                TerminalColumn("x", ["2.26", "210", "\u221270.5", "\u2013"]),
+            ]
+        ),
+        60,
     )
     assert [line.find(".") for line in lines if "." in line] == [lines[0].index(".")] * 2
     assert lines[1].rstrip().endswith("210")
@@ -62,7 +70,18 @@ def test_long_words_go_below_their_row() -> None:
 
 @pytest.mark.parametrize("width", [40, 60, 80])
 def test_facts_keep_names_whole(width: int) -> None:
-    lines = printed(facts([("lankarani-nikravesh", "restitution = 0.65", "Stopped after 5 impacts, at 4.67886 s.")]), width)
+    lines = printed(
+        facts(
+            [
+                (
+                    "lankarani-nikravesh",
+                    "restitution = 0.65",
+                    "Stopped after 5 impacts, at 4.67886 s.",
+                )
+            ]
+        ),
+        width,
+    )
     assert "lankarani-nikravesh" in lines[0]
     assert "4.67886" in " ".join(lines)
 
@@ -106,7 +125,9 @@ def test_every_letter_has_a_readable_stand_in(encoding: str) -> None:
         shown = encodable(words, encoding)
         shown.encode(encoding if named else "ascii")
         assert "?" not in shown
-    every = "".join(chr(code) for code in range(0x20, 0x3000) if unicodedata.category(chr(code)) != "Cn")
+    every = "".join(
+        chr(code) for code in range(0x20, 0x3000) if unicodedata.category(chr(code)) != "Cn"
+    )
     encodable(every, encoding).encode(encoding if named else "ascii")
 
 
@@ -124,8 +145,15 @@ def test_stand_ins_read_as_they_should() -> None:
 
 @pytest.mark.parametrize("encoding", ["ascii", "cp1252"])
 def test_lines_fit_after_letters_have_their_stand_ins(encoding: str) -> None:
-    table = TerminalTable([TerminalColumn("row", ["a"], text=True), *(numbers("x", "m/s²", ["1.2·10⁻⁷"]) for _ in range(6))])
+    table = TerminalTable(
+        [
+            TerminalColumn("row", ["a"], text=True),
+            *(numbers("x", "m/s²", ["1.2·10⁻⁷"]) for _ in range(6)),
+        ]
+    )
     for width in (30, 40, 60):
-        lines = printed(table, width, encoding) + printed(Text("2.0·10⁻⁷ m/s² ≤ 3 " * 8), width, encoding)
+        lines = printed(table, width, encoding) + printed(
+            Text("2.0·10⁻⁷ m/s² ≤ 3 " * 8), width, encoding
+        )
         assert max(map(len, lines)) <= width
         assert len(re.findall(r"1\.2e-7", " ".join(lines))) == 6

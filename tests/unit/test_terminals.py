@@ -1,4 +1,6 @@
-"""What every command prints, in terminals of any width and encoding: the same numbers, whole, and no traceback."""
+"""What every command prints, in terminals of any width and encoding: the same numbers,
+whole, and no traceback.
+"""
 
 from __future__ import annotations
 
@@ -49,7 +51,9 @@ from vibroimpact.studies.explain_sweep import explain_sweep
 from vibroimpact.studies.read_sweep import read_sweep
 from vibroimpact.studies.report.text import study_summary
 
-_NUMBER = re.compile(r"(?<![\w.])[-\u2212+]?\d+(?:\.\d+)?(?:·10[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+|e[-+]?\d+)?(?![\w.]*\d)")
+_NUMBER = re.compile(
+    r"(?<![\w.])[-\u2212+]?\d+(?:\.\d+)?(?:·10[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+|e[-+]?\d+)?(?![\w.]*\d)"
+)
 _WIDTHS = (60, 80, 120, 160)
 
 Printed = dict[str, Callable[[int], RenderableType]]
@@ -79,14 +83,19 @@ def commands(tmp_path_factory: pytest.TempPathFactory, variable: vi.Response) ->
     elastic, rigid = vi.read_case(ELASTIC), result_of(variable)
     rung = result_of(vi.simulate(elastic))
     modes = compute_modes(elastic)
-    compared = compare_laws(vi.load_case("paper:type1-theory"), ["hunt-crossley", "flores", "newton", "jankowski"])
+    compared = compare_laws(
+        vi.load_case("paper:type1-theory"), ["hunt-crossley", "flores", "newton", "jankowski"]
+    )
     case = vi.load_case("paper:type1-constant")
     calibrated = calibrate(case, vi.load_case("paper:type1-theory"))
     sweep = read_sweep(study_table())
     study = vi.read_study(compute_study(sweep, folder / "study"))
     population = vi.load_sweep("signals:coal-gangue", 400)
     drop = told_case("paper:type1-variable")
-    signals = [vi.Record(name, signal.value, signal.sensor.rate, signal.sensor.unit) for name, signal in rung.signals.items()]
+    signals = [
+        vi.Record(name, signal.value, signal.sensor.rate, signal.sensor.unit)
+        for name, signal in rung.signals.items()
+    ]
     table = vi.record_table([*signals, vi.Record("silence", [0.0] * 100, 20e3, "V")])
     knocks = write_knocks(folder / "knocks", rocks=8, falls=6)
     recognition = vi.recognise(knocks, folds=2, seeds=1)
@@ -103,7 +112,9 @@ def commands(tmp_path_factory: pytest.TempPathFactory, variable: vi.Response) ->
         "dataset": lambda _: explain_sweep(population),
         "bound": lambda _: bound_summary(bound_of(population)),
         "export": lambda _: format_table(),
-        "export, done": lambda _: export_summary(drop, find_export_format("lammps"), [folder / "drop.in"]),
+        "export, done": lambda _: export_summary(
+            drop, find_export_format("lammps"), [folder / "drop.in"]
+        ),
         "features": lambda _: table_summary(table),
         "features --list": lambda _: feature_list(),
         "recognise": lambda _: recognition_summary(recognition),
@@ -115,7 +126,9 @@ def commands(tmp_path_factory: pytest.TempPathFactory, variable: vi.Response) ->
         "materials NAME": lambda _: material_sheet("granite"),
         "units": lambda _: unit_table(5.115e8, "N/m^1.5"),
         "units --to": lambda _: converted(3.0, "N/µm", "N/m"),
-        "doctor": lambda _: versions_table([row for row in diagnosis_rows(diagnose()) if row[0] not in CHANGING]),
+        "doctor": lambda _: versions_table(
+            [row for row in diagnosis_rows(diagnose()) if row[0] not in CHANGING]
+        ),
     }
 
 
@@ -178,7 +191,9 @@ def test_every_command_is_here(commands: Printed) -> None:
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_a_narrow_terminal_shows_no_number_that_a_wide_one_does_not(commands: Printed, name: str) -> None:
+def test_a_narrow_terminal_shows_no_number_that_a_wide_one_does_not(
+    commands: Printed, name: str
+) -> None:
     whole = set(_NUMBER.findall(" ".join(shown(commands[name](240), 240))))
     for width in _WIDTHS:
         lines = shown(commands[name](width), width)
@@ -189,7 +204,9 @@ def test_a_narrow_terminal_shows_no_number_that_a_wide_one_does_not(commands: Pr
 
 @pytest.mark.parametrize("encoding", ["ascii", "cp1252"])
 @pytest.mark.parametrize("name", NAMES)
-def test_every_command_is_readable_in_every_encoding(commands: Printed, name: str, encoding: str) -> None:
+def test_every_command_is_readable_in_every_encoding(
+    commands: Printed, name: str, encoding: str
+) -> None:
     for width in (60, 160):
         lines = shown(commands[name](width), width, encoding)
         asked = "\n".join(shown(commands[name](width), width)).count("?")
@@ -199,7 +216,11 @@ def test_every_command_is_readable_in_every_encoding(commands: Printed, name: st
 
 
 def test_verdicts_of_the_reproduction_fit() -> None:
-    rows = {"rows": [{"verdict": verdict.value, "kind": "fitted model"} for verdict in Verdict] * 30, "title": "", "text": ""}
+    rows = {
+        "rows": [{"verdict": verdict.value, "kind": "fitted model"} for verdict in Verdict] * 30,
+        "title": "",
+        "text": "",
+    }
     for width in (40, 60):
         lines = shown(verdict_table({"table1": rows, "section5.2": rows}), width)
         assert max(map(len, lines)) <= width
@@ -207,7 +228,8 @@ def test_verdicts_of_the_reproduction_fit() -> None:
         lines = shown(kind_summary({"table1": rows}), width)
         assert max(map(len, lines)) <= width
         found = _NUMBER.findall(" ".join(lines))
-        assert (found.count("0"), found.count("30"), len(found)) == (16, 4, 21)  # and the 2 of "Type 2"
+        # and the 2 of "Type 2"
+        assert (found.count("0"), found.count("30"), len(found)) == (16, 4, 21)
 
 
 @pytest.mark.parametrize("encoding", ["ascii", "cp1252", "utf-8"])
@@ -228,7 +250,9 @@ def test_verdicts_of_the_reproduction_fit() -> None:
     ],
     ids=" ".join,
 )
-def test_no_command_ends_in_a_traceback(arguments: tuple[str, ...], encoding: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_no_command_ends_in_a_traceback(
+    arguments: tuple[str, ...], encoding: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
     streams = [io.TextIOWrapper(io.BytesIO(), encoding=encoding) for _ in range(2)]
     monkeypatch.setattr("sys.stdout", streams[0])
     monkeypatch.setattr("sys.stderr", streams[1])
@@ -245,9 +269,26 @@ def test_no_command_ends_in_a_traceback(arguments: tuple[str, ...], encoding: st
 
 @pytest.mark.slow
 def test_a_run_in_a_terminal_of_another_time(tmp_path: Path) -> None:
-    surroundings = {name: value for name, value in os.environ.items() if not name.startswith(("LC_", "LANG", "PYTHONIOENC", "PYTHONUTF8"))}
-    surroundings |= {"LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0", "PYTHONWARNDEFAULTENCODING": "1"}
-    command = [sys.executable, "-m", "vibroimpact", "run", "paper:type1-variable", "-o", str(tmp_path / "out")]
+    surroundings = {
+        name: value
+        for name, value in os.environ.items()
+        if not name.startswith(("LC_", "LANG", "PYTHONIOENC", "PYTHONUTF8"))
+    }
+    surroundings |= {
+        "LC_ALL": "C",
+        "PYTHONUTF8": "0",
+        "PYTHONCOERCECLOCALE": "0",
+        "PYTHONWARNDEFAULTENCODING": "1",
+    }
+    command = [
+        sys.executable,
+        "-m",
+        "vibroimpact",
+        "run",
+        "paper:type1-variable",
+        "-o",
+        str(tmp_path / "out"),
+    ]
     done = subprocess.run(command, capture_output=True, env=surroundings, timeout=300, check=False)
     assert done.returncode == 0, done.stderr
     assert b"[us]" in done.stdout
@@ -255,7 +296,9 @@ def test_a_run_in_a_terminal_of_another_time(tmp_path: Path) -> None:
     assert b"vibroimpact/" not in done.stderr  # where an EncodingWarning names our own line
 
 
-@pytest.mark.parametrize("arguments", one_in(2, [(("schema",),), (("units", "5", "N/m"),)], " ".join))
+@pytest.mark.parametrize(
+    "arguments", one_in(2, [(("schema",),), (("units", "5", "N/m"),)], " ".join)
+)
 def test_a_pipe_that_is_closed_early_ends_quietly(arguments: tuple[str, ...]) -> None:
     command = [sys.executable, "-m", "vibroimpact", *arguments]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as running:

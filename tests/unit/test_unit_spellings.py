@@ -1,4 +1,6 @@
-"""Units in the spellings that people and instruments write: one reader for cases, tables, universal files and the command `units`."""
+"""Units in the spellings that people and instruments write: one reader for cases, tables,
+universal files and the command `units`.
+"""
 
 from __future__ import annotations
 
@@ -65,7 +67,11 @@ _FACTORS = {
 def spellings() -> list[tuple[str, str]]:
     """Return the rows of the page's table, as SI unit and spelling."""
     page = Path(ROOT, "docs/conventions.md").read_text(encoding="utf-8")
-    rows = re.findall(r"^\| [a-z ]+, (\S+(?: s(?:\^2)?/m)?) \| (.*) \|$", page.partition("## Spellings of units")[2], re.MULTILINE)
+    rows = re.findall(
+        r"^\| [a-z ]+, (\S+(?: s(?:\^2)?/m)?) \| (.*) \|$",
+        page.partition("## Spellings of units")[2],
+        re.MULTILINE,
+    )
     return [(unit, word) for unit, words in rows for word in re.findall(r"`([^`]+)`", words)]
 
 
@@ -85,13 +91,19 @@ def test_in_a_case(unit: str, word: str) -> None:
 
 
 @pytest.mark.parametrize(("unit", "word"), QUANTITIES)
-def test_by_the_command(unit: str, word: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
-    assert vi.convert_units(2.5, word, unit) == pytest.approx(2.5 * _FACTORS.get(word, 1.0), rel=1e-14)
+def test_by_the_command(
+    unit: str, word: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert vi.convert_units(2.5, word, unit) == pytest.approx(
+        2.5 * _FACTORS.get(word, 1.0), rel=1e-14
+    )
     monkeypatch.setattr("sys.argv", ["vibroimpact", "units", "2.5", word, "--to", unit])
     with pytest.raises(SystemExit) as left:
         main()
     assert not left.value.code
-    assert f"{2.5 * _FACTORS.get(word, 1.0):.10g} {unit}" in " ".join(capsys.readouterr().out.split())
+    assert f"{2.5 * _FACTORS.get(word, 1.0):.10g} {unit}" in " ".join(
+        capsys.readouterr().out.split()
+    )
 
 
 @pytest.mark.parametrize(("unit", "word"), OF_SIGNALS)
@@ -116,9 +128,18 @@ def universal_file(unit: bytes, kind: int = 1) -> bytes:
         b"    1         0    0         0 NONE               0   0 NONE               0   0",
     ]
     head += [b"         4         2         1  0.00000e+00  5.00000e-04  0.00000e+00"]
-    head += [b"        17    0    0    0 time                 s", f"{kind:10d}    0    0    0 channel 1            ".encode() + unit]
+    head += [
+        b"        17    0    0    0 time                 s",
+        f"{kind:10d}    0    0    0 channel 1            ".encode() + unit,
+    ]
     return b"\n".join(
-        [*head, *2 * [b"         0    0    0    0 NONE                 NONE"], f"{1.5:20.11e}{-2.0:20.11e}".encode(), b"    -1", b""]
+        [
+            *head,
+            *2 * [b"         0    0    0    0 NONE                 NONE"],
+            f"{1.5:20.11e}{-2.0:20.11e}".encode(),
+            b"    -1",
+            b"",
+        ]
     )
 
 
@@ -130,18 +151,29 @@ def test_a_label_in_either_encoding(encoding: str, tmp_path: Path) -> None:
     (found,) = vi.read_records(path)
     assert (found.unit, found.value.tolist()) == ("m/s2", [1.5, -2.0])
     path.write_bytes(universal_file("µm".encode(encoding), kind=8))
-    np.testing.assert_allclose(read_universal_record(path, None, True).values, [1.5e-6, -2e-6], rtol=1e-14)
+    np.testing.assert_allclose(
+        read_universal_record(path, None, True).values, [1.5e-6, -2e-6], rtol=1e-14
+    )
 
 
 def test_a_measured_table_in_another_spelling(tmp_path: Path) -> None:
     def calibrated(header: str) -> np.ndarray:
-        (path := tmp_path / "e.csv").write_text(f"{header}\n1,0.8\n2,0.75\n4,0.7\n", encoding="utf-8")
+        (path := tmp_path / "e.csv").write_text(
+            f"{header}\n1,0.8\n2,0.75\n4,0.7\n", encoding="utf-8"
+        )
         contact = {"law": "lankarani-nikravesh", "restitution": 0.7}
         return calibrate_case(
-            read_calibration(plain_case(contact=contact, calibrate={"target": str(path), "degree": 1, "air": False}))
+            read_calibration(
+                plain_case(
+                    contact=contact, calibrate={"target": str(path), "degree": 1, "air": False}
+                )
+            )
         ).values
 
-    np.testing.assert_array_equal(calibrated("approach speed [m·s⁻¹],restitution [-]"), calibrated("approach_speed_m_s,restitution"))
+    np.testing.assert_array_equal(
+        calibrated("approach speed [m·s⁻¹],restitution [-]"),
+        calibrated("approach_speed_m_s,restitution"),
+    )
 
 
 def test_a_motion_of_the_supports_in_another_spelling(tmp_path: Path) -> None:
@@ -160,7 +192,9 @@ def test_a_motion_of_the_supports_in_another_spelling(tmp_path: Path) -> None:
 
 def test_a_channel_by_the_cell_of_the_header(tmp_path: Path) -> None:
     path = tmp_path / "audio.csv"
-    path.write_text('"Time (s)","Recording (a.u.)","Zweiter Kanal [V]"\n0,1,2\n0.1,3,4\n', encoding="utf-8")
+    path.write_text(
+        '"Time (s)","Recording (a.u.)","Zweiter Kanal [V]"\n0,1,2\n0.1,3,4\n', encoding="utf-8"
+    )
     for name in ("recording", "Recording", "Recording (a.u.)"):
         found = vi.one_record(path, name)
         assert (found.value.tolist(), found.unit) == ([1.0, 3.0], "1")
@@ -172,15 +206,34 @@ def test_a_channel_by_the_cell_of_the_header(tmp_path: Path) -> None:
 def test_a_sensor_whose_name_has_capitals(tmp_path: Path) -> None:
     """The names of a table's columns are read in small letters, with "_" for blanks."""
     path = tmp_path / "a.csv"
-    path.write_text("time [s],Acc 1 [m/s²]\n" + "".join(f"{0.001 * n:.3f},{n % 7}\n" for n in range(100)), encoding="utf-8")
+    path.write_text(
+        "time [s],Acc 1 [m/s²]\n" + "".join(f"{0.001 * n:.3f},{n % 7}\n" for n in range(100)),
+        encoding="utf-8",
+    )
     sensors = [{"name": "Acc 1", "position": [0.1, 0.05], "rate": 1000.0}]
-    plate = {"size": [0.52, 0.42, 0.008], "material": "steel", "model": "elastic", "modes": 5, "supports": "clamped"}
+    plate = {
+        "size": [0.52, 0.42, 0.008],
+        "material": "steel",
+        "model": "elastic",
+        "modes": 5,
+        "supports": "clamped",
+    }
     problem = problem_of(vi.read_case(plain_case(plate=plate, sensors=sensors)))
-    assert [one.name for one in sensors_of(problem.sensors, list(vi.read_records(path)))] == ["Acc 1"]
+    assert [one.name for one in sensors_of(problem.sensors, list(vi.read_records(path)))] == [
+        "Acc 1"
+    ]
 
 
 @pytest.mark.parametrize(
-    ("text", "unit"), [("1 kg", "m/s^2"), ("1 m/s³", "m/s^2"), ("1 g", "m"), ("1 m²", "m"), ("1 mV/kg", "V s^2/m"), ("1 s²²", "s")]
+    ("text", "unit"),
+    [
+        ("1 kg", "m/s^2"),
+        ("1 m/s³", "m/s^2"),
+        ("1 g", "m"),
+        ("1 m²", "m"),
+        ("1 mV/kg", "V s^2/m"),
+        ("1 s²²", "s"),
+    ],
 )
 def test_what_is_still_refused(text: str, unit: str) -> None:
     with pytest.raises(vi.InputError):
@@ -214,7 +267,11 @@ def test_a_list_of_numbers_is_no_number_with_commas() -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "kinds"), [("50 mJ/m^2", "a stiffness or a work of adhesion"), ("100 rad/s", "a frequency or an angular velocity")]
+    ("text", "kinds"),
+    [
+        ("50 mJ/m^2", "a stiffness or a work of adhesion"),
+        ("100 rad/s", "a frequency or an angular velocity"),
+    ],
 )
 def test_all_kinds_of_a_dimension_are_named(text: str, kinds: str) -> None:
     with pytest.raises(vi.InputError, match=f'"{re.escape(text)}" is {kinds}; expected a length'):

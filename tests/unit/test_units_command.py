@@ -1,4 +1,6 @@
-"""Units of contact parameters: converted, shown in the systems of other programs, and refused with both dimensions."""
+"""Units of contact parameters: converted, shown in the systems of other programs, and
+refused with both dimensions.
+"""
 
 from __future__ import annotations
 
@@ -15,7 +17,9 @@ from vibroimpact.units.reading import dimension_of, parse_quantity, unit_text
 POWERS = st.floats(1.0, 3.0).map(lambda power: round(power, 3))
 
 
-def outcome(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], *arguments: str) -> tuple[int, str]:
+def outcome(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], *arguments: str
+) -> tuple[int, str]:
     monkeypatch.setattr("sys.argv", ["vibroimpact", "units", *arguments])
     with pytest.raises(SystemExit) as left:
         main()
@@ -55,8 +59,21 @@ def test_the_factor_is_1000_to_the_power(power: float, stiffness: float) -> None
 @pytest.mark.parametrize(
     ("value", "unit", "to", "words"),
     [
-        (1.0, "N/m^1.5", "N/mm", ["contact stiffness (force/length^1.5)", "a stiffness or a work of adhesion (force/length)"]),
-        (1.0, "N/m^1.5", "N/mm^1.6", ["contact stiffness (force/length^1.5)", "of the dimension force/length^1.6"]),
+        (
+            1.0,
+            "N/m^1.5",
+            "N/mm",
+            [
+                "contact stiffness (force/length^1.5)",
+                "a stiffness or a work of adhesion (force/length)",
+            ],
+        ),
+        (
+            1.0,
+            "N/m^1.5",
+            "N/mm^1.6",
+            ["contact stiffness (force/length^1.5)", "of the dimension force/length^1.6"],
+        ),
         (1.0, "N s/m", "N/m", ["a damping (force time/length)", "a stiffness"]),
         (1.0, "kg", "m", ['"kg" is a mass', '"m" is a length']),
         (1.0, "m/m", "s", ["a plain number", "a time"]),
@@ -84,18 +101,28 @@ def test_dimensions_are_told_with_force() -> None:
     assert unit_text([("mm", -1.0)]) == "1/mm"
 
 
-@pytest.mark.parametrize("unit", ["N/m^1.5", "N s/m", "N s/m^2.5", "m/s", "kg/m^3", "Pa", "J/m^2", "kg", "1/m", "s/m"])
+@pytest.mark.parametrize(
+    "unit", ["N/m^1.5", "N s/m", "N s/m^2.5", "m/s", "kg/m^3", "Pa", "J/m^2", "kg", "1/m", "s/m"]
+)
 def test_every_system_is_another_way_to_say_the_same(unit: str) -> None:
     for name, number, there in in_unit_systems(5.0, unit):
         assert vi.convert_units(number, there, unit) == pytest.approx(5.0, rel=1e-12), name
 
 
 def test_consistent_systems_agree_with_their_base_units() -> None:
-    """In a system where force is mass length / time^2, the number is that of the base units alone."""
-    base = {"mm, tonne, N, s, MPa": ("tonne", "s"), "mm, g, N, ms, MPa": ("g", "ms"), "mm, kg, kN, ms, GPa": ("kg", "ms")}
+    """In a system where force is mass length / time^2, the number is that of the base
+    units alone.
+    """
+    base = {
+        "mm, tonne, N, s, MPa": ("tonne", "s"),
+        "mm, g, N, ms, MPa": ("g", "ms"),
+        "mm, kg, kN, ms, GPa": ("kg", "ms"),
+    }
     found = {name: number for name, number, _ in in_unit_systems(5.115e8, "N/m^1.5")}
     for name, (mass, time) in base.items():
-        assert found[name] == pytest.approx(vi.convert_units(5.115e8, "N/m^1.5", f"{mass} mm^-0.5/{time}^2"), rel=1e-12)
+        assert found[name] == pytest.approx(
+            vi.convert_units(5.115e8, "N/m^1.5", f"{mass} mm^-0.5/{time}^2"), rel=1e-12
+        )
 
 
 def test_numbers_have_no_noise() -> None:
@@ -125,14 +152,22 @@ def test_quantities_are_read() -> None:
         (("179.75", "kg/s"), "divided by 1000:"),
     ],
 )
-def test_the_command(arguments: tuple[str, ...], words: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_command(
+    arguments: tuple[str, ...],
+    words: str,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
     status, printed = outcome(monkeypatch, capsys, *arguments)
     assert (status, words in printed) == (0, True), printed
 
 
 def test_an_option_takes_a_bare_number_in_si() -> None:
     """There are no quotes in a shell, so that a number can't be written otherwise."""
-    assert pair_in("--band", "100, 5 kHz", "Hz", "two frequencies", "100 Hz, 5 kHz") == (100.0, 5000.0)
+    assert pair_in("--band", "100, 5 kHz", "Hz", "two frequencies", "100 Hz, 5 kHz") == (
+        100.0,
+        5000.0,
+    )
 
 
 @pytest.mark.parametrize(
@@ -140,7 +175,10 @@ def test_an_option_takes_a_bare_number_in_si() -> None:
     [
         (("3",), "is not a number with a unit"),
         (("3", "N/m", "--to", "N"), "can't be converted"),
-        (("3", "degC"), '"degC" holds temperature; only units of force, mass, length and time are shown'),
+        (
+            ("3", "degC"),
+            '"degC" holds temperature; only units of force, mass, length and time are shown',
+        ),
         (("3", "A"), "holds current"),
         (("3", "m/m"), "holds no dimension"),
         (("N/m", "3"), "is not a number with a unit"),
@@ -148,7 +186,10 @@ def test_an_option_takes_a_bare_number_in_si() -> None:
     ],
 )
 def test_the_command_refuses(
-    arguments: tuple[str, ...], words: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    arguments: tuple[str, ...],
+    words: str,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
 ) -> None:
     status, printed = outcome(monkeypatch, capsys, *arguments)
     assert (status, words in printed) == (2, True), printed
@@ -157,7 +198,12 @@ def test_the_command_refuses(
 def test_quotes_are_advised_only_where_words_of_the_unit_are_missing(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """A blank in the unit of --to makes its last word one of the quantity; that of the quantity needs no quotes."""
-    assert '--to "N s/mm"' in outcome(monkeypatch, capsys, "179.75", "N", "s/m", "--to", "N", "s/mm")[1]
+    """A blank in the unit of --to makes its last word one of the quantity; that of the
+    quantity needs no quotes.
+    """
+    assert (
+        '--to "N s/mm"'
+        in outcome(monkeypatch, capsys, "179.75", "N", "s/m", "--to", "N", "s/mm")[1]
+    )
     for unit in ("kg", "foo"):
         assert "quotes" not in outcome(monkeypatch, capsys, "5", "N", "s/m", "--to", unit)[1]

@@ -30,8 +30,19 @@ SI = {
     "temp": 1.0,
     "temp_offset": 273.15,
 }
-DATES = {f"{what}_{when}": "" for what in ("date", "time") for when in ("db_created", "db_saved", "file_written")}
-HEADER = {"type": 151, "model_name": "m", "description": "d", "db_app": "a", "program": "p", **DATES}
+DATES = {
+    f"{what}_{when}": ""
+    for what in ("date", "time")
+    for when in ("db_created", "db_saved", "file_written")
+}
+HEADER = {
+    "type": 151,
+    "model_name": "m",
+    "description": "d",
+    "db_app": "a",
+    "program": "p",
+    **DATES,
+}
 VALUES = np.array([1.0, -2.5, 3.0e5, -4.0e-5, 5.0, 6.5, -7.25])
 TIME = 1e-3 * np.arange(7)
 
@@ -41,7 +52,11 @@ def case(**changes: object) -> dict:
 
 
 def calibrated(target: object, contact: dict = NEWTON) -> Calibration:
-    table = {**case(), "contact": contact, "calibrate": {"target": target, "degree": 0, "air": False}}
+    table = {
+        **case(),
+        "contact": contact,
+        "calibrate": {"target": target, "degree": 0, "air": False},
+    }
     return calibrate_case(read_calibration(table))
 
 
@@ -57,20 +72,49 @@ RESTITUTIONS = vi.simulate(vi.read_case(case())).impacts["restitution_achieved"]
 
 
 def by_pyuff(path: Path, *functions: dict, units: dict | None = SI) -> Path:
-    common = {"type": 58, "id1": "a record", "id2": "NONE", "func_type": 1, "rsp_ent_name": "NONE", "rsp_node": 1, "rsp_dir": 3}
-    common |= {"ref_ent_name": "NONE", "ref_node": 0, "ref_dir": 0, "abscissa_spacing": 1, "abscissa_spec_data_type": 17, "binary": 1}
-    common |= {"ordinate_spec_data_type": 13, "orddenom_spec_data_type": 0, "z_axis_spec_data_type": 0, "x": TIME, "data": VALUES}
-    common |= {"abscissa_axis_lab": "time", "abscissa_axis_units_lab": "s", "ordinate_axis_units_lab": "N"}
+    common = {
+        "type": 58,
+        "id1": "a record",
+        "id2": "NONE",
+        "func_type": 1,
+        "rsp_ent_name": "NONE",
+        "rsp_node": 1,
+        "rsp_dir": 3,
+    }
+    common |= {
+        "ref_ent_name": "NONE",
+        "ref_node": 0,
+        "ref_dir": 0,
+        "abscissa_spacing": 1,
+        "abscissa_spec_data_type": 17,
+        "binary": 1,
+    }
+    common |= {
+        "ordinate_spec_data_type": 13,
+        "orddenom_spec_data_type": 0,
+        "z_axis_spec_data_type": 0,
+        "x": TIME,
+        "data": VALUES,
+    }
+    common |= {
+        "abscissa_axis_lab": "time",
+        "abscissa_axis_units_lab": "s",
+        "ordinate_axis_units_lab": "N",
+    }
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", ResourceWarning)
         sets = [units or HEADER]
-        pyuff.UFF(str(path)).write_sets([*sets, *({**common, **one} for one in functions)], "overwrite")
+        pyuff.UFF(str(path)).write_sets(
+            [*sets, *({**common, **one} for one in functions)], "overwrite"
+        )
     return path
 
 
 @pytest.mark.slow
 def test_the_programs_own(exported: Path) -> None:
-    """A position tells rebounds, a force also how hard the impacts are; the damping that was simulated is found again."""
+    """A position tells rebounds, a force also how hard the impacts are; the damping that
+    was simulated is found again.
+    """
     assert read_universal_record(exported, None, False).quantity == "force"
     found = calibrated(str(exported), CONTACT)
     assert found.overlays[0].quantity == "position"
@@ -84,7 +128,9 @@ def test_a_function_by_its_name_or_number(exported: Path) -> None:
         assert found.observations.record.quantity == "force"
         np.testing.assert_allclose(found.values, RESTITUTIONS, rtol=5e-3)
     with pytest.raises(
-        vi.InputError, match=r'there is no function "contact fore on the sphere".*Did you mean "contact force on the sphere"'
+        vi.InputError,
+        match=r'there is no function "contact fore on the sphere".*Did you mean "contact force '
+        r'on the sphere"',
     ):
         calibrated({"file": str(exported), "function": "contact fore on the sphere"})
     with pytest.raises(vi.InputError, match="is no force, displacement or acceleration"):
@@ -115,16 +161,27 @@ def test_the_forms_of_pyuff(tmp_path: Path, binary: int, even: int) -> None:
 def test_single_precision_of_either_order(tmp_path: Path) -> None:
     """As a text by hand, and as binary data of a machine with the large end first."""
     whole = by_pyuff(tmp_path / "a.uff", {"binary": 0}).read_bytes().split(b"\n")
-    at = next(number for number, line in enumerate(whole) if line.startswith(b"         4         7"))
+    at = next(
+        number for number, line in enumerate(whole) if line.startswith(b"         4         7")
+    )
     whole[at] = whole[at].replace(b"         4", b"         2", 1)
     text = "".join(f"{value:13.5e}" for value in VALUES)
-    (tmp_path / "b.uff").write_bytes(b"\n".join([*whole[: at + 5], text[:78].encode(), text[78:].encode(), b"    -1", b""]))
-    np.testing.assert_allclose(read_universal_record(tmp_path / "b.uff", None, False).values, VALUES, rtol=1e-5)
+    (tmp_path / "b.uff").write_bytes(
+        b"\n".join([*whole[: at + 5], text[:78].encode(), text[78:].encode(), b"    -1", b""])
+    )
+    np.testing.assert_allclose(
+        read_universal_record(tmp_path / "b.uff", None, False).values, VALUES, rtol=1e-5
+    )
     data = struct.pack(">7f", *VALUES)
     kind = next(number for number, line in enumerate(whole) if line.strip() == b"58")
-    whole[kind] = f"    58b     2     2          11{len(data):12d}     0     0           0           0".encode()
+    whole[kind] = (
+        f"    58b     2     2          11{len(data):12d}     0     0           0           "
+        "0".encode()
+    )
     (tmp_path / "c.uff").write_bytes(b"\n".join(whole[: at + 5]) + b"\n" + data + b"\n    -1\n")
-    np.testing.assert_array_equal(read_universal_record(tmp_path / "c.uff", None, False).values, VALUES.astype(np.float32))
+    np.testing.assert_array_equal(
+        read_universal_record(tmp_path / "c.uff", None, False).values, VALUES.astype(np.float32)
+    )
 
 
 def test_units(tmp_path: Path) -> None:
@@ -132,7 +189,12 @@ def test_units(tmp_path: Path) -> None:
     milli = {**SI, "units_code": 9, "length": 1000.0, "force": 1000.0}
     label = {"ordinate_axis_units_lab": "kN"}
     none = {"ordinate_axis_units_lab": "NONE"}
-    for units, one, factor in ((milli, none, 1e-3), (None, label, 1e3), (SI, none, 1.0), (milli, {"ordinate_axis_units_lab": "mN"}, 1e-3)):
+    for units, one, factor in (
+        (milli, none, 1e-3),
+        (None, label, 1e3),
+        (SI, none, 1.0),
+        (milli, {"ordinate_axis_units_lab": "mN"}, 1e-3),
+    ):
         record = read_universal_record(by_pyuff(tmp_path / "a.uff", one, units=units), None, False)
         np.testing.assert_allclose(record.values, factor * VALUES, rtol=1e-12)
     with pytest.raises(vi.InputError, match="it has no unit, and there is no dataset 164"):
@@ -142,15 +204,31 @@ def test_units(tmp_path: Path) -> None:
 
 
 def test_which_function_is_asked_for(tmp_path: Path) -> None:
-    two = by_pyuff(tmp_path / "two.uff", {"id1": "load cell 1"}, {"id1": "load cell 2", "data": 2.0 * VALUES})
-    with pytest.raises(vi.InputError, match='name the function to use: there are 1 "load cell 1", 2 "load cell 2"'):
+    two = by_pyuff(
+        tmp_path / "two.uff", {"id1": "load cell 1"}, {"id1": "load cell 2", "data": 2.0 * VALUES}
+    )
+    with pytest.raises(
+        vi.InputError, match='name the function to use: there are 1 "load cell 1", 2 "load cell 2"'
+    ):
         calibrated(str(two))
     assert read_universal_record(two, "2", False).values[0] == 2.0
-    acceleration = by_pyuff(tmp_path / "a.uff", {"id1": "plate", "ordinate_spec_data_type": 12, "ordinate_axis_units_lab": "m/s2"})
-    with pytest.raises(vi.InputError, match='"plate": in a table, only the acceleration of the sphere determines a rebound'):
+    acceleration = by_pyuff(
+        tmp_path / "a.uff",
+        {"id1": "plate", "ordinate_spec_data_type": 12, "ordinate_axis_units_lab": "m/s2"},
+    )
+    with pytest.raises(
+        vi.InputError,
+        match='"plate": in a table, only the acceleration of the sphere determines a rebound',
+    ):
         calibrated(str(acceleration))
-    velocity = by_pyuff(tmp_path / "v.uff", {"id1": "vibrometer", "ordinate_spec_data_type": 11, "ordinate_axis_units_lab": "m/s"})
-    with pytest.raises(vi.InputError, match='no force, displacement or acceleration over time in it; there are 1 "vibrometer"'):
+    velocity = by_pyuff(
+        tmp_path / "v.uff",
+        {"id1": "vibrometer", "ordinate_spec_data_type": 11, "ordinate_axis_units_lab": "m/s"},
+    )
+    with pytest.raises(
+        vi.InputError,
+        match='no force, displacement or acceleration over time in it; there are 1 "vibrometer"',
+    ):
         calibrated(str(velocity))
     (tmp_path / "t.csv").write_text("time_s,force_N\n0,1\n")
     with pytest.raises(vi.InputError, match="only a universal file has functions"):
@@ -158,7 +236,9 @@ def test_which_function_is_asked_for(tmp_path: Path) -> None:
 
 
 def test_damaged_files_are_told(exported: Path, tmp_path: Path) -> None:
-    """Every hundredth byte cut off, and 200 bytes of the headers changed: one message, or numbers."""
+    """Every hundredth byte cut off, and 200 bytes of the headers changed: one message, or
+    numbers.
+    """
     whole, random = exported.read_bytes()[:20000], np.random.default_rng(0)
     damaged = [whole[:end] for end in range(0, 2000, 100)]
     for _ in range(200):

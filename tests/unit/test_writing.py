@@ -11,7 +11,13 @@ import pytest
 
 import vibroimpact as vi
 from vibroimpact.files import atomic_write
-from vibroimpact.files.atomic_write import atomic_file, atomic_folder, exchange, write_file, write_into
+from vibroimpact.files.atomic_write import (
+    atomic_file,
+    atomic_folder,
+    exchange,
+    write_file,
+    write_into,
+)
 from vibroimpact.files.recover import recover
 from vibroimpact.files.working_files import COMPLETE, NEW, OLD, inner_path, working_path
 
@@ -26,11 +32,17 @@ def make(folder: Path, text: str) -> None:
 
 
 def leaves(folder: Path) -> dict[str, str]:
-    return {str(path.relative_to(folder)): path.read_text() for path in folder.rglob("*") if path.is_file()}
+    return {
+        str(path.relative_to(folder)): path.read_text()
+        for path in folder.rglob("*")
+        if path.is_file()
+    }
 
 
 @pytest.mark.parametrize("can_exchange", [True, False])
-def test_a_folder_takes_the_place_of_another(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, can_exchange: bool) -> None:
+def test_a_folder_takes_the_place_of_another(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, can_exchange: bool
+) -> None:
     if not can_exchange:
         monkeypatch.setattr(atomic_write, "exchange", lambda first, second: False)
     for text in ("one", "two"):
@@ -48,7 +60,9 @@ def test_names_are_exchanged(tmp_path: Path) -> None:
     assert leaves(tmp_path) == {"a": "b", "b/x": "x"}
 
 
-def test_two_renames_that_fail_half_way_are_undone(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_two_renames_that_fail_half_way_are_undone(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     make(tmp_path / "out", "old")
     monkeypatch.setattr(atomic_write, "exchange", lambda first, second: False)
     rename, calls = Path.rename, []
@@ -65,7 +79,9 @@ def test_two_renames_that_fail_half_way_are_undone(tmp_path: Path, monkeypatch: 
     assert leaves(tmp_path) == {"out/a.txt": "old"}
 
 
-def test_a_folder_that_made_way_gets_its_name_back_and_what_was_half_written_goes(tmp_path: Path) -> None:
+def test_a_folder_that_made_way_gets_its_name_back_and_what_was_half_written_goes(
+    tmp_path: Path,
+) -> None:
     target = tmp_path / "out"
     for kind in (OLD, NEW):
         path = working_path(target, kind)
@@ -89,7 +105,9 @@ with atomic_folder(Path({str(tmp_path / "out")!r}), lambda: None) as a, atomic_f
     print("ready", flush=True)
     sys.stdin.read()
 """
-    with subprocess.Popen([sys.executable, "-c", code], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as living:
+    with subprocess.Popen(
+        [sys.executable, "-c", code], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+    ) as living:
         assert living.stdout is not None
         assert living.stdout.readline() == "ready\n"
         recover(tmp_path / "out")
@@ -198,7 +216,9 @@ def test_a_long_name_and_the_rights_of_the_user_are_kept(tmp_path: Path) -> None
     assert (tmp_path / "file").stat().st_mode & 0o777 == 0o640
 
 
-def test_no_folder_is_left_where_nothing_could_be_written(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_no_folder_is_left_where_nothing_could_be_written(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """Of a run, its figures and its export, and of a folder that was there already."""
     folder = vi.save_result(vi.simulate(vi.load_case("paper:type1-theory")), tmp_path / "drop")
     (tmp_path / "mine").mkdir()

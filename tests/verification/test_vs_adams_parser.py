@@ -1,6 +1,8 @@
-"""Exports for Adams against a strict parser of its documented syntax, which moves the model that it reads with SciPy.
+"""Exports for Adams against a strict parser of its documented syntax, which moves the model that it
+reads with SciPy.
 
-No Adams was run. The parser knows the manual's statements, functions and units; it does not know the writer.
+No Adams was run. The parser knows the manual's statements, functions and units; it does not know
+the writer.
 """
 
 from __future__ import annotations
@@ -34,7 +36,8 @@ AGAINST = Against(
     "strict parser of Adams datasets and commands, and SciPy's DOP853 on the parsed model",
     "own independent computation",
     "programs and files",
-    "Adams Solver manual, statements and functions; tests/oracles/adams.py; Adams itself was not run",
+    "Adams Solver manual, statements and functions; "
+    "tests/oracles/adams.py; Adams itself was not run",
 )
 
 
@@ -52,7 +55,13 @@ QUANTITIES = {"duration": "contact duration", "largest_force": "maximum contact 
 HYSTERETIC = [law for law in vi.contact_laws().values() if issubclass(law, HystereticLaw)]
 
 
-def drop_of(laws: tuple[ContactLaw, ...] | ContactLaw, *, start: dict | None = None, impacts: int = 3, **given: object) -> Drop:
+def drop_of(
+    laws: tuple[ContactLaw, ...] | ContactLaw,
+    *,
+    start: dict | None = None,
+    impacts: int = 3,
+    **given: object,
+) -> Drop:
     """A drop of the paper's sphere under some laws, and what came of it."""
     start = start or {"height": 4.0}
     laws = laws if isinstance(laws, tuple) else (laws,)
@@ -98,17 +107,39 @@ def same(agrees: Agrees, case: str, drop: Drop, bounces: list[Bounce]) -> None:
     table = drop.impacts
     assert len(bounces) == len(table["time_s"])
     for name, column in COLUMNS.items():
-        theirs, unit = [getattr(bounce, name) for bounce in bounces], "m/s" if "speed" in name else column.rsplit("_", 1)[1]
-        agrees(case, QUANTITIES.get(name, name.replace("_", " ")), table[column], theirs, unit=unit, relative=1e-7)
+        theirs, unit = (
+            [getattr(bounce, name) for bounce in bounces],
+            "m/s" if "speed" in name else column.rsplit("_", 1)[1],
+        )
+        agrees(
+            case,
+            QUANTITIES.get(name, name.replace("_", " ")),
+            table[column],
+            theirs,
+            unit=unit,
+            relative=1e-7,
+        )
     restitution = [bounce.separation_speed / bounce.approach_speed for bounce in bounces]
-    agrees(case, "coefficient of restitution", table["restitution_achieved"], restitution, relative=1e-7)
+    agrees(
+        case,
+        "coefficient of restitution",
+        table["restitution_achieved"],
+        restitution,
+        relative=1e-7,
+    )
 
 
-# both files hold the same expression: each drop is read from one of them, and from the other where there is time
+# both files hold the same expression: each drop is read from one of them, and from the other where
+# there is time
 @pytest.mark.parametrize(
     ("read", "case"),
     [
-        pytest.param(read.values[0], case, id=f"{case}-{read.id}", marks=() if kept == read.id else pytest.mark.slow)
+        pytest.param(
+            read.values[0],
+            case,
+            id=f"{case}-{read.id}",
+            marks=() if kept == read.id else pytest.mark.slow,
+        )
         for case, kept in (("variable", "adm"), ("constant", ""), ("function", "cmd"))
         for read in READERS
     ],
@@ -117,25 +148,44 @@ def test_the_papers_drops(agrees: Agrees, read, case: str) -> None:
     dampings = {"constant": [179.75], "variable": [179.75, 172.8, 166.3, 160.9, 156.5]}
     if case == "function":
         # the damping of each impact is the polynomial at its approach speed
-        laws, function = (impact(damping_max=PAPER(np.sqrt(2 * 9.8 * 3.975))),), ("damping_max", PAPER)
+        laws, function = (
+            (impact(damping_max=PAPER(np.sqrt(2 * 9.8 * 3.975))),),
+            ("damping_max", PAPER),
+        )
         for _ in range(4):
             speeds = drop_of(laws, impacts=5).impacts["approach_speed_m_s"]
-            laws = tuple(impact(damping_max=float(PAPER(speed))) for speed in speeds[: len(laws) + 1])
+            laws = tuple(
+                impact(damping_max=float(PAPER(speed))) for speed in speeds[: len(laws) + 1]
+            )
     else:
         laws, function = tuple(impact(damping_max=damping) for damping in dampings[case]), None
     drop = drop_of(laws, impacts=5, function=function)
     model = read(drop)
     bounces = Motion(model).run()
-    same(agrees, "the paper's drop, damping constant, per impact and as a function of the approach speed", drop, bounces)
+    same(
+        agrees,
+        "the paper's drop, damping constant, per impact and as a function of the approach speed",
+        drop,
+        bounces,
+    )
     assert model.end == pytest.approx(drop.end_time)
-    assert bounces[0].rebound_height == pytest.approx({"function": 2.41124}.get(case, 2.411319), rel=1e-4)
+    assert bounces[0].rebound_height == pytest.approx(
+        {"function": 2.41124}.get(case, 2.411319), rel=1e-4
+    )
     if case != "constant":
         # whether the sensor stores once or all the time makes no difference
-        same(agrees, "the paper's drop, sensor triggered once per impact", drop, Motion(model).run(always=False))
+        same(
+            agrees,
+            "the paper's drop, sensor triggered once per impact",
+            drop,
+            Motion(model).run(always=False),
+        )
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("read", one_in(2, [read.values[0] for read in READERS], lambda read: read.__name__))
+@pytest.mark.parametrize(
+    "read", one_in(2, [read.values[0] for read in READERS], lambda read: read.__name__)
+)
 def test_random_laws(agrees: Agrees, read) -> None:
     random = np.random.default_rng(20240611)
     for exponent in np.linspace(1.2, 2.2, 10):
@@ -148,14 +198,25 @@ def test_random_laws(agrees: Agrees, read) -> None:
             full_damping_penetration=random.uniform(2e-5, 5e-4),
         )
         drop = drop_of(law, start={"height": random.uniform(0.1, 5.0)}, impacts=2)
-        same(agrees, "ten random contact laws, force exponents 1.2 to 2.2", drop, Motion(read(drop)).run())
+        same(
+            agrees,
+            "ten random contact laws, force exponents 1.2 to 2.2",
+            drop,
+            Motion(read(drop)).run(),
+        )
 
 
-# by turns, every third: both files hold the same expression, and the others are for when there is time
+# by turns, every third: both files hold the same expression, and the others are for when there is
+# time
 @pytest.mark.parametrize(
     ("read", "law"),
     [
-        pytest.param(read.values[0], law, id=f"{law.name}-{read.id}", marks=pytest.mark.slow if (number + place) % 3 else ())
+        pytest.param(
+            read.values[0],
+            law,
+            id=f"{law.name}-{read.id}",
+            marks=pytest.mark.slow if (number + place) % 3 else (),
+        )
         for number, law in enumerate(HYSTERETIC)
         for place, read in enumerate(READERS)
     ],
@@ -171,14 +232,24 @@ def test_hysteretic_laws(agrees: Agrees, read, law: type[HystereticLaw]) -> None
 def test_a_restitution_for_each_impact(agrees: Agrees, read) -> None:
     lankarani = vi.find_contact_law("lankarani-nikravesh")
     drop = drop_of(tuple(lankarani(stiffness=K, restitution=e) for e in (0.7, 0.8, 0.9)), impacts=4)
-    same(agrees, "different coefficient of restitution at each impact", drop, Motion(read(drop)).run())
+    same(
+        agrees,
+        "different coefficient of restitution at each impact",
+        drop,
+        Motion(read(drop)).run(),
+    )
 
 
 @pytest.mark.parametrize("read", READERS)
 def test_what_starts_at_first_touch(agrees: Agrees, read) -> None:
     drop = drop_of((impact(), impact(damping_max=100.0)), start={"speed": 3.0}, impacts=3)
     same(agrees, "start at first contact", drop, Motion(read(drop)).run())
-    assert read(drop).parts[next(key for key, part in read(drop).parts.items() if not part.ground)].velocity == -3000.0
+    assert (
+        read(drop)
+        .parts[next(key for key, part in read(drop).parts.items() if not part.ground)]
+        .velocity
+        == -3000.0
+    )
 
 
 @pytest.mark.parametrize("read", READERS)
@@ -191,7 +262,12 @@ def test_hertz_loses_nothing(agrees: Agrees, read) -> None:
 def test_a_sensor_that_never_fires_leaves_the_first_speed(agrees: Agrees, read) -> None:
     drop = drop_of(tuple(impact(damping_max=damping) for damping in (180.0, 20.0)), impacts=2)
     constant = drop_of(impact(damping_max=180.0), impacts=2)
-    same(agrees, "sensor that is never triggered", constant, Motion(replace(read(drop), end=constant.end_time)).run(never=True))
+    same(
+        agrees,
+        "sensor that is never triggered",
+        constant,
+        Motion(replace(read(drop), end=constant.end_time)).run(never=True),
+    )
 
 
 @pytest.mark.parametrize("read", READERS)
@@ -214,13 +290,23 @@ def test_the_model_is_that_of_the_drop(read) -> None:
 def test_what_cannot_be_written_is_refused() -> None:
     drop = drop_of(impact())
     refused = [
-        (replace(drop, laws=(vi.find_contact_law("newton")(restitution=0.7),)), "adams-impact, hertz and the laws with hysteretic damping"),
+        (
+            replace(drop, laws=(vi.find_contact_law("newton")(restitution=0.7),)),
+            "adams-impact, hertz and the laws with hysteretic damping",
+        ),
         (replace(drop, laws=(impact(), impact(exponent=1.6))), "nothing else"),
         (replace(drop, function=("stiffness", PAPER)), "damping_max of adams-impact can"),
-        (replace(drop, laws=(Hertz(stiffness=K),), function=("damping_max", PAPER)), "damping_max of adams-impact can"),
+        (
+            replace(drop, laws=(Hertz(stiffness=K),), function=("damping_max", PAPER)),
+            "damping_max of adams-impact can",
+        ),
         (replace(drop, impacts={"approach_speed_m_s": np.empty(0)}), "does not reach the plate"),
         (
-            replace(drop, laws=(impact(), impact(damping_max=1.0)), impacts={"approach_speed_m_s": np.array([2.0, 2.0])}),
+            replace(
+                drop,
+                laws=(impact(), impact(damping_max=1.0)),
+                impacts={"approach_speed_m_s": np.array([2.0, 2.0])},
+            ),
             "impact 2 is not slower than impact 1",
         ),
     ]
@@ -265,7 +351,11 @@ BROKEN_DATASETS = [
 ]
 
 
-@pytest.mark.parametrize(("right", "wrong", "words"), BROKEN_DATASETS, ids=[one[1].strip()[:20] or one[0] for one in BROKEN_DATASETS])
+@pytest.mark.parametrize(
+    ("right", "wrong", "words"),
+    BROKEN_DATASETS,
+    ids=[one[1].strip()[:20] or one[0] for one in BROKEN_DATASETS],
+)
 def test_the_parser_refuses_broken_datasets(right: str, wrong: str, words: str) -> None:
     text = adams_solver.write(VARIABLE)["a_drop.adm"].decode()
     assert right in text
@@ -290,7 +380,11 @@ BROKEN_COMMANDS = [
 ]
 
 
-@pytest.mark.parametrize(("right", "wrong", "words"), BROKEN_COMMANDS, ids=[one[1].strip()[:20] or one[0] for one in BROKEN_COMMANDS])
+@pytest.mark.parametrize(
+    ("right", "wrong", "words"),
+    BROKEN_COMMANDS,
+    ids=[one[1].strip()[:20] or one[0] for one in BROKEN_COMMANDS],
+)
 def test_the_parser_refuses_broken_commands(right: str, wrong: str, words: str) -> None:
     text = adams_view.write(VARIABLE)["a_drop.cmd"].decode()
     assert right in text
@@ -299,7 +393,9 @@ def test_the_parser_refuses_broken_commands(right: str, wrong: str, words: str) 
 
 
 def test_the_parser_would_see_wrong_units(agrees: Agrees) -> None:
-    """A stiffness per metre, a damping in N s/m, a gravity in m/s^2: each changes what comes out."""
+    """A stiffness per metre, a damping in N s/m, a gravity in m/s^2: each changes what
+    comes out.
+    """
     text = adams_solver.write(VARIABLE)["a_drop.adm"].decode()
     stiffness = f"{K / 1000**1.5:.15g}"
     assert stiffness in text
@@ -320,7 +416,12 @@ def test_the_parser_would_see_wrong_units(agrees: Agrees) -> None:
         )
 
     assert agrees(text)
-    for old, new in [(stiffness, f"{K / 1000:.15g}"), ("0.17975", "179.75"), ("-9800.0", "-9810.0"), ("MASS = KILOGRAM", "MASS = GRAM")]:
+    for old, new in [
+        (stiffness, f"{K / 1000:.15g}"),
+        ("0.17975", "179.75"),
+        ("-9800.0", "-9810.0"),
+        ("MASS = KILOGRAM", "MASS = GRAM"),
+    ]:
         assert old in text
         assert not agrees(text.replace(old, new))
 
@@ -341,7 +442,9 @@ def test_the_parser_would_see_wrong_units(agrees: Agrees) -> None:
     ],
 )
 def test_the_oracles_functions(text: str, value: float) -> None:
-    assert parse_function(text, Scope({}, {}, {}))(State({}, {}, {})) == pytest.approx(value, rel=1e-14)
+    assert parse_function(text, Scope({}, {}, {}))(State({}, {}, {})) == pytest.approx(
+        value, rel=1e-14
+    )
 
 
 @pytest.mark.slow
@@ -350,7 +453,9 @@ def test_the_oracles_functions(text: str, value: float) -> None:
 def test_oblique_drops(agrees: Agrees, read, coefficient: float) -> None:
     """That slip throughout, and that roll at last; on an inclined plate."""
     coulomb = vi.find_friction_law("coulomb")(coefficient=coefficient)
-    oblique = vi.Oblique(velocity=(0.6, 0.0), spin=(0.0, -16.0, 5.0), gravity=(0.5, 0.0), friction=coulomb)
+    oblique = vi.Oblique(
+        velocity=(0.6, 0.0), spin=(0.0, -16.0, 5.0), gravity=(0.5, 0.0), friction=coulomb
+    )
     drop = drop_of(impact(), start={"height": 0.5}, impacts=2, oblique=oblique)
     model = read(drop)
     bounces = Motion(model).run()
@@ -358,15 +463,35 @@ def test_oblique_drops(agrees: Agrees, read, coefficient: float) -> None:
     found = np.array([bounce.along for bounce in bounces]).T
     for values, column in zip(found, AFTER, strict=True):
         scale = RADIUS if "spin" in column else 1.0
-        quantity = "angular velocity times radius after impact" if "spin" in column else "tangential velocity after impact"
-        agrees("oblique impacts on an inclined plate", quantity, scale * drop.impacts[column], scale * values, unit="m/s", absolute=2e-5)
+        quantity = (
+            "angular velocity times radius after impact"
+            if "spin" in column
+            else "tangential velocity after impact"
+        )
+        agrees(
+            "oblique impacts on an inclined plate",
+            quantity,
+            scale * drop.impacts[column],
+            scale * values,
+            unit="m/s",
+            absolute=2e-5,
+        )
     assert model.gravity == pytest.approx((500.0, 0.0, -9800.0))
 
 
 def test_friction_that_stands_for_another() -> None:
-    moduli = {"effective_modulus": 2.4e9, "effective_shear_modulus": 2e9, "effective_radius": RADIUS}
+    moduli = {
+        "effective_modulus": 2.4e9,
+        "effective_shear_modulus": 2e9,
+        "effective_radius": RADIUS,
+    }
     mdr = vi.find_friction_law("mdr")(coefficient=0.3, **moduli)
-    drop = drop_of(impact(), start={"height": 0.5}, impacts=1, oblique=vi.Oblique(velocity=(0.6, 0.0), friction=mdr))
+    drop = drop_of(
+        impact(),
+        start={"height": 0.5},
+        impacts=1,
+        oblique=vi.Oblique(velocity=(0.6, 0.0), friction=mdr),
+    )
     for format in adams_solver.FORMAT, adams_view.FORMAT:
         assert "its coulomb stands for it" in " ".join(format.notes(drop))
         assert any(b"0.3 * MAX(SFORCE(" in content for content in format.write(drop).values())
@@ -387,8 +512,12 @@ def test_friction_that_stands_for_another() -> None:
     ],
 )
 def test_the_parser_refuses_broken_friction(right: str, wrong: str, words: str) -> None:
-    oblique = vi.Oblique(velocity=(0.6, 0.0), friction=vi.find_friction_law("coulomb")(coefficient=0.3))
-    text = adams_solver.write(drop_of(impact(), start={"height": 0.5}, impacts=1, oblique=oblique))["a_drop.adm"].decode()
+    oblique = vi.Oblique(
+        velocity=(0.6, 0.0), friction=vi.find_friction_law("coulomb")(coefficient=0.3)
+    )
+    text = adams_solver.write(drop_of(impact(), start={"height": 0.5}, impacts=1, oblique=oblique))[
+        "a_drop.adm"
+    ].decode()
     assert right in text
     with pytest.raises(Refused, match=words):
         Motion(read_dataset(text.replace(right, wrong, 1)))

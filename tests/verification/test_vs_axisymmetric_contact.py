@@ -1,11 +1,13 @@
 """The elastic sphere on a rigid plane: the treatments against full finite-element contact.
 
-The reference is 12166 N, 246.45 us and a restitution of 0.99906 at 8.826664 m/s (two independent codes, undamped, small strain,
-frictionless), and oracles/axisymmetric_contact.py, which comes to the same and does the static contact as well.
+The reference is 12166 N, 246.45 us and a restitution of 0.99906 at 8.826664 m/s (two independent
+codes, undamped, small strain, frictionless), and oracles/axisymmetric_contact.py, which comes to
+the same and does the static contact as well.
 
-`consistent` is within 0.7 % in force and time, whatever the modes and the mesh. `superposed` counts the local indentation twice: the more
-modes, the softer; with the static deformation of the point of contact among them, as an attachment mode or by Craig and Bampton, the
-finer the mesh, the softer."""
+`consistent` is within 0.7 % in force and time, whatever the modes and the mesh. `superposed` counts
+the local indentation twice: the more modes, the softer; with the static deformation of the point of
+contact among them, as an attachment mode or by Craig and Bampton, the finer the mesh, the
+softer."""
 
 from __future__ import annotations
 
@@ -24,7 +26,8 @@ AGAINST = Against(
     "finite-element contact analysis of an elastic sphere",
     "own independent computation",
     "impacts on vibrating bodies",
-    "two independent programs, tests/oracles/axisymmetric_contact.py; undamped, small strain, frictionless",
+    "two independent programs, tests/oracles/axisymmetric_contact.py; undamped, small "
+    "strain, frictionless",
 )
 
 
@@ -33,17 +36,31 @@ RADIUS, DENSITY, MODULUS, RATIO = 0.025, 1380.0, 2.26e9, 0.28
 
 
 @cache
-def problem(treatment: str, modes: int, across: int = 8, grading: float = 1.0, attachment: bool = False) -> vi.Problem:
-    sphere = {"radius": RADIUS, "material": "rock-paper", "model": "elastic", "modes": modes, "attachment_mode": attachment}
+def problem(
+    treatment: str, modes: int, across: int = 8, grading: float = 1.0, attachment: bool = False
+) -> vi.Problem:
+    sphere = {
+        "radius": RADIUS,
+        "material": "rock-paper",
+        "model": "elastic",
+        "modes": modes,
+        "attachment_mode": attachment,
+    }
     sphere["mesh"] = {"elements_across": across, "grading": grading}
-    case = plain_case(plate={"material": "rigid"}, drop={"speed": SPEED, "gravity": 9.8}, run={"impacts": 1})
-    return vi.read_case({**case, "sphere": sphere, "contact": {"law": "hertz", "local_compliance": treatment}}).to_problem()
+    case = plain_case(
+        plate={"material": "rigid"}, drop={"speed": SPEED, "gravity": 9.8}, run={"impacts": 1}
+    )
+    return vi.read_case(
+        {**case, "sphere": sphere, "contact": {"law": "hertz", "local_compliance": treatment}}
+    ).to_problem()
 
 
 def impact_of(problem: vi.Problem) -> tuple[float, float, float]:
     """Force [N], duration [s] and restitution."""
     impacts = vi.simulate(problem).impacts
-    return tuple(float(impacts[name][0]) for name in ("max_force_N", "duration_s", "restitution_achieved"))  # type: ignore[return-value]
+    return tuple(
+        float(impacts[name][0]) for name in ("max_force_N", "duration_s", "restitution_achieved")
+    )  # type: ignore[return-value]
 
 
 def check_consistent(
@@ -55,7 +72,9 @@ def check_consistent(
     *,
     tried: str = "10 to 150 modes, several meshes",
 ) -> None:
-    force, duration, restitution = impact_of(problem("consistent", modes, across, grading, attachment))
+    force, duration, restitution = impact_of(
+        problem("consistent", modes, across, grading, attachment)
+    )
     case = f"impact, local compliance `consistent`, {tried}"
     agrees(case, "maximum contact force", force, FORCE, unit="N", relative=0.01)
     agrees(case, "contact duration", duration, DURATION, unit="s", relative=0.01)
@@ -65,8 +84,13 @@ def check_consistent(
 @pytest.mark.parametrize("modes", [10, 60])
 def test_consistent(agrees: Agrees, modes: int) -> None:
     check_consistent(agrees, modes, 8, tried="10 and 60 modes")
-    response = vi.simulate(problem("consistent", modes))  # and how much is left as vibration, 0.19 %, within a factor of two
-    assert 0.5 < response.impacts["energy_to_vibration_J"][0] / response.energy["input_J"] / 0.0019 < 2.0
+    # and how much is left as vibration, 0.19 %, within a factor of two
+    response = vi.simulate(problem("consistent", modes))
+    assert (
+        0.5
+        < response.impacts["energy_to_vibration_J"][0] / response.energy["input_J"] / 0.0019
+        < 2.0
+    )
 
 
 @pytest.mark.slow
@@ -82,7 +106,9 @@ def test_consistent(agrees: Agrees, modes: int) -> None:
         ),
     ],
 )
-def test_consistent_whatever_the_modes_and_the_mesh(agrees: Agrees, modes: int, across: int, grading: float) -> None:
+def test_consistent_whatever_the_modes_and_the_mesh(
+    agrees: Agrees, modes: int, across: int, grading: float
+) -> None:
     check_consistent(agrees, modes, across, grading)
 
 
@@ -92,7 +118,9 @@ def test_consistent_against_the_oracle(agrees: Agrees) -> None:
     reference = impact(RADIUS, DENSITY, MODULUS, RATIO, SPEED)
     assert reference.peak_force == pytest.approx(FORCE, rel=1e-3)
     response = vi.simulate(problem("consistent", 60))
-    times = reference.time[reference.time < min(reference.contact_duration, float(response.end_time[0]))]
+    times = reference.time[
+        reference.time < min(reference.contact_duration, float(response.end_time[0]))
+    ]
     found = response.at(times)
     history = reference.force[: len(times)]
     agrees(
@@ -107,16 +135,27 @@ def test_consistent_against_the_oracle(agrees: Agrees) -> None:
 
 @pytest.mark.parametrize("radius", [1e-3, 2.5e-3, 4.5e-3])
 def test_static_force_against_approach(agrees: Agrees, radius: float) -> None:
-    """Of the law, what is in series with it and the modes together, at Hertz's contact radii of 1, 2.5 and 4.5 mm, within 0.5 %."""
+    """Of the law, what is in series with it and the modes together, at Hertz's contact
+    radii of 1, 2.5 and 4.5 mm, within 0.5 %.
+    """
     made = problem("consistent", 10)
     local = LocalContact(made.laws[0], made.quasi_static, SPEED)  # type: ignore[arg-type]
     modes = made.sphere.modes
     assert modes is not None
     delta = np.array([radius**2 / RADIUS])
     force = float(local.law.forces(delta, np.zeros(1), SPEED)[0][0])
-    approach = float(local.approach_at(delta)[0]) + force * float(((modes.contact / modes.angular_frequencies) ** 2).sum())
+    approach = float(local.approach_at(delta)[0]) + force * float(
+        ((modes.contact / modes.angular_frequencies) ** 2).sum()
+    )
     expected = static_approach(RADIUS, MODULUS, RATIO, approach, 8.0).force
-    agrees("static contact, contact radii 1, 2.5 and 4.5 mm", "contact force at equal approach", force, expected, unit="N", relative=5e-3)
+    agrees(
+        "static contact, contact radii 1, 2.5 and 4.5 mm",
+        "contact force at equal approach",
+        force,
+        expected,
+        unit="N",
+        relative=5e-3,
+    )
 
 
 def test_superposed_falls_with_the_modes() -> None:
@@ -128,9 +167,13 @@ def test_superposed_falls_with_the_modes() -> None:
 
 @pytest.mark.slow
 def test_superposed_falls_with_the_mesh(agrees: Agrees) -> None:
-    """With the static deformation of the point among the modes; so does nothing of `consistent`, or it is refused."""
+    """With the static deformation of the point among the modes; so does nothing of
+    `consistent`, or it is refused.
+    """
     meshes = ((6, 1.0), (8, 1.0), (8, 2.0), (8, 4.0))
-    forces = [impact_of(problem("superposed", 20, across, grading, True))[0] for across, grading in meshes]
+    forces = [
+        impact_of(problem("superposed", 20, across, grading, True))[0] for across, grading in meshes
+    ]
     assert np.all(np.diff(forces) < 0.0)
     assert forces[0] < 0.45 * FORCE
     assert forces[-1] < 0.25 * FORCE
@@ -141,6 +184,8 @@ def test_superposed_falls_with_the_mesh(agrees: Agrees) -> None:
 
 @pytest.mark.slow
 def test_superposed_goes_on_falling() -> None:
-    """With 150 modes at twelve elements across it has lost a quarter of the force; a point has no limit."""
+    """With 150 modes at twelve elements across it has lost a quarter of the force; a
+    point has no limit.
+    """
     forces = [impact_of(problem("superposed", modes, 12))[0] for modes in (20, 60, 150)]
     assert forces == pytest.approx([10549.0, 9718.0, 8990.0], rel=5e-3)

@@ -1,7 +1,9 @@
-"""Against the equation of viscoelastic spheres (Kuwabara and Kono 1987; Brilliantov and others 1996), integrated by SciPy.
+"""Against the equation of viscoelastic spheres (Kuwabara and Kono 1987; Brilliantov and others
+1996), integrated by SciPy.
 
-x'' + b sqrt(x) x' + x^1.5 = 0 from x = 0, x' = 1 to zero force, b = .1, .3, 1. And the Pade approximant of Mueller and Poeschel
-(Phys. Rev. E 84, 021302, 2011), good to about 1e-3 over all speeds.
+x'' + b sqrt(x) x' + x^1.5 = 0 from x = 0, x' = 1 to zero force, b = .1, .3, 1. And the Pade
+approximant of Mueller and Poeschel (Phys. Rev. E 84, 021302, 2011), good to about 1e-3 over all
+speeds.
 """
 
 from __future__ import annotations
@@ -18,13 +20,15 @@ AGAINST = Against(
     "SciPy's DOP853, dimensionless equation of viscoelastic spheres",
     "own independent computation",
     "damping laws",
-    "equation of Kuwabara and Kono 1987, Jpn. J. Appl. Phys. 26, 1230, and Brilliantov et al. 1996, Phys. Rev. E 53, 5382; tolerance 1e-12",
+    "equation of Kuwabara and Kono 1987, Jpn. J. Appl. Phys. 26, 1230, and Brilliantov et "
+    "al. 1996, Phys. Rev. E 53, 5382; tolerance 1e-12",
 )
 PADE = Against(
     "Müller and Pöschel, Padé approximant of the coefficient of restitution",
     "closed form",
     "damping laws",
-    "Müller and Pöschel 2011, Phys. Rev. E 84, 021302, doi 10.1103/PhysRevE.84.021302; accurate to about 1e-3",
+    "Müller and Pöschel 2011, Phys. Rev. E 84, 021302, doi 10.1103/PhysRevE.84.021302; "
+    "accurate to about 1e-3",
 )
 
 
@@ -39,7 +43,9 @@ def integrated(b: float) -> float:
         return b * state[1] + state[0]
 
     no_force.terminal, no_force.direction = True, -1
-    run = solve_ivp(rates, (0.0, 10.0), [0.0, 1.0], method="DOP853", rtol=1e-12, atol=1e-14, events=no_force)
+    run = solve_ivp(
+        rates, (0.0, 10.0), [0.0, 1.0], method="DOP853", rtol=1e-12, atol=1e-14, events=no_force
+    )
     return -float(run.y[1, -1])
 
 
@@ -60,7 +66,18 @@ def test_pade_over_the_speed(agrees: Agrees) -> None:
     speed = np.geomspace(1e-3, 1e2, 16)
     star = np.sqrt(1.5 * time * (stiffness / mass) ** 0.4) * speed**0.1
     top = np.polynomial.polynomial.polyval(star, [1, 1.07232, 0.574198, 0.141552])
-    bottom = np.polynomial.polynomial.polyval(star, [1, 1.07232, 1.72765, 1.37842, 1.19449, 0.467273, 0.235585])
-    found = integrated_restitution(KuwabaraKono(stiffness=stiffness, dissipation_time=time), mass, speed)
-    agrees("approach speeds 1 mm/s to 100 m/s", "coefficient of restitution", found, top / bottom, against=PADE, absolute=2e-3)
+    bottom = np.polynomial.polynomial.polyval(
+        star, [1, 1.07232, 1.72765, 1.37842, 1.19449, 0.467273, 0.235585]
+    )
+    found = integrated_restitution(
+        KuwabaraKono(stiffness=stiffness, dissipation_time=time), mass, speed
+    )
+    agrees(
+        "approach speeds 1 mm/s to 100 m/s",
+        "coefficient of restitution",
+        found,
+        top / bottom,
+        against=PADE,
+        absolute=2e-3,
+    )
     assert np.all(np.diff(found) < 0.0)

@@ -1,6 +1,7 @@
 """Against Craig and Bampton's reduction of a chain whose modes are known (AIAA J. 6:1313, 1968).
 
-60 unit masses and springs, fixed at one end, have omega_j = 2 sin((2 j - 1) pi / 242); the interface is masses 29 and 59.
+60 unit masses and springs, fixed at one end, have omega_j = 2 sin((2 j - 1) pi / 242); the
+interface is masses 29 and 59.
 """
 
 from __future__ import annotations
@@ -33,19 +34,36 @@ def chain(fixed: bool) -> tuple[csr_array, csr_array]:
 EXACT = 2 * np.sin((2 * np.arange(1, 61) - 1) * np.pi / 242)
 
 
-@pytest.mark.parametrize(("number", "error"), [(0, 2.492e-2), (2, 5.513e-4), (4, 3.233e-4), (8, 5.079e-5), (16, 6.118e-6)])
+@pytest.mark.parametrize(
+    ("number", "error"),
+    [(0, 2.492e-2), (2, 5.513e-4), (4, 3.233e-4), (8, 5.079e-5), (16, 6.118e-6)],
+)
 def test_first_mode(agrees: Agrees, number: int, error: float) -> None:
     modes = projected(*chain(True), craig_bampton(*chain(True), INTERFACE, number))
     assert len(modes.angular_frequencies) == number + 2
     found = modes.angular_frequencies[0] / EXACT[0] - 1
     half_a_digit = 0.5e-3 * 10.0 ** np.floor(np.log10(error))
-    agrees(f"{number} fixed-interface modes", "relative error of the first natural frequency", found, error, absolute=half_a_digit)
+    agrees(
+        f"{number} fixed-interface modes",
+        "relative error of the first natural frequency",
+        found,
+        error,
+        absolute=half_a_digit,
+    )
 
 
 def test_with_every_mode_it_is_exact(agrees: Agrees) -> None:
     modes = projected(*chain(True), craig_bampton(*chain(True), INTERFACE, 58))
-    agrees("all 58 fixed-interface modes", "natural angular frequencies", modes.angular_frequencies, EXACT, unit="rad/s", relative=1e-12)
-    assert abs(modes.angular_frequencies[0] / EXACT[0] - 1) < 1e-12  # rounding, and not the same on every machine
+    agrees(
+        "all 58 fixed-interface modes",
+        "natural angular frequencies",
+        modes.angular_frequencies,
+        EXACT,
+        unit="rad/s",
+        relative=1e-12,
+    )
+    # rounding, and not the same on every machine
+    assert abs(modes.angular_frequencies[0] / EXACT[0] - 1) < 1e-12
 
 
 @pytest.mark.parametrize("number", [0, 2, 8, 16])

@@ -1,8 +1,11 @@
-"""Bounds of recognition against what is known otherwise: maximum likelihood, normal distributions in closed form, spectra of Hertz's pulse.
+"""Bounds of recognition against what is known otherwise: maximum likelihood, normal distributions
+in closed form, spectra of Hertz's pulse.
 
-The Cramer-Rao bound is reached by maximum likelihood where noise is small (Kay, Fundamentals of Statistical Signal Processing I, 1993). The
-Bayes error of two normal distributions of equal covariance at a Mahalanobis distance d is Phi(-d/2) (Fukunaga, Introduction to Statistical
-Pattern Recognition, 1990, eq. 3.119). The spectrum of Hertz's pulse falls by 3 and 10 dB at .67/T and 1.16/T, and first vanishes at 1.80/T.
+The Cramer-Rao bound is reached by maximum likelihood where noise is small (Kay, Fundamentals of
+Statistical Signal Processing I, 1993). The Bayes error of two normal distributions of equal
+covariance at a Mahalanobis distance d is Phi(-d/2) (Fukunaga, Introduction to Statistical Pattern
+Recognition, 1990, eq. 3.119). The spectrum of Hertz's pulse falls by 3 and 10 dB at .67/T and
+1.16/T, and first vanishes at 1.80/T.
 """
 
 from __future__ import annotations
@@ -42,7 +45,9 @@ def test_the_pulse_is_that_of_a_simulated_impact(agrees: Agrees) -> None:
     part = np.linspace(0.01, 0.99, 99)
     force = response.at(part * duration)["force_N"]
     pulse = hertz_pulse(part) * 0.6 / duration  # impulse 2 m v
-    agrees("pulse of a simulated Hertz impact", "contact force", pulse, force, unit="N", relative=1e-6)
+    agrees(
+        "pulse of a simulated Hertz impact", "contact force", pulse, force, unit="N", relative=1e-6
+    )
 
 
 def test_the_spectrum_falls_where_it_is_known_to(agrees: Agrees) -> None:
@@ -50,9 +55,14 @@ def test_the_spectrum_falls_where_it_is_known_to(agrees: Agrees) -> None:
     time = 0.5 * (1.0 + nodes)
 
     def spectrum(u: float) -> float:
-        return float(np.sum(0.5 * weights * hertz_pulse(time) * np.cos(2.0 * np.pi * u * (time - 0.5))))
+        return float(
+            np.sum(0.5 * weights * hertz_pulse(time) * np.cos(2.0 * np.pi * u * (time - 0.5)))
+        )
 
-    falls = [brentq(lambda u, low=low: spectrum(u) - 10 ** (low / 20), *ends) for low, ends in ((-3, (0.1, 1.0)), (-10, (0.5, 1.5)))]
+    falls = [
+        brentq(lambda u, low=low: spectrum(u) - 10 ** (low / 20), *ends)
+        for low, ends in ((-3, (0.1, 1.0)), (-10, (0.5, 1.5)))
+    ]
     found = [*falls, brentq(spectrum, 1.5, 2.0)]
     agrees(
         "spectrum of the Hertz pulse",
@@ -65,10 +75,18 @@ def test_the_spectrum_falls_where_it_is_known_to(agrees: Agrees) -> None:
 
 @pytest.mark.parametrize(
     ("rate", "duration"),
-    [pytest.param(200e3, 300e-6, marks=pytest.mark.slow), (20e3, 300e-6), pytest.param(40e3, 1e-3, marks=pytest.mark.slow)],
+    [
+        pytest.param(200e3, 300e-6, marks=pytest.mark.slow),
+        (20e3, 300e-6),
+        pytest.param(40e3, 1e-3, marks=pytest.mark.slow),
+    ],
 )
-def test_maximum_likelihood_reaches_the_uncertainty(agrees: Agrees, rate: float, duration: float) -> None:
-    """White noise sampled at twice the band, and the pulse limited to the band by its own Fourier series."""
+def test_maximum_likelihood_reaches_the_uncertainty(
+    agrees: Agrees, rate: float, duration: float
+) -> None:
+    """White noise sampled at twice the band, and the pulse limited to the band by its own
+    Fourier series.
+    """
     over, number, rng = 16, 128, np.random.default_rng(1)
     frequency = np.fft.rfftfreq(number, 1.0 / rate)
     fine = (np.arange(number * over) - number * over // 2) / (rate * over)
@@ -83,8 +101,14 @@ def test_maximum_likelihood_reaches_the_uncertainty(agrees: Agrees, rate: float,
     found = []
     for _ in range(200):
         heard = model(np.zeros(3)) + deviation * rng.standard_normal(number)
-        found.append(least_squares(lambda one, heard=heard: (model(one) - heard) / deviation, np.zeros(3)).x[:2])
-    least = pulse_uncertainty(np.ones(1), np.array([duration]), 0.5 * rate, deviation**2 / (0.5 * rate))[:, 0]
+        found.append(
+            least_squares(lambda one, heard=heard: (model(one) - heard) / deviation, np.zeros(3)).x[
+                :2
+            ]
+        )
+    least = pulse_uncertainty(
+        np.ones(1), np.array([duration]), 0.5 * rate, deviation**2 / (0.5 * rate)
+    )[:, 0]
     scatter = np.std(found, axis=0)  # of 200 estimates, which know it to 5 %
     agrees(
         "maximum-likelihood estimation, 200 noise realizations",
@@ -101,7 +125,9 @@ def test_two_normal_distributions_in_two_quantities(distance: float, part: float
     """A part of the variance is noise of the measurement, the rest is of the population."""
     rng = np.random.default_rng(2)
     classes = np.repeat([0, 1], 10_000)
-    clean = np.sqrt(1.0 - part) * rng.standard_normal((20_000, 2)) + np.outer(classes, [0.6 * distance, 0.8 * distance])
+    clean = np.sqrt(1.0 - part) * rng.standard_normal((20_000, 2)) + np.outer(
+        classes, [0.6 * distance, 0.8 * distance]
+    )
     found = bayes_error(clean, np.full_like(clean, np.sqrt(part)), classes, seed=3)
     known = norm.cdf(-0.5 * distance)
     assert found.lower - 0.012 <= known <= found.upper + 3.0 * found.standard_error
@@ -114,7 +140,9 @@ def test_unequal_shares_and_three_classes() -> None:
     measured = 4.0 * classes[:, None] + rng.standard_normal((20_000, 1)) * 0.8
     noise = np.full_like(measured, 0.6)
     x = np.linspace(-8.0, 16.0, 20_001)
-    each = np.array([share * norm.pdf(x, 4.0 * number) for number, share in enumerate((0.7, 0.2, 0.1))])
+    each = np.array(
+        [share * norm.pdf(x, 4.0 * number) for number, share in enumerate((0.7, 0.2, 0.1))]
+    )
     known = 1.0 - np.trapezoid(each.max(axis=0), x)
     found = bayes_error(measured, noise, classes, tested=5000)
     assert abs(found.lower - known) < 0.006
@@ -122,9 +150,14 @@ def test_unequal_shares_and_three_classes() -> None:
 
 
 def test_coal_rings_like_gangue_of_twice_its_size(agrees: Agrees) -> None:
-    """Contact times on steel at 8.8 m/s: 261 us of coal of 25 mm, 145 and 291 us of gangue of 25 and 50 mm."""
+    """Contact times on steel at 8.8 m/s: 261 us of coal of 25 mm, 145 and 291 us of
+    gangue of 25 and 50 mm.
+    """
     table = {
-        "sphere": {"radius": 0.025, "material": {"density": 1380.0, "youngs_modulus": 2.26e9, "poissons_ratio": 0.28}},
+        "sphere": {
+            "radius": 0.025,
+            "material": {"density": 1380.0, "youngs_modulus": 2.26e9, "poissons_ratio": 0.28},
+        },
         "plate": {"material": {"density": 7850.0, "youngs_modulus": 210e9, "poissons_ratio": 0.3}},
         "drop": {"speed": 8.8},
         "contact": {"law": "hertz"},
@@ -139,9 +172,20 @@ def test_coal_rings_like_gangue_of_twice_its_size(agrees: Agrees) -> None:
         },
     }
     falls = falls_of_sweep(vi.read_sweep(table))
-    for name, radius, known in (("coal", 0.025, 261e-6), ("gangue", 0.025, 145e-6), ("gangue", 0.05, 291e-6)):
+    for name, radius, known in (
+        ("coal", 0.025, 261e-6),
+        ("gangue", 0.025, 145e-6),
+        ("gangue", 0.05, 291e-6),
+    ):
         there = (falls.classes == name) & (falls.radius == radius)
-        agrees("coal and gangue spheres on steel", "contact duration", falls.duration[there], known, unit="s", absolute=1e-6)
+        agrees(
+            "coal and gangue spheres on steel",
+            "contact duration",
+            falls.duration[there],
+            known,
+            unit="s",
+            absolute=1e-6,
+        )
     np.testing.assert_allclose(falls.impulse, 2.0 * falls.mass * 8.8, rtol=1e-8)
 
 

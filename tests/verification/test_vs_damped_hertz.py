@@ -1,7 +1,8 @@
-"""Against the closed form for F = K delta^n (1 + D v/v0): D (1 + e) = ln[(1 + D)/(1 - e D)]. Tolerance 1e-8.
+"""Against the closed form for F = K delta^n (1 + D v/v0): D (1 + e) = ln[(1 + D)/(1 - e D)].
+Tolerance 1e-8.
 
-Independent of n, without gravity; also the restitutions that this gives for nine published D(e), of which five are
-printed, and Adams' clipped law by an independent integration.
+Independent of n, without gravity; also the restitutions that this gives for nine published D(e), of
+which five are printed, and Adams' clipped law by an independent integration.
 """
 
 from __future__ import annotations
@@ -17,7 +18,8 @@ from agreement import Against, Agrees
 from vibroimpact.contact.hysteretic import hysteretic_restitution
 
 AGAINST = Against(
-    "closed-form coefficient of restitution of hysteretic damping, D (1 + e) = ln[(1 + D)/(1 - e D)]",
+    "closed-form coefficient of restitution of hysteretic damping, D (1 + e) "
+    "= ln[(1 + D)/(1 - e D)]",
     "closed form",
     "damping laws",
     "force F = K δ^n (1 + D v/v0) without gravity, any exponent n",
@@ -54,12 +56,30 @@ def test_the_printed_restitutions(agrees: Agrees, name: str, exponent: float) ->
     for asked, expected in zip(ASKED, ACHIEVED[name], strict=True):
         law = vi.find_contact_law(name)(stiffness=1e7, restitution=asked, exponent=exponent)
         ball = vi.Body(mass=0.3, contact_offset=0.1)
-        row = vi.simulate(vi.Problem(sphere=ball, plate=vi.rigid_plate(), laws=(law,), speed=2.0, gravity=0.0, impacts=1)).impacts
+        row = vi.simulate(
+            vi.Problem(
+                sphere=ball, plate=vi.rigid_plate(), laws=(law,), speed=2.0, gravity=0.0, impacts=1
+            )
+        ).impacts
         case = f"law {name}, six nominal coefficients of restitution, three force exponents"
-        agrees(case, "coefficient of restitution", row["restitution_achieved"], exact(law.damping_factor), relative=1e-8)
-        agrees(case, "coefficient of restitution, printed value", row["restitution_achieved"], expected, absolute=5e-6)
+        agrees(
+            case,
+            "coefficient of restitution",
+            row["restitution_achieved"],
+            exact(law.damping_factor),
+            relative=1e-8,
+        )
+        agrees(
+            case,
+            "coefficient of restitution, printed value",
+            row["restitution_achieved"],
+            expected,
+            absolute=5e-6,
+        )
         assert row["restitution_asked"][0] == asked
-        assert law.closed_form_restitution(0.3, 2.0) == pytest.approx(exact(law.damping_factor), rel=1e-12)
+        assert law.closed_form_restitution(0.3, 2.0) == pytest.approx(
+            exact(law.damping_factor), rel=1e-12
+        )
 
 
 @pytest.mark.parametrize("name", FACTORS)
@@ -80,9 +100,15 @@ def test_the_laws_without_a_printed_restitution(agrees: Agrees, name: str) -> No
 @pytest.mark.parametrize("wanted", EXACT)
 def test_the_factor_that_achieves_a_restitution_exactly(agrees: Agrees, wanted: float) -> None:
     assert hysteretic_restitution(EXACT[wanted]) == pytest.approx(wanted, abs=1e-6)
-    law = vi.law_achieving(vi.find_contact_law("flores")(stiffness=1e7, restitution=0.5), wanted, mass=0.3, speed=2.0)
+    law = vi.law_achieving(
+        vi.find_contact_law("flores")(stiffness=1e7, restitution=0.5), wanted, mass=0.3, speed=2.0
+    )
     agrees(
-        "damping for six prescribed coefficients of restitution", "damping factor", law.damping_factor, EXACT[wanted], absolute=5e-6
+        "damping for six prescribed coefficients of restitution",
+        "damping factor",
+        law.damping_factor,
+        EXACT[wanted],
+        absolute=5e-6,
     )  # the digits printed
 
 

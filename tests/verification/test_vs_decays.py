@@ -1,4 +1,6 @@
-"""Modes in decays against the tones that they are made of: how many of the 95 % intervals hold the truth."""
+"""Modes in decays against the tones that they are made of: how many of the 95 % intervals
+hold the truth.
+"""
 
 from __future__ import annotations
 
@@ -25,7 +27,9 @@ RATIOS = np.array([0.008, 0.004, 0.006, 0.01, 0.02])
 
 @pytest.mark.slow
 def test_intervals_hold_the_truth(agrees: Agrees, population: Callable[..., int]) -> None:
-    """Five tones of random sizes and phases under noise 40 dB down: 95 % of the intervals hold, none is missed, and few are invented."""
+    """Five tones of random sizes and phases under noise 40 dB down: 95 % of the intervals
+    hold, none is missed, and few are invented.
+    """
     time = np.arange(SAMPLES) / RATE
     draws = population(DRAWS)
     held, invented = np.zeros(2), 0
@@ -33,7 +37,9 @@ def test_intervals_hold_the_truth(agrees: Agrees, population: Callable[..., int]
         random = np.random.default_rng(seed)
         phases, sizes = random.uniform(0.0, 2.0 * np.pi, (5, 1)), random.uniform(0.5, 1.5, (5, 1))
         omega = 2.0 * np.pi * FREQUENCIES[:, None]
-        tones = np.exp(-RATIOS[:, None] * omega * time) * np.sin(omega * np.sqrt(1.0 - RATIOS[:, None] ** 2) * time + phases)
+        tones = np.exp(-RATIOS[:, None] * omega * time) * np.sin(
+            omega * np.sqrt(1.0 - RATIOS[:, None] ** 2) * time + phases
+        )
         value = (sizes * tones).sum(axis=0)
         value += 0.01 * np.sqrt(np.mean(value**2)) * random.standard_normal(SAMPLES)
         found = vi.modes_in_decay([vi.Record("a", value, RATE, "m/s2")], (200.0, 5000.0))
@@ -52,4 +58,10 @@ def test_intervals_hold_the_truth(agrees: Agrees, population: Callable[..., int]
             held += [one.interval[0] <= truth <= one.interval[1] for one, truth in truths]
     assert invented <= 0.02 * draws
     part = held / (5 * draws)  # of frequencies and of damping ratios
-    agrees("240 decays of five tones, signal-to-noise ratio 40 dB", "coverage of the 95 % confidence intervals", part, 0.95, absolute=0.02)
+    agrees(
+        "240 decays of five tones, signal-to-noise ratio 40 dB",
+        "coverage of the 95 % confidence intervals",
+        part,
+        0.95,
+        absolute=0.02,
+    )

@@ -1,4 +1,6 @@
-"""Friction on a plate that vibrates, against an integration of its modes and of the sphere in space by SciPy, and against momentum."""
+"""Friction on a plate that vibrates, against an integration of its modes and of the
+sphere in space by SciPy, and against momentum.
+"""
 
 from __future__ import annotations
 
@@ -22,7 +24,8 @@ AGAINST = Against(
     "SciPy's DOP853, oblique impact on a vibrating plate",
     "own independent computation",
     "oblique impact and friction",
-    "equations of motion of sphere, contact point, modes and rotation, tolerance 1e-12, in the test",
+    "equations of motion of sphere, contact point, modes and rotation, "
+    "tolerance 1e-12, in the test",
 )
 MOMENTUM = Against(
     "conservation of linear and angular momentum",
@@ -43,7 +46,9 @@ def bending_modes(seed: int, number: int = 12, *, size: float = 0.5) -> ModalBas
     random = np.random.default_rng(seed)
     frequencies = np.sort(np.exp(random.uniform(np.log(200.0), np.log(2e4), number)))
     contact, along = size * random.normal(size=number), 0.5 * size * random.normal(size=(number, 2))
-    return ModalBasis(frequencies, np.full(number, 0.02), contact, np.zeros((number, 3)), mass=4.0, along=along)
+    return ModalBasis(
+        frequencies, np.full(number, 0.02), contact, np.zeros((number, 3)), mass=4.0, along=along
+    )
 
 
 def drop(plate: ModalBasis, friction: Any, **oblique: Any) -> vi.Problem:
@@ -62,34 +67,64 @@ def drop(plate: ModalBasis, friction: Any, **oblique: Any) -> vi.Problem:
 
 def friction(name: str, coefficient: float) -> Any:
     return vi.find_friction_law(name)(
-        coefficient=coefficient, effective_modulus=MODULUS, effective_shear_modulus=SHEAR, effective_radius=RADIUS
+        coefficient=coefficient,
+        effective_modulus=MODULUS,
+        effective_shear_modulus=SHEAR,
+        effective_radius=RADIUS,
     )
 
 
 def integrated(
-    plate: ModalBasis, slip: np.ndarray, law: str, coefficient: float, rolling: float = 0.0, motion: vi.PlateMotion | None = None
+    plate: ModalBasis,
+    slip: np.ndarray,
+    law: str,
+    coefficient: float,
+    rolling: float = 0.0,
+    motion: vi.PlateMotion | None = None,
 ) -> dict[str, Any]:
-    """The first contact, by DOP853: fall, contact point of the sphere, and modes, with a spring that sticks, or sliding along x.
+    """The first contact, by DOP853: fall, contact point of the sphere, and modes, with a spring
+    that sticks, or sliding along x.
 
-    `rolling`: coefficient of a moment against the spin of a sphere, which begins with that of rolling along x at 3 m/s.
-    Supports may move with one frequency: the modes are relative to them, and begin in their steady motion.
+    `rolling`: coefficient of a moment against the spin of a sphere, which begins with that of
+    rolling along x at 3 m/s. Supports may move with one frequency: the modes are relative to them,
+    and begin in their steady motion.
     """
     omega, count = plate.angular_frequencies, len(plate.frequencies)
     assert plate.along is not None
     along, pull = plate.along, np.array(GRAVITY)
     driving, phasor, direction = 1.0, 0j, np.zeros(3)
     if motion is not None:
-        driving, phasor, direction = 2.0 * np.pi * motion.frequency[0], motion.phasors[0], np.array(motion.direction)
+        driving, phasor, direction = (
+            2.0 * np.pi * motion.frequency[0],
+            motion.phasors[0],
+            np.array(motion.direction),
+        )
     inertia = plate.participation[:, :3] @ direction
-    steady = inertia * driving**2 * phasor / (omega**2 - driving**2 + 2j * plate.damping_ratios * omega * driving)
+    steady = (
+        inertia
+        * driving**2
+        * phasor
+        / (omega**2 - driving**2 + 2j * plate.damping_ratios * omega * driving)
+    )
 
     def supports(time: float) -> tuple[np.ndarray, np.ndarray, float]:
         turned = phasor * np.exp(1j * driving * time)
-        return direction * turned.imag, direction * driving * turned.real, -(driving**2) * turned.imag
+        return (
+            direction * turned.imag,
+            direction * driving * turned.real,
+            -(driving**2) * turned.imag,
+        )
 
     def parts(state: np.ndarray) -> tuple[Any, ...]:
         (depth, fall), point, point_rate = state[:2], state[2:4], state[4:6]
-        return depth, fall, point, point_rate, state[6 : 6 + count], state[6 + count : 6 + 2 * count]
+        return (
+            depth,
+            fall,
+            point,
+            point_rate,
+            state[6 : 6 + count],
+            state[6 + count : 6 + 2 * count],
+        )
 
     def forces(time: float, state: np.ndarray) -> tuple[float, np.ndarray]:
         depth, _, point, point_rate, place, rate = parts(state)
@@ -106,7 +141,12 @@ def integrated(
     def rates(time: float, state: np.ndarray) -> np.ndarray:
         _, fall, _, point_rate, place, rate = parts(state)
         force, rub = forces(time, state)
-        modes = -(omega**2) * place - 2.0 * plate.damping_ratios * omega * rate - plate.contact * force + along @ rub
+        modes = (
+            -(omega**2) * place
+            - 2.0 * plate.damping_ratios * omega * rate
+            - plate.contact * force
+            + along @ rub
+        )
         modes -= inertia * supports(time)[2]
         spin = state[-2:]
         turned = 2.5 * rolling * force / MASS * spin / np.hypot(*spin)
@@ -114,20 +154,43 @@ def integrated(
         return np.concatenate([sphere, rate, modes, -2.5 * rub / MASS - turned])
 
     def parted(time: float, state: np.ndarray) -> float:
-        return float(state[0] + plate.contact @ state[6 : 6 + count] + supports(time)[0][2]) if time > 1e-6 else 1.0
+        return (
+            float(state[0] + plate.contact @ state[6 : 6 + count] + supports(time)[0][2])
+            if time > 1e-6
+            else 1.0
+        )
 
     parted.terminal, parted.direction = True, -1.0  # type: ignore[attr-defined]
     begin = -float(supports(0.0)[0][2] + plate.contact @ steady.imag)
-    start = np.concatenate([[begin, 2.0, 0.0, 0.0], slip, steady.imag, driving * steady.real, [-3.0, 0.0]])
-    found = solve_ivp(rates, (0.0, 1e-2), start, method="DOP853", events=parted, rtol=1e-12, atol=1e-14, max_step=2e-6)
+    start = np.concatenate(
+        [[begin, 2.0, 0.0, 0.0], slip, steady.imag, driving * steady.real, [-3.0, 0.0]]
+    )
+    found = solve_ivp(
+        rates,
+        (0.0, 1e-2),
+        start,
+        method="DOP853",
+        events=parted,
+        rtol=1e-12,
+        atol=1e-14,
+        max_step=2e-6,
+    )
     end = found.y[:, -1]
-    return {"time": found.t[-1], "fall": end[1], "point": end[4:6], "place": end[6 : 6 + count], "rate": end[6 + count : 6 + 2 * count]}
+    return {
+        "time": found.t[-1],
+        "fall": end[1],
+        "point": end[4:6],
+        "place": end[6 : 6 + count],
+        "rate": end[6 + count : 6 + 2 * count],
+    }
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("seed", [1, 2, 3])
 def test_a_contact_that_sticks_in_two_directions(agrees: Agrees, seed: int) -> None:
-    """A single spring without limit is smooth: all velocities agree with an integration in time to 1e-7."""
+    """A single spring without limit is smooth: all velocities agree with an integration
+    in time to 1e-7.
+    """
     plate, velocity = bending_modes(seed), (0.4, -0.25)
     response = vi.simulate(drop(plate, friction("mindlin", 1e9), velocity=velocity))
     found = integrated(plate, np.array(velocity), "stick", 0.0)
@@ -135,18 +198,34 @@ def test_a_contact_that_sticks_in_two_directions(agrees: Agrees, seed: int) -> N
     assert row["contacts"] == 1
     case = "sticking contact, 12 modes"
     agrees(case, "contact duration", row["duration_s"], found["time"], unit="s", relative=1e-7)
-    agrees(case, "separation speed", row["separation_speed_m_s"], -found["fall"], unit="m/s", relative=1e-7)
+    agrees(
+        case,
+        "separation speed",
+        row["separation_speed_m_s"],
+        -found["fall"],
+        unit="m/s",
+        relative=1e-7,
+    )
     rolled = np.array([-row["spin_y_after_rad_s"], row["spin_x_after_rad_s"]]) * RADIUS
     point = np.array([row["separation_velocity_x_m_s"], row["separation_velocity_y_m_s"]]) + rolled
     assert point == pytest.approx(found["point"], rel=1e-7, abs=1e-7 * 0.4)
     modes = 0.5 * (found["rate"] ** 2 + (plate.angular_frequencies * found["place"]) ** 2).sum()
     history = response.at([row["time_s"] + row["duration_s"]])
-    agrees(case, "vibration energy of the plate", history["plate_kinetic_J"] + history["plate_strain_J"], modes, unit="J", relative=1e-7)
+    agrees(
+        case,
+        "vibration energy of the plate",
+        history["plate_kinetic_J"] + history["plate_strain_J"],
+        modes,
+        unit="J",
+        relative=1e-7,
+    )
 
 
 @pytest.mark.parametrize("name", ["mdr", "mindlin", "mindlin-force"])
 def test_a_contact_that_slides(agrees: Agrees, name: str) -> None:
-    """Fast slip leaves no choice to any law: the coefficient times the normal force, against the slip over the surface as it moves."""
+    """Fast slip leaves no choice to any law: the coefficient times the normal force,
+    against the slip over the surface as it moves.
+    """
     plate = bending_modes(7)
     assert plate.along is not None
     straight = replace(plate, along=plate.along * np.array([1.0, 0.0]))
@@ -156,13 +235,29 @@ def test_a_contact_that_slides(agrees: Agrees, name: str) -> None:
     point = row["separation_velocity_x_m_s"] - RADIUS * row["spin_y_after_rad_s"]
     assert row["contacts"] == 1
     case = "sliding contact, 12 modes"
-    agrees(case, "tangential velocity of the contact point after impact", point, found["point"][0], unit="m/s", relative=1e-7)
-    agrees(case, "separation speed", row["separation_speed_m_s"], -found["fall"], unit="m/s", relative=1e-7)
+    agrees(
+        case,
+        "tangential velocity of the contact point after impact",
+        point,
+        found["point"][0],
+        unit="m/s",
+        relative=1e-7,
+    )
+    agrees(
+        case,
+        "separation speed",
+        row["separation_speed_m_s"],
+        -found["fall"],
+        unit="m/s",
+        relative=1e-7,
+    )
 
 
 @pytest.mark.parametrize("seed", [1, 2])
 def test_a_sphere_that_rolls_onto_a_plate_that_vibrates(agrees: Agrees, seed: int) -> None:
-    """The moment of rolling resistance stretches a contact that sticks, beside the vibration of the plate below."""
+    """The moment of rolling resistance stretches a contact that sticks, beside the
+    vibration of the plate below.
+    """
     plate, rolling = bending_modes(seed), 0.01
     law = replace(friction("mindlin", 1e9), rolling_coefficient=rolling)
     response = vi.simulate(drop(plate, law, velocity=(3.0, 0.0), spin=(0.0, 3.0 / RADIUS, 0.0)))
@@ -191,12 +286,21 @@ def test_a_sphere_that_rolls_onto_a_plate_that_vibrates(agrees: Agrees, seed: in
 
 @pytest.mark.parametrize("name", ["mdr", "mindlin"])
 def test_moments_of_a_contact_that_slides(name: str) -> None:
-    """On a plate that hardly moves: mu of the impulse, 5/2 (mu -+ mu_r) of it for the spin, and little of that about the normal."""
+    """On a plate that hardly moves: mu of the impulse, 5/2 (mu -+ mu_r) of it for the
+    spin, and little of that about the normal.
+    """
     rolling, mu = 0.04, 0.3
     law = replace(friction(name, mu), rolling_coefficient=rolling)
-    for speed, spin, turn in ((30.0, 0.0, 2.5 * (mu - rolling)), (0.0, -30.0, 2.5 * (mu + rolling))):
-        problem = drop(bending_modes(1, size=1e-9), law, velocity=(speed, 0.0), spin=(0.0, spin / RADIUS, 1.0))
-        response = vi.simulate(replace(problem, oblique=replace(problem.oblique, gravity=(0.0, 0.0)), gravity=0.0))
+    for speed, spin, turn in (
+        (30.0, 0.0, 2.5 * (mu - rolling)),
+        (0.0, -30.0, 2.5 * (mu + rolling)),
+    ):
+        problem = drop(
+            bending_modes(1, size=1e-9), law, velocity=(speed, 0.0), spin=(0.0, spin / RADIUS, 1.0)
+        )
+        response = vi.simulate(
+            replace(problem, oblique=replace(problem.oblique, gravity=(0.0, 0.0)), gravity=0.0)
+        )
         row = {key: values[0] for key, values in response.impacts.items()}
         impulse = 2.0 + row["separation_speed_m_s"]
         assert row["separation_velocity_x_m_s"] == pytest.approx(speed - mu * impulse, rel=1e-8)
@@ -205,13 +309,29 @@ def test_moments_of_a_contact_that_slides(name: str) -> None:
 
 
 @pytest.mark.parametrize("spin", [(20.0, -30.0, 400.0), (0.0, 0.0, 0.3), (-100.0, 60.0, 0.0)])
-def test_momentum_of_a_free_plate_that_moments_turn(agrees: Agrees, spin: tuple[float, float, float]) -> None:
-    """Momentum and angular momentum of sphere and plate together stay, to 1e-9, with rolling resistance and twisting friction."""
+def test_momentum_of_a_free_plate_that_moments_turn(
+    agrees: Agrees, spin: tuple[float, float, float]
+) -> None:
+    """Momentum and angular momentum of sphere and plate together stay, to 1e-9, with
+    rolling resistance and twisting friction.
+    """
     case = vi.read_case(
         {
             "sphere": {"radius": 0.02, "material": "steel"},
-            "plate": {"size": [0.3, 0.2, 0.01], "material": "steel", "model": "elastic", "supports": "free", "modes": 30},
-            "drop": {"speed": 2.0, "angle": math.radians(35.0), "gravity": 0.0, "position": [0.06, -0.03], "spin": list(spin)},
+            "plate": {
+                "size": [0.3, 0.2, 0.01],
+                "material": "steel",
+                "model": "elastic",
+                "supports": "free",
+                "modes": 30,
+            },
+            "drop": {
+                "speed": 2.0,
+                "angle": math.radians(35.0),
+                "gravity": 0.0,
+                "position": [0.06, -0.03],
+                "spin": list(spin),
+            },
             "contact": {
                 "law": "hunt-crossley",
                 "restitution": 0.8,
@@ -232,13 +352,23 @@ def test_momentum_of_a_free_plate_that_moments_turn(agrees: Agrees, spin: tuple[
     speed = end.velocity[slices_of(problem)[0]]
     row = {key: values[0] for key, values in response.impacts.items()}
     mass, radius, down = float(problem.sphere.mass), 0.02, 2.0 * math.cos(math.radians(35.0))
-    before, after = (np.array([row[f"{when}_velocity_{axis}_m_s"] for axis in "xy"]) for when in ("approach", "separation"))
+    before, after = (
+        np.array([row[f"{when}_velocity_{axis}_m_s"] for axis in "xy"])
+        for when in ("approach", "separation")
+    )
     rising = float(response.at([row["time_s"] + row["duration_s"]])["velocity_m_s"][0])
     impulse = mass * np.append(after - before, rising + down)
     scale = mass * 2.0
     assert speed @ rigid.participation == pytest.approx(-impulse, abs=1e-9 * scale)
     turned = problem.models["plate"].properties.inertia @ (speed @ rigid.turning)
-    spun = 0.4 * mass * radius**2 * np.array([row[f"spin_{axis}_after_rad_s"] - row[f"spin_{axis}_before_rad_s"] for axis in "xyz"])
+    spun = (
+        0.4
+        * mass
+        * radius**2
+        * np.array(
+            [row[f"spin_{axis}_after_rad_s"] - row[f"spin_{axis}_before_rad_s"] for axis in "xyz"]
+        )
+    )
     centre = np.array([0.06, -0.03, 0.005 + radius])
     balance = (turned + spun + np.cross(centre, impulse)) / (scale * radius)
     agrees(
@@ -261,13 +391,31 @@ def test_momentum_of_a_free_plate_that_moments_turn(agrees: Agrees, spin: tuple[
 @pytest.mark.parametrize("place", [(0.06, -0.03), (-0.11, 0.05)])
 @pytest.mark.parametrize("law", ["mdr", "mindlin-rescale"])
 def test_momentum_of_a_free_plate(agrees: Agrees, place: tuple[float, float], law: str) -> None:
-    """An oblique drop beside the centre of a free plate: momentum and angular momentum of both together stay, to 1e-9."""
+    """An oblique drop beside the centre of a free plate: momentum and angular momentum of
+    both together stay, to 1e-9.
+    """
     case = vi.read_case(
         {
             "sphere": {"radius": 0.02, "material": "steel"},
-            "plate": {"size": [0.3, 0.2, 0.01], "material": "steel", "model": "elastic", "supports": "free", "modes": 30},
-            "drop": {"speed": 2.0, "angle": math.radians(35.0), "gravity": 0.0, "position": list(place), "spin": [20.0, -30.0, 0.0]},
-            "contact": {"law": "hunt-crossley", "restitution": 0.8, "friction": {"law": law, "coefficient": 0.2}},
+            "plate": {
+                "size": [0.3, 0.2, 0.01],
+                "material": "steel",
+                "model": "elastic",
+                "supports": "free",
+                "modes": 30,
+            },
+            "drop": {
+                "speed": 2.0,
+                "angle": math.radians(35.0),
+                "gravity": 0.0,
+                "position": list(place),
+                "spin": [20.0, -30.0, 0.0],
+            },
+            "contact": {
+                "law": "hunt-crossley",
+                "restitution": 0.8,
+                "friction": {"law": law, "coefficient": 0.2},
+            },
             "run": {"impacts": 1},
         }
     )
@@ -283,7 +431,10 @@ def test_momentum_of_a_free_plate(agrees: Agrees, place: tuple[float, float], la
     speed = end.velocity[slices_of(problem)[0]]
     row = {name: values[0] for name, values in response.impacts.items()}
     mass, radius = float(problem.sphere.mass), 0.02
-    before, after = (np.array([row[f"{when}_velocity_{axis}_m_s"] for axis in "xy"]) for when in ("approach", "separation"))
+    before, after = (
+        np.array([row[f"{when}_velocity_{axis}_m_s"] for axis in "xy"])
+        for when in ("approach", "separation")
+    )
     rising = float(response.at([row["time_s"] + row["duration_s"]])["velocity_m_s"][0])
     impulse = mass * np.append(after - before, rising + 2.0 * math.cos(math.radians(35.0)))
     scale = mass * 2.0
@@ -296,35 +447,48 @@ def test_momentum_of_a_free_plate(agrees: Agrees, place: tuple[float, float], la
         against=MOMENTUM,
         absolute=1e-9,
     )
-    # the plate turns about its centre by the impulse at the place of contact, half its thickness above
+    # the plate turns about its centre by the impulse at the place of contact, half its thickness
+    # above
     arm = np.array([*place, 0.005])
     inertia = problem.models["plate"].properties.inertia
     assert rigid.rotation is not None
     moments, axes = np.linalg.eigh(inertia)
     turned = axes @ (np.sqrt(moments) * (speed @ rigid.rotation))
     assert turned == pytest.approx(np.cross(arm, -impulse), abs=1e-9 * scale * 0.15)
-    spin = np.array([row[f"spin_{axis}_after_rad_s"] - row[f"spin_{axis}_before_rad_s"] for axis in "xyz"])
-    assert 0.4 * mass * radius**2 * spin == pytest.approx(np.cross([0.0, 0.0, -radius], impulse), abs=1e-9 * scale * radius)
+    spin = np.array(
+        [row[f"spin_{axis}_after_rad_s"] - row[f"spin_{axis}_before_rad_s"] for axis in "xyz"]
+    )
+    assert 0.4 * mass * radius**2 * spin == pytest.approx(
+        np.cross([0.0, 0.0, -radius], impulse), abs=1e-9 * scale * radius
+    )
     assert abs(response.energy["closure_relative"]) < 1e-9
 
 
 @pytest.mark.parametrize("slip", [0.05, 0.3, 0.8, 3.0])
 @pytest.mark.parametrize("name", ["mdr", "mindlin", "mindlin-force"])
 def test_a_plate_that_hardly_moves_is_a_rigid_one(name: str, slip: float) -> None:
-    """Sticking, slipping in part and sliding: springs and nodes here, turning points and steps there."""
+    """Sticking, slipping in part and sliding: springs and nodes here, turning points and
+    steps there.
+    """
     still = bending_modes(1, size=1e-9)
-    level = vi.Oblique(velocity=(slip, 0.3 * slip), spin=(3.0, 1.0, 20.0), friction=friction(name, 0.2))
+    level = vi.Oblique(
+        velocity=(slip, 0.3 * slip), spin=(3.0, 1.0, 20.0), friction=friction(name, 0.2)
+    )
     problem = replace(drop(still, level.friction), oblique=level, tolerance=1e-9)
     rigid = vi.simulate(replace(problem, plate=vi.rigid_plate())).impacts
     found = vi.simulate(problem).impacts
     before = slip + 0.08  # about the slip speed, with that of the spin
     for axis in "xy":
-        for key, scale in ((f"separation_velocity_{axis}_m_s", before), (f"spin_{axis}_after_rad_s", 2.5 * before / RADIUS)):
+        for key, scale in (
+            (f"separation_velocity_{axis}_m_s", before),
+            (f"spin_{axis}_after_rad_s", 2.5 * before / RADIUS),
+        ):
             assert found[key][0] == pytest.approx(rigid[key][0], abs=2e-4 * scale)
     # twisting begins where a slip ends, which steps here and there find differently
     assert found["spin_z_after_rad_s"][0] == pytest.approx(rigid["spin_z_after_rad_s"][0], rel=3e-3)
     for key in ("friction_lost_J", "microslip_lost_J", "gross_slip_lost_J"):
-        scale = 5e-4 * MASS * slip**2 + 1e-4 * 0.4 * MASS * (RADIUS * 20.0) ** 2  # of what slips, and of what twists
+        # of what slips, and of what twists
+        scale = 5e-4 * MASS * slip**2 + 1e-4 * 0.4 * MASS * (RADIUS * 20.0) ** 2
         assert found[key][0] == pytest.approx(rigid[key][0], abs=scale)
 
 
@@ -334,21 +498,38 @@ def test_random_drops_close_their_ledger_and_gain_nothing(rolling: float) -> Non
     random = np.random.default_rng(0)
     laws = ("mdr", "mindlin", "mindlin-rescale", "mindlin-force")
     for number in range(24):
-        plate = bending_modes(number, int(random.integers(1, 40)), size=float(10 ** random.uniform(-1.5, 0.3)))
+        plate = bending_modes(
+            number, int(random.integers(1, 40)), size=float(10 ** random.uniform(-1.5, 0.3))
+        )
         problem = drop(
             plate,
-            replace(friction(laws[number % 4], float(10 ** random.uniform(-2.0, 0.5))), rolling_coefficient=rolling),
+            replace(
+                friction(laws[number % 4], float(10 ** random.uniform(-2.0, 0.5))),
+                rolling_coefficient=rolling,
+            ),
             velocity=tuple(random.normal(size=2) * 10 ** random.uniform(-3.0, 1.0)),
             spin=tuple(random.normal(size=3) * 10 ** random.uniform(0.0, 2.0)),
         )
-        law = vi.find_contact_law("hunt-crossley")(stiffness=STIFFNESS, restitution=float(random.uniform(0.1, 1.0)))
-        response = vi.simulate(replace(problem, laws=(law,), speed=float(10 ** random.uniform(-2.0, 1.0)), impacts=2, tolerance=1e-9))
+        law = vi.find_contact_law("hunt-crossley")(
+            stiffness=STIFFNESS, restitution=float(random.uniform(0.1, 1.0))
+        )
+        response = vi.simulate(
+            replace(
+                problem,
+                laws=(law,),
+                speed=float(10 ** random.uniform(-2.0, 1.0)),
+                impacts=2,
+                tolerance=1e-9,
+            )
+        )
         assert response.energy["closure_relative"] < 2e-9
         assert (response.impacts["friction_lost_J"] > -1e-9 * response.energy["input_J"]).all()
 
 
 def test_springs_follow_the_turning_points() -> None:
-    """Along one direction, a displacement that turns twice while the contact grows and shrinks: within 1e-4 of the largest friction."""
+    """Along one direction, a displacement that turns twice while the contact grows and
+    shrinks: within 1e-4 of the largest friction.
+    """
     steps = 1600
     angle = np.linspace(0.0, np.pi, 20 * steps + 1)
     depth = 1e-6 * np.maximum(np.sin(angle), 0.0)
@@ -366,12 +547,23 @@ def test_springs_follow_the_turning_points() -> None:
 
 
 def shaken(plate: ModalBasis, seed: int) -> tuple[ModalBasis, vi.PlateMotion]:
-    """A plate whose supports reach its modes in all directions, and their motion by 0.2 mm at 400 Hz."""
+    """A plate whose supports reach its modes in all directions, and their motion by 0.2
+    mm at 400 Hz.
+    """
     random = np.random.default_rng(seed)
     direction = random.normal(size=3)
-    moves = np.concatenate([0.5 * random.normal(size=(len(plate.frequencies), 3)), np.zeros((len(plate.frequencies), 3))], axis=1)
+    moves = np.concatenate(
+        [
+            0.5 * random.normal(size=(len(plate.frequencies), 3)),
+            np.zeros((len(plate.frequencies), 3)),
+        ],
+        axis=1,
+    )
     motion = vi.PlateMotion(
-        amplitude=2e-4, frequency=400.0, phase=random.uniform(0.0, 6.0), direction=tuple(direction / np.linalg.norm(direction))
+        amplitude=2e-4,
+        frequency=400.0,
+        phase=random.uniform(0.0, 6.0),
+        direction=tuple(direction / np.linalg.norm(direction)),
     )
     return replace(plate, participation=moves[:, : plate.participation.shape[1]]), motion
 
@@ -380,11 +572,20 @@ def shaken(plate: ModalBasis, seed: int) -> tuple[ModalBasis, vi.PlateMotion]:
 def test_a_contact_that_sticks_to_a_plate_that_is_shaken(agrees: Agrees, seed: int) -> None:
     """Sphere, modes and prescribed motion in all directions, the velocities to 1e-7."""
     (plate, motion), velocity = shaken(bending_modes(seed), seed), (0.4, -0.25)
-    response = vi.simulate(replace(drop(plate, friction("mindlin", 1e9), velocity=velocity), motion=motion))
+    response = vi.simulate(
+        replace(drop(plate, friction("mindlin", 1e9), velocity=velocity), motion=motion)
+    )
     found = integrated(plate, np.array(velocity), "stick", 0.0, motion=motion)
     row = {name: values[0] for name, values in response.impacts.items()}
     assert row["contacts"] == 1
-    agrees("sticking contact on a shaken plate", "contact duration", row["duration_s"], found["time"], unit="s", relative=1e-7)
+    agrees(
+        "sticking contact on a shaken plate",
+        "contact duration",
+        row["duration_s"],
+        found["time"],
+        unit="s",
+        relative=1e-7,
+    )
     history = response.at([row["time_s"] + row["duration_s"]])
     agrees(
         "sticking contact on a shaken plate",
@@ -411,7 +612,9 @@ def test_a_contact_that_slides_on_a_plate_that_is_shaken(agrees: Agrees, name: s
     motion = replace(motion, direction=(0.6, 0.0, 0.8))
     row = {
         key: values[0]
-        for key, values in vi.simulate(replace(drop(straight, friction(name, 0.1), velocity=(3.0, 0.0)), motion=motion)).impacts.items()
+        for key, values in vi.simulate(
+            replace(drop(straight, friction(name, 0.1), velocity=(3.0, 0.0)), motion=motion)
+        ).impacts.items()
     }
     found = integrated(straight, np.array([3.0, 0.0]), "slide", 0.1, motion=motion)
     assert row["contacts"] == 1
@@ -424,4 +627,11 @@ def test_a_contact_that_slides_on_a_plate_that_is_shaken(agrees: Agrees, name: s
         unit="m/s",
         relative=1e-7,
     )
-    agrees("sliding contact on a shaken plate", "contact duration", row["duration_s"], found["time"], unit="s", relative=1e-7)
+    agrees(
+        "sliding contact on a shaken plate",
+        "contact duration",
+        row["duration_s"],
+        found["time"],
+        unit="s",
+        relative=1e-7,
+    )

@@ -25,7 +25,8 @@ AGAINST = Against(
     "Gmsh, meshes and mesh files",
     "other program",
     "programs and files",
-    "Geuzaine and Remacle 2009, Int. J. Numer. Methods Eng. 79, 1309; volumes of the shapes in closed form",
+    "Geuzaine and Remacle 2009, Int. J. Numer. Methods Eng. 79, 1309; volumes "
+    "of the shapes in closed form",
 )
 
 
@@ -38,7 +39,11 @@ def volume(mesh: Mesh) -> float:
     total = 0.0
     for block in mesh.blocks:
         points, weights = block.element.quadrature()
-        jacobian = np.linalg.det(np.einsum("qdn,enx->eqdx", block.element.basis(points)[1], mesh.nodes[block.connectivity]))
+        jacobian = np.linalg.det(
+            np.einsum(
+                "qdn,enx->eqdx", block.element.basis(points)[1], mesh.nodes[block.connectivity]
+            )
+        )
         assert jacobian.min() > 0
         total += float((jacobian * weights).sum())
     return total
@@ -53,7 +58,9 @@ def model() -> Iterator[None]:
 
 
 def make(shape: str, order: int, incomplete: bool = False) -> None:
-    """Mesh a sphere or a box of tetrahedra, or a quarter of a ring of curved bricks, with named groups."""
+    """Mesh a sphere or a box of tetrahedra, or a quarter of a ring of curved bricks, with
+    named groups.
+    """
     gmsh.option.setNumber("Mesh.MeshSizeMax", 0.12)
     gmsh.option.setNumber("Mesh.ElementOrder", order)
     gmsh.option.setNumber("Mesh.SecondOrderIncomplete", incomplete)
@@ -64,7 +71,9 @@ def make(shape: str, order: int, incomplete: bool = False) -> None:
         solid = occ.addBox(0, 0, 0, 0.2, 0.3, 0.4)
     else:
         face = occ.addRectangle(0.1, 0, 0, 0.2, 0.2)
-        turned = occ.revolve([(2, face)], 0, 0, 0, 0, 1, 0, np.pi / 2, numElements=[3], recombine=True)
+        turned = occ.revolve(
+            [(2, face)], 0, 0, 0, 0, 1, 0, np.pi / 2, numElements=[3], recombine=True
+        )
         solid = next(tag for dimension, tag in turned if dimension == 3)
     occ.synchronize()
     if shape == "ring":
@@ -92,7 +101,9 @@ CASES = [
 
 
 @pytest.mark.parametrize(("shape", "order", "incomplete", "kind"), CASES)
-def test_files_of_gmsh(agrees: Agrees, model: None, shape: str, order: int, incomplete: bool, kind: str, tmp_path: Path) -> None:
+def test_files_of_gmsh(
+    agrees: Agrees, model: None, shape: str, order: int, incomplete: bool, kind: str, tmp_path: Path
+) -> None:
     make(shape, order, incomplete)
     files = []
     for version in (2.2, 4.0, 4.1):
@@ -110,7 +121,14 @@ def test_files_of_gmsh(agrees: Agrees, model: None, shape: str, order: int, inco
     meshes = [read_mesh(file) for file in files]
     for file, mesh in zip(files, meshes, strict=True):
         assert [block.kind for block in mesh.blocks] == [kind]
-        agrees(f"{shape}, {kind}, {len(files)} mesh files", "volume", volume(mesh), exact, unit="m³", relative=tolerance)
+        agrees(
+            f"{shape}, {kind}, {len(files)} mesh files",
+            "volume",
+            volume(mesh),
+            exact,
+            unit="m³",
+            relative=tolerance,
+        )
         kept = DIGITS.get(file.name, 1e-12)
         case = f"{shape}, {'.bdf with three digits' if kept == 1e-3 else file.suffix} against .msh"
         agrees(case, "volume", volume(mesh), volume(meshes[0]), unit="m³", relative=kept)
@@ -147,12 +165,19 @@ def test_prisms(model: None, tmp_path: Path) -> None:
             np.testing.assert_allclose(found.inertia, np.eye(3) / 6.0, atol=1e-9)
 
 
-@pytest.mark.parametrize(("order", "incomplete", "kind"), [(1, False, "pyramid5"), (2, True, "pyramid13"), (2, False, "pyramid14")])
+@pytest.mark.parametrize(
+    ("order", "incomplete", "kind"),
+    [(1, False, "pyramid5"), (2, True, "pyramid13"), (2, False, "pyramid14")],
+)
 def test_pyramids(order: int, incomplete: bool, kind: str, model: None, tmp_path: Path) -> None:
-    """The six pyramids of a cube: their nodes in the order of Gmsh, and halfway on edges once they are ours."""
+    """The six pyramids of a cube: their nodes in the order of Gmsh, and halfway on edges
+    once they are ours.
+    """
     tag = gmsh.model.addDiscreteEntity(3)
     corners = np.array([[x, y, z] for z in (0.0, 1.0) for y in (0.0, 1.0) for x in (0.0, 1.0)])
-    gmsh.model.mesh.addNodes(3, tag, list(range(1, 10)), np.concatenate([corners.ravel(), [0.5] * 3]))
+    gmsh.model.mesh.addNodes(
+        3, tag, list(range(1, 10)), np.concatenate([corners.ravel(), [0.5] * 3])
+    )
     faces = [(1, 2, 4, 3), (5, 7, 8, 6), (1, 5, 6, 2), (2, 6, 8, 4), (4, 8, 7, 3), (3, 7, 5, 1)]
     gmsh.model.mesh.addElementsByType(tag, 7, [], [node for face in faces for node in (*face, 9)])
     gmsh.option.setNumber("Mesh.SecondOrderIncomplete", incomplete)
@@ -166,7 +191,8 @@ def test_pyramids(order: int, incomplete: bool, kind: str, model: None, tmp_path
         check_mesh(mesh)
         assert mass_properties(mesh, 1.0).mass == pytest.approx(1.0, rel=1e-12)
         reference = block.element.reference[:, 2]
-        for members in block.connectivity:  # the map of a straight pyramid is linear: heights over the base are those of the reference
+        # the map of a straight pyramid is linear: heights over the base are those of the reference
+        for members in block.connectivity:
             at = mesh.nodes[members]
             normal = np.cross(at[1] - at[0], at[3] - at[0])
             np.testing.assert_allclose((at - at[0]) @ normal, 0.5 * reference, atol=1e-12)
@@ -181,22 +207,44 @@ def write_geometry(file: Path, *boxes: float) -> None:
     gmsh.write(str(file))
 
 
-def test_geometry_is_in_metres(agrees: Agrees, model: None, tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+def test_geometry_is_in_metres(
+    agrees: Agrees, model: None, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
     step, brep = tmp_path / "ball.step", tmp_path / "ball.brep"
     write_geometry(step)
     gmsh.write(str(brep))
-    before = gmsh.model.getCurrent(), gmsh.option.getNumber("Mesh.ElementOrder"), gmsh.model.getEntities()
+    before = (
+        gmsh.model.getCurrent(),
+        gmsh.option.getNumber("Mesh.ElementOrder"),
+        gmsh.model.getEntities(),
+    )
     capfd.readouterr()
     for mesh in (read_mesh(step, size=0.01), read_mesh(brep, unit_in_metres=1e-3, size=0.01)):
         assert [block.kind for block in mesh.blocks] == ["tet10"]
-        agrees("sphere from a STEP or BREP file", "volume", volume(mesh), 4 / 3 * np.pi * 0.025**3, unit="m³", relative=5e-4)
+        agrees(
+            "sphere from a STEP or BREP file",
+            "volume",
+            volume(mesh),
+            4 / 3 * np.pi * 0.025**3,
+            unit="m³",
+            relative=5e-4,
+        )
         radius = np.linalg.norm(mesh.nodes[mesh.node_sets["face1"]], axis=1)
         agrees(
-            "sphere from a STEP or BREP file", "distance of surface nodes from the centre", radius, 0.025, unit="m", relative=1e-6
+            "sphere from a STEP or BREP file",
+            "distance of surface nodes from the centre",
+            radius,
+            0.025,
+            unit="m",
+            relative=1e-6,
         )  # of all orders
         corners = mesh.nodes[mesh.blocks[0].connectivity[:, :4]]
         assert np.linalg.norm(corners[:, :, None] - corners[:, None], axis=-1).max() < 2 * 0.01
-    assert before == (gmsh.model.getCurrent(), gmsh.option.getNumber("Mesh.ElementOrder"), gmsh.model.getEntities())
+    assert before == (
+        gmsh.model.getCurrent(),
+        gmsh.option.getNumber("Mesh.ElementOrder"),
+        gmsh.model.getEntities(),
+    )
     assert gmsh.isInitialized()
     assert capfd.readouterr() == ("", "")
 
@@ -206,7 +254,9 @@ def test_size_and_order(model: None, tmp_path: Path) -> None:
     mesh = mesh_geometry(tmp_path / "ball.stp", size=0.02, order=1)
     assert [block.kind for block in mesh.blocks] == ["tet4"]
     with pytest.raises(
-        InputError, match=r"elements of that size would be about .* million; at most 3 million are made: choose a larger size"
+        InputError,
+        match=r"elements of that size would be about .* million; at most 3 million are made: "
+        r"choose a larger size",
     ):
         mesh_geometry(tmp_path / "ball.stp", size=1e-8)
 
@@ -220,7 +270,9 @@ def test_wrong_geometries(model: None, tmp_path: Path) -> None:
         read_mesh(tmp_path / "no.step")
 
 
-@pytest.mark.parametrize("reason", ["ImportError('no module')", "OSError('libGLU.so.1: cannot open shared object file')"])
+@pytest.mark.parametrize(
+    "reason", ["ImportError('no module')", "OSError('libGLU.so.1: cannot open shared object file')"]
+)
 def test_without_gmsh(reason: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "gmsh.py").write_text(f"raise {reason}\n")
     (tmp_path / "ball.step").write_text("ISO-10303-21;\n")
@@ -229,5 +281,9 @@ def test_without_gmsh(reason: str, tmp_path: Path, monkeypatch: pytest.MonkeyPat
         read_mesh(tmp_path / "ball.step")
     assert "needs Gmsh, which can't be loaded" in str(raised.value)
     assert reason.split("'")[1] in str(raised.value)
-    remedy = 'pip install "vibroimpact[mesh]"' if reason.startswith("ImportError") else "install the library that it lacks"
+    remedy = (
+        'pip install "vibroimpact[mesh]"'
+        if reason.startswith("ImportError")
+        else "install the library that it lacks"
+    )
     assert remedy in str(raised.value)

@@ -1,7 +1,7 @@
 """Against Hertz's closed form of an undamped power-law impact without gravity. Tolerance 1e-8.
 
-F = K delta^n: delta_max = ((n+1) m v^2 / 2K)^(1/(n+1)), T = 2/(n+1) B(1/(n+1), 1/2) delta_max/v; for n = 1.5
-the factor of delta_max/v is 2.9432751843 (Johnson 1985, section 11.4).
+F = K delta^n: delta_max = ((n+1) m v^2 / 2K)^(1/(n+1)), T = 2/(n+1) B(1/(n+1), 1/2) delta_max/v;
+for n = 1.5 the factor of delta_max/v is 2.9432751843 (Johnson 1985, section 11.4).
 """
 
 from __future__ import annotations
@@ -25,7 +25,11 @@ AGAINST = Against(
 def impact(stiffness: float, exponent: float, mass: float, speed: float) -> vi.Response:
     ball = vi.Body(mass=mass, contact_offset=0.1)
     law = Hertz(stiffness=stiffness, exponent=exponent)
-    return vi.simulate(vi.Problem(sphere=ball, plate=vi.rigid_plate(), laws=(law,), speed=speed, gravity=0.0, impacts=1))
+    return vi.simulate(
+        vi.Problem(
+            sphere=ball, plate=vi.rigid_plate(), laws=(law,), speed=speed, gravity=0.0, impacts=1
+        )
+    )
 
 
 @pytest.mark.parametrize("exponent", [1.0, 1.2, 1.5, 2.0, 2.2, 3.0])
@@ -38,22 +42,47 @@ def test_closed_form(agrees: Agrees, exponent: float, speed: float) -> None:
     case = "six force exponents, approach speeds 1 mm/s to 300 m/s"
     agrees(case, "maximum indentation", row["max_indentation_m"], depth, unit="m", relative=1e-8)
     agrees(case, "contact duration", row["duration_s"], duration, unit="s", relative=1e-8)
-    agrees(case, "maximum contact force", row["max_force_N"], stiffness * depth**exponent, unit="N", relative=1e-8)
+    agrees(
+        case,
+        "maximum contact force",
+        row["max_force_N"],
+        stiffness * depth**exponent,
+        unit="N",
+        relative=1e-8,
+    )
     agrees(case, "coefficient of restitution", row["restitution_achieved"], 1.0, relative=1e-8)
 
 
 @pytest.mark.parametrize("exponent", [1.0, 1.2, 1.5, 2.0, 3.0])
 def test_closed_form_of_a_table(agrees: Agrees, exponent: float) -> None:
     stiffness, mass, speed = np.geomspace(1e6, 1e12, 7), 0.21, np.geomspace(1e-2, 44.0, 7)
-    law, ball = Hertz(stiffness=stiffness, exponent=exponent), vi.Body(mass=mass, contact_offset=0.1)
-    problem = vi.Problem(sphere=ball, plate=vi.rigid_plate(), laws=(law,), speed=speed, gravity=0.0, impacts=1, tolerance=1e-8)
+    law, ball = (
+        Hertz(stiffness=stiffness, exponent=exponent),
+        vi.Body(mass=mass, contact_offset=0.1),
+    )
+    problem = vi.Problem(
+        sphere=ball,
+        plate=vi.rigid_plate(),
+        laws=(law,),
+        speed=speed,
+        gravity=0.0,
+        impacts=1,
+        tolerance=1e-8,
+    )
     row = {name: column[:, 0] for name, column in vi.tabulate(problem).impacts.items()}
     depth = ((exponent + 1) * mass * speed**2 / (2 * stiffness)) ** (1 / (exponent + 1))
     duration = 2 / (exponent + 1) * beta(1 / (exponent + 1), 0.5) * depth / speed
     case = "batch of drops, five force exponents"
     agrees(case, "maximum indentation", row["max_indentation_m"], depth, unit="m", relative=1e-8)
     agrees(case, "contact duration", row["duration_s"], duration, unit="s", relative=1e-8)
-    agrees(case, "maximum contact force", row["max_force_N"], stiffness * depth**exponent, unit="N", relative=1e-8)
+    agrees(
+        case,
+        "maximum contact force",
+        row["max_force_N"],
+        stiffness * depth**exponent,
+        unit="N",
+        relative=1e-8,
+    )
     agrees(case, "coefficient of restitution", row["restitution_achieved"], 1.0, relative=1e-8)
 
 

@@ -1,8 +1,10 @@
-"""Known impacts against what is identified from records of a laboratory: 300, each on a plate and with sensors that differ from the case.
+"""Known impacts against what is identified from records of a laboratory: 300, each on a plate and
+with sensors that differ from the case.
 
-Positions of the sensors (5 mm), their sensitivities (2 %), the thickness (1 %) and the modulus (3 %) of the plate and the mounted
-resonances (5 %) differ at random, and are stated as that uncertain. The plates are simulated with twice the modes of the model that
-identifies. An impact takes about 12 s of processor time: 300 take about an hour of one core.
+Positions of the sensors (5 mm), their sensitivities (2 %), the thickness (1 %) and the modulus (3
+%) of the plate and the mounted resonances (5 %) differ at random, and are stated as that uncertain.
+The plates are simulated with twice the modes of the model that identifies. An impact takes about 12
+s of processor time: 300 take about an hour of one core.
 """
 
 from __future__ import annotations
@@ -16,7 +18,15 @@ from identifying import DELAY, LABORATORY, drawn, heard_by, in_laboratory, mount
 from vibroimpact.identification.identify import identify_on
 
 FROM_RECORDS = ("recovered_max_force_N", "recovered_impulse_N_s")
-FITTED = ("place_x_m", "place_y_m", "radius_m", "speed_m_s", "first_touch_s", "max_force_N", "impulse_N_s")
+FITTED = (
+    "place_x_m",
+    "place_y_m",
+    "radius_m",
+    "speed_m_s",
+    "first_touch_s",
+    "max_force_N",
+    "impulse_N_s",
+)
 
 
 @pytest.mark.slow
@@ -26,11 +36,20 @@ def test_300_impacts_in_a_laboratory(population: Callable[..., int]) -> None:
     doubted = 0
     for number, (radius, speed, place) in enumerate(drawn(300, seed=17)[:impacts]):
         impact, setup = in_laboratory(radius, speed, place, np.random.default_rng(900 + number))
-        found = identify_on(mounted(140, LABORATORY), heard_by(setup, records_of(impact, 40.0, seed=100 + number)))
-        truth = dict(zip((*FITTED, *FROM_RECORDS), (*place, radius, speed, DELAY, *2 * (impact.peak, impact.impulse)), strict=True))
+        found = identify_on(
+            mounted(140, LABORATORY), heard_by(setup, records_of(impact, 40.0, seed=100 + number))
+        )
+        truth = dict(
+            zip(
+                (*FITTED, *FROM_RECORDS),
+                (*place, radius, speed, DELAY, *2 * (impact.peak, impact.impulse)),
+                strict=True,
+            )
+        )
         doubted += bool(found.doubts)
         for name, value in truth.items():
-            if name in found.estimates:  # those from the records alone are withheld, with a doubt, where they contradict the fit
+            # those from the records alone are withheld, with a doubt, where they contradict the fit
+            if name in found.estimates:
                 least, most = found.estimates[name].interval
                 held[name].append(least <= value <= most)
         assert found.estimates["radius_m"].value == pytest.approx(radius, rel=0.01)

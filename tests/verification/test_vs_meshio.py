@@ -21,15 +21,31 @@ AGAINST = Against(
     "meshio, mesh files",
     "other program",
     "programs and files",
-    "meshio, Schlömer, doi 10.5281/zenodo.1173115; it reads files written by this package, and writes files that this package reads",
+    "meshio, Schlömer, doi 10.5281/zenodo.1173115; it reads files written by this package, "
+    "and writes files that this package reads",
 )
 
 
 STEEL = Material(density=7850.0, youngs_modulus=210e9, poissons_ratio=0.3, name="steel")
 # meshio has the order of VTK, as the element kinds have
-NAMES = {"tet4": "tetra", "tet10": "tetra10", "hex8": "hexahedron", "hex20": "hexahedron20", "hex27": "hexahedron27"}
-# where VTK's own cells have the nodes on faces and in the middle (vtkTriQuadraticHexahedron, vtkBiQuadraticQuad)
-VTK_HEX27 = [[0, 0.5, 0.5], [1, 0.5, 0.5], [0.5, 0, 0.5], [0.5, 1, 0.5], [0.5, 0.5, 0], [0.5, 0.5, 1], [0.5, 0.5, 0.5]]
+NAMES = {
+    "tet4": "tetra",
+    "tet10": "tetra10",
+    "hex8": "hexahedron",
+    "hex20": "hexahedron20",
+    "hex27": "hexahedron27",
+}
+# where VTK's own cells have the nodes on faces and in the middle (vtkTriQuadraticHexahedron,
+# vtkBiQuadraticQuad)
+VTK_HEX27 = [
+    [0, 0.5, 0.5],
+    [1, 0.5, 0.5],
+    [0.5, 0, 0.5],
+    [0.5, 1, 0.5],
+    [0.5, 0.5, 0],
+    [0.5, 0.5, 1],
+    [0.5, 0.5, 0.5],
+]
 VTK_QUAD9 = [[0, 0], [1, 0], [1, 1], [0, 1], [0.5, 0], [1, 0.5], [0.5, 1], [0, 0.5], [0.5, 0.5]]
 
 
@@ -41,13 +57,27 @@ def measures(kind: str, nodes: np.ndarray, connectivity: np.ndarray) -> np.ndarr
     jacobian = np.linalg.det(np.einsum("qdn,enx->eqdx", slopes, nodes[connectivity]))
     assert jacobian.min() > 0
     place = np.einsum("qn,enx->eqx", values, nodes[connectivity])
-    return np.array([(jacobian * weights).sum(), *np.einsum("eq,eqx,eqy->xy", jacobian * weights, place, place).ravel()])
+    return np.array(
+        [
+            (jacobian * weights).sum(),
+            *np.einsum("eq,eqx,eqy->xy", jacobian * weights, place, place).ravel(),
+        ]
+    )
 
 
 def bent(kind: str) -> Mesh:
     reference = ELEMENT_KINDS[kind].reference
-    nodes = reference + 0.1 * reference[:, [1, 2, 0]] ** 2 + 0.02 * np.random.default_rng(2).standard_normal(reference.shape)
-    return Mesh(nodes, (ElementBlock(kind, np.arange(len(nodes))[None, :]),), {"some": np.array([0, 2, 3])}, {"all": np.array([0])})
+    nodes = (
+        reference
+        + 0.1 * reference[:, [1, 2, 0]] ** 2
+        + 0.02 * np.random.default_rng(2).standard_normal(reference.shape)
+    )
+    return Mesh(
+        nodes,
+        (ElementBlock(kind, np.arange(len(nodes))[None, :]),),
+        {"some": np.array([0, 2, 3])},
+        {"all": np.array([0])},
+    )
 
 
 @pytest.mark.parametrize("kind", NAMES)
@@ -64,9 +94,17 @@ def test_elements(agrees: Agrees, kind: str, suffix: str, tmp_path: Path) -> Non
     read = meshio.read(file)
     (cells,) = read.cells
     assert cells.type == NAMES[written]
-    expected = measures(written, mesh.nodes, mesh.blocks[0].connectivity[:, : len(ELEMENT_KINDS[written].reference)])
+    expected = measures(
+        written, mesh.nodes, mesh.blocks[0].connectivity[:, : len(ELEMENT_KINDS[written].reference)]
+    )
     found = measures(written, read.points, cells.data)
-    agrees("five element types, Nastran, Abaqus and VTK files", "volume and second moments of volume", found, expected, relative=1e-11)
+    agrees(
+        "five element types, Nastran, Abaqus and VTK files",
+        "volume and second moments of volume",
+        found,
+        expected,
+        relative=1e-11,
+    )
     if suffix == "vtu":
         np.testing.assert_array_equal(read.point_data["height_m"], mesh.nodes[:, 2])
         np.testing.assert_array_equal(read.point_data["place_m"], mesh.nodes)
@@ -102,7 +140,9 @@ def test_plates(tmp_path: Path) -> None:
         corners = {tuple(corner) for corner in read.points[found[:, 0], :2].tolist()}
         assert corners == {(0, 0), (1, 0), (0, 1.5), (1, 1.5)}
         for shell in read.points[found]:
-            np.testing.assert_allclose((shell[:, :2] - shell[0, :2]) / [1, 1.5], VTK_QUAD9[: len(shell)], atol=1e-12)
+            np.testing.assert_allclose(
+                (shell[:, :2] - shell[0, :2]) / [1, 1.5], VTK_QUAD9[: len(shell)], atol=1e-12
+            )
 
 
 def test_a_mesh_of_meshio(agrees: Agrees, tmp_path: Path) -> None:
@@ -121,4 +161,11 @@ def test_a_mesh_of_meshio(agrees: Agrees, tmp_path: Path) -> None:
         meshio.Mesh(points, [("tetra", tets)]).write(file, **options)
         read = read_mesh(file)
         found = measures("tet4", read.nodes, read.blocks[0].connectivity)[0]
-        agrees("two tetrahedra, files written by meshio", "volume", found, 1 / 6 + 1 / 3, unit="m³", relative=1e-12)
+        agrees(
+            "two tetrahedra, files written by meshio",
+            "volume",
+            found,
+            1 / 6 + 1 / 3,
+            unit="m³",
+            relative=1e-12,
+        )

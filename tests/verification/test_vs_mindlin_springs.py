@@ -1,4 +1,6 @@
-"""Friction as a single spring of Mindlin's stiffness, against an integration of it in many small steps, as discrete-element codes do."""
+"""Friction as a single spring of Mindlin's stiffness, against an integration of it in
+many small steps, as discrete-element codes do.
+"""
 
 from __future__ import annotations
 
@@ -39,7 +41,11 @@ def slip_by_small_steps(law: str, steps: int = 20_000) -> float:
         if law == "mindlin-rescale" and contact < before:
             stretch *= contact / before
         before = contact
-        friction = friction + spring * step * slip if law == "mindlin-force" else spring * (stretch := stretch + step * slip)
+        friction = (
+            friction + spring * step * slip
+            if law == "mindlin-force"
+            else spring * (stretch := stretch + step * slip)
+        )
         friction = min(max(friction, -COEFFICIENT * force), COEFFICIENT * force)
         stretch, brake = friction / spring, force / MASS
         rate, slip = rate - 0.5 * step * brake, slip - 0.5 * step * friction / (2.0 / 7.0 * MASS)
@@ -71,10 +77,12 @@ def test_slip_after(agrees: Agrees, name: str) -> None:
 
 
 def slip_where_force_jumps(name: str, normal: CompliantLaw, steps: int = 40_000) -> float:
-    """Return the velocity of the contact point after an impact whose normal force jumps at touch, by the Verlet method.
+    """Return the velocity of the contact point after an impact whose normal force jumps at touch,
+    by the Verlet method.
 
-    A single spring, or a row of 1,000 for `mdr`. Hertz's depth and radius are those under the normal force. At touch nothing has moved yet,
-    so that friction begins with zero, whatever the normal force.
+    A single spring, or a row of 1,000 for `mdr`. Hertz's depth and radius are those under the
+    normal force. At touch nothing has moved yet, so that friction begins with zero, whatever the
+    normal force.
     """
     ratio = COEFFICIENT * PAIR["effective_modulus"] / PAIR["effective_shear_modulus"]
     place = (np.arange(1000) + 0.5) / 1000 * RADIUS
@@ -96,7 +104,10 @@ def slip_where_force_jumps(name: str, normal: CompliantLaw, steps: int = 40_000)
             friction = 2.0 * PAIR["effective_shear_modulus"] * float(stretch.sum()) * RADIUS / 1000
         else:
             spring = 2.0 * PAIR["effective_shear_modulus"] * (RADIUS * depth) ** 0.5
-            friction = min(max(spring * (float(stretch[0]) + step * slip), -COEFFICIENT * force), COEFFICIENT * force)
+            friction = min(
+                max(spring * (float(stretch[0]) + step * slip), -COEFFICIENT * force),
+                COEFFICIENT * force,
+            )
             stretch[0] = friction / spring
         brake = force / MASS
         rate, slip = rate - 0.5 * step * brake, slip - 0.5 * step * friction / (2.0 / 7.0 * MASS)
@@ -104,8 +115,12 @@ def slip_where_force_jumps(name: str, normal: CompliantLaw, steps: int = 40_000)
 
 @pytest.mark.parametrize("name", ["mindlin", "mdr"])
 def test_friction_begins_with_zero_where_the_normal_force_jumps(agrees: Agrees, name: str) -> None:
-    """A dashpot pushes at once at touch. Friction does not: it was up to its bound there, before this was seen."""
-    normal = vi.find_contact_law("linear-spring-dashpot")(stiffness=STIFFNESS_OF_SPRING, restitution=0.5, effective_mass=MASS)
+    """A dashpot pushes at once at touch. Friction does not: it was up to its bound there,
+    before this was seen.
+    """
+    normal = vi.find_contact_law("linear-spring-dashpot")(
+        stiffness=STIFFNESS_OF_SPRING, restitution=0.5, effective_mass=MASS
+    )
     problem = vi.Problem(
         sphere=vi.Body(mass=MASS, contact_offset=RADIUS),
         plate=vi.rigid_plate(),
@@ -113,7 +128,10 @@ def test_friction_begins_with_zero_where_the_normal_force_jumps(agrees: Agrees, 
         speed=SPEED,
         gravity=0.0,
         impacts=1,
-        oblique=vi.Oblique(velocity=(SLIP, 0.0), friction=vi.find_friction_law(name)(coefficient=COEFFICIENT, **PAIR)),
+        oblique=vi.Oblique(
+            velocity=(SLIP, 0.0),
+            friction=vi.find_friction_law(name)(coefficient=COEFFICIENT, **PAIR),
+        ),
     )
     impacts = vi.simulate(problem).impacts
     agrees(

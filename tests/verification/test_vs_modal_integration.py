@@ -1,7 +1,9 @@
-"""Drops on vibrating bodies against scipy's DOP853 at 1e-12 on the same modal equations: oracles/modal_integration.py.
+"""Drops on vibrating bodies against scipy's DOP853 at 1e-12 on the same modal equations:
+oracles/modal_integration.py.
 
-Contacts with a plate that kicks the ball again while it rises, second and third impacts on a plate that rings, modes inside and outside the
-contact, compliance and a local element in series. Nothing of the march, of its collocation or of its search for the next touch is shared.
+Contacts with a plate that kicks the ball again while it rises, second and third impacts on a plate
+that rings, modes inside and outside the contact, compliance and a local element in series. Nothing
+of the march, of its collocation or of its search for the next touch is shared.
 """
 
 from __future__ import annotations
@@ -45,13 +47,41 @@ def grouped(touches: list[Touch], counts: np.ndarray) -> list[list[Touch]]:
 def check(agrees: Agrees, case: str, response: vi.Response, tolerance: float) -> None:
     """Every impact, to a relative tolerance; times of touch to that part of a contact."""
     impacts = response.impacts
-    visits = grouped(oracle(response.problem).run(int(impacts["contacts"].sum())), impacts["contacts"])
+    visits = grouped(
+        oracle(response.problem).run(int(impacts["contacts"].sum())), impacts["contacts"]
+    )
     for number, visit in enumerate(visits):
-        row, force = {name: values[number] for name, values in impacts.items()}, max(touch.max_force for touch in visit)
-        agrees(case, "time of first contact", row["time_s"], visit[0].begin, unit="s", absolute=tolerance * 3e-4)
-        agrees(case, "contact duration", row["duration_s"], visit[-1].end - visit[0].begin, unit="s", relative=tolerance)
-        agrees(case, "separation speed", row["separation_speed_m_s"], visit[-1].separation_speed, unit="m/s", relative=tolerance)
-        agrees(case, "maximum contact force", row["max_force_N"], force, unit="N", relative=tolerance)
+        row, force = (
+            {name: values[number] for name, values in impacts.items()},
+            max(touch.max_force for touch in visit),
+        )
+        agrees(
+            case,
+            "time of first contact",
+            row["time_s"],
+            visit[0].begin,
+            unit="s",
+            absolute=tolerance * 3e-4,
+        )
+        agrees(
+            case,
+            "contact duration",
+            row["duration_s"],
+            visit[-1].end - visit[0].begin,
+            unit="s",
+            relative=tolerance,
+        )
+        agrees(
+            case,
+            "separation speed",
+            row["separation_speed_m_s"],
+            visit[-1].separation_speed,
+            unit="m/s",
+            relative=tolerance,
+        )
+        agrees(
+            case, "maximum contact force", row["max_force_N"], force, unit="N", relative=tolerance
+        )
 
 
 @pytest.mark.parametrize(
@@ -70,7 +100,11 @@ def check(agrees: Agrees, case: str, response: vi.Response, tolerance: float) ->
     ],
 )
 def test_one_impact(
-    agrees: Agrees, law: CompliantLaw, plate: ModalBasis | None, sphere: ModalBasis | None, more: dict[str, object]
+    agrees: Agrees,
+    law: CompliantLaw,
+    plate: ModalBasis | None,
+    sphere: ModalBasis | None,
+    more: dict[str, object],
 ) -> None:
     check(
         agrees,
@@ -81,7 +115,9 @@ def test_one_impact(
 
 
 def test_a_plate_that_kicks_the_ball_again(agrees: Agrees) -> None:
-    """While it still rises from the first contact: two contacts of one impact, or more, as soft or hard."""
+    """While it still rises from the first contact: two contacts of one impact, or more,
+    as soft or hard.
+    """
     response = vi.simulate(drop_on(HERTZ, SOFT, speed=1.0, tolerance=1e-11))
     assert response.impacts["contacts"][0] >= 2
     check(agrees, "repeated contacts within one impact", response, 1e-8)
@@ -89,15 +125,27 @@ def test_a_plate_that_kicks_the_ball_again(agrees: Agrees) -> None:
 
 @pytest.mark.parametrize("law", [HERTZ, LOSSY, ADAMS], ids=lambda law: law.name)
 def test_later_impacts_on_a_plate_that_rings(agrees: Agrees, law: CompliantLaw) -> None:
-    """Three impacts of a slow ball on a plate that swings by more than the ball falls in a period: no meeting is stepped over."""
-    response = vi.simulate(drop_on(law, modes_of([180.0, 950.0], [1.8, -1.2], 0.002), speed=0.6, impacts=3, tolerance=1e-11))
+    """Three impacts of a slow ball on a plate that swings by more than the ball falls in
+    a period: no meeting is stepped over.
+    """
+    response = vi.simulate(
+        drop_on(
+            law, modes_of([180.0, 950.0], [1.8, -1.2], 0.002), speed=0.6, impacts=3, tolerance=1e-11
+        )
+    )
     assert len(response.impacts["impact"]) == 3
     check(agrees, "three impacts on a vibrating plate", response, 1e-7)
 
 
 def test_a_mode_that_is_not_met() -> None:
     """A node line through the contact point: as if it were not there."""
-    with_it, without = (vi.simulate(drop_on(HERTZ, plate)) for plate in (modes_of([300.0, 800.0], [1.5, 0.0]), modes_of([300.0], [1.5])))
+    with_it, without = (
+        vi.simulate(drop_on(HERTZ, plate))
+        for plate in (modes_of([300.0, 800.0], [1.5, 0.0]), modes_of([300.0], [1.5]))
+    )
     for name, column in without.impacts.items():
-        relative = 1e-7 if name == "sensitivity" else 1e-12  # which is made with differences of the force
-        np.testing.assert_allclose(with_it.impacts[name], column, rtol=relative, atol=1e-12, err_msg=name)
+        # which is made with differences of the force
+        relative = 1e-7 if name == "sensitivity" else 1e-12
+        np.testing.assert_allclose(
+            with_it.impacts[name], column, rtol=relative, atol=1e-12, err_msg=name
+        )

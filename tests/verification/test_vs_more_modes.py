@@ -1,8 +1,10 @@
-"""The paper's plate with few modes against the same with 400, and on other meshes: what is corrected for the modes left out converges.
+"""The paper's plate with few modes against the same with 400, and on other meshes: what is
+corrected for the modes left out converges.
 
-The static compliance of the modes left out is in series with the law; what is missing then is their inertia. Without that correction the
-largest force is 6 to 8 % off with 20 modes and 3 % with 60; with it 1.5 to 3 % with 20, 0.4 % with 60 and 0.2 % with 120. The estimate
-that comes with every run does not promise more than is there."""
+The static compliance of the modes left out is in series with the law; what is missing then is their
+inertia. Without that correction the largest force is 6 to 8 % off with 20 modes and 3 % with 60;
+with it 1.5 to 3 % with 20, 0.4 % with 60 and 0.2 % with 120. The estimate that comes with every run
+does not promise more than is there."""
 
 from __future__ import annotations
 
@@ -29,13 +31,25 @@ LAWS = {"hertz": {}, "adams-impact": {"damping_max": 179.75, "full_damping_penet
 
 
 @cache
-def problem(law: str, modes: int, size: float | None = None, element: str = "plate", sphere: int = 0) -> vi.Problem:
-    plate = {"size": [0.52, 0.42, 0.008], "material": "steel-paper", "model": "elastic", "modes": modes, "damping": "adams-default"}
+def problem(
+    law: str, modes: int, size: float | None = None, element: str = "plate", sphere: int = 0
+) -> vi.Problem:
+    plate = {
+        "size": [0.52, 0.42, 0.008],
+        "material": "steel-paper",
+        "model": "elastic",
+        "modes": modes,
+        "damping": "adams-default",
+    }
     plate["supports"] = {"type": "patches", "spacing": [0.4584, 0.36], "radius": 0.02}
     plate["element"] = element
     if size:
         plate["mesh"] = {"element_size": size}
-    case = plain_case(drop={"speed": 8.826664149, "gravity": 9.8}, run={"impacts": 1}, contact={"law": law, **LAWS[law]})
+    case = plain_case(
+        drop={"speed": 8.826664149, "gravity": 9.8},
+        run={"impacts": 1},
+        contact={"law": law, **LAWS[law]},
+    )
     if sphere:
         case["sphere"].update(model="elastic", modes=sphere)
     return vi.read_case({**case, "plate": plate}).to_problem()
@@ -46,31 +60,47 @@ def carried(modes: ModalBasis) -> float:
 
 
 def with_modes(whole: vi.Problem, number: int, corrected: bool = True) -> vi.Problem:
-    """The same plate with its first modes alone; plainly, or what they leave out in series with the law."""
+    """The same plate with its first modes alone; plainly, or what they leave out in
+    series with the law.
+    """
     basis = whole.plate.modes
     assert basis is not None
     few = replace(
         basis,
-        **{name: getattr(basis, name)[:number] for name in ("frequencies", "damping_ratios", "contact", "participation", "rotation")},
+        **{
+            name: getattr(basis, name)[:number]
+            for name in ("frequencies", "damping_ratios", "contact", "participation", "rotation")
+        },
         points={},
     )
     static = float(whole.facts["plate_static_compliance_m_N"])  # type: ignore[arg-type]
     linear = whole.quasi_static.linear + carried(basis) - (carried(few) if corrected else static)
     facts = {**whole.facts, "treatment": "consistent" if corrected else "superposed"}
     plate = replace(whole.plate, modes=few)
-    return replace(whole, plate=plate, quasi_static=replace(whole.quasi_static, linear=linear), facts=facts)
+    return replace(
+        whole, plate=plate, quasi_static=replace(whole.quasi_static, linear=linear), facts=facts
+    )
 
 
 def force(problem: vi.Problem) -> float:
     return float(vi.simulate(problem).impacts["max_force_N"][0])
 
 
-def check(agrees: Agrees, case: str, whole: vi.Problem, bounds: dict[int, float], plain: dict[int, float]) -> None:
+def check(
+    agrees: Agrees, case: str, whole: vi.Problem, bounds: dict[int, float], plain: dict[int, float]
+) -> None:
     reference = force(whole)
     for number, bound in bounds.items():
         response = vi.simulate(with_modes(whole, number))
         error = abs(float(response.impacts["max_force_N"][0]) / reference - 1.0)
-        agrees(f"{case}, {number} modes", "maximum contact force", response.impacts["max_force_N"], reference, unit="N", relative=bound)
+        agrees(
+            f"{case}, {number} modes",
+            "maximum contact force",
+            response.impacts["max_force_N"],
+            reference,
+            unit="N",
+            relative=bound,
+        )
         assert response.truncation["plate"] > 0.5 * error, number
     for number, bound in plain.items():
         response = vi.simulate(with_modes(whole, number, corrected=False))
@@ -83,22 +113,41 @@ def check(agrees: Agrees, case: str, whole: vi.Problem, bounds: dict[int, float]
 @pytest.mark.parametrize("law", LAWS)
 def test_a_coarse_mesh(agrees: Agrees, law: str) -> None:
     """120 modes on elements of 80 mm stand for 400."""
-    check(agrees, "elements of 80 mm", problem(law, 120, 0.08), {20: 0.03, 60: 0.004}, {20: 0.06, 60: 0.024})
+    check(
+        agrees,
+        "elements of 80 mm",
+        problem(law, 120, 0.08),
+        {20: 0.03, 60: 0.004},
+        {20: 0.06, 60: 0.024},
+    )
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("sphere", [0, 20])
 @pytest.mark.parametrize("law", LAWS)
 def test_400_modes(agrees: Agrees, law: str, sphere: int) -> None:
-    corrected, plain = {20: 0.035, 60: 0.0045, 120: 0.0025, 200: 0.0012}, {20: 0.068, 60: 0.032, 120: 0.014, 200: 0.0078}
+    corrected, plain = (
+        {20: 0.035, 60: 0.0045, 120: 0.0025, 200: 0.0012},
+        {20: 0.068, 60: 0.032, 120: 0.014, 200: 0.0078},
+    )
     check(agrees, "against 400 modes", problem(law, 400, sphere=sphere), corrected, plain)
 
 
 @pytest.mark.slow
 def test_the_mesh_does_not_matter(agrees: Agrees) -> None:
     """Plate elements and bricks, 60 modes: within 1 % in force."""
-    forces = [force(problem("hertz", 60, size, element)) for size, element in ((0.08, "plate"), (0.03, "solid"))]
-    agrees("60 modes, solid elements against plate elements", "maximum contact force", max(forces), min(forces), unit="N", relative=0.01)
+    forces = [
+        force(problem("hertz", 60, size, element))
+        for size, element in ((0.08, "plate"), (0.03, "solid"))
+    ]
+    agrees(
+        "60 modes, solid elements against plate elements",
+        "maximum contact force",
+        max(forces),
+        min(forces),
+        unit="N",
+        relative=0.01,
+    )
 
 
 @pytest.mark.slow
@@ -107,5 +156,19 @@ def test_finer_meshes_agree_better(agrees: Agrees) -> None:
     kinds = ((0.08, "plate"), (0.04, "plate"), (0.02, "plate"), (0.02, "solid"))
     forces = np.array([force(problem("hertz", 120, size, element)) for size, element in kinds])
     assert forces.max() / forces.min() < 1.01
-    agrees("120 modes, elements of 40 mm against 20 mm", "maximum contact force", forces[1], forces[2], unit="N", relative=1e-3)
-    agrees("120 modes, solid elements against plate elements", "maximum contact force", forces[3], forces[2], unit="N", relative=4e-3)
+    agrees(
+        "120 modes, elements of 40 mm against 20 mm",
+        "maximum contact force",
+        forces[1],
+        forces[2],
+        unit="N",
+        relative=1e-3,
+    )
+    agrees(
+        "120 modes, solid elements against plate elements",
+        "maximum contact force",
+        forces[3],
+        forces[2],
+        unit="N",
+        relative=4e-3,
+    )

@@ -1,7 +1,8 @@
 """How a small change of the drop grows, against second drops that begin beside the first.
 
-For every law, with vibrating spheres, local elements, dents and micro-impacts the sensitivity of each impact is what two drops on either
-side of it show; and, without any solver of the program, what two runs of scipy's DOP853 at 1e-12 on the same modal equations show.
+For every law, with vibrating spheres, local elements, dents and micro-impacts the sensitivity of
+each impact is what two drops on either side of it show; and, without any solver of the program,
+what two runs of scipy's DOP853 at 1e-12 on the same modal equations show.
 """
 
 from __future__ import annotations
@@ -47,18 +48,35 @@ BALL = modes_of([13.4e3, 22e3, 30e3], [2.0, -3.0, 2.5], 0.02)
 
 
 def seen(problem: vi.Problem, part: float = 1e-8) -> np.ndarray:
-    """The largest relative change of closing speed, force and separation speed over that of the drop, from two drops beside it."""
+    """The largest relative change of closing speed, force and separation speed over that
+    of the drop, from two drops beside it.
+    """
     name = "height" if problem.speed is None else "speed"
-    beside = [vi.simulate(replace(problem, **{name: getattr(problem, name) * (1.0 + side * part)})).impacts for side in (1.0, -1.0)]
-    of = {key: (beside[0][key], beside[1][key]) for key in ("closing_speed_m_s", "max_force_N", "separation_speed_m_s")}
+    beside = [
+        vi.simulate(
+            replace(problem, **{name: getattr(problem, name) * (1.0 + side * part)})
+        ).impacts
+        for side in (1.0, -1.0)
+    ]
+    of = {
+        key: (beside[0][key], beside[1][key])
+        for key in ("closing_speed_m_s", "max_force_N", "separation_speed_m_s")
+    }
     scale = {key: 0.5 * (first + second) for key, (first, second) in of.items()}
-    scale["separation_speed_m_s"] = np.maximum(scale["separation_speed_m_s"], 0.1 * scale["closing_speed_m_s"])
-    return np.max([np.abs(first - second) / (2.0 * part * scale[key]) for key, (first, second) in of.items()], axis=0)
+    scale["separation_speed_m_s"] = np.maximum(
+        scale["separation_speed_m_s"], 0.1 * scale["closing_speed_m_s"]
+    )
+    return np.max(
+        [np.abs(first - second) / (2.0 * part * scale[key]) for key, (first, second) in of.items()],
+        axis=0,
+    )
 
 
 @pytest.mark.parametrize("law", one_in(6, COMPLIANT, lambda law: law.name))
 def test_every_law(agrees: Agrees, law: type[CompliantLaw]) -> None:
-    """Also where the force jumps, at touch, at release or as it turns, and where the law remembers."""
+    """Also where the force jumps, at touch, at release or as it turns, and where the law
+    remembers.
+    """
     problem = drop_on(law.example(PAIR), RICH, impacts=2, tolerance=1e-12)
     found = vi.simulate(problem).impacts["sensitivity"]
     assert found[0] > 0.9
@@ -76,9 +94,17 @@ def test_every_law(agrees: Agrees, law: type[CompliantLaw]) -> None:
     [
         pytest.param(Hertz(stiffness=STIFFNESS), {"sphere": BALL}, marks=pytest.mark.slow),
         (LOSSY, {"sphere": BALL, "sphere_inside": False, "height": 0.5}),
-        pytest.param(LOSSY, {"local_element": (1.2e6, 586.0)}, marks=pytest.mark.slow),  # which the next one has too
-        (AdamsImpact(stiffness=STIFFNESS, damping_max=179.75), {"sphere": BALL, "local_element": (1.2e6, 586.0), "height": 0.3}),
-        pytest.param(Jankowski(stiffness=STIFFNESS, restitution=0.7, effective_mass=0.09), {"height": 0.2}, marks=pytest.mark.slow),
+        # which the next one has too
+        pytest.param(LOSSY, {"local_element": (1.2e6, 586.0)}, marks=pytest.mark.slow),
+        (
+            AdamsImpact(stiffness=STIFFNESS, damping_max=179.75),
+            {"sphere": BALL, "local_element": (1.2e6, 586.0), "height": 0.3},
+        ),
+        pytest.param(
+            Jankowski(stiffness=STIFFNESS, restitution=0.7, effective_mass=0.09),
+            {"height": 0.2},
+            marks=pytest.mark.slow,
+        ),
         (Thornton.example(PAIR), {"height": 1.0}),
         (Thornton.example(PAIR), {"height": 1.0, "same_spot": False}),
     ],
@@ -86,7 +112,8 @@ def test_every_law(agrees: Agrees, law: type[CompliantLaw]) -> None:
 )
 def test_all_that_vibrates(agrees: Agrees, law: CompliantLaw, more: dict) -> None:
     problem = drop_on(law, RICH, impacts=2, tolerance=1e-12, **more)
-    # ten times as far apart: two drops of which each is integrated to 1e-11 are told apart to 1e-3 and better
+    # ten times as far apart: two drops of which each is integrated to 1e-11 are told apart to 1e-3
+    # and better
     found = vi.simulate(problem).impacts["sensitivity"]
     agrees(
         "elastic spheres, local elements, plastic dents",
@@ -99,7 +126,13 @@ def test_all_that_vibrates(agrees: Agrees, law: CompliantLaw, more: dict) -> Non
 
 def test_micro_impacts(agrees: Agrees) -> None:
     """A plate that kicks the ball again: several contacts of one impact."""
-    problem = drop_on(Hertz(stiffness=STIFFNESS), modes_of([260.0, 2100.0], [2.5, 1.5]), speed=1.0, impacts=2, tolerance=1e-11)
+    problem = drop_on(
+        Hertz(stiffness=STIFFNESS),
+        modes_of([260.0, 2100.0], [2.5, 1.5]),
+        speed=1.0,
+        impacts=2,
+        tolerance=1e-11,
+    )
     response = vi.simulate(problem)
     assert response.impacts["contacts"].max() >= 2
     agrees(
@@ -118,7 +151,9 @@ def test_a_batch_is_its_drops() -> None:
     np.testing.assert_array_equal(batch, np.array(alone))
 
 
-@pytest.mark.parametrize("law", one_in(2, [LOSSY, Hertz(stiffness=STIFFNESS)], lambda law: law.name))
+@pytest.mark.parametrize(
+    "law", one_in(2, [LOSSY, Hertz(stiffness=STIFFNESS)], lambda law: law.name)
+)
 def test_dop853(agrees: Agrees, law: CompliantLaw) -> None:
     """The growth over three impacts, from an integration that shares nothing with the program."""
     plate, speed, part = modes_of([180.0, 950.0], [1.8, -1.2]), 0.6, 1e-6
@@ -130,12 +165,24 @@ def test_dop853(agrees: Agrees, law: CompliantLaw) -> None:
 
     def beside(side: float) -> list[Touch]:
         frequencies = plate.angular_frequencies
-        return Drop(0.09032078879, 9.8, frequencies, 0.0 * frequencies, plate.contact, force, speed * (1.0 + side * part)).run(3)
+        return Drop(
+            0.09032078879,
+            9.8,
+            frequencies,
+            0.0 * frequencies,
+            plate.contact,
+            force,
+            speed * (1.0 + side * part),
+        ).run(3)
 
     found = vi.simulate(problem).impacts
     assert (found["contacts"] == 1.0).all()
     growth = [
-        [(getattr(first, name) - getattr(second, name)) / (part * (getattr(first, name) + getattr(second, name))) for name in NAMES]
+        [
+            (getattr(first, name) - getattr(second, name))
+            / (part * (getattr(first, name) + getattr(second, name)))
+            for name in NAMES
+        ]
         for first, second in zip(beside(1.0), beside(-1.0), strict=True)
     ]
     largest = np.abs(growth).max(axis=1)
@@ -148,7 +195,8 @@ def test_dop853(agrees: Agrees, law: CompliantLaw) -> None:
         against=DOP853,
         relative=1e-4,
     )
-    # the speed at which the surfaces meet is not among what the oracle tells: it may have grown more
+    # the speed at which the surfaces meet is not among what the oracle tells: it may have grown
+    # more
     assert np.all(found["sensitivity"] > largest * (1.0 - 1e-3))
     assert found["sensitivity"][-1] < 3.0 * largest[-1]
 
@@ -158,7 +206,9 @@ NAMES = ("separation_speed", "max_force")
 
 @pytest.mark.slow
 def test_a_nanometre() -> None:
-    """Two drops 1 nm apart on an undamped plate: the force of the fourth impact differs by several per cent, and the run says so."""
+    """Two drops 1 nm apart on an undamped plate: the force of the fourth impact differs
+    by several per cent, and the run says so.
+    """
     case = {
         "sphere": {"radius": "25 mm", "material": "rock-paper"},
         "plate": {
@@ -173,7 +223,9 @@ def test_a_nanometre() -> None:
         "run": {"impacts": 4},
     }
     problem = vi.read_case(case).to_problem()
-    first, second = (vi.simulate(replace(problem, height=height)).impacts for height in (1.0, 1.0 + 1e-9))
+    first, second = (
+        vi.simulate(replace(problem, height=height)).impacts for height in (1.0, 1.0 + 1e-9)
+    )
     apart = np.abs(second["max_force_N"] / first["max_force_N"] - 1.0)
     assert apart[-1] > 1e-2  # of a change of 1e-9
     told = 1e-9 * first["sensitivity"]

@@ -1,7 +1,10 @@
-"""Against Nesterenko (1984), J. Appl. Mech. Tech. Phys. 24, 733-743: the solitary wave in a chain of beads that just touch.
+"""Against Nesterenko (1984), J. Appl. Mech. Tech. Phys. 24, 733-743: the solitary wave in a chain
+of beads that just touch.
 
-Its speed for the largest velocity u of a bead is :math:`(16/25)^{1/5} c^{4/5} u^{1/5}` with :math:`c^2 = 2 E / (\\pi \\rho (1 - \\nu^2))`,
-in the limit of waves much longer than a bead. Real ones are five beads long, so that a chain of beads meets it to 1 %.
+Its speed for the largest velocity u of a bead is :math:`(16/25)^{1/5} c^{4/5} u^{1/5}` with
+:math:`c^2 = 2 E / (\\pi \\rho (1 - \\nu^2))`,
+in the limit of waves much longer than a bead. Real ones are five beads long, so that a chain of
+beads meets it to 1 %.
 """
 
 from __future__ import annotations
@@ -40,7 +43,9 @@ STIFFNESS = 4.0 / 3.0 * MODULUS / (2.0 * (1.0 - RATIO**2)) * np.sqrt(0.5 * RADIU
 @pytest.fixture(scope="module")
 def chain() -> vi.SystemResponse:
     """Sixty steel beads, the first of which comes at 0.5 m/s."""
-    return vi.simulate_system(row_of_balls(60, 0.5, mass=MASS, law=Hertz(stiffness=STIFFNESS)), duration=5e-4)
+    return vi.simulate_system(
+        row_of_balls(60, 0.5, mass=MASS, law=Hertz(stiffness=STIFFNESS)), duration=5e-4
+    )
 
 
 @pytest.mark.slow
@@ -63,22 +68,45 @@ def test_it_does_not_change_its_shape(chain: vi.SystemResponse) -> None:
 @pytest.mark.slow
 def test_nothing_is_lost(chain: vi.SystemResponse) -> None:
     assert chain.energy["closure_relative"] < 1e-9
-    np.testing.assert_allclose(chain.momentum(np.linspace(0.0, 5e-4, 51))[:, 2], 0.5 * MASS, rtol=1e-12)
+    np.testing.assert_allclose(
+        chain.momentum(np.linspace(0.0, 5e-4, 51))[:, 2], 0.5 * MASS, rtol=1e-12
+    )
 
 
 def test_every_bead_moves_as_dop853_moves_it(agrees: Agrees) -> None:
-    system = replace(row_of_balls(10, 0.5, mass=MASS, law=Hertz(stiffness=STIFFNESS)), tolerance=1e-11)
-    expected, moved = integrate(system, 1e-4, 1e-6), vi.simulate_system(system, duration=1e-4).at(1e-4)
+    system = replace(
+        row_of_balls(10, 0.5, mass=MASS, law=Hertz(stiffness=STIFFNESS)), tolerance=1e-11
+    )
+    expected, moved = (
+        integrate(system, 1e-4, 1e-6),
+        vi.simulate_system(system, duration=1e-4).at(1e-4),
+    )
     for name in system.bodies:
         agrees(
-            "chain of ten spheres", "velocities", moved[name].velocity, expected.velocity[name], unit="m/s", against=DOP853, absolute=1e-9
+            "chain of ten spheres",
+            "velocities",
+            moved[name].velocity,
+            expected.velocity[name],
+            unit="m/s",
+            against=DOP853,
+            absolute=1e-9,
         )
 
 
 @pytest.mark.parametrize("number", one_in(4, range(8, 17)))
 def test_rows_against_a_wall(number: int) -> None:
-    """The wave comes back from the wall, and contacts part and touch in any order: no touch is missed."""
+    """The wave comes back from the wall, and contacts part and touch in any order: no
+    touch is missed.
+    """
     row = row_of_balls(number, 0.5, mass=MASS, law=Hertz(stiffness=STIFFNESS))
     last = vi.PointContact(below=f"{number - 1}", above="wall", law=Hertz(stiffness=STIFFNESS))
-    bodies, contacts = {**row.bodies, "wall": vi.MovingBody(mass=np.inf)}, {**row.contacts, "wall": last}
-    assert vi.simulate_system(vi.System(bodies=bodies, contacts=contacts), duration=3e-4).energy["closure_relative"] < 1e-9
+    bodies, contacts = (
+        {**row.bodies, "wall": vi.MovingBody(mass=np.inf)},
+        {**row.contacts, "wall": last},
+    )
+    assert (
+        vi.simulate_system(vi.System(bodies=bodies, contacts=contacts), duration=3e-4).energy[
+            "closure_relative"
+        ]
+        < 1e-9
+    )

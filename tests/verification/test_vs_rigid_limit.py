@@ -1,7 +1,9 @@
-"""The rigid limit: modes that are stiffened give what the solver of rigid bodies gives, which shares nothing of the march with modes.
+"""The rigid limit: modes that are stiffened give what the solver of rigid bodies gives, which
+shares nothing of the march with modes.
 
-Force, duration, restitution and rebound within 1e-6 for modes a million times stiffer, and an error that falls with the compliance that is
-left: with the square of the frequency. Stiff modes do not slow the march down.
+Force, duration, restitution and rebound within 1e-6 for modes a million times stiffer, and an error
+that falls with the compliance that is left: with the square of the frequency. Stiff modes do not
+slow the march down.
 """
 
 from __future__ import annotations
@@ -37,24 +39,39 @@ OTHERS: list[ContactLaw] = [
     KuwabaraKono(stiffness=STIFFNESS, dissipation_time=1e-5),
     Thornton(effective_modulus=2.4264724e9, effective_radius=0.025, yield_pressure=1e8),
 ]
-COLUMNS = ("max_force_N", "duration_s", "restitution_achieved", "rebound_height_m", "max_indentation_m", "separation_speed_m_s")
+COLUMNS = (
+    "max_force_N",
+    "duration_s",
+    "restitution_achieved",
+    "rebound_height_m",
+    "max_indentation_m",
+    "separation_speed_m_s",
+)
 PLATE, SPHERE = random_modes(1, 12, 150.0, 2e4, 1.0), random_modes(2, 6, 12e3, 40e3, 3.0)
 SPEED = 8.826664149
 
 
-def misses(law: ContactLaw, factor: float, damping: float, inside: bool) -> tuple[float, vi.Response]:
+def misses(
+    law: ContactLaw, factor: float, damping: float, inside: bool
+) -> tuple[float, vi.Response]:
     """How far the stiffened bodies are off in any column of three impacts, relative."""
-    plate, sphere = (modes_of(factor * body.frequencies, body.contact, damping) for body in (PLATE, SPHERE))
+    plate, sphere = (
+        modes_of(factor * body.frequencies, body.contact, damping) for body in (PLATE, SPHERE)
+    )
     found = vi.simulate(drop_on(law, plate, sphere, speed=SPEED, impacts=3, sphere_inside=inside))
     rigid = vi.simulate(drop_on(law, speed=SPEED, impacts=3))
     assert len(found.impacts["impact"]) == len(rigid.impacts["impact"]) == 3
-    return max(float(np.abs(found.impacts[name] / rigid.impacts[name] - 1.0).max()) for name in COLUMNS), found
+    return max(
+        float(np.abs(found.impacts[name] / rigid.impacts[name] - 1.0).max()) for name in COLUMNS
+    ), found
 
 
 @pytest.mark.parametrize("inside", [True, False])
 @pytest.mark.parametrize("damping", [0.0, 1.0])
 @pytest.mark.parametrize("law", [*LAWS, *OTHERS], ids=lambda law: law.name)
-def test_stiff_bodies_are_rigid(agrees: Agrees, law: ContactLaw, damping: float, inside: bool) -> None:
+def test_stiff_bodies_are_rigid(
+    agrees: Agrees, law: ContactLaw, damping: float, inside: bool
+) -> None:
     error, response = misses(law, 1e6, damping, inside)
     agrees(
         "five contact laws, three impacts, both bodies stiffened",
@@ -71,7 +88,13 @@ def test_stiff_bodies_are_rigid(agrees: Agrees, law: ContactLaw, damping: float,
 def test_the_error_is_the_compliance_that_is_left(agrees: Agrees, law: ContactLaw) -> None:
     errors = [misses(law, factor, 1.0, True)[0] for factor in (1e3, 1e4)]
     assert errors[0] < 1e-5
-    agrees("natural frequencies ten times higher", "ratio of the errors (second order: 100)", errors[0] / errors[1], 100.0, relative=0.15)
+    agrees(
+        "natural frequencies ten times higher",
+        "ratio of the errors (second order: 100)",
+        errors[0] / errors[1],
+        100.0,
+        relative=0.15,
+    )
 
 
 @pytest.mark.parametrize("law", LAWS, ids=lambda law: law.name)
@@ -80,6 +103,8 @@ def test_stiff_modes_cost_nothing(law: ContactLaw) -> None:
     counts = []
     for factor, damping in ((1e2, 1.0), (1e4, 0.0), (1e4, 1.0), (1e6, 0.0), (1e6, 1.0)):
         response = misses(law, factor, damping, True)[1]
-        pieces = [piece.motion for leg in response.legs if leg.contact for piece in leg.contact.pieces]
+        pieces = [
+            piece.motion for leg in response.legs if leg.contact for piece in leg.contact.pieces
+        ]
         counts.append(sum(isinstance(motion, VibratingStretch) for motion in pieces))
     assert max(counts) <= 1.5 * min(counts)

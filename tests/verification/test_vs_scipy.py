@@ -1,6 +1,8 @@
-"""Against SciPy's Runge-Kutta of order 8, restarted at the deepest point: every law that has a force, by its own formulas.
+"""Against SciPy's Runge-Kutta of order 8, restarted at the deepest point: every law that has a
+force, by its own formulas.
 
-It is restarted too where a law without tension comes to its zero of force, beyond which it is clipped.
+It is restarted too where a law without tension comes to its zero of force, beyond which it is
+clipped.
 """
 
 from __future__ import annotations
@@ -24,18 +26,29 @@ AGAINST = Against(
 )
 
 
-PAIR = ContactPair(effective_modulus=2.4e9, effective_radius=0.025, effective_mass=0.09, yield_strength=3e7, poissons_ratio=0.3)
+PAIR = ContactPair(
+    effective_modulus=2.4e9,
+    effective_radius=0.025,
+    effective_mass=0.09,
+    yield_strength=3e7,
+    poissons_ratio=0.3,
+)
 LAWS = [law for law in vi.contact_laws().values() if issubclass(law, CompliantLaw)]
 
 
-def leg(law: CompliantLaw, start: list[float], speed: float, end: Callable[[float, np.ndarray], float]) -> np.ndarray:
+def leg(
+    law: CompliantLaw, start: list[float], speed: float, end: Callable[[float, np.ndarray], float]
+) -> np.ndarray:
     """Return indentation and speed where `end` is zero."""
 
     def force(state: np.ndarray) -> float:
         return float(np.sum(law.forces(max(state[0], float(law.release_level)), state[1], speed)))
 
     def rates(_: float, state: np.ndarray) -> list[float]:
-        return [state[1], -(max(force(state), 0.0) if law.tension == "cut" else force(state)) / 0.09]
+        return [
+            state[1],
+            -(max(force(state), 0.0) if law.tension == "cut" else force(state)) / 0.09,
+        ]
 
     def no_push(_: float, state: np.ndarray) -> float:
         return force(state) if law.tension == "cut" and state[1] < 0.0 else 1.0
@@ -67,5 +80,9 @@ def test_restitution(agrees: Agrees, law: type[CompliantLaw], speed: float) -> N
     _, final = leg(after, [deepest, -1e-12], speed, out)
     found = vi.integrated_restitution(one, 0.09, speed)
     agrees(
-        "all laws with a contact force, approach speeds 0.3 and 6 m/s", "coefficient of restitution", found, -final / speed, absolute=1e-8
+        "all laws with a contact force, approach speeds 0.3 and 6 m/s",
+        "coefficient of restitution",
+        found,
+        -final / speed,
+        absolute=1e-8,
     )

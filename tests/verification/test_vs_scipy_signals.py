@@ -34,7 +34,13 @@ def test_the_envelope(agrees: Agrees, samples: int, random: np.random.Generator)
     signals = random.standard_normal((4, samples))
     padded = next_fast_len(2 * samples, real=True)
     exact = np.abs(hilbert(signals, N=padded + padded % 2))[:, :samples]
-    agrees("1 to 1001 samples of white noise", "Hilbert envelope", hilbert_envelope(signals), exact, relative=1e-12)
+    agrees(
+        "1 to 1001 samples of white noise",
+        "Hilbert envelope",
+        hilbert_envelope(signals),
+        exact,
+        relative=1e-12,
+    )
 
 
 def test_the_envelope_is_that_between_silences(random: np.random.Generator) -> None:
@@ -46,8 +52,16 @@ def test_the_envelope_is_that_between_silences(random: np.random.Generator) -> N
 def test_the_moments(agrees: Agrees, random: np.random.Generator) -> None:
     signals = random.gamma(2.0, size=(6, 700))
     table = vi.feature_table(signals, 1.0)
-    agrees("six random signals", "skewness", table["skewness"], skew(signals, axis=1), relative=1e-12)
-    agrees("six random signals", "kurtosis", table["kurtosis"], kurtosis(signals, axis=1, fisher=False), relative=1e-12)
+    agrees(
+        "six random signals", "skewness", table["skewness"], skew(signals, axis=1), relative=1e-12
+    )
+    agrees(
+        "six random signals",
+        "kurtosis",
+        table["kurtosis"],
+        kurtosis(signals, axis=1, fisher=False),
+        relative=1e-12,
+    )
 
 
 def test_the_cubic(agrees: Agrees, random: np.random.Generator) -> None:
@@ -56,7 +70,13 @@ def test_the_cubic(agrees: Agrees, random: np.random.Generator) -> None:
         knots[number, random.choice(300, 1 + 20 * number, replace=False)] = True
     found = cubic_through(signals, np.flatnonzero(knots))
     for signal, chosen, cubic in zip(signals, knots, found, strict=True):
-        agrees("five random signals", "monotone cubic interpolation", cubic, _cubic(signal, np.flatnonzero(chosen)), absolute=1e-13)
+        agrees(
+            "five random signals",
+            "monotone cubic interpolation",
+            cubic,
+            _cubic(signal, np.flatnonzero(chosen)),
+            absolute=1e-13,
+        )
 
 
 def _cubic(signal: np.ndarray, knots: np.ndarray) -> np.ndarray:
@@ -74,7 +94,10 @@ def test_the_intrinsic_modes(agrees: Agrees, random: np.random.Generator) -> Non
         for mode in found[:, number]:
             sifted = rest.copy()
             for _ in range(5):
-                tops, bottoms = (_cubic(sifted, find_peaks(side, prominence=least)[0]) for side in (sifted, -sifted))
+                tops, bottoms = (
+                    _cubic(sifted, find_peaks(side, prominence=least)[0])
+                    for side in (sifted, -sifted)
+                )
                 sifted -= 0.5 * (tops + bottoms)
             largest = float(np.abs(signal).max())
             agrees(
@@ -92,7 +115,18 @@ def test_the_cepstrum(agrees: Agrees, random: np.random.Generator) -> None:
     power = np.abs(np.fft.rfft(signal)) ** 2
     power[1:-1] *= 2.0
     centres = np.linspace(0.0, 320.0, 22)
-    bands = [np.interp(np.arange(321), centres[number : number + 3], [0.0, 1.0, 0.0], left=0.0, right=0.0) for number in range(20)]
+    bands = [
+        np.interp(
+            np.arange(321), centres[number : number + 3], [0.0, 1.0, 0.0], left=0.0, right=0.0
+        )
+        for number in range(20)
+    ]
     level = np.log([band @ power / power.sum() + 1e-10 for band in bands])
     table = vi.feature_table(signal[None], 1.0, [f"cepstrum_{number}" for number in range(1, 9)])
-    agrees("640 samples of white noise", "cepstral coefficients", table.values[0], dct(level, norm="ortho")[1:9], relative=1e-10)
+    agrees(
+        "640 samples of white noise",
+        "cepstral coefficients",
+        table.values[0],
+        dct(level, norm="ortho")[1:9],
+        relative=1e-10,
+    )

@@ -23,7 +23,9 @@ POINTS = 8192
 
 
 def drawn(axes: int, low: float, high: float) -> np.ndarray:
-    columns = plan(Asked({str(place): Spaced(low, high, 2) for place in range(axes)}, POINTS, 7)).columns
+    columns = plan(
+        Asked({str(place): Spaced(low, high, 2) for place in range(axes)}, POINTS, 7)
+    ).columns
     return np.array([np.asarray(values, dtype=float) for values in columns.values()])
 
 
@@ -32,21 +34,37 @@ def ishigami(x: np.ndarray) -> np.ndarray:
 
 
 def closed_form_of_ishigami() -> tuple[np.ndarray, np.ndarray]:
-    """Ishigami and Homma (1990), with a = 7 and b = 0.1: the variances of the parts of the function."""
+    """Ishigami and Homma (1990), with a = 7 and b = 0.1: the variances of the parts of
+    the function.
+    """
     a, b = 7.0, 0.1
     first = 0.5 * (1.0 + b * np.pi**4 / 5.0) ** 2
     second = a**2 / 8.0
     together = b**2 * np.pi**8 * (1.0 / 18.0 - 1.0 / 50.0)  # of the first with the third
     whole = first + second + together
-    return np.array([first, second, 0.0]) / whole, np.array([first + together, second, together]) / whole
+    return np.array([first, second, 0.0]) / whole, np.array(
+        [first + together, second, together]
+    ) / whole
 
 
 def test_ishigami(agrees: Agrees) -> None:
     found = sobol_indices(ishigami(drawn(3, -np.pi, np.pi)), 3)
     assert found is not None
     first, total = closed_form_of_ishigami()
-    agrees("Ishigami function, 8192 samples", "first-order Sobol indices", found.first, first, absolute=0.01)
-    agrees("Ishigami function, 8192 samples", "total-effect Sobol indices", found.total, total, absolute=0.01)
+    agrees(
+        "Ishigami function, 8192 samples",
+        "first-order Sobol indices",
+        found.first,
+        first,
+        absolute=0.01,
+    )
+    agrees(
+        "Ishigami function, 8192 samples",
+        "total-effect Sobol indices",
+        found.total,
+        total,
+        absolute=0.01,
+    )
     # the interval holds the truth, and is not so wide as to say nothing
     assert np.all(np.abs(found.first - first) <= found.first_error)
     assert np.all(np.abs(found.total - total) <= found.total_error)
@@ -60,16 +78,40 @@ def test_sum_of_axes_has_the_indices_of_its_variances(agrees: Agrees) -> None:
     found = sobol_indices(weights @ x, 4)
     assert found is not None
     expected = weights**2 / np.sum(weights**2)
-    agrees("weighted sum of uniform variables", "first-order Sobol indices", found.first, expected, absolute=2e-3)
-    agrees("weighted sum of uniform variables", "total-effect Sobol indices", found.total, expected, absolute=2e-3)
+    agrees(
+        "weighted sum of uniform variables",
+        "first-order Sobol indices",
+        found.first,
+        expected,
+        absolute=2e-3,
+    )
+    agrees(
+        "weighted sum of uniform variables",
+        "total-effect Sobol indices",
+        found.total,
+        expected,
+        absolute=2e-3,
+    )
 
 
 def test_product_of_two_axes_matters_only_together(agrees: Agrees) -> None:
     x = drawn(2, -1.0, 1.0)
     found = sobol_indices(x[0] * x[1], 2)  # neither does anything by itself
     assert found is not None
-    agrees("product of two uniform variables", "first-order Sobol indices", found.first, [0.0, 0.0], absolute=0.02)
-    agrees("product of two uniform variables", "total-effect Sobol indices", found.total, [1.0, 1.0], absolute=0.02)
+    agrees(
+        "product of two uniform variables",
+        "first-order Sobol indices",
+        found.first,
+        [0.0, 0.0],
+        absolute=0.02,
+    )
+    agrees(
+        "product of two uniform variables",
+        "total-effect Sobol indices",
+        found.total,
+        [1.0, 1.0],
+        absolute=0.02,
+    )
 
 
 @pytest.mark.slow
@@ -78,12 +120,15 @@ def test_width_of_the_interval_is_the_scatter_over_independent_draws() -> None:
     for draw in range(60):
         blocks = np.random.default_rng(draw).uniform(-np.pi, np.pi, (2, 3, 512))
         mixed = [np.where(np.arange(3)[:, None] == axis, blocks[1], blocks[0]) for axis in range(3)]
-        found = sobol_indices(np.concatenate([ishigami(points) for points in (*blocks, *mixed)]), 3, seed=draw)
+        found = sobol_indices(
+            np.concatenate([ishigami(points) for points in (*blocks, *mixed)]), 3, seed=draw
+        )
         assert found is not None
         estimates.append(found.total)
         errors.append(found.total_error)
     scatter = 1.96 * np.std(estimates, axis=0, ddof=1)
-    assert np.mean(errors, axis=0) == pytest.approx(scatter, rel=0.25)  # 60 draws know their scatter to a tenth
+    # 60 draws know their scatter to a tenth
+    assert np.mean(errors, axis=0) == pytest.approx(scatter, rel=0.25)
 
 
 def test_points_left_out_leave_the_indices_of_the_others() -> None:
@@ -99,8 +144,12 @@ def test_points_left_out_leave_the_indices_of_the_others() -> None:
     complete = np.isfinite(missing).all(axis=0)
     a, b, *mixed = missing[:, complete]
     variance = np.var(np.concatenate([a, b]))
-    assert found.first == pytest.approx([np.mean((b - np.mean([a, b])) * (one - a)) / variance for one in mixed], rel=1e-9)
-    assert found.total == pytest.approx([0.5 * np.mean((one - a) ** 2) / variance for one in mixed], rel=1e-9)
+    assert found.first == pytest.approx(
+        [np.mean((b - np.mean([a, b])) * (one - a)) / variance for one in mixed], rel=1e-9
+    )
+    assert found.total == pytest.approx(
+        [0.5 * np.mean((one - a) ** 2) / variance for one in mixed], rel=1e-9
+    )
     missing[1, : POINTS // 19] = np.nan
     assert sobol_indices(missing.ravel(), 3) is None
 

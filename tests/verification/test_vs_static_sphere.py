@@ -26,13 +26,19 @@ AGAINST = Against(
 @pytest.mark.parametrize("poissons_ratio", [0.0, 0.28])
 @pytest.mark.slow
 def test_under_the_pressure_of_hertz(agrees: Agrees, poissons_ratio: float) -> None:
-    """Unit radius, modulus and force; the mesh is carried by its inertia. What remains is that elements are too stiff."""
-    structure = solid_structure(sphere_mesh(1.0, 8, "hex27", 3.0), Material(1.0, 1.0, poissons_ratio))
+    """Unit radius, modulus and force; the mesh is carried by its inertia. What remains is
+    that elements are too stiff.
+    """
+    structure = solid_structure(
+        sphere_mesh(1.0, 8, "hex27", 3.0), Material(1.0, 1.0, poissons_ratio)
+    )
     held = held_by(structure)
     elastic = ElasticSystem(held.stiffness, held.mass, held.rigid, held.order)
     nodes, weights = np.polynomial.legendre.leggauss(20)
     root, angle = 0.5 * (nodes + 1.0), 2 * np.pi * (np.arange(48) + 0.5) / 48
-    disc = np.sqrt(1 - root[:, None] ** 2)[..., None] * np.stack([np.cos(angle), np.sin(angle)], axis=-1)
+    disc = np.sqrt(1 - root[:, None] ** 2)[..., None] * np.stack(
+        [np.cos(angle), np.sin(angle)], axis=-1
+    )
     share = np.repeat(weights * root**2 / (weights @ root**2) / 48, 48)
     for ratio in (0.3, 0.4):
         motion, _ = surface_motion(structure.mesh, ratio * disc.reshape(-1, 2), "lower")
@@ -47,14 +53,27 @@ def test_under_the_pressure_of_hertz(agrees: Agrees, poissons_ratio: float) -> N
         )
 
 
-@pytest.mark.parametrize(("poissons_ratio", "ratio"), [(0.28, 0.04), (0.28, 0.1), (0.28, 0.18), (0.0, 0.1), (0.45, 0.1)])
+@pytest.mark.parametrize(
+    ("poissons_ratio", "ratio"), [(0.28, 0.04), (0.28, 0.1), (0.28, 0.18), (0.0, 0.1), (0.45, 0.1)]
+)
 def test_against_a_sphere_in_contact(agrees: Agrees, poissons_ratio: float, ratio: float) -> None:
-    """At the approach of Hertz's force with the term the sphere has that force; Hertz alone is off by 3 to 20 %.
+    """At the approach of Hertz's force with the term the sphere has that force; Hertz alone is off
+    by 3 to 20 %.
 
-    What remains, which goes with the square of a / R, is that the contact is not Hertz's: neither its pressure nor its gap.
+    What remains, which goes with the square of a / R, is that the contact is not Hertz's: neither
+    its pressure nor its gap.
     """
     radius, modulus = 0.025, 2.26e9
     force = 4.0 / 3.0 * modulus / (1 - poissons_ratio**2) * ratio**3 * radius**2
-    approach = ratio**2 * radius + float(sphere_term(poissons_ratio).factor(ratio)) * force / (modulus * radius)
+    approach = ratio**2 * radius + float(sphere_term(poissons_ratio).factor(ratio)) * force / (
+        modulus * radius
+    )
     found = static_approach(radius, modulus, poissons_ratio, approach, 8.0)
-    agrees("static contact, a/R = 0.04 to 0.18", "contact force at equal approach", force, found.force, unit="N", relative=5e-3)
+    agrees(
+        "static contact, a/R = 0.04 to 0.18",
+        "contact force at equal approach",
+        force,
+        found.force,
+        unit="N",
+        relative=5e-3,
+    )

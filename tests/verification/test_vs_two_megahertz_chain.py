@@ -1,8 +1,10 @@
-"""Sensors on a struck plate against the same chain at two million samples a second: ten times the modes, SciPy's filters.
+"""Sensors on a struck plate against the same chain at two million samples a second: ten times the
+modes, SciPy's filters.
 
-The ball and the plate are steel, 5 mm in radius and 6 mm thick; the contact lasts 35 us, so that its force has a spectrum far beyond half
-of 50 kHz. The oracle gets the contact force and the modes that the program keeps, which other tests hold against integrations and closed
-forms; those left out it takes from Kirchhoff's closed form, and it follows all of them."""
+The ball and the plate are steel, 5 mm in radius and 6 mm thick; the contact lasts 35 us, so that
+its force has a spectrum far beyond half of 50 kHz. The oracle gets the contact force and the modes
+that the program keeps, which other tests hold against integrations and closed forms; those left out
+it takes from Kirchhoff's closed form, and it follows all of them."""
 
 from __future__ import annotations
 
@@ -22,8 +24,8 @@ AGAINST = Against(
     "measuring chain sampled at 2 MHz",
     "own independent computation",
     "sensors and signals",
-    "tests/oracles/measuring_chain.py: contact force and kept modes of the package, the modes above in closed form, SciPy filters, "
-    "ten times the number of modes",
+    "tests/oracles/measuring_chain.py: contact force and kept modes of the package, the "
+    "modes above in closed form, SciPy filters, ten times the number of modes",
 )
 THICK = Against(
     "all waves of an elastic layer, sampled at 2 MHz",
@@ -48,7 +50,13 @@ def place(thicknesses: float) -> tuple[float, float]:
 def drop_watched(mesh: dict[str, Any], *more: dict[str, Any]) -> vi.Response:
     """A drop on the plate, whose sensors away from the contact are watched, and more of them."""
     sensors = [{"name": name, "position": list(place(apart))} for name, apart in AWAY.items()]
-    plate = {"size": list(SIZE), "material": "steel", "model": "elastic", "supports": "simply-supported", "damping": RATIO}
+    plate = {
+        "size": list(SIZE),
+        "material": "steel",
+        "model": "elastic",
+        "supports": "simply-supported",
+        "damping": RATIO,
+    }
     case = {
         "sphere": {"radius": 5e-3, "material": "steel"},
         "plate": {**plate, "max_frequency": 50e3, "mesh": mesh},
@@ -62,24 +70,37 @@ def drop_watched(mesh: dict[str, Any], *more: dict[str, Any]) -> vi.Response:
 
 @pytest.fixture(scope="module")
 def response() -> vi.Response:
-    return drop_watched({"theory": "thin"}, {"name": "under", "position": list(SPOT), "face": "lower"})
+    return drop_watched(
+        {"theory": "thin"}, {"name": "under", "position": list(SPOT), "face": "lower"}
+    )
 
 
 @pytest.fixture(scope="module")
 def motion(response: vi.Response) -> dict[str, dict[str, Floats]]:
-    plate, kept = SimplySupported(SIZE, DENSITY, MODULUS, POISSON, 600e3), response.problem.plate.modes
+    plate, kept = (
+        SimplySupported(SIZE, DENSITY, MODULUS, POISSON, 600e3),
+        response.problem.plate.modes,
+    )
     assert kept is not None
     above = plate.omega > kept.angular_frequencies[-1]
     assert above.sum() > 8 * len(kept.frequencies)
     omega = np.append(kept.angular_frequencies, plate.omega[above])
     contact = np.append(kept.contact, plate.at(*SPOT)[above])
     apart = {**AWAY, "under": 0.0}
-    points = np.stack([np.append(kept.points[name][:, 2], plate.at(*place(far))[above]) for name, far in apart.items()])
+    points = np.stack(
+        [
+            np.append(kept.points[name][:, 2], plate.at(*place(far))[above])
+            for name, far in apart.items()
+        ]
+    )
     times = np.arange(round((DURATION + AFTER) * RATE) + 1) / RATE
     force = response.at(np.minimum(times, response.end_time[0]))["force_N"]
     assert force[times > 0.1 * DURATION].max() == 0.0
     found = driven(omega, RATIO, contact, points, force)
-    return {name: {quantity: values[number] for quantity, values in found.items()} for number, name in enumerate(apart)}
+    return {
+        name: {quantity: values[number] for quantity, values in found.items()}
+        for number, name in enumerate(apart)
+    }
 
 
 def compared(response: vi.Response, sensor: Sensor, exact: Floats) -> float:
@@ -91,8 +112,17 @@ def compared(response: vi.Response, sensor: Sensor, exact: Floats) -> float:
 @pytest.mark.slow
 @pytest.mark.parametrize("name", AWAY)
 @pytest.mark.parametrize("quantity", ["acceleration", "velocity", "displacement"])
-def test_bare_points(agrees: Agrees, response: vi.Response, motion: dict[str, dict[str, Floats]], name: str, quantity: Any) -> None:
-    exact, signal = sampled(motion[name][quantity], SAMPLES, "sigma-delta"), response.signals(Sensor(name, quantity))[name]
+def test_bare_points(
+    agrees: Agrees,
+    response: vi.Response,
+    motion: dict[str, dict[str, Floats]],
+    name: str,
+    quantity: Any,
+) -> None:
+    exact, signal = (
+        sampled(motion[name][quantity], SAMPLES, "sigma-delta"),
+        response.signals(Sensor(name, quantity))[name],
+    )
     agrees(
         "ideal sensors, two to twelve plate thicknesses from the impact",
         f"{quantity} signal",
@@ -105,24 +135,66 @@ def test_bare_points(agrees: Agrees, response: vi.Response, motion: dict[str, di
 
 @pytest.mark.slow
 @pytest.mark.parametrize("rate", [20e3, 25e3, 40e3])
-def test_rates(agrees: Agrees, response: vi.Response, motion: dict[str, dict[str, Floats]], rate: float) -> None:
-    """Down to where most modes lie above half of it: they pass in band what they do below their resonance."""
-    found, exact = response.signals(Sensor("two", rate=rate))["two"].value, sampled(motion["two"]["acceleration"], rate, "sigma-delta")
-    agrees("sampling rates 20 to 40 kHz", "acceleration signal", found, exact[: len(found)], unit="m/s²", rms=PROMISED)
+def test_rates(
+    agrees: Agrees, response: vi.Response, motion: dict[str, dict[str, Floats]], rate: float
+) -> None:
+    """Down to where most modes lie above half of it: they pass in band what they do below
+    their resonance.
+    """
+    found, exact = (
+        response.signals(Sensor("two", rate=rate))["two"].value,
+        sampled(motion["two"]["acceleration"], rate, "sigma-delta"),
+    )
+    agrees(
+        "sampling rates 20 to 40 kHz",
+        "acceleration signal",
+        found,
+        exact[: len(found)],
+        unit="m/s²",
+        rms=PROMISED,
+    )
 
 
 @pytest.mark.parametrize("filtered", ["sigma-delta", "butterworth"])
-@pytest.mark.parametrize("meter", [{"resonance": 30e3}, {"resonance": 30e3, "range": 4000.0}, {"resonance": 18e3, "damping_ratio": 0.7}])
+@pytest.mark.parametrize(
+    "meter",
+    [
+        {"resonance": 30e3},
+        {"resonance": 30e3, "range": 4000.0},
+        {"resonance": 18e3, "damping_ratio": 0.7},
+    ],
+)
 def test_accelerometers(
-    agrees: Agrees, response: vi.Response, motion: dict[str, dict[str, Floats]], filtered: str, meter: dict[str, float]
+    agrees: Agrees,
+    response: vi.Response,
+    motion: dict[str, dict[str, Floats]],
+    filtered: str,
+    meter: dict[str, float],
 ) -> None:
-    """A resonance above half the rate, driven beyond its range too: what is cut off there is what comes through in band."""
-    exact = seismic(motion["two"]["acceleration"], meter["resonance"], meter.get("damping_ratio", 0.02))
+    """A resonance above half the rate, driven beyond its range too: what is cut off there
+    is what comes through in band.
+    """
+    exact = seismic(
+        motion["two"]["acceleration"], meter["resonance"], meter.get("damping_ratio", 0.02)
+    )
     end = meter.get("range", np.inf)
     sensor = Sensor("two", filter=filtered, instrument=Accelerometer(**meter))
-    signal, clipped = response.signals(sensor)["two"], sampled(np.clip(exact, -end, end), SAMPLES, filtered)
-    case = f"accelerometers with a resonance, {'beyond' if np.isfinite(end) else 'within'} their range, filter {filtered}"
-    agrees(case, "acceleration signal", signal.value, clipped[: len(signal.value)], unit="m/s²", rms=PROMISED)
+    signal, clipped = (
+        response.signals(sensor)["two"],
+        sampled(np.clip(exact, -end, end), SAMPLES, filtered),
+    )
+    case = (
+        f"accelerometers with a resonance, {'beyond' if np.isfinite(end) else 'within'} their "
+        f"range, filter {filtered}"
+    )
+    agrees(
+        case,
+        "acceleration signal",
+        signal.value,
+        clipped[: len(signal.value)],
+        unit="m/s²",
+        rms=PROMISED,
+    )
     if np.isfinite(end):
         within = np.abs(exact[: round(DURATION * RATE)])
         assert signal.peak == pytest.approx(within.max(), rel=0.02)
@@ -133,19 +205,32 @@ def test_accelerometers(
 
 
 def test_without_a_filter(response: vi.Response, motion: dict[str, dict[str, Floats]]) -> None:
-    """What is there at the instants of the samples, which the modes left out matter more for: as much as is said."""
+    """What is there at the instants of the samples, which the modes left out matter more
+    for: as much as is said.
+    """
     for quantity in ("displacement", "velocity", "acceleration"):
         sensor = Sensor("two", quantity, filter="none")
-        signal, exact = response.signals(sensor)["two"], sampled(motion["two"][quantity], SAMPLES, "none")
-        assert rms(signal.value - exact[: len(signal.value)]) < max(PROMISED, signal.uncertainty) * rms(exact)
+        signal, exact = (
+            response.signals(sensor)["two"],
+            sampled(motion["two"][quantity], SAMPLES, "none"),
+        )
+        assert rms(signal.value - exact[: len(signal.value)]) < max(
+            PROMISED, signal.uncertainty
+        ) * rms(exact)
     assert signal.uncertainty > 0.1
 
 
-def test_under_the_contact_the_doubt_holds(response: vi.Response, motion: dict[str, dict[str, Floats]]) -> None:
-    """Plate theory knows neither thickness nor face: a signal there may be off by what is said, and a sensor farther away has no doubt."""
+def test_under_the_contact_the_doubt_holds(
+    response: vi.Response, motion: dict[str, dict[str, Floats]]
+) -> None:
+    """Plate theory knows neither thickness nor face: a signal there may be off by what is
+    said, and a sensor farther away has no doubt.
+    """
     from vibroimpact.results.result import result_of
 
-    off = compared(response, Sensor("under"), sampled(motion["under"]["acceleration"], SAMPLES, "sigma-delta"))
+    off = compared(
+        response, Sensor("under"), sampled(motion["under"]["acceleration"], SAMPLES, "sigma-delta")
+    )
     found = result_of(response).doubts
     (doubt,) = (doubt for doubt in found if '"under"' in doubt)
     assert "0 thicknesses from the contact" in doubt
@@ -155,7 +240,9 @@ def test_under_the_contact_the_doubt_holds(response: vi.Response, motion: dict[s
 
 @pytest.fixture(scope="module")
 def thick() -> tuple[vi.Response, dict[str, dict[str, Floats]]]:
-    """Plate elements of the thick theory, and all waves of an elastic layer above the modes kept, through the thickness too."""
+    """Plate elements of the thick theory, and all waves of an elastic layer above the
+    modes kept, through the thickness too.
+    """
     response = drop_watched({"theory": "thick"})
     kept = response.problem.plate.modes
     assert kept is not None
@@ -163,26 +250,61 @@ def thick() -> tuple[vi.Response, dict[str, dict[str, Floats]]]:
     m, n = (np.pi * np.arange(1, 81) / side for side in (length, width))
 
     def sines(x: float, y: float) -> Floats:
-        return np.asarray(2.0 / np.sqrt(length * width) * np.outer(np.sin(m * (x + 0.5 * length)), np.sin(n * (y + 0.5 * width))).ravel())
+        return np.asarray(
+            2.0
+            / np.sqrt(length * width)
+            * np.outer(np.sin(m * (x + 0.5 * length)), np.sin(n * (y + 0.5 * width))).ravel()
+        )
 
-    omegas, faces = zip(*(thickness_modes(np.hypot(m[:, None], n).ravel(), thickness, layer, even) for even in (False, True)), strict=True)
+    omegas, faces = zip(
+        *(
+            thickness_modes(np.hypot(m[:, None], n).ravel(), thickness, layer, even)
+            for even in (False, True)
+        ),
+        strict=True,
+    )
     omega, face = (np.concatenate(part, axis=1) for part in (omegas, faces))
     above = (omega > kept.angular_frequencies[-1]) & (omega < 2.0 * np.pi * 500e3)
     assert not above[-1].any()
-    shapes = {name: (sines(*at)[:, None] * face)[above] for name, at in {"": SPOT, **{far: place(AWAY[far]) for far in AWAY}}.items()}
+    shapes = {
+        name: (sines(*at)[:, None] * face)[above]
+        for name, at in {"": SPOT, **{far: place(AWAY[far]) for far in AWAY}}.items()
+    }
     points = np.stack([np.append(kept.points[name][:, 2], shapes[name]) for name in AWAY])
     times = np.arange(round((DURATION + AFTER) * RATE) + 1) / RATE
     force = response.at(np.minimum(times, response.end_time[0]))["force_N"]
-    found = driven(np.append(kept.angular_frequencies, omega[above]), RATIO, np.append(kept.contact, shapes[""]), points, force)
-    return response, {name: {quantity: values[number] for quantity, values in found.items()} for number, name in enumerate(AWAY)}
+    found = driven(
+        np.append(kept.angular_frequencies, omega[above]),
+        RATIO,
+        np.append(kept.contact, shapes[""]),
+        points,
+        force,
+    )
+    return response, {
+        name: {quantity: values[number] for quantity, values in found.items()}
+        for number, name in enumerate(AWAY)
+    }
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", AWAY)
 @pytest.mark.parametrize("quantity", ["acceleration", "velocity", "displacement"])
 def test_the_face_of_a_thick_plate(
-    agrees: Agrees, thick: tuple[vi.Response, dict[str, dict[str, Floats]]], name: str, quantity: Any
+    agrees: Agrees,
+    thick: tuple[vi.Response, dict[str, dict[str, Floats]]],
+    name: str,
+    quantity: Any,
 ) -> None:
     response, motion = thick
-    found, exact = response.signals(Sensor(name, quantity))[name].value, sampled(motion[name][quantity], SAMPLES, "sigma-delta")
-    agrees("surface of a thick plate", f"{quantity} signal", found, exact[: len(found)], against=THICK, rms=PROMISED)
+    found, exact = (
+        response.signals(Sensor(name, quantity))[name].value,
+        sampled(motion[name][quantity], SAMPLES, "sigma-delta"),
+    )
+    agrees(
+        "surface of a thick plate",
+        f"{quantity} signal",
+        found,
+        exact[: len(found)],
+        against=THICK,
+        rms=PROMISED,
+    )

@@ -1,7 +1,9 @@
-"""Sensors on a plate that is hit obliquely, twice and at two places, against the same chain at two million samples a second.
+"""Sensors on a plate that is hit obliquely, twice and at two places, against the same chain at two
+million samples a second.
 
-The oracle gets normal force, friction and the modes that the program keeps; those left out it takes from Kirchhoff's closed form. Friction
-drives them by its moment about the plate's middle, half a thickness below its face."""
+The oracle gets normal force, friction and the modes that the program keeps; those left out it takes
+from Kirchhoff's closed form. Friction drives them by its moment about the plate's middle, half a
+thickness below its face."""
 
 from __future__ import annotations
 
@@ -18,7 +20,8 @@ AGAINST = Against(
     "measuring chain sampled at 2 MHz, oblique impacts",
     "own independent computation",
     "sensors and signals",
-    "tests/oracles/measuring_chain.py: contact force and kept modes of the package, the modes above in closed form, SciPy filters",
+    "tests/oracles/measuring_chain.py: contact force and kept modes of the package, the "
+    "modes above in closed form, SciPy filters",
 )
 
 
@@ -31,11 +34,22 @@ STEP = 1e-5
 @pytest.fixture(scope="module")
 def response() -> vi.Response:
     """Gravity brings the sphere back within a millisecond, some 5 mm farther on."""
-    plate = {"size": list(SIZE), "material": "steel", "model": "elastic", "supports": "simply-supported", "damping": RATIO}
+    plate = {
+        "size": list(SIZE),
+        "material": "steel",
+        "model": "elastic",
+        "supports": "simply-supported",
+        "damping": RATIO,
+    }
     case = {
         "sphere": {"radius": 5e-3, "material": "steel"},
         "plate": {**plate, "max_frequency": 50e3, "mesh": {"theory": "thin"}},
-        "drop": {"velocity": [8.0, 3.0, -1.0], "spin": [0.0, 300.0, 0.0], "position": list(SPOT), "gravity": 800.0},
+        "drop": {
+            "velocity": [8.0, 3.0, -1.0],
+            "spin": [0.0, 300.0, 0.0],
+            "position": list(SPOT),
+            "gravity": 800.0,
+        },
         "contact": {"law": "hertz", "friction": {"law": "mdr", "coefficient": 0.25}},
         "run": {"duration": DURATION, "impacts": 2},
         "sensors": [{"name": "two", "position": list(AWAY)}],
@@ -64,11 +78,18 @@ def motion(response: vi.Response) -> dict[str, Floats]:
         there = at_place((float(x), float(y))).plate.modes
         assert there is not None
         assert there.along is not None
-        slopes = [(plate.at(x + STEP * a, y + STEP * b) - plate.at(x - STEP * a, y - STEP * b)) / (2.0 * STEP) for a, b in ((1, 0), (0, 1))]
+        slopes = [
+            (plate.at(x + STEP * a, y + STEP * b) - plate.at(x - STEP * a, y - STEP * b))
+            / (2.0 * STEP)
+            for a, b in ((1, 0), (0, 1))
+        ]
         shapes = [plate.at(x, y), *(-0.5 * SIZE[2] * slope for slope in slopes)]
         modal = [there.contact, *there.along.T]
         forces = [history["force_N"], history["friction_x_N"], history["friction_y_N"]]
-        inputs = [(np.append(low, high[above]), force) for low, high, force in zip(modal, shapes, forces, strict=True)]
+        inputs = [
+            (np.append(low, high[above]), force)
+            for low, high, force in zip(modal, shapes, forces, strict=True)
+        ]
         for shape, force in inputs:
             once = driven(omega, RATIO, shape, point, np.where(later == bool(number), force, 0.0))
             found = {name: found.get(name, 0.0) + values[0] for name, values in once.items()}
@@ -82,15 +103,28 @@ def off(response: vi.Response, sensor: Sensor, exact: Floats) -> float:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("quantity", ["acceleration", "velocity", "displacement"])
-def test_points(agrees: Agrees, response: vi.Response, motion: dict[str, Floats], quantity: str) -> None:
+def test_points(
+    agrees: Agrees, response: vi.Response, motion: dict[str, Floats], quantity: str
+) -> None:
     sensor = Sensor("two", quantity)  # type: ignore[arg-type]
-    found, exact = response.signals(sensor)["two"].value, sampled(motion[quantity], SAMPLES, "sigma-delta")
-    agrees("ideal sensors, two oblique impacts", f"{quantity} signal", found, exact[: len(found)], rms=0.01)
+    found, exact = (
+        response.signals(sensor)["two"].value,
+        sampled(motion[quantity], SAMPLES, "sigma-delta"),
+    )
+    agrees(
+        "ideal sensors, two oblique impacts",
+        f"{quantity} signal",
+        found,
+        exact[: len(found)],
+        rms=0.01,
+    )
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("filtered", ["sigma-delta", "butterworth"])
-def test_accelerometers(agrees: Agrees, response: vi.Response, motion: dict[str, Floats], filtered: str) -> None:
+def test_accelerometers(
+    agrees: Agrees, response: vi.Response, motion: dict[str, Floats], filtered: str
+) -> None:
     exact = seismic(motion["acceleration"], 30e3, 0.02)
     sensor = Sensor("two", filter=filtered, instrument=Accelerometer(resonance=30e3))  # type: ignore[arg-type]
     found = response.signals(sensor)["two"].value

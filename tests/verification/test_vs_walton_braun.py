@@ -1,4 +1,6 @@
-"""Against Walton and Braun's closed restitutions: constant, or sqrt(w0/(S v + w0)) (J. Rheology 30, 949, 1986)."""
+"""Against Walton and Braun's closed restitutions: constant, or sqrt(w0/(S v + w0)) (J.
+Rheology 30, 949, 1986).
+"""
 
 from __future__ import annotations
 
@@ -48,11 +50,17 @@ def test_restitution_that_falls_with_the_speed(agrees: Agrees) -> None:
 def test_it_leaves_with_an_overlap_and_the_next_contact_begins_anew() -> None:
     law = WaltonBraun(stiffness=STIFFNESS, restitution=0.6)
     ball = vi.Body(mass=MASS, contact_offset=0.025)
-    response = vi.simulate(vi.Problem(sphere=ball, plate=vi.rigid_plate(), laws=(law,), height=0.5, gravity=9.81, impacts=4))
+    response = vi.simulate(
+        vi.Problem(
+            sphere=ball, plate=vi.rigid_plate(), laws=(law,), height=0.5, gravity=9.81, impacts=4
+        )
+    )
     np.testing.assert_allclose(response.impacts["restitution_achieved"], 0.6, rtol=2e-3)
     deepest = response.impacts["max_indentation_m"][0]
     release = response.impacts["time_s"][0] + response.impacts["duration_s"][0]
-    assert 0.025 - response.at([release])["position_m"][0] == pytest.approx(deepest * (1 - 0.36), rel=1e-6)
+    assert 0.025 - response.at([release])["position_m"][0] == pytest.approx(
+        deepest * (1 - 0.36), rel=1e-6
+    )
     # a quarter period of each spring
     periods = 0.5 * np.pi * np.sqrt(MASS / STIFFNESS) * (1 + 0.6)
     assert response.impacts["duration_s"][0] == pytest.approx(periods, rel=2e-3)

@@ -1,4 +1,6 @@
-"""The address of the live page, which carries the case after its "#", so that a link reproduces it."""
+"""The address of the live page, which carries the case after its "#", so that a link
+reproduces it.
+"""
 
 from __future__ import annotations
 
@@ -9,7 +11,8 @@ from typing import Any
 
 
 def fragment_of(table: dict[str, Any]) -> str:
-    """Return the fragment of an address that carries a case: its table as JSON, compressed, in the letters of an address.
+    """Return the fragment of an address that carries a case: its table as JSON, compressed, in the
+    letters of an address.
 
     Parameters
     ----------

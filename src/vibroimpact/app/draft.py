@@ -1,4 +1,6 @@
-"""The result of a drop while it is being changed: as of a run, but with fewer points and without doubts, so that it is there at once."""
+"""The result of a drop while it is being changed: as of a run, but with fewer points and
+without doubts, so that it is there at once.
+"""
 
 from __future__ import annotations
 
@@ -31,7 +33,11 @@ class _Deferred(Mapping[str, Any]):
     """Mapping whose values are computed group by group, at the first access to one of the group."""
 
     def __init__(self, *groups: tuple[Iterable[str], Callable[[], Mapping[str, Any]]]) -> None:
-        self._compute = {name: once for names, once in ((names, cache(compute)) for names, compute in groups) for name in names}
+        self._compute = {
+            name: once
+            for names, once in ((names, cache(compute)) for names, compute in groups)
+            for name in names
+        }
 
     def __getitem__(self, name: str) -> Any:
         return self._compute[name]()[name]
@@ -47,25 +53,32 @@ class _Deferred(Mapping[str, Any]):
 
 
 def drafted(problem: Problem) -> Problem:
-    """Return the problem that is simulated while it is being changed: to six digits, and without the growth of small changes."""
+    """Return the problem that is simulated while it is being changed: to six digits, and
+    without the growth of small changes.
+    """
     return replace(problem, tolerance=max(problem.tolerance, _TOLERANCE), sensitivity=False)
 
 
 def draft_of(response: Response) -> Result:
-    """Return the result of a response to one drop whose bodies vibrate, with a history of about 1000 points.
+    """Return the result of a response to one drop whose bodies vibrate, with a history of about
+    1000 points.
 
-    Of the history, the peaks and the signals only what is looked at is computed. For rigid bodies it is the result itself, which takes no
-    time.
+    Of the history, the peaks and the signals only what is looked at is computed. For rigid bodies
+    it is the result itself, which takes no time.
     """
     problem = response.problem
     if not problem.vibrates:
         return result_of(response)
     further = [name for name in response.history_columns if name not in MOTION_COLUMNS]
-    history = _Deferred(*((names, partial(response.history, _POINTS, names)) for names in (MOTION_COLUMNS, further)))
+    history = _Deferred(
+        *((names, partial(response.history, _POINTS, names)) for names in (MOTION_COLUMNS, further))
+    )
     maxima = cache(lambda: peaks_of(response, history))
 
     def of_body(body: str, modes: ModalBasis) -> _Deferred:
-        return _Deferred((MAXIMA, lambda: maxima()[body]), (FREQUENCIES, partial(frequencies_of, modes)))
+        return _Deferred(
+            (MAXIMA, lambda: maxima()[body]), (FREQUENCIES, partial(frequencies_of, modes))
+        )
 
     bodies = {"sphere": problem.sphere.modes, "plate": problem.plate.modes}
     peaks = {body: of_body(body, modes) for body, modes in bodies.items() if modes is not None}

@@ -1,27 +1,33 @@
-"""The protocol of the live page: what a window asks, and what it is told. It knows nothing of how messages travel.
+"""The protocol of the live page: what a window asks, and what it is told. It knows nothing of how
+messages travel.
 
 A window sends texts of JSON with a `type`:
 
 `{"type": "open", "number": 1, "source": "paper:type3"}`
-    for the table of a shipped case, or `"text"` in place of `"source"` for that of the text of a TOML file;
+    for the table of a shipped case, or `"text"` in place of `"source"` for that of the text of a
+    TOML file;
 `{"type": "case", "number": 2, "case": {...}, "detail": "draft", "charts": ["position"]}`
-    to compute a case, a table as TOML has it; `"draft"` while it is being changed, `"full"` when it stays; with the names of the charts
-    that are looked at, or without them for all;
+    to compute a case, a table as TOML has it; `"draft"` while it is being changed, `"full"` when it
+    stays; with the names of the charts that are looked at, or without them for all;
 `{"type": "cancel", "number": 2}`
-    to give up the case that is being computed, and the one that waits; reports and signals come nevertheless;
+    to give up the case that is being computed, and the one that waits; reports and signals come
+    nevertheless;
 `{"type": "report", "number": 2}`, `{"type": "signals", "number": 2}`
     for the report, or the signals as CSV, of the case computed last in full.
 
-It is told documents with arrays, as `vibroimpact.charts.pack` writes them, each with its `type` and the `number` asked:
+It is told documents with arrays, as `vibroimpact.charts.pack` writes them, each with its `type` and
+the `number` asked:
 
 `welcome`
-    first of all: shipped cases, laws with their parameters, materials, colours, and the `longest` message that is taken [bytes];
+    first of all: shipped cases, laws with their parameters, materials, colours, and the `longest`
+    message that is taken [bytes];
 `opened`
     the table of a case, and what of it this page leaves out;
 `progress`
     what is being computed, and the part that is done;
 `state`
-    charts, the plate in motion, tables, the resolved case, the case as TOML; in full detail also doubts and signals;
+    charts, the plate in motion, tables, the resolved case, the case as TOML; in full detail also
+    doubts and signals;
 `files`
     each a name, a kind and a text;
 `fault`
@@ -82,10 +88,15 @@ def read_message(text: str | bytes) -> Message:
     >>> read_message("[]")
     Traceback (most recent call last):
         ...
-    vibroimpact.errors.InputError: a message is a table with a type: open, case, cancel, report, signals
+    vibroimpact.errors.InputError: a message is a table with a type: open, case, cancel, report,
+    signals
     """
     found = _parsed(text.encode("utf-8", "surrogatepass") if isinstance(text, str) else text)
-    if not isinstance(found, dict) or not isinstance(found.get("type"), str) or found["type"] not in _KEYS:
+    if (
+        not isinstance(found, dict)
+        or not isinstance(found.get("type"), str)
+        or found["type"] not in _KEYS
+    ):
         raise InputError(f"a message is a table with a type: {', '.join(_KEYS)}")
     kind, number = found.pop("type"), found.pop("number", 0)
     if type(number) is not int or not 0 <= number < 2**53:
@@ -97,7 +108,9 @@ def read_message(text: str | bytes) -> Message:
             raise InputError(f"{key} of a message must be {_KINDS[key][1]}")
     if kind == "open" and len(found) != 1:
         raise InputError("a message of type open has either a source or a text")
-    if kind == "case" and ("case" not in found or found.setdefault("detail", "full") not in ("draft", "full")):
+    if kind == "case" and (
+        "case" not in found or found.setdefault("detail", "full") not in ("draft", "full")
+    ):
         raise InputError('a message of type case has a case, and "draft" or "full" as detail')
     return Message(kind, number, found)
 

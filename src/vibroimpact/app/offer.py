@@ -1,4 +1,6 @@
-"""What the live page offers: shipped cases, contact and friction laws, materials, colours, and the length of messages."""
+"""What the live page offers: shipped cases, contact and friction laws, materials,
+colours, and the length of messages.
+"""
 
 from __future__ import annotations
 
@@ -28,7 +30,9 @@ def offer() -> dict[str, Any]:
     ['stiffness', 'N/m¹·⁵']
     """
     return {
-        "cases": {name: title for name, title in shipped_cases().items() if name not in _OF_OTHER_COMMANDS},
+        "cases": {
+            name: title for name, title in shipped_cases().items() if name not in _OF_OTHER_COMMANDS
+        },
         "laws": {name: _law(law) for name, law in contact_laws().items()},
         "friction": list(friction_laws()),
         "materials": list(material_library()),

@@ -31,7 +31,9 @@ MOST_WINDOWS = 12
 """Largest number of windows at a time."""
 
 _LONGEST_END = 1.0
-"""Time from a signal that ends the server until the process ends, if connections are open or a case is being computed [s]."""
+"""Time from a signal that ends the server until the process ends, if connections are open
+or a case is being computed [s].
+"""
 
 _NAMES = ("127.0.0.1", "localhost", "[::1]")
 _FILES = {
@@ -45,7 +47,8 @@ _FILES = {
     "live.js": "vibroimpact.app",
 }
 _POLICY = (
-    "default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; img-src data: blob:; connect-src 'self' {socket}; "
+    "default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; img-src data: "
+    "blob:; connect-src 'self' {socket}; "
     "base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
 )
 
@@ -53,7 +56,8 @@ _POLICY = (
 def application(port: int) -> ASGIApp:
     """Return the live page as an application for an ASGI server that listens to a port.
 
-    Requests that name another host than this machine, and web sockets from pages of another origin, are refused.
+    Requests that name another host than this machine, and web sockets from pages of another origin,
+    are refused.
     """
     windows: set[WebSocket] = set()
 
@@ -66,7 +70,10 @@ def application(port: int) -> ASGIApp:
             return Response(plotly_script(), media_type="text/javascript")
         if name not in _FILES:
             return PlainTextResponse("there is no such script", 404)
-        return Response(_text(_FILES[name], f"scripts/{name}"), media_type="text/css" if name.endswith(".css") else "text/javascript")
+        return Response(
+            _text(_FILES[name], f"scripts/{name}"),
+            media_type="text/css" if name.endswith(".css") else "text/javascript",
+        )
 
     async def live(socket: WebSocket) -> None:
         if not _is_own(socket.headers.get("origin", ""), port):
@@ -93,7 +100,8 @@ async def _serve_window(socket: WebSocket) -> None:
 
     async def send(message: bytes) -> None:
         async with sending:
-            with contextlib.suppress(WebSocketDisconnect, RuntimeError):  # the window was closed meanwhile
+            # the window was closed meanwhile
+            with contextlib.suppress(WebSocketDisconnect, RuntimeError):
                 await socket.send_bytes(message)
 
     session = Session(send)
@@ -118,7 +126,9 @@ def _guarded(app: ASGIApp, port: int) -> ASGIApp:
         if scope["type"] not in ("http", "websocket"):
             await app(scope, receive, send)
             return
-        host = next((value.decode("latin-1") for name, value in scope["headers"] if name == b"host"), "")
+        host = next(
+            (value.decode("latin-1") for name, value in scope["headers"] if name == b"host"), ""
+        )
         if host not in _hosts(port):
             await _refuse(scope, receive, send, port)
             return
@@ -147,7 +157,9 @@ async def _refuse(scope: Scope, receive: Receive, send: Answer, port: int) -> No
         await receive()
         await send({"type": "websocket.close", "code": 1008, "reason": "another host"})
         return
-    words = f"this page is only for the machine on which it runs; open http://{_NAMES[0]}:{port} there"
+    words = (
+        f"this page is only for the machine on which it runs; open http://{_NAMES[0]}:{port} there"
+    )
     await PlainTextResponse(words, 403)(scope, receive, send)
 
 
@@ -156,7 +168,12 @@ def _is_own(origin: str, port: int) -> bool:
 
     Examples
     --------
-    >>> _is_own("http://127.0.0.1:8421", 8421), _is_own("http://example.org", 8421), _is_own("", 8421), _is_own("http://[", 8421)
+    >>> (
+    ...     _is_own("http://127.0.0.1:8421", 8421),
+    ...     _is_own("http://example.org", 8421),
+    ...     _is_own("", 8421),
+    ...     _is_own("http://[", 8421),
+    ... )
     (True, False, False, False)
     """
     return origin in {f"http://{host}" for host in _hosts(port)}
@@ -178,12 +195,15 @@ def _text(package: str, file: str) -> str:
 
 
 class _Server(uvicorn.Server):
-    """A server that ends soon after a signal, whatever is computed in its threads and whoever does not read what it sends."""
+    """A server that ends soon after a signal, whatever is computed in its threads and
+    whoever does not read what it sends.
+    """
 
     def handle_exit(self, sig: int, frame: FrameType | None) -> None:
         """Close the connections; end the process if that takes longer than `_LONGEST_END`."""
         super().handle_exit(sig, frame)
-        end = threading.Timer(_LONGEST_END, os._exit, (128 + sig,))  # no thread that computes can be ended otherwise
+        # no thread that computes can be ended otherwise
+        end = threading.Timer(_LONGEST_END, os._exit, (128 + sig,))
         end.daemon = True
         end.start()
 
@@ -201,7 +221,12 @@ def serve(sockets: list[Any], port: int, started: Callable[[], None]) -> None:
         Called once it is served.
     """
     config = uvicorn.Config(
-        application(port), log_level="warning", ws_max_size=LONGEST, ws_per_message_deflate=False, lifespan="off", access_log=False
+        application(port),
+        log_level="warning",
+        ws_max_size=LONGEST,
+        ws_per_message_deflate=False,
+        lifespan="off",
+        access_log=False,
     )
     server = _Server(config)
 

@@ -30,11 +30,15 @@ _SECONDS_BETWEEN = 0.1
 """Time between two messages on progress [s]."""
 
 _SHORT = 2.0
-"""Time after which a draft is given up for what is asked for next [s]; until then it is finished, so that charts follow a slider."""
+"""Time after which a draft is given up for what is asked for next [s]; until then it is
+finished, so that charts follow a slider.
+"""
 
 
 _MOST_FILES = 2
-"""Number of reports and signals that wait for the one being made; for a further one the session takes no message until there is room."""
+"""Number of reports and signals that wait for the one being made; for a further one the
+session takes no message until there is room.
+"""
 
 
 class GivenUp(Exception):
@@ -59,7 +63,8 @@ class Session:
         self._stop = Event()
         self._changed = asyncio.Event()
         self._last: State | None = None  # computed in full
-        self._files: asyncio.Queue[tuple[Message, State | None]] = asyncio.Queue(_MOST_FILES)  # those to make, each of a state
+        # those to make, each of a state
+        self._files: asyncio.Queue[tuple[Message, State | None]] = asyncio.Queue(_MOST_FILES)
 
     async def welcome(self) -> None:
         """Tell the window what there is."""
@@ -77,7 +82,9 @@ class Session:
     async def _take(self, message: Message) -> None:
         match message.type:
             case "open":
-                await self._send(await asyncio.to_thread(_packed, "opened", message, lambda: _opened(message)))
+                await self._send(
+                    await asyncio.to_thread(_packed, "opened", message, lambda: _opened(message))
+                )
             case "case":
                 self._want(message)
             case "cancel":
@@ -89,7 +96,9 @@ class Session:
                 await self._files.put((message, self._last))
 
     def _want(self, message: Message) -> None:
-        """Compute a case next. What is computed now is given up unless it is short, or the modes that the new case needs as well."""
+        """Compute a case next. What is computed now is given up unless it is short, or
+        the modes that the new case needs as well.
+        """
         self._wanted = message
         if self._running is not None:
             modes = self._stage == MODES
@@ -111,7 +120,9 @@ class Session:
             await self._answer(message.number, self._send_files(message, state))
 
     async def _send_files(self, message: Message, state: State | None) -> None:
-        await self._send(await asyncio.to_thread(_packed, "files", message, lambda: _files(message.type, state)))
+        await self._send(
+            await asyncio.to_thread(_packed, "files", message, lambda: _files(message.type, state))
+        )
 
     async def _compute_cases(self) -> None:
         try:
@@ -131,8 +142,11 @@ class Session:
         loop, told = asyncio.get_running_loop(), [0.0]
 
         def show(what: str, part: float = 0.0) -> None:
-            asked = self._wanted or message  # modes and compiled code are also for the case that was asked for last
-            asyncio.run_coroutine_threadsafe(self._tell("progress", asked.number, {"what": what, "part": part}), loop)
+            # modes and compiled code are also for the case that was asked for last
+            asked = self._wanted or message
+            asyncio.run_coroutine_threadsafe(
+                self._tell("progress", asked.number, {"what": what, "part": part}), loop
+            )
 
         def tell(what: str, part: float) -> None:
             if self._stop.is_set():
@@ -150,7 +164,9 @@ class Session:
         await self._send(answer)
 
     async def _answer(self, number: int, work: Awaitable[None]) -> None:
-        """Do what a message asks for; the window hears of whatever goes wrong, and the next message is taken."""
+        """Do what a message asks for; the window hears of whatever goes wrong, and the
+        next message is taken.
+        """
         try:
             await work
         except GivenUp:
@@ -161,7 +177,9 @@ class Session:
             await self._fault(number, ComputationError("there is not enough memory for this case"))
         except Exception as error:
             logging.getLogger(__name__).exception("a message of the live page")
-            await self._fault(number, ComputationError(f"the case can't be computed: {short_reason(error)}"))
+            await self._fault(
+                number, ComputationError(f"the case can't be computed: {short_reason(error)}")
+            )
 
     async def _tell(self, kind: str, number: int, content: dict[str, Any]) -> None:
         await self._send(pack({"type": kind, "number": number, **content}))
@@ -172,7 +190,9 @@ class Session:
 
 def _answered(message: Message, tell: Tell) -> tuple[State, bytes]:
     """Return the state of the case of a message, and the answer that brings it."""
-    state = state_of(message.content["case"], message.content["detail"], tell, message.content.get("charts"))
+    state = state_of(
+        message.content["case"], message.content["detail"], tell, message.content.get("charts")
+    )
     return state, _packed("state", message, lambda: state.document)
 
 
@@ -184,7 +204,8 @@ def _packed(kind: str, message: Message, content: Callable[[], Mapping[str, Any]
 def _same_bodies(first: Message, second: Message) -> bool:
     """Return whether two cases have the same bodies, and so the same modes."""
     return all(
-        json.dumps(first.content["case"].get(name), sort_keys=True) == json.dumps(second.content["case"].get(name), sort_keys=True)
+        json.dumps(first.content["case"].get(name), sort_keys=True)
+        == json.dumps(second.content["case"].get(name), sort_keys=True)
         for name in ("sphere", "plate")
     )
 
@@ -192,8 +213,11 @@ def _same_bodies(first: Message, second: Message) -> bool:
 def _opened(message: Message) -> dict[str, Any]:
     """Return the table of a shipped case, or of a text."""
     source = message.content.get("source")
-    if source is not None and source not in (known := shipped_cases()):  # a source is never the path of a file
-        raise InputError(f"there is no shipped case {shown(source)}; there are {choices(known, source, 'cases')}")
+    # a source is never the path of a file
+    if source is not None and source not in (known := shipped_cases()):
+        raise InputError(
+            f"there is no shipped case {shown(source)}; there are {choices(known, source, 'cases')}"
+        )
     table = parse_case(message.content["text"]) if source is None else load_table(source)
     table, left_out = without_other_work(table)
     return {"case": json.loads(json.dumps(table, default=str)), "left_out": left_out}
@@ -206,11 +230,20 @@ def _files(kind: str, state: State | None) -> dict[str, Any]:
     result = state.result
     if kind == "report":
         return {
-            "files": [{"name": f"{identifier(result.name, 'A-Za-z0-9', 'drop', '-')}.html", "kind": "text/html", "text": run_page(result)}]
+            "files": [
+                {
+                    "name": f"{identifier(result.name, 'A-Za-z0-9', 'drop', '-')}.html",
+                    "kind": "text/html",
+                    "text": run_page(result),
+                }
+            ]
         }
     if not result.signals:
         raise InputError("there are no signals: the case has no sensors", "sensors")
     names = plain_names(list(result.signals))
     return {
-        "files": [{"name": f"{names[name]}.csv", "kind": "text/csv", "text": signal_csv(signal)} for name, signal in result.signals.items()]
+        "files": [
+            {"name": f"{names[name]}.csv", "kind": "text/csv", "text": signal_csv(signal)}
+            for name, signal in result.signals.items()
+        ]
     }

@@ -21,7 +21,9 @@ from vibroimpact.runs.scene import rigid_scene, scene_of
 from vibroimpact.runs.tables import impact_table, ledger_table
 
 Tell = Callable[[str, float], None]
-"""Function that is told what is being computed, and the part that is done; it may raise to give it up."""
+"""Function that is told what is being computed, and the part that is done; it may raise
+to give it up.
+"""
 
 MODES = "computing modes"
 """What is told while modes are computed, which may take long."""
@@ -34,7 +36,9 @@ class State(NamedTuple):
     document: dict[str, Any]
 
 
-def state_of(table: dict[str, Any], detail: Detail, tell: Tell, looked_at: Collection[str] | None = None) -> State:
+def state_of(
+    table: dict[str, Any], detail: Detail, tell: Tell, looked_at: Collection[str] | None = None
+) -> State:
     """Return a case, computed.
 
     Parameters
@@ -51,7 +55,8 @@ def state_of(table: dict[str, Any], detail: Detail, tell: Tell, looked_at: Colle
     Raises
     ------
     InputError
-        If it is not a valid case, with the words of the command line, or too large for the live page.
+        If it is not a valid case, with the words of the command line, or too large for the live
+        page.
 
     Examples
     --------
@@ -64,23 +69,32 @@ def state_of(table: dict[str, Any], detail: Detail, tell: Tell, looked_at: Colle
     case = read_case(table)
     check_bounds(case)
     problem = case.to_problem(lambda part: tell(MODES, part), lambda note: None)
-    response = simulate(drafted(problem) if detail == "draft" else problem, lambda part: tell("simulating", part))
+    response = simulate(
+        drafted(problem) if detail == "draft" else problem, lambda part: tell("simulating", part)
+    )
     tell("reading histories", 1.0)
     result = draft_of(response) if detail == "draft" else result_of(response)
     tell("drawing", 1.0)
     return State(result, _document(result, table, detail, looked_at))
 
 
-def _document(result: Result, table: dict[str, Any], detail: Detail, looked_at: Collection[str] | None) -> dict[str, Any]:
+def _document(
+    result: Result, table: dict[str, Any], detail: Detail, looked_at: Collection[str] | None
+) -> dict[str, Any]:
     impacts, (unit, ledger) = impact_table(result), ledger_table(result)
     makers = chart_makers(result)
-    names = [name for name in makers if name != "deflection"]  # the plate in motion takes the place of its maps
+    # the plate in motion takes the place of its maps
+    names = [name for name in makers if name != "deflection"]
     seen = {name: makers[name] for name in names if looked_at is None or name in looked_at}
     return {
         "name": result.name,
         "status": result.status,
         "doubts": result.doubts if detail == "full" else [],
-        "impacts": {"headers": impacts.headers, "rows": [*impacts.head, *impacts.tail], "left_out": impacts.left_out},
+        "impacts": {
+            "headers": impacts.headers,
+            "rows": [*impacts.head, *impacts.tail],
+            "left_out": impacts.left_out,
+        },
         "ledger": {"unit": unit, "rows": [[row.title, row.energy, row.part] for row in ledger]},
         "charts": [drawn(chart, plotly_chart) for chart in made_charts(seen)],
         "names": names,
@@ -89,7 +103,12 @@ def _document(result: Result, table: dict[str, Any], detail: Detail, looked_at: 
         "toml": tomli_w.dumps(table),
         "detail": detail,
         "signals": [
-            {"name": name, "rate": signal.sensor.rate, "unit": signal.sensor.unit, "value": signal.value}
+            {
+                "name": name,
+                "rate": signal.sensor.rate,
+                "unit": signal.sensor.unit,
+                "value": signal.value,
+            }
             for name, signal in result.signals.items()
         ]
         if detail == "full"

@@ -27,10 +27,11 @@ class Body:
     modes : ModalBasis, optional
         Elastic modes; without them the body is rigid.
     rigid : ModalBasis, optional
-        Rigid motions, as modes of frequency zero, of a plate that supports leave free, or of a sphere in its place.
+        Rigid motions, as modes of frequency zero, of a plate that supports leave free, or of a
+        sphere in its place.
     inertia : float or array, optional
-        Moment of inertia of a sphere about any axis through its centre [kg m^2], > 0; by default that of the `inertia_ratio` of an
-        `Oblique`, which is that of a solid ball.
+        Moment of inertia of a sphere about any axis through its centre [kg m^2], > 0; by default
+        that of the `inertia_ratio` of an `Oblique`, which is that of a solid ball.
 
     Examples
     --------
@@ -38,7 +39,9 @@ class Body:
     >>> ball = vi.Body(mass=0.09, contact_offset=0.025)
     >>> table = vi.Body(mass=float("inf"), contact_offset=0.0)
     >>> law = vi.find_contact_law("newton")(restitution=0.5)
-    >>> vi.tabulate(vi.Problem(sphere=ball, plate=table, laws=(law,), height=1.0)).impacts["rebound_height_m"].shape
+    >>> vi.tabulate(vi.Problem(sphere=ball, plate=table, laws=(law,), height=1.0)).impacts[
+    ...     "rebound_height_m"
+    ... ].shape
     (5,)
     """
 
@@ -56,5 +59,9 @@ class Body:
             raise InputError("the mass of a body must be positive [kg]")
         if not np.all(np.asarray(self.contact_offset) >= 0):
             raise InputError("the contact offset of a body must not be negative [m]")
-        if self.inertia is not None and not np.all(np.isfinite(self.inertia) & (np.asarray(self.inertia) > 0)):
-            raise InputError("the moment of inertia of a body must be positive and finite [kg m^2]", "inertia")
+        if self.inertia is not None and not np.all(
+            np.isfinite(self.inertia) & (np.asarray(self.inertia) > 0)
+        ):
+            raise InputError(
+                "the moment of inertia of a body must be positive and finite [kg m^2]", "inertia"
+            )

@@ -1,4 +1,6 @@
-"""Bayes error of a population: the share of wrong answers of the best classifier that sees only what is measured of each fall."""
+"""Bayes error of a population: the share of wrong answers of the best classifier that
+sees only what is measured of each fall.
+"""
 
 from __future__ import annotations
 
@@ -21,7 +23,8 @@ class BayesError(NamedTuple):
     standard_error : float
         Of the upper bound, from the number of falls tested.
     neighbours : float
-        Median number of falls that are as likely as the one tested; a bracket is wide where there are few.
+        Median number of falls that are as likely as the one tested; a bracket is wide where there
+        are few.
     """
 
     lower: float
@@ -30,17 +33,24 @@ class BayesError(NamedTuple):
     neighbours: float
 
 
-def bayes_error(measured: Floats, noise: Floats, classes: Integers, tested: int = 2000, seed: int = 0) -> BayesError:
+def bayes_error(
+    measured: Floats, noise: Floats, classes: Integers, tested: int = 2000, seed: int = 0
+) -> BayesError:
     r"""Return bounds of the Bayes error of telling the class of a fall from what is measured of it.
 
-    The posterior of the classes, given a noisy measurement y of fall i, follows from all other falls j of the population, which are draws
-    of the prior:
+    The posterior of the classes, given a noisy measurement y of fall i, follows from all other
+    falls j of the population, which are draws of the prior:
 
-    .. math:: P(c \mid y) \propto \sum_{j \ne i,\; c_j = c} \prod_k \mathcal{N}(y_k;\, s_{jk}, \sigma_{jk})
+    .. math::
 
-    The mean of :math:`1 - \max_c P(c \mid y)` is below the Bayes error, as each posterior is fitted to its own neighbours; the share of
-    falls whose most likely class is wrong is not below it, as no decision is better than that of Bayes (Devroye, Györfi and Lugosi, A
-    Probabilistic Theory of Pattern Recognition, 1996, chapter 2). Both tend to it as falls are added.
+        P(c \mid y) \propto \sum_{j \ne i,\; c_j = c} \prod_k \mathcal{N}(y_k;\, s_{jk},
+        \sigma_{jk})
+
+    The mean of :math:`1 - \max_c P(c \mid y)` is below the Bayes error, as each posterior is fitted
+    to its own neighbours; the share of
+    falls whose most likely class is wrong is not below it, as no decision is better than that of
+    Bayes (Devroye, Györfi and Lugosi, A Probabilistic Theory of Pattern Recognition, 1996, chapter
+    2). Both tend to it as falls are added.
 
     Parameters
     ----------
@@ -57,7 +67,8 @@ def bayes_error(measured: Floats, noise: Floats, classes: Integers, tested: int 
 
     Examples
     --------
-    Two normal distributions of unit variance, 2 apart, half of which is noise: the error is that beyond 1 standard deviation, 0.159.
+    Two normal distributions of unit variance, 2 apart, half of which is noise: the error is that
+    beyond 1 standard deviation, 0.159.
 
     >>> rng = np.random.default_rng(1)
     >>> classes = np.repeat([0, 1], 20_000)
@@ -87,4 +98,9 @@ def bayes_error(measured: Floats, noise: Floats, classes: Integers, tested: int 
         neighbours.append(weight.sum(axis=1) ** 2 / (weight**2).sum(axis=1))
     upper = float(np.concatenate(wrong).mean())
     deviation = float(np.sqrt(max(upper * (1.0 - upper), 0.25 / len(chosen)) / len(chosen)))
-    return BayesError(min(float(np.concatenate(lower).mean()), upper), upper, deviation, float(np.median(np.concatenate(neighbours))))
+    return BayesError(
+        min(float(np.concatenate(lower).mean()), upper),
+        upper,
+        deviation,
+        float(np.median(np.concatenate(neighbours))),
+    )

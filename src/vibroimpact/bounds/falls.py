@@ -1,4 +1,6 @@
-"""The falls of a population as a bound needs them: impulse, duration, speed and restitution of their first impacts."""
+"""The falls of a population as a bound needs them: impulse, duration, speed and
+restitution of their first impacts.
+"""
 
 from __future__ import annotations
 
@@ -74,14 +76,18 @@ def falls_of_study(study: Study) -> Falls:
         If the study has no classes.
     """
     if CLASS not in study.labels:
-        raise InputError(f"{study.path.parent}: this study has no classes; a bound needs a population, as vibroimpact dataset computes it")
+        raise InputError(
+            f"{study.path.parent}: this study has no classes; a bound needs a population, "
+            "as vibroimpact dataset computes it"
+        )
     found = [np.asarray(study.values(name), dtype=float) for name in _COLUMNS]
     table = {key: value for key, value in study.table.items() if key != "sweep"}
     return _falls(study.labels[CLASS], table, study.coordinates, *found)
 
 
 def falls_of_sweep(sweep: Sweep) -> Falls:
-    """Return the falls of a stated population on its plate as a rigid body, of which a hundred thousand take seconds.
+    """Return the falls of a stated population on its plate as a rigid body, of which a hundred
+    thousand take seconds.
 
     Raises
     ------
@@ -89,12 +95,22 @@ def falls_of_sweep(sweep: Sweep) -> Falls:
         If the study has no classes.
     """
     if sweep.population is None:
-        raise InputError('the study has no classes; a bound needs design = "population"', "sweep.design")
+        raise InputError(
+            'the study has no classes; a bound needs design = "population"', "sweep.design"
+        )
     plate = {key: value for key, value in sweep.table["plate"].items() if key in _OF_RIGID_PLATES}
-    sphere = {key: value for key, value in sweep.table["sphere"].items() if key in ("radius", "material", "mass", "inertia")}
+    sphere = {
+        key: value
+        for key, value in sweep.table["sphere"].items()
+        if key in ("radius", "material", "mass", "inertia")
+    }
     table = {**sweep.table, "plate": plate, "sphere": sphere, "run": {"impacts": 1}}
     table.pop("sensors", None)
-    columns = {key: values for key, values in sweep.plan.columns.items() if not key.startswith(("plate.", "sensors."))}
+    columns = {
+        key: values
+        for key, values in sweep.plan.columns.items()
+        if not key.startswith(("plate.", "sensors."))
+    }
     result = compute_points(table, (), 0, columns)
     failed = np.array(sorted(result.failures), dtype=int)
     found = [np.asarray(result.arrays[name], dtype=float).copy() for name in _COLUMNS]
@@ -107,26 +123,47 @@ _OF_RIGID_PLATES = ("size", "material", "inclination")
 
 
 def _falls(
-    classes: NDArray[Any], table: Mapping[str, Any], columns: Mapping[str, Values], speed: Floats, restitution: Floats, duration: Floats
+    classes: NDArray[Any],
+    table: Mapping[str, Any],
+    columns: Mapping[str, Values],
+    speed: Floats,
+    restitution: Floats,
+    duration: Floats,
 ) -> Falls:
     """Return the falls that touched, with radius and mass from the values of the keys."""
     first = case_at(table, {key: values[0] for key, values in columns.items()})
     number = len(classes)
-    radius = np.broadcast_to(columns.get("sphere.radius", first.sphere.radius), number).astype(float)
-    density, modulus = (_of_material(name, first, table, columns, number) for name in ("density", "youngs_modulus"))
+    radius = np.broadcast_to(columns.get("sphere.radius", first.sphere.radius), number).astype(
+        float
+    )
+    density, modulus = (
+        _of_material(name, first, table, columns, number) for name in ("density", "youngs_modulus")
+    )
     mass = columns.get("sphere.mass", first.sphere.mass)
     if mass is not None:
         density = np.broadcast_to(mean_density(mass, radius), number).astype(float)
     there = np.isfinite(speed) & np.isfinite(duration)
-    return Falls(*(values[there] for values in (classes, radius, density, modulus, speed, restitution, duration)))
+    return Falls(
+        *(
+            values[there]
+            for values in (classes, radius, density, modulus, speed, restitution, duration)
+        )
+    )
 
 
-def _of_material(name: str, first: Case, table: Mapping[str, Any], columns: Mapping[str, Values], number: int) -> Floats:
+def _of_material(
+    name: str, first: Case, table: Mapping[str, Any], columns: Mapping[str, Values], number: int
+) -> Floats:
     """Return a property of the material of the sphere of each fall."""
     if f"sphere.material.{name}" in columns:
         return np.asarray(columns[f"sphere.material.{name}"], dtype=float)
     if "sphere.material" in columns:
         names = columns["sphere.material"].tolist()
-        known = {repr(one): float(getattr(case_at(table, {"sphere.material": one}).sphere.material, name)) for one in names}
+        known = {
+            repr(one): float(
+                getattr(case_at(table, {"sphere.material": one}).sphere.material, name)
+            )
+            for one in names
+        }
         return np.array([known[repr(one)] for one in names])
     return np.full(number, float(getattr(first.sphere.material, name)))

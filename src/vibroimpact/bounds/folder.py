@@ -11,7 +11,15 @@ from vibroimpact._version import __version__
 from vibroimpact.bounds.bound import BANDWIDTHS, SIGNAL_TO_NOISE, Bound
 from vibroimpact.bounds.charts import bound_charts
 from vibroimpact.bounds.observations import OBSERVATIONS
-from vibroimpact.bounds.tables import HEADERS, bound_rows, error_rows, headline, heard_words, sampling_words, scatter_words
+from vibroimpact.bounds.tables import (
+    HEADERS,
+    bound_rows,
+    error_rows,
+    headline,
+    heard_words,
+    sampling_words,
+    scatter_words,
+)
 from vibroimpact.report.page import render_page
 from vibroimpact.results.csv_files import write_csv
 from vibroimpact.results.folder import new_folder, write_summary
@@ -47,7 +55,11 @@ def save_bound(bound: Bound, directory: str | PathLike[str], *, force: bool = Fa
         rows = bound_rows(bound)
         write_csv(rows, list(rows[0]), folder / "bound.csv")
         over = [
-            {"bandwidth_Hz": float(bandwidth), "signal_to_noise_dB": float(ratio), "error_upper": float(bound.map[place, other])}
+            {
+                "bandwidth_Hz": float(bandwidth),
+                "signal_to_noise_dB": float(ratio),
+                "error_upper": float(bound.map[place, other]),
+            }
             for place, bandwidth in enumerate(BANDWIDTHS)
             for other, ratio in enumerate(SIGNAL_TO_NOISE)
         ]
@@ -72,7 +84,10 @@ def save_bound(bound: Bound, directory: str | PathLike[str], *, force: bool = Fa
 
 def bound_document(bound: Bound) -> dict[str, Any]:
     """Return a bound as data: the content of `summary.json`, and what `bound --json` prints."""
-    rows = [{name: value if value == value else None for name, value in row.items()} for row in bound_rows(bound)]
+    rows = [
+        {name: value if value == value else None for name, value in row.items()}
+        for row in bound_rows(bound)
+    ]
     return {
         "name": bound.name,
         "version": __version__,

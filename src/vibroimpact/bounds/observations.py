@@ -33,17 +33,19 @@ class Channel:
     gain : float, default 0.02
         Relative standard deviation of its sensitivity.
     place : float, default 0.3
-        Relative standard deviation of the amplitude if the position of the impact is not known. It is a choice: the amplitude of the
-        shipped river plate varies by factors of 1.9 to 2.4 between six positions.
+        Relative standard deviation of the amplitude if the position of the impact is not known. It
+        is a choice: the amplitude of the shipped river plate varies by factors of 1.9 to 2.4
+        between six positions.
     height, size, interval : float
-        Relative standard deviations of the approach speed where the height is known (0.02), of the radius where the rock is seen (0.05),
-        and of the time between bounces (0.002).
+        Relative standard deviations of the approach speed where the height is known (0.02), of the
+        radius where the rock is seen (0.05), and of the time between bounces (0.002).
 
     Examples
     --------
     >>> import vibroimpact as vi
     >>> vi.Channel(bandwidth=25e3, signal_to_noise=60.0)
-    Channel(bandwidth=25000.0, signal_to_noise=60.0, gain=0.02, place=0.3, height=0.02, size=0.05, interval=0.002)
+    Channel(bandwidth=25000.0, signal_to_noise=60.0, gain=0.02, place=0.3, height=0.02, size=0.05,
+    interval=0.002)
     """
 
     bandwidth: float = 10e3
@@ -64,29 +66,56 @@ class Observation(NamedTuple):
 
 
 OBSERVATIONS = (
-    Observation("impulse", "the impulse of one impact alone, as from the amplitude of a slow sensor", ("impulse",)),
-    Observation("contact time", "the duration of one contact alone, as from a normalised signal", ("duration",)),
-    Observation("one impact", "impulse and contact time of one impact at a known position, as from two sensors", ("impulse", "duration")),
+    Observation(
+        "impulse",
+        "the impulse of one impact alone, as from the amplitude of a slow sensor",
+        ("impulse",),
+    ),
+    Observation(
+        "contact time",
+        "the duration of one contact alone, as from a normalised signal",
+        ("duration",),
+    ),
+    Observation(
+        "one impact",
+        "impulse and contact time of one impact at a known position, as from two sensors",
+        ("impulse", "duration"),
+    ),
     Observation(
         "one impact, place unknown",
         "impulse and contact time of one impact, from one sensor at an unknown distance",
         ("far impulse", "duration"),
     ),
-    Observation("with the bounce", "impulse and contact time, and the time to the next impact", ("impulse", "duration", "interval")),
-    Observation("height known", "impulse and contact time, and the speed", ("impulse", "duration", "speed")),
+    Observation(
+        "with the bounce",
+        "impulse and contact time, and the time to the next impact",
+        ("impulse", "duration", "interval"),
+    ),
+    Observation(
+        "height known", "impulse and contact time, and the speed", ("impulse", "duration", "speed")
+    ),
     Observation(
         "height known, with the bounce",
         "impulse and contact time, the speed and the time to the next impact",
         ("impulse", "duration", "speed", "interval"),
     ),
-    Observation("size seen", "impulse and contact time, and the radius, as from a camera", ("impulse", "duration", "radius")),
-    Observation("height, bounce and size", "all of these", ("impulse", "duration", "speed", "interval", "radius")),
+    Observation(
+        "size seen",
+        "impulse and contact time, and the radius, as from a camera",
+        ("impulse", "duration", "radius"),
+    ),
+    Observation(
+        "height, bounce and size",
+        "all of these",
+        ("impulse", "duration", "speed", "interval", "radius"),
+    ),
 )
 """What may be measured, from little to much."""
 
 
 def measurable(falls: Falls, channel: Channel) -> tuple[dict[str, Floats], dict[str, Floats]]:
-    """Return the logarithms of the quantities of each fall, and the standard deviations with which they are measured.
+    """Return the logarithms of the quantities of each fall, and the standard deviations with which
+    they are measured.
 
     Parameters
     ----------
@@ -97,7 +126,9 @@ def measurable(falls: Falls, channel: Channel) -> tuple[dict[str, Floats], dict[
     """
     peak = float(np.median(falls.impulse / falls.duration)) * float(hertz_pulse(np.array([0.5]))[0])
     density = (peak / 10.0 ** (channel.signal_to_noise / 20.0)) ** 2 / _REFERENCE_BAND
-    of_pulse = np.minimum(pulse_uncertainty(falls.impulse, falls.duration, channel.bandwidth, density), _LARGEST)
+    of_pulse = np.minimum(
+        pulse_uncertainty(falls.impulse, falls.duration, channel.bandwidth, density), _LARGEST
+    )
     ones = np.ones(len(falls))
     values = {
         "impulse": falls.impulse,

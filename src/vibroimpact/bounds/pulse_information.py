@@ -1,10 +1,17 @@
-r"""Fisher information of a Hertzian force pulse in white noise: how well its impulse and duration can be measured.
+r"""Fisher information of a Hertzian force pulse in white noise: how well its impulse and duration
+can be measured.
 
-A pulse of impulse J and duration T about an unknown instant has the spectrum :math:`J\,\Phi(fT)\,e^{-2\pi i f t_0}` with the spectrum
-:math:`\Phi` of the pulse of unit impulse and duration. In noise of the one-sided power spectral density :math:`N_0` and a band from 0 to
-B the information on :math:`(\ln J, \ln T)` is (Kay, Fundamentals of Statistical Signal Processing I, 1993, eq. 3.31 and 15.52)
+A pulse of impulse J and duration T about an unknown instant has the spectrum
+:math:`J\,\Phi(fT)\,e^{-2\pi i f t_0}` with the spectrum
+:math:`\Phi` of the pulse of unit impulse and duration. In noise of the one-sided power spectral
+density :math:`N_0` and a band from 0 to
+B the information on :math:`(\ln J, \ln T)` is (Kay, Fundamentals of Statistical Signal Processing
+I, 1993, eq. 3.31 and 15.52)
 
-.. math:: I = \frac{4 J^2}{N_0 T} \int_0^{BT} \begin{pmatrix} \Phi^2 & u\Phi\Phi' \\ u\Phi\Phi' & u^2\Phi'^2 \end{pmatrix} du
+.. math::
+
+    I = \frac{4 J^2}{N_0 T} \int_0^{BT} \begin{pmatrix} \Phi^2 & u\Phi\Phi' \\ u\Phi\Phi' &
+    u^2\Phi'^2 \end{pmatrix} du
 
 The instant does not enter, since the pulse is symmetric about its middle.
 """
@@ -23,11 +30,14 @@ _TIMES, _STEP, _LAST = 2001, 0.005, 40.0  # nodes over the pulse; step and end o
 
 @cache
 def _integrals() -> tuple[Floats, Floats]:
-    """Return the limits BT, and the integrals up to them: of Phi^2, of u Phi Phi' and of (u Phi')^2, (3, limits)."""
+    """Return the limits BT, and the integrals up to them: of Phi^2, of u Phi Phi' and of
+    (u Phi')^2, (3, limits).
+    """
     from scipy.integrate import cumulative_simpson
 
     nodes, weights = np.polynomial.legendre.leggauss(400)
-    time, weights = 0.25 * (1.0 + nodes), 0.25 * weights  # half of the pulse, which is symmetric, from first touch to the middle
+    # half of the pulse, which is symmetric, from first touch to the middle
+    time, weights = 0.25 * (1.0 + nodes), 0.25 * weights
     force = hertz_pulse(time) * weights * 2.0
     u = np.arange(0.0, _LAST + _STEP, _STEP)
     away = 2.0 * np.pi * (0.5 - time)
@@ -37,8 +47,11 @@ def _integrals() -> tuple[Floats, Floats]:
     return u, np.asarray(cumulative_simpson(parts, x=u, axis=1, initial=0.0))
 
 
-def pulse_uncertainty(impulse: Floats, duration: Floats, bandwidth: float, noise_density: float) -> Floats:
-    r"""Return the least standard deviations of the logarithms of impulse and duration of a pulse, by Cramér and Rao.
+def pulse_uncertainty(
+    impulse: Floats, duration: Floats, bandwidth: float, noise_density: float
+) -> Floats:
+    r"""Return the least standard deviations of the logarithms of impulse and duration of a pulse,
+    by Cramér and Rao.
 
     Parameters
     ----------

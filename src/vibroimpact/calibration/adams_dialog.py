@@ -1,4 +1,6 @@
-"""Contacts of Adams' IMPACT as the dialog of a contact in Adams View has them: in newtons, millimetres and seconds."""
+"""Contacts of Adams' IMPACT as the dialog of a contact in Adams View has them: in
+newtons, millimetres and seconds.
+"""
 
 from __future__ import annotations
 
@@ -22,7 +24,8 @@ DIALOG_TITLE = "For the dialog of a contact in Adams View (Impact; newton, mm, s
 
 
 def dialog_note(parameter: str) -> str:
-    """Return what is to be said of a dialog whose fields differ from impact to impact in a parameter.
+    """Return what is to be said of a dialog whose fields differ from impact to impact in a
+    parameter.
 
     Examples
     --------
@@ -30,17 +33,22 @@ def dialog_note(parameter: str) -> str:
     'The dialog takes one stiffness for all impacts.'
     """
     if parameter == "damping_max":
-        return "The dialog takes one damping. For one that follows the speed, vibroimpact export --to adams writes a model."
+        return (
+            "The dialog takes one damping. For one that follows the speed, vibroimpact export "
+            "--to adams writes a model."
+        )
     return f"The dialog takes one {parameter} for all impacts."
 
 
 def dialog_rows(laws: Iterable[ContactLaw]) -> list[dict[str, Any]]:
-    """Return the fields of the dialog for the contact law of each impact; one row if all are equal, none if one is not IMPACT.
+    """Return the fields of the dialog for the contact law of each impact; one row if all are equal,
+    none if one is not IMPACT.
 
     Examples
     --------
     >>> dialog_rows([AdamsImpact(stiffness=1e9, damping_max=150.0, exponent=1.0)])
-    [{'stiffness_N_mm_n': 1000000.0, 'force_exponent': 1.0, 'damping_N_s_mm': 0.15, 'penetration_depth_mm': 0.1}]
+    [{'stiffness_N_mm_n': 1000000.0, 'force_exponent': 1.0, 'damping_N_s_mm': 0.15,
+    'penetration_depth_mm': 0.1}]
     """
     rows = []
     for law in laws:
@@ -58,14 +66,24 @@ def dialog_rows(laws: Iterable[ContactLaw]) -> list[dict[str, Any]]:
 
 
 def calibrated_dialog(found: Calibration) -> list[dict[str, Any]]:
-    """Return the fields of the dialog that match each impact; none if what was tuned is not a parameter of IMPACT."""
+    """Return the fields of the dialog that match each impact; none if what was tuned is
+    not a parameter of IMPACT.
+    """
     law, name = found.problem.laws[0], found.parameter
-    return dialog_rows(law.changed({name: value}) for value in found.values.tolist()) if "." not in name else []
+    return (
+        dialog_rows(law.changed({name: value}) for value in found.values.tolist())
+        if "." not in name
+        else []
+    )
 
 
 def dialog_cells(rows: Iterable[Mapping[str, Any]], names: Iterable[str]) -> Cells:
-    """Return the fields as a table, whose rows have the names of the impacts, or are "every impact" if there is one."""
+    """Return the fields as a table, whose rows have the names of the impacts, or are
+    "every impact" if there is one.
+    """
     rows = list(rows)
     cells = [[f"{row[field]:.6g}" for field in _FIELDS] for row in rows]
     names = list(names)[: len(rows)] if len(rows) > 1 else ["every impact"]
-    return [("", ""), *_FIELDS.values()], shortened([[name, *row] for name, row in zip(names, cells, strict=True)])
+    return [("", ""), *_FIELDS.values()], shortened(
+        [[name, *row] for name, row in zip(names, cells, strict=True)]
+    )

@@ -11,14 +11,19 @@ from vibroimpact.calibration.observations import Observations
 from vibroimpact.signals.bounces.find import Bounces
 
 _UNLIKE = 1.25
-"""Ratio of the restitution of the first impact to that of the second up to which it is that of the drop."""
+"""Ratio of the restitution of the first impact to that of the second up to which it is
+that of the drop.
+"""
 
 
-def impacts_in_bounces(bounces: Bounces, *, gravity: float, first_speed: float, flights: Flights | None = None) -> Observations:
+def impacts_in_bounces(
+    bounces: Bounces, *, gravity: float, first_speed: float, flights: Flights | None = None
+) -> Observations:
     r"""Return the impacts of a bouncing sphere from the times of its touches.
 
-    Both speeds of a flight follow from its duration, :math:`g T / 2` in a vacuum. The first impact that is heard is that of the drop if its
-    speed of approach gives it a restitution like that of the second; otherwise it only begins the first flight.
+    Both speeds of a flight follow from its duration, :math:`g T / 2` in a vacuum. The first impact
+    that is heard is that of the drop if its speed of approach gives it a restitution like that of
+    the second; otherwise it only begins the first flight.
 
     Parameters
     ----------
@@ -40,7 +45,14 @@ def impacts_in_bounces(bounces: Bounces, *, gravity: float, first_speed: float, 
     --------
     >>> from vibroimpact.signals.record import Record
     >>> touches = np.array([0.0, 0.4, 0.72, 0.976])
-    >>> heard = Bounces(Record("microphone", np.zeros(48000), 48e3, "Pa"), touches, np.full(4, 1e-5), np.ones(4), np.zeros(0), ())
+    >>> heard = Bounces(
+    ...     Record("microphone", np.zeros(48000), 48e3, "Pa"),
+    ...     touches,
+    ...     np.full(4, 1e-5),
+    ...     np.ones(4),
+    ...     np.zeros(0),
+    ...     (),
+    ... )
     >>> found = impacts_in_bounces(heard, gravity=10.0, first_speed=2.5)
     >>> found.speeds.round(3).tolist(), found.wanted["separation_speed"].round(3).tolist()
     ([2.5, 2.0, 1.6], [2.0, 1.6, 1.28])
@@ -48,7 +60,8 @@ def impacts_in_bounces(bounces: Bounces, *, gravity: float, first_speed: float, 
     flown = (flights or VacuumFlights(gravity)).end_speeds(bounces.flight)
     number = len(bounces.flight)
     readings = [-bounces.deviation[:-1], bounces.deviation[1:]]
-    durations = diags_array(readings, offsets=[0, 1], shape=(number, number + 1))  # of the flights, by each touch
+    # of the flights, by each touch
+    durations = diags_array(readings, offsets=[0, 1], shape=(number, number + 1))
     after = scaled(flown.start_slope, durations)
     before = of_the_impact_before(scaled(flown.end_slope, durations))
     speeds = np.append(first_speed, flown.end[:-1])
@@ -57,7 +70,8 @@ def impacts_in_bounces(bounces: Bounces, *, gravity: float, first_speed: float, 
     heard = abs(np.log(restitution[0] / restitution[1])) <= np.log(_UNLIKE)
     kept = slice(0 if heard else 1, None)
     first = (
-        f"; the first is not taken for that of the drop, at {first_speed:.4g} m/s, as its restitution would be {restitution[0]:.3g} and "
+        f"; the first is not taken for that of the drop, at {first_speed:.4g} m/s, as its "
+        f"restitution would be {restitution[0]:.3g} and "
         f"that of the next is {restitution[1]:.3g}: it only begins the first flight"
     )
     sounds = len(bounces.others)

@@ -45,8 +45,8 @@ _DAMPINGS = ("sphere.damping", "plate.damping")
 
 
 class ToCalibrate(NamedTuple):
-    """A case whose contact law is to be tuned, whether the case gives the value of the parameter or it is only an initial guess, and the
-    key under which the law was given.
+    """A case whose contact law is to be tuned, whether the case gives the value of the parameter or
+    it is only an initial guess, and the key under which the law was given.
     """
 
     case: Case
@@ -54,8 +54,11 @@ class ToCalibrate(NamedTuple):
     law_at: str = "contact"
 
 
-def load_calibration(source: str | PathLike[str], changes: Mapping[str, Any] | None = None) -> ToCalibrate:
-    """Read a case to calibrate from a file, as `load_case` does, except that the parameter to be found may be missing.
+def load_calibration(
+    source: str | PathLike[str], changes: Mapping[str, Any] | None = None
+) -> ToCalibrate:
+    """Read a case to calibrate from a file, as `load_case` does, except that the parameter to be
+    found may be missing.
 
     Parameters
     ----------
@@ -88,22 +91,35 @@ def read_calibration(table: Mapping[str, Any]) -> ToCalibrate:
     >>> case = vi.load_case("paper:type1-constant").to_problem().source
     >>> what = vi.read_calibration({**case, "calibrate": {"target": {"restitution": 0.7}}})
     >>> what.case.contact.law, what.case.calibrate.target
-    ('adams-impact', RestitutionTarget(restitution=0.7, approach_speed=None, standard_deviation=None))
+    ('adams-impact', RestitutionTarget(restitution=0.7, approach_speed=None,
+    standard_deviation=None))
     """
     # the contact law of the case is the target by default, and the law to be tuned takes its place
     whole = dict(table)
-    section = dict(whole.get("calibrate") or {}) if isinstance(whole.get("calibrate", {}), dict) else whole["calibrate"]
+    section = (
+        dict(whole.get("calibrate") or {})
+        if isinstance(whole.get("calibrate", {}), dict)
+        else whole["calibrate"]
+    )
     contact = whole.get("contact")
-    if isinstance(section, dict) and isinstance(contact, dict) and set(section) <= set(CalibrateSection.model_fields):
+    if (
+        isinstance(section, dict)
+        and isinstance(contact, dict)
+        and set(section) <= set(CalibrateSection.model_fields)
+    ):
         model = section.pop("model", None)
         model = {"law": model} if isinstance(model, str) else model
         own, law_at = "target" in section, "contact" if model is None else "calibrate.model"
         if not own and (names := friction_names(section.get("parameter"))):
-            raise InputError(f"it is missing; {names[0]} is fitted to {_ITS_TARGET}", "calibrate.target")
+            raise InputError(
+                f"it is missing; {names[0]} is fitted to {_ITS_TARGET}", "calibrate.target"
+            )
         if not own:
             if contact.get("law") == MODEL and model is None:
                 words = f"there is no target, since the law of the case is {MODEL} itself"
-                raise InputError(f"{words}; give a target, such as {{ restitution = 0.7 }}", "calibrate.target")
+                raise InputError(
+                    f"{words}; give a target, such as {{ restitution = 0.7 }}", "calibrate.target"
+                )
             section["target"] = {key: value for key, value in contact.items() if key not in _LOCAL}
             model = {"law": MODEL} if model is None else model
         if model is not None:
@@ -114,12 +130,16 @@ def read_calibration(table: Mapping[str, Any]) -> ToCalibrate:
         try:
             return ToCalibrate(read_case(whole), started is contact, law_at)
         except InputError as error:
-            raise InputError.of_several(_where(fault, own, model is not None) for fault in error.faults) from None
+            raise InputError.of_several(
+                _where(fault, own, model is not None) for fault in error.faults
+            ) from None
     return ToCalibrate(read_case(whole), True)
 
 
 def calibrate_case(
-    what: ToCalibrate, progress: Callable[[float], None] | None = None, tell: Callable[[str], None] | None = None
+    what: ToCalibrate,
+    progress: Callable[[float], None] | None = None,
+    tell: Callable[[str], None] | None = None,
 ) -> Calibration | FrictionCalibration:
     """Calibrate the contact law of a case, the damping of its elastic bodies, or its friction law.
 
@@ -145,17 +165,32 @@ def calibrate_case(
     case = what.case
     section = case.calibrate
     if section is None or section.target is None:
-        raise InputError("it is missing; it specifies what is matched, such as { restitution = 0.7 }", "calibrate.target")
+        raise InputError(
+            "it is missing; it specifies what is matched, such as { restitution = 0.7 }",
+            "calibrate.target",
+        )
     if case.plate.motion is not None:
-        raise InputError("only impacts on a plate at rest can be matched; leave the motion out", "plate.motion")
+        raise InputError(
+            "only impacts on a plate at rest can be matched; leave the motion out", "plate.motion"
+        )
     problem = problem_of(case, progress, tell)
     names = friction_names(section.parameter)
     if not names and problem.by_speed:
         name = next(iter(problem.by_speed))
         words = "a calibration begins from numbers, and takes no function of the approach speed"
-        raise InputError(f"{words}; give a number in place of the function", f"{what.law_at}.{name}")
-    if not names and problem.same_spot and getattr(problem.laws[0], "lasting", False) and impact_count(problem) > 1:
-        words = f"{case.contact.law} leaves a dent that the next impact falls into, and each impact is matched on fresh surfaces"
+        raise InputError(
+            f"{words}; give a number in place of the function", f"{what.law_at}.{name}"
+        )
+    if (
+        not names
+        and problem.same_spot
+        and getattr(problem.laws[0], "lasting", False)
+        and impact_count(problem) > 1
+    ):
+        words = (
+            f"{case.contact.law} leaves a dent that the next impact falls into, and each "
+            "impact is matched on fresh surfaces"
+        )
         raise InputError(f"{words}; set it to false, or run.impacts = 1", "drop.same_spot")
     found: Calibration | FrictionCalibration
     try:
@@ -172,7 +207,8 @@ def calibrate_case(
 
 
 def calibrated_case(case: Case, found: Calibration | FrictionCalibration) -> Case:
-    """Return the case with the calibrated values: one per impact for a law parameter, a single one for modal damping and friction.
+    """Return the case with the calibrated values: one per impact for a law parameter, a single one
+    for modal damping and friction.
 
     Parameters
     ----------
@@ -189,9 +225,14 @@ def calibrated_case(case: Case, found: Calibration | FrictionCalibration) -> Cas
     >>> len(case.to_problem().laws), round(case.to_problem().laws[0].damping_max, 3)
     (5, 179.79)
     """
-    table: dict[str, Any] = {key: value for key, value in resolved_case(case).items() if key != "calibrate"}
+    table: dict[str, Any] = {
+        key: value for key, value in resolved_case(case).items() if key != "calibrate"
+    }
     if isinstance(found, FrictionCalibration):
-        friction = {**table["contact"]["friction"], **dict(zip(found.parameters.names, found.values.tolist(), strict=True))}
+        friction = {
+            **table["contact"]["friction"],
+            **dict(zip(found.parameters.names, found.values.tolist(), strict=True)),
+        }
         return read_case({**table, "contact": {**table["contact"], "friction": friction}})
     values = found.impacts[1].tolist()
     if found.parameter in _DAMPINGS:
@@ -200,13 +241,20 @@ def calibrated_case(case: Case, found: Calibration | FrictionCalibration) -> Cas
     return read_case({**table, "contact": {**table["contact"], found.parameter: values}})
 
 
-def _doubts_of_a_run(case: Case, found: Calibration | FrictionCalibration, aside: Container[str]) -> list[str]:
-    """Return the doubts that a run of the calibrated case states: what is matched to a rebound may still exceed a limit of the theory."""
+def _doubts_of_a_run(
+    case: Case, found: Calibration | FrictionCalibration, aside: Container[str]
+) -> list[str]:
+    """Return the doubts that a run of the calibrated case states: what is matched to a
+    rebound may still exceed a limit of the theory.
+    """
     return result_of(simulate(calibrated_case(case, found).to_problem())).doubts_but(aside)
 
 
 def _calibrated_law(
-    what: ToCalibrate, problem: Problem, section: CalibrateSection, progress: Callable[[float], None] | None
+    what: ToCalibrate,
+    problem: Problem,
+    section: CalibrateSection,
+    progress: Callable[[float], None] | None,
 ) -> Calibration:
     parameter = section.parameter
     assert not isinstance(parameter, tuple)
@@ -222,7 +270,9 @@ def _calibrated_law(
         problem,
         target,
         tunable=tunable if what.given else replace(tunable, given=np.full(1, np.nan)),
-        moved=moved_inputs(what.case, evaluated, target) if isinstance(target, Observations) and target.measured else (),
+        moved=moved_inputs(what.case, evaluated, target)
+        if isinstance(target, Observations) and target.measured
+        else (),
         weights=section.match,
         degree=section.degree,
         speeds=None if section.speeds is None else section.speeds.values(),
@@ -234,14 +284,21 @@ def _calibrated_law(
 
 
 def _calibrated_friction(
-    what: ToCalibrate, problem: Problem, section: CalibrateSection, names: tuple[str, ...], progress: Callable[[float], None] | None
+    what: ToCalibrate,
+    problem: Problem,
+    section: CalibrateSection,
+    names: tuple[str, ...],
+    progress: Callable[[float], None] | None,
 ) -> FrictionCalibration:
     if not isinstance(section.target, FileTarget):
         raise InputError(f"{names[0]} is fitted to {_ITS_TARGET}", "target")
     for key in ("degree", "speeds", "air"):
         if getattr(section, key):
-            raise InputError(f"{names[0]} is one number, fitted to single impacts; leave this out", key)
-    friction_parameters(problem, names)  # what is wrong with the names is told before what is wrong with the file
+            raise InputError(
+                f"{names[0]} is one number, fitted to single impacts; leave this out", key
+            )
+    # what is wrong with the names is told before what is wrong with the file
+    friction_parameters(problem, names)
     found = calibrate_friction(
         problem,
         oblique_impacts_in_file(what.case, section.target, section.match),
@@ -255,7 +312,10 @@ def _calibrated_friction(
     unused = [one.name for one in typed_inputs(what.case) if one.value.stated]
     if unused and found.intervals is not None:
         which = "deviations of" if len(unused) > 1 else "deviation of"
-        words = f"the standard {which} {listed(unused)} {'are' if len(unused) > 1 else 'is'} no part of these intervals"
+        words = (
+            f"the standard {which} {listed(unused)} {'are' if len(unused) > 1 else 'is'} no "
+            "part of these intervals"
+        )
         found = replace(found, doubts=(*found.doubts, words))
     if what.given:
         return found
@@ -264,16 +324,24 @@ def _calibrated_friction(
 
 
 def _where(line: str, own_target: bool, own_model: bool) -> str:
-    """Return an error message under the key that the user wrote: target and law may come from [contact], the law from calibrate.model."""
+    """Return an error message under the key that the user wrote: target and law may come
+    from [contact], the law from calibrate.model.
+    """
     if not own_target and line.startswith("calibrate.target"):
         return line.replace("calibrate.target", "contact", 1)
-    if own_model and line.startswith("contact") and not line.startswith(tuple(f"contact.{key}" for key in _LOCAL)):
+    if (
+        own_model
+        and line.startswith("contact")
+        and not line.startswith(tuple(f"contact.{key}" for key in _LOCAL))
+    ):
         return line.replace("contact", "calibrate.model", 1)
     return line
 
 
 def _with_start(contact: dict[str, Any], parameter: Any) -> dict[str, Any]:
-    """Return a [contact] section with an initial guess of the tuned parameter; the same object if it has a value."""
+    """Return a [contact] section with an initial guess of the tuned parameter; the same
+    object if it has a value.
+    """
     if names := friction_names(parameter):
         return _with_coefficient(contact, names)
     try:
@@ -285,9 +353,16 @@ def _with_start(contact: dict[str, Any], parameter: Any) -> dict[str, Any]:
         parameter = None  # one that is not known, or is no name, is reported later
     for item in fields(law):
         start = item.metadata["example"]
-        if item.name in contact or start is None or (parameter is not None and item.name != parameter):
+        if (
+            item.name in contact
+            or start is None
+            or (parameter is not None and item.name != parameter)
+        ):
             continue
-        values = {key: value[0] if isinstance(value, tuple) else value for key, value in section.parameters.items()}
+        values = {
+            key: value[0] if isinstance(value, tuple) else value
+            for key, value in section.parameters.items()
+        }
         try:
             made = law.for_pair(_ANY_PAIR, **{**values, item.name: start})
         except InputError:
@@ -298,13 +373,16 @@ def _with_start(contact: dict[str, Any], parameter: Any) -> dict[str, Any]:
 
 
 def _with_coefficient(contact: dict[str, Any], names: tuple[str, ...]) -> dict[str, Any]:
-    """Return a [contact] section with an initial guess of the coefficient of friction, if it is tuned; the same object if it has one."""
+    """Return a [contact] section with an initial guess of the coefficient of friction, if
+    it is tuned; the same object if it has one.
+    """
     friction = contact.get("friction")
     if not isinstance(friction, dict) or "coefficient" in friction:
         return contact
     law = friction_laws().get(str(friction.get("law")))
     known = {f"{FRICTION}{item.name}" for item in fields(law)} if law else set()
-    if f"{FRICTION}coefficient" not in names and known.issuperset(names):  # an unknown parameter is reported later
+    # an unknown parameter is reported later
+    if f"{FRICTION}coefficient" not in names and known.issuperset(names):
         return contact
     return {**contact, "friction": {**friction, "coefficient": _COEFFICIENT}}
 

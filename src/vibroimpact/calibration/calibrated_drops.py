@@ -1,4 +1,6 @@
-"""The drop computed with calibrated values: constant, one per impact, or by the fitted polynomial."""
+"""The drop computed with calibrated values: constant, one per impact, or by the fitted
+polynomial.
+"""
 
 from __future__ import annotations
 
@@ -22,8 +24,8 @@ MOST_IMPACTS = 20
 """The largest number of impacts that are calibrated."""
 
 _ANOTHER, _SURE = 0.005, 3.0
-"""Deviation of the first speed that was measured from that of the drop above which it was another drop: a fraction, and a number of
-standard deviations.
+"""Deviation of the first speed that was measured from that of the drop above which it was another
+drop: a fraction, and a number of standard deviations.
 """
 
 
@@ -33,7 +35,9 @@ def impact_count(problem: Problem) -> int:
 
 
 def is_other_drop(problem: Problem, seen: Observations) -> bool:
-    """Return whether measured successive impacts begin at another speed than the drop, by more than noise and half a per cent."""
+    """Return whether measured successive impacts begin at another speed than the drop, by
+    more than noise and half a per cent.
+    """
     if not (seen.measured and seen.of_the_drop) or seen.flights is not None:
         return False
     first, noise = float(seen.speeds[0]), float(standard_deviations(seen.speed_noise)[0])
@@ -43,16 +47,21 @@ def is_other_drop(problem: Problem, seen: Observations) -> bool:
 def values_by_function(
     tunable: Tunable, function: SpeedFunction, number: int, first: float, flights: Flights | None
 ) -> tuple[Floats, Floats]:
-    """Return approach speeds [m/s] and values of impacts, from a first speed on, whose value is a function of the approach speed."""
+    """Return approach speeds [m/s] and values of impacts, from a first speed on, whose
+    value is a function of the approach speed.
+    """
     table = _impact_sequence(tunable, lambda _, speed: function(speed), number, first, flights)
     return table["approach_speed_m_s"], table["value"]
 
 
-def impact_tables(tunable: Tunable, values: Floats, by_speed: Floats, seen: Observations) -> dict[str, Mapping[str, Floats]]:
-    """Return the impact tables of the drop: "constant" (first value), "variable" (one value per impact), "function" (`by_speed`).
+def impact_tables(
+    tunable: Tunable, values: Floats, by_speed: Floats, seen: Observations
+) -> dict[str, Mapping[str, Floats]]:
+    """Return the impact tables of the drop: "constant" (first value), "variable" (one value per
+    impact), "function" (`by_speed`).
 
-    What was measured successively begins at its own first speed. If the flights have drag, the impacts are computed one by one and
-    connected by those flights.
+    What was measured successively begins at its own first speed. If the flights have drag, the
+    impacts are computed one by one and connected by those flights.
     """
     found: dict[str, Mapping[str, Floats]] = {}
     for name, given in (("constant", values[:1]), ("variable", values), ("function", by_speed)):
@@ -62,7 +71,9 @@ def impact_tables(tunable: Tunable, values: Floats, by_speed: Floats, seen: Obse
                 drop = replace(drop, height=None, speed=float(seen.speeds[0]))
             found[name] = simulate(drop).impacts
         else:
-            found[name] = _impact_sequence(tunable, _one_each(given), len(values), float(seen.speeds[0]), seen.flights)
+            found[name] = _impact_sequence(
+                tunable, _one_each(given), len(values), float(seen.speeds[0]), seen.flights
+            )
     return found
 
 
@@ -71,7 +82,11 @@ def _one_each(values: Floats) -> Callable[[int, float], float]:
 
 
 def _impact_sequence(
-    tunable: Tunable, value_of: Callable[[int, float], float], number: int, first: float, flights: Flights | None
+    tunable: Tunable,
+    value_of: Callable[[int, float], float],
+    number: int,
+    first: float,
+    flights: Flights | None,
 ) -> dict[str, Floats]:
     """Return successive impacts with the value of each, as columns of an impact table."""
     rows: list[dict[str, float]] = []
@@ -80,7 +95,14 @@ def _impact_sequence(
         value = tunable.allowed.clip(np.array([value_of(impact, speed)]))
         found = tunable.respond(np.array([speed]), value, np.array([impact]))
         outcomes = {column: float(found[name][0]) for name, (column, *_) in MATCHABLE.items()}
-        rows.append({"impact": impact + 1, "approach_speed_m_s": speed, "value": float(value[0]), **outcomes})
+        rows.append(
+            {
+                "impact": impact + 1,
+                "approach_speed_m_s": speed,
+                "value": float(value[0]),
+                **outcomes,
+            }
+        )
         speed = float(found["next_speed"][0])
         if not speed > 0.0:
             break

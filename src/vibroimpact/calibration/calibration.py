@@ -30,7 +30,8 @@ class Calibration:
     observations : Observations
         The matched impacts: approach speeds and target values.
     values : array, shape (n,)
-        The parameter value that matches each impact; the nearest end of the range where noise puts the target out of reach.
+        The parameter value that matches each impact; the nearest end of the range where noise puts
+        the target out of reach.
     intervals : array, shape (n, 2), optional
         Confidence interval of each value; None for an exact target, or if it cannot be estimated.
     outcomes : mapping of str to array, shape (n,)
@@ -40,8 +41,8 @@ class Calibration:
     as_given : mapping of str to array, shape (n,)
         Quantities of the impacts computed with the given values; empty where there are none.
     others : mapping of str to float
-        Values of other parameters of the law that would each match the first impact, the rest as given; empty unless the given
-        values miss the target.
+        Values of other parameters of the law that would each match the first impact, the rest as
+        given; empty unless the given values miss the target.
     fit : Fit
         The polynomial of the approach speed.
     curve : tuple of two arrays, optional
@@ -49,8 +50,9 @@ class Calibration:
     impacts : tuple of two arrays
         Approach speed [m/s] and value of each impact of the drop.
     drops : mapping of str to mapping
-        Impact tables of the drop: "target", where that can be simulated; "constant" with the value of the first impact, "variable"
-        with the value of each impact, and "function" with the fitted polynomial.
+        Impact tables of the drop: "target", where that can be simulated; "constant" with the value
+        of the first impact, "variable" with the value of each impact, and "function" with the
+        fitted polynomial.
     confidence : float
         Confidence level of the intervals.
     bootstrap : int
@@ -63,7 +65,9 @@ class Calibration:
     Examples
     --------
     >>> import vibroimpact as vi
-    >>> found = vi.calibrate(vi.load_case("paper:type1-constant"), vi.load_case("paper:type1-theory"))
+    >>> found = vi.calibrate(
+    ...     vi.load_case("paper:type1-constant"), vi.load_case("paper:type1-theory")
+    ... )
     >>> found.parameter, found.unit, found.values.round(1).tolist()
     ('damping_max', 'N s/m', [179.8, 172.7, 166.4, 160.9, 156.7])
     """

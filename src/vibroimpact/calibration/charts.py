@@ -1,4 +1,6 @@
-"""Charts of a calibration: the value over the approach speed, the measured record, and the remaining differences."""
+"""Charts of a calibration: the value over the approach speed, the measured record, and
+the remaining differences.
+"""
 
 from __future__ import annotations
 
@@ -33,8 +35,8 @@ def calibration_charts(found: Calibration | FrictionCalibration) -> list[Chart]:
     Returns
     -------
     list of Chart
-        `parameter`; `record` if a record was measured; `differences` if there are several impacts and a reference. Of friction those of
-        `friction_charts`.
+        `parameter`; `record` if a record was measured; `differences` if there are several impacts
+        and a reference. Of friction those of `friction_charts`.
 
     Examples
     --------
@@ -71,8 +73,14 @@ def _parameter_chart(found: Calibration) -> Chart:
         if np.isfinite(band).all():
             of_what = "band" if found.observations.measured else "band of the misfit"
             low, high = found.allowed.bounded(np.array([fitted - band, fitted + band]))
-            marks.append(Band(smooth, low, high, f"{100.0 * found.confidence:g} % {of_what}", "band"))
-        name = ("constant", "line")[function.degree] if function.degree < 2 else f"polynomial of degree {function.degree}"
+            marks.append(
+                Band(smooth, low, high, f"{100.0 * found.confidence:g} % {of_what}", "band")
+            )
+        name = (
+            ("constant", "line")[function.degree]
+            if function.degree < 2
+            else f"polynomial of degree {function.degree}"
+        )
         marks.append(Line(smooth, fitted, name, "fit"))
         of_impacts = np.allclose([function.slowest, function.fastest], [speeds.min(), speeds.max()])
         fitted_to = "them" if of_impacts else "the exact values at calibrate.speeds"
@@ -80,31 +88,64 @@ def _parameter_chart(found: Calibration) -> Chart:
     if found.curve is not None:
         marks.append(Line(*found.curve, "exact at each speed"))
     low, high = (None, None) if found.intervals is None else found.intervals.T
-    marks.append(Points(speeds, found.values, "impacts matched", "matched", found.observations.labels, low=low, high=high))
+    marks.append(
+        Points(
+            speeds,
+            found.values,
+            "impacts matched",
+            "matched",
+            found.observations.labels,
+            low=low,
+            high=high,
+        )
+    )
     if found.as_given and not np.allclose(found.given, found.values, rtol=1e-3):
-        marks.append(Points(speeds, found.given, "as the case gives it", "muted", found.observations.labels))
+        marks.append(
+            Points(speeds, found.given, "as the case gives it", "muted", found.observations.labels)
+        )
     panel = Panel(Axis("Approach speed", "m/s"), Axis(_begun(words), found.unit), tuple(marks))
     key = found.parameter if "." in found.parameter else f"contact.{found.parameter}"
     caption = f"In a case it is {key}. Each impact by itself{fitted_too}."
     if found.intervals is not None:
         caption += f" Bars: the interval of each impact at {100.0 * found.confidence:g} %."
-    return Chart("parameter", f"{_begun(words)} over the approach speed", ((panel,),), caption, height=3.4)
+    return Chart(
+        "parameter", f"{_begun(words)} over the approach speed", ((panel,),), caption, height=3.4
+    )
 
 
 def _differences_chart(found: Calibration) -> Chart:
     off = differences(found)
-    shown = [name for name in COMPARED if name in off and not (name == "separation_speed_m_s" and "rebound_height_m" in off)]
+    shown = [
+        name
+        for name in COMPARED
+        if name in off and not (name == "separation_speed_m_s" and "rebound_height_m" in off)
+    ]
     panels = []
     for name in shown:
         marks: list[Mark] = [Level(0.0)]
         for number, way in enumerate(WAYS):
             values = 100.0 * off[name][way]
-            marks.append(Line(np.arange(1.0, len(values) + 1.0), values, way, series(number), marked=True))
+            marks.append(
+                Line(np.arange(1.0, len(values) + 1.0), values, way, series(number), marked=True)
+            )
         ticks = tuple(range(1, len(values) + 1)) if len(values) <= _FEW else ()
-        panels.append(Panel(Axis("Impact", ticks=ticks, integer=True), Axis("Difference", "%"), tuple(marks), COMPARED[name]))
+        panels.append(
+            Panel(
+                Axis("Impact", ticks=ticks, integer=True),
+                Axis("Difference", "%"),
+                tuple(marks),
+                COMPARED[name],
+            )
+        )
     rows = tuple(tuple(panels[start : start + 2]) for start in range(0, len(panels), 2))
-    caption = "Each impact of the drop compared with the target, with the value given in three ways: that of the first impact throughout "
-    caption += "(constant), each impact its own (variable), and the polynomial of the approach speed (function)."
+    caption = (
+        "Each impact of the drop compared with the target, with the value given in three ways: "
+        "that of the first impact throughout "
+    )
+    caption += (
+        "(constant), each impact its own (variable), and the polynomial of "
+        "the approach speed (function)."
+    )
     return Chart("differences", "Remaining differences", rows, caption, height=2.3)
 
 

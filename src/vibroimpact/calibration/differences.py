@@ -17,15 +17,23 @@ COMPARED = {
 """Compared columns of the impact table, with their headings."""
 
 WAYS = ("constant", "variable", "function")
-"""How the value is prescribed: that of the first impact throughout, one per impact, or by the fitted polynomial."""
+"""How the value is prescribed: that of the first impact throughout, one per impact, or by
+the fitted polynomial.
+"""
 
 
 def reference(found: Calibration) -> dict[str, Floats]:
-    """Return the target values of the impacts of the drop by column: simulated, or measured if the measurement is of this drop."""
+    """Return the target values of the impacts of the drop by column: simulated, or
+    measured if the measurement is of this drop.
+    """
     number = len(found.impacts[1])
     if "target" in found.drops:
         table = found.drops["target"]
-        return {column: table[column][:number] for column in COMPARED if np.any(table[column][:number] > 0.0)}
+        return {
+            column: table[column][:number]
+            for column in COMPARED
+            if np.any(table[column][:number] > 0.0)
+        }
     if not found.observations.of_the_drop:
         return {}
     seen = found.observations.wanted
@@ -33,14 +41,18 @@ def reference(found: Calibration) -> dict[str, Floats]:
 
 
 def differences(found: Calibration) -> dict[str, Mapping[str, Floats]]:
-    """Return the relative deviations from the target by column and way of prescribing the value; NaN after the last impact.
+    """Return the relative deviations from the target by column and way of prescribing the value;
+    NaN after the last impact.
 
     Examples
     --------
     >>> import vibroimpact as vi
     >>> from vibroimpact.calibration.calibrate import calibrate
     >>> found = calibrate(vi.load_case("paper:type1-constant"), vi.load_case("paper:type1-theory"))
-    >>> [round(100.0 * value, 2) for value in differences(found)["max_indentation_m"]["constant"].tolist()]
+    >>> [
+    ...     round(100.0 * value, 2)
+    ...     for value in differences(found)["max_indentation_m"]["constant"].tolist()
+    ... ]
     [-0.38, -0.67, -1.7, -3.41, -5.7]
     """
     return {
@@ -50,8 +62,12 @@ def differences(found: Calibration) -> dict[str, Mapping[str, Floats]]:
 
 
 def largest_misfit(found: Calibration) -> float:
-    """Return the largest deviation of the polynomial from the exact values over the fitted range of speeds."""
-    return found.fit.function.misfit(*(found.curve if found.curve is not None else (found.observations.speeds, found.values)))
+    """Return the largest deviation of the polynomial from the exact values over the
+    fitted range of speeds.
+    """
+    return found.fit.function.misfit(
+        *(found.curve if found.curve is not None else (found.observations.speeds, found.values))
+    )
 
 
 def _padded(values: Floats, number: int) -> Floats:

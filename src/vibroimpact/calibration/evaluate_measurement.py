@@ -1,4 +1,6 @@
-"""Evaluate a measurement with or without aerodynamic drag, and warn where drag was neglected but matters."""
+"""Evaluate a measurement with or without aerodynamic drag, and warn where drag was
+neglected but matters.
+"""
 
 from __future__ import annotations
 
@@ -26,46 +28,70 @@ _ROOM = 2.0  # margin of the flight tables over the largest rise, for intermedia
 
 
 class Measurement(NamedTuple):
-    """A measurement: a function that evaluates it for a model of the flights (None: vacuum), and the largest rise in it [m]."""
+    """A measurement: a function that evaluates it for a model of the flights (None:
+    vacuum), and the largest rise in it [m].
+    """
 
     evaluated: Callable[[Flights | None], Observations]
     highest: float
 
 
 def speed_at_touch(case: Case, flights: Flights | None) -> float:
-    """Return the speed at first touch of a case [m/s], with drag if flights are given and the case gives the height."""
+    """Return the speed at first touch of a case [m/s], with drag if flights are given and
+    the case gives the height.
+    """
     if flights is None or case.drop.height is None or fluid_of(case) is not None:
         return touch_speed(case)
     return float(flights.speed_after_fall(np.array(case.drop.height - case.sphere.radius))[0])
 
 
 def evaluate(case: Case, measurement: Measurement, air: bool | None) -> Observations:
-    """Return the evaluated measurement, with drag if `air`, or if the drop of the case has it, as in a liquid.
+    """Return the evaluated measurement, with drag if `air`, or if the drop of the case has it, as
+    in a liquid.
 
     If neither says so, it is without drag, and with a warning where drag matters.
 
     Raises
     ------
     InputError
-        If the measurement shows no impacts, or flights that are impossible in air, or the case has air and `air` is False, or a liquid and
-        `air` is given.
+        If the measurement shows no impacts, or flights that are impossible in air, or the case has
+        air and `air` is False, or a liquid and `air` is given.
     """
     own = fluid_of(case)
     if air is not None and isinstance(own, Liquid):
-        raise InputError("the sphere flies through a liquid, as given by contact.liquid; leave one of them out", "air")
+        raise InputError(
+            "the sphere flies through a liquid, as given by contact.liquid; leave one of them out",
+            "air",
+        )
     if own is not None and air is False:
-        raise InputError("the sphere flies through air, as given by drop.air; leave one of them out", "air")
+        raise InputError(
+            "the sphere flies through air, as given by drop.air; leave one of them out", "air"
+        )
     if case.drop.gravity == 0.0:  # no flight returns
         return measurement.evaluated(None)
-    through, sphere = Air() if own is None else own, (case.sphere.radius, float(sphere_density(case.sphere)))
-    fallen = 0.0 if case.drop.height is None or isinstance(own, Liquid) else case.drop.height - case.sphere.radius
+    through, sphere = (
+        Air() if own is None else own,
+        (case.sphere.radius, float(sphere_density(case.sphere))),
+    )
+    fallen = (
+        0.0
+        if case.drop.height is None or isinstance(own, Liquid)
+        else case.drop.height - case.sphere.radius
+    )
     pull = FluidFlights(case.drop.gravity, *sphere, 1.0, through).pull
     flights = FluidFlights(
-        case.drop.gravity, *sphere, _ROOM * max(measurement.highest, fallen, 0.5 * touch_speed(case) ** 2 / pull), through
+        case.drop.gravity,
+        *sphere,
+        _ROOM * max(measurement.highest, fallen, 0.5 * touch_speed(case) ** 2 / pull),
+        through,
     )
     if air or own is not None:
         seen = measurement.evaluated(flights)
-        heights = " Rebound heights are those that the sphere would reach without it." if "rebound_height" in seen.wanted else ""
+        heights = (
+            " Rebound heights are those that the sphere would reach without it."
+            if "rebound_height" in seen.wanted
+            else ""
+        )
         return replace(seen, notes=(_note(through) + heights, *seen.notes))
     seen = measurement.evaluated(None)
     if air is None and (doubt := _doubt(seen, measurement, flights, case)):
@@ -77,7 +103,10 @@ def _note(through: Fluid) -> str:
     constant = through.drag_coefficient if isinstance(through, Air) else None
     source = "Clift and Gauvin" if constant is None else f"drag coefficient {constant:g}"
     if isinstance(through, Liquid):
-        return f"Flights have the buoyancy, drag and added mass of the liquid ({through.density:g} kg/m³; {source})."
+        return (
+            "Flights have the buoyancy, drag and added mass of the liquid "
+            f"({through.density:g} kg/m³; {source})."
+        )
     return f"Flights have the drag of air ({through.density:g} kg/m³; {source})."
 
 
@@ -86,7 +115,9 @@ def _doubt(seen: Observations, measurement: Measurement, flights: Flights, case:
         other = measurement.evaluated(flights)
     except InputError:  # impossible in air, so it was not measured in air
         return ""
-    without, with_air = (measured_restitutions(one, case.sphere.radius, case.drop.gravity) for one in (seen, other))
+    without, with_air = (
+        measured_restitutions(one, case.sphere.radius, case.drop.gravity) for one in (seen, other)
+    )
     if without is None or with_air is None or len(without) != len(with_air):
         return ""
     off = with_air / without - 1.0
@@ -94,7 +125,8 @@ def _doubt(seen: Observations, measurement: Measurement, flights: Flights, case:
     if not abs(off[worst]) > _MATTERS:
         return ""
     return (
-        f"the flights are evaluated without the drag of air, in which the restitution of {seen.labels[worst]} would be "
-        f"{with_air[worst]:.4f}, not {without[worst]:.4f} ({100.0 * off[worst]:+.2g} %); set calibrate.air = true, or false if there "
-        "was none"
+        "the flights are evaluated without the drag of air, in which the restitution of "
+        f"{seen.labels[worst]} would be "
+        f"{with_air[worst]:.4f}, not {without[worst]:.4f} ({100.0 * off[worst]:+.2g} %); "
+        "set calibrate.air = true, or false if there was none"
     )

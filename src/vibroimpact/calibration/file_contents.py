@@ -11,7 +11,13 @@ import numpy as np
 from vibroimpact._version import __version__
 from vibroimpact.calibration.adams_dialog import calibrated_dialog
 from vibroimpact.calibration.calibration import Calibration
-from vibroimpact.calibration.differences import COMPARED, WAYS, differences, largest_misfit, reference
+from vibroimpact.calibration.differences import (
+    COMPARED,
+    WAYS,
+    differences,
+    largest_misfit,
+    reference,
+)
 from vibroimpact.calibration.inputs import inputs_document
 from vibroimpact.calibration.matchable import MATCHABLE
 from vibroimpact.cases.build import resolved_case
@@ -32,7 +38,11 @@ def calibration_table(case: Case, found: Calibration) -> dict[str, Any]:
         Result of its calibration.
     """
     fit, (speeds, values) = found.fit, found.impacts
-    curve = None if found.curve is None else {"approach_speed_m_s": _plain(found.curve[0]), "value": _plain(found.curve[1])}
+    curve = (
+        None
+        if found.curve is None
+        else {"approach_speed_m_s": _plain(found.curve[0]), "value": _plain(found.curve[1])}
+    )
     return {
         "version": __version__,
         "name": case.name,
@@ -61,25 +71,39 @@ def calibration_table(case: Case, found: Calibration) -> dict[str, Any]:
         "matched": matched_rows(found),
         "adams_dialog": calibrated_dialog(found),
         "curve": curve,
-        "differences": {column: {way: _plain(values) for way, values in ways.items()} for column, ways in differences(found).items()},
+        "differences": {
+            column: {way: _plain(values) for way, values in ways.items()}
+            for column, ways in differences(found).items()
+        },
         "other_parameters": dict(found.others),
         "corrections": {
             name: {"value": one.value, "standard_deviation": one.deviation, "unit": one.unit}
             for name, one in found.observations.corrections.items()
         },
-        "inputs": [] if found.observations.effects is None else inputs_document(found.observations.effects.inputs),
+        "inputs": []
+        if found.observations.effects is None
+        else inputs_document(found.observations.effects.inputs),
         "doubts": list(found.doubts),
         "case": resolved_case(case),
     }
 
 
 def matched_rows(found: Calibration) -> list[dict[str, Any]]:
-    """Return the matched impacts, one mapping each: target, computed with the value found, and computed with the given value."""
+    """Return the matched impacts, one mapping each: target, computed with the value
+    found, and computed with the given value.
+    """
     rows = []
     for number, label in enumerate(found.observations.labels):
-        row: dict[str, Any] = {"label": label, "approach_speed_m_s": float(found.observations.speeds[number])}
+        row: dict[str, Any] = {
+            "label": label,
+            "approach_speed_m_s": float(found.observations.speeds[number]),
+        }
         row["value"] = _finite(found.values[number])
-        row["low"], row["high"] = (None, None) if found.intervals is None else (_finite(end) for end in found.intervals[number])
+        row["low"], row["high"] = (
+            (None, None)
+            if found.intervals is None
+            else (_finite(end) for end in found.intervals[number])
+        )
         row["given"] = _finite(found.given[number])
         for name, (column, *_) in MATCHABLE.items():
             if name in found.observations.wanted:
@@ -92,18 +116,26 @@ def matched_rows(found: Calibration) -> list[dict[str, Any]]:
 
 
 def comparison_rows(found: Calibration) -> list[dict[str, Any]]:
-    """Return the impacts of the drop with the target values, one mapping per impact and way of prescribing the value."""
+    """Return the impacts of the drop with the target values, one mapping per impact and
+    way of prescribing the value.
+    """
     wanted, off = reference(found), differences(found)
     rows = []
     for way in WAYS:
         table = found.drops[way]
         for number in range(len(table["impact"])):
-            row: dict[str, Any] = {"way": way, "impact": number + 1, "approach_speed_m_s": float(table["approach_speed_m_s"][number])}
+            row: dict[str, Any] = {
+                "way": way,
+                "impact": number + 1,
+                "approach_speed_m_s": float(table["approach_speed_m_s"][number]),
+            }
             for column in COMPARED:
                 row[column] = _finite(table[column][number])
                 if column in wanted and number < len(wanted[column]):
                     row[f"wanted_{column}"] = _finite(wanted[column][number])
-                    row[f"difference_{_SHORT[column]}_percent"] = _finite(100.0 * off[column][way][number])
+                    row[f"difference_{_SHORT[column]}_percent"] = _finite(
+                        100.0 * off[column][way][number]
+                    )
             rows.append(row)
     return rows
 

@@ -1,4 +1,6 @@
-"""Least-squares fit of a parameter as a polynomial of the approach speed, to values or to measurements."""
+"""Least-squares fit of a parameter as a polynomial of the approach speed, to values or to
+measurements.
+"""
 
 from __future__ import annotations
 
@@ -31,12 +33,14 @@ class Fit:
     function : SpeedFunction
         The polynomial.
     covariance : array, shape (k, k)
-        Covariance of the coefficients; NaN if there are no more observations than coefficients and the noise is unknown.
+        Covariance of the coefficients; NaN if there are no more observations than coefficients and
+        the noise is unknown.
     freedom : float
-        Degrees of freedom of the noise estimate; infinite if the noise is known and consistent with the residuals. If it is not
-        consistent, the covariance is scaled by the residuals.
+        Degrees of freedom of the noise estimate; infinite if the noise is known and consistent with
+        the residuals. If it is not consistent, the covariance is scaled by the residuals.
     scatter : float
-        Standard deviation of the values about the polynomial, or of the residuals normalized by their noise.
+        Standard deviation of the values about the polynomial, or of the residuals normalized by
+        their noise.
     """
 
     function: SpeedFunction
@@ -50,10 +54,14 @@ class Fit:
 
     def half_widths(self, confidence: float) -> Floats:
         """Return the half widths of the confidence intervals of the coefficients."""
-        return np.asarray(self.quantile(confidence) * np.sqrt(np.maximum(np.diag(self.covariance), 0.0)))
+        return np.asarray(
+            self.quantile(confidence) * np.sqrt(np.maximum(np.diag(self.covariance), 0.0))
+        )
 
     def band(self, speeds: Floats, confidence: float) -> Floats:
-        """Return the half width of the confidence band of the polynomial at approach speeds [m/s]."""
+        """Return the half width of the confidence band of the polynomial at approach
+        speeds [m/s].
+        """
         powers = _powers(np.asarray(speeds, dtype=float), self.function.degree)
         spread = np.einsum("ni,ij,nj->n", powers, self.covariance, powers)
         return np.asarray(self.quantile(confidence) * np.sqrt(np.maximum(spread, 0.0)))
@@ -61,7 +69,8 @@ class Fit:
 
 def half_width(confidence: float, freedom: float) -> float:
     """Return the half width of a confidence interval in standard deviations, by Student's t."""
-    from scipy.stats import t as students_t  # imported late: it takes longer to load than a calibration
+    # imported late: it takes longer to load than a calibration
+    from scipy.stats import t as students_t
 
     return float(students_t.ppf(0.5 + 0.5 * confidence, freedom))
 
@@ -78,7 +87,11 @@ def check_degree(speeds: Floats, degree: int) -> None:
     if degree >= different:
         have = f"{different} that differ by more than 1 % of the largest are there"
         if different == 1:
-            have = "one speed is there" if len(speeds) == 1 else "all that are there lie within 1 % of the largest"
+            have = (
+                "one speed is there"
+                if len(speeds) == 1
+                else "all that are there lie within 1 % of the largest"
+            )
         needs = f"a polynomial of degree {degree} needs {degree + 1} speeds"
         raise InputError(f"{needs}, and {have}; take {different - 1} at most", "degree")
 
@@ -119,7 +132,13 @@ def fit_values(speeds: Floats, values: Floats, degree: int) -> Fit:
     return Fit(_function(coefficients, speeds), scatter**2 * covariance, freedom, scatter)
 
 
-def fit_observations(tunable: Tunable, observations: Observations, weights: Mapping[str, float], degree: int, values: Floats) -> Fit:
+def fit_observations(
+    tunable: Tunable,
+    observations: Observations,
+    weights: Mapping[str, float],
+    degree: int,
+    values: Floats,
+) -> Fit:
     """Return the fit of the measured quantities themselves, by the Gauss-Newton method.
 
     Parameters
@@ -129,7 +148,8 @@ def fit_observations(tunable: Tunable, observations: Observations, weights: Mapp
     observations : Observations
         The measurements with their noise.
     weights : mapping of str to float
-        The quantities to be fitted; the weights are used only if the magnitude of the noise is unknown.
+        The quantities to be fitted; the weights are used only if the magnitude of the noise is
+        unknown.
     degree : int
         Degree of the polynomial.
     values : array, shape (n,)
@@ -146,11 +166,17 @@ def fit_observations(tunable: Tunable, observations: Observations, weights: Mapp
     # initial guess: a polynomial through the values of the impacts that could be matched
     some = np.isfinite(values)
     first = min(degree, distinct(speeds[some]) - 1) if some.any() else 0
-    begin = fit_values(speeds[some], values[some], first).function(speeds) if some.any() else np.full(len(speeds), tunable.start)
+    begin = (
+        fit_values(speeds[some], values[some], first).function(speeds)
+        if some.any()
+        else np.full(len(speeds), tunable.start)
+    )
     at = tunable.allowed.clip(begin)
     if known:
         try:
-            coefficients, covariance, scatter, freedom = _settled(tunable, observations, weights, powers, at, noise_known=True)
+            coefficients, covariance, scatter, freedom = _settled(
+                tunable, observations, weights, powers, at, noise_known=True
+            )
         except ComputationError:
             if observations.effects is None:
                 raise
@@ -158,14 +184,23 @@ def fit_observations(tunable: Tunable, observations: Observations, weights: Mapp
             if not (freedom and misfits(scatter, freedom)):
                 return Fit(_function(coefficients, speeds), covariance, np.inf, scatter)
     # the noise is not known, or larger than it is said to be
-    coefficients, covariance, scatter, freedom = _settled(tunable, observations, weights, powers, at, noise_known=False)
+    coefficients, covariance, scatter, freedom = _settled(
+        tunable, observations, weights, powers, at, noise_known=False
+    )
     return Fit(_function(coefficients, speeds), covariance, freedom, scatter)
 
 
 def _settled(
-    tunable: Tunable, observations: Observations, weights: Mapping[str, float], powers: Floats, at: Floats, *, noise_known: bool
+    tunable: Tunable,
+    observations: Observations,
+    weights: Mapping[str, float],
+    powers: Floats,
+    at: Floats,
+    *,
+    noise_known: bool,
 ) -> tuple[Floats, Floats, float, int]:
-    """Return coefficients, their covariance, the scatter of the residuals in units of the noise, and its degrees of freedom.
+    """Return coefficients, their covariance, the scatter of the residuals in units of the noise,
+    and its degrees of freedom.
 
     Parameters
     ----------
@@ -176,9 +211,14 @@ def _settled(
     at : array, shape (n,)
         Values to begin with.
     noise_known : bool
-        Whether the noise is as large as the observations have it; otherwise as large as the residuals.
+        Whether the noise is as large as the observations have it; otherwise as large as the
+        residuals.
     """
-    speeds, coefficients, number = observations.speeds, _least_squares(powers, at)[0], powers.shape[1]
+    speeds, coefficients, number = (
+        observations.speeds,
+        _least_squares(powers, at)[0],
+        powers.shape[1],
+    )
     shares: list[Floats] = []
     for sweep in range(_SWEEPS):
         found = derivatives(tunable, speeds, at, observations.which)
@@ -188,36 +228,56 @@ def _settled(
             rows.append(by_value[:, None] * powers)
             targets.append(observations.wanted[name] - found.outcomes[name] + by_value * at)
             # noise of the approach speed also changes the value of the polynomial
-            along = found.by_speed[name] + by_value * polynomial.polyval(speeds, polynomial.polyder(coefficients))
+            along = found.by_speed[name] + by_value * polynomial.polyval(
+                speeds, polynomial.polyder(coefficients)
+            )
             noise = observations.noise[name] - scaled(along, observations.speed_noise)
             noises.append(noise / (1.0 if observations.deviations_known else np.sqrt(weight)))
-            if not sweep:  # to first order, so that an input that noise is nothing to lets the fit settle
+            # to first order, so that an input that noise is nothing to lets the fit settle
+            if not sweep:
                 shares.append(_shared(observations, name, along))
         if not any(np.any(row) for row in rows):
-            raise InputError(f"{tunable.name} has no influence on the measured quantities, which can't determine it", "parameter")
+            raise InputError(
+                f"{tunable.name} has no influence on the measured "
+                "quantities, which can't determine it",
+                "parameter",
+            )
         # whitened, so that readings shared by two impacts count once
-        independent = whitened(vstack(noises), np.column_stack([np.concatenate(part) for part in (rows, shares, targets)]))
-        coefficients, covariance, scatter = _with_inputs(independent[:, :-1], independent[:, -1], number, noise_known)
+        independent = whitened(
+            vstack(noises),
+            np.column_stack([np.concatenate(part) for part in (rows, shares, targets)]),
+        )
+        coefficients, covariance, scatter = _with_inputs(
+            independent[:, :-1], independent[:, -1], number, noise_known
+        )
         before, at = at, tunable.allowed.clip(powers @ coefficients)
         if np.all(np.abs(at - before) <= _WITHIN * np.abs(at).max()):
             return coefficients, covariance, scatter, len(independent) - number
     lower = "take a lower degree, or " if number > 1 else ""
-    raise ComputationError(f"the fit of {tunable.name} does not settle; {lower}look at the measurements")
+    raise ComputationError(
+        f"the fit of {tunable.name} does not settle; {lower}look at the measurements"
+    )
 
 
 def _shared(observations: Observations, name: str, along: Floats) -> Floats:
-    """Return what one standard deviation of each typed input changes in the residuals of a quantity, (n, k)."""
+    """Return what one standard deviation of each typed input changes in the residuals of
+    a quantity, (n, k).
+    """
     effects = observations.effects
     if effects is None:
         return np.zeros((len(observations.speeds), 0))
     return np.asarray(effects.wanted[name] - along[:, None] * effects.speeds)
 
 
-def _with_inputs(columns: Floats, targets: Floats, number: int, known: bool) -> tuple[Floats, Floats, float]:
-    """Return coefficients, their covariance, and the scatter of the residuals in units of the noise.
+def _with_inputs(
+    columns: Floats, targets: Floats, number: int, known: bool
+) -> tuple[Floats, Floats, float]:
+    """Return coefficients, their covariance, and the scatter of the residuals in units of the
+    noise.
 
-    Columns after the first `number` are typed inputs, each of which is off by an unknown part of its standard deviation: a coefficient that
-    is expected to be 0 within 1. Noise of unknown magnitude is as large as the scatter.
+    Columns after the first `number` are typed inputs, each of which is off by an unknown part of
+    its standard deviation: a coefficient that is expected to be 0 within 1. Noise of unknown
+    magnitude is as large as the scatter.
     """
     inputs, freedom = columns.shape[1] - number, len(targets) - number
     prior = np.hstack([np.zeros((inputs, number)), np.eye(inputs)])
@@ -241,9 +301,18 @@ def misfits(scatter: float, freedom: int) -> bool:
     return bool(scatter**2 * freedom > chi2.ppf(0.999, freedom))
 
 
-def value_deviations(tunable: Tunable, observations: Observations, weights: Mapping[str, float], values: Floats) -> tuple[Floats, Floats]:
-    """Return the first-order standard deviation of the value that matches each impact, (n,), and its parts by typed inputs, (n, k)."""
-    found = derivatives(tunable, observations.speeds, np.where(np.isfinite(values), values, tunable.start), observations.which)
+def value_deviations(
+    tunable: Tunable, observations: Observations, weights: Mapping[str, float], values: Floats
+) -> tuple[Floats, Floats]:
+    """Return the first-order standard deviation of the value that matches each impact,
+    (n,), and its parts by typed inputs, (n, k).
+    """
+    found = derivatives(
+        tunable,
+        observations.speeds,
+        np.where(np.isfinite(values), values, tunable.start),
+        observations.which,
+    )
     above: Noise = no_noise(*observations.speed_noise.shape)
     below = np.zeros(len(values))
     for name, weight in weights.items():
@@ -253,7 +322,11 @@ def value_deviations(tunable: Tunable, observations: Observations, weights: Mapp
         above = above + scaled(weight * by_value / scale, noise)
         below += weight * by_value**2
     effects = sum(
-        (weight * found.by_value[name] / residual_scale(name, observations.speeds, observations.wanted[name]) ** 2)[:, None]
+        (
+            weight
+            * found.by_value[name]
+            / residual_scale(name, observations.speeds, observations.wanted[name]) ** 2
+        )[:, None]
         * _shared(observations, name, found.by_speed[name])
         for name, weight in weights.items()
     )
@@ -267,7 +340,9 @@ def _powers(speeds: Floats, degree: int) -> Floats:
 
 
 def _least_squares(powers: Floats, values: Floats) -> tuple[Floats, Floats]:
-    """Return the least-squares solution and the inverse of the normal matrix; columns are normalized for conditioning."""
+    """Return the least-squares solution and the inverse of the normal matrix; columns are
+    normalized for conditioning.
+    """
     length = np.linalg.norm(powers, axis=0)
     inverse = np.linalg.pinv(powers / length)
     return inverse @ values / length, (inverse @ inverse.T) / np.outer(length, length)

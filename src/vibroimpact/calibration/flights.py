@@ -11,7 +11,9 @@ from vibroimpact.arrays import Floats
 
 
 class ReturnFlight(NamedTuple):
-    """A flight from the plate back to the plate: height [m], time of ascent and duration [s], and the speed on return [m/s]."""
+    """A flight from the plate back to the plate: height [m], time of ascent and duration
+    [s], and the speed on return [m/s].
+    """
 
     height: Floats
     rise_time: Floats
@@ -20,7 +22,9 @@ class ReturnFlight(NamedTuple):
 
 
 class EndSpeeds(NamedTuple):
-    """The initial and final speeds of a flight [m/s], and their derivatives with respect to its duration [m/s^2]."""
+    """The initial and final speeds of a flight [m/s], and their derivatives with respect
+    to its duration [m/s^2].
+    """
 
     start: Floats
     end: Floats
@@ -29,20 +33,27 @@ class EndSpeeds(NamedTuple):
 
 
 class Flights(Protocol):
-    """Vertical flights of a sphere; heights are measured from its position in touch with the plate, depths from the apex."""
+    """Vertical flights of a sphere; heights are measured from its position in touch with
+    the plate, depths from the apex.
+    """
 
     @property
     def gravity(self) -> float:
         """Acceleration of gravity [m/s^2]."""
 
     def speed_after_fall(self, height: Floats) -> tuple[Floats, Floats]:
-        """Return the speed after a fall from rest through a height [m/s], and its derivative with respect to the height [1/s]."""
+        """Return the speed after a fall from rest through a height [m/s], and its
+        derivative with respect to the height [1/s].
+        """
 
     def speed_to_rise(self, height: Floats) -> tuple[Floats, Floats]:
-        """Return the initial speed needed to rise by a height [m/s], and its derivative with respect to the height [1/s]."""
+        """Return the initial speed needed to rise by a height [m/s], and its derivative
+        with respect to the height [1/s].
+        """
 
     def depth_at(self, time: Floats) -> tuple[Floats, Floats]:
-        """Return the depth below the apex [m] at a time relative to the apex [s], and the downward velocity [m/s].
+        """Return the depth below the apex [m] at a time relative to the apex [s], and the downward
+        velocity [m/s].
 
         Times before the apex are negative.
         """
@@ -72,14 +83,18 @@ class VacuumFlights:
     gravity: float
 
     def speed_after_fall(self, height: Floats) -> tuple[Floats, Floats]:
-        """Return the speed after a fall from rest through a height [m/s], and its derivative with respect to the height [1/s]."""
+        """Return the speed after a fall from rest through a height [m/s], and its
+        derivative with respect to the height [1/s].
+        """
         speed = np.sqrt(2.0 * self.gravity * height)
         return speed, self.gravity / speed
 
     speed_to_rise = speed_after_fall
 
     def depth_at(self, time: Floats) -> tuple[Floats, Floats]:
-        """Return the depth below the apex [m] at a time relative to the apex [s], and the downward velocity [m/s]."""
+        """Return the depth below the apex [m] at a time relative to the apex [s], and the
+        downward velocity [m/s].
+        """
         return 0.5 * self.gravity * time**2, self.gravity * time
 
     def end_speeds(self, time: Floats) -> EndSpeeds:
@@ -89,11 +104,14 @@ class VacuumFlights:
 
     def flight(self, speed: Floats) -> ReturnFlight:
         """Return the flights with given initial speeds [m/s]."""
-        return ReturnFlight(0.5 * speed**2 / self.gravity, speed / self.gravity, 2.0 * speed / self.gravity, speed)
+        return ReturnFlight(
+            0.5 * speed**2 / self.gravity, speed / self.gravity, 2.0 * speed / self.gravity, speed
+        )
 
 
 def vacuum_height(flights: Flights, height: Floats) -> tuple[Floats, Floats]:
-    """Return the rise in a vacuum [m] of a sphere that rises by a given height, and its derivative with respect to that height.
+    """Return the rise in a vacuum [m] of a sphere that rises by a given height, and its derivative
+    with respect to that height.
 
     Examples
     --------

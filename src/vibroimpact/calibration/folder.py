@@ -1,4 +1,6 @@
-"""Write the folder of a calibration: data, the calibrated case and the report page, and figures where they are asked for."""
+"""Write the folder of a calibration: data, the calibrated case and the report page, and
+figures where they are asked for.
+"""
 
 from __future__ import annotations
 
@@ -34,8 +36,8 @@ def save_calibration(
 ) -> Path:
     """Write a calibration folder, atomically.
 
-    It contains `calibration.json`, `case.toml` (the case with the calibrated values, ready to run), `matched.csv`, `comparison.csv`
-    (not of friction) and `report.html`.
+    It contains `calibration.json`, `case.toml` (the case with the calibrated values, ready to run),
+    `matched.csv`, `comparison.csv` (not of friction) and `report.html`.
 
     Parameters
     ----------
@@ -48,7 +50,8 @@ def save_calibration(
     force : bool, default False
         Replace an existing folder.
     figures : sequence of str
-        Formats in which the charts are also written as files, into a folder `figures`: of "png", "svg" and "pdf".
+        Formats in which the charts are also written as files, into a folder `figures`: of "png",
+        "svg" and "pdf".
 
     Returns
     -------
@@ -72,7 +75,9 @@ def save_calibration(
     """
     told = report_of(case, found)
     with new_folder(directory, force=force) as folder:
-        (folder / "case.toml").write_text(tomli_w.dumps(resolved_case(told.calibrated)), encoding="utf-8")
+        (folder / "case.toml").write_text(
+            tomli_w.dumps(resolved_case(told.calibrated)), encoding="utf-8"
+        )
         table = {**told.document, CHECK_SUMS: {"case.toml": file_digest(folder / "case.toml")}}
         (folder / CALIBRATION).write_bytes(sealed(table))
         summary = {"name": case.name, "version": __version__, "calibration": told.parameter}

@@ -9,11 +9,14 @@ import numpy as np
 from vibroimpact.arrays import Bools, Floats
 
 _BLOCKS, _IN_BLOCK = 20, 25
-"""Maximum number of blocks of a record with a level each, and the minimum number of samples of a block."""
+"""Maximum number of blocks of a record with a level each, and the minimum number of
+samples of a block.
+"""
 
 _WIDTHS, _ENOUGH = (3.0, 1.5, 0.75), 0.5
-"""Widths of the intervals beside an impact from which its baseline is estimated, in durations of the impact; the widest at which the
-residuals are consistent with noise is used. Then the minimum width for a parabola.
+"""Widths of the intervals beside an impact from which its baseline is estimated, in durations of
+the impact; the widest at which the residuals are consistent with noise is used. Then the minimum
+width for a parabola.
 """
 
 _FEWEST = 5
@@ -21,8 +24,9 @@ _NOT_NOISE = 0.999  # quantile of the residuals of white noise, above which they
 
 
 class Baseline(NamedTuple):
-    """The baseline under an impact: values at its samples [N]; its contribution to the impulse and the standard deviation of that [N s];
-    its standard deviation in the middle [N]; the scatter about the fitted curve [N], 0 if consistent with noise.
+    """The baseline under an impact: values at its samples [N]; its contribution to the impulse and
+    the standard deviation of that [N s]; its standard deviation in the middle [N]; the scatter
+    about the fitted curve [N], 0 if consistent with noise.
     """
 
     values: Floats
@@ -33,7 +37,8 @@ class Baseline(NamedTuple):
 
 
 def record_baseline(time: Floats, force: Floats, quiet: Bools) -> Floats:
-    """Return the baseline of a record at its times, linear between the medians of blocks of samples outside the impacts.
+    """Return the baseline of a record at its times, linear between the medians of blocks of samples
+    outside the impacts.
 
     Examples
     --------
@@ -44,7 +49,9 @@ def record_baseline(time: Floats, force: Floats, quiet: Bools) -> Floats:
     """
     places = np.flatnonzero(quiet)
     pieces = np.array_split(places, max(1, min(_BLOCKS, len(places) // _IN_BLOCK)))
-    at, levels = (np.array([np.median(values[piece]) for piece in pieces]) for values in (time, force))
+    at, levels = (
+        np.array([np.median(values[piece]) for piece in pieces]) for values in (time, force)
+    )
     found = np.asarray(np.interp(time, at, levels))
     if len(at) == 1:
         return found
@@ -55,12 +62,20 @@ def record_baseline(time: Floats, force: Floats, quiet: Bools) -> Floats:
 
 
 def baseline_under_impact(
-    time: Floats, force: Floats, quiet: Bools, part: slice, segment: tuple[int, int], length: int, noise: float
+    time: Floats,
+    force: Floats,
+    quiet: Bools,
+    part: slice,
+    segment: tuple[int, int],
+    length: int,
+    noise: float,
 ) -> Baseline:
-    """Return the baseline under an impact from the samples on either side: a parabola, or a line if there are few.
+    """Return the baseline under an impact from the samples on either side: a parabola, or a line if
+    there are few.
 
-    A parabola uses as many samples before as after the impact. The undershoot of a charge amplifier, a lower level after the impact
-    than before, is then halved under the impact, as it should be.
+    A parabola uses as many samples before as after the impact. The undershoot of a charge
+    amplifier, a lower level after the impact than before, is then halved under the impact, as it
+    should be.
 
     Parameters
     ----------
@@ -77,7 +92,10 @@ def baseline_under_impact(
     noise : float
         Standard deviation of one sample [N].
     """
-    level, excess_scatter = _baseline(time, force, quiet, part, segment, length, noise, _WIDTHS[0]), 0.0
+    level, excess_scatter = (
+        _baseline(time, force, quiet, part, segment, length, noise, _WIDTHS[0]),
+        0.0,
+    )
     for width in _WIDTHS[1:]:
         if not level.excess_scatter:
             break
@@ -124,7 +142,12 @@ def _baseline(
     return Baseline(
         values=powers(inside) @ coefficients,
         impulse=float(weights @ coefficients),
-        impulse_deviation=float(np.hypot(noise * np.sqrt(weights @ inverse @ weights), excess_scatter * (inside[-1] - inside[0]))),
+        impulse_deviation=float(
+            np.hypot(
+                noise * np.sqrt(weights @ inverse @ weights),
+                excess_scatter * (inside[-1] - inside[0]),
+            )
+        ),
         deviation=float(np.hypot(noise * np.sqrt(inverse[0, 0]), excess_scatter)),
         excess_scatter=excess_scatter,
     )

@@ -1,4 +1,6 @@
-"""Successive flights in a position record, fitted together with what the record itself determines: its zero, drift, clock and contacts."""
+"""Successive flights in a position record, fitted together with what the record itself
+determines: its zero, drift, clock and contacts.
+"""
 
 from __future__ import annotations
 
@@ -15,20 +17,29 @@ from vibroimpact.calibration.flights import Flights
 from vibroimpact.errors import ComputationError, InputError
 
 _ZERO, _DRIFT, _CLOCK, _CONTACT, _SHARED = range(5)
-"""Places of the unknowns that all flights share, and their number; height and time of each apex follow."""
+"""Places of the unknowns that all flights share, and their number; height and time of
+each apex follow.
+"""
 
 _CLOCK_DEVIATION = 0.05
-"""Standard deviation of the clock's ratio before the record is seen; the curvature of a few flights determines it to a thousandth."""
+"""Standard deviation of the clock's ratio before the record is seen; the curvature of a
+few flights determines it to a thousandth.
+"""
 
 _CONTACT_DEVIATION = 0.8
-"""That of the duration of contact, as a fraction of the expected one: losses prolong Hertz's by a third, compliant plates double it."""
+"""That of the duration of contact, as a fraction of the expected one: losses prolong
+Hertz's by a third, compliant plates double it.
+"""
 
 _UNKNOWN_CONTACT = 0.5
-"""That of a duration of which nothing is known, at 1 m/s, per radius [s/m]: for a rubber ball of 26 mm 6 ms."""
+"""That of a duration of which nothing is known, at 1 m/s, per radius [s/m]: for a rubber
+ball of 26 mm 6 ms.
+"""
 
 _SLOWER = -0.2  # exponent of the speed in the duration of Hertz's contact
 _SETTLED, _ROUNDS = 1e-12, 50
-_HARD = 1e-3  # tolerance with which successive flights meet, as a fraction of the noise of one sample
+# tolerance with which successive flights meet, as a fraction of the noise of one sample
+_HARD = 1e-3
 _NOT_NOISE = 0.999  # quantile of chi squared above which the levels scatter by more than noise
 _HALVINGS, _PASSES = 60, 3
 
@@ -36,12 +47,15 @@ _LEAST_RATIO, _MOST_RATIO, _RATIOS = 1e-2, 1e6, 81
 """Variance of a fast sample by its time over that by its position: what is tried."""
 
 _TIMES_SCATTER = 3.84
-"""Twice the logarithm of the likelihood by which times have to explain the scatter better, the 95 % quantile of chi squared."""
+"""Twice the logarithm of the likelihood by which times have to explain the scatter
+better, the 95 % quantile of chi squared.
+"""
 
 
 class Meetings(NamedTuple):
-    """What is known of the meetings of successive flights: radius of the sphere, the height at which they meet, and the scatter about it
-    [m]; expected duration of contact at 1 m/s and its standard deviation [s].
+    """What is known of the meetings of successive flights: radius of the sphere, the height at
+    which they meet, and the scatter about it [m]; expected duration of contact at 1 m/s and its
+    standard deviation [s].
     """
 
     radius: float
@@ -54,7 +68,8 @@ class Meetings(NamedTuple):
 class JointFlights:
     """Flights fitted together.
 
-    The record shows the height above the plate, plus the zero and its drift, over the time of its own clock.
+    The record shows the height above the plate, plus the zero and its drift, over the time of its
+    own clock.
 
     Parameters
     ----------
@@ -65,7 +80,8 @@ class JointFlights:
     clock : float
         Seconds of the record per second.
     contact : float
-        Duration of a contact at an approach speed of 1 m/s [s]; it changes as Hertz's, with the power -1/5 of the speed.
+        Duration of a contact at an approach speed of 1 m/s [s]; it changes as Hertz's, with the
+        power -1/5 of the speed.
     middle : float
         Time on the clock of the record at which the zero is stated [s].
     free : tuple of int
@@ -73,9 +89,11 @@ class JointFlights:
     root : array, shape (k, k)
         Contribution of each independent source of unit variance to each free unknown.
     noise, scatter : float
-        Standard deviation of a sample, and of the level of one impact about the line of the zero [m].
+        Standard deviation of a sample, and of the level of one impact about the line of the zero
+        [m].
     timing : float
-        Standard deviation of the time of a sample [s], by which it scatters the more the faster the sphere is; 0 where none shows.
+        Standard deviation of the time of a sample [s], by which it scatters the more the faster the
+        sphere is; 0 where none shows.
     misfit : float
         Sum of squares of the normalized residuals.
     """
@@ -99,25 +117,40 @@ class JointFlights:
         return self.zero + self.drift * (time - self.middle)
 
     def deviation(self, speed: Floats) -> Floats:
-        """Return the standard deviation of samples at vertical speeds [m/s]: that of positions, and that of times."""
+        """Return the standard deviation of samples at vertical speeds [m/s]: that of
+        positions, and that of times.
+        """
         return np.asarray(np.hypot(self.noise, self.timing * speed / self.clock))
 
     def noise_of_tops(self) -> Floats:
         """Return the contribution of each source to the height of each apex [m], (n, m)."""
         assert self.root is not None
-        return self.root[[self.free.index(_SHARED + 2 * flight) for flight in range(len(self.tops))]]
+        return self.root[
+            [self.free.index(_SHARED + 2 * flight) for flight in range(len(self.tops))]
+        ]
 
     @property
     def shared_deviations(self) -> dict[str, float]:
-        """Standard deviations of zero [m], drift [m/s], clock [-] and contact [s]; 0 of one that is not estimated."""
+        """Standard deviations of zero [m], drift [m/s], clock [-] and contact [s]; 0 of
+        one that is not estimated.
+        """
         assert self.root is not None
         names = {"zero": _ZERO, "drift": _DRIFT, "clock": _CLOCK, "contact": _CONTACT}
-        rows = {name: self.free.index(place) if place in self.free else None for name, place in names.items()}
-        return {name: 0.0 if row is None else float(np.linalg.norm(self.root[row])) for name, row in rows.items()}
+        rows = {
+            name: self.free.index(place) if place in self.free else None
+            for name, place in names.items()
+        }
+        return {
+            name: 0.0 if row is None else float(np.linalg.norm(self.root[row]))
+            for name, row in rows.items()
+        }
 
 
-def separate_flights(pieces: Sequence[tuple[Floats, Floats]], start: JointFlights, flying: Flights, least: float) -> JointFlights:
-    """Return flights that share the clock alone, with heights as in the record, and the noise of its samples.
+def separate_flights(
+    pieces: Sequence[tuple[Floats, Floats]], start: JointFlights, flying: Flights, least: float
+) -> JointFlights:
+    """Return flights that share the clock alone, with heights as in the record, and the noise of
+    its samples.
 
     Parameters
     ----------
@@ -144,24 +177,31 @@ def separate_flights(pieces: Sequence[tuple[Floats, Floats]], start: JointFlight
     return found
 
 
-def _noise_and_timing(pieces: Sequence[tuple[Floats, Floats]], at: JointFlights, flying: Flights) -> tuple[float, float]:
-    """Return the standard deviations of positions [m] and of times [s] by which the samples scatter about the flights.
+def _noise_and_timing(
+    pieces: Sequence[tuple[Floats, Floats]], at: JointFlights, flying: Flights
+) -> tuple[float, float]:
+    """Return the standard deviations of positions [m] and of times [s] by which the samples scatter
+    about the flights.
 
-    By maximum likelihood: the variance of a sample is that of positions, and that of times by the square of the speed. Where that is not
-    significantly better than positions alone, the times are exact.
+    By maximum likelihood: the variance of a sample is that of positions, and that of times by the
+    square of the speed. Where that is not significantly better than positions alone, the times are
+    exact.
     """
     squares, speeds = [], []
     for flight, (time, position) in enumerate(pieces):
         fallen, downwards = flying.depth_at((time - at.times[flight]) / at.clock)
         own = np.stack([np.ones_like(time), downwards], axis=1) / at.deviation(downwards)[:, None]
-        fitted = (np.linalg.qr(own)[0] ** 2).sum(axis=1)  # part of its variance that the fit takes from a sample
+        # part of its variance that the fit takes from a sample
+        fitted = (np.linalg.qr(own)[0] ** 2).sum(axis=1)
         left = position - (at.level(time) + at.tops[flight] - fallen)
         squares.append(left**2 / np.maximum(1.0 - fitted, 0.1))
         speeds.append((downwards / at.clock) ** 2)
     square, speed = np.concatenate(squares), np.concatenate(speeds)
 
     def cost(ratio: float) -> float:
-        """Return minus twice the logarithm of the likelihood, with the variance of positions that is most likely."""
+        """Return minus twice the logarithm of the likelihood, with the variance of
+        positions that is most likely.
+        """
         shape = 1.0 + ratio * speed
         return float(len(square) * np.log(np.mean(square / shape)) + np.log(shape).sum())
 
@@ -183,10 +223,12 @@ def meeting_flights(
     levels: Floats,
     contact: float | None,
 ) -> JointFlights:
-    """Return the fit of successive flights that meet at the height at which the sphere touches the plate.
+    """Return the fit of successive flights that meet at the height at which the sphere touches the
+    plate.
 
-    With one meeting the zero is estimated, with more its drift as well; without any, both are zero. Where the levels at which the flights
-    meet scatter about a line by more than the noise, that scatter is estimated too, and widens all deviations.
+    With one meeting the zero is estimated, with more its drift as well; without any, both are zero.
+    Where the levels at which the flights meet scatter about a line by more than the noise, that
+    scatter is estimated too, and widens all deviations.
 
     Parameters
     ----------
@@ -211,14 +253,20 @@ def meeting_flights(
     meetings = len(levels)
     if not meetings:
         return alone
-    expected = (0.0, _UNKNOWN_CONTACT * radius) if contact is None else (contact, _CONTACT_DEVIATION * contact)
+    expected = (
+        (0.0, _UNKNOWN_CONTACT * radius)
+        if contact is None
+        else (contact, _CONTACT_DEVIATION * contact)
+    )
     shared = [_ZERO, _CLOCK] if meetings == 1 else [_ZERO, _DRIFT, _CLOCK]
     shared += [_CONTACT] if contact is None or contact > 0.0 else []
     zero = float(np.median(levels)) - radius
     begun = replace(alone, tops=alone.tops - zero, zero=zero, contact=expected[0])
 
     def met(scatter: float) -> JointFlights:
-        return _solved(pieces, begun, flying, tuple(shared), alone.noise, Meetings(radius, scatter, *expected))
+        return _solved(
+            pieces, begun, flying, tuple(shared), alone.noise, Meetings(radius, scatter, *expected)
+        )
 
     found, spare = met(_HARD * alone.noise), meetings - min(meetings, 2)
     if spare and _exceeds(found.misfit - alone.misfit, spare):
@@ -252,21 +300,31 @@ def _solved(
     free = (*shared, *range(_SHARED, _SHARED + 2 * number))
     at = start
     for _ in range(_ROUNDS):
-        rows = [_sample_rows(piece, flight, at, flying, number, noise) for flight, piece in enumerate(pieces)]
+        rows = [
+            _sample_rows(piece, flight, at, flying, number, noise)
+            for flight, piece in enumerate(pieces)
+        ]
         rows.append(_prior_row(_CLOCK, 1.0 - at.clock, _CLOCK_DEVIATION, number))
         if meetings is not None:
             if np.any(at.tops <= meetings.radius):
                 raise InputError(
-                    "in a flight the centre of the sphere does not rise above its place in touch, at the radius; position must be the "
+                    "in a flight the centre of the sphere does not rise above its place in "
+                    "touch, at the radius; position must be the "
                     "height of the centre above the plate; look at its unit and at the radius"
                 )
             rows.append(_meeting_rows(at, flying, meetings))
         if _CONTACT in shared and meetings is not None:
-            rows.append(_prior_row(_CONTACT, meetings.contact - at.contact, meetings.contact_deviation, number))
+            rows.append(
+                _prior_row(
+                    _CONTACT, meetings.contact - at.contact, meetings.contact_deviation, number
+                )
+            )
         every = np.concatenate(rows)
         sizes = np.linalg.norm(every[:, list(free)], axis=0)
         # the last column, of what is left, ends in the norm of the residuals
-        triangle = np.asarray(np.linalg.qr(np.column_stack([every[:, list(free)] / sizes, every[:, -1]]), mode="r"))
+        triangle = np.asarray(
+            np.linalg.qr(np.column_stack([every[:, list(free)] / sizes, every[:, -1]]), mode="r")
+        )
         square = triangle[: len(free), : len(free)]
         step = np.zeros(_SHARED + 2 * number)
         step[list(free)] = solve_triangular(square, triangle[: len(free), -1]) / sizes
@@ -284,17 +342,38 @@ def _solved(
             break
         if np.all(np.abs(moved) <= _SETTLED * np.abs(tops)):
             root = solve_triangular(square, np.eye(len(free))) / sizes[:, None]
-            return replace(at, free=free, root=root, noise=noise, misfit=float(triangle[-1, -1] ** 2))
-    raise ComputationError("the flights in the record can't be fitted together; look at the unit of its time and position")
+            return replace(
+                at, free=free, root=root, noise=noise, misfit=float(triangle[-1, -1] ** 2)
+            )
+    raise ComputationError(
+        "the flights in the record can't be fitted together; look at the unit "
+        "of its time and position"
+    )
 
 
-def _sample_rows(piece: tuple[Floats, Floats], flight: int, at: JointFlights, flying: Flights, number: int, noise: float) -> Floats:
-    """Return the equations of the samples of a flight, reduced to as many as there are unknowns and one for what is left."""
+def _sample_rows(
+    piece: tuple[Floats, Floats],
+    flight: int,
+    at: JointFlights,
+    flying: Flights,
+    number: int,
+    noise: float,
+) -> Floats:
+    """Return the equations of the samples of a flight, reduced to as many as there are
+    unknowns and one for what is left.
+    """
     time, position = piece
     since = (time - at.times[flight]) / at.clock
     fallen, downwards = flying.depth_at(since)
     left = position - (at.level(time) + at.tops[flight] - fallen)
-    own = [np.ones_like(time), time - at.middle, downwards * since / at.clock, np.ones_like(time), downwards / at.clock, left]
+    own = [
+        np.ones_like(time),
+        time - at.middle,
+        downwards * since / at.clock,
+        np.ones_like(time),
+        downwards / at.clock,
+        left,
+    ]
     deviation = np.hypot(noise, at.timing * downwards / at.clock)
     reduced = np.linalg.qr(np.stack(own, axis=1) / deviation[:, None], mode="r")
     rows = np.zeros((len(reduced), _SHARED + 2 * number + 1))
@@ -304,7 +383,9 @@ def _sample_rows(piece: tuple[Floats, Floats], flight: int, at: JointFlights, fl
 
 
 def _meeting_rows(at: JointFlights, flying: Flights, meetings: Meetings) -> Floats:
-    """Return the equations by which each flight begins when the contact after the one before has ended, as differences of height."""
+    """Return the equations by which each flight begins when the contact after the one
+    before has ended, as differences of height.
+    """
     number = len(at.tops)
     rows = np.zeros((number - 1, _SHARED + 2 * number + 1))
     rise = at.tops - meetings.radius
@@ -313,7 +394,11 @@ def _meeting_rows(at: JointFlights, flying: Flights, meetings: Meetings) -> Floa
     down, falling = flown.return_speed, flown.duration - flown.rise_time
     for row, (one, other) in enumerate(itertools.pairwise(range(number))):
         contact = at.contact * down[one] ** _SLOWER
-        gap = at.times[other] - at.times[one] - at.clock * (flown.rise_time[other] + falling[one] + contact)
+        gap = (
+            at.times[other]
+            - at.times[one]
+            - at.clock * (flown.rise_time[other] + falling[one] + contact)
+        )
         height = down[one] * up[other] / (down[one] + up[other]) / meetings.scatter
         rows[row, _SHARED + 2 * one : _SHARED + 2 * one + 2] = -at.clock / down[one], -1.0
         rows[row, _SHARED + 2 * other : _SHARED + 2 * other + 2] = -at.clock / up[other], 1.0

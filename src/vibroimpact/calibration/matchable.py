@@ -28,10 +28,16 @@ MATCHABLE = {
 """The quantities that can be matched, by name."""
 
 ALONG_PLATE = {
-    "tangential_restitution": MatchableQuantity("tangential_restitution", "", "tangential restitution"),
-    "separation_velocity_x": MatchableQuantity("separation_velocity_x_m_s", "m/s", "velocity along the plate after the impact"),
+    "tangential_restitution": MatchableQuantity(
+        "tangential_restitution", "", "tangential restitution"
+    ),
+    "separation_velocity_x": MatchableQuantity(
+        "separation_velocity_x_m_s", "m/s", "velocity along the plate after the impact"
+    ),
     "rebound_angle": MatchableQuantity("rebound_angle_deg", "deg", "rebound angle"),
-    "spin_y_after": MatchableQuantity("spin_y_after_rad_s", "rad/s", "angular velocity after the impact"),
+    "spin_y_after": MatchableQuantity(
+        "spin_y_after_rad_s", "rad/s", "angular velocity after the impact"
+    ),
 }
 """Those of an oblique impact that friction determines."""
 
@@ -39,7 +45,9 @@ DIRECTIONS = tuple(ALONG_PLATE)[:3]
 """Three measures of the motion of the centre along the plate after an impact."""
 
 REBOUNDS = ("separation_speed", "rebound_height")
-"""Two measures of the rebound; they differ slightly under a law that releases before the overlap has vanished."""
+"""Two measures of the rebound; they differ slightly under a law that releases before the
+overlap has vanished.
+"""
 
 REBOUND: Mapping[str, float] = {"separation_speed": 1.0}
 """The default weights."""
@@ -51,14 +59,20 @@ def check_weights(weights: Mapping[str, float]) -> None:
     Raises
     ------
     InputError
-        If a name is unknown, a weight is not positive, several say the same, or there is none at all.
+        If a name is unknown, a weight is not positive, several say the same, or there is none at
+        all.
     """
     known = {**MATCHABLE, **ALONG_PLATE}
     for name, weight in weights.items():
         if name not in known:
-            raise InputError(f"{shown(name)} can't be matched; there are {choices(known, name)}", "match")
+            raise InputError(
+                f"{shown(name)} can't be matched; there are {choices(known, name)}", "match"
+            )
         if not 0.0 < weight < math.inf:
-            raise InputError(f"{weight:g} is not allowed as a weight; it must be greater than 0 and finite", f"match.{name}")
+            raise InputError(
+                f"{weight:g} is not allowed as a weight; it must be greater than 0 and finite",
+                f"match.{name}",
+            )
     for alike in (REBOUNDS, DIRECTIONS):
         if len(given := [name for name in alike if name in weights]) > 1:
             raise InputError(f"{' and '.join(given)} are equivalent; give one of them", "match")

@@ -1,6 +1,8 @@
-"""Noise of measured impacts: what each independent source contributes to each impact, as sparse matrices.
+"""Noise of measured impacts: what each independent source contributes to each impact, as sparse
+matrices.
 
-A source reaches one or two neighbouring impacts, so that everything here is linear in the number of impacts.
+A source reaches one or two neighbouring impacts, so that everything here is linear in the number of
+impacts.
 """
 
 from __future__ import annotations
@@ -30,7 +32,8 @@ def no_noise(impacts: int, sources: int) -> Noise:
 
 
 def own_noise(deviations: Mapping[str, Floats]) -> dict[str, Noise]:
-    """Return the noise of quantities that are read independently, by their standard deviations (n,) at each impact.
+    """Return the noise of quantities that are read independently, by their standard deviations (n,)
+    at each impact.
 
     Examples
     --------
@@ -48,8 +51,11 @@ def own_noise(deviations: Mapping[str, Floats]) -> dict[str, Noise]:
     return noise
 
 
-def with_common_source(noise: Mapping[str, Noise], contributions: Mapping[str, Floats]) -> dict[str, Noise]:
-    """Return noise with one more source that all impacts have in common, by what it contributes to each (n,); to others nothing.
+def with_common_source(
+    noise: Mapping[str, Noise], contributions: Mapping[str, Floats]
+) -> dict[str, Noise]:
+    """Return noise with one more source that all impacts have in common, by what it contributes to
+    each (n,); to others nothing.
 
     Examples
     --------
@@ -58,7 +64,10 @@ def with_common_source(noise: Mapping[str, Noise], contributions: Mapping[str, F
     [[0.1, 0.0, 0.3], [0.0, 0.2, 0.4]]
     """
     return {
-        name: csr_array(hstack([own, csr_array(contributions.get(name, np.zeros(own.shape[0]))[:, None])])) for name, own in noise.items()
+        name: csr_array(
+            hstack([own, csr_array(contributions.get(name, np.zeros(own.shape[0]))[:, None])])
+        )
+        for name, own in noise.items()
     }
 
 
@@ -84,7 +93,8 @@ def standard_deviations(noise: Noise) -> Floats:
 
 
 def whitened(noise: Noise, columns: Floats) -> Floats:
-    r"""Return columns (n, k) times the inverse of a root of the covariance of their noise, which is then independent; in another order.
+    r"""Return columns (n, k) times the inverse of a root of the covariance of their noise, which is
+    then independent; in another order.
 
     The covariance :math:`N N^T` is ordered into a narrow band, in which its Cholesky factor stays.
 
@@ -95,7 +105,9 @@ def whitened(noise: Noise, columns: Floats) -> Floats:
 
     Examples
     --------
-    >>> sorted(whitened(as_noise([[2.0, 0.0], [0.0, 4.0]]), np.array([[1.0], [1.0]])).ravel().tolist())
+    >>> sorted(
+    ...     whitened(as_noise([[2.0, 0.0], [0.0, 4.0]]), np.array([[1.0], [1.0]])).ravel().tolist()
+    ... )
     [0.25, 0.5]
     """
     covariance = csr_array(noise @ noise.T)

@@ -11,11 +11,21 @@ import numpy as np
 from vibroimpact.arrays import Floats, Indices
 from vibroimpact.calibration.flights import Flights, VacuumFlights, vacuum_height
 from vibroimpact.calibration.inputs import Input
-from vibroimpact.calibration.noise import Noise, as_noise, no_noise, of_the_impact_before, own_noise, scaled, standard_deviations
+from vibroimpact.calibration.noise import (
+    Noise,
+    as_noise,
+    no_noise,
+    of_the_impact_before,
+    own_noise,
+    scaled,
+    standard_deviations,
+)
 
 
 class Correction(NamedTuple):
-    """What a record itself determines, and is corrected by: its value, standard deviation (0 if it is not estimated), and their unit."""
+    """What a record itself determines, and is corrected by: its value, standard deviation
+    (0 if it is not estimated), and their unit.
+    """
 
     value: float
     deviation: float
@@ -23,8 +33,9 @@ class Correction(NamedTuple):
 
 
 class Effects(NamedTuple):
-    """What one standard deviation of each of k typed inputs, such as gravity or the radius, changes: in the approach speeds [m/s], (n, k),
-    and in the target values beyond what it changes in the computed ones, (n, k) by name. All impacts share them.
+    """What one standard deviation of each of k typed inputs, such as gravity or the radius,
+    changes: in the approach speeds [m/s], (n, k), and in the target values beyond what it changes
+    in the computed ones, (n, k) by name. All impacts share them.
     """
 
     inputs: tuple[Input, ...]
@@ -33,8 +44,9 @@ class Effects(NamedTuple):
 
 
 class Record(NamedTuple):
-    """A record over time: times [s] and forces above the baseline [N], one piece per impact; or positions [m] in one piece, with the times
-    at which the flights from the plate begin [s]. It is corrected by what it determines itself.
+    """A record over time: times [s] and forces above the baseline [N], one piece per impact; or
+    positions [m] in one piece, with the times at which the flights from the plate begin [s]. It is
+    corrected by what it determines itself.
     """
 
     quantity: Literal["force", "position"]
@@ -46,8 +58,8 @@ class Record(NamedTuple):
 class Observations:
     """Impacts to be matched.
 
-    Noise is a linear map from independent sources of unit variance, so that a reading shared by two impacts (the height between
-    them) counts once.
+    Noise is a linear map from independent sources of unit variance, so that a reading shared by two
+    impacts (the height between them) counts once.
 
     Parameters
     ----------
@@ -56,7 +68,8 @@ class Observations:
     wanted : mapping of str to array, shape (n,)
         Target values by the names of `MATCHABLE`, in SI units.
     speed_noise : array, shape (n, m)
-        Contribution of each noise source to the approach speeds [m/s]; kept as a sparse array, as is `noise`.
+        Contribution of each noise source to the approach speeds [m/s]; kept as a sparse array, as
+        is `noise`.
     noise : mapping of str to array, shape (n, m)
         Contribution of each source to the target values. Empty: the values are exact.
     deviations_known : bool
@@ -70,14 +83,15 @@ class Observations:
     doubts : tuple of str
         Warnings, as sentences.
     flights : Flights, optional
-        Model of the flights between impacts if they have drag; rebound heights are then converted to those in a vacuum.
+        Model of the flights between impacts if they have drag; rebound heights are then converted
+        to those in a vacuum.
     record : Record, optional
         The record in which they were found.
     notes : tuple of str
         How they were evaluated, as sentences.
     corrections : mapping of str to Correction
-        What the record itself determines: of a position its "zero" [m], the "drift" of that [m/s], and its "clock", in seconds of the
-        record per second.
+        What the record itself determines: of a position its "zero" [m], the "drift" of that [m/s],
+        and its "clock", in seconds of the record per second.
     effects : Effects, optional
         What the uncertainty of typed inputs changes.
 
@@ -85,7 +99,9 @@ class Observations:
     --------
     >>> import numpy as np
     >>> import vibroimpact as vi
-    >>> exact = vi.Observations(speeds=np.array([8.8, 6.8]), wanted={"restitution": np.array([0.77, 0.78])})
+    >>> exact = vi.Observations(
+    ...     speeds=np.array([8.8, 6.8]), wanted={"restitution": np.array([0.77, 0.78])}
+    ... )
     >>> exact.measured, exact.which.tolist()
     (False, [0, 1])
     """
@@ -107,7 +123,9 @@ class Observations:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "speed_noise", as_noise(self.speed_noise))
-        object.__setattr__(self, "noise", {name: as_noise(values) for name, values in self.noise.items()})
+        object.__setattr__(
+            self, "noise", {name: as_noise(values) for name, values in self.noise.items()}
+        )
 
     @property
     def measured(self) -> bool:
@@ -116,25 +134,47 @@ class Observations:
 
     @property
     def which(self) -> Indices:
-        """Index of the impact of the drop that each represents, (n,); 0 if they are not impacts of the drop."""
-        return np.arange(len(self.speeds)) if self.of_the_drop else np.zeros(len(self.speeds), dtype=np.intp)
+        """Index of the impact of the drop that each represents, (n,); 0 if they are not
+        impacts of the drop.
+        """
+        return (
+            np.arange(len(self.speeds))
+            if self.of_the_drop
+            else np.zeros(len(self.speeds), dtype=np.intp)
+        )
 
     def redrawn(self, random: np.random.Generator) -> tuple[Floats, dict[str, Floats]]:
-        """Return approach speeds and target values with a random realization of the noise and of the inputs."""
+        """Return approach speeds and target values with a random realization of the noise
+        and of the inputs.
+        """
         draw = random.normal(size=self.speed_noise.shape[1])
         speeds = self.speeds + self.speed_noise @ draw
         wanted = {name: values + self.noise[name] @ draw for name, values in self.wanted.items()}
         if self.effects is None:
             return speeds, wanted
         moved = random.normal(size=len(self.effects.inputs))
-        changed = {name: values + self.effects.wanted[name] @ moved for name, values in wanted.items() if name in self.effects.wanted}
+        changed = {
+            name: values + self.effects.wanted[name] @ moved
+            for name, values in wanted.items()
+            if name in self.effects.wanted
+        }
         return speeds + self.effects.speeds @ moved, {**wanted, **changed}
 
     @property
     def speed_deviations(self) -> Floats:
-        """Standard deviations of the approach speeds [m/s], (n,): 0 where they are exact or their noise is of unknown magnitude."""
-        known = standard_deviations(self.speed_noise) if self.deviations_known else np.zeros(len(self.speeds))
-        return known if self.effects is None else np.hypot(known, np.linalg.norm(self.effects.speeds, axis=1))
+        """Standard deviations of the approach speeds [m/s], (n,): 0 where they are exact
+        or their noise is of unknown magnitude.
+        """
+        known = (
+            standard_deviations(self.speed_noise)
+            if self.deviations_known
+            else np.zeros(len(self.speeds))
+        )
+        return (
+            known
+            if self.effects is None
+            else np.hypot(known, np.linalg.norm(self.effects.speeds, axis=1))
+        )
 
 
 def from_heights(
@@ -168,14 +208,18 @@ def from_heights(
 
     Examples
     --------
-    >>> found = from_heights(np.array([0.525, 0.1]), None, first_speed=4.0, radius=0.025, gravity=9.8)
+    >>> found = from_heights(
+    ...     np.array([0.525, 0.1]), None, first_speed=4.0, radius=0.025, gravity=9.8
+    ... )
     >>> found.speeds.round(4).tolist(), found.wanted["rebound_height"].round(9).tolist()
     ([4.0, 3.1305], [0.525, 0.1])
     """
     flying = flights or VacuumFlights(gravity)
     falls, slopes = flying.speed_after_fall(heights - radius)
     rises, scales = vacuum_height(flying, heights - radius)
-    readings = own_noise({"rebound_height": np.ones(len(heights)) if deviation is None else deviation})["rebound_height"]
+    readings = own_noise(
+        {"rebound_height": np.ones(len(heights)) if deviation is None else deviation}
+    )["rebound_height"]
     before = of_the_impact_before(scaled(slopes, readings))
     names = labels or tuple(f"impact {number + 1}" for number in range(len(heights)))
     speeds, known = np.append(first_speed, falls[:-1]), deviation is not None
@@ -183,9 +227,16 @@ def from_heights(
     return Observations(speeds, wanted, before, noise, known, names, flights=flights)
 
 
-def with_noise_scale(seen: Observations, scatter: float, weights: Mapping[str, float]) -> Observations:
-    """Return the observations with noise of known magnitude: `scatter` times the relative one, over the root of the weight."""
-    noise = {name: scatter / np.sqrt(weights.get(name, 1.0)) * values for name, values in seen.noise.items()}
+def with_noise_scale(
+    seen: Observations, scatter: float, weights: Mapping[str, float]
+) -> Observations:
+    """Return the observations with noise of known magnitude: `scatter` times the relative
+    one, over the root of the weight.
+    """
+    noise = {
+        name: scatter / np.sqrt(weights.get(name, 1.0)) * values
+        for name, values in seen.noise.items()
+    }
     return replace(seen, speed_noise=scatter * seen.speed_noise, noise=noise, deviations_known=True)
 
 
@@ -213,6 +264,11 @@ def from_table(
         Whether they are the successive impacts of the drop.
     """
     # of unknown magnitude: the same relative noise for all
-    sizes = {name: np.abs(values) if deviations is None else deviations[name] for name, values in wanted.items()}
+    sizes = {
+        name: np.abs(values) if deviations is None else deviations[name]
+        for name, values in wanted.items()
+    }
     exact = no_noise(len(speeds), len(speeds) * len(wanted))
-    return Observations(speeds, wanted, exact, own_noise(sizes), deviations is not None, labels, of_the_drop)
+    return Observations(
+        speeds, wanted, exact, own_noise(sizes), deviations is not None, labels, of_the_drop
+    )

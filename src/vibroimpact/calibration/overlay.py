@@ -30,7 +30,8 @@ class Overlay:
     quantity : "force" or "position"
         The contact force [N], or the height of the sphere's centre above the plate [m].
     measured, simulated : tuple of two arrays
-        Times [s], relative to the simulated first touch for a force and those of the record for a position, and values.
+        Times [s], relative to the simulated first touch for a force and those of the record for a
+        position, and values.
     touch : float
         Time of the simulated first touch in the record of a force [s].
     flights : tuple of (float, float)
@@ -45,15 +46,19 @@ class Overlay:
     flights: tuple[tuple[float, float], ...] = ()
 
 
-def overlays(tunable: Tunable, seen: Observations, values: Floats, outcomes: Mapping[str, Floats]) -> tuple[Overlay, ...]:
-    """Return the measured record with its simulation: one overlay for each of the first contacts of a force, one in all for a position.
+def overlays(
+    tunable: Tunable, seen: Observations, values: Floats, outcomes: Mapping[str, Floats]
+) -> tuple[Overlay, ...]:
+    """Return the measured record with its simulation: one overlay for each of the first contacts of
+    a force, one in all for a position.
 
     Parameters
     ----------
     tunable : Tunable
         The tuned parameter.
     seen : Observations
-        The measurement; the result is empty if it is not a record, or a force record and the law has no force.
+        The measurement; the result is empty if it is not a record, or a force record and the law
+        has no force.
     values : array, shape (n,)
         The value found for each impact.
     outcomes : mapping of str to array, shape (n,)
@@ -68,15 +73,27 @@ def overlays(tunable: Tunable, seen: Observations, values: Floats, outcomes: Map
         return ()  # an impulsive law has no force
     for number, (time, force) in enumerate(seen.record.pieces[:_MOST]):
         at, simulated = _contact(drop, number, float(seen.speeds[number]))
-        shift = _middle(time, force) - _middle(at, simulated)  # the centroid of a pulse is better determined than its ends
-        found.append(Overlay(seen.labels[number], "force", (time - shift, force), (at, simulated), shift))
+        # the centroid of a pulse is better determined than its ends
+        shift = _middle(time, force) - _middle(at, simulated)
+        found.append(
+            Overlay(seen.labels[number], "force", (time - shift, force), (at, simulated), shift)
+        )
     return tuple(found)
 
 
 def _contact(drop: Problem, number: int, speed: float) -> tuple[Floats, Floats]:
     """Return times since first touch [s] and the force [N] of a single impact."""
     law = drop.laws[min(number, len(drop.laws) - 1)]
-    begun = replace(drop, laws=(law,), height=None, speed=speed, impacts=1, duration=None, rest_speed=0.0, sensors=())
+    begun = replace(
+        drop,
+        laws=(law,),
+        height=None,
+        speed=speed,
+        impacts=1,
+        duration=None,
+        rest_speed=0.0,
+        sensors=(),
+    )
     response = simulate(begun)
     time = np.linspace(0.0, float(response.impacts["duration_s"].flat[0]), _POINTS)
     return time, response.at(time)["force_N"]
@@ -88,7 +105,8 @@ def _middle(time: Floats, force: Floats) -> float:
 
 
 def _position(drop: Problem, seen: Observations, outcomes: Mapping[str, Floats]) -> Overlay:
-    """Return the record with the flight after each simulated impact, from when it begins in the record.
+    """Return the record with the flight after each simulated impact, from when it begins in the
+    record.
 
     One after the other, they would show errors of their durations that add up.
     """
@@ -98,8 +116,12 @@ def _position(drop: Problem, seen: Observations, outcomes: Mapping[str, Floats])
     time, position = seen.record.pieces[0]
     simulated, flights = np.full_like(time, np.nan), []
     for rebound, begin in zip(outcomes["rebound_height"], seen.record.begins, strict=True):
-        flown = flying.flight(np.asarray(np.sqrt(2.0 * gravity * max(float(rebound) - radius, 0.0))))
+        flown = flying.flight(
+            np.asarray(np.sqrt(2.0 * gravity * max(float(rebound) - radius, 0.0)))
+        )
         inside = (time >= begin) & (time <= begin + flown.duration)
-        simulated[inside] = radius + flown.height - flying.depth_at(time[inside] - begin - flown.rise_time)[0]
+        simulated[inside] = (
+            radius + flown.height - flying.depth_at(time[inside] - begin - flown.rise_time)[0]
+        )
         flights.append((begin, begin + float(flown.duration)))
     return Overlay("", "position", (time, position), (time, simulated), flights=tuple(flights))

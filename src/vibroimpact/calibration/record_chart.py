@@ -1,4 +1,6 @@
-"""Chart of a measured record and its simulation with calibrated values, with the difference below."""
+"""Chart of a measured record and its simulation with calibrated values, with the
+difference below.
+"""
 
 from __future__ import annotations
 
@@ -18,7 +20,9 @@ _FEW = 400
 """Samples up to which points are drawn; more would overlap."""
 
 _MARGIN = 0.25
-"""Time shown before first touch and after release of an enlarged contact, relative to its duration."""
+"""Time shown before first touch and after release of an enlarged contact, relative to its
+duration.
+"""
 
 _COLUMNS = 25_000
 """Columns into which a very long record is divided; up to four samples of each are drawn."""
@@ -34,41 +38,76 @@ def record_chart(overlays: Sequence[Overlay]) -> Chart:
     overlays : sequence of Overlay
         Contacts of a force, or one record of a position.
     """
-    return _position_chart(overlays[0]) if overlays[0].quantity == "position" else _force_chart(overlays)
+    return (
+        _position_chart(overlays[0])
+        if overlays[0].quantity == "position"
+        else _force_chart(overlays)
+    )
 
 
 def _force_chart(overlays: Sequence[Overlay]) -> Chart:
-    time = Axis("Time", "s", views=tuple(_contact_view(number, one) for number, one in enumerate(overlays)))
+    time = Axis(
+        "Time", "s", views=tuple(_contact_view(number, one) for number, one in enumerate(overlays))
+    )
     upper: list[Mark] = []
     lower: list[Mark] = []
     for one in overlays:
         (measured_at, force), (at, simulated) = one.measured, one.simulated
         apart = force - np.interp(measured_at, at, simulated, left=0.0, right=0.0)
-        upper += [_measured(one.touch + measured_at, force), Line(one.touch + at, simulated, "simulated", "detail")]
+        upper += [
+            _measured(one.touch + measured_at, force),
+            Line(one.touch + at, simulated, "simulated", "detail"),
+        ]
         lower.append(Line(one.touch + measured_at, apart, "measured less simulated", "matched"))
-    panels = (Panel(time, Axis("Contact force", "N"), tuple(upper)),), (Panel(time, Axis("Difference", "N"), tuple(lower)),)
-    caption = "The record around each contact, and the simulation with the calibrated values: each impact at its own approach speed."
+    panels = (
+        (Panel(time, Axis("Contact force", "N"), tuple(upper)),),
+        (Panel(time, Axis("Difference", "N"), tuple(lower)),),
+    )
+    caption = (
+        "The record around each contact, and the simulation with the calibrated values: each "
+        "impact at its own approach speed."
+    )
     return Chart("record", "Measured and simulated contact force", panels, caption, height=2.3)
 
 
 def _contact_view(number: int, one: Overlay) -> View:
     duration = float(one.simulated[0][-1])
-    measured, simulated = (text(float(np.max(part[1])), "N", 3) for part in (one.measured, one.simulated))
+    measured, simulated = (
+        text(float(np.max(part[1])), "N", 3) for part in (one.measured, one.simulated)
+    )
     headline = f"largest force: simulated {simulated}, measured {measured}"
     start, end = one.touch - _MARGIN * duration, one.touch + (1.0 + _MARGIN) * duration
-    return View(f"Impact {number + 1}", start, end, one.touch, f"Time since first touch of impact {number + 1}", headline)
+    return View(
+        f"Impact {number + 1}",
+        start,
+        end,
+        one.touch,
+        f"Time since first touch of impact {number + 1}",
+        headline,
+    )
 
 
 def _position_chart(one: Overlay) -> Chart:
-    views = tuple(_flight_view(number, flight) for number, flight in enumerate(one.flights[:_MOST_VIEWS]))
+    views = tuple(
+        _flight_view(number, flight) for number, flight in enumerate(one.flights[:_MOST_VIEWS])
+    )
     known = np.isfinite(one.simulated[1])
     apart = one.measured[1] - one.simulated[1]
     time = Axis("Time", "s", views=views)
-    upper = (_measured(*_drawn(*one.measured)), Line(*_drawn(one.measured[0][known], one.simulated[1][known]), "simulated", "detail"))
-    lower = (Line(*_drawn(one.measured[0][known], apart[known]), "measured less simulated", "matched"),)
-    panels = (Panel(time, Axis("Height", "m"), upper),), (Panel(time, Axis("Difference", "m"), lower),)
+    upper = (
+        _measured(*_drawn(*one.measured)),
+        Line(*_drawn(one.measured[0][known], one.simulated[1][known]), "simulated", "detail"),
+    )
+    lower = (
+        Line(*_drawn(one.measured[0][known], apart[known]), "measured less simulated", "matched"),
+    )
+    panels = (
+        (Panel(time, Axis("Height", "m"), upper),),
+        (Panel(time, Axis("Difference", "m"), lower),),
+    )
     caption = (
-        "The height of the sphere's centre as measured, corrected by what the record itself determines, and simulated with the calibrated "
+        "The height of the sphere's centre as measured, corrected by what the record itself "
+        "determines, and simulated with the calibrated "
         "values, from the first impact on: each rebound begins when it does in the record."
     )
     return Chart("record", "Measured and simulated height", panels, caption, height=2.3)
@@ -78,7 +117,14 @@ def _flight_view(number: int, flight: tuple[float, float]) -> View:
     begin, end = flight
     more = 0.05 * (end - begin)
     since = f"Time since the start of rebound {number + 1}"
-    return View(f"Rebound {number + 1}", begin - more, end + more, begin, since, f"lasts {text(end - begin, 's')}")
+    return View(
+        f"Rebound {number + 1}",
+        begin - more,
+        end + more,
+        begin,
+        since,
+        f"lasts {text(end - begin, 's')}",
+    )
 
 
 def _measured(time: Floats, values: Floats) -> Mark:
@@ -89,5 +135,7 @@ def _measured(time: Floats, values: Floats) -> Mark:
 
 def _drawn(time: Floats, values: Floats) -> tuple[Floats, Floats]:
     """Return the samples that are drawn: all, or of a very long record those that show it."""
-    kept = visible_points(len(time), lambda first, last: (time[first:last], values[first:last]), _COLUMNS)
+    kept = visible_points(
+        len(time), lambda first, last: (time[first:last], values[first:last]), _COLUMNS
+    )
     return (time, values) if kept is None else (time[kept], values[kept])

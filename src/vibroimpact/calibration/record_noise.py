@@ -13,7 +13,8 @@ ABOVE_NOISE = 6.0
 
 
 def record_noise(values: Floats) -> float:
-    """Return the standard deviation of the white noise of a record that is smooth for most of the time.
+    """Return the standard deviation of the white noise of a record that is smooth for most of the
+    time.
 
     Examples
     --------
@@ -21,11 +22,18 @@ def record_noise(values: Floats) -> float:
     >>> round(record_noise(np.sin(t) + np.random.default_rng(0).normal(scale=1.0, size=2001)), 1)
     1.0
     """
-    # robust estimate from third differences: 0.6745 is the median of |N(0, 1)|, and 20 the sum of squares of 1, 3, 3, 1
+    # robust estimate from third differences: 0.6745 is the median of |N(0, 1)|, and 20 the sum of
+    # squares of 1, 3, 3, 1
     third = np.diff(values, 3)
     return float(np.median(np.abs(third)) / 0.6745 / np.sqrt(20.0)) if len(third) else 0.0
 
 
 def sample_label(lines: Sequence[int] | None) -> Callable[[int], str]:
-    """Return a function that names a sample by its line in the file, or by its number if that is unknown."""
-    return (lambda index: f"sample {index + 1}") if lines is None else (lambda index: f"line {lines[index]}")
+    """Return a function that names a sample by its line in the file, or by its number if
+    that is unknown.
+    """
+    return (
+        (lambda index: f"sample {index + 1}")
+        if lines is None
+        else (lambda index: f"line {lines[index]}")
+    )

@@ -17,7 +17,11 @@ _MOST_ROWS = 50
 
 def shortened(rows: list[list[str]]) -> list[list[str]]:
     """Return the first rows of a table, and an ellipsis if there are more."""
-    return rows if len(rows) <= _MOST_ROWS else [*rows[: _MOST_ROWS - 1], ["…", *[""] * (len(rows[0]) - 1)]]
+    return (
+        rows
+        if len(rows) <= _MOST_ROWS
+        else [*rows[: _MOST_ROWS - 1], ["…", *[""] * (len(rows[0]) - 1)]]
+    )
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -11,7 +11,9 @@ from vibroimpact.calibration.observations import Observations
 
 _DEVIATIONS = 3.0
 _LEAST, _MOST = 0.01, 0.1
-"""Excess over 1 that is accepted where the noise is unknown, and its upper bound where it is estimated from the scatter."""
+"""Excess over 1 that is accepted where the noise is unknown, and its upper bound where it
+is estimated from the scatter.
+"""
 
 
 class RestitutionLimit(NamedTuple):
@@ -26,15 +28,21 @@ def measured_restitutions(seen: Observations, radius: float, gravity: float) -> 
     if "separation_speed" in seen.wanted:
         return seen.wanted["separation_speed"] / seen.speeds
     if "rebound_height" in seen.wanted:
-        return np.asarray(np.sqrt(2.0 * gravity * np.maximum(seen.wanted["rebound_height"] - radius, 0.0)) / seen.speeds)
+        return np.asarray(
+            np.sqrt(2.0 * gravity * np.maximum(seen.wanted["rebound_height"] - radius, 0.0))
+            / seen.speeds
+        )
     return None
 
 
-def restitution_limit(speeds: Floats, restitutions: Floats, deviations: Floats | None) -> RestitutionLimit:
+def restitution_limit(
+    speeds: Floats, restitutions: Floats, deviations: Floats | None
+) -> RestitutionLimit:
     """Return the value above 1 up to which a measured restitution is attributed to noise.
 
-    The limit lies three standard deviations above 1 where these are given. Otherwise it lies three times the scatter of the values
-    not above 1 about a parabola of the approach speed, at least 1 % and at most 10 %.
+    The limit lies three standard deviations above 1 where these are given. Otherwise it lies three
+    times the scatter of the values not above 1 about a parabola of the approach speed, at least 1 %
+    and at most 10 %.
 
     Parameters
     ----------
@@ -56,10 +64,16 @@ def restitution_limit(speeds: Floats, restitutions: Floats, deviations: Floats |
     degree = min(2, len(np.unique(speeds[some])) - 1)
     freedom = int(np.count_nonzero(some)) - degree - 1
     if degree < 0 or freedom < 1:
-        return RestitutionLimit(np.full(len(speeds), 1.0 + _LEAST), "1 %, as no standard deviation is given")
+        return RestitutionLimit(
+            np.full(len(speeds), 1.0 + _LEAST), "1 %, as no standard deviation is given"
+        )
     powers = np.vander(speeds[some] / speeds.max(), degree + 1)
     left = restitutions[some] - powers @ np.linalg.lstsq(powers, restitutions[some], rcond=None)[0]
     scatter = float(np.sqrt(left @ left / freedom))
     part = float(np.clip(_DEVIATIONS * scatter, _LEAST, _MOST))
-    why = "three times the scatter of the others" if _LEAST < part < _MOST else f"{100.0 * part:g} %, as no standard deviation is given"
+    why = (
+        "three times the scatter of the others"
+        if _LEAST < part < _MOST
+        else f"{100.0 * part:g} %, as no standard deviation is given"
+    )
     return RestitutionLimit(np.full(len(speeds), 1.0 + part), why)

@@ -8,10 +8,20 @@ import numpy as np
 
 from vibroimpact.calibration.evaluate_measurement import Measurement, evaluate
 from vibroimpact.calibration.matchable import REBOUND, REBOUNDS
-from vibroimpact.calibration.measured_case import first_impact_measurement, heights_measurement, restitution_observations
+from vibroimpact.calibration.measured_case import (
+    first_impact_measurement,
+    heights_measurement,
+    restitution_observations,
+)
 from vibroimpact.calibration.measured_file import file_measurement
 from vibroimpact.calibration.observations import Observations, from_table
-from vibroimpact.calibration.section import CalibrateSection, FileTarget, HeightsTarget, ImpactTarget, RestitutionTarget
+from vibroimpact.calibration.section import (
+    CalibrateSection,
+    FileTarget,
+    HeightsTarget,
+    ImpactTarget,
+    RestitutionTarget,
+)
 from vibroimpact.cases.case import Case
 from vibroimpact.cases.fields.contact import ContactSection
 from vibroimpact.cases.rigid import by_speed_of, contact_laws_of, touch_speed
@@ -26,13 +36,16 @@ def target_of(case: Case, problem: Problem, section: CalibrateSection) -> Proble
     Raises
     ------
     InputError
-        If a file can't be read or contains no impacts (the message names the line), or the measured values are impossible.
+        If a file can't be read or contains no impacts (the message names the line), or the measured
+        values are impossible.
     """
     target = section.target
     if isinstance(target, (HeightsTarget, ImpactTarget, FileTarget)):
         return evaluate(case, _measured(case, target, section), section.air)
     if section.air:
-        raise InputError("the target has no measured flights, which alone depend on air; leave this out", "air")
+        raise InputError(
+            "the target has no measured flights, which alone depend on air; leave this out", "air"
+        )
     if isinstance(target, ContactSection):
         try:
             other = case.model_copy(update={"contact": target})
@@ -42,19 +55,36 @@ def target_of(case: Case, problem: Problem, section: CalibrateSection) -> Proble
     assert isinstance(target, RestitutionTarget)
     if isinstance(target.restitution, tuple):
         return restitution_observations(case, target)
-    if problem.vibrates:  # an impulsive law is not defined with vibrating bodies: match the first impact, on bodies at rest
+    # an impulsive law is not defined with vibrating bodies: match the first impact, on bodies at
+    # rest
+    if problem.vibrates:
         speed = touch_speed(case)
         return from_table(
-            np.array([speed]), {"separation_speed": np.array([target.restitution * speed])}, None, ("impact 1",), of_the_drop=True
+            np.array([speed]),
+            {"separation_speed": np.array([target.restitution * speed])},
+            None,
+            ("impact 1",),
+            of_the_drop=True,
         )
     return replace(problem, laws=(Newton(restitution=target.restitution),), by_speed={})
 
 
-def _measured(case: Case, target: HeightsTarget | ImpactTarget | FileTarget, section: CalibrateSection) -> Measurement:
+def _measured(
+    case: Case, target: HeightsTarget | ImpactTarget | FileTarget, section: CalibrateSection
+) -> Measurement:
     if isinstance(target, HeightsTarget):
         heights = np.array(target.rebound_heights)
-        deviation = None if target.standard_deviation is None else np.full(len(heights), target.standard_deviation)
-        return heights_measurement(case, heights, deviation, tuple(f"impact {number + 1}" for number in range(len(heights))))
+        deviation = (
+            None
+            if target.standard_deviation is None
+            else np.full(len(heights), target.standard_deviation)
+        )
+        return heights_measurement(
+            case,
+            heights,
+            deviation,
+            tuple(f"impact {number + 1}" for number in range(len(heights))),
+        )
     if isinstance(target, ImpactTarget):
         return first_impact_measurement(case, target)
     return file_measurement(case, target, set(section.match or REBOUND) <= set(REBOUNDS))

@@ -14,7 +14,9 @@ from vibroimpact.runs.text import doubt_lines
 
 
 def calibration_summary(case: Case, told: CalibrationReport) -> RenderableType:
-    """Return the values, the fit, the remaining differences and the warnings of a calibration, for the terminal."""
+    """Return the values, the fit, the remaining differences and the warnings of a
+    calibration, for the terminal.
+    """
     parts: list[RenderableType] = [
         Text(case.name or "a drop", style="bold"),
         Text(f"{told.law}, so that {told.matched}"),
@@ -26,12 +28,24 @@ def calibration_summary(case: Case, told: CalibrationReport) -> RenderableType:
     ]
     if told.dialog:
         parts += [Text(), Text(DIALOG_TITLE, style="bold"), cells_table(told.dialog)]
-        parts += [Text(f" {dialog_note(told.parameter)}", style="dim")] if len(told.dialog[1]) > 1 else []
+        parts += (
+            [Text(f" {dialog_note(told.parameter)}", style="dim")]
+            if len(told.dialog[1]) > 1
+            else []
+        )
     if told.given:
         parts += [Text(), *(Text(sentence) for sentence in told.given)]
     if told.differences:
         parts += [Text(), Text("Remaining differences", style="bold")]
-        parts.append(Columns([Group(Text(f" {title}"), cells_table(cells)) for title, cells in told.differences.items()], padding=(0, 4)))
+        parts.append(
+            Columns(
+                [
+                    Group(Text(f" {title}"), cells_table(cells))
+                    for title, cells in told.differences.items()
+                ],
+                padding=(0, 4),
+            )
+        )
         parts.append(Text(f" {told.ways}", style="dim"))
     parts += [Text(), *doubt_lines(told.doubts)] if told.doubts else []
     return Group(*parts)
@@ -42,4 +56,12 @@ def cells_table(cells: Cells) -> TerminalTable:
     (first, *headers), rows = cells
     names, *columns = zip(*rows, strict=True)
     key = TerminalColumn(first[0], names, text=True)
-    return TerminalTable([key, *(numbers(heading, unit, one) for (heading, unit), one in zip(headers, columns, strict=True))])
+    return TerminalTable(
+        [
+            key,
+            *(
+                numbers(heading, unit, one)
+                for (heading, unit), one in zip(headers, columns, strict=True)
+            ),
+        ]
+    )

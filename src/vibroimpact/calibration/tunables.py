@@ -17,8 +17,8 @@ from vibroimpact.ranges import Range
 
 _MODAL_START = 0.02
 _FAR = 1e6
-"""Ratio of a given value to the example of its parameter above which the search begins at the example: so far off, contacts may take a
-second each, or fail.
+"""Ratio of a given value to the example of its parameter above which the search begins at the
+example: so far off, contacts may take a second each, or fail.
 """
 
 
@@ -44,18 +44,34 @@ def law_parameter(problem: Problem, name: str | None = None) -> Tunable:
     [179.75]
     """
     laws, first = problem.laws, problem.laws[0]
-    known = {item.name: item for item in fields(first) if not item.metadata["memory"] and getattr(first, item.name) is not None}
+    known = {
+        item.name: item
+        for item in fields(first)
+        if not item.metadata["memory"] and getattr(first, item.name) is not None
+    }
     if name is None and first.free_parameter is None:
         other = f"or, to match something other than the rebound, one of {', '.join(known)}"
-        raise InputError(f"{first.name} has no loss parameter; name another law, {other}", "parameter")
+        raise InputError(
+            f"{first.name} has no loss parameter; name another law, {other}", "parameter"
+        )
     chosen = name or str(first.free_parameter)
     if chosen in {item.name for item in fields(first) if not item.metadata["memory"]} - set(known):
-        words = f"the case gives no {chosen} of {first.name}, in whose place it gives another parameter"
-        raise InputError(f"{words}; give {chosen} alone, or tune one of {', '.join(known)}", "parameter")
+        words = (
+            f"the case gives no {chosen} of {first.name}, in whose place it gives another parameter"
+        )
+        raise InputError(
+            f"{words}; give {chosen} alone, or tune one of {', '.join(known)}", "parameter"
+        )
     if chosen not in known:
-        raise InputError(f'{first.name} has no parameter "{chosen}"; it has {choices(known, chosen)}', "parameter")
+        raise InputError(
+            f'{first.name} has no parameter "{chosen}"; it has {choices(known, chosen)}',
+            "parameter",
+        )
     # what is sought takes the place of a function of the approach speed
-    problem = replace(problem, by_speed={key: function for key, function in problem.by_speed.items() if key != chosen})
+    problem = replace(
+        problem,
+        by_speed={key: function for key, function in problem.by_speed.items() if key != chosen},
+    )
     told = known[chosen].metadata
     given = np.array([float(getattr(law, chosen)) for law in laws])
     start = _start(float(given[0]), told["example"])
@@ -66,11 +82,21 @@ def law_parameter(problem: Problem, name: str | None = None) -> Tunable:
 
     def drop(values: Floats) -> Problem:
         number = max(len(values), len(laws))
-        return replace(problem, laws=tuple(_law(laws, impact).changed({chosen: _at(values, impact)}) for impact in range(number)))
+        return replace(
+            problem,
+            laws=tuple(
+                _law(laws, impact).changed({chosen: _at(values, impact)})
+                for impact in range(number)
+            ),
+        )
 
     unit = unit_of(known[chosen], getattr(first, "exponent", 1.0))
     allowed: Range = told["range"]
-    damps = chosen == first.free_parameter and allowed.at_least == 0.0 and not np.isfinite(allowed.at_most)
+    damps = (
+        chosen == first.free_parameter
+        and allowed.at_least == 0.0
+        and not np.isfinite(allowed.at_most)
+    )
     return Tunable(chosen, unit, allowed, float(start), given, respond, drop, damps)
 
 
@@ -92,20 +118,35 @@ def modal_damping(problem: Problem, body: Literal["sphere", "plate"]) -> Tunable
     Examples
     --------
     >>> import vibroimpact as vi
-    >>> problem = vi.read_case({
-    ...     "sphere": {"radius": "25 mm", "material": "rock-paper", "model": "elastic", "modes": 5, "damping": 0.02},
-    ...     "plate": {"material": "rigid"}, "drop": {"speed": 1.0}, "contact": {"law": "hertz"},
-    ... }).to_problem()
+    >>> problem = vi.read_case(
+    ...     {
+    ...         "sphere": {
+    ...             "radius": "25 mm",
+    ...             "material": "rock-paper",
+    ...             "model": "elastic",
+    ...             "modes": 5,
+    ...             "damping": 0.02,
+    ...         },
+    ...         "plate": {"material": "rigid"},
+    ...         "drop": {"speed": 1.0},
+    ...         "contact": {"law": "hertz"},
+    ...     }
+    ... ).to_problem()
     >>> vi.modal_damping(problem, "sphere").given.tolist()
     [0.02]
     """
     modes = getattr(problem, body).modes
     if modes is None:
-        raise InputError(f'the {body} is rigid and has no modes to damp; give it model = "elastic"', "parameter")
+        raise InputError(
+            f'the {body} is rigid and has no modes to damp; give it model = "elastic"', "parameter"
+        )
 
     def damped(ratio: float) -> Problem:
         ratios = np.where(modes.frequencies > 0.0, ratio, 0.0)
-        return replace(problem, **{body: replace(getattr(problem, body), modes=replace(modes, damping_ratios=ratios))})
+        return replace(
+            problem,
+            **{body: replace(getattr(problem, body), modes=replace(modes, damping_ratios=ratios))},
+        )
 
     def respond(speeds: Floats, values: Floats, which: Indices) -> dict[str, Floats]:
         each = [
@@ -117,7 +158,15 @@ def modal_damping(problem: Problem, body: Literal["sphere", "plate"]) -> Tunable
     ratios = np.unique(modes.damping_ratios[modes.frequencies > 0.0])
     given = np.array([ratios[0] if len(ratios) == 1 else np.nan])
     start = float(given[0]) if given[0] > 0.0 else _MODAL_START
-    return Tunable(f"{body}.damping", "", Range(at_least=0, at_most=10), start, given, respond, lambda values: damped(float(values[0])))
+    return Tunable(
+        f"{body}.damping",
+        "",
+        Range(at_least=0, at_most=10),
+        start,
+        given,
+        respond,
+        lambda values: damped(float(values[0])),
+    )
 
 
 def _law(laws: tuple[ContactLaw, ...], impact: int) -> ContactLaw:
@@ -129,7 +178,9 @@ def _at(values: Floats, impact: int) -> float:
 
 
 def _start(given: float, example: float | None) -> float:
-    """Return the value at which a search begins: the given one, unless it is zero or out of proportion."""
+    """Return the value at which a search begins: the given one, unless it is zero or out
+    of proportion.
+    """
     if not example:
         return given or 1.0
     near = 1.0 / _FAR <= abs(given / example) <= _FAR

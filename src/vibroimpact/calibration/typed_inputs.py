@@ -1,4 +1,6 @@
-"""What the uncertainty of the numbers of a case, such as the height of fall, changes in a measurement and in the impacts that match it."""
+"""What the uncertainty of the numbers of a case, such as the height of fall, changes in a
+measurement and in the impacts that match it.
+"""
 
 from __future__ import annotations
 
@@ -26,7 +28,9 @@ _KEYS = {
     "sphere.material.density": "kg/m^3",
     "plate.material.density": "kg/m^3",
 }
-"""Keys whose numbers evaluate a measurement, with their units. That of the plate counts only where its standard deviation is given."""
+"""Keys whose numbers evaluate a measurement, with their units. That of the plate counts
+only where its standard deviation is given.
+"""
 
 _NAMED = 0.01
 """Standard deviation of the density of a material that is given by its name, as a part of it."""
@@ -36,7 +40,9 @@ _STEP = 1e-4
 
 
 class Moved(NamedTuple):
-    """An input, a step from its value in SI, and the measurement and the impacts with the value after the step."""
+    """An input, a step from its value in SI, and the measurement and the impacts with the
+    value after the step.
+    """
 
     typed: Input
     step: float
@@ -45,12 +51,15 @@ class Moved(NamedTuple):
 
 
 def typed_inputs(case: Case) -> list[Input]:
-    """Return the numbers of a case that evaluate a measurement, by their keys; not those that are exact.
+    """Return the numbers of a case that evaluate a measurement, by their keys; not those that are
+    exact.
 
     Examples
     --------
     >>> import vibroimpact as vi
-    >>> case = vi.load_case("paper:type1-theory", {"drop.height": "4 m +- 1 cm", "sphere.radius": "25.0 mm +- 0"})
+    >>> case = vi.load_case(
+    ...     "paper:type1-theory", {"drop.height": "4 m +- 1 cm", "sphere.radius": "25.0 mm +- 0"}
+    ... )
     >>> [(one.name, round(one.value.deviation, 5)) for one in typed_inputs(case)]
     [('drop.height', 0.01), ('drop.gravity', 0.02887), ('sphere.material.density', 13.8)]
     """
@@ -64,7 +73,9 @@ def typed_inputs(case: Case) -> list[Input]:
     return inputs
 
 
-def moved_inputs(case: Case, evaluated: Callable[[Case], tuple[Observations, Tunable]], seen: Observations) -> list[Moved]:
+def moved_inputs(
+    case: Case, evaluated: Callable[[Case], tuple[Observations, Tunable]], seen: Observations
+) -> list[Moved]:
     """Return measurement and impacts with each uncertain number of a case changed a little.
 
     Parameters
@@ -79,7 +90,8 @@ def moved_inputs(case: Case, evaluated: Callable[[Case], tuple[Observations, Tun
     Raises
     ------
     InputError
-        If the measurement can't be evaluated a little above the number nor below it; the message is that of the evaluation.
+        If the measurement can't be evaluated a little above the number nor below it; the message is
+        that of the evaluation.
     """
     found = []
     for one in typed_inputs(case):
@@ -97,9 +109,14 @@ def moved_inputs(case: Case, evaluated: Callable[[Case], tuple[Observations, Tun
 
 
 def effects_of(
-    moved: Sequence[Moved], tunable: Tunable, seen: Observations, weights: Mapping[str, float], values: Floats
+    moved: Sequence[Moved],
+    tunable: Tunable,
+    seen: Observations,
+    weights: Mapping[str, float],
+    values: Floats,
 ) -> Effects | None:
-    """Return what one standard deviation of each input changes; None if there are none that change anything.
+    """Return what one standard deviation of each input changes; None if there are none that change
+    anything.
 
     Parameters
     ----------
@@ -122,7 +139,10 @@ def effects_of(
         per = typed.value.deviation / step
         faster = per * (other.speeds - seen.speeds)
         computes = changed.respond(seen.speeds, at, seen.which)
-        more = {name: per * (other.wanted[name] - seen.wanted[name] - computes[name] + computed[name]) for name in weights}
+        more = {
+            name: per * (other.wanted[name] - seen.wanted[name] - computes[name] + computed[name])
+            for name in weights
+        }
         if np.any(faster) or any(np.any(part) for part in more.values()):
             inputs.append(typed)
             speeds.append(faster)
@@ -130,11 +150,17 @@ def effects_of(
                 wanted[name].append(part)
     if not inputs:
         return None
-    return Effects(tuple(inputs), np.stack(speeds, axis=1), {name: np.stack(parts, axis=1) for name, parts in wanted.items()})
+    return Effects(
+        tuple(inputs),
+        np.stack(speeds, axis=1),
+        {name: np.stack(parts, axis=1) for name, parts in wanted.items()},
+    )
 
 
 def _number(case: Case, key: str) -> float | None:
-    """Return a number of a case with its standard deviation, a plain number if it is exact, and None if there is none."""
+    """Return a number of a case with its standard deviation, a plain number if it is
+    exact, and None if there is none.
+    """
     section, *way = key.split(".")
     body = getattr(case, section)
     value: float | None = body.material.density if way[0] == "material" else getattr(body, way[0])
@@ -144,7 +170,9 @@ def _number(case: Case, key: str) -> float | None:
         return EARTH
     if way[0] == "material" and body.material.name in material_library():
         name = body.material.name
-        return Written(value, _NAMED * value, name, stated=False, why=f"as of a material by its name, {name}")
+        return Written(
+            value, _NAMED * value, name, stated=False, why=f"as of a material by its name, {name}"
+        )
     return value
 
 
@@ -152,5 +180,9 @@ def _with_number(case: Case, key: str, value: float) -> Case:
     """Return a case with another number at a key."""
     section, *way = key.split(".")
     body = getattr(case, section)
-    changed = {"material": replace(body.material, density=value)} if way[0] == "material" else {way[0]: value}
+    changed = (
+        {"material": replace(body.material, density=value)}
+        if way[0] == "material"
+        else {way[0]: value}
+    )
     return case.model_copy(update={section: body.model_copy(update=changed)})

@@ -1,4 +1,6 @@
-"""Targets outside the attainable range: error messages, and other parameters that would match them."""
+"""Targets outside the attainable range: error messages, and other parameters that would
+match them.
+"""
 
 from __future__ import annotations
 
@@ -19,12 +21,20 @@ from vibroimpact.dynamics.problem import Problem
 from vibroimpact.errors import InputError
 
 _BEYOND_NOISE = 3.0  # standard deviations
-_LOSSLESS = 1e-4  # relative margin to the lossless rebound that the law must attain for a restitution above 1 to count as noise
+# relative margin to the lossless rebound that the law must attain for a restitution above 1 to
+# count as noise
+_LOSSLESS = 1e-4
 
 _NEAR = 3  # steps by a factor of four from the given value in the search for another parameter
 
 
-def check_reached(tunable: Tunable, problem: Problem, seen: Observations, weights: Mapping[str, float], found: Match) -> Floats:
+def check_reached(
+    tunable: Tunable,
+    problem: Problem,
+    seen: Observations,
+    weights: Mapping[str, float],
+    found: Match,
+) -> Floats:
     """Return the values found, NaN where noise puts the target out of reach.
 
     Raises
@@ -35,21 +45,43 @@ def check_reached(tunable: Tunable, problem: Problem, seen: Observations, weight
     missed = np.flatnonzero(np.isnan(found.values))
     if len(weights) > 1:
         if missed.size:
-            words = f"no {tunable.name} was found with which the matched quantities together deviate least"
-            raise InputError(f"{seen.labels[missed[0]]}: {words}; match one of them alone", "target")
+            words = (
+                f"no {tunable.name} was found with which the "
+                "matched quantities together deviate least"
+            )
+            raise InputError(
+                f"{seen.labels[missed[0]]}: {words}; match one of them alone", "target"
+            )
         return found.values
     (name,) = weights
     wanted, (_, unit, words) = seen.wanted[name], MATCHABLE[name]
     for row in missed:
         beyond = max(wanted[row] - found.most[row], found.least[row] - wanted[row])
-        if 0.0 < beyond <= max(_BEYOND_NOISE * _noise_of(tunable, seen, name, int(row)), _above_one(problem, seen, name, int(row))):
+        if (
+            0.0
+            < beyond
+            <= max(
+                _BEYOND_NOISE * _noise_of(tunable, seen, name, int(row)),
+                _above_one(problem, seen, name, int(row)),
+            )
+        ):
             continue
         others = other_parameters(problem, tunable, seen, weights, row=int(row))
         # where the case gives no value of this one, it is the initial guess
-        guess = "" if np.isfinite(tunable.given).all() else f"{_value(problem, tunable.name, tunable.start)} and "
-        would = f"; with {guess}the rest as given it would take {' or '.join(_value(problem, *item) for item in others.items())}"
+        guess = (
+            ""
+            if np.isfinite(tunable.given).all()
+            else f"{_value(problem, tunable.name, tunable.start)} and "
+        )
+        would = (
+            f"; with {guess}the rest as given it would take "
+            f"{' or '.join(_value(problem, *item) for item in others.items())}"
+        )
         hint = would if others else ""
-        asked = f"{seen.labels[row]}: at an approach speed of {seen.speeds[row]:.5g} m/s a {words} of {wanted[row]:.5g} {unit} is wanted"
+        asked = (
+            f"{seen.labels[row]}: at an approach speed of {seen.speeds[row]:.5g} m/s a {words} "
+            f"of {wanted[row]:.5g} {unit} is wanted"
+        )
         ends = list(dict.fromkeys(f"{end:.5g}" for end in (found.least[row], found.most[row])))
         reach = f"{' to '.join(ends)} {unit}, {_tried(tunable, name)}"
         if beyond <= 0.0:
@@ -69,12 +101,21 @@ def _tried(tunable: Tunable, name: str) -> str:
 
 
 def _above_one(problem: Problem, seen: Observations, name: str, row: int) -> float:
-    """Return the excess of a rebound over the lossless one, where that may be noise of unknown magnitude; else 0."""
+    """Return the excess of a rebound over the lossless one, where that may be noise of
+    unknown magnitude; else 0.
+    """
     if seen.deviations_known or not seen.measured or name not in REBOUNDS:
         return 0.0
-    radius, gravity, speed = float(problem.sphere.contact_offset), float(problem.gravity), float(seen.speeds[row])
+    radius, gravity, speed = (
+        float(problem.sphere.contact_offset),
+        float(problem.gravity),
+        float(seen.speeds[row]),
+    )
     found = measured_restitutions(seen, radius, gravity)
-    if found is None or not 1.0 < found[row] <= restitution_limit(seen.speeds, found, None).most[row]:
+    if (
+        found is None
+        or not 1.0 < found[row] <= restitution_limit(seen.speeds, found, None).most[row]
+    ):
         return 0.0
     height = 0.5 * speed**2 / gravity if name == "rebound_height" else 0.0
     lossless, scale = (radius + height, height) if height else (speed, speed)
@@ -82,17 +123,33 @@ def _above_one(problem: Problem, seen: Observations, name: str, row: int) -> flo
 
 
 def _noise_of(tunable: Tunable, seen: Observations, name: str, row: int) -> float:
-    """Return the standard deviation of the target minus the computed quantity; 0 if the magnitude of the noise is unknown."""
+    """Return the standard deviation of the target minus the computed quantity; 0 if the
+    magnitude of the noise is unknown.
+    """
     if not seen.deviations_known:
         return 0.0
-    near = derivatives(tunable, seen.speeds[[row]], tunable.allowed.clip(np.array([1e-3 * tunable.start])), seen.which[[row]])
-    return float(standard_deviations(seen.noise[name][[row]] - near.by_speed[name][0] * seen.speed_noise[[row]])[0])
+    near = derivatives(
+        tunable,
+        seen.speeds[[row]],
+        tunable.allowed.clip(np.array([1e-3 * tunable.start])),
+        seen.which[[row]],
+    )
+    return float(
+        standard_deviations(
+            seen.noise[name][[row]] - near.by_speed[name][0] * seen.speed_noise[[row]]
+        )[0]
+    )
 
 
 def other_parameters(
-    problem: Problem, tunable: Tunable, seen: Observations, weights: Mapping[str, float], row: int = 0
+    problem: Problem,
+    tunable: Tunable,
+    seen: Observations,
+    weights: Mapping[str, float],
+    row: int = 0,
 ) -> dict[str, float]:
-    """Return values of the other parameters of the law, each of which would match an impact with the rest as given.
+    """Return values of the other parameters of the law, each of which would match an impact with
+    the rest as given.
 
     Empty with several matched quantities, or with vibrating bodies.
     """
@@ -101,11 +158,17 @@ def other_parameters(
         return {}
     found = {}
     for item in fields(law):
-        if item.metadata["memory"] or item.name == tunable.name or not isinstance(getattr(law, item.name), float):
+        if (
+            item.metadata["memory"]
+            or item.name == tunable.name
+            or not isinstance(getattr(law, item.name), float)
+        ):
             continue
         other = law_parameter(problem, item.name)
         wanted = {name: values[[row]] for name, values in seen.wanted.items()}
-        value = match(other, seen.speeds[[row]], wanted, weights, seen.which[[row]], _NEAR).values[0]
+        value = match(other, seen.speeds[[row]], wanted, weights, seen.which[[row]], _NEAR).values[
+            0
+        ]
         if np.isfinite(value):
             found[item.name] = float(value)
     return found

@@ -26,8 +26,13 @@ class Case(CaseTable):
     9.8
     """
 
-    def to_problem(self, progress: Callable[[float], None] | None = None, tell: Callable[[str], None] | None = None) -> Problem:
-        """Return the problem that the case describes; modes of elastic bodies are computed, or read from the mode store.
+    def to_problem(
+        self,
+        progress: Callable[[float], None] | None = None,
+        tell: Callable[[str], None] | None = None,
+    ) -> Problem:
+        """Return the problem that the case describes; modes of elastic bodies are computed, or read
+        from the mode store.
 
         Parameters
         ----------
@@ -50,11 +55,13 @@ def case_schema() -> dict[str, Any]:
     Examples
     --------
     >>> sorted(case_schema()["properties"])
-    ['calibrate', 'contact', 'drop', 'name', 'plate', 'run', 'schema_version', 'sensors', 'sphere', 'sweep']
+    ['calibrate', 'contact', 'drop', 'name', 'plate', 'run', 'schema_version', 'sensors', 'sphere',
+    'sweep']
     """
     schema = Case.model_json_schema()
     schema["$schema"] = "https://json-schema.org/draft/2020-12/schema"
     schema["properties"]["contact"] = contact_schema()
-    for name in ("ContactSection", "SpeedFunction", "SpeedTable", "FrictionTable"):  # their keys are those of the laws
+    # their keys are those of the laws
+    for name in ("ContactSection", "SpeedFunction", "SpeedTable", "FrictionTable"):
         schema["$defs"].pop(name, None)
     return schema

@@ -1,4 +1,6 @@
-"""The text of a case with other values at some of its keys: all else that stands there, comments too, remains."""
+"""The text of a case with other values at some of its keys: all else that stands there,
+comments too, remains.
+"""
 
 from __future__ import annotations
 
@@ -20,7 +22,8 @@ _BARE = re.compile(r"[\w-]+", re.ASCII)
 def changed_text(text: str, changes: Mapping[str, Any]) -> str:
     r"""Return the text of a case with other values.
 
-    Where a value stands in a way that is not `key = value` below the header of its section, the case is written anew, without comments.
+    Where a value stands in a way that is not `key = value` below the header of its section, the
+    case is written anew, without comments.
 
     Parameters
     ----------
@@ -36,7 +39,12 @@ def changed_text(text: str, changes: Mapping[str, Any]) -> str:
 
     Examples
     --------
-    >>> print(changed_text('[plate]\nsize = ["1 m", "1 m", "8 mm"]  # steel', {"plate.size.thickness": "9 mm", "drop.speed": 2.0}))
+    >>> print(
+    ...     changed_text(
+    ...         '[plate]\nsize = ["1 m", "1 m", "8 mm"]  # steel',
+    ...         {"plate.size.thickness": "9 mm", "drop.speed": 2.0},
+    ...     )
+    ... )
     [plate]
     size = ["1 m", "1 m", "9 mm"]  # steel
     <BLANKLINE>
@@ -61,17 +69,30 @@ def changed_text(text: str, changes: Mapping[str, Any]) -> str:
 def _write(lines: list[str], section: str, key: str, value: Any) -> None:
     """Write a value at a key of a section into the lines of a case, in place."""
     header = re.compile(rf"^\s*\[\s*{re.escape(section)}\s*\]")
-    start = 0 if not section else next((number + 1 for number, line in enumerate(lines) if header.match(line)), None)
+    start = (
+        0
+        if not section
+        else next((number + 1 for number, line in enumerate(lines) if header.match(line)), None)
+    )
     if start is None:
         while lines and not lines[-1].strip():
             lines.pop()
         lines += ["", f"[{section}]"]
         start = len(lines)
-    end = next((number for number in range(start, len(lines)) if _HEADER.match(lines[number])), len(lines))
+    end = next(
+        (number for number in range(start, len(lines)) if _HEADER.match(lines[number])), len(lines)
+    )
     line, own = f"{_key(key)} = {_inline(value)}", re.compile(rf"^\s*{re.escape(_key(key))}\s*=")
     for first in range(start, end):
         if own.match(lines[first]):
-            last = next((last for last in range(first + 1, end + 1) if _table("\n".join(lines[first:last])) is not None), first + 1)
+            last = next(
+                (
+                    last
+                    for last in range(first + 1, end + 1)
+                    if _table("\n".join(lines[first:last])) is not None
+                ),
+                first + 1,
+            )
             lines[first:last] = [line + _comment(lines[first])]
             return
     while end > start and not lines[end - 1].strip():
@@ -108,7 +129,13 @@ def _inline(value: Any) -> str:
     { type = "patches", spacing = ["40 cm", 0.3] }
     """
     if isinstance(value, dict):
-        return "{ " + ", ".join(f"{_key(name)} = {_inline(inner)}" for name, inner in value.items()) + " }" if value else "{}"
+        return (
+            "{ "
+            + ", ".join(f"{_key(name)} = {_inline(inner)}" for name, inner in value.items())
+            + " }"
+            if value
+            else "{}"
+        )
     if isinstance(value, list | tuple):
         return f"[{', '.join(map(_inline, value))}]"
     return tomli_w.dumps({"a": value}).removeprefix("a = ").rstrip("\n")

@@ -1,4 +1,6 @@
-"""The conditions under which the limits of the theory are evaluated: the resolved case and the peak values of the drop."""
+"""The conditions under which the limits of the theory are evaluated: the resolved case
+and the peak values of the drop.
+"""
 
 from __future__ import annotations
 
@@ -20,7 +22,9 @@ from vibroimpact.contact.speed_function import BySpeed, held, of_table
 from vibroimpact.materials import RIGID, Material
 from vibroimpact.resolved_case import ResolvedCase
 
-_LIKE_HERTZ = 0.01  # relative: a stiffness that differs by more was measured or fitted, and includes effects beyond Hertz's theory
+# relative: a stiffness that differs by more was measured or fitted, and includes effects beyond
+# Hertz's theory
+_LIKE_HERTZ = 0.01
 
 _OTHER_TABLES = {"friction", "liquid", "measured"}
 """Tables in the contact section of a case that are not parameters of the law."""
@@ -28,27 +32,30 @@ _OTHER_TABLES = {"friction", "liquid", "measured"}
 
 @dataclass(frozen=True)
 class DropSummary:
-    """Computed or expected peak values of a drop; arrays have one value per drop, NaN where a value is not known.
+    """Computed or expected peak values of a drop; arrays have one value per drop, NaN where a value
+    is not known.
 
     Parameters
     ----------
     force, depth : float or array
         Largest contact force [N] and largest indentation [m].
     duration, speed : float or array
-        Duration of the first contact [s], or, if it consists of several micro-impacts, of one contact of the same depth; and approach
-        speed of the first impact [m/s].
+        Duration of the first contact [s], or, if it consists of several micro-impacts, of one
+        contact of the same depth; and approach speed of the first impact [m/s].
     deflection : float or array
         Largest deflection of an elastic plate at the contact point [m].
     modes : mapping of str to (float, float)
-        By the name of an elastic body: estimated relative change of the largest force by the truncated modes, and highest frequency of
-        the retained modes [Hz].
+        By the name of an elastic body: estimated relative change of the largest force by the
+        truncated modes, and highest frequency of the retained modes [Hz].
     changes : array, shape (impacts,)
-        Sensitivity of a single drop on elastic bodies: relative change of each impact for a perturbation of the drop of
-        `RELATIVE_CHANGE`, or of the tolerance if that is larger.
+        Sensitivity of a single drop on elastic bodies: relative change of each impact for a
+        perturbation of the drop of `RELATIVE_CHANGE`, or of the tolerance if that is larger.
     plate_theory : float
-        For a single drop on plate elements: estimated part by which its first largest force is too large due to plate theory.
+        For a single drop on plate elements: estimated part by which its first largest force is too
+        large due to plate theory.
     plate_mesh : float
-        For a single drop on plate elements: estimated part by which its first largest force is too large due to the mesh.
+        For a single drop on plate elements: estimated part by which its first largest force is too
+        large due to the mesh.
     slowest : float or array
         Lowest approach speed of its impacts [m/s].
     """
@@ -72,7 +79,8 @@ class Conditions:
     Parameters
     ----------
     case : ResolvedCase
-        A resolved case; any number in it may be an array with one value per drop. Empty for a problem made in Python.
+        A resolved case; any number in it may be an array with one value per drop. Empty for a
+        problem made in Python.
     summary : DropSummary
         Its peak values.
     """
@@ -83,7 +91,10 @@ class Conditions:
     @cached_property
     def materials(self) -> dict[str, Material]:
         """The materials of "sphere" and "plate"."""
-        return {"sphere": _material(self.case["sphere"]["material"]), "plate": _material(self.case["plate"]["material"])}
+        return {
+            "sphere": _material(self.case["sphere"]["material"]),
+            "plate": _material(self.case["plate"]["material"]),
+        }
 
     @property
     def radius(self) -> Array:
@@ -94,7 +105,11 @@ class Conditions:
     def mass(self) -> Array:
         """Mass of the sphere [kg]."""
         given = self.case["sphere"].get("mass")
-        return ball_volume(np.asarray(self.radius)) * self.materials["sphere"].density if given is None else given
+        return (
+            ball_volume(np.asarray(self.radius)) * self.materials["sphere"].density
+            if given is None
+            else given
+        )
 
     @property
     def density(self) -> Array:
@@ -103,13 +118,17 @@ class Conditions:
 
     @cached_property
     def effective_radius(self) -> Array:
-        """Effective radius of the pair [m]: that of the sphere, or of two spheres if one replaces the plate."""
+        """Effective radius of the pair [m]: that of the sphere, or of two spheres if one
+        replaces the plate.
+        """
         below = self.case["plate"].get("radius")
         return self.radius if below is None else self.radius * below / (self.radius + below)
 
     @cached_property
     def effective_mass(self) -> Array:
-        """Effective mass of the pair [kg]: that of the sphere, or the reduced mass if a free sphere replaces the plate."""
+        """Effective mass of the pair [kg]: that of the sphere, or the reduced mass if a
+        free sphere replaces the plate.
+        """
         plate = self.case["plate"]
         if "radius" not in plate or plate.get("supports") != "free":
             return self.mass
@@ -146,7 +165,11 @@ class Conditions:
     @cached_property
     def by_speed(self) -> dict[str, BySpeed]:
         """The parameters of the contact law that are functions of the approach speed."""
-        tables = {key: value for key, value in self.case["contact"].items() if isinstance(value, Mapping) and not _OTHER_TABLES & {key}}
+        tables = {
+            key: value
+            for key, value in self.case["contact"].items()
+            if isinstance(value, Mapping) and not _OTHER_TABLES & {key}
+        }
         return {key: of_table(value) for key, value in tables.items()}
 
     @property
@@ -157,7 +180,9 @@ class Conditions:
     @property
     def hertz_ratio(self) -> Array:
         """Stiffness of the law over that of Hertz's contact of the bodies [-], as numbers."""
-        return self.law_parameter("stiffness") / hertz_stiffness(self.modulus, self.effective_radius)
+        return self.law_parameter("stiffness") / hertz_stiffness(
+            self.modulus, self.effective_radius
+        )
 
     @cached_property
     def is_hertzian(self) -> Array:
@@ -168,10 +193,13 @@ class Conditions:
         if "effective_modulus" in contact:
             return np.isfinite(self.modulus)
         if "stiffness" not in contact or (
-            "exponent" not in contact and "1.5" not in self.law.__dataclass_fields__["stiffness"].metadata["unit"]
+            "exponent" not in contact
+            and "1.5" not in self.law.__dataclass_fields__["stiffness"].metadata["unit"]
         ):
             return False
-        return (abs(self.hertz_ratio - 1.0) < _LIKE_HERTZ) & (self.law_parameter("exponent", 1.5) == 1.5)
+        return (abs(self.hertz_ratio - 1.0) < _LIKE_HERTZ) & (
+            self.law_parameter("exponent", 1.5) == 1.5
+        )
 
     def model(self, body: Literal["sphere", "plate"]) -> str:
         """Return whether "sphere" or "plate" is "rigid" or "elastic"."""

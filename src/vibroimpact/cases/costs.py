@@ -8,7 +8,14 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from vibroimpact.cases.fields.section import derived
 from vibroimpact.cases.pair import contact_pair
-from vibroimpact.cases.rigid import contact_laws_of, deforms, elastic_names, impact_limit, in_liquid, touch_speed
+from vibroimpact.cases.rigid import (
+    contact_laws_of,
+    deforms,
+    elastic_names,
+    impact_limit,
+    in_liquid,
+    touch_speed,
+)
 from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.contact.static import static_indentation
 from vibroimpact.dynamics.history_grid import MOST_POINTS
@@ -23,20 +30,26 @@ if TYPE_CHECKING:
 _PROGRAM = 170e6  # bytes of the program itself, with its figures
 _IMPACT_SECONDS, _IMPACT_BYTES, _IMPACT_ON_DISK = 5e-3, 2.2e3, 1e3
 _VIBRATING_SECONDS = 20e-3  # per impact of elastic bodies, for any number of modes
-_POINTS, _POINT_BYTES, _POINT_ON_DISK = 170, 130.0, 100.0  # history points per impact, and bytes of each
+# history points per impact, and bytes of each
+_POINTS, _POINT_BYTES, _POINT_ON_DISK = 170, 130.0, 100.0
 _SAMPLE_SECONDS, _SAMPLE_BYTES, _SAMPLE_ON_DISK = 2e-7, 8.5, 9.0
-_MODES_SECONDS, _MODES_DOFS, _MODES_NUMBER = 35.0, 42_423, 300  # of a sphere, computed in eighths by symmetry
+# of a sphere, computed in eighths by symmetry
+_MODES_SECONDS, _MODES_DOFS, _MODES_NUMBER = 35.0, 42_423, 300
 _WHOLE = 4.0  # factor for imported meshes, which are rarely symmetric
 _DOF_BYTES = 20e3
 _ELASTIC = 1e-7  # relative loss of speed per impact below which a drop counts as lossless
-_FEW = 300  # impacts that take 6 s at most, which is never told: so few that are allowed count in full, and no contact is integrated
+# impacts that take 6 s at most, which is never told: so few that are allowed count in full, and no
+# contact is integrated
+_FEW = 300
 _ONE_BLOW = 10.0  # seconds of a run without gravity, a guess
 _LONG, _LARGE, _MUCH = 10.0, 1e9, 500e6
 """Seconds, bytes of memory and bytes on disk above which costs are reported."""
 
 
 class Cost(NamedTuple):
-    """One contribution to the costs of a run: seconds, bytes of memory and on disk, its cause, and how to reduce it."""
+    """One contribution to the costs of a run: seconds, bytes of memory and on disk, its
+    cause, and how to reduce it.
+    """
 
     seconds: float
     memory: float
@@ -46,7 +59,8 @@ class Cost(NamedTuple):
 
 
 def costs_of(case: Case, *, modes_alone: bool = False) -> list[Cost]:
-    """Return the estimated contributions to the costs of a run; modes in the mode store cost nothing.
+    """Return the estimated contributions to the costs of a run; modes in the mode store cost
+    nothing.
 
     Parameters
     ----------
@@ -55,11 +69,15 @@ def costs_of(case: Case, *, modes_alone: bool = False) -> list[Cost]:
     modes_alone : bool, default False
         Estimate the costs of its modes only.
     """
-    return [*_mode_costs(case), *(() if modes_alone else (*_impact_costs(case), *_signal_costs(case)))]
+    return [
+        *_mode_costs(case),
+        *(() if modes_alone else (*_impact_costs(case), *_signal_costs(case))),
+    ]
 
 
 def describe_costs(case: Case, *, modes_alone: bool = False) -> list[str]:
-    """Return a sentence for each contribution of more than ten seconds, 1 GB of memory or 500 MB on disk.
+    """Return a sentence for each contribution of more than ten seconds, 1 GB of memory or 500 MB on
+    disk.
 
     Raises
     ------
@@ -76,10 +94,13 @@ def describe_costs(case: Case, *, modes_alone: bool = False) -> list[str]:
 
 @derived
 def impacts_expected(case: Case) -> int:
-    r"""Return the estimated number of impacts of a drop with rigid bodies, an upper bound for elastic ones; of 300 or fewer their limit.
+    r"""Return the estimated number of impacts of a drop with rigid bodies, an upper bound for
+    elastic ones; of 300 or fewer their limit.
 
-    All impacts are assumed to have the restitution e of the first: from a speed :math:`v` to the rest speed :math:`v_r` there are
-    :math:`\ln(v_r/v)/\ln e` impacts; a duration :math:`T` is filled by the flights, which take :math:`2 v e^k / g`.
+    All impacts are assumed to have the restitution e of the first: from a speed :math:`v` to the
+    rest speed :math:`v_r` there are
+    :math:`\ln(v_r/v)/\ln e` impacts; a duration :math:`T` is filled by the flights, which take
+    :math:`2 v e^k / g`.
     """
     most, speed, gravity = impact_limit(case) or MOST_IMPACTS, touch_speed(case), case.drop.gravity
     if not (speed > 0.0 and gravity > 0.0):
@@ -94,7 +115,11 @@ def impacts_expected(case: Case) -> int:
     rest, law = case.run.rest_speed, contact_laws_of(case)[-1]
     if rest is None:
         weight = float(contact_pair(case).effective_mass) * gravity
-        sag = float(static_indentation(law, weight)) - float(law.touch_level) if isinstance(law, CompliantLaw) else 0.0
+        sag = (
+            float(static_indentation(law, weight)) - float(law.touch_level)
+            if isinstance(law, CompliantLaw)
+            else 0.0
+        )
         rest = max(1e-6 * speed, math.sqrt(2.0 * gravity * max(sag, 0.0)))
     count = math.log(rest / speed) / math.log(kept) if 0.0 < rest < speed else math.inf
     if case.run.duration is not None:
@@ -104,12 +129,16 @@ def impacts_expected(case: Case) -> int:
 
 
 def seconds_expected(case: Case) -> float:
-    """Return the estimated length of a run [s]: its duration, or that of its flights if all impacts have the restitution of the first."""
+    """Return the estimated length of a run [s]: its duration, or that of its flights if
+    all impacts have the restitution of the first.
+    """
     return _seconds(case, _restitution(case))
 
 
 def seconds_at_most(case: Case) -> float:
-    """Return an upper bound of `seconds_expected` [s], that of flights without losses, which integrates no contact."""
+    """Return an upper bound of `seconds_expected` [s], that of flights without losses,
+    which integrates no contact.
+    """
     return _seconds(case, 1.0)
 
 
@@ -126,15 +155,22 @@ def _seconds(case: Case, kept: float) -> float:
 def _restitution(case: Case) -> float:
     """Return the restitution of the last law at the speed of the first impact."""
     law = in_liquid(case, contact_laws_of(case)[-1])
-    return float(achieved_restitution(law, float(contact_pair(case).effective_mass), touch_speed(case)))
+    return float(
+        achieved_restitution(law, float(contact_pair(case).effective_mass), touch_speed(case))
+    )
 
 
 def _impact_costs(case: Case) -> Iterator[Cost]:
     number = impacts_expected(case)
     vibrate = deforms(case)
-    # energy lost to vibration reduces the number of impacts until the sphere is at rest, and shortens the flights within a duration
+    # energy lost to vibration reduces the number of impacts until the sphere is at rest, and
+    # shortens the flights within a duration
     most = "up to " if vibrate and case.run.duration is None else ""
-    more = ", or more as vibration shortens the flights" if vibrate and case.run.duration is not None else ""
+    more = (
+        ", or more as vibration shortens the flights"
+        if vibrate and case.run.duration is not None
+        else ""
+    )
     points = min(_POINTS * number, MOST_POINTS)
     less = "give fewer run.impacts"
     if case.run.duration is not None:
@@ -154,9 +190,19 @@ def _signal_costs(case: Case) -> Iterator[Cost]:
     if case.run.duration is None or not case.sensors:
         return
     samples = case.run.duration * sum(sensor.rate for sensor in case.sensors)
-    which = "the samples of the sensor" if len(case.sensors) == 1 else f"the samples of {len(case.sensors)} sensors"
+    which = (
+        "the samples of the sensor"
+        if len(case.sensors) == 1
+        else f"the samples of {len(case.sensors)} sensors"
+    )
     remedy = "give a shorter run.duration or a lower rate of the sensors"
-    yield Cost(_SAMPLE_SECONDS * samples, _SAMPLE_BYTES * samples, _SAMPLE_ON_DISK * samples, f"{which}, {samples:.2g},", remedy)
+    yield Cost(
+        _SAMPLE_SECONDS * samples,
+        _SAMPLE_BYTES * samples,
+        _SAMPLE_ON_DISK * samples,
+        f"{which}, {samples:.2g},",
+        remedy,
+    )
 
 
 def _mode_costs(case: Case) -> Iterator[Cost]:
@@ -174,10 +220,21 @@ def _mode_costs(case: Case) -> Iterator[Cost]:
         mesh, number = recipe.shape.mesh(recipe.supports), modes_expected(recipe)
         dofs = mesh.dofs_per_node * len(mesh.nodes)
         share = 0.3 + 0.7 * number / _MODES_NUMBER
-        seconds = _MODES_SECONDS * (dofs / _MODES_DOFS) ** (4.0 / 3.0) * share * (_WHOLE if isinstance(recipe.shape, ImportedMesh) else 1.0)
-        fewer = f"fewer {name}.modes" if recipe.reduction.max_frequency is None else f"a lower {name}.max_frequency"
+        seconds = (
+            _MODES_SECONDS
+            * (dofs / _MODES_DOFS) ** (4.0 / 3.0)
+            * share
+            * (_WHOLE if isinstance(recipe.shape, ImportedMesh) else 1.0)
+        )
+        fewer = (
+            f"fewer {name}.modes"
+            if recipe.reduction.max_frequency is None
+            else f"a lower {name}.max_frequency"
+        )
         remedy = f"give {fewer} or larger elements; the modes are computed once and kept"
-        yield Cost(seconds, _DOF_BYTES * dofs, 8.0 * dofs * number, f"the modes of the {name}", remedy)
+        yield Cost(
+            seconds, _DOF_BYTES * dofs, 8.0 * dofs * number, f"the modes of the {name}", remedy
+        )
 
 
 def _listed(cost: Cost) -> str:
@@ -189,7 +246,11 @@ def _listed(cost: Cost) -> str:
 
 
 def _time(seconds: float) -> str:
-    return f"{float(f'{seconds:.1g}'):.0f} s" if seconds < 90.0 else f"{float(f'{seconds / 60.0:.2g}'):.0f} minutes"
+    return (
+        f"{float(f'{seconds:.1g}'):.0f} s"
+        if seconds < 90.0
+        else f"{float(f'{seconds / 60.0:.2g}'):.0f} minutes"
+    )
 
 
 def _size(size: float) -> str:

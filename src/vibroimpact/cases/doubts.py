@@ -1,4 +1,6 @@
-"""Doubts about a drop: values that look like a slip of a unit, and limits of the theory that are exceeded."""
+"""Doubts about a drop: values that look like a slip of a unit, and limits of the theory
+that are exceeded.
+"""
 
 from __future__ import annotations
 
@@ -11,12 +13,14 @@ from vibroimpact.resolved_case import ResolvedCase
 
 
 def doubts(case: ResolvedCase, summary: DropSummary, aside: Container[str] = ()) -> list[str]:
-    """Return a sentence for each doubt about a drop: slips of units and limits exceeded, each with its cause and a remedy.
+    """Return a sentence for each doubt about a drop: slips of units and limits exceeded, each with
+    its cause and a remedy.
 
     Parameters
     ----------
     case : ResolvedCase
-        A resolved case; empty for a problem made in Python, for which only limits that do not need the case are checked.
+        A resolved case; empty for a problem made in Python, for which only limits that do not need
+        the case are checked.
     summary : DropSummary
         Computed or expected peak values of the drop.
     aside : container of str
@@ -29,5 +33,9 @@ def doubts(case: ResolvedCase, summary: DropSummary, aside: Container[str] = ())
     """
     drop = Conditions(case, summary)
     found = {name: float(number) for name, number in numbers_of(drop).items()}
-    beyond = [limits()[name].sentence(drop, number) for name, number in found.items() if number > limits()[name].threshold]
+    beyond = [
+        limits()[name].sentence(drop, number)
+        for name, number in found.items()
+        if number > limits()[name].threshold
+    ]
     return [*(slips(case, aside) if case else ()), *beyond]

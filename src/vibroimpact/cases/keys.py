@@ -1,4 +1,6 @@
-"""Dotted keys of a case, such as "plate.size.thickness": their quantities, and tables with other values at them."""
+"""Dotted keys of a case, such as "plate.size.thickness": their quantities, and tables
+with other values at them.
+"""
 
 from __future__ import annotations
 
@@ -43,17 +45,24 @@ _OPEN = ("supports", "mesh", "damping", "reduction")
 
 
 def quantity_keys(table: Mapping[str, Any]) -> dict[str, Quantity | None]:
-    """Return the keys of a case that can be swept with their quantities; None for a key that is not a quantity.
+    """Return the keys of a case that can be swept with their quantities; None for a key that is not
+    a quantity.
 
     Parameters
     ----------
     table : mapping
-        The case, with the structure of a TOML case file; its contact law determines the keys of [contact].
+        The case, with the structure of a TOML case file; its contact law determines the keys of
+        [contact].
 
     Examples
     --------
     >>> keys = quantity_keys({"contact": {"law": "hertz"}})
-    >>> keys["sphere.radius"].unit, keys["contact.stiffness"].unit, keys["drop.position.x"].unit, keys["plate.model"]
+    >>> (
+    ...     keys["sphere.radius"].unit,
+    ...     keys["contact.stiffness"].unit,
+    ...     keys["drop.position.x"].unit,
+    ...     keys["plate.model"],
+    ... )
     ('m', 'N/m^1.5', 'm', None)
     """
     return dict(_keys(table))
@@ -68,7 +77,9 @@ def find_quantity(table: Mapping[str, Any], key: str) -> Quantity | None:
         If there is no such key, or it can't be swept.
     """
     if key.startswith("sensors."):
-        known = dict(sensor_keys({"sensors": [named_sensor(table.get("sensors"), split_key(table, key)[1])]}))
+        known = dict(
+            sensor_keys({"sensors": [named_sensor(table.get("sensors"), split_key(table, key)[1])]})
+        )
     else:
         known = quantity_keys(table)
     if key in known:
@@ -81,7 +92,8 @@ def find_quantity(table: Mapping[str, Any], key: str) -> Quantity | None:
         if rest.startswith("friction."):
             _check_law_is_named(table, "contact.friction.law")
     words = (
-        f'no such key is swept; it must be one of [sphere], [plate], [drop], [contact], [run] or of a sensor, such as "{_like(key, known)}"'
+        "no such key is swept; it must be one of [sphere], [plate], [drop], [contact], [run] "
+        f'or of a sensor, such as "{_like(key, known)}"'
     )
     raise InputError(f"{words}.{did_you_mean(key, known)}")
 
@@ -92,11 +104,15 @@ def _check_law_is_named(table: Mapping[str, Any], key: str) -> None:
     for part in key.split("."):
         inside = inside.get(part) if isinstance(inside, dict) else None
     if inside is None:
-        raise InputError(f"the case has no {key}, on which the keys of its table depend; give it the name of a law")
+        raise InputError(
+            f"the case has no {key}, on which the keys of its table depend; "
+            "give it the name of a law"
+        )
 
 
 def check_laws(table: Mapping[str, Any]) -> None:
-    """Check the names of the contact law and the friction law of a case, on which its keys depend; they may be missing.
+    """Check the names of the contact law and the friction law of a case, on which its keys depend;
+    they may be missing.
 
     Raises
     ------
@@ -114,11 +130,14 @@ def check_laws(table: Mapping[str, Any]) -> None:
 
 
 def _like(key: str, known: Mapping[str, object]) -> str:
-    return next((name for name in known if name.startswith(key.partition(".")[0] + ".")), "sphere.radius")
+    return next(
+        (name for name in known if name.startswith(key.partition(".")[0] + ".")), "sphere.radius"
+    )
 
 
 def holds_keys(key: str) -> bool:
-    """Return whether a dotted key is that of a section or a table that contains keys that can be swept.
+    """Return whether a dotted key is that of a section or a table that contains keys that can be
+    swept.
 
     Examples
     --------
@@ -127,12 +146,16 @@ def holds_keys(key: str) -> bool:
     """
     section, _, field = key.partition(".")
     return holds_sensor_keys(key) or (
-        section in (*SECTIONS, "contact") and field in ("", "material", "motion", "air", "liquid", "measured", *_PLACES)
+        section in (*SECTIONS, "contact")
+        and field in ("", "material", "motion", "air", "liquid", "measured", *_PLACES)
     )
 
 
-def with_values(table: Mapping[str, Any], values: Mapping[str, Any], done: str = "swept") -> dict[str, Any]:
-    """Return the case with values at dotted keys; a named material is written out where one of its properties changes.
+def with_values(
+    table: Mapping[str, Any], values: Mapping[str, Any], done: str = "swept"
+) -> dict[str, Any]:
+    """Return the case with values at dotted keys; a named material is written out where one of its
+    properties changes.
 
     Parameters
     ----------
@@ -150,44 +173,68 @@ def with_values(table: Mapping[str, Any], values: Mapping[str, Any], done: str =
 
     Examples
     --------
-    >>> with_values({"drop": {"position": [0.0, 0.0]}}, {"drop.position.y": 0.1, "sphere.radius": "5 mm"})
+    >>> with_values(
+    ...     {"drop": {"position": [0.0, 0.0]}}, {"drop.position.y": 0.1, "sphere.radius": "5 mm"}
+    ... )
     {'drop': {'position': [0.0, 0.1]}, 'sphere': {'radius': '5 mm'}}
     """
     found = copy.deepcopy(dict(table))
-    for key, value in sorted(values.items(), key=lambda item: item[0].count(".")):  # a material before its properties
+    # a material before its properties
+    for key, value in sorted(values.items(), key=lambda item: item[0].count(".")):
         *way, last = split_key(found, key)
-        named = 2 if way[1:] and way[0] == "sensors" else 0  # parts of the key that are the way to a sensor
+        # parts of the key that are the way to a sensor
+        named = 2 if way[1:] and way[0] == "sensors" else 0
         inside: Any = named_sensor(found.get("sensors"), way[1]) if named else found
         for number, part in enumerate(way[named:], named):
             holder = inside
             if not isinstance(inside, dict):
-                raise InputError(f"{shown(inside)} is not a table, so that it has no {part}", ".".join(way[:number]))
-            missing: Any = [0.0] * _AT_REST[part] if part in _AT_REST and way[number:] == [part] else {}
+                raise InputError(
+                    f"{shown(inside)} is not a table, so that it has no {part}",
+                    ".".join(way[:number]),
+                )
+            missing: Any = (
+                [0.0] * _AT_REST[part] if part in _AT_REST and way[number:] == [part] else {}
+            )
             inside = inside.setdefault(part, missing)
             if part in ("air", "liquid") and isinstance(inside, bool):
                 inside = holder[part] = {}
             if isinstance(inside, str) and part == "material":
                 written = material_table(find_material(inside))
                 if isinstance(written, str):
-                    raise InputError(f"{shown(inside)} has no numbers that could be {done}", ".".join(way))
+                    raise InputError(
+                        f"{shown(inside)} has no numbers that could be {done}", ".".join(way)
+                    )
                 inside = holder[part] = {
                     name: number for name, number in written.items() if name != "name"
                 }  # a different material now, without the name
         if not inside and last in _PLACES.get(way[-1], ()):
-            raise InputError(f"it is missing, so that it has no {last} that could be {done}; give all of it", ".".join(way))
+            raise InputError(
+                f"it is missing, so that it has no {last} that could be {done}; give all of it",
+                ".".join(way),
+            )
         names = _PLACES.get(way[-1], ()) if way else ()
         if isinstance(inside, list) and last in names:
             if len(inside) != len(names):
-                raise InputError(f"{shown(inside)} does not have the right number of values; it takes {', '.join(names)}", ".".join(way))
+                raise InputError(
+                    f"{shown(inside)} does not have the right number of values; it takes "
+                    f"{', '.join(names)}",
+                    ".".join(way),
+                )
             inside[names.index(last)] = value
         elif isinstance(inside, list) and names:
             raise InputError(f"there is no {last}; it takes {choices(names, last)}", ".".join(way))
         elif isinstance(inside, dict):
             inside[last] = value
         elif names:
-            raise InputError(f"{shown(inside)} has no {last} that could be {done}; give a list of {', '.join(names)}", ".".join(way))
+            raise InputError(
+                f"{shown(inside)} has no {last} that could be {done}; give a list of "
+                f"{', '.join(names)}",
+                ".".join(way),
+            )
         else:
-            raise InputError(f"{shown(inside)} is not a table, so that it has no {last}", ".".join(way))
+            raise InputError(
+                f"{shown(inside)} is not a table, so that it has no {last}", ".".join(way)
+            )
     return found
 
 
@@ -198,12 +245,18 @@ def _keys(table: Mapping[str, Any]) -> Iterator[tuple[str, Quantity | None]]:
             key = f"{name}.{field}"
             parts = _parts(info.annotation) if field in _PLACES else ()
             yield key, None if parts else _DAMPING if field == "damping" else quantity_of(info)
-            yield from ((f"{key}.{place}", quantity_among((part,))) for place, part in zip(_PLACES.get(field, ()), parts, strict=True))
+            yield from (
+                (f"{key}.{place}", quantity_among((part,)))
+                for place, part in zip(_PLACES.get(field, ()), parts, strict=True)
+            )
             if field == "motion":
                 for number, inner in MotionTable.model_fields.items():
                     yield f"{key}.{number}", None if number == "direction" else quantity_of(inner)
             if field == "air":
-                yield from ((f"{key}.{part}", quantity_of(inner)) for part, inner in AirTable.model_fields.items())
+                yield from (
+                    (f"{key}.{part}", quantity_of(inner))
+                    for part, inner in AirTable.model_fields.items()
+                )
             if field == "material":
                 for number, inner in InlineMaterial.model_fields.items():
                     if number != "name":
@@ -214,19 +267,36 @@ def _keys(table: Mapping[str, Any]) -> Iterator[tuple[str, Quantity | None]]:
     if isinstance(contact, dict) and isinstance(contact.get("law"), str):
         exponent = contact.get("exponent", 1.5)
         for item in fields(find_contact_law(contact["law"])):
-            yield f"contact.{item.name}", Quantity(unit_of(item, exponent), item.metadata["meaning"], item.metadata["range"])
+            yield (
+                f"contact.{item.name}",
+                Quantity(unit_of(item, exponent), item.metadata["meaning"], item.metadata["range"]),
+            )
         friction = contact.get("friction")
-        if isinstance(friction, dict) and isinstance(friction.get("law"), str) and friction["law"] in friction_laws():
+        if (
+            isinstance(friction, dict)
+            and isinstance(friction.get("law"), str)
+            and friction["law"] in friction_laws()
+        ):
             yield "contact.friction.law", None
             for item in fields(friction_laws()[friction["law"]]):
                 metadata = item.metadata
-                yield f"contact.friction.{item.name}", Quantity(metadata["unit"], metadata["meaning"], metadata["range"])
+                yield (
+                    f"contact.friction.{item.name}",
+                    Quantity(metadata["unit"], metadata["meaning"], metadata["range"]),
+                )
     for field, info in LocalSection.model_fields.items():
         yield f"contact.{field}", quantity_of(info)
     for name, kind in (("liquid", LiquidTable), ("measured", MeasuredImpact)):
-        yield from ((f"contact.{name}.{part}", quantity_of(inner)) for part, inner in kind.model_fields.items())
+        yield from (
+            (f"contact.{name}.{part}", quantity_of(inner))
+            for part, inner in kind.model_fields.items()
+        )
 
 
 def _parts(annotation: Any) -> tuple[Any, ...]:
     """Return the annotations of the elements of a tuple type, which may be optional."""
-    return next(get_args(option) for option in (annotation, *get_args(annotation)) if get_origin(option) is tuple)
+    return next(
+        get_args(option)
+        for option in (annotation, *get_args(annotation))
+        if get_origin(option) is tuple
+    )

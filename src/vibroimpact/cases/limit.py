@@ -1,4 +1,6 @@
-"""Limits of the theory: a dimensionless number of a drop, the threshold above which the drop is doubted, and the sentence for it."""
+"""Limits of the theory: a dimensionless number of a drop, the threshold above which the
+drop is doubted, and the sentence for it.
+"""
 
 from __future__ import annotations
 
@@ -30,13 +32,16 @@ class Limit:
     threshold : float
         A drop with a larger number is doubted.
     number : callable
-        Returns the number of a drop, or of an array of drops, from its `Conditions`; NaN where the limit does not apply.
+        Returns the number of a drop, or of an array of drops, from its `Conditions`; NaN where the
+        limit does not apply.
     sentence : callable
-        Returns the message for one drop and its number: what is wrong and by how much, the cause and the remedy.
+        Returns the message for one drop and its number: what is wrong and by how much, the cause
+        and the remedy.
     shown : callable
         Formats a number for display.
     without_case : bool, default False
-        Whether the number depends on the peak values of the drop only, so that it also applies to a problem made in Python.
+        Whether the number depends on the peak values of the drop only, so that it also applies to a
+        problem made in Python.
     """
 
     name: str
@@ -63,14 +68,21 @@ def limits() -> Mapping[str, Limit]:
 
 
 def numbers_of(drops: Conditions) -> dict[str, Array]:
-    """Return, by name, the number of each limit that applies to a drop, or to any of an array of drops."""
+    """Return, by name, the number of each limit that applies to a drop, or to any of an
+    array of drops.
+    """
     with np.errstate(all="ignore"):  # values that are not known are NaN
-        found = {name: limit.number(drops) for name, limit in limits().items() if drops.case or limit.without_case}
+        found = {
+            name: limit.number(drops)
+            for name, limit in limits().items()
+            if drops.case or limit.without_case
+        }
     return {name: number for name, number in found.items() if not np.all(np.isnan(number))}
 
 
 def two_digits(value: float) -> str:
-    """Return a number with two significant digits and without an exponent, unless it is very large or very small.
+    """Return a number with two significant digits and without an exponent, unless it is very large
+    or very small.
 
     Examples
     --------
@@ -103,5 +115,7 @@ def percent_less(part: float) -> str:
 
 
 def percent_more(part: float) -> str:
-    """Return an estimated relative gain in per cent, with two significant digits: 0.135 is +14 %."""
+    """Return an estimated relative gain in per cent, with two significant digits: 0.135
+    is +14 %.
+    """
     return percent_less(part).replace("-", "+", 1)

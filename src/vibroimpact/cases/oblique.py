@@ -19,12 +19,21 @@ if TYPE_CHECKING:
 
 
 def oblique_keys(case: CaseTable) -> list[str]:
-    """Return the keys of a case for which a drop is not along the plate's normal alone, friction included."""
+    """Return the keys of a case for which a drop is not along the plate's normal alone,
+    friction included.
+    """
     drop = case.drop
     along = drop.velocity is not None and any(np.any(part) for part in drop.velocity[:2])
-    others: dict[str, Any] = {"drop.angle": drop.angle, "drop.spin": drop.spin, "plate.inclination": case.plate.inclination}
+    others: dict[str, Any] = {
+        "drop.angle": drop.angle,
+        "drop.spin": drop.spin,
+        "plate.inclination": case.plate.inclination,
+    }
     others["contact.friction"] = case.contact.friction
-    return [*(["drop.velocity"] if along else []), *(key for key, value in others.items() if value is not None)]
+    return [
+        *(["drop.velocity"] if along else []),
+        *(key for key, value in others.items() if value is not None),
+    ]
 
 
 def is_oblique(case: CaseTable) -> bool:
@@ -45,19 +54,30 @@ def friction_law_of(case: CaseTable) -> FrictionLaw | None:
 
 
 def normal_motion_of(case: CaseTable) -> dict[str, Any]:
-    """Return height, upward velocity there, speed at first touch, and gravity of a case along the normal, as a `Problem` takes them."""
+    """Return height, upward velocity there, speed at first touch, and gravity of a case
+    along the normal, as a `Problem` takes them.
+    """
     drop = case.drop
-    gravity = drop.gravity if case.plate.inclination is None else drop.gravity * np.cos(case.plate.inclination)
+    gravity = (
+        drop.gravity
+        if case.plate.inclination is None
+        else drop.gravity * np.cos(case.plate.inclination)
+    )
     rising = 0.0 if drop.velocity is None else drop.velocity[2]
     if drop.height is not None:
         return {"height": drop.height, "velocity": rising, "gravity": gravity}
     if drop.velocity is not None:
         return {"speed": -rising, "gravity": gravity}
-    return {"speed": drop.speed if drop.angle is None else drop.speed * np.cos(drop.angle), "gravity": gravity}
+    return {
+        "speed": drop.speed if drop.angle is None else drop.speed * np.cos(drop.angle),
+        "gravity": gravity,
+    }
 
 
 def oblique_of(case: CaseTable) -> Oblique | None:
-    """Return the motion along the plate of a case; None if the sphere falls along the normal without friction."""
+    """Return the motion along the plate of a case; None if the sphere falls along the
+    normal without friction.
+    """
     if not is_oblique(case):
         return None
     drop, inclination = case.drop, case.plate.inclination

@@ -1,4 +1,6 @@
-"""The falling sphere of a case as a rigid body, and the contact pair: what contact and friction laws take from the bodies."""
+"""The falling sphere of a case as a rigid body, and the contact pair: what contact and
+friction laws take from the bodies.
+"""
 
 from __future__ import annotations
 
@@ -19,7 +21,9 @@ if TYPE_CHECKING:
 
 @derived
 def ball_of(sphere: SphereSection) -> Body:
-    """Return the falling sphere of a case as a rigid body, with the mass and the moment of inertia that are given."""
+    """Return the falling sphere of a case as a rigid body, with the mass and the moment
+    of inertia that are given.
+    """
     return rigid_sphere(sphere.radius, sphere.material, mass=sphere.mass, inertia=sphere.inertia)
 
 
@@ -40,7 +44,9 @@ def resized(sphere: SphereSection, radius: Array) -> SphereSection:
 
 @derived
 def contact_pair(case: CaseTable) -> ContactPair:
-    """Return the contact pair of a case: effective modulus, radius and mass, and the yield strength of the weaker body."""
+    """Return the contact pair of a case: effective modulus, radius and mass, and the
+    yield strength of the weaker body.
+    """
     modulus, below = effective_modulus(case.sphere.material, case.plate.material), case.plate.radius
     mass, radius = ball_of(case.sphere).mass, case.sphere.radius
     if below is not None:
@@ -54,9 +60,18 @@ def contact_pair(case: CaseTable) -> ContactPair:
         if material.yield_strength is None:
             continue
         weaker = np.less(material.yield_strength, np.inf if strength is None else strength)
-        strength = np.where(weaker, material.yield_strength, np.inf if strength is None else strength)[()]
+        strength = np.where(
+            weaker, material.yield_strength, np.inf if strength is None else strength
+        )[()]
         ratio = np.where(weaker, material.poissons_ratio, ratio)[()]
-    return ContactPair(modulus, radius, mass, strength, ratio, effective_shear_modulus(case.sphere.material, case.plate.material))
+    return ContactPair(
+        modulus,
+        radius,
+        mass,
+        strength,
+        ratio,
+        effective_shear_modulus(case.sphere.material, case.plate.material),
+    )
 
 
 def is_free_sphere(case: CaseTable) -> bool:

@@ -28,7 +28,11 @@ Read = TypeVar("Read")
 GROUPS = ("paper", "signals")
 """Groups of shipped cases: of the paper, and of data sets; a name is "GROUP:NAME"."""
 
-_CASE = FileKind('a case is a TOML file, or a shipped one such as "paper:type1-theory"', MOST_BYTES, "a case is a page of text")
+_CASE = FileKind(
+    'a case is a TOML file, or a shipped one such as "paper:type1-theory"',
+    MOST_BYTES,
+    "a case is a page of text",
+)
 
 
 def load_case(source: str | PathLike[str], changes: Mapping[str, Any] | None = None) -> Case:
@@ -44,7 +48,8 @@ def load_case(source: str | PathLike[str], changes: Mapping[str, Any] | None = N
     Raises
     ------
     InputError
-        If it can't be read or is not a valid case; the message says where, what, and what is allowed.
+        If it can't be read or is not a valid case; the message says where, what, and what is
+        allowed.
 
     Examples
     --------
@@ -62,9 +67,13 @@ def _read_to_run(table: dict[str, Any]) -> Case:
         return _case_of(table)
     except InputError as error:
         if "calibrate" in table and "contact" in str(error) and "missing" in str(error):
-            raise _with_hint(error, "for `vibroimpact calibrate` what it tunes may be left out") from None
+            raise _with_hint(
+                error, "for `vibroimpact calibrate` what it tunes may be left out"
+            ) from None
         if "sweep" in table and "missing" in str(error):
-            raise _with_hint(error, "for `vibroimpact sweep` what it sweeps may be left out") from None
+            raise _with_hint(
+                error, "for `vibroimpact sweep` what it sweeps may be left out"
+            ) from None
         raise
 
 
@@ -72,8 +81,11 @@ def _with_hint(error: InputError, hint: str) -> InputError:
     return InputError.of_several([*error.faults[:-1], f"{error.faults[-1]}; {hint}"])
 
 
-def load_table(source: str | PathLike[str], changes: Mapping[str, Any] | None = None) -> dict[str, Any]:
-    """Return the parsed, not yet validated table of a case file or a shipped case; paths are made absolute, relative to the file.
+def load_table(
+    source: str | PathLike[str], changes: Mapping[str, Any] | None = None
+) -> dict[str, Any]:
+    """Return the parsed, not yet validated table of a case file or a shipped case; paths are made
+    absolute, relative to the file.
 
     Parameters
     ----------
@@ -92,7 +104,8 @@ def load_table(source: str | PathLike[str], changes: Mapping[str, Any] | None = 
         return table
     table = with_values(table, changes, "set")
     check_bounds(table)
-    return _resolve_paths(table, Path())  # files in the changes are relative to the working directory
+    # files in the changes are relative to the working directory
+    return _resolve_paths(table, Path())
 
 
 def case_text(source: str | PathLike[str]) -> str:
@@ -103,7 +116,11 @@ def case_text(source: str | PathLike[str]) -> str:
     InputError
         If it can't be read, or is too large for a case; the message does not name the source.
     """
-    return _shipped(str(source)) if str(source).partition(":")[0] in GROUPS else read_text(Path(source), _CASE)
+    return (
+        _shipped(str(source))
+        if str(source).partition(":")[0] in GROUPS
+        else read_text(Path(source), _CASE)
+    )
 
 
 def parse_case(text: str) -> dict[str, Any]:
@@ -131,19 +148,31 @@ def parse_case(text: str) -> dict[str, Any]:
 
 
 def _toml_hint(text: str, fault: str) -> str:
-    """Return the likely cause of a TOML syntax error, as a hint to be added to the message; "" if not known."""
+    """Return the likely cause of a TOML syntax error, as a hint to be added to the
+    message; "" if not known.
+    """
     place = re.search(r"at line (\d+)", fault)
     line = text.split("\n")[int(place[1]) - 1] if place else ""
     if re.match(r"[^=]{1,100}=\s*[+-]?[\d.]+(?:[eE][+-]?\d+)?\s*[^\W\d_][^\"']*$", line):
         return '; a number with a unit is a text: write it in quotes, such as "25 mm"'
     if "overwrite" in fault or "twice" in fault:
         again = re.match(r"\s*\[\s*(sensors|plate\.supports)\s*\]", line)
-        return f"; write [[{again[1]}]] above each table of a list" if again else "; a key or a table stands there twice"
-    return "; close the quotes on the line where they are opened" if "Illegal character '\\n'" in fault else ""
+        return (
+            f"; write [[{again[1]}]] above each table of a list"
+            if again
+            else "; a key or a table stands there twice"
+        )
+    return (
+        "; close the quotes on the line where they are opened"
+        if "Illegal character '\\n'" in fault
+        else ""
+    )
 
 
 def prefix_errors(source: str | PathLike[str], read: Callable[[], Read]) -> Read:
-    """Return the result of `read`, with the source prefixed to each line of an `InputError` that it raises."""
+    """Return the result of `read`, with the source prefixed to each line of an
+    `InputError` that it raises.
+    """
     try:
         return read()
     except InputError as error:
@@ -161,10 +190,14 @@ def read_case(table: Mapping[str, Any]) -> Case:
 
     Examples
     --------
-    >>> case = read_case({
-    ...     "sphere": {"radius": "25 mm", "material": "granite"}, "plate": {"material": "rigid"},
-    ...     "drop": {"speed": 1.0}, "contact": {"law": "hertz"},
-    ... })
+    >>> case = read_case(
+    ...     {
+    ...         "sphere": {"radius": "25 mm", "material": "granite"},
+    ...         "plate": {"material": "rigid"},
+    ...         "drop": {"speed": 1.0},
+    ...         "contact": {"law": "hertz"},
+    ...     }
+    ... )
     >>> case.sphere.radius
     0.025
     """
@@ -180,7 +213,8 @@ def _case_of(table: Mapping[str, Any]) -> Case:
     except ValidationError as error:
         faults = fault_messages(error, Case, of_case=True)
         raise InputError.of_several(
-            f"{shortened(path_in_words(path, table), 160)}: {message}" if path else message for path, message in faults
+            f"{shortened(path_in_words(path, table), 160)}: {message}" if path else message
+            for path, message in faults
         ) from None
     return case
 
@@ -197,7 +231,9 @@ def shipped_cases() -> dict[str, str]:
 
 
 def _resolve_paths(table: dict[str, Any], folder: Path) -> dict[str, Any]:
-    """Make the file paths of a case absolute, in place, relative to the folder of the case file; return the case."""
+    """Make the file paths of a case absolute, in place, relative to the folder of the
+    case file; return the case.
+    """
     for body in ("sphere", "plate"):
         section = table.get(body)
         mesh = section.get("mesh") if isinstance(section, dict) else None
@@ -230,12 +266,23 @@ def _resolve_sweep_paths(inside: Any, folder: Path) -> None:
 def _names() -> list[str]:
     """Return the names of the shipped cases."""
     folder = files("vibroimpact").joinpath("cases/library")
-    found = [(group, entry.name) for group in GROUPS for entry in folder.joinpath(group).iterdir() if entry.name.endswith(".toml")]
+    found = [
+        (group, entry.name)
+        for group in GROUPS
+        for entry in folder.joinpath(group).iterdir()
+        if entry.name.endswith(".toml")
+    ]
     return sorted(f"{group}:{name.removesuffix('.toml')}" for group, name in found)
 
 
 def _shipped(name: str) -> str:
     """Return the text of a shipped case."""
     if name not in (known := _names()):
-        raise InputError(f"there is no shipped case {shown(name)}; there are {choices(known, name, 'cases')}")
-    return files("vibroimpact").joinpath("cases/library", *f"{name}.toml".split(":")).read_text(encoding="utf-8")
+        raise InputError(
+            f"there is no shipped case {shown(name)}; there are {choices(known, name, 'cases')}"
+        )
+    return (
+        files("vibroimpact")
+        .joinpath("cases/library", *f"{name}.toml".split(":"))
+        .read_text(encoding="utf-8")
+    )

@@ -27,10 +27,13 @@ if TYPE_CHECKING:
 _DEFAULT_IMPACTS = 5
 
 PLATE_FALLS = (
-    "the supports let the plate fall or tilt: under gravity it falls away from under the sphere; hold it vertically, leave it rigid, or "
+    "the supports let the plate fall or tilt: under gravity it falls away from under the "
+    "sphere; hold it vertically, leave it rigid, or "
     "hit it in free space, with drop.gravity = 0 and drop.speed or drop.velocity"
 )
-"""Message for a plate that its supports do not hold, raised before its modes are computed (`"free"`) or after."""
+"""Message for a plate that its supports do not hold, raised before its modes are computed
+(`"free"`) or after.
+"""
 
 
 def mass_of_sphere(case: CaseTable) -> float:
@@ -40,18 +43,27 @@ def mass_of_sphere(case: CaseTable) -> float:
 
 @derived
 def contact_laws_of(case: CaseTable) -> tuple[ContactLaw, ...]:
-    """Return the contact law of each impact, as many as the longest list of a parameter has values; the last holds for later impacts.
+    """Return the contact law of each impact, as many as the longest list of a parameter has values;
+    the last holds for later impacts.
 
     A function of the approach speed has its value at the first touch, in a vacuum.
     """
     law, pair, functions = find_contact_law(case.contact.law), contact_pair(case), by_speed_of(case)
-    first = {key: held(function, _touch_speed_in_vacuum(case)) for key, function in functions.items()}
+    first = {
+        key: held(function, _touch_speed_in_vacuum(case)) for key, function in functions.items()
+    }
     parameters: dict[str, Any] = {**case.contact.parameters, **first}
     lists = {key: value for key, value in parameters.items() if isinstance(value, tuple)}
     number = max((len(value) for value in lists.values()), default=1)
     try:
         return tuple(
-            law.for_pair(pair, **{**parameters, **{key: value[min(impact, len(value) - 1)] for key, value in lists.items()}})
+            law.for_pair(
+                pair,
+                **{
+                    **parameters,
+                    **{key: value[min(impact, len(value) - 1)] for key, value in lists.items()},
+                },
+            )
             for impact in range(number)
         )
     except InputError as error:
@@ -66,27 +78,47 @@ def fluid_of(case: CaseTable) -> Fluid | None:
 
 
 def by_speed_of(case: CaseTable) -> dict[str, BySpeed]:
-    """Return the parameters of the contact law of a case that are functions of the approach speed."""
-    return {key: value for key, value in case.contact.parameters.items() if isinstance(value, (SpeedFunction, SpeedTable))}
+    """Return the parameters of the contact law of a case that are functions of the
+    approach speed.
+    """
+    return {
+        key: value
+        for key, value in case.contact.parameters.items()
+        if isinstance(value, (SpeedFunction, SpeedTable))
+    }
 
 
 def in_liquid(case: CaseTable, law: ContactLaw) -> ContactLaw:
-    """Return a contact law of a case at the speed of the first touch, with the restitution that a liquid, if there is one, leaves it."""
+    """Return a contact law of a case at the speed of the first touch, with the
+    restitution that a liquid, if there is one, leaves it.
+    """
     functions, table = by_speed_of(case), case.contact.local.liquid
     if functions:
-        law = law.changed({key: held(function, touch_speed(case)) for key, function in functions.items()})
-    return law if table is None else table.liquid().around(law, touch_speed(case), case.sphere.radius, sphere_density(case.sphere))
+        law = law.changed(
+            {key: held(function, touch_speed(case)) for key, function in functions.items()}
+        )
+    return (
+        law
+        if table is None
+        else table.liquid().around(
+            law, touch_speed(case), case.sphere.radius, sphere_density(case.sphere)
+        )
+    )
 
 
 def impact_limit(case: CaseTable) -> int | None:
-    """Return the number of impacts after which a run stops; None if it continues to rest or to a time."""
+    """Return the number of impacts after which a run stops; None if it continues to rest
+    or to a time.
+    """
     if case.run.impacts is None:
         return _DEFAULT_IMPACTS if run_duration(case) is None else None
     return None if case.run.impacts == "all" else case.run.impacts
 
 
 def run_duration(case: CaseTable) -> float | None:
-    """Return the time at which a run stops [s]: its duration, or the end of a tabulated motion of the plate; None without either."""
+    """Return the time at which a run stops [s]: its duration, or the end of a tabulated
+    motion of the plate; None without either.
+    """
     length = motion_length(case)
     return case.run.duration if np.isinf(length) else min(case.run.duration or length, length)
 
@@ -100,11 +132,18 @@ def elastic_names(case: CaseTable) -> list[Literal["sphere", "plate"]]:
 def deforms(case: CaseTable) -> bool:
     """Return whether anything but the contact itself deforms, or the body below is free to move."""
     local = case.contact.local
-    return bool(elastic_names(case)) or local.local_compliance == "identified" or local.finite_sphere or is_free_sphere(case)
+    return (
+        bool(elastic_names(case))
+        or local.local_compliance == "identified"
+        or local.finite_sphere
+        or is_free_sphere(case)
+    )
 
 
 def rigid_problem(case: CaseTable) -> Problem:
-    """Return the problem of a case with rigid bodies; the numbers of the case may be arrays, one value per drop."""
+    """Return the problem of a case with rigid bodies; the numbers of the case may be
+    arrays, one value per drop.
+    """
     return Problem(
         sphere=ball_of(case.sphere),
         plate=_rigid_below(case),
@@ -143,8 +182,12 @@ def touch_speed(case: CaseTable) -> float:
 
 
 def _touch_speed_in_vacuum(case: CaseTable) -> Array:
-    """Return the approach speed of the first impact without air [m/s]; the numbers of the case may be arrays."""
+    """Return the approach speed of the first impact without air [m/s]; the numbers of the
+    case may be arrays.
+    """
     motion = normal_motion_of(case)
     if "speed" in motion:
         return motion["speed"]
-    return (motion["velocity"] ** 2 + 2.0 * motion["gravity"] * (motion["height"] - case.sphere.radius)) ** 0.5
+    return (
+        motion["velocity"] ** 2 + 2.0 * motion["gravity"] * (motion["height"] - case.sphere.radius)
+    ) ** 0.5

@@ -67,18 +67,37 @@ class SphereSection(Section):
     radius: Annotated[float, UncertainQuantity("m", "radius", Range(above=0))]
     material: MaterialField
     mass: (
-        Annotated[float, Quantity("kg", "mass of a ball that is hollow or filled; by default that of a solid one", Range(above=0))] | None
+        Annotated[
+            float,
+            Quantity(
+                "kg",
+                "mass of a ball that is hollow or filled; by default that of a solid one",
+                Range(above=0),
+            ),
+        ]
+        | None
     ) = None
-    inertia: Annotated[Any, Quantity("kg m^2", "moment of inertia", Range(above=0), words=tuple(INERTIA_RATIOS))] = Field(
-        None, description='moment of inertia about an axis through the centre [kg m^2], "solid" (default) or "hollow"'
+    inertia: Annotated[
+        Any, Quantity("kg m^2", "moment of inertia", Range(above=0), words=tuple(INERTIA_RATIOS))
+    ] = Field(
+        None,
+        description='moment of inertia about an axis through the centre [kg m^2], "solid" '
+        "(default) or "
+        '"hollow"',
     )
-    model: Literal["rigid", "elastic"] = Field("rigid", description="rigid, or elastic with vibration modes")
+    model: Literal["rigid", "elastic"] = Field(
+        "rigid", description="rigid, or elastic with vibration modes"
+    )
     modes: ModesField | None = Field(None, description="number of modes, from the lowest")
     max_frequency: FrequencyField | None = None
     damping: DampingField = None
     mesh: SphereMeshField = None
-    reduction: MethodField | None = Field(None, description="model reduction of the finite elements; modal by default")
-    attachment_mode: StrictBool = Field(False, description="add a residual attachment mode at the contact point")
+    reduction: MethodField | None = Field(
+        None, description="model reduction of the finite elements; modal by default"
+    )
+    attachment_mode: StrictBool = Field(
+        False, description="add a residual attachment mode at the contact point"
+    )
 
     @model_validator(mode="before")
     @classmethod
@@ -90,7 +109,11 @@ class SphereSection(Section):
     @model_validator(mode="after")
     def _check_body(self) -> SphereSection:
         if self.material is RIGID:
-            lacks = "no density, and the sphere needs a mass" if self.mass is None else "no modulus, and the sphere needs one"
+            lacks = (
+                "no density, and the sphere needs a mass"
+                if self.mass is None
+                else "no modulus, and the sphere needs one"
+            )
             raise InputError(f'"rigid" has {lacks}; only the plate can be rigid', "material")
         check_ball(self)
         check_elastic(self)
@@ -101,7 +124,10 @@ class PlateSection(Section):
     """What the sphere falls on: a plate, or another sphere; held fixed, or free."""
 
     material: MaterialField
-    radius: Annotated[float, Quantity("m", "radius of a sphere in place of the plate", Range(above=0))] | None = None
+    radius: (
+        Annotated[float, Quantity("m", "radius of a sphere in place of the plate", Range(above=0))]
+        | None
+    ) = None
     size: (
         tuple[
             Annotated[float, Quantity("m", "length", Range(above=0))],
@@ -110,9 +136,12 @@ class PlateSection(Section):
         ]
         | None
     ) = Field(None, description="length (x), width (y) and thickness (z) [m]")
-    model: Literal["rigid", "elastic"] = Field("rigid", description="rigid, or elastic with vibration modes")
+    model: Literal["rigid", "elastic"] = Field(
+        "rigid", description="rigid, or elastic with vibration modes"
+    )
     element: Literal["plate", "solid"] | None = Field(
-        None, description="type of the finite elements of an elastic plate; plate elements by default"
+        None,
+        description="type of the finite elements of an elastic plate; plate elements by default",
     )
     modes: ModesField | None = Field(None, description="number of modes, from the lowest")
     max_frequency: FrequencyField | None = None
@@ -121,14 +150,24 @@ class PlateSection(Section):
     inclination: (
         Annotated[
             float,
-            Quantity("rad", "inclination about y, with a component of gravity along +x", Range(above=-_RIGHT_ANGLE, below=_RIGHT_ANGLE)),
+            Quantity(
+                "rad",
+                "inclination about y, with a component of gravity along +x",
+                Range(above=-_RIGHT_ANGLE, below=_RIGHT_ANGLE),
+            ),
         ]
         | None
     ) = None
-    motion: MotionTable | None = Field(None, description="motion of the supports; at rest by default")
+    motion: MotionTable | None = Field(
+        None, description="motion of the supports; at rest by default"
+    )
     mesh: PlateMeshField = None
-    reduction: MethodField | None = Field(None, description="model reduction of the finite elements; modal by default")
-    attachment_mode: StrictBool = Field(False, description="add a residual attachment mode at the contact point")
+    reduction: MethodField | None = Field(
+        None, description="model reduction of the finite elements; modal by default"
+    )
+    attachment_mode: StrictBool = Field(
+        False, description="add a residual attachment mode at the contact point"
+    )
 
     @model_validator(mode="before")
     @classmethod
@@ -154,33 +193,64 @@ class DropSection(Section):
             float,
             UncertainQuantity(
                 "m",
-                "initial height of the sphere's centre above the plate's upper surface, at rest unless velocity is given",
+                "initial height of the sphere's centre above the plate's upper surface, at "
+                "rest unless velocity is given",
                 Range(above=0),
             ),
         ]
         | None
     ) = None
-    speed: Annotated[float, UncertainQuantity("m/s", "speed at first touch, at which the run then begins", Range(above=0))] | None = None
+    speed: (
+        Annotated[
+            float,
+            UncertainQuantity(
+                "m/s", "speed at first touch, at which the run then begins", Range(above=0)
+            ),
+        ]
+        | None
+    ) = None
     angle: (
         Annotated[
-            float, Quantity("rad", "angle of the speed from the plate's normal, towards +x", Range(above=-_RIGHT_ANGLE, below=_RIGHT_ANGLE))
+            float,
+            Quantity(
+                "rad",
+                "angle of the speed from the plate's normal, towards +x",
+                Range(above=-_RIGHT_ANGLE, below=_RIGHT_ANGLE),
+            ),
         ]
         | None
     ) = None
     velocity: (
-        tuple[Annotated[float, Quantity("m/s", "x")], Annotated[float, Quantity("m/s", "y")], Annotated[float, Quantity("m/s", "z")]] | None
-    ) = Field(None, description="velocity along x, y and the normal z, upwards, at the start: at the height, or at first touch [m/s]")
+        tuple[
+            Annotated[float, Quantity("m/s", "x")],
+            Annotated[float, Quantity("m/s", "y")],
+            Annotated[float, Quantity("m/s", "z")],
+        ]
+        | None
+    ) = Field(
+        None,
+        description="velocity along x, y and the normal z, upwards, at the start: at the "
+        "height, or at first touch [m/s]",
+    )
     spin: (
-        tuple[Annotated[float, Quantity("rad/s", "x")], Annotated[float, Quantity("rad/s", "y")], Annotated[float, Quantity("rad/s", "z")]]
+        tuple[
+            Annotated[float, Quantity("rad/s", "x")],
+            Annotated[float, Quantity("rad/s", "y")],
+            Annotated[float, Quantity("rad/s", "z")],
+        ]
         | None
     ) = Field(None, description="angular velocity about x, y and z at the start [rad/s]")
-    position: tuple[Annotated[float, Quantity("m", "x")], Annotated[float, Quantity("m", "y")]] = Field(
-        (0.0, 0.0), description="x and y on the plate, from its centre [m]"
+    position: tuple[Annotated[float, Quantity("m", "x")], Annotated[float, Quantity("m", "y")]] = (
+        Field((0.0, 0.0), description="x and y on the plate, from its centre [m]")
     )
-    gravity: Annotated[float, UncertainQuantity("m/s^2", "acceleration of gravity", Range(at_least=0))] = STANDARD_GRAVITY
+    gravity: Annotated[
+        float, UncertainQuantity("m/s^2", "acceleration of gravity", Range(at_least=0))
+    ] = STANDARD_GRAVITY
     air: AirField = None
     same_spot: StrictBool = Field(
-        True, description="whether all impacts are at the same spot, with the dent of previous ones, or on undeformed surfaces"
+        True,
+        description="whether all impacts are at the same spot, with the dent of previous ones, or "
+        "on undeformed surfaces",
     )
 
     @model_validator(mode="after")
@@ -191,10 +261,20 @@ class DropSection(Section):
             raise InputError("give either speed or velocity; both are given")
         elif self.height is None and self.velocity[2] >= 0.0:
             words = f"its z is {self.velocity[2]:g} m/s, which does not lead to the plate"
-            raise InputError(f"{words}; at first touch it is negative, or give the height at which the drop starts", "velocity")
+            raise InputError(
+                f"{words}; at first touch it is negative, or give the height "
+                "at which the drop starts",
+                "velocity",
+            )
         if self.angle is not None and self.speed is None:
-            given = " and ".join(key for key in ("height", "velocity") if getattr(self, key) is not None)
-            raise InputError(f"an angle needs the speed at first touch; give speed in place of {given}, or leave this out", "angle")
+            given = " and ".join(
+                key for key in ("height", "velocity") if getattr(self, key) is not None
+            )
+            raise InputError(
+                f"an angle needs the speed at first touch; give speed in place of {given}, "
+                "or leave this out",
+                "angle",
+            )
         return self
 
 
@@ -202,7 +282,10 @@ def _read_impacts(value: Any) -> Any:
     """Return a valid number of impacts, "all" or None."""
     if value is None or value == "all" or (type(value) is int and 1 <= value <= MOST_IMPACTS):
         return value
-    raise InputError(f'{shown(value)} is not allowed; it must be a whole number from 1 to {MOST_IMPACTS}, or "all" to continue until rest')
+    raise InputError(
+        f"{shown(value)} is not allowed; it must be a whole number from 1 to "
+        f'{MOST_IMPACTS}, or "all" to continue until rest'
+    )
 
 
 _MEASURED_BY = {"strain": "strain-gauge", "pressure": "microphone", "force": "force"}
@@ -215,13 +298,17 @@ _DIRECTIONS = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 
 
 def _one_of(names: Collection[str]) -> BeforeValidator:
-    """Return the check of a name, whose message has the likely one; a value that is no string is left to the type check of the field."""
+    """Return the check of a name, whose message has the likely one; a value that is no
+    string is left to the type check of the field.
+    """
 
     def read(value: Any) -> Any:
         if not isinstance(value, str) or value in names:
             return value
         known = ", ".join(f'"{name}"' for name in names)
-        raise InputError(f"{shown(value)} is not allowed; it must be one of {known}.{did_you_mean(value, names)}")
+        raise InputError(
+            f"{shown(value)} is not allowed; it must be one of {known}.{did_you_mean(value, names)}"
+        )
 
     return BeforeValidator(read)
 
@@ -233,51 +320,96 @@ class SensorSection(Section):
     """A sensor at a point of the plate, or a microphone in the air."""
 
     name: Name = Field(min_length=1, description="name of the sensor in tables and figures")
-    position: tuple[Annotated[float, Quantity("m", "x")], Annotated[float, Quantity("m", "y")]] | Name = Field(
-        description="x and y on the plate, from its centre [m]; or the name of a set of an imported mesh"
+    position: (
+        tuple[Annotated[float, Quantity("m", "x")], Annotated[float, Quantity("m", "y")]] | Name
+    ) = Field(
+        description="x and y on the plate, from its centre [m]; or the name of a set of an "
+        "imported mesh"
     )
-    face: Literal["upper", "lower"] = Field("upper", description="the face of the plate that it is on, or that a microphone measures")
-    instrument: Annotated[Literal["accelerometer", "geophone", "strain-gauge", "microphone", "force"] | None, _one_of(INSTRUMENTS)] = Field(
-        None, description="type of the instrument; by default that of the table that is given, or else an ideal sensor of the motion"
+    face: Literal["upper", "lower"] = Field(
+        "upper", description="the face of the plate that it is on, or that a microphone measures"
     )
-    quantity: Literal["acceleration", "velocity", "displacement", "voltage", "strain", "pressure", "force"] | None = Field(
-        None, description="measured quantity: acceleration by default, or the output of the instrument"
+    instrument: Annotated[
+        Literal["accelerometer", "geophone", "strain-gauge", "microphone", "force"] | None,
+        _one_of(INSTRUMENTS),
+    ] = Field(
+        None,
+        description="type of the instrument; by default that of the table that is given, or "
+        "else an ideal sensor of the motion",
+    )
+    quantity: (
+        Literal[
+            "acceleration", "velocity", "displacement", "voltage", "strain", "pressure", "force"
+        ]
+        | None
+    ) = Field(
+        None,
+        description="measured quantity: acceleration by default, or the output of the instrument",
     )
     direction: Literal["x", "y", "z"] | tuple[_Part, _Part, _Part] = Field(
         "z",
-        description='direction of measurement: "x", "y", "z" (upwards), or numbers along x, y and z; of a strain gauge "x" by default',
+        description='direction of measurement: "x", "y", "z" (upwards), or numbers along x, y and '
+        "z; of "
+        'a strain gauge "x" by default',
     )
     rate: Annotated[float, Quantity("Hz", "sampling rate", Range(above=0))] = 50e3
     filter: Annotated[Literal["sigma-delta", "butterworth", "none"], _one_of(FILTERS)] = Field(
         "sigma-delta", description="anti-alias filter"
     )
     corner: (
-        Annotated[float, Quantity("Hz", "corner frequency of a Butterworth filter; 0.4 of the rate by default", Range(above=0))] | None
+        Annotated[
+            float,
+            Quantity(
+                "Hz",
+                "corner frequency of a Butterworth filter; 0.4 of the rate by default",
+                Range(above=0),
+            ),
+        ]
+        | None
     ) = None
     accelerometer: AccelerometerTable | None = Field(
         None, description="resonance, range, noise, resolution and sensitivity of an accelerometer"
     )
-    geophone: GeophoneTable | None = Field(None, description="natural frequency, sensitivity, damping and low-pass of a geophone")
+    geophone: GeophoneTable | None = Field(
+        None, description="natural frequency, sensitivity, damping and low-pass of a geophone"
+    )
     strain_gauge: StrainGaugeTable | None = Field(None, description="sensitivity of a strain gauge")
-    force: ForceTable | None = Field(None, description="sensitivity of a force sensor between the plate and the support at the position")
-    microphone: MicrophoneTable | None = Field(None, description="distance and sensitivity of a microphone, and its air")
-    amplifier: AmplifierTable | None = Field(None, description="gain, noise and mains hum of the amplifier")
-    converter: ConverterTable | None = Field(None, description="range and bits of the analogue-to-digital converter")
+    force: ForceTable | None = Field(
+        None,
+        description="sensitivity of a force sensor between the plate and the support at the "
+        "position",
+    )
+    microphone: MicrophoneTable | None = Field(
+        None, description="distance and sensitivity of a microphone, and its air"
+    )
+    amplifier: AmplifierTable | None = Field(
+        None, description="gain, noise and mains hum of the amplifier"
+    )
+    converter: ConverterTable | None = Field(
+        None, description="range and bits of the analogue-to-digital converter"
+    )
 
     @model_validator(mode="after")
     def _check_sensor(self) -> SensorSection:
         if not isinstance(self.direction, str) and not any(self.direction):
-            raise InputError("it has no length; give x, y and z of the direction, such as [1, 0, 0]", "direction")
+            raise InputError(
+                "it has no length; give x, y and z of the direction, such as [1, 0, 0]", "direction"
+            )
         instrument = self._instrument()
         if isinstance(instrument, StrainGauge):
             self._lay_in_face()
         if isinstance(instrument, Microphone) and self.direction not in ("z", (0.0, 0.0, 1.0)):
-            raise InputError("a microphone is omnidirectional; leave out the direction", "direction")
+            raise InputError(
+                "a microphone is omnidirectional; leave out the direction", "direction"
+            )
         if instrument is None and self.quantity not in (None, *MOTIONS):
             kind = _MEASURED_BY.get(str(self.quantity), "geophone")
             # some need properties, which their table gives
             one = f"{kind} = {{ ... }}" if kind in _WITH_PROPERTIES else f'instrument = "{kind}"'
-            raise InputError(f"{self.quantity} is the output of an instrument; name one, such as {one}", "quantity")
+            raise InputError(
+                f"{self.quantity} is the output of an instrument; name one, such as {one}",
+                "quantity",
+            )
         if instrument is not None and self.quantity not in (None, instrument.quantity):
             words = f"{INSTRUMENTS[str(self.instrument)]} measures {instrument.quantity}"
             raise InputError(f"{words}; leave out quantity, or the {self.instrument}", "quantity")
@@ -292,14 +424,22 @@ class SensorSection(Section):
         return self
 
     def _lay_in_face(self) -> None:
-        """Let a strain gauge lie along x where its direction is not given; one that leaves the face is refused."""
+        """Let a strain gauge lie along x where its direction is not given; one that
+        leaves the face is refused.
+        """
         if "direction" not in self.model_fields_set:
             self.__dict__["direction"] = "x"
         elif self.direction == "z" or (not isinstance(self.direction, str) and self.direction[2]):
-            raise InputError('a strain gauge lies in the face; give a direction along it, such as "x" or [1, 1, 0]', "direction")
+            raise InputError(
+                'a strain gauge lies in the face; give a direction along it, such as "x" or '
+                "[1, 1, 0]",
+                "direction",
+            )
 
     def _instrument(self) -> Instrument | None:
-        """Return the instrument, which its table names where the key does not; None if the motion is read as it is."""
+        """Return the instrument, which its table names where the key does not; None if
+        the motion is read as it is.
+        """
         tables = {name: getattr(self, name.replace("-", "_")) for name in INSTRUMENTS}
         given = [name for name, table in tables.items() if table is not None]
         kind: str | None = self.instrument or next(iter(given), None)
@@ -309,15 +449,26 @@ class SensorSection(Section):
         if wrong is not None:
             other = f', or take instrument = "{wrong}"'
             if kind in given:
-                other = f", or the table {kind.replace('-', '_')}" if self.instrument is None else ""
-            raise InputError(f"its instrument is {INSTRUMENTS[kind]}; leave out this table{other}", wrong.replace("-", "_"))
+                other = (
+                    f", or the table {kind.replace('-', '_')}" if self.instrument is None else ""
+                )
+            raise InputError(
+                f"its instrument is {INSTRUMENTS[kind]}; leave out this table{other}",
+                wrong.replace("-", "_"),
+            )
         self.__dict__["instrument"] = kind
         if (table := tables[kind]) is not None:
             found: Instrument = table.instrument()
             return found
         if kind in _WITH_PROPERTIES:
-            raise InputError(f"{INSTRUMENTS[kind]} has properties; give them in a table {kind} = {{ ... }}", kind)
-        ideal: dict[str, Instrument] = {"accelerometer": Accelerometer(), "strain-gauge": StrainGauge(), "force": ForceSensor()}
+            raise InputError(
+                f"{INSTRUMENTS[kind]} has properties; give them in a table {kind} = {{ ... }}", kind
+            )
+        ideal: dict[str, Instrument] = {
+            "accelerometer": Accelerometer(),
+            "strain-gauge": StrainGauge(),
+            "force": ForceSensor(),
+        }
         return ideal[kind]
 
     def sensor(self) -> Sensor:
@@ -328,7 +479,17 @@ class SensorSection(Section):
         converter = None if self.converter is None else self.converter.converter()
         instrument = self._instrument()
         quantity = self.quantity or ("acceleration" if instrument is None else instrument.quantity)
-        return Sensor(self.name, quantity, (x, y, z), self.rate, instrument, self.filter, self.corner, amplifier, converter)
+        return Sensor(
+            self.name,
+            quantity,
+            (x, y, z),
+            self.rate,
+            instrument,
+            self.filter,
+            self.corner,
+            amplifier,
+            converter,
+        )
 
 
 class RunSection(Section):
@@ -336,16 +497,37 @@ class RunSection(Section):
 
     impacts: Annotated[int | Literal["all"] | None, BeforeValidator(_read_impacts)] = Field(
         None,
-        description='number of impacts after which the run ends; "all": until rest; by default 5, or all if a duration or a motion ends it',
+        description='number of impacts after which the run ends; "all": until rest; by default 5, '
+        "or all if a duration or a motion ends it",
     )
-    duration: Annotated[float, Quantity("s", "time at which the run ends", Range(above=0))] | None = None
-    rest_speed: Annotated[float, Quantity("m/s", "separation speed below which the sphere is at rest", Range(at_least=0))] | None = None
+    duration: (
+        Annotated[float, Quantity("s", "time at which the run ends", Range(above=0))] | None
+    ) = None
+    rest_speed: (
+        Annotated[
+            float,
+            Quantity(
+                "m/s", "separation speed below which the sphere is at rest", Range(at_least=0)
+            ),
+        ]
+        | None
+    ) = None
     tolerance: Annotated[
-        float, Quantity("", "relative error allowed in the state at the end of a contact", Range(at_least=1e-13, at_most=1e-6))
+        float,
+        Quantity(
+            "",
+            "relative error allowed in the state at the end of a contact",
+            Range(at_least=1e-13, at_most=1e-6),
+        ),
     ] = 1e-9
 
 
-SECTIONS: dict[str, type[Section]] = {"sphere": SphereSection, "plate": PlateSection, "drop": DropSection, "run": RunSection}
+SECTIONS: dict[str, type[Section]] = {
+    "sphere": SphereSection,
+    "plate": PlateSection,
+    "drop": DropSection,
+    "run": RunSection,
+}
 """The sections of a case that are there once and have fixed keys."""
 
 
@@ -358,15 +540,21 @@ def _whole_number(given: Any) -> Any:
 class CaseTable(Section):
     """A case as a file has it: its sections, validated, in SI."""
 
-    schema_version: Annotated[Literal[1], BeforeValidator(_whole_number)] = Field(1, description="version of this format")
+    schema_version: Annotated[Literal[1], BeforeValidator(_whole_number)] = Field(
+        1, description="version of this format"
+    )
     name: Name = Field("", description="title of the case")
     sphere: SphereSection
     plate: PlateSection
     drop: DropSection
     contact: Annotated[ContactSection, BeforeValidator(read_contact)]
     run: RunSection = RunSection()
-    sensors: Annotated[tuple[SensorSection, ...], at_most(MOST_ITEMS, "sensors")] = Field((), description="sensors on the plate")
-    calibrate: CalibrateSection | None = Field(None, description="settings of `vibroimpact calibrate`")
+    sensors: Annotated[tuple[SensorSection, ...], at_most(MOST_ITEMS, "sensors")] = Field(
+        (), description="sensors on the plate"
+    )
+    calibrate: CalibrateSection | None = Field(
+        None, description="settings of `vibroimpact calibrate`"
+    )
     sweep: SweepSection | None = Field(None, description="settings of `vibroimpact sweep`")
 
     @model_validator(mode="after")
@@ -374,28 +562,52 @@ class CaseTable(Section):
         """Check values of different sections against each other."""
         radius, height, size = self.sphere.radius, self.drop.height, self.plate.size
         if height is not None and height <= radius:
-            hint = likely_lengths([radius], [min(height, 3.0)]).replace("Write", "Write sphere.radius =")
+            hint = likely_lengths([radius], [min(height, 3.0)]).replace(
+                "Write", "Write sphere.radius ="
+            )
             raise InputError(
-                f"{height:g} m does not lift the sphere off the surface; it is the height of its centre, so it must be greater than the "
-                f"radius, {radius:g} m{hint}",
+                f"{height:g} m does not lift the sphere off the surface; it is the height "
+                f"of its centre, so it must be greater than the radius, {radius:g} m{hint}",
                 "drop.height",
             )
         if height is not None and self.drop.gravity == 0:
-            remedy = "give drop.speed instead of drop.height" if self.drop.velocity is None else "leave out drop.height"
+            remedy = (
+                "give drop.speed instead of drop.height"
+                if self.drop.velocity is None
+                else "leave out drop.height"
+            )
             raise InputError(f"without gravity a sphere does not fall; {remedy}", "drop.gravity")
         if self.plate.radius is not None:
             check_sphere_below(self)
         # the extent of an imported mesh is not known before it is read
         in_own_coordinates = isinstance(self.plate.mesh, BroughtMeshTable)
-        reach = [0.5 * length for length in size[:2]] if size and not in_own_coordinates else [math.inf, math.inf]
+        reach = (
+            [0.5 * length for length in size[:2]]
+            if size and not in_own_coordinates
+            else [math.inf, math.inf]
+        )
         if any(abs(at) > end for at, end in zip(self.drop.position, reach, strict=True)):
             x, y = self.drop.position
-            words = f"({x:g}, {y:g}) m lies outside the plate, which reaches to ({reach[0]:g}, {reach[1]:g}) m"
+            words = (
+                f"({x:g}, {y:g}) m lies outside the plate, which reaches to ({reach[0]:g}, "
+                f"{reach[1]:g}) m"
+            )
             raise InputError(f"{words}{likely_lengths(self.drop.position, reach)}", "drop.position")
-        twice = next((name for name, often in Counter(sensor.name for sensor in self.sensors).items() if often > 1), None)
+        twice = next(
+            (
+                name
+                for name, often in Counter(sensor.name for sensor in self.sensors).items()
+                if often > 1
+            ),
+            None,
+        )
         if twice is not None:
-            raise InputError(f"two sensors are called {shown(twice)}; each needs a name of its own", "sensors")
+            raise InputError(
+                f"two sensors are called {shown(twice)}; each needs a name of its own", "sensors"
+            )
         for sensor in self.sensors:
             if sensor.microphone is not None and sensor.microphone.air_density is None:
-                sensor.microphone.__dict__["air_density"] = AIR_DENSITY if self.drop.air is None else self.drop.air.density
+                sensor.microphone.__dict__["air_density"] = (
+                    AIR_DENSITY if self.drop.air is None else self.drop.air.density
+                )
         return self

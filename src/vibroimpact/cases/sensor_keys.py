@@ -41,17 +41,32 @@ def sensors_of(table: Mapping[str, Any]) -> dict[str, SensorSection]:
         try:
             found[entry["name"]] = read_table(SensorSection, entry)
         except InputError as error:
-            raise InputError(error.message, f"{item_label('sensors', entries, number)}.{error.key}".rstrip(".")) from None
+            raise InputError(
+                error.message, f"{item_label('sensors', entries, number)}.{error.key}".rstrip(".")
+            ) from None
     return found
 
 
 def sensor_keys(table: Mapping[str, Any]) -> Iterator[tuple[str, Quantity | None]]:
-    """Yield the keys of the sensors of a case with their quantities; None for a key that is not a quantity.
+    """Yield the keys of the sensors of a case with their quantities; None for a key that is not a
+    quantity.
 
     Examples
     --------
-    >>> keys = dict(sensor_keys({"sensors": [{"name": "a1", "position": [0, 0], "accelerometer": {"sensitivity": 0.01}}]}))
-    >>> keys["sensors.a1.position.x"].unit, keys["sensors.a1.accelerometer.noise"].unit, keys["sensors.a1.amplifier.noise"].unit
+    >>> keys = dict(
+    ...     sensor_keys(
+    ...         {
+    ...             "sensors": [
+    ...                 {"name": "a1", "position": [0, 0], "accelerometer": {"sensitivity": 0.01}}
+    ...             ]
+    ...         }
+    ...     )
+    ... )
+    >>> (
+    ...     keys["sensors.a1.position.x"].unit,
+    ...     keys["sensors.a1.accelerometer.noise"].unit,
+    ...     keys["sensors.a1.amplifier.noise"].unit,
+    ... )
     ('m', 'm/s^2', 'V')
     """
     for name, sensor in sensors_of(table).items():
@@ -61,17 +76,24 @@ def sensor_keys(table: Mapping[str, Any]) -> Iterator[tuple[str, Quantity | None
                 continue
             key = f"sensors.{name}.{field}"
             yield key, None if field in _NUMBERS else quantity_of(info)
-            yield from ((f"{key}.{part}", quantity) for part, quantity in _NUMBERS.get(field, {}).items())
+            yield from (
+                (f"{key}.{part}", quantity) for part, quantity in _NUMBERS.get(field, {}).items()
+            )
             for part, of_part in _fields(info).items():
                 yield f"{key}.{part}", quantity_of(of_part) or quantity_in_unit(of_part, unit)
 
 
 def holds_sensor_keys(key: str) -> bool:
-    """Return whether a dotted key is that of a table of sensors, or in one, that contains keys that can be swept.
+    """Return whether a dotted key is that of a table of sensors, or in one, that contains keys that
+    can be swept.
 
     Examples
     --------
-    >>> holds_sensor_keys("sensors.a1.accelerometer"), holds_sensor_keys("sensors.a1.rate"), holds_sensor_keys("plate")
+    >>> (
+    ...     holds_sensor_keys("sensors.a1.accelerometer"),
+    ...     holds_sensor_keys("sensors.a1.rate"),
+    ...     holds_sensor_keys("plate"),
+    ... )
     (True, False, False)
     """
     first, *rest = key.split(".")
@@ -80,21 +102,32 @@ def holds_sensor_keys(key: str) -> bool:
     return (
         len(rest) < 2
         or rest[1] in _NUMBERS
-        or (rest[1] in SensorSection.model_fields and bool(_fields(SensorSection.model_fields[rest[1]])))
+        or (
+            rest[1] in SensorSection.model_fields
+            and bool(_fields(SensorSection.model_fields[rest[1]]))
+        )
     )
 
 
 def split_key(table: Mapping[str, Any], key: str) -> list[str]:
-    """Return the parts of a dotted key; the name of a sensor, which may have dots itself, is one of them.
+    """Return the parts of a dotted key; the name of a sensor, which may have dots itself, is one of
+    them.
 
     Examples
     --------
-    >>> split_key({"sensors": [{"name": "a.1"}]}, "sensors.a.1.position.x"), split_key({}, "plate.size.thickness")
+    >>> (
+    ...     split_key({"sensors": [{"name": "a.1"}]}, "sensors.a.1.position.x"),
+    ...     split_key({}, "plate.size.thickness"),
+    ... )
     (['sensors', 'a.1', 'position', 'x'], ['plate', 'size', 'thickness'])
     """
     names = sorted((entry["name"] for entry in _entries(table)), key=len, reverse=True)
     name = next((name for name in names if key.startswith(f"sensors.{name}.")), None)
-    return key.split(".") if name is None else ["sensors", name, *key.removeprefix(f"sensors.{name}.").split(".")]
+    return (
+        key.split(".")
+        if name is None
+        else ["sensors", name, *key.removeprefix(f"sensors.{name}.").split(".")]
+    )
 
 
 def named_sensor(sensors: Any, name: str) -> dict[str, Any]:
@@ -116,7 +149,11 @@ def named_sensor(sensors: Any, name: str) -> dict[str, Any]:
 
 def _fields(info: FieldInfo) -> dict[str, FieldInfo]:
     """Return the fields of the table that a field of a sensor takes; none if it takes no table."""
-    kinds = (kind for kind in get_args(info.annotation) if isinstance(kind, type) and issubclass(kind, Section))
+    kinds = (
+        kind
+        for kind in get_args(info.annotation)
+        if isinstance(kind, type) and issubclass(kind, Section)
+    )
     return next((kind.model_fields for kind in kinds), {})
 
 
@@ -125,4 +162,6 @@ def _entries(table: Mapping[str, Any]) -> list[dict[str, Any]]:
     entries = table.get("sensors")
     if not isinstance(entries, list):
         return []
-    return [entry for entry in entries if isinstance(entry, dict) and isinstance(entry.get("name"), str)]
+    return [
+        entry for entry in entries if isinstance(entry, dict) and isinstance(entry.get("name"), str)
+    ]

@@ -22,12 +22,20 @@ from vibroimpact.cases.schema import SECTIONS, SensorSection
 from vibroimpact.contact.law import default_origin, unit_of
 from vibroimpact.contact.registry import find_contact_law
 
-_SECTIONS: dict[str, type[Section]] = {**SECTIONS, "contact": LocalSection, "sensors": SensorSection}
+_SECTIONS: dict[str, type[Section]] = {
+    **SECTIONS,
+    "contact": LocalSection,
+    "sensors": SensorSection,
+}
 _HEADER = re.compile(r"^\s*\[\[?\s*([\w-]+)\s*[].]")  # of a section or of a table in it
 _WIDTH = 40  # columns of a key with its value, before its meaning
 
 
-def case_template(source: str | PathLike[str] = "paper:type1-theory", name: str = "", changes: Mapping[str, Any] | None = None) -> str:
+def case_template(
+    source: str | PathLike[str] = "paper:type1-theory",
+    name: str = "",
+    changes: Mapping[str, Any] | None = None,
+) -> str:
     """Return the text of a new case file: that of another case, with its unused keys as comments.
 
     Parameters
@@ -58,7 +66,8 @@ def case_template(source: str | PathLike[str] = "paper:type1-theory", name: str 
     blocks = _blocks(text.rstrip().split("\n"))
     for place in range(len(blocks) - 1, -1, -1):
         section = blocks[place][0]
-        if section in _SECTIONS and section not in [later for later, _ in blocks[place + 1 :]]:  # the last block of a section
+        # the last block of a section
+        if section in _SECTIONS and section not in [later for later, _ in blocks[place + 1 :]]:
             blocks[place][1].extend(_comments(section, used[section]))
     for section in _SECTIONS:
         if section not in used:
@@ -68,7 +77,9 @@ def case_template(source: str | PathLike[str] = "paper:type1-theory", name: str 
 
 
 def _blocks(lines: list[str]) -> list[tuple[str, list[str]]]:
-    """Return the lines of a case in blocks, each with the section that its first line opens; blank lines belong to the block below."""
+    """Return the lines of a case in blocks, each with the section that its first line
+    opens; blank lines belong to the block below.
+    """
     blocks: list[tuple[str, list[str]]] = [("", [])]
     for line in lines:
         if found := _HEADER.match(line):
@@ -81,7 +92,9 @@ def _blocks(lines: list[str]) -> list[tuple[str, list[str]]]:
 
 
 def _comments(section: str, used: Any) -> Iterator[str]:
-    """Yield a comment for each key of a section that is not used; of [contact] those of its law first."""
+    """Yield a comment for each key of a section that is not used; of [contact] those of
+    its law first.
+    """
     taken = set().union(*used) if isinstance(used, list) else set(used)
     if section == "contact" and isinstance(used.get("law"), str):
         for item in fields(find_contact_law(used["law"])):
@@ -89,14 +102,23 @@ def _comments(section: str, used: Any) -> Iterator[str]:
                 origin = default_origin(item)
                 value = "..." if origin or item.default in (MISSING, None) else f"{item.default:g}"
                 unit = unit_of(item, used.get("exponent", 1.5))
-                yield _comment(item.name, value, _with_unit(item.metadata["meaning"], unit) + (f"; by default {origin}" if origin else ""))
+                yield _comment(
+                    item.name,
+                    value,
+                    _with_unit(item.metadata["meaning"], unit)
+                    + (f"; by default {origin}" if origin else ""),
+                )
     for name, info in _SECTIONS[section].model_fields.items():
         if name not in taken:
             yield _comment(name, _value(info), _meaning(info))
 
 
 def _comment(name: str, value: str, meaning: str) -> str:
-    return f"# {name} = {value}".ljust(_WIDTH) + f"   # {meaning}" if meaning else f"# {name} = {value}"
+    return (
+        f"# {name} = {value}".ljust(_WIDTH) + f"   # {meaning}"
+        if meaning
+        else f"# {name} = {value}"
+    )
 
 
 def _meaning(info: FieldInfo) -> str:
@@ -113,8 +135,14 @@ def _with_unit(meaning: str, unit: str) -> str:
 
 
 def _value(info: FieldInfo) -> str:
-    """Return the default of a key as TOML; without one the first word that is allowed, or a gap to be filled."""
-    if info.default is not None and isinstance(info.default, (bool, int, float, str, tuple)) and info.default != ():
+    """Return the default of a key as TOML; without one the first word that is allowed, or
+    a gap to be filled.
+    """
+    if (
+        info.default is not None
+        and isinstance(info.default, (bool, int, float, str, tuple))
+        and info.default != ()
+    ):
         return json.dumps(info.default)
     for option in (info.annotation, *get_args(info.annotation)):
         if get_origin(option) is Literal:

@@ -1,7 +1,8 @@
-"""A chart described as data: panels with axes, what is drawn in them, and a caption. Nothing here draws.
+"""A chart described as data: panels with axes, what is drawn in them, and a caption. Nothing here
+draws.
 
-All values are in SI units; what draws a chart chooses the multiples shown. What looks alike in all charts has a *role*, whose colour,
-dashes and symbol stand in `vibroimpact.charts.palette`.
+All values are in SI units; what draws a chart chooses the multiples shown. What looks alike in all
+charts has a *role*, whose colour, dashes and symbol stand in `vibroimpact.charts.palette`.
 """
 
 from __future__ import annotations
@@ -57,7 +58,8 @@ class Chart:
     height : float
         Height of a row [in] in print; by default that of its kind.
     subtitle : str
-        What stands in small letters below the title, in print too, such as parameters; in several lines if it is long.
+        What stands in small letters below the title, in print too, such as parameters; in several
+        lines if it is long.
     """
 
     name: str
@@ -79,7 +81,8 @@ class Chart:
 
 
 def values_on(axis: Axis, panels: tuple[Panel, ...]) -> Floats:
-    """Return all values drawn along an axis, of all panels that have it, for the choice of its unit and range.
+    """Return all values drawn along an axis, of all panels that have it, for the choice of its unit
+    and range.
 
     Examples
     --------

@@ -17,11 +17,15 @@ _ROUNDING = 1e-6
 """Part of the largest magnitude below which a value is that of rounding."""
 
 _AT_REST, _NEAR = 0.002, 0.03
-"""Part of the largest magnitude below which a map is at rest, if it is so within a distance: less than where lines of rest cross."""
+"""Part of the largest magnitude below which a map is at rest, if it is so within a
+distance: less than where lines of rest cross.
+"""
 
 
 class Contours(NamedTuple):
-    """Lines of equal value that look alike: the values over the grid, the levels, width [pt] and dashes."""
+    """Lines of equal value that look alike: the values over the grid, the levels, width
+    [pt] and dashes.
+    """
 
     values: Floats
     levels: tuple[float, ...]
@@ -30,9 +34,11 @@ class Contours(NamedTuple):
 
 
 def contours_of(values: Floats) -> Iterator[Contours]:
-    """Yield the lines of equal value of a map: negative ones, zero, and positive ones, as far as it has them.
+    """Yield the lines of equal value of a map: negative ones, zero, and positive ones, as far as it
+    has them.
 
-    The zero line is left out where values and their neighbours are at rest, as it would follow rounding errors there.
+    The zero line is left out where values and their neighbours are at rest, as it would follow
+    rounding errors there.
 
     Examples
     --------
@@ -59,7 +65,9 @@ def _without_rest(values: Floats, most: float) -> Floats:
     """Return values with NaN where they and those near them hardly differ from zero."""
     size = np.nan_to_num(np.abs(values))
     near = math.ceil(_NEAR * max(values.shape))
-    rest = (_largest_within(size, 1) < _ROUNDING * most) | (_largest_within(size, near) < _AT_REST * most)
+    rest = (_largest_within(size, 1) < _ROUNDING * most) | (
+        _largest_within(size, near) < _AT_REST * most
+    )
     return np.where(rest, np.nan, values)
 
 
@@ -67,5 +75,7 @@ def _largest_within(values: Floats, reach: int) -> Floats:
     """Return the largest value in the square of a reach around each point."""
     for axis in (0, 1):
         padded = np.pad(values, [(reach, reach) if side == axis else (0, 0) for side in (0, 1)])
-        values = np.lib.stride_tricks.sliding_window_view(padded, 2 * reach + 1, axis=axis).max(axis=-1)
+        values = np.lib.stride_tricks.sliding_window_view(padded, 2 * reach + 1, axis=axis).max(
+            axis=-1
+        )
     return values

@@ -15,9 +15,11 @@ _AT_ONCE = 2**17  # points sorted at once, which bounds the memory of the sort
 
 
 def decimated(x: Floats, y: Floats, columns: int = COLUMNS) -> tuple[Floats, Floats]:
-    """Return a line reduced to its visible points: the first, last, lowest and highest in each of a number of columns.
+    """Return a line reduced to its visible points: the first, last, lowest and highest in each of a
+    number of columns.
 
-    Lines of up to four points a column, and those whose x does not ascend, are returned as they are. NaN in y interrupts a line.
+    Lines of up to four points a column, and those whose x does not ascend, are returned as they
+    are. NaN in y interrupts a line.
 
     Examples
     --------
@@ -30,19 +32,24 @@ def decimated(x: Floats, y: Floats, columns: int = COLUMNS) -> tuple[Floats, Flo
         return x, y
     gaps = np.isnan(y)
     there = np.flatnonzero(~gaps)
-    kept = visible_points(len(there), lambda first, last: (x[there[first:last]], y[there[first:last]]), columns)
+    kept = visible_points(
+        len(there), lambda first, last: (x[there[first:last]], y[there[first:last]]), columns
+    )
     shown = there if kept is None else there[kept]
-    # both sides of the ends of each gap: it interrupts the line, and no part between two of them is a single point
+    # both sides of the ends of each gap: it interrupts the line, and no part between two of them is
+    # a single point
     ends = np.flatnonzero(np.diff(gaps))
     shown = np.union1d(shown, np.concatenate([ends, ends + 1]))
     return x[shown], y[shown]
 
 
-def visible_points(count: int, part: Callable[[int, int], tuple[Floats, Floats]], columns: int = COLUMNS) -> Indices | None:
+def visible_points(
+    count: int, part: Callable[[int, int], tuple[Floats, Floats]], columns: int = COLUMNS
+) -> Indices | None:
     """Return the indices of the visible points of a line; None if all are.
 
-    A long line is decimated in blocks, and the blocks' points once more: sorting all points at once would take several times the
-    memory of the line.
+    A long line is decimated in blocks, and the blocks' points once more: sorting all points at once
+    would take several times the memory of the line.
 
     Parameters
     ----------
@@ -64,11 +71,17 @@ def visible_points(count: int, part: Callable[[int, int], tuple[Floats, Floats]]
         xs.append(x[kept])
         ys.append(y[kept])
     indices = np.concatenate(found)
-    return indices if len(found) == 1 else np.asarray(indices[_extreme(np.concatenate(xs), np.concatenate(ys), edges)])
+    return (
+        indices
+        if len(found) == 1
+        else np.asarray(indices[_extreme(np.concatenate(xs), np.concatenate(ys), edges)])
+    )
 
 
 def _extreme(x: Floats, y: Floats, edges: Floats) -> Indices:
-    """Return the indices of the first, last, lowest and highest point of a line in each column, given the x of the edges between them."""
+    """Return the indices of the first, last, lowest and highest point of a line in each
+    column, given the x of the edges between them.
+    """
     column = np.searchsorted(edges, x, side="right")
     starts = np.flatnonzero(np.diff(column, prepend=-1))
     ends = np.append(starts[1:], len(x)) - 1
@@ -77,15 +90,18 @@ def _extreme(x: Floats, y: Floats, edges: Floats) -> Indices:
 
 
 _SPREAD, _FLAT = 60, 3e-4
-"""Points that a thinned line has along the whole and along each window at least, and the largest distance of a point left out from the
-line, relative to its range there: a tenth of a pixel."""
+"""Points that a thinned line has along the whole and along each window at least, and the largest
+distance of a point left out from the line, relative to its range there: a tenth of a pixel."""
 
 
-def thinned(x: Floats, y: Floats, windows: Sequence[tuple[float, float]] = ()) -> tuple[Floats, Floats]:
-    """Return a line reduced to the points that are seen in the whole of it and in windows of x that are shown enlarged.
+def thinned(
+    x: Floats, y: Floats, windows: Sequence[tuple[float, float]] = ()
+) -> tuple[Floats, Floats]:
+    """Return a line reduced to the points that are seen in the whole of it and in windows of x that
+    are shown enlarged.
 
-    Points that lie on a straight line between others are left out, but not so many that none is found near a pointer; the lowest and
-    the highest stay.
+    Points that lie on a straight line between others are left out, but not so many that none is
+    found near a pointer; the lowest and the highest stay.
 
     Parameters
     ----------
@@ -127,15 +143,22 @@ def _seen(x: Floats, y: Floats) -> Indices:
 
 
 def _bends(x: Floats, y: Floats, fixed: Indices) -> Indices:
-    """Return the indices of fixed points of a line, and of those between them without which it would be another line."""
+    """Return the indices of fixed points of a line, and of those between them without
+    which it would be another line.
+    """
     away = _FLAT * float(np.ptp(y[np.isfinite(y)])) if np.isfinite(y).any() else 0.0
-    kept, open_parts = set(fixed.tolist()), list(zip(fixed[:-1].tolist(), fixed[1:].tolist(), strict=True))
+    kept, open_parts = (
+        set(fixed.tolist()),
+        list(zip(fixed[:-1].tolist(), fixed[1:].tolist(), strict=True)),
+    )
     while open_parts:
         first, last = open_parts.pop()
         if last - first < 2:
             continue
         width = x[last] - x[first]
-        chord = y[first] + (y[last] - y[first]) * ((x[first + 1 : last] - x[first]) / width if width > 0.0 else 0.0)
+        chord = y[first] + (y[last] - y[first]) * (
+            (x[first + 1 : last] - x[first]) / width if width > 0.0 else 0.0
+        )
         off = np.abs(y[first + 1 : last] - chord)
         farthest = int(np.argmax(off))
         if off[farthest] > away:

@@ -12,7 +12,8 @@ FIGURES = "figures"
 
 
 def write_figures(charts: Sequence[Chart], folder: Path, formats: Sequence[str]) -> None:
-    """Write charts as files into a new folder `figures` of an existing folder; nothing if there are no formats.
+    """Write charts as files into a new folder `figures` of an existing folder; nothing if there are
+    no formats.
 
     Parameters
     ----------

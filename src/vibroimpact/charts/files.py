@@ -24,9 +24,13 @@ _DPI = 200
 
 
 def save_charts(
-    charts: Sequence[Chart], directory: Path, formats: Sequence[str] = ("png",), progress: Callable[[float], None] = lambda done: None
+    charts: Sequence[Chart],
+    directory: Path,
+    formats: Sequence[str] = ("png",),
+    progress: Callable[[float], None] = lambda done: None,
 ) -> list[Path]:
-    """Write each chart as `NAME.FORMAT` into an existing directory; one that can't be drawn is left out, with a `ChartWarning`.
+    """Write each chart as `NAME.FORMAT` into an existing directory; one that can't be drawn is left
+    out, with a `ChartWarning`.
 
     Parameters
     ----------
@@ -90,7 +94,8 @@ def check_formats(formats: Sequence[str]) -> None:
     >>> check_formats(["pgn"])
     Traceback (most recent call last):
         ...
-    vibroimpact.errors.InputError: there are no figures of the format "pgn"; there are png, svg, pdf. Did you mean "png"?
+    vibroimpact.errors.InputError: there are no figures of the format "pgn"; there are png, svg,
+    pdf. Did you mean "png"?
     """
     for name in formats:
         if name not in FORMATS:
@@ -130,5 +135,9 @@ def render_pdf(figure: Figure) -> bytes:
     return file.getvalue()
 
 
-FORMATS: dict[str, Callable[[Figure], bytes]] = {"png": render_png, "svg": render_svg, "pdf": render_pdf}
+FORMATS: dict[str, Callable[[Figure], bytes]] = {
+    "png": render_png,
+    "svg": render_svg,
+    "pdf": render_pdf,
+}
 """What renders a figure in each format."""

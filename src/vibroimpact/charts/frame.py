@@ -17,7 +17,9 @@ _MARGIN = 0.06
 """Margin above and below what a view shows, relative to its range."""
 
 _NEAR = 0.35
-"""Largest distance from the lines of a view at which a level is shown, relative to their range: a farther one would flatten them."""
+"""Largest distance from the lines of a view at which a level is shown, relative to their
+range: a farther one would flatten them.
+"""
 
 
 @dataclass(frozen=True)
@@ -42,7 +44,9 @@ class Frame:
     @property
     def title(self) -> str:
         """The label with the unit."""
-        return f"{self.label} [{self.unit}]" if self.unit and self.label else self.label or self.unit
+        return (
+            f"{self.label} [{self.unit}]" if self.unit and self.label else self.label or self.unit
+        )
 
     def shown(self, values: Floats) -> Floats:
         """Return values as shown."""
@@ -55,12 +59,16 @@ def frame_of(axis: Axis, panels: tuple[Panel, ...]) -> Frame:
     Examples
     --------
     >>> time, force = Axis("Time", "s"), Axis("Force", "N")
-    >>> frame_of(force, (Panel(time, force, (Line(np.array([0.0, 1.0]), np.array([5.0, 7000.0])),)),)).title
+    >>> frame_of(
+    ...     force, (Panel(time, force, (Line(np.array([0.0, 1.0]), np.array([5.0, 7000.0])),)),)
+    ... ).title
     'Force [kN]'
     """
     given = np.array(axis.range or (np.nan, np.nan))
     # a range without an upper end reaches as far as what is drawn
-    best = multiple(axis.unit, given if np.isfinite(given[1]) else np.append(given, values_on(axis, panels)))
+    best = multiple(
+        axis.unit, given if np.isfinite(given[1]) else np.append(given, values_on(axis, panels))
+    )
     return Frame(axis.label, best.unit, best.size)
 
 
@@ -72,7 +80,8 @@ def frames_of(chart: Chart) -> dict[Axis, Frame]:
         axes |= dict.fromkeys((panel.x, panel.y, *(scale for scale in scales if scale is not None)))
     frames = {axis: frame_of(axis, chart.panels) for axis in axes}
     for panel in chart.panels:
-        if panel.picture and panel.x.unit == panel.y.unit:  # lengths that are drawn alike in both directions
+        # lengths that are drawn alike in both directions
+        if panel.picture and panel.x.unit == panel.y.unit:
             frames[panel.y] = Frame(panel.y.label, frames[panel.x].unit, frames[panel.x].size)
     return frames
 
@@ -93,17 +102,27 @@ def ends_on(axis: Axis, chart: Chart) -> tuple[float, float]:
 
 
 def is_log(scale: Axis, chart: Chart) -> bool:
-    """Return whether the scale of maps is drawn as a logarithmic one: if it is, and all values are positive."""
+    """Return whether the scale of maps is drawn as a logarithmic one: if it is, and all
+    values are positive.
+    """
     return scale.log and ends_on(scale, chart)[0] > 0.0
 
 
 def panels_without_label(chart: Chart, frames: dict[Axis, Frame]) -> set[Panel]:
-    """Return the panels whose vertical axis needs no label, since that of the panel to the left has the same; a view may change it."""
+    """Return the panels whose vertical axis needs no label, since that of the panel to
+    the left has the same; a view may change it.
+    """
     neighbours = [pair for row in chart.rows for pair in pairwise(row)]
-    return {panel for before, panel in neighbours if not panel.x.views and frames[before.y].title == frames[panel.y].title}
+    return {
+        panel
+        for before, panel in neighbours
+        if not panel.x.views and frames[before.y].title == frames[panel.y].title
+    }
 
 
-def view_frames(panel: Panel, view: View, base: Frame, panels: tuple[Panel, ...]) -> tuple[Frame, Frame]:
+def view_frames(
+    panel: Panel, view: View, base: Frame, panels: tuple[Panel, ...]
+) -> tuple[Frame, Frame]:
     """Return the frames of the horizontal and the vertical axis of a panel in a view.
 
     Parameters
@@ -122,12 +141,18 @@ def view_frames(panel: Panel, view: View, base: Frame, panels: tuple[Panel, ...]
     up = multiple(panel.y.unit, seen) if np.any(seen) and not panel.y.log else None
     return (
         Frame(view.label or panel.x.label, across.unit, across.size, view.origin),
-        Frame(view.level_label or base.label, up.unit if up else base.unit, up.size if up else base.size, view.level),
+        Frame(
+            view.level_label or base.label,
+            up.unit if up else base.unit,
+            up.size if up else base.size,
+            view.level,
+        ),
     )
 
 
 def view_range(panel: Panel, view: View, panels: tuple[Panel, ...]) -> tuple[float, float] | None:
-    """Return the range of the vertical axis of a panel in a view: that of what is drawn there, and of the levels near it.
+    """Return the range of the vertical axis of a panel in a view: that of what is drawn there, and
+    of the levels near it.
 
     Returns
     -------
@@ -137,7 +162,11 @@ def view_range(panel: Panel, view: View, panels: tuple[Panel, ...]) -> tuple[flo
     Examples
     --------
     >>> time, force = Axis("Time", "s", views=(View("contact", 0.0, 1.0),)), Axis("Force", "N")
-    >>> panel = Panel(time, force, (Line(np.array([-1.0, 3.0]), np.array([-10.0, 30.0])), Level(12.0), Level(100.0)))
+    >>> panel = Panel(
+    ...     time,
+    ...     force,
+    ...     (Line(np.array([-1.0, 3.0]), np.array([-10.0, 30.0])), Level(12.0), Level(100.0)),
+    ... )
     >>> view_range(panel, time.views[0], (panel,))
     (-0.72, 12.72)
     """
@@ -147,18 +176,31 @@ def view_range(panel: Panel, view: View, panels: tuple[Panel, ...]) -> tuple[flo
         return None
     low, high = float(seen.min()), float(seen.max())
     reach = _NEAR * (high - low)
-    levels = [mark.value for one in panels if one.y is panel.y for mark in one.marks if isinstance(mark, Level) and not mark.upright]
+    levels = [
+        mark.value
+        for one in panels
+        if one.y is panel.y
+        for mark in one.marks
+        if isinstance(mark, Level) and not mark.upright
+    ]
     near = [level for level in levels if low - reach <= level <= high + reach]
     low, high = min([low, *near]), max([high, *near])
     return low - _MARGIN * (high - low), high + _MARGIN * (high - low)
 
 
 def own_view(mark: Mark, panel: Panel, view: View) -> View:
-    """Return a view of a panel for a mark, shifted to the origin of a line that has one of its own."""
+    """Return a view of a panel for a mark, shifted to the origin of a line that has one
+    of its own.
+    """
     if not (isinstance(mark, Line) and mark.origins):
         return view
     origin = mark.origins[panel.x.views.index(view)]
-    return replace(view, start=view.start - view.origin + origin, end=view.end - view.origin + origin, origin=origin)
+    return replace(
+        view,
+        start=view.start - view.origin + origin,
+        end=view.end - view.origin + origin,
+        origin=origin,
+    )
 
 
 def _seen(panel: Panel, view: View, panels: tuple[Panel, ...]) -> Floats:
@@ -175,10 +217,17 @@ def _seen(panel: Panel, view: View, panels: tuple[Panel, ...]) -> Floats:
 
 
 def values_within(mark: Line | Points | Band, view: View) -> Floats:
-    """Return the values of a line, of points or of a band inside a view; of what is connected, also those at its ends."""
+    """Return the values of a line, of points or of a band inside a view; of what is
+    connected, also those at its ends.
+    """
     if isinstance(mark, Points):
         return np.asarray(mark.y[(mark.x >= view.start) & (mark.x <= view.end)])
-    inside = slice(int(np.searchsorted(mark.x, view.start)), int(np.searchsorted(mark.x, view.end, side="right")))
+    inside = slice(
+        int(np.searchsorted(mark.x, view.start)),
+        int(np.searchsorted(mark.x, view.end, side="right")),
+    )
     ends = [end for end in (view.start, view.end) if len(mark.x) and mark.x[0] < end < mark.x[-1]]
     connected = (mark.low, mark.high) if isinstance(mark, Band) else (mark.y,)
-    return np.concatenate([part for values in connected for part in (values[inside], np.interp(ends, mark.x, values))])
+    return np.concatenate(
+        [part for values in connected for part in (values[inside], np.interp(ends, mark.x, values))]
+    )

@@ -1,4 +1,6 @@
-"""Making of charts: one that can't be made or drawn is replaced by one that says why, so that what was computed is written all the same."""
+"""Making of charts: one that can't be made or drawn is replaced by one that says why, so
+that what was computed is written all the same.
+"""
 
 from __future__ import annotations
 
@@ -19,7 +21,8 @@ SCENE = "plate_in_motion"
 
 
 def made_charts(makers: Mapping[str, Callable[[], Chart | None]]) -> list[Chart]:
-    """Return charts, each as its function makes it; one that raises is replaced by one that says why, with a `ChartWarning`.
+    """Return charts, each as its function makes it; one that raises is replaced by one that says
+    why, with a `ChartWarning`.
 
     Parameters
     ----------
@@ -54,8 +57,12 @@ def drawn(chart: Chart, draw: Callable[[Chart], dict[str, Any]]) -> dict[str, An
         return draw(_lost(chart.name, chart.title, error))
 
 
-def made_scene(make: Callable[[], dict[str, Any] | None]) -> tuple[dict[str, Any] | None, list[Chart]]:
-    """Return the plate in motion and no chart, or where it can't be made None and the chart that says why."""
+def made_scene(
+    make: Callable[[], dict[str, Any] | None],
+) -> tuple[dict[str, Any] | None, list[Chart]]:
+    """Return the plate in motion and no chart, or where it can't be made None and the
+    chart that says why.
+    """
     try:
         return make(), []
     except Exception as error:

@@ -1,4 +1,6 @@
-"""What may be drawn in a panel of a chart: lines, points, bands, bars, maps and other marks, as data in SI units."""
+"""What may be drawn in a panel of a chart: lines, points, bands, bars, maps and other
+marks, as data in SI units.
+"""
 
 from __future__ import annotations
 
@@ -28,8 +30,9 @@ class Line:
     texts : tuple of str
         What each of the points is, as those of `Points`.
     origins : tuple of float
-        Values of x from which the line counts in each view, in place of those of the views: lines of several runs are laid upon each
-        other at what they have in common, such as the first touch of an impact.
+        Values of x from which the line counts in each view, in place of those of the views: lines
+        of several runs are laid upon each other at what they have in common, such as the first
+        touch of an impact.
     """
 
     x: Floats
@@ -52,7 +55,8 @@ class Points:
     name, role : str
         Name in the legend, and role.
     texts : tuple of str
-        What each of them is; shown where the pointer is, above the coordinates, or in their place if the texts have several lines.
+        What each of them is; shown where the pointer is, above the coordinates, or in their place
+        if the texts have several lines.
     keys : mapping of str to array
         Values by which the points may be coloured, numbers or names, by what they are.
     low, high : array, optional
@@ -91,7 +95,8 @@ class Layer:
 
 @dataclass(frozen=True, eq=False)
 class Stack:
-    """Areas on top of each other, from the lowest up; negative values lie below zero, where the stack begins.
+    """Areas on top of each other, from the lowest up; negative values lie below zero, where the
+    stack begins.
 
     Parameters
     ----------
@@ -129,7 +134,8 @@ class Bars:
     low, high : array, optional
         Ends of the intervals of the values.
     texts : tuple of str
-        What each of the bars is, such as its name on an axis of names; shown where the pointer is, in place of where the bar is.
+        What each of the bars is, such as its name on an axis of names; shown where the pointer is,
+        in place of where the bar is.
     """
 
     places: Floats
@@ -187,9 +193,11 @@ class Facets:
     values : array, shape (facets,)
         What the colours tell.
     diverging : bool
-        Whether the scale is symmetric about zero; otherwise it is that of light on a surface, from shade to full light.
+        Whether the scale is symmetric about zero; otherwise it is that of light on a surface, from
+        shade to full light.
     scale : Axis, optional
-        Quantity of the values, whose scale is then shown; facets and maps that have the same axis object share its range.
+        Quantity of the values, whose scale is then shown; facets and maps that have the same axis
+        object share its range.
     """
 
     corners: Floats
@@ -200,7 +208,9 @@ class Facets:
 
 @dataclass(frozen=True, eq=False)
 class Level:
-    """A straight line across the whole panel at a value of its vertical axis, or of the horizontal one if `upright`."""
+    """A straight line across the whole panel at a value of its vertical axis, or of the
+    horizontal one if `upright`.
+    """
 
     value: float
     name: str = ""
@@ -271,7 +281,21 @@ class Label:
     corner: bool = False
 
 
-Mark = Line | Points | Band | Stack | Bars | Map | Facets | Level | Spans | Rug | Outline | Arrow | Label
+Mark = (
+    Line
+    | Points
+    | Band
+    | Stack
+    | Bars
+    | Map
+    | Facets
+    | Level
+    | Spans
+    | Rug
+    | Outline
+    | Arrow
+    | Label
+)
 """What may be drawn in a panel."""
 
 
@@ -333,11 +357,15 @@ def _of_bars(bars: Bars) -> Iterator[Any]:
 
 
 def stack_edges(stack: Stack) -> list[Floats]:
-    """Return the edges between the layers of a stack, from its lower edge up: one more than there are layers.
+    """Return the edges between the layers of a stack, from its lower edge up: one more than there
+    are layers.
 
     Examples
     --------
-    >>> layers = Layer("potential", np.array([-1.0, 2.0]), "main"), Layer("kinetic", np.array([3.0, 1.0]), "main")
+    >>> layers = (
+    ...     Layer("potential", np.array([-1.0, 2.0]), "main"),
+    ...     Layer("kinetic", np.array([3.0, 1.0]), "main"),
+    ... )
     >>> [edge.tolist() for edge in stack_edges(Stack(np.array([0.0, 1.0]), layers))]
     [[-1.0, 0.0], [-1.0, 2.0], [2.0, 3.0]]
     """
@@ -349,7 +377,8 @@ def stack_edges(stack: Stack) -> list[Floats]:
 
 
 def cell_edges(places: Floats, *, log: bool) -> Floats:
-    """Return the edges of the cells around the lines of a grid: midpoints, geometric ones on a logarithmic axis.
+    """Return the edges of the cells around the lines of a grid: midpoints, geometric ones on a
+    logarithmic axis.
 
     Examples
     --------
@@ -363,4 +392,6 @@ def cell_edges(places: Floats, *, log: bool) -> Floats:
     if len(places) == 1:
         return np.array([places[0] - 0.5, places[0] + 0.5])
     middles = 0.5 * (places[1:] + places[:-1])
-    return np.concatenate([[2.0 * places[0] - middles[0]], middles, [2.0 * places[-1] - middles[-1]]])
+    return np.concatenate(
+        [[2.0 * places[0] - middles[0]], middles, [2.0 * places[-1] - middles[-1]]]
+    )

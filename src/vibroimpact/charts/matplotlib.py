@@ -1,4 +1,6 @@
-"""A chart drawn by matplotlib, for print: with its views as further panels, where a page has buttons."""
+"""A chart drawn by matplotlib, for print: with its views as further panels, where a page
+has buttons.
+"""
 
 from __future__ import annotations
 
@@ -53,25 +55,29 @@ _LOW, _HIGH = 0.4, 4.5
 """The least height of a picture, and the largest of a row of them with their words [in]."""
 
 _LEGEND_LINE, _COLOUR_BAR = 0.17, 0.65
-"""Height of a line of the legend, and of a colour bar below its maps with numbers and label [in]."""
+"""Height of a line of the legend, and of a colour bar below its maps with numbers and
+label [in].
+"""
 
 _NUMBERS, _LETTER = 0.52, 0.06
-"""Width that a panel leaves to the numbers at its side, and of a letter of the title of a view [in]."""
+"""Width that a panel leaves to the numbers at its side, and of a letter of the title of a
+view [in].
+"""
 
 
 def matplotlib_figure(chart: Chart, figure: Figure | None = None) -> Figure:
     """Return a chart as a figure of matplotlib, of a width of 8 inches.
 
-    A chart of one panel has its first five views in a row below; one of several rows has its first view beside each of them,
-    one of two rows its first three.
+    A chart of one panel has its first five views in a row below; one of several rows has its first
+    view beside each of them, one of two rows its first three.
 
     Parameters
     ----------
     chart : Chart
         The chart.
     figure : matplotlib.figure.Figure, optional
-        The empty figure into which it is drawn, and whose size it changes, such as `plt.figure()`, which a window shows; by default a
-        new one that pyplot does not know.
+        The empty figure into which it is drawn, and whose size it changes, such as `plt.figure()`,
+        which a window shows; by default a new one that pyplot does not know.
 
     Returns
     -------
@@ -108,8 +114,16 @@ class _Print:
         heights = [self._height(row) for row in rows]
         figure.set_size_inches(WIDTH, sum(heights) + (_ENLARGED_ROW if below else 0.0) + 0.55)
         figure.set_layout_engine("constrained")
-        parts: Any = figure.subfigures(2, 1, height_ratios=[sum(heights), _ENLARGED_ROW]) if below else [figure]
-        self._rows(parts[0], heights, 0 if len(rows) == 1 else _MOST_BESIDE if len(rows) == 2 and self._aligned() else 1)
+        parts: Any = (
+            figure.subfigures(2, 1, height_ratios=[sum(heights), _ENLARGED_ROW])
+            if below
+            else [figure]
+        )
+        self._rows(
+            parts[0],
+            heights,
+            0 if len(rows) == 1 else _MOST_BESIDE if len(rows) == 2 and self._aligned() else 1,
+        )
         if below:
             self._views_below(parts[1], below)
         self._same_ranges()
@@ -121,7 +135,9 @@ class _Print:
     def _rows(self, part: Any, heights: list[float], beside: int) -> None:
         """Draw the rows of panels, with some of their views beside them."""
         rows = self.chart.rows
-        views = [[(panel, view) for panel in row for view in panel.x.views[:beside]] for row in rows]
+        views = [
+            [(panel, view) for panel in row for view in panel.x.views[:beside]] for row in rows
+        ]
         columns = [len(row) + len(some) for row, some in zip(rows, views, strict=True)]
         most = max(columns)
         if self._pictures():  # those of a row that is not full are as large as the others
@@ -130,28 +146,46 @@ class _Print:
         # a common grid, where there is one, aligns the rows, and lets all maps share one colour bar
         grid = part.add_gridspec(len(rows), most if even else 1, height_ratios=heights)
         for number, (row, some, count) in enumerate(zip(rows, views, columns, strict=True)):
-            cells, at, wide = (grid, number, most // count) if even else (grid[number, 0].subgridspec(1, count), 0, 1)
+            cells, at, wide = (
+                (grid, number, most // count)
+                if even
+                else (grid[number, 0].subgridspec(1, count), 0, 1)
+            )
             places = [cells[at, wide * column : wide * (column + 1)] for column in range(count)]
             last = number == len(rows) - 1 or not self._aligned()
             for column, (place, panel) in enumerate(zip(places, row, strict=False)):
                 axes = part.add_subplot(place)
-                self._panel(axes, panel, self.frames[panel.x], self.frames[panel.y], None, lowest=last)
-                if column and panel.y.names and panel.y is row[column - 1].y:  # names that the panel before has already
+                self._panel(
+                    axes, panel, self.frames[panel.x], self.frames[panel.y], None, lowest=last
+                )
+                # names that the panel before has already
+                if column and panel.y.names and panel.y is row[column - 1].y:
                     axes.tick_params(labelleft=False)
             for place, (panel, view) in zip(places[len(row) :], some, strict=False):
-                self._view(part.add_subplot(place), panel, view, count, self.frames[panel.y], lowest=last)
+                self._view(
+                    part.add_subplot(place), panel, view, count, self.frames[panel.y], lowest=last
+                )
         if even and len(rows) > 1:
             part.align_ylabels()
 
     def _height(self, row: tuple[Panel, ...]) -> float:
-        """Return the height of a row [in]; that of pictures follows from their width, a single row of them is no higher than usual."""
+        """Return the height of a row [in]; that of pictures follows from their width, a
+        single row of them is no higher than usual.
+        """
         several = len(self.chart.rows) > 1
-        usual = self.chart.height or (3.4 if row[0].picture and len(row) < 3 else _SMALL_ROW if several else _ROW)
+        usual = self.chart.height or (
+            3.4 if row[0].picture and len(row) < 3 else _SMALL_ROW if several else _ROW
+        )
         if self._pictures():
-            extents = ((np.ptp(ends_on(panel.x, self.chart)), np.ptp(ends_on(panel.y, self.chart))) for panel in row)
+            extents = (
+                (np.ptp(ends_on(panel.x, self.chart)), np.ptp(ends_on(panel.y, self.chart)))
+                for panel in row
+            )
             width = WIDTH / max(map(len, self.chart.rows)) - _PICTURE_GAP
             highest = max(width * float(up / (across or up or 1.0)) for across, up in extents)
-            below = any(isinstance(mark, Label) and mark.corner for panel in row for mark in panel.marks)
+            below = any(
+                isinstance(mark, Label) and mark.corner for panel in row for mark in panel.marks
+            )
             words = _PICTURE_TITLE + (_PICTURE_WORDS if below or not several else 0.0)
             return min(max(highest, _LOW) + words, _HIGH if several else usual)
         return max(usual, 2.1) if several and not self._aligned() else usual
@@ -161,30 +195,50 @@ class _Print:
         return all(panel.picture for panel in self.chart.panels)
 
     def _views_below(self, part: Any, views: tuple[View, ...]) -> None:
-        """Draw views of the first panel in a row; the first one has the label of the vertical axis."""
+        """Draw views of the first panel in a row; the first one has the label of the
+        vertical axis.
+        """
         panel, grid = self.chart.panels[0], part.add_gridspec(1, len(views))
         _, named = view_frames(panel, views[0], self.frames[panel.y], self.chart.panels)
         for number, view in enumerate(views):
-            self._view(part.add_subplot(grid[0, number]), panel, view, len(views), named if number else None, lowest=True)
+            self._view(
+                part.add_subplot(grid[0, number]),
+                panel,
+                view,
+                len(views),
+                named if number else None,
+                lowest=True,
+            )
         self._label_once(part)
 
     def _titles(self, figure: Figure) -> None:
         """Write the title and the lines below it, once the height of the figure is known."""
         chart, total = self.chart, figure.get_figheight()
-        figure.suptitle(lettering(chart.title, 110), x=0.01, ha="left", fontsize=10.5, fontweight="bold")
+        figure.suptitle(
+            lettering(chart.title, 110), x=0.01, ha="left", fontsize=10.5, fontweight="bold"
+        )
         lines = [lettering(line, 150) for line in chart.subtitle.splitlines()]
         if lines:
             height = _SUBTITLE_LINE * (len(lines) + 0.5)
             figure.set_size_inches(WIDTH, total + height)
             figure.set_layout_engine("constrained", rect=(0.0, 0.0, 1.0, total / (total + height)))
-            figure.text(0.01, 1.0 - _TITLE / (total + height), "\n".join(lines), fontsize=8.0, va="top", linespacing=1.3)
+            figure.text(
+                0.01,
+                1.0 - _TITLE / (total + height),
+                "\n".join(lines),
+                fontsize=8.0,
+                va="top",
+                linespacing=1.3,
+            )
 
     def _same_ranges(self) -> None:
         """Give the panels that have the same axis its range."""
         for (_, side), some in self.drawn.items():
             limits = [getattr(axes, f"get_{side}lim")() for axes in some]
             for axes in some if len(some) > 1 else ():
-                getattr(axes, f"set_{side}lim")(min(low for low, _ in limits), max(high for _, high in limits))
+                getattr(axes, f"set_{side}lim")(
+                    min(low for low, _ in limits), max(high for _, high in limits)
+                )
 
     def _label_once(self, part: Any) -> None:
         """Replace equal labels of the x axes of a row by one below all of them."""
@@ -197,8 +251,19 @@ class _Print:
         """Return whether all rows have one axis of time, whose numbers the lowest row has."""
         return len({id(panel.x) for panel in self.chart.panels}) == 1
 
-    def _view(self, axes: Axes, panel: Panel, view: View, columns: int, beside: Frame | None, *, lowest: bool) -> None:
-        """Draw a view in one of some columns, beside a panel whose vertical axis has a label; None if there is none."""
+    def _view(
+        self,
+        axes: Axes,
+        panel: Panel,
+        view: View,
+        columns: int,
+        beside: Frame | None,
+        *,
+        lowest: bool,
+    ) -> None:
+        """Draw a view in one of some columns, beside a panel whose vertical axis has a
+        label; None if there is none.
+        """
         across, up = view_frames(panel, view, self.frames[panel.y], self.chart.panels)
         since = across.label.removeprefix("Time ").partition(" of ")[0]
         short = Frame(since[:1].upper() + since[1:], across.unit, across.size, across.origin)
@@ -208,15 +273,31 @@ class _Print:
         # the upper row names the view and what it is about
         upper = panel in self.chart.rows[0] or not view.headline
         title = _title(view, unit, int((WIDTH / columns - _NUMBERS) / _LETTER)) if upper else unit
-        axes.set_title("\n".join(lettering(line) for line in title.splitlines()), fontsize=8.0 if columns > _MOST_BESIDE else 8.5)
+        axes.set_title(
+            "\n".join(lettering(line) for line in title.splitlines()),
+            fontsize=8.0 if columns > _MOST_BESIDE else 8.5,
+        )
 
     def _panel(
-        self, axes: Axes, panel: Panel, across: Frame, up: Frame, view: View | None, *, lowest: bool = True, labelled: bool = True
+        self,
+        axes: Axes,
+        panel: Panel,
+        across: Frame,
+        up: Frame,
+        view: View | None,
+        *,
+        lowest: bool = True,
+        labelled: bool = True,
     ) -> None:
         """Draw a panel in its frames, the whole of it or a view."""
         span = None if view is None else view_range(panel, view, self.chart.panels)
         for order, mark in enumerate(panel.marks):
-            if isinstance(mark, Level) and not mark.upright and span and not span[0] <= mark.value <= span[1]:
+            if (
+                isinstance(mark, Level)
+                and not mark.upright
+                and span
+                and not span[0] <= mark.value <= span[1]
+            ):
                 continue
             frames, inside = (across, up), (-np.inf, np.inf)
             if view is not None:
@@ -232,7 +313,9 @@ class _Print:
             axes.set_aspect("equal", anchor="N")  # the titles of a row in a line
             axes.margins(0.02)
         else:
-            has_symbols = any(isinstance(mark, Points) or getattr(mark, "marked", False) for mark in panel.marks)
+            has_symbols = any(
+                isinstance(mark, Points) or getattr(mark, "marked", False) for mark in panel.marks
+            )
             axes.margins(x=0.03 if has_symbols else 0.01, y=0.08)
             set_axis(axes, "x", panel.x, across)
             set_axis(axes, "y", panel.y, up)
@@ -249,7 +332,9 @@ class _Print:
             self.drawn.setdefault((panel.y, "y"), []).append(axes)
         title = panel.title if panel.title != self.chart.title else ""
         if title and view is None:
-            axes.set_title(lettering(title, 70), fontsize=8.5 if len(self.chart.panels) > 1 else 9.5)
+            axes.set_title(
+                lettering(title, 70), fontsize=8.5 if len(self.chart.panels) > 1 else 9.5
+            )
 
     def _colour_bars(self, figure: Figure, part: Any) -> None:
         for scale, (picture, axes) in self.marks.scales.items():
@@ -276,11 +361,18 @@ class _Print:
         columns = max(1, min(len(labels), 6, int(120 // (max(map(len, labels)) + 10))))
         further = math.ceil(len(labels) / columns) - 1
         figure.set_size_inches(WIDTH, figure.get_figheight() + _LEGEND_LINE * further)
-        figure.legend(list(self.marks.named.values()), labels, loc="outside lower center", ncols=columns, handlelength=3.2)
+        figure.legend(
+            list(self.marks.named.values()),
+            labels,
+            loc="outside lower center",
+            ncols=columns,
+            handlelength=3.2,
+        )
 
 
 def _title(view: View, unit: str, most: int) -> str:
-    r"""Return the title of a view with the unit of its axis: its headline beside its name or below it, or the number in it alone.
+    r"""Return the title of a view with the unit of its axis: its headline beside its name or below
+    it, or the number in it alone.
 
     Parameters
     ----------
@@ -295,11 +387,13 @@ def _title(view: View, unit: str, most: int) -> str:
     --------
     >>> view = View("Impact 1", 0.0, 1.0, headline="largest force 9.35\u00a0kN")
     >>> _title(view, "", 32), _title(view, "", 22), _title(view, "[N]", 12)
-    ('Impact 1: largest force 9.35\xa0kN', 'Impact 1\nlargest force 9.35\xa0kN', 'Impact 1 [N]\n9.35\xa0kN')
+    ('Impact 1: largest force 9.35\xa0kN', 'Impact 1\nlargest force 9.35\xa0kN', 'Impact 1
+    [N]\n9.35\xa0kN')
     """
     name = f"{view.name} {unit}".strip()
     if not view.headline:
         return name
     if len(name) + 2 + len(view.headline) <= most:
         return f"{name}: {view.headline}"
-    return f"{name}\n{view.headline if len(view.headline) <= most else view.headline.rsplit(' ', 1)[-1]}"
+    headline = view.headline if len(view.headline) <= most else view.headline.rsplit(" ", 1)[-1]
+    return f"{name}\n{headline}"

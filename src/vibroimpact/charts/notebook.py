@@ -20,9 +20,16 @@ if TYPE_CHECKING:
 _MOST_SPANS = 60
 """Shaded ranges of a panel that are drawn."""
 _FINE = 10_000
-"""Columns into which a long line is divided: more than are seen, as a zoom shows no other points."""
+"""Columns into which a long line is divided: more than are seen, as a zoom shows no other
+points.
+"""
 
-_COLOURS = {"ground": GROUND.light, "ink": INK.light, "grid": GRID.light, **{role: look.light for role, look in LOOKS.items()}}
+_COLOURS = {
+    "ground": GROUND.light,
+    "ink": INK.light,
+    "grid": GRID.light,
+    **{role: look.light for role, look in LOOKS.items()},
+}
 
 
 def plotly_figure(chart: Chart) -> go.Figure:
@@ -55,7 +62,11 @@ def plotly_figure(chart: Chart) -> go.Figure:
     title = {"text": plain(drawn["title"]), "subtitle": {"text": plain(drawn["subtitle"])}}
     layout = drawn["layout"] | {"title": title, "template": "plotly_white", "hovermode": "closest"}
     above = 70 + (16 * len(chart.subtitle.splitlines()) + 14 if chart.subtitle else 0)
-    layout |= {"shapes": [*_levels(drawn), *_spans(drawn), *_rugs(drawn)], "margin": {"t": above, "b": 60}, "font": {"color": INK.light}}
+    layout |= {
+        "shapes": [*_levels(drawn), *_spans(drawn), *_rugs(drawn)],
+        "margin": {"t": above, "b": 60},
+        "font": {"color": INK.light},
+    }
     layout["legend"] = {"orientation": "h", "y": -60 / layout["height"], "yanchor": "top"}
     layout["height"] += above + 80
     traces = [trace for one in drawn["data"] for trace in _traces(one, drawn["frames"])]
@@ -65,7 +76,11 @@ def plotly_figure(chart: Chart) -> go.Figure:
 def _traces(one: dict[str, Any], frames: dict[str, dict[str, Any]]) -> list[dict[str, Any]]:
     """Return the traces of plotly that a trace of a chart becomes."""
     x, y = frames[one["xaxis"]], frames[one["yaxis"]]
-    common: dict[str, Any] = {key: one[key] for key in ("xaxis", "yaxis", "name", "showlegend", "legendgroup") if key in one}
+    common: dict[str, Any] = {
+        key: one[key]
+        for key in ("xaxis", "yaxis", "name", "showlegend", "legendgroup")
+        if key in one
+    }
     match one["type"]:
         case "rug":
             return []
@@ -87,13 +102,23 @@ def _traces(one: dict[str, Any], frames: dict[str, dict[str, Any]]) -> list[dict
         case "heatmap" | "contour":
             texts = {"text": np.reshape(one["text"], one["z"].shape)} if "text" in one else {}
             return [{**one, **texts, "x": _shown(one["x"], x), "y": _shown(one["y"], y)}]
-    kept = {key: value for key, value in one.items() if key not in ("x", "y", "low", "high", "keys", "origins")}
+    kept = {
+        key: value
+        for key, value in one.items()
+        if key not in ("x", "y", "low", "high", "keys", "origins")
+    }
     across, up = one["x"], one["y"]
     if one["mode"] == "lines" and "fill" not in one:
         across, up = decimated(across, up, _FINE)
     if "low" in one:
         above, below = (one["high"] - one["y"]) / y["size"], (one["y"] - one["low"]) / y["size"]
-        kept["error_y"] = {"array": above, "arrayminus": below, "thickness": 1.0, "width": 3, "color": "@main"}
+        kept["error_y"] = {
+            "array": above,
+            "arrayminus": below,
+            "thickness": 1.0,
+            "width": 3,
+            "color": "@main",
+        }
     if one.get("hoverinfo") != "skip" and "hovertemplate" not in one:
         kept["hovertemplate"] = hover(x["unit"], y["unit"], "text" in one) + _name_of(one)
     return [{**kept, "x": _shown(across, x), "y": _shown(up, y)}]
@@ -111,39 +136,82 @@ def hover(across: str, up: str, texts: bool) -> str:
 
 
 def _name_of(one: dict[str, Any]) -> str:
-    """Return what takes the name of a trace away at the pointer where it has none: plotly would call it by its number."""
+    """Return what takes the name of a trace away at the pointer where it has none: plotly
+    would call it by its number.
+    """
     return "" if one.get("name") else "<extra></extra>"
 
 
-def _stack(one: dict[str, Any], x: dict[str, Any], y: dict[str, Any], common: dict[str, Any]) -> list[dict[str, Any]]:
+def _stack(
+    one: dict[str, Any], x: dict[str, Any], y: dict[str, Any], common: dict[str, Any]
+) -> list[dict[str, Any]]:
     kept = one.get("overview", slice(None, None, max(1, len(one["x"]) // COLUMNS)))
     layers = tuple(Layer(layer["name"], layer["y"][kept], "") for layer in one["layers"])
     edges = stack_edges(Stack(one["x"][kept], layers))
     line = {"type": "scatter", "mode": "lines", "x": _shown(one["x"][kept], x), **common}
-    traces = [{**line, "y": _shown(edges[0], y), "line": {"width": 0}, "hoverinfo": "skip", "showlegend": False}]
+    traces = [
+        {
+            **line,
+            "y": _shown(edges[0], y),
+            "line": {"width": 0},
+            "hoverinfo": "skip",
+            "showlegend": False,
+        }
+    ]
     for layer, values, edge in zip(one["layers"], layers, edges[1:], strict=True):
-        look = {key: layer[key] for key in ("fillcolor", "fillpattern") if key in layer} | {"line": {"width": 0.4, "color": "@main"}}
-        words = f"{layer['name']}: %{{customdata:.5~g}} {y['unit']}<br>%{{x:.7~g}} {x['unit']}<extra></extra>"
-        own = {"name": layer["name"], "customdata": _shown(values.values, y), "hovertemplate": words, "fill": "tonexty", "showlegend": True}
+        look = {key: layer[key] for key in ("fillcolor", "fillpattern") if key in layer} | {
+            "line": {"width": 0.4, "color": "@main"}
+        }
+        words = (
+            f"{layer['name']}: %{{customdata:.5~g}} {y['unit']}<br>%{{x:.7~g}} "
+            f"{x['unit']}<extra></extra>"
+        )
+        own = {
+            "name": layer["name"],
+            "customdata": _shown(values.values, y),
+            "hovertemplate": words,
+            "fill": "tonexty",
+            "showlegend": True,
+        }
         traces.append({**line, **look, **own, "y": _shown(edge, y)})
     return traces
 
 
-def _bars(one: dict[str, Any], x: dict[str, Any], y: dict[str, Any], common: dict[str, Any]) -> dict[str, Any]:
+def _bars(
+    one: dict[str, Any], x: dict[str, Any], y: dict[str, Any], common: dict[str, Any]
+) -> dict[str, Any]:
     along, across = (y, x) if one["lying"] else (x, y)
     places, values = _shown(one["places"], along), one["values"] / across["size"]
-    bars = {"type": "bar", "orientation": "h" if one["lying"] else "v", "marker": one["marker"], "width": one["widths"] / along["size"]}
+    bars = {
+        "type": "bar",
+        "orientation": "h" if one["lying"] else "v",
+        "marker": one["marker"],
+        "width": one["widths"] / along["size"],
+    }
     if "base" in one:
         bars["base"] = _shown(one["base"], across)
     if "low" in one:
-        error = {"array": (one["high"] - one["values"]) / across["size"], "arrayminus": (one["values"] - one["low"]) / across["size"]}
-        bars["error_x" if one["lying"] else "error_y"] = {**error, "thickness": 1.0, "width": 3, "color": "@main"}
+        error = {
+            "array": (one["high"] - one["values"]) / across["size"],
+            "arrayminus": (one["values"] - one["low"]) / across["size"],
+        }
+        bars["error_x" if one["lying"] else "error_y"] = {
+            **error,
+            "thickness": 1.0,
+            "width": 3,
+            "color": "@main",
+        }
     if "text" in one:
         bars["hovertext"] = one["text"]  # as "text" it would be written on the bars
     place, value = ("y", "x") if one["lying"] else ("x", "y")
     what = "%{hovertext}" if "text" in one else f"%{{{place}:.5~g}} {along['unit']}"
     bars["hovertemplate"] = f"{what}<br>%{{{value}:.5~g}} {across['unit']}" + _name_of(one)
-    return {**bars, **common, "x": values if one["lying"] else places, "y": places if one["lying"] else values}
+    return {
+        **bars,
+        **common,
+        "x": values if one["lying"] else places,
+        "y": places if one["lying"] else values,
+    }
 
 
 def _levels(drawn: dict[str, Any]) -> list[dict[str, Any]]:
@@ -151,11 +219,24 @@ def _levels(drawn: dict[str, Any]) -> list[dict[str, Any]]:
     for level in drawn["levels"]:
         frame = drawn["frames"][level["axis"]]
         place, along = float(_shown(np.array(level["value"]), frame)), level["axis"][0]
-        ends = {"xref": level["axis"], "x0": place, "x1": place} if along == "x" else {"yref": level["axis"], "y0": place, "y1": place}
+        ends = (
+            {"xref": level["axis"], "x0": place, "x1": place}
+            if along == "x"
+            else {"yref": level["axis"], "y0": place, "y1": place}
+        )
         across = f"{level['across']} domain"
-        ends |= {"yref": across, "y0": 0, "y1": 1} if along == "x" else {"xref": across, "x0": 0, "x1": 1}
+        ends |= (
+            {"yref": across, "y0": 0, "y1": 1}
+            if along == "x"
+            else {"xref": across, "x0": 0, "x1": 1}
+        )
         found.append(
-            {"type": "line", "line": level["line"], "label": {"text": level["label"], "textposition": "end", "font": {"size": 10}}, **ends}
+            {
+                "type": "line",
+                "line": level["line"],
+                "label": {"text": level["label"], "textposition": "end", "font": {"size": 10}},
+                **ends,
+            }
         )
     return found
 
@@ -165,11 +246,20 @@ def _spans(drawn: dict[str, Any]) -> list[dict[str, Any]]:
     for span in drawn["spans"]:
         frame = drawn["frames"][span["axis"]]
         # more would be too narrow to see, and slow
-        starts, ends = (_shown(span[side][:_MOST_SPANS], frame).tolist() for side in ("starts", "ends"))
+        starts, ends = (
+            _shown(span[side][:_MOST_SPANS], frame).tolist() for side in ("starts", "ends")
+        )
         for start, end in zip(starts, ends, strict=True):
-            look = {"fillcolor": span["fillcolor"], "opacity": span["opacity"], "line": {"width": 0}, "layer": "below"}
+            look = {
+                "fillcolor": span["fillcolor"],
+                "opacity": span["opacity"],
+                "line": {"width": 0},
+                "layer": "below",
+            }
             across = {"yref": f"{span['across']} domain", "y0": 0, "y1": 1}
-            found.append({"type": "rect", "xref": span["axis"], "x0": start, "x1": end, **across, **look})
+            found.append(
+                {"type": "rect", "xref": span["axis"], "x0": start, "x1": end, **across, **look}
+            )
     return found
 
 
@@ -178,9 +268,19 @@ def _rugs(drawn: dict[str, Any]) -> list[dict[str, Any]]:
     found = []
     for one in drawn["data"]:
         if one["type"] == "rug" and len(one["x"]):
-            path = "".join(f"M{place},0L{place},0.03" for place in _shown(one["x"], drawn["frames"][one["xaxis"]]).tolist())
+            path = "".join(
+                f"M{place},0L{place},0.03"
+                for place in _shown(one["x"], drawn["frames"][one["xaxis"]]).tolist()
+            )
             across = {"xref": one["xaxis"], "yref": f"{one['yaxis']} domain"}
-            found.append({"type": "path", "path": path, **across, "line": {"color": one["color"], "width": 1}})
+            found.append(
+                {
+                    "type": "path",
+                    "path": path,
+                    **across,
+                    "line": {"color": one["color"], "width": 1},
+                }
+            )
     return found
 
 
@@ -189,14 +289,22 @@ def _shown(values: Floats, frame: dict[str, Any]) -> Floats:
 
 
 def _coloured(part: Any) -> Any:
-    """Return a part of a figure with the roles replaced by their colours on light ground, and the opacity of areas in their colour."""
+    """Return a part of a figure with the roles replaced by their colours on light ground,
+    and the opacity of areas in their colour.
+    """
     if isinstance(part, dict):
         found = {key: _coloured(value) for key, value in part.items() if key != "fillopacity"}
         opacity = part.get("fillopacity", 1.0)
         if opacity < 1.0:
-            red, green, blue = (int(found["fillcolor"][index : index + 2], 16) for index in (1, 3, 5))
+            red, green, blue = (
+                int(found["fillcolor"][index : index + 2], 16) for index in (1, 3, 5)
+            )
             found["fillcolor"] = f"rgba({red},{green},{blue},{opacity})"
         return found
     if isinstance(part, list):
         return [_coloured(one) for one in part]
-    return _COLOURS[part[1:]] if isinstance(part, str) and part.startswith("@") and part[1:] in _COLOURS else part
+    return (
+        _COLOURS[part[1:]]
+        if isinstance(part, str) and part.startswith("@") and part[1:] in _COLOURS
+        else part
+    )

@@ -12,7 +12,9 @@ THIN = 0.012
 """Size of what stands for a point or an edge, relative to the longer side of the plate."""
 
 AT_REST = 0.01
-"""Part of the largest displacement below which a plate on a support is drawn at rest, without lines of rest."""
+"""Part of the largest displacement below which a plate on a support is drawn at rest,
+without lines of rest.
+"""
 
 _TURN = np.linspace(0.0, 2.0 * np.pi, 25)
 
@@ -24,10 +26,14 @@ def disc(x: float, y: float, radius: float) -> tuple[Floats, Floats]:
 
 def rectangle(x: float, y: float, length: float, width: float) -> tuple[Floats, Floats]:
     """Return the outline of a rectangle, of a length along x and a width along y."""
-    return x + 0.5 * length * np.array([-1.0, 1.0, 1.0, -1.0]), y + 0.5 * width * np.array([-1.0, -1.0, 1.0, 1.0])
+    return x + 0.5 * length * np.array([-1.0, 1.0, 1.0, -1.0]), y + 0.5 * width * np.array(
+        [-1.0, -1.0, 1.0, 1.0]
+    )
 
 
-def strip(edge: str, across: tuple[float, float], up: tuple[float, float], wide: float) -> tuple[Floats, Floats]:
+def strip(
+    edge: str, across: tuple[float, float], up: tuple[float, float], wide: float
+) -> tuple[Floats, Floats]:
     """Return the outline of a strip inside a plate, along an edge of it.
 
     Parameters
@@ -57,7 +63,9 @@ def on_supports(outlines: Iterable[tuple[Floats, Floats]], x: Floats, y: Floats)
 
     Examples
     --------
-    >>> on_supports([rectangle(0.0, 0.0, 0.2, 0.1)], np.array([-0.2, -0.1, 0.0]), np.array([0.0, 0.1])).tolist()
+    >>> on_supports(
+    ...     [rectangle(0.0, 0.0, 0.2, 0.1)], np.array([-0.2, -0.1, 0.0]), np.array([0.0, 0.1])
+    ... ).tolist()
     [[False, True, True], [False, False, False]]
     """
     points = np.stack(np.meshgrid(x, y), axis=-1)

@@ -1,10 +1,12 @@
-"""A document with arrays in one block of bytes, as pages and the live page read it: a header in JSON, and the arrays after it.
+"""A document with arrays in one block of bytes, as pages and the live page read it: a header in
+JSON, and the arrays after it.
 
-The first four bytes are the length of the header (unsigned, little-endian). The header is the document, where an array is replaced by
-`{"$": [type, offset, length]}`: `f4`, `f8` or `i4`, the offset in bytes from the end of the header, and the number of values; an array
-of several dimensions has its number of columns as a fourth entry. Evenly spaced values are `{"$": ["even", first, step, length]}`. Header
-and arrays are padded to eight bytes. A long list of texts is `["texts", offset, bytes]`, itself in JSON. An array or such a list that
-occurs several times is stored once.
+The first four bytes are the length of the header (unsigned, little-endian). The header is the
+document, where an array is replaced by `{"$": [type, offset, length]}`: `f4`, `f8` or `i4`, the
+offset in bytes from the end of the header, and the number of values; an array of several dimensions
+has its number of columns as a fourth entry. Evenly spaced values are `{"$": ["even", first, step,
+length]}`. Header and arrays are padded to eight bytes. A long list of texts is `["texts", offset,
+bytes]`, itself in JSON. An array or such a list that occurs several times is stored once.
 """
 
 from __future__ import annotations
@@ -21,7 +23,9 @@ from vibroimpact.files.json_reading import parse_json
 
 _ALIGNED = 8
 _LONG = 32
-"""Texts from which on a list of them is kept apart, as the points of several charts may have the same."""
+"""Texts from which on a list of them is kept apart, as the points of several charts may
+have the same.
+"""
 
 _MOST_STEPS = 100_000_000
 """Evenly spaced values of one array."""
@@ -33,8 +37,8 @@ _EVEN = 1e-9
 def pack(document: Any) -> bytes:
     """Return a document of dictionaries, lists, texts, numbers and arrays as bytes.
 
-    Values that single precision can't tell apart, such as the times of a contact late in a run, are stored in double precision, all
-    others in single precision. NaN outside of arrays is null.
+    Values that single precision can't tell apart, such as the times of a contact late in a run, are
+    stored in double precision, all others in single precision. NaN outside of arrays is null.
 
     Examples
     --------
@@ -88,13 +92,16 @@ def pack(document: Any) -> bytes:
             part = part.item()
         return None if isinstance(part, float) and not math.isfinite(part) else part
 
-    header = json.dumps(plain(document), ensure_ascii=False, separators=(",", ":"), allow_nan=False).encode()
+    header = json.dumps(
+        plain(document), ensure_ascii=False, separators=(",", ":"), allow_nan=False
+    ).encode()
     header += b" " * (-(len(header) + 4) % _ALIGNED)
     return struct.pack("<I", len(header)) + header + b"".join(blocks)
 
 
 def unpack(block: bytes) -> Any:
-    """Return the document that `pack` returned as bytes; an array of more than two dimensions has its last one as columns.
+    """Return the document that `pack` returned as bytes; an array of more than two dimensions has
+    its last one as columns.
 
     Raises
     ------
@@ -148,10 +155,17 @@ def _even(array: NDArray[Any]) -> tuple[float, float] | None:
     if array.ndim != 1 or len(array) < 3 or array.dtype.kind != "f" or not np.isfinite(array).all():
         return None
     first, step = float(array[0]), float(array[-1] - array[0]) / (len(array) - 1)
-    if not (math.isfinite(step) and step) or abs(float(array[1] - array[0]) - step) > _EVEN * abs(step) * 1e3:
+    if (
+        not (math.isfinite(step) and step)
+        or abs(float(array[1] - array[0]) - step) > _EVEN * abs(step) * 1e3
+    ):
         return None
     off = np.abs(array - (first + step * np.arange(len(array))))
-    return (first, step) if float(off.max()) <= max(_EVEN * abs(step), 1e-15 * abs(float(array[-1]))) else None
+    return (
+        (first, step)
+        if float(off.max()) <= max(_EVEN * abs(step), 1e-15 * abs(float(array[-1])))
+        else None
+    )
 
 
 def _narrowed(array: NDArray[Any]) -> NDArray[Any]:
@@ -162,6 +176,9 @@ def _narrowed(array: NDArray[Any]) -> NDArray[Any]:
     is_row = array.ndim == 1 and array.dtype == np.float64 and bool(np.isfinite(array).all())
     steps = np.diff(array) if is_row else np.empty(0)
     ascends = len(steps) > 0 and bool((steps >= 0.0).all())
-    # ascending values are places, whose differences are looked at: of these a thousandth must be kept
-    fine = ascends and float(np.abs(single - array).max()) > 1e-3 * float(steps[steps > 0.0].min(initial=np.inf))
+    # ascending values are places, whose differences are looked at: of these a thousandth must be
+    # kept
+    fine = ascends and float(np.abs(single - array).max()) > 1e-3 * float(
+        steps[steps > 0.0].min(initial=np.inf)
+    )
     return np.ascontiguousarray(array, dtype="<f8") if fine else single

@@ -1,4 +1,6 @@
-"""The look of every role of a chart: colours on light and on dark ground, dashes, hatches and symbols that differ in greyscale too."""
+"""The look of every role of a chart: colours on light and on dark ground, dashes, hatches
+and symbols that differ in greyscale too.
+"""
 
 from __future__ import annotations
 
@@ -28,7 +30,8 @@ class Look:
     hatch : str
         Hatch of areas: "", "/", "\\", "|", "-", "x" or ".".
     symbol : str
-        Symbol of points: "circle", "square", "triangle-up", "diamond", "triangle-down", "x" or "cross".
+        Symbol of points: "circle", "square", "triangle-up", "diamond", "triangle-down", "x" or
+        "cross".
     hollow : bool
         Whether symbols are filled with the ground.
     size : float
@@ -75,7 +78,8 @@ LOOKS: dict[str, Look] = {
     "fit": Look("#0b4f8a", "#6cb6ff", (6, 2), 1.2),
     "reference": Look("#777777", "#9a9a9a", (4, 3), 0.9),
     "dotted": Look("#1b1b1b", "#e8e8e8", (1, 2), 0.8),
-    "contour": Look("#1b1b1b", "#1b1b1b", width=0.6),  # on maps, whose colours are the same on dark ground
+    # on maps, whose colours are the same on dark ground
+    "contour": Look("#1b1b1b", "#1b1b1b", width=0.6),
     "muted": Look("#9a9a9a", "#7d7d7d", width=0.7, symbol="x"),
     "contact": Look("#8a8a8a", "#b0b0b0", opacity=0.22),
     "band": Look("#0b4f8a", "#6cb6ff", opacity=0.15),
@@ -106,17 +110,38 @@ LOOKS: dict[str, Look] = {
     "kinetic": Look("#4a8cc7", "#3f86c6", hatch="\\"),
     **{f"series {number}": look for number, look in enumerate(_SERIES)},
     **{f"thin series {number}": replace(look, width=0.75) for number, look in enumerate(_SERIES)},
-    **{f"series {number} band": Look(look.light, look.dark, opacity=0.15) for number, look in enumerate(_SERIES)},
+    **{
+        f"series {number} band": Look(look.light, look.dark, opacity=0.15)
+        for number, look in enumerate(_SERIES)
+    },
 }
 """The look of each role."""
 
-DIVERGING = ((0.0, "#0b3c73"), (0.25, "#5b9bcf"), (0.5, "#f7f7f7"), (0.75, "#e38a63"), (1.0, "#8f1d14"))
+DIVERGING = (
+    (0.0, "#0b3c73"),
+    (0.25, "#5b9bcf"),
+    (0.5, "#f7f7f7"),
+    (0.75, "#e38a63"),
+    (1.0, "#8f1d14"),
+)
 """Colours of a scale that is symmetric about zero, in even steps."""
 
-DIVERGING_ON_DARK = ((0.0, "#a8d6ff"), (0.25, "#4a8fca"), (0.5, "#4a525b"), (0.75, "#cc6a48"), (1.0, "#ffb79c"))
+DIVERGING_ON_DARK = (
+    (0.0, "#a8d6ff"),
+    (0.25, "#4a8fca"),
+    (0.5, "#4a525b"),
+    (0.75, "#cc6a48"),
+    (1.0, "#ffb79c"),
+)
 """The same for surfaces on dark ground, where zero is dark; maps have the first on any ground."""
 
-SEQUENTIAL = ((0.0, "#00224e"), (0.25, "#3b496c"), (0.5, "#7d7c78"), (0.75, "#bcae6c"), (1.0, "#fee838"))
+SEQUENTIAL = (
+    (0.0, "#00224e"),
+    (0.25, "#3b496c"),
+    (0.5, "#7d7c78"),
+    (0.75, "#bcae6c"),
+    (1.0, "#fee838"),
+)
 """Colours of a scale from small to large, of rising luminance."""
 
 SHADES = ((0.0, "#6b8599"), (1.0, "#eef2f6"))
@@ -124,7 +149,8 @@ SHADES = ((0.0, "#6b8599"), (1.0, "#eef2f6"))
 
 
 def series(number: int) -> str:
-    """Return the role of the line with a number, among lines of one kind; beyond the first eight they are thin.
+    """Return the role of the line with a number, among lines of one kind; beyond the first eight
+    they are thin.
 
     Examples
     --------

@@ -1,8 +1,10 @@
-"""A chart as a figure of plotly, in plain dictionaries: its traces and layout, with arrays in SI units and the frames that show them.
+"""A chart as a figure of plotly, in plain dictionaries: its traces and layout, with arrays in SI
+units and the frames that show them.
 
-Neither plotly itself nor a browser is needed here. A page completes the figure in the browser, where a view or a zoom chooses what is
-drawn of long arrays (`scripts/charts.js`); `vibroimpact.charts.notebook` completes it in Python. Colours are names of roles after an
-"@", replaced by those of the light or the dark ground.
+Neither plotly itself nor a browser is needed here. A page completes the figure in the browser,
+where a view or a zoom chooses what is drawn of long arrays (`scripts/charts.js`);
+`vibroimpact.charts.notebook` completes it in Python. Colours are names of roles after an "@",
+replaced by those of the light or the dark ground.
 """
 
 from __future__ import annotations
@@ -15,7 +17,15 @@ import numpy as np
 from vibroimpact.charts.axis import Axis
 from vibroimpact.charts.chart import Chart, Panel, values_on
 from vibroimpact.charts.contours import contours_of
-from vibroimpact.charts.frame import Frame, ends_on, frames_of, is_log, panels_without_label, view_frames, view_range
+from vibroimpact.charts.frame import (
+    Frame,
+    ends_on,
+    frames_of,
+    is_log,
+    panels_without_label,
+    view_frames,
+    view_range,
+)
 from vibroimpact.charts.marks import (
     Arrow,
     Band,
@@ -34,7 +44,17 @@ from vibroimpact.charts.marks import (
     cell_edges,
 )
 from vibroimpact.charts.palette import DIVERGING, LOOKS, SEQUENTIAL, SHADES
-from vibroimpact.charts.traces import area, bars_trace, colour_between, line_trace, pen, plain, points_trace, scale_of, silence
+from vibroimpact.charts.traces import (
+    area,
+    bars_trace,
+    colour_between,
+    line_trace,
+    pen,
+    plain,
+    points_trace,
+    scale_of,
+    silence,
+)
 
 ROW, SMALL_ROW, PICTURE_ROW = 300, 170, 340
 """Height of a row: the only one, one of several, and one of pictures [px]."""
@@ -43,7 +63,9 @@ _PICTURE_INCH = 118.0
 """What an inch of a picture in print is on a wide page [px]."""
 
 _GAP_ACROSS, _GAP_BESIDE, _GAP_BETWEEN_PICTURES, _GAP_UP = 0.07, 0.17, 0.03, 64
-"""Gap between panels of a row, where colour bars are in it, and between pictures of a row [parts of the width], and between rows [px]."""
+"""Gap between panels of a row, where colour bars are in it, and between pictures of a row
+[parts of the width], and between rows [px].
+"""
 
 _ANCHORS: dict[str, dict[str, Any]] = {
     "left": {"xanchor": "left", "yanchor": "middle", "xshift": 6},
@@ -64,10 +86,11 @@ def plotly_chart(chart: Chart) -> dict[str, Any]:
     Returns
     -------
     dict
-        `name`, `title`, `subtitle`, `caption`; `data`, traces whose arrays are SI values; `layout`; `pictures`, whether all panels are;
-        `rows`, suffix and height of the panels of each row; `bars`, the colour axis of a panel that has its own; `frames`, by axis, what
-        divides these values; `levels` and `spans`, the lines and shaded ranges across panels; `views`, each with the frames that it
-        changes.
+        `name`, `title`, `subtitle`, `caption`; `data`, traces whose arrays are SI values; `layout`;
+        `pictures`, whether all panels are; `rows`, suffix and height of the panels of each row;
+        `bars`, the colour axis of a panel that has its own; `frames`, by axis, what divides these
+        values; `levels` and `spans`, the lines and shaded ranges across panels; `views`, each with
+        the frames that it changes.
 
     Examples
     --------
@@ -109,12 +132,28 @@ class _Drawing:
             for column, panel in enumerate(row):
                 number += 1
                 suffix = "" if number == 1 else str(number)
-                own_bar = any(isinstance(mark, Map) and self._own_scale(mark.scale) for mark in row[0].marks)
-                gap = _GAP_BETWEEN_PICTURES if self._pictures() else _GAP_BESIDE if own_bar else _GAP_ACROSS
+                own_bar = any(
+                    isinstance(mark, Map) and self._own_scale(mark.scale) for mark in row[0].marks
+                )
+                gap = (
+                    _GAP_BETWEEN_PICTURES
+                    if self._pictures()
+                    else _GAP_BESIDE
+                    if own_bar
+                    else _GAP_ACROSS
+                )
                 width = (1.0 - gap * (len(row) - 1)) / len(row)
                 left = column * (width + gap)
-                self._place(panel, suffix, (left, left + width), ((bottom - height) / total, bottom / total), first, panel.x not in below)
-                if column and panel.y.names and panel.y is row[column - 1].y:  # names that the panel before has already
+                self._place(
+                    panel,
+                    suffix,
+                    (left, left + width),
+                    ((bottom - height) / total, bottom / total),
+                    first,
+                    panel.x not in below,
+                )
+                # names that the panel before has already
+                if column and panel.y.names and panel.y is row[column - 1].y:
                     self.layout[f"yaxis{suffix}"]["showticklabels"] = False
                 rows[-1] += [(suffix, height)] if panel.marks else []
                 shown |= {f"x{suffix}": self.frames[panel.x], f"y{suffix}": self.frames[panel.y]}
@@ -148,14 +187,23 @@ class _Drawing:
             pixels = _PICTURE_INCH if self._pictures() else 96.0
             return [round(pixels * self.chart.height)] * len(self.chart.rows)
         usual = ROW if len(self.chart.rows) == 1 else SMALL_ROW
-        return [PICTURE_ROW if any(panel.picture for panel in row) and len(row) < 3 else usual for row in self.chart.rows]
+        return [
+            PICTURE_ROW if any(panel.picture for panel in row) and len(row) < 3 else usual
+            for row in self.chart.rows
+        ]
 
     def _pictures(self) -> bool:
         """Return whether all panels are pictures, whose height follows from the width."""
         return all(panel.picture for panel in self.chart.panels)
 
     def _place(
-        self, panel: Panel, suffix: str, across: tuple[float, float], up: tuple[float, float], first: dict[Axis, str], last: bool
+        self,
+        panel: Panel,
+        suffix: str,
+        across: tuple[float, float],
+        up: tuple[float, float],
+        first: dict[Axis, str],
+        last: bool,
     ) -> None:
         """Add the axes of a panel; one that is shared follows the first panel that has it."""
         for side, axis, domain, other in (("x", panel.x, across, "y"), ("y", panel.y, up, "x")):
@@ -171,13 +219,35 @@ class _Drawing:
             line |= scale_of(axis, frame)
             if panel.picture:
                 # an axis that follows another one has its scale already
-                line |= {"visible": False} | ({"scaleanchor": f"x{suffix}"} if side == "y" and "matches" not in line else {})
+                line |= {"visible": False} | (
+                    {"scaleanchor": f"x{suffix}"} if side == "y" and "matches" not in line else {}
+                )
             self.layout[f"{side}axis{suffix}"] = line
         if panel.title and (len(self.chart.panels) > 1 or panel.title != self.chart.title):
-            self._write(panel.title, f"x{suffix} domain", f"y{suffix} domain", 0.0, 1.0, xanchor="left", yanchor="bottom", size=13)
+            self._write(
+                panel.title,
+                f"x{suffix} domain",
+                f"y{suffix} domain",
+                0.0,
+                1.0,
+                xanchor="left",
+                yanchor="bottom",
+                size=13,
+            )
 
-    def _write(self, words: str, xref: str, yref: str, x: float, y: float, size: int = 12, **more: Any) -> None:
-        note = {"text": plain(words), "xref": xref, "yref": yref, "x": x, "y": y, "showarrow": False, "font": {"size": size}, **more}
+    def _write(
+        self, words: str, xref: str, yref: str, x: float, y: float, size: int = 12, **more: Any
+    ) -> None:
+        note = {
+            "text": plain(words),
+            "xref": xref,
+            "yref": yref,
+            "x": x,
+            "y": y,
+            "showarrow": False,
+            "font": {"size": size},
+            **more,
+        }
         self.layout["annotations"].append(note)
 
     def _draw(self, mark: Mark, panel: Panel, suffix: str) -> None:
@@ -189,14 +259,32 @@ class _Drawing:
                 self._add(mark, at, points_trace(mark) | silence(mark, panel))
             case Band():
                 self._add(
-                    mark, at, {"type": "band", "x": mark.x, "low": mark.low, "high": mark.high, "line": {"width": 0}, **area(mark.role)}
+                    mark,
+                    at,
+                    {
+                        "type": "band",
+                        "x": mark.x,
+                        "low": mark.low,
+                        "high": mark.high,
+                        "line": {"width": 0},
+                        **area(mark.role),
+                    },
                 )
             case Stack():
                 for layer in mark.layers:
                     self.named.add((layer.name, layer.role))
-                layers = [{"name": plain(layer.name), "y": layer.values, **area(layer.role)} for layer in mark.layers]
+                layers = [
+                    {"name": plain(layer.name), "y": layer.values, **area(layer.role)}
+                    for layer in mark.layers
+                ]
                 self.data.append(
-                    {"type": "stack", "x": mark.x, "layers": layers, **({} if mark.overview is None else {"overview": mark.overview}), **at}
+                    {
+                        "type": "stack",
+                        "x": mark.x,
+                        "layers": layers,
+                        **({} if mark.overview is None else {"overview": mark.overview}),
+                        **at,
+                    }
                 )
             case Bars():
                 self._add(mark, at, bars_trace(mark))
@@ -211,7 +299,15 @@ class _Drawing:
                 self._add(
                     mark,
                     at,
-                    {"type": "scatter", "mode": "lines", "fill": "toself", "line": edge, "hoverinfo": "skip", **closed, **area(mark.role)},
+                    {
+                        "type": "scatter",
+                        "mode": "lines",
+                        "fill": "toself",
+                        "line": edge,
+                        "hoverinfo": "skip",
+                        **closed,
+                        **area(mark.role),
+                    },
                 )
             case Level():
                 self.levels.append(
@@ -238,10 +334,27 @@ class _Drawing:
                 )
                 self._name(mark, at)
             case Rug():
-                self._add(mark, at, {"type": "rug", "x": mark.values, "color": f"@{mark.role}", "hover": plain(mark.name)})
+                self._add(
+                    mark,
+                    at,
+                    {
+                        "type": "rug",
+                        "x": mark.values,
+                        "color": f"@{mark.role}",
+                        "hover": plain(mark.name),
+                    },
+                )
             case Label():
-                xref, yref = (f"x{suffix} domain", f"y{suffix} domain") if mark.corner else (f"x{suffix}", f"y{suffix}")
-                x, y = (mark.x, mark.y) if mark.corner else (self._place_of(panel.x, mark.x), self._place_of(panel.y, mark.y))
+                xref, yref = (
+                    (f"x{suffix} domain", f"y{suffix} domain")
+                    if mark.corner
+                    else (f"x{suffix}", f"y{suffix}")
+                )
+                x, y = (
+                    (mark.x, mark.y)
+                    if mark.corner
+                    else (self._place_of(panel.x, mark.x), self._place_of(panel.y, mark.y))
+                )
                 self._write(mark.words, xref, yref, x, y, **_ANCHORS[mark.anchor])
             case Arrow():
                 self._arrow(mark, panel, suffix)
@@ -255,7 +368,11 @@ class _Drawing:
             return {"showlegend": False}
         new = (mark.name, mark.role) not in self.named
         self.named.add((mark.name, mark.role))
-        return {"name": plain(mark.name), "legendgroup": f"{mark.name} {mark.role}", "showlegend": new}
+        return {
+            "name": plain(mark.name),
+            "legendgroup": f"{mark.name} {mark.role}",
+            "showlegend": new,
+        }
 
     def _name(self, mark: Level | Spans, at: dict[str, str]) -> None:
         """Add the legend's entry of what is not a trace."""
@@ -264,30 +381,73 @@ class _Drawing:
             if isinstance(mark, Spans):
                 look = {
                     "mode": "markers",
-                    "marker": {"symbol": "square", "size": 12, "color": f"@{mark.role}", "opacity": LOOKS[mark.role].opacity},
+                    "marker": {
+                        "symbol": "square",
+                        "size": 12,
+                        "color": f"@{mark.role}",
+                        "opacity": LOOKS[mark.role].opacity,
+                    },
                 }
-            self._add(mark, at, {"type": "scatter", "x": [None], "y": [None], "hoverinfo": "skip", **look})
+            self._add(
+                mark, at, {"type": "scatter", "x": [None], "y": [None], "hoverinfo": "skip", **look}
+            )
 
     def _map(self, mark: Map, panel: Panel, at: dict[str, str]) -> None:
         frame = self.frames[mark.scale]
         if mark.scale not in self.scales:
             self._add_scale(mark, frame)
         # plotly would put the edges of a logarithmic axis midway, or below zero
-        x, y = (cell_edges(mark.x, log=panel.x.log), cell_edges(mark.y, log=panel.y.log)) if mark.cells else (mark.x, mark.y)
+        x, y = (
+            (cell_edges(mark.x, log=panel.x.log), cell_edges(mark.y, log=panel.y.log))
+            if mark.cells
+            else (mark.x, mark.y)
+        )
         shown, unit = frame.shown(mark.values), plain(frame.unit)
-        trace = {"type": "heatmap", "x": x, "y": y, "z": shown, "coloraxis": self.scales[mark.scale], "hoverongaps": False}
+        trace = {
+            "type": "heatmap",
+            "x": x,
+            "y": y,
+            "z": shown,
+            "coloraxis": self.scales[mark.scale],
+            "hoverongaps": False,
+        }
         trace["hovertemplate"] = f"%{{z:.5~g}} {unit}<extra></extra>"
         if is_log(mark.scale, self.chart):
-            trace |= {"z": np.log10(shown), "customdata": shown, "hovertemplate": f"%{{customdata:.5~g}} {unit}<extra></extra>"}
+            trace |= {
+                "z": np.log10(shown),
+                "customdata": shown,
+                "hovertemplate": f"%{{customdata:.5~g}} {unit}<extra></extra>",
+            }
         if mark.texts:
-            trace |= {"text": [plain(text) for text in mark.texts], "hovertemplate": "%{text}<extra></extra>"}
-        self.data.append({**trace, **({} if mark.cells else {"zsmooth": "best"}), **at, "showlegend": False})
+            trace |= {
+                "text": [plain(text) for text in mark.texts],
+                "hovertemplate": "%{text}<extra></extra>",
+            }
+        self.data.append(
+            {**trace, **({} if mark.cells else {"zsmooth": "best"}), **at, "showlegend": False}
+        )
         for found in contours_of(shown) if mark.contours else ():
-            lines = {"type": "contour", "x": mark.x, "y": mark.y, "z": found.values, "showscale": False, "hoverinfo": "skip"}
+            lines = {
+                "type": "contour",
+                "x": mark.x,
+                "y": mark.y,
+                "z": found.values,
+                "showscale": False,
+                "hoverinfo": "skip",
+            }
             step = found.levels[1] - found.levels[0] if len(found.levels) > 1 else 1.0
             # the end lies beyond the last level, which rounding would leave out
-            levels = {"coloring": "none", "start": found.levels[0], "end": found.levels[-1] + 0.01 * step, "size": step}
-            pen = {"color": "@contour", "width": 1.2 * found.width, "dash": "4px,3px" if found.dashed else "solid"}
+            levels = {
+                "coloring": "none",
+                "start": found.levels[0],
+                "end": found.levels[-1] + 0.01 * step,
+                "size": step,
+            }
+            pen = {
+                "color": "@contour",
+                "width": 1.2 * found.width,
+                "dash": "4px,3px" if found.dashed else "solid",
+            }
             self.data.append({**lines, "contours": levels, "line": pen, "showlegend": False, **at})
 
     def _add_scale(self, mark: Map | Facets, frame: Frame) -> None:
@@ -299,12 +459,22 @@ class _Drawing:
         low, high = frame.shown(np.array(ends_on(mark.scale, self.chart))).tolist()
         low, high = (math.log10(low), math.log10(high)) if log else (low, high)
         most = max(abs(low), abs(high)) or 1.0
-        bar: dict[str, Any] = {"title": {"text": plain(frame.title), "side": "right"}, "thickness": 12, "outlinewidth": 0, "len": 1.0}
+        bar: dict[str, Any] = {
+            "title": {"text": plain(frame.title), "side": "right"},
+            "thickness": 12,
+            "outlinewidth": 0,
+            "len": 1.0,
+        }
         if log:
             powers = np.arange(np.ceil(low), np.floor(high) + 1.0)
             ticks = powers if len(powers) > 1 else np.linspace(low, high, 3)
-            bar |= {"tickvals": ticks.tolist(), "ticktext": [f"{10.0**value:.3g}" for value in ticks]}
-        if len([one for one in self.chart.panels if any(isinstance(m, Map) for m in one.marks)]) > 1 and self._own_scale(mark.scale):
+            bar |= {
+                "tickvals": ticks.tolist(),
+                "ticktext": [f"{10.0**value:.3g}" for value in ticks],
+            }
+        if len(
+            [one for one in self.chart.panels if any(isinstance(m, Map) for m in one.marks)]
+        ) > 1 and self._own_scale(mark.scale):
             bar |= self._beside(mark.scale)
         self.layout[name] = {
             "cmin": -most if mark.diverging else low,
@@ -315,16 +485,27 @@ class _Drawing:
 
     def _own_scale(self, scale: Axis) -> bool:
         """Return whether a scale is that of a single panel among several."""
-        return sum(any(getattr(mark, "scale", None) is scale for mark in panel.marks) for panel in self.chart.panels) == 1
+        return (
+            sum(
+                any(getattr(mark, "scale", None) is scale for mark in panel.marks)
+                for panel in self.chart.panels
+            )
+            == 1
+        )
 
     def _beside(self, scale: Axis) -> dict[str, Any]:
         """Return the place of a colour bar beside its only panel."""
         number = next(
-            index for index, panel in enumerate(self.chart.panels) if any(getattr(mark, "scale", None) is scale for mark in panel.marks)
+            index
+            for index, panel in enumerate(self.chart.panels)
+            if any(getattr(mark, "scale", None) is scale for mark in panel.marks)
         )
         suffix = "" if number == 0 else str(number + 1)
         self.bars[suffix] = self.scales[scale]
-        across, up = self.layout[f"xaxis{suffix}"]["domain"], self.layout[f"yaxis{suffix}"]["domain"]
+        across, up = (
+            self.layout[f"xaxis{suffix}"]["domain"],
+            self.layout[f"yaxis{suffix}"]["domain"],
+        )
         return {
             "x": across[1],
             "xanchor": "left",
@@ -335,7 +516,9 @@ class _Drawing:
         }
 
     def _facets(self, mark: Facets, at: dict[str, str]) -> None:
-        """Draw facets in a few colours: one filled trace of each, whose outlines are interrupted by NaN."""
+        """Draw facets in a few colours: one filled trace of each, whose outlines are
+        interrupted by NaN.
+        """
         values = mark.values if mark.scale is None else values_on(mark.scale, self.chart.panels)
         low, high = float(values.min()), float(values.max())
         if mark.diverging:
@@ -347,7 +530,9 @@ class _Drawing:
         for number in np.unique(shade):
             here = shade == number
             corners = mark.corners[here]
-            closed = np.concatenate([corners, corners[:, :1], np.full_like(corners[:, :1], np.nan)], axis=1).reshape(-1, 2)
+            closed = np.concatenate(
+                [corners, corners[:, :1], np.full_like(corners[:, :1], np.nan)], axis=1
+            ).reshape(-1, 2)
             colour = colour_between(stops, (number + 0.5) / _SHADES)
             trace: dict[str, Any] = {
                 "type": "scatter",
@@ -360,30 +545,53 @@ class _Drawing:
             if mark.scale is not None:
                 frame = self.frames[mark.scale]
                 mean = float(frame.shown(mark.values[here].mean()))
-                trace |= {"hoveron": "fills", "hoverinfo": "text", "text": f"{mean:.2g} {frame.unit}".rstrip()}
+                trace |= {
+                    "hoveron": "fills",
+                    "hoverinfo": "text",
+                    "text": f"{mean:.2g} {frame.unit}".rstrip(),
+                }
             self.data.append({**trace, "x": closed[:, 0], "y": closed[:, 1], **at})
         if mark.scale is not None and mark.scale not in self.scales:
             self._add_scale(mark, self.frames[mark.scale])
             # the bar belongs to a trace of markers, of which there is none
             bar = {"color": [0.0], "coloraxis": self.scales[mark.scale]}
-            nothing = {"type": "scatter", "mode": "markers", "x": [None], "y": [None], "hoverinfo": "skip", "showlegend": False}
+            nothing = {
+                "type": "scatter",
+                "mode": "markers",
+                "x": [None],
+                "y": [None],
+                "hoverinfo": "skip",
+                "showlegend": False,
+            }
             self.data.append({**nothing, "marker": bar, **at})
 
     def _place_of(self, axis: Axis, value: float) -> float:
-        """Return the place of an annotation along an axis: on a logarithmic one plotly takes the logarithm, other than of a trace."""
+        """Return the place of an annotation along an axis: on a logarithmic one plotly
+        takes the logarithm, other than of a trace.
+        """
         shown = float(self.frames[axis].shown(np.array(value)))
         return math.log10(shown) if axis.log else shown
 
     def _arrow(self, mark: Arrow, panel: Panel, suffix: str) -> None:
-        (x0, y0), (x1, y1) = ((self._place_of(panel.x, x), self._place_of(panel.y, y)) for x, y in (mark.start, mark.end))
-        ref = {"xref": f"x{suffix}", "yref": f"y{suffix}", "axref": f"x{suffix}", "ayref": f"y{suffix}"}
+        (x0, y0), (x1, y1) = (
+            (self._place_of(panel.x, x), self._place_of(panel.y, y))
+            for x, y in (mark.start, mark.end)
+        )
+        ref = {
+            "xref": f"x{suffix}",
+            "yref": f"y{suffix}",
+            "axref": f"x{suffix}",
+            "ayref": f"y{suffix}",
+        }
         heads = {
             "arrowhead": 2,
             "arrowside": "end+start" if mark.both else "end",
             "arrowwidth": LOOKS[mark.role].width,
             "arrowcolor": f"@{mark.role}",
         }
-        self.layout["annotations"].append({"text": "", "showarrow": True, "x": x1, "y": y1, "ax": x0, "ay": y0, **ref, **heads})
+        self.layout["annotations"].append(
+            {"text": "", "showarrow": True, "x": x1, "y": y1, "ax": x0, "ay": y0, **ref, **heads}
+        )
 
     def _views(self, places: dict[str, Panel]) -> list[dict[str, Any]]:
         """Return the views with the frames and ranges that each of them changes."""
@@ -395,11 +603,21 @@ class _Drawing:
                     own, panels = panel.x.views[number], self.chart.panels
                     across, up = view_frames(panel, own, self.frames[panel.y], panels)
                     span = view_range(panel, own, panels)
-                    frames[f"x{suffix}"] = {**_as_dict(across), "range": across.shown(np.array([own.start, own.end])).tolist()}
-                    frames[f"y{suffix}"] = _as_dict(up) | ({} if span is None else {"range": up.shown(np.array(span)).tolist()})
+                    frames[f"x{suffix}"] = {
+                        **_as_dict(across),
+                        "range": across.shown(np.array([own.start, own.end])).tolist(),
+                    }
+                    frames[f"y{suffix}"] = _as_dict(up) | (
+                        {} if span is None else {"range": up.shown(np.array(span)).tolist()}
+                    )
             found.append({"name": view.name, "headline": view.headline, "frames": frames})
         return found
 
 
 def _as_dict(frame: Frame) -> dict[str, Any]:
-    return {"title": plain(frame.title), "unit": frame.unit, "size": frame.size, "origin": frame.origin}
+    return {
+        "title": plain(frame.title),
+        "unit": frame.unit,
+        "size": frame.size,
+        "origin": frame.origin,
+    }

@@ -29,14 +29,19 @@ def set_axis(axes: Axes, side: str, axis: Axis, frame: Frame) -> None:
             for text in line.get_ticklabels():
                 text.set(rotation=20, ha="right", rotation_mode="anchor")
     if axis.range is not None:
-        ends = [None if not math.isfinite(end) else float(frame.shown(np.array(end))) for end in axis.range]
+        ends = [
+            None if not math.isfinite(end) else float(frame.shown(np.array(end)))
+            for end in axis.range
+        ]
         set_limits(*ends)
     if axis.log:
         plain_log(line)
     elif axis.ticks:
         line.set_ticks(frame.shown(np.array(axis.ticks)).tolist())
     elif not axis.names:
-        line.set_major_locator(MaxNLocator(_numbers(axes, side), steps=[1, 2, 2.5, 5, 10], integer=axis.integer))
+        line.set_major_locator(
+            MaxNLocator(_numbers(axes, side), steps=[1, 2, 2.5, 5, 10], integer=axis.integer)
+        )
 
 
 def _numbers(axes: Axes, side: str) -> int:
@@ -48,7 +53,9 @@ def _numbers(axes: Axes, side: str) -> int:
 
 
 def plain_log(line: Any) -> None:
-    """Label a logarithmic axis at 1, 2 and 5 of each decade in plain notation, or only at the decades if there are many."""
+    """Label a logarithmic axis at 1, 2 and 5 of each decade in plain notation, or only at
+    the decades if there are many.
+    """
     low, high = sorted(line.get_view_interval())
     decades = math.log10(high / low) if low > 0.0 else 9.0
     line.set_major_locator(LogLocator(10.0, subs=(1.0, 2.0, 5.0) if decades < 2.2 else (1.0,)))

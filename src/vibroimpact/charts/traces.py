@@ -13,12 +13,19 @@ from vibroimpact.charts.marks import Bars, Line, Points
 from vibroimpact.charts.palette import LOOKS, MANY
 
 _LARGEST = 6.0
-"""Largest size of a point [px]: of larger ones, plotly would rather tell a point of the line beneath, be it half a pixel off."""
+"""Largest size of a point [px]: of larger ones, plotly would rather tell a point of the
+line beneath, be it half a pixel off.
+"""
 
 
 def line_trace(line: Line) -> dict[str, Any]:
     """Return the trace of a line."""
-    drawn: dict[str, Any] = {"type": "scatter", "mode": "lines+markers" if line.marked else "lines", "x": line.x, "y": line.y}
+    drawn: dict[str, Any] = {
+        "type": "scatter",
+        "mode": "lines+markers" if line.marked else "lines",
+        "x": line.x,
+        "y": line.y,
+    }
     drawn["line"] = pen(line.role)
     look = LOOKS[line.role]
     if look.opacity < 1.0 and line.role == "under":
@@ -28,7 +35,9 @@ def line_trace(line: Line) -> dict[str, Any]:
 
 
 def silence(mark: Line | Points, panel: Panel) -> dict[str, Any]:
-    """Return the setting that hides the hover text of unnamed marks of a picture, where coordinates are not quantities."""
+    """Return the setting that hides the hover text of unnamed marks of a picture, where
+    coordinates are not quantities.
+    """
     return {"hoverinfo": "skip"} if panel.picture and not mark.name else {}
 
 
@@ -36,12 +45,19 @@ def points_trace(points: Points) -> dict[str, Any]:
     """Return the trace of points: small ones without an edge where there are many."""
     many, size = len(points.x) > MANY, LOOKS[points.role].size
     drawn: dict[str, Any] = {"type": "scatter", "mode": "markers", "x": points.x, "y": points.y}
-    dot = {"symbol": LOOKS[points.role].symbol, "size": min(4.0, size), "color": f"@{points.role}", "opacity": 0.6, "line": {"width": 0}}
+    dot = {
+        "symbol": LOOKS[points.role].symbol,
+        "size": min(4.0, size),
+        "color": f"@{points.role}",
+        "opacity": 0.6,
+        "line": {"width": 0},
+    }
     drawn["marker"] = dot if many else _symbol(points.role, min(_LARGEST, size))
     drawn |= _texts(points.texts)
     if points.keys:
         drawn["keys"] = {
-            key: values if values.dtype.kind in "fiu" else [str(value) for value in values] for key, values in points.keys.items()
+            key: values if values.dtype.kind in "fiu" else [str(value) for value in values]
+            for key, values in points.keys.items()
         }
     if points.low is not None and points.high is not None:
         drawn |= {"low": points.low, "high": points.high}
@@ -49,9 +65,13 @@ def points_trace(points: Points) -> dict[str, Any]:
 
 
 def _texts(texts: tuple[str, ...]) -> dict[str, Any]:
-    """Return what points are, which takes the place of their coordinates if it has several lines."""
+    """Return what points are, which takes the place of their coordinates if it has
+    several lines.
+    """
     found: dict[str, Any] = {"text": [plain(text) for text in texts]} if texts else {}
-    return found | ({"hovertemplate": "%{text}<extra></extra>"} if texts and "\n" in texts[0] else {})
+    return found | (
+        {"hovertemplate": "%{text}<extra></extra>"} if texts and "\n" in texts[0] else {}
+    )
 
 
 def bars_trace(bars: Bars) -> dict[str, Any]:
@@ -59,8 +79,16 @@ def bars_trace(bars: Bars) -> dict[str, Any]:
     places, width = bars.places, np.full(len(bars.values), bars.width)
     if len(places) == len(bars.values) + 1:
         places, width = 0.5 * (places[1:] + places[:-1]), np.diff(places)
-    drawn: dict[str, Any] = {"type": "bars", "lying": bars.lying, "places": places, "values": bars.values, "widths": width}
-    drawn["marker"] = {"color": f"@{bars.role}", "line": {"width": 0.5, "color": "@main"}} | _hatch(bars.role, "pattern")
+    drawn: dict[str, Any] = {
+        "type": "bars",
+        "lying": bars.lying,
+        "places": places,
+        "values": bars.values,
+        "widths": width,
+    }
+    drawn["marker"] = {"color": f"@{bars.role}", "line": {"width": 0.5, "color": "@main"}} | _hatch(
+        bars.role, "pattern"
+    )
     if bars.base is not None:
         drawn["base"] = bars.base
     if bars.low is not None and bars.high is not None:
@@ -71,13 +99,22 @@ def bars_trace(bars: Bars) -> dict[str, Any]:
 def pen(role: str) -> dict[str, Any]:
     """Return colour, width and dashes of lines of a role."""
     look = LOOKS[role]
-    return {"color": f"@{role}", "width": look.width, "dash": ",".join(f"{part}px" for part in look.dashes) or "solid"}
+    return {
+        "color": f"@{role}",
+        "width": look.width,
+        "dash": ",".join(f"{part}px" for part in look.dashes) or "solid",
+    }
 
 
 def _symbol(role: str, size: float) -> dict[str, Any]:
     look = LOOKS[role]
     if look.hollow:
-        return {"symbol": look.symbol, "size": size, "color": "@ground", "line": {"color": f"@{role}", "width": 1.2}}
+        return {
+            "symbol": look.symbol,
+            "size": size,
+            "color": "@ground",
+            "line": {"color": f"@{role}", "width": 1.2},
+        }
     return {"symbol": look.symbol, "size": size, "color": f"@{role}"}
 
 
@@ -89,25 +126,47 @@ def area(role: str) -> dict[str, Any]:
 
 def _hatch(role: str, name: str) -> dict[str, Any]:
     look = LOOKS[role]
-    return {name: {"shape": look.hatch, "size": 7, "solidity": 0.15, "fgcolor": "@main", "bgcolor": f"@{role}"}} if look.hatch else {}
+    return (
+        {
+            name: {
+                "shape": look.hatch,
+                "size": 7,
+                "solidity": 0.15,
+                "fgcolor": "@main",
+                "bgcolor": f"@{role}",
+            }
+        }
+        if look.hatch
+        else {}
+    )
 
 
 def colour_between(stops: tuple[tuple[float, str], ...], part: float) -> str:
     """Return the colour at a part of a scale."""
     places = [place for place, _ in stops]
     colours = [[int(colour[index : index + 2], 16) for index in (1, 3, 5)] for _, colour in stops]
-    return "#" + "".join(f"{round(float(np.interp(part, places, [colour[index] for colour in colours]))):02x}" for index in range(3))
+    return "#" + "".join(
+        f"{round(float(np.interp(part, places, [colour[index] for colour in colours]))):02x}"
+        for index in range(3)
+    )
 
 
 def plain(words: str) -> str:
-    """Return words that plotly shows as they are: it reads a few tags of HTML, and formulas between dollar signs.
+    """Return words that plotly shows as they are: it reads a few tags of HTML, and formulas between
+    dollar signs.
 
     Examples
     --------
     >>> plain("a < b & $c$")
     'a &lt; b &amp; &#36;c&#36;'
     """
-    return words.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;").replace("$", "&#36;").replace("\n", "<br>")
+    return (
+        words.replace("&", "&amp;")
+        .replace("<", "&lt;")
+        .replace(">", "&gt;")
+        .replace("$", "&#36;")
+        .replace("\n", "<br>")
+    )
 
 
 def scale_of(axis: Axis, frame: Frame) -> dict[str, Any]:
@@ -123,8 +182,13 @@ def scale_of(axis: Axis, frame: Frame) -> dict[str, Any]:
     found: dict[str, Any] = {"type": "log"} if axis.log else {}
     found |= {"dtick": "D2", "tickformat": "~g"} if axis.log and axis.range is None else {}
     if axis.range is not None:
-        ends = [None if not np.isfinite(end) else float(frame.shown(np.array(end))) for end in axis.range]
-        found["range"] = [None if end is None else float(np.log10(end)) for end in ends] if axis.log else ends
+        ends = [
+            None if not np.isfinite(end) else float(frame.shown(np.array(end)))
+            for end in axis.range
+        ]
+        found["range"] = (
+            [None if end is None else float(np.log10(end)) for end in ends] if axis.log else ends
+        )
     if axis.ticks:
         found |= {"tickvals": frame.shown(np.array(axis.ticks)).tolist()}
     return found | ({"tickformat": "d"} if axis.integer else {})

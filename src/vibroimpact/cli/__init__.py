@@ -44,7 +44,11 @@ def main() -> None:
     except ComputationError as error:
         fail(str(error), 1)
     except MemoryError:
-        fail("there is not enough memory for this; ask for less: larger elements, fewer modes, a shorter run, record or table", 1)
+        fail(
+            "there is not enough memory for this; ask for less: larger elements, fewer "
+            "modes, a shorter run, record or table",
+            1,
+        )
     except BrokenPipeError:
         # the reader closed the pipe: exit quietly, with the remaining output discarded
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
@@ -57,22 +61,30 @@ def main() -> None:
 def _isolate_matplotlib() -> None:
     """Isolate this process from user settings of matplotlib, before it is imported."""
     os.environ["MPLBACKEND"], os.environ["MATPLOTLIBRC"] = "agg", os.devnull
-    logging.getLogger("matplotlib").setLevel(logging.CRITICAL)  # it logs each unknown line of a settings file
-    settings = Path("matplotlibrc")  # one in the working directory is read regardless of MATPLOTLIBRC
+    # it logs each unknown line of a settings file
+    logging.getLogger("matplotlib").setLevel(logging.CRITICAL)
+    # one in the working directory is read regardless of MATPLOTLIBRC
+    settings = Path("matplotlibrc")
     try:
         settings.read_text(encoding="utf-8") if settings.is_file() else None
     except (OSError, ValueError):
         fail(
-            "matplotlibrc: this file in the working directory, with settings of matplotlib, can't be read as UTF-8 text; mend or rename it",
+            "matplotlibrc: this file in the working directory, with settings of matplotlib, "
+            "can't be read as UTF-8 text; mend or rename it",
             2,
         )
 
 
 def _run() -> int:
-    """Run the command and return its exit status; typer's own errors are shown without control characters, and shortened."""
+    """Run the command and return its exit status; typer's own errors are shown without
+    control characters, and shortened.
+    """
     try:
         with whole_words():
-            return app(standalone_mode=False, prog_name=PROGRAM if concerns_completion() else None) or 0
+            return (
+                app(standalone_mode=False, prog_name=PROGRAM if concerns_completion() else None)
+                or 0
+            )
     except typer.Abort:
         fail("aborted", 1)
     except Exception as error:
@@ -80,6 +92,8 @@ def _run() -> int:
         # typer's own errors are told by their methods, since their class depends on its version
         if not (hasattr(usage_error, "show") and hasattr(usage_error, "exit_code")):
             raise
-        usage_error.message = "\n".join(shortened(visible(line), LONGEST_LINE) for line in usage_error.message.split("\n"))
+        usage_error.message = "\n".join(
+            shortened(visible(line), LONGEST_LINE) for line in usage_error.message.split("\n")
+        )
         usage_error.show()
         return int(usage_error.exit_code)

@@ -1,4 +1,6 @@
-"""The command `bound`, which computes the lowest error of classifiers that see stated quantities of a population."""
+"""The command `bound`, which computes the lowest error of classifiers that see stated
+quantities of a population.
+"""
 
 from __future__ import annotations
 
@@ -8,7 +10,16 @@ from typing import Annotated
 import typer
 
 from vibroimpact.cli.completion import complete_case
-from vibroimpact.cli.shared import Force, Json, app, console, exit_on_interrupt, quantity_in, show_folder, stem
+from vibroimpact.cli.shared import (
+    Force,
+    Json,
+    app,
+    console,
+    exit_on_interrupt,
+    quantity_in,
+    show_folder,
+    stem,
+)
 from vibroimpact.errors import InputError
 
 
@@ -16,15 +27,32 @@ from vibroimpact.errors import InputError
 def bound(
     population: Annotated[
         str,
-        typer.Argument(metavar="STUDY|DIR", autocompletion=complete_case, help="A study with classes, or the folder of a data set."),
+        typer.Argument(
+            metavar="STUDY|DIR",
+            autocompletion=complete_case,
+            help="A study with classes, or the folder of a data set.",
+        ),
     ],
     output: Annotated[
-        Path | None, typer.Option("-o", "--output", metavar="DIR", help="The folder to make; by default STUDY-bound.")
+        Path | None,
+        typer.Option(
+            "-o", "--output", metavar="DIR", help="The folder to make; by default STUDY-bound."
+        ),
     ] = None,
-    samples: Annotated[int, typer.Option("--samples", metavar="N", min=100, help="Number of falls drawn from a study.")] = 20_000,
-    bandwidth: Annotated[str, typer.Option("--bandwidth", metavar="B", help="Upper end of the measured band.")] = "10 kHz",
+    samples: Annotated[
+        int,
+        typer.Option("--samples", metavar="N", min=100, help="Number of falls drawn from a study."),
+    ] = 20_000,
+    bandwidth: Annotated[
+        str, typer.Option("--bandwidth", metavar="B", help="Upper end of the measured band.")
+    ] = "10 kHz",
     signal_to_noise: Annotated[
-        float, typer.Option("--snr", metavar="DB", help="Peak force of the median fall over the noise in 10 kHz, in dB.")
+        float,
+        typer.Option(
+            "--snr",
+            metavar="DB",
+            help="Peak force of the median fall over the noise in 10 kHz, in dB.",
+        ),
     ] = 40.0,
     force: Force = False,
     as_json: Json = False,
@@ -32,8 +60,8 @@ def bound(
     """Compute the lowest error of a classifier of stated quantities.
 
     This is the Bayes error of a population for a classifier that sees nothing else.
-    The scatter of the amplitude is assumed; its share in the error is shown. The falls of a study are computed on its plate as
-    a rigid body; those of a data set are read from it.
+    The scatter of the amplitude is assumed; its share in the error is shown. The falls of a study
+    are computed on its plate as a rigid body; those of a data set are read from it.
     """
     from vibroimpact.bounds.bound import bound_of
     from vibroimpact.bounds.folder import bound_document, save_bound
@@ -48,12 +76,23 @@ def bound(
     check_free(target, force=force)
     band = quantity_in("--bandwidth", bandwidth, "Hz")
     if not 10.0 <= band <= 1e7:
-        raise InputError(f"{bandwidth} is not allowed; it must be 10 Hz or more, and at most 10 MHz", "--bandwidth")
+        raise InputError(
+            f"{bandwidth} is not allowed; it must be 10 Hz or more, and at most 10 MHz",
+            "--bandwidth",
+        )
     if not -60.0 <= signal_to_noise <= 200.0:
-        raise InputError(f"{signal_to_noise:g} is not allowed; it must be from -60 to 200 dB", "--snr")
+        raise InputError(
+            f"{signal_to_noise:g} is not allowed; it must be from -60 to 200 dB", "--snr"
+        )
     screen = console(err=as_json)
     with exit_on_interrupt(), patient_progress("Bayes error", screen) as progress:
-        found = read_study(population) if Path(population).is_dir() else load_sweep(population, samples)
-        known = bound_of(found, Channel(bandwidth=band, signal_to_noise=signal_to_noise), progress=progress)
+        found = (
+            read_study(population) if Path(population).is_dir() else load_sweep(population, samples)
+        )
+        known = bound_of(
+            found, Channel(bandwidth=band, signal_to_noise=signal_to_noise), progress=progress
+        )
         folder = save_bound(known, target, force=force)
-    show_folder(folder, lambda: bound_document(known), lambda: bound_summary(known), as_json=as_json)
+    show_folder(
+        folder, lambda: bound_document(known), lambda: bound_summary(known), as_json=as_json
+    )

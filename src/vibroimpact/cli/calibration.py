@@ -1,4 +1,6 @@
-"""The command `calibrate`, which finds the damping for a required or measured rebound, or the restitution of bounces in a record."""
+"""The command `calibrate`, which finds the damping for a required or measured rebound, or
+the restitution of bounces in a record.
+"""
 
 from __future__ import annotations
 
@@ -34,42 +36,60 @@ def calibrate(
             metavar="CASE|RECORD",
             autocompletion=complete_case_or_record,
             help=(
-                'A TOML file, a shipped case such as "paper:calibration", a record of bounces (WAV, CSV, UFF, NetCDF-4), '
+                'A TOML file, a shipped case such as "paper:calibration", a record of '
+                "bounces (WAV, CSV, UFF, NetCDF-4), "
                 "or a table of restitutions over the approach speed."
             ),
         ),
     ],
     output: Annotated[
-        Path | None, typer.Option("-o", "--output", metavar="DIR", help="The folder to make; by default CASE-calibrated.")
+        Path | None,
+        typer.Option(
+            "-o", "--output", metavar="DIR", help="The folder to make; by default CASE-calibrated."
+        ),
     ] = None,
     changes: Changes = None,
-    channel: Annotated[str | None, typer.Option("--channel", metavar="NAME", help="Channel to use, if a record has several.")] = None,
+    channel: Annotated[
+        str | None,
+        typer.Option("--channel", metavar="NAME", help="Channel to use, if a record has several."),
+    ] = None,
     gravity: Annotated[
         str | None,
         typer.Option(
             "--gravity",
             metavar="VALUE",
-            help='Gravity during the flights of a record, such as "9.81 m/s^2 +- 0.005 m/s^2"; by default 9.80665 m/s^2.',
+            help='Gravity during the flights of a record, such as "9.81 m/s^2 +- 0.005 m/s^2"; '
+            "by default 9.80665 m/s^2.",
         ),
     ] = None,
     height: Annotated[
         str | None,
-        typer.Option("--height", metavar="LENGTH", help='Height of fall before the first touch of a record, such as "0.3 m +- 5 mm".'),
+        typer.Option(
+            "--height",
+            metavar="LENGTH",
+            help='Height of fall before the first touch of a record, such as "0.3 m +- 5 mm".',
+        ),
     ] = None,
     contact: Annotated[
         str | None,
-        typer.Option("--contact", metavar="TIME", help='Contact time of the impacts of a record, such as "0.2 ms +- 10 %"; by default 0.'),
+        typer.Option(
+            "--contact",
+            metavar="TIME",
+            help='Contact time of the impacts of a record, such as "0.2 ms +- 10 %"; by default 0.',
+        ),
     ] = None,
     columns: Columns = None,
     figures: Figures = False,
     force: Force = False,
     as_json: Json = False,
 ) -> None:
-    """Calibrate a contact law to a specified or measured rebound. From a record of bounces, or a table, fit the restitution.
+    """Calibrate a contact law to a specified or measured rebound. From a record of bounces, or a
+    table, fit the restitution.
 
-    The [calibrate] section of a case specifies the target: a contact law, a restitution, or measurements. Without it the
-    damping of Adams' IMPACT is calibrated to the law of the case. From a record of sound or vibration, restitution and
-    speed of each impact follow from the times between bounces; a table has them: speed [m/s], restitution and, for means, count.
+    The [calibrate] section of a case specifies the target: a contact law, a restitution, or
+    measurements. Without it the damping of Adams' IMPACT is calibrated to the law of the case. From
+    a record of sound or vibration, restitution and speed of each impact follow from the times
+    between bounces; a table has them: speed [m/s], restitution and, for means, count.
     """
     from vibroimpact.calibration.impact_table import holds_restitutions
     from vibroimpact.results.folder import check_free
@@ -83,15 +103,35 @@ def calibrate(
         if Path(case).suffix.lower() in TABLES and holds_restitutions(case, columns):
             of_records = [option for option, value in given.items() if value is not None]
             if of_records:
-                raise InputError(f"{of_records[0]} goes with a record of bounces; {case} is a table of restitutions, which has no times")
+                raise InputError(
+                    f"{of_records[0]} goes with a record of bounces; {case} is a table of "
+                    "restitutions, which has no times"
+                )
             _fit_table(Path(case), target, columns, figures=figures, force=force, as_json=as_json)
             return
-        _listen(Path(case), target, channel, columns, gravity, height, contact, figures=figures, force=force, as_json=as_json)
+        _listen(
+            Path(case),
+            target,
+            channel,
+            columns,
+            gravity,
+            height,
+            contact,
+            figures=figures,
+            force=force,
+            as_json=as_json,
+        )
         return
     for option, value in {**given, "--columns": columns}.items():
         if value is not None:
-            kinds = ("a table of restitutions or of bounces", TABLES) if option == "--columns" else ("a record of bounces", RECORDS)
-            raise InputError(f"{option} goes with {kinds[0]} ({', '.join(kinds[1])}); a case has its own keys")
+            kinds = (
+                ("a table of restitutions or of bounces", TABLES)
+                if option == "--columns"
+                else ("a record of bounces", RECORDS)
+            )
+            raise InputError(
+                f"{option} goes with {kinds[0]} ({', '.join(kinds[1])}); a case has its own keys"
+            )
     from vibroimpact.calibration.calibrate_case import calibrate_case, load_calibration
     from vibroimpact.calibration.folder import save_calibration
     from vibroimpact.calibration.reported import report_of
@@ -105,12 +145,21 @@ def calibrate(
     with exit_on_interrupt():
         with patient_progress("calibrating", screen) as progress:
             found = prefix_errors(case, lambda: calibrate_case(what, progress, note))
-        folder = save_calibration(what.case, found, target, force=force, figures=("png",) if figures else ())
+        folder = save_calibration(
+            what.case, found, target, force=force, figures=("png",) if figures else ()
+        )
     told = report_of(what.case, found)
-    show_folder(folder, lambda: {**told.document, **told.tables}, lambda: calibration_summary(what.case, told), as_json=as_json)
+    show_folder(
+        folder,
+        lambda: {**told.document, **told.tables},
+        lambda: calibration_summary(what.case, told),
+        as_json=as_json,
+    )
 
 
-def _fit_table(file: Path, target: Path, columns: str | None, *, figures: bool, force: bool, as_json: bool) -> None:
+def _fit_table(
+    file: Path, target: Path, columns: str | None, *, figures: bool, force: bool, as_json: bool
+) -> None:
     """Fit the restitutions of a table over the approach speed, and print and write them."""
     from vibroimpact.calibration.restitutions.document import restitution_document
     from vibroimpact.calibration.restitutions.folder import save_restitutions
@@ -119,7 +168,12 @@ def _fit_table(file: Path, target: Path, columns: str | None, *, figures: bool, 
 
     found = read_restitutions(file, columns=columns)
     folder = save_restitutions(found, target, force=force, figures=("png",) if figures else ())
-    show_folder(folder, lambda: restitution_document(found), lambda: restitution_summary(found), as_json=as_json)
+    show_folder(
+        folder,
+        lambda: restitution_document(found),
+        lambda: restitution_summary(found),
+        as_json=as_json,
+    )
 
 
 def _listen(
@@ -155,4 +209,6 @@ def _listen(
         except InputError as error:
             raise with_path(file, error) from None
         folder = save_rebounds(found, target, force=force, figures=("png",) if figures else ())
-    show_folder(folder, lambda: bounce_document(found), lambda: bounce_summary(found), as_json=as_json)
+    show_folder(
+        folder, lambda: bounce_document(found), lambda: bounce_summary(found), as_json=as_json
+    )

@@ -26,7 +26,12 @@ def shipped_cases_table() -> RenderableType:
 def shipped_cases_document() -> dict[str, Any]:
     """Return the shipped cases by name, each with its title and the command that it is for."""
     tables = {name: load_table(name) for name in shipped_cases()}
-    return {"cases": {name: {"name": case["name"], "command": command_for(case)} for name, case in tables.items()}}
+    return {
+        "cases": {
+            name: {"name": case["name"], "command": command_for(case)}
+            for name, case in tables.items()
+        }
+    }
 
 
 def command_for(case: dict[str, Any]) -> str:

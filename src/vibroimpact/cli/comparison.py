@@ -27,7 +27,13 @@ from vibroimpact.cli.shared import (
 def compare(
     case: CaseArgument,
     laws: Annotated[
-        str, typer.Option("--laws", metavar="A,B,C", autocompletion=complete_laws, help="The contact laws, separated by commas.")
+        str,
+        typer.Option(
+            "--laws",
+            metavar="A,B,C",
+            autocompletion=complete_laws,
+            help="The contact laws, separated by commas.",
+        ),
     ],
     given: Annotated[
         list[str] | None,
@@ -35,7 +41,8 @@ def compare(
             "--set",
             metavar="KEY=VALUE",
             autocompletion=complete_parameter,
-            help="Parameter of every law that has it, or LAW.KEY=VALUE for one law; may be repeated.",
+            help="Parameter of every law that has it, or LAW.KEY=VALUE for one law; may be "
+            "repeated.",
         ),
     ] = None,
     achieving: Annotated[
@@ -43,11 +50,15 @@ def compare(
         typer.Option(
             "--achieving",
             metavar="E",
-            help="Tune each law to this restitution between rigid bodies, at the first speed, without gravity and losses in a liquid.",
+            help="Tune each law to this restitution between rigid bodies, at the first speed, "
+            "without gravity and losses in a liquid.",
         ),
     ] = None,
     output: Annotated[
-        Path | None, typer.Option("-o", "--output", metavar="DIR", help="The folder to make; by default CASE-compared.")
+        Path | None,
+        typer.Option(
+            "-o", "--output", metavar="DIR", help="The folder to make; by default CASE-compared."
+        ),
     ] = None,
     figures: Figures = False,
     force: Force = False,
@@ -55,7 +66,8 @@ def compare(
 ) -> None:
     """Compare the results of several contact laws for one case.
 
-    Parameters of the case's own law are also used for the other laws that have them; friction and a liquid stay under each law.
+    Parameters of the case's own law are also used for the other laws that have them; friction and a
+    liquid stay under each law.
     """
     from vibroimpact.cases.reader import load_case
     from vibroimpact.comparison.comparison import compare_laws
@@ -78,5 +90,12 @@ def compare(
                 achieving=achieving,
                 progress=progress,
             )
-        folder = save_comparison(comparison, target, force=force, figures=("png",) if figures else ())
-    show_folder(folder, lambda: comparison_document(comparison), lambda: comparison_summary(comparison), as_json=as_json)
+        folder = save_comparison(
+            comparison, target, force=force, figures=("png",) if figures else ()
+        )
+    show_folder(
+        folder,
+        lambda: comparison_document(comparison),
+        lambda: comparison_summary(comparison),
+        as_json=as_json,
+    )

@@ -1,4 +1,6 @@
-"""Completion in the shell: what can follow at each place of the command line. It imports nothing heavy: every Tab starts the program."""
+"""Completion in the shell: what can follow at each place of the command line. It imports
+nothing heavy: every Tab starts the program.
+"""
 
 from __future__ import annotations
 
@@ -18,7 +20,20 @@ WORDS = Path(__file__).with_name("completion.json")
 """The names and keys, which `completion_words` collects."""
 
 TABLES = (".csv", ".txt", ".tsv", ".asc", ".lvm")
-RECORDS = (".wav", ".m4a", ".mp3", ".ogg", ".opus", ".flac", *TABLES, ".uff", ".unv", ".nc", ".nc4", ".h5")
+RECORDS = (
+    ".wav",
+    ".m4a",
+    ".mp3",
+    ".ogg",
+    ".opus",
+    ".flac",
+    *TABLES,
+    ".uff",
+    ".unv",
+    ".nc",
+    ".nc4",
+    ".h5",
+)
 """Endings of the files of records."""
 
 _LIBRARY = Path(__file__).parents[1] / "cases" / "library"
@@ -54,12 +69,14 @@ def complete_case_or_record(incomplete: str) -> list[str]:
 
 
 def complete_change(incomplete: str) -> list[str]:
-    """Return what KEY=VALUE may be: the keys of a case; or, of one key alone, the words that it takes.
+    """Return what KEY=VALUE may be: the keys of a case; or, of one key alone, the words that it
+    takes.
 
     Examples
     --------
     >>> complete_change("plate.size.th"), complete_change("drop.same_spot=")
-    (['plate.size.thickness=', 'plate.size.thickness=VALUE'], ['drop.same_spot=true', 'drop.same_spot=false'])
+    (['plate.size.thickness=', 'plate.size.thickness=VALUE'], ['drop.same_spot=true',
+    'drop.same_spot=false'])
     """
     words = {**_words()["keys"], "contact.law": _laws()}
     return _assignments(incomplete, words)
@@ -75,7 +92,10 @@ def complete_parameter(incomplete: str) -> list[str]:
     """
     laws: dict[str, list[str]] = _words()["laws"]
     parameters = sorted({one for several in laws.values() for one in several})
-    return _assignments(incomplete, {key: [] for key in (*parameters, *(f"{law}.{one}" for law in laws for one in laws[law]))})
+    return _assignments(
+        incomplete,
+        {key: [] for key in (*parameters, *(f"{law}.{one}" for law in laws for one in laws[law]))},
+    )
 
 
 def complete_law(incomplete: str) -> list[str]:
@@ -128,7 +148,10 @@ def complete_compared(incomplete: str) -> list[str]:
 def _laws() -> list[str]:
     from importlib.metadata import entry_points
 
-    return [*_words()["laws"], *(point.name for point in entry_points(group="vibroimpact.contact_laws"))]
+    return [
+        *_words()["laws"],
+        *(point.name for point in entry_points(group="vibroimpact.contact_laws")),
+    ]
 
 
 def _starting(incomplete: str, names: Iterable[str]) -> list[str]:
@@ -137,7 +160,9 @@ def _starting(incomplete: str, names: Iterable[str]) -> list[str]:
 
 def _lists(incomplete: str, names: Iterable[str]) -> list[str]:
     before, comma, last = incomplete.rpartition(",")
-    return [f"{before}{comma}{name}" for name in _starting(last, names) if name not in before.split(",")]
+    return [
+        f"{before}{comma}{name}" for name in _starting(last, names) if name not in before.split(",")
+    ]
 
 
 def _assignments(incomplete: str, words: dict[str, list[str]]) -> list[str]:
@@ -148,7 +173,11 @@ def _assignments(incomplete: str, words: dict[str, list[str]]) -> list[str]:
     if len(keys) > 1:
         return [f"{one}=" for one in keys]
     # two or more are offered, as a shell would add a blank to one
-    return [f"{one}={word}" for one in keys for word in (words[one] if len(words[one]) > 1 else ("", *(words[one] or ["VALUE"])))]
+    return [
+        f"{one}={word}"
+        for one in keys
+        for word in (words[one] if len(words[one]) > 1 else ("", *(words[one] or ["VALUE"])))
+    ]
 
 
 def _shipped() -> list[str]:
@@ -156,14 +185,21 @@ def _shipped() -> list[str]:
 
 
 def _files(incomplete: str, endings: tuple[str, ...]) -> list[str]:
-    """Return the files with these endings and folders; of a single folder what is in it, as a shell would add a blank to one."""
+    """Return the files with these endings and folders; of a single folder what is in it,
+    as a shell would add a blank to one.
+    """
     before, slash, start = incomplete.rpartition("/")
     found = []
     with suppress(OSError):
         for entry in sorted(Path(before + slash).iterdir()):
             name, is_folder = f"{before}{slash}{entry.name}", entry.is_dir()
             hidden = entry.name.startswith(".") and not start.startswith(".")
-            if not entry.name.startswith(start) or hidden or _SPECIAL & set(name) or not name.isprintable():
+            if (
+                not entry.name.startswith(start)
+                or hidden
+                or _SPECIAL & set(name)
+                or not name.isprintable()
+            ):
                 continue
             if is_folder or entry.suffix in endings:
                 found.append(f"{name}/" if is_folder else name)
@@ -171,13 +207,19 @@ def _files(incomplete: str, endings: tuple[str, ...]) -> list[str]:
 
 
 def concerns_completion() -> bool:
-    """Return whether this process was started to complete a command line, or to install completion."""
-    return VARIABLE in os.environ or not {"--install-completion", "--show-completion"}.isdisjoint(sys.argv)
+    """Return whether this process was started to complete a command line, or to install
+    completion.
+    """
+    return VARIABLE in os.environ or not {"--install-completion", "--show-completion"}.isdisjoint(
+        sys.argv
+    )
 
 
 @contextmanager
 def whole_words() -> Iterator[None]:
-    """Context manager that joins the words that bash breaks at ":" and "=", and cuts what is printed to what follows the break."""
+    """Context manager that joins the words that bash breaks at ":" and "=", and cuts what
+    is printed to what follows the break.
+    """
     if os.environ.get(VARIABLE) != "complete_bash":
         yield
         return
@@ -185,7 +227,8 @@ def whole_words() -> Iterator[None]:
     between = "\n" if "\n" in text else " "
     words, place, before = joined(text.split(between), int(os.environ["COMP_CWORD"]))
     if before.startswith("-"):
-        before = before.partition("=")[2]  # of --from=paper:type1 the option is not part of what is completed
+        # of --from=paper:type1 the option is not part of what is completed
+        before = before.partition("=")[2]
     os.environ |= {"COMP_WORDS": between.join(words), "COMP_CWORD": str(place)}
     printed = io.StringIO()
     try:
@@ -196,7 +239,8 @@ def whole_words() -> Iterator[None]:
 
 
 def joined(words: list[str], place: int) -> tuple[list[str], int, str]:
-    """Return words whole again that bash broke at ":" and "=", the place of the current one, and what it has before the last break.
+    """Return words whole again that bash broke at ":" and "=", the place of the current one, and
+    what it has before the last break.
 
     Parameters
     ----------

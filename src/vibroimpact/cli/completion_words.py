@@ -1,6 +1,8 @@
-"""What a shell completes, collected from the schema and the registries into a file: to import these takes a second at each Tab.
+"""What a shell completes, collected from the schema and the registries into a file: to import these
+takes a second at each Tab.
 
-`python -m vibroimpact.cli.completion_words` writes the file again, and `make docs` does; a test finds it stale.
+`python -m vibroimpact.cli.completion_words` writes the file again, and `make docs` does; a test
+finds it stale.
 """
 
 from __future__ import annotations
@@ -24,7 +26,8 @@ Schema = Mapping[str, Any]
 
 
 def completion_words() -> dict[str, Any]:
-    """Return the keys of a case with the words that each takes, the laws of this package with their parameters, and other names.
+    """Return the keys of a case with the words that each takes, the laws of this package with their
+    parameters, and other names.
 
     Examples
     --------
@@ -32,8 +35,15 @@ def completion_words() -> dict[str, Any]:
     >>> words["keys"]["sphere.model"], words["laws"]["newton"], words["materials"][0]
     (['rigid', 'elastic'], ['restitution'], 'rock-paper')
     """
-    laws = {name: law for name, law in contact_laws().items() if law.__module__.startswith("vibroimpact.")}
-    parameters = {name: [item.name for item in fields(law) if not item.metadata["memory"]] for name, law in laws.items()}
+    laws = {
+        name: law
+        for name, law in contact_laws().items()
+        if law.__module__.startswith("vibroimpact.")
+    }
+    parameters = {
+        name: [item.name for item in fields(law) if not item.metadata["memory"]]
+        for name, law in laws.items()
+    }
     materials, schema = list(material_library()), case_schema()
     keys: dict[str, list[str]] = {
         key: [] for key in quantity_keys({}) if key.count(".") == 2
@@ -52,11 +62,19 @@ def completion_words() -> dict[str, Any]:
     }
 
 
-def _keys(schema: Schema, definitions: Mapping[str, Schema], prefix: str = "") -> Iterator[tuple[str, list[str]]]:
-    """Yield each dotted key of a JSON schema, but for those of tables in lists, with the words that it takes."""
+def _keys(
+    schema: Schema, definitions: Mapping[str, Schema], prefix: str = ""
+) -> Iterator[tuple[str, list[str]]]:
+    """Yield each dotted key of a JSON schema, but for those of tables in lists, with the
+    words that it takes.
+    """
     for table in _options(schema, definitions):
         for name, inner in table.get("properties", {}).items():
-            options = [option for option in _options(inner, definitions) if not _is_table(option, definitions)]
+            options = [
+                option
+                for option in _options(inner, definitions)
+                if not _is_table(option, definitions)
+            ]
             if options:  # a table is given by its keys
                 yield f"{prefix}{name}", [word for option in options for word in _words(option)]
             yield from _keys(inner, definitions, f"{prefix}{name}.")
@@ -76,14 +94,20 @@ def _options(schema: Schema, definitions: Mapping[str, Schema]) -> Iterator[Sche
 def _is_table(schema: Schema, definitions: Mapping[str, Schema]) -> bool:
     """Return whether a schema is that of a table, or of a list of tables."""
     items = [*_options(schema["items"], definitions)] if "items" in schema else []
-    return schema.get("type") == "object" or (bool(items) and all(_is_table(one, definitions) for one in items))
+    return schema.get("type") == "object" or (
+        bool(items) and all(_is_table(one, definitions) for one in items)
+    )
 
 
 def _words(schema: Schema) -> list[str]:
     """Return the words that a schema allows."""
     if schema.get("type") == "boolean":
         return ["true", "false"]
-    return [word for word in (*schema.get("enum", ()), schema.get("const")) if isinstance(word, str) and " " not in word]
+    return [
+        word
+        for word in (*schema.get("enum", ()), schema.get("const"))
+        if isinstance(word, str) and " " not in word
+    ]
 
 
 if __name__ == "__main__":

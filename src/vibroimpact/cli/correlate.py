@@ -1,4 +1,6 @@
-"""The command `correlate`, which compares records or frequency responses of a test with the simulation of the case."""
+"""The command `correlate`, which compares records or frequency responses of a test with
+the simulation of the case.
+"""
 
 from __future__ import annotations
 
@@ -40,19 +42,31 @@ def correlate(
         list[Path],
         typer.Argument(
             metavar="RECORD...",
-            help="Records of one test: CSV, WAV, UFF, NetCDF-4 or the folder of a run; or UFF with responses.",
+            help="Records of one test: CSV, WAV, UFF, NetCDF-4 or the folder of a run; or UFF "
+            "with responses.",
         ),
     ],
     output: Annotated[
-        Path | None, typer.Option("-o", "--output", metavar="DIR", help="The folder to make; by default CASE-correlated.")
+        Path | None,
+        typer.Option(
+            "-o", "--output", metavar="DIR", help="The folder to make; by default CASE-correlated."
+        ),
     ] = None,
     hammer: Annotated[
         str | None,
-        typer.Option("--hammer", metavar="CHANNEL", help="Channel with the force of the hammer; for frequency responses, its node."),
+        typer.Option(
+            "--hammer",
+            metavar="CHANNEL",
+            help="Channel with the force of the hammer; for frequency responses, its node.",
+        ),
     ] = None,
     window: Annotated[
         str | None,
-        typer.Option("--window", metavar="TIME", help="Compared time after first touch; by default to the next impact or the end."),
+        typer.Option(
+            "--window",
+            metavar="TIME",
+            help="Compared time after first touch; by default to the next impact or the end.",
+        ),
     ] = None,
     band: Annotated[
         str | None,
@@ -60,7 +74,8 @@ def correlate(
             "--band",
             metavar="FROM,TO",
             help=(
-                'Band of frequencies, such as "100 Hz, 5 kHz"; by default from half the lowest mode to the highest, or to what the sensors '
+                'Band of frequencies, such as "100 Hz, 5 kHz"; by default from half the '
+                "lowest mode to the highest, or to what the sensors "
                 "pass or the force excites, if that is less."
             ),
         ),
@@ -72,8 +87,8 @@ def correlate(
             metavar="KIND",
             autocompletion=complete_compared,
             help=(
-                "For UFF files with both: records or responses; by default responses, unless --window, the channel of --hammer or another "
-                "file asks for records."
+                "For UFF files with both: records or responses; by default responses, "
+                "unless --window, the channel of --hammer or another file asks for records."
             ),
         ),
     ] = None,
@@ -83,10 +98,12 @@ def correlate(
     force: Force = False,
     as_json: Json = False,
 ) -> None:
-    """Compare records of a test with the simulation. Results are residuals, frequency responses, FRAC, and modal damping from the decay.
+    """Compare records of a test with the simulation. Results are residuals, frequency responses,
+    FRAC, and modal damping from the decay.
 
-    The case specifies the plate, the sensors, named as the records, and the impact; for a hammer with a measured force only its position.
-    Measured frequency responses are compared with those of the case, and so are the modes that are fitted to them.
+    The case specifies the plate, the sensors, named as the records, and the impact; for a hammer
+    with a measured force only its position. Measured frequency responses are compared with those of
+    the case, and so are the modes that are fitted to them.
     """
     from vibroimpact.cases.reader import load_case
     from vibroimpact.correlation.compared_kind import compared_kind
@@ -102,22 +119,45 @@ def correlate(
     target = Path(f"{stem(case)}-correlated") if output is None else output
     check_free(target, force=force)
     length = None if window is None else quantity_in("--window", window, "s")
-    ends = None if band is None else pair_in("--band", band, "Hz", "a lower and an upper frequency", "100 Hz, 5 kHz")
+    ends = (
+        None
+        if band is None
+        else pair_in("--band", band, "Hz", "a lower and an upper frequency", "100 Hz, 5 kHz")
+    )
     compared = compared_kind(records, compare, hammer, windowed=length is not None)
     if compared.kind == "responses":
         if length is not None:
-            raise InputError("frequency responses have no time; leave it out, or take a --band", "--window")
-        _correlate_responses(found, records, target, hammer, ends, compared.remarks, figures=figures, force=force, as_json=as_json)
+            raise InputError(
+                "frequency responses have no time; leave it out, or take a --band", "--window"
+            )
+        _correlate_responses(
+            found,
+            records,
+            target,
+            hammer,
+            ends,
+            compared.remarks,
+            figures=figures,
+            force=force,
+            as_json=as_json,
+        )
         return
     heard = [record for path in records for record in read_records(path, columns)]
     push = None if hammer is None else _force_among(heard, hammer)
     with exit_on_interrupt():
         with patient_progress("correlating", console(err=as_json)) as progress:
             motions = [record for record in heard if record is not push]
-            told = correlated(found, motions, force=push, window=length, band=ends, progress=progress)
+            told = correlated(
+                found, motions, force=push, window=length, band=ends, progress=progress
+            )
         told = replace(told, doubts=(*compared.remarks, *told.doubts))
         folder = save_correlation(told, target, force=force, figures=("png",) if figures else ())
-    show_folder(folder, lambda: summary_of_correlation(told), lambda: correlation_summary(told), as_json=as_json)
+    show_folder(
+        folder,
+        lambda: summary_of_correlation(told),
+        lambda: correlation_summary(told),
+        as_json=as_json,
+    )
 
 
 def _correlate_responses(
@@ -143,10 +183,16 @@ def _correlate_responses(
     responses = [response for path in paths for response in read_responses(path)]
     with exit_on_interrupt():
         with patient_progress("correlating", console(err=as_json)) as progress:
-            told = correlate_responses(case, responses, reference=reference, band=band, progress=progress)
+            told = correlate_responses(
+                case, responses, reference=reference, band=band, progress=progress
+            )
         told = replace(told, doubts=(*remarks, *told.doubts))
-        folder = save_response_correlation(told, target, force=force, figures=("png",) if figures else ())
-    show_folder(folder, lambda: summary_of_responses(told), lambda: response_summary(told), as_json=as_json)
+        folder = save_response_correlation(
+            told, target, force=force, figures=("png",) if figures else ()
+        )
+    show_folder(
+        folder, lambda: summary_of_responses(told), lambda: response_summary(told), as_json=as_json
+    )
 
 
 def _force_among(records: list[Record], name: str) -> Record:
@@ -163,5 +209,8 @@ def _force_among(records: list[Record], name: str) -> Record:
     if len(named) != 1:
         names = list(dict.fromkeys(record.name for record in records))
         there = f"the records are {', '.join(map(shown, names))}.{did_you_mean(name, names)}"
-        raise InputError(f"--hammer {shown(name)}: there {'are several channels' if named else 'is no channel'} of this name; {there}")
+        raise InputError(
+            f"--hammer {shown(name)}: there "
+            f"{'are several channels' if named else 'is no channel'} of this name; {there}"
+        )
     return named[0]

@@ -1,4 +1,6 @@
-"""Diagnosis of the installation: versions, compiled code, the store of modes, and a reference computation."""
+"""Diagnosis of the installation: versions, compiled code, the store of modes, and a
+reference computation.
+"""
 
 from __future__ import annotations
 
@@ -18,13 +20,16 @@ from vibroimpact.structures.free_memory import free_memory
 from vibroimpact.structures.store import entries, store_folder, store_size
 
 _SWITCHES = {"onnxruntime": SWITCH}
-"""Packages that send usage data to their makers unless they are told not to, and the environment variable by which they are."""
+"""Packages that send usage data to their makers unless they are told not to, and the
+environment variable by which they are.
+"""
 
 _FIRST_REBOUND = 6.8386265  # m/s: PAPER, section 4, theory, integrated independently at 1e-12
 
 
 def diagnose() -> dict[str, Any]:
-    """Return the state of the installation as data; the version of a package that is not installed is None.
+    """Return the state of the installation as data; the version of a package that is not installed
+    is None.
 
     Examples
     --------
@@ -45,7 +50,11 @@ def diagnose() -> dict[str, Any]:
             "size_byte": store_size() if usable else 0,
         },
         "compiler": _compiler(),
-        "usage_data": {name: {"sent": False, "switch": switch} for name, switch in _SWITCHES.items() if _installed(name)},
+        "usage_data": {
+            name: {"sent": False, "switch": switch}
+            for name, switch in _SWITCHES.items()
+            if _installed(name)
+        },
         "packages": {name: _installed(name) for name in _requirements()},
     }
 
@@ -126,9 +135,16 @@ def _compiler_words(compiler: Mapping[str, Any]) -> str:
         return f"none: the solver runs in plain Python, {slower}: {compiler['reason']}"
     if not compiler["usable"]:
         where = f"{compiler['folder']} is not a folder that can be written to"
-        kept = f", but for the {compiler['entries']} functions that it has" if compiler["entries"] else ""
+        kept = (
+            f", but for the {compiler['entries']} functions that it has"
+            if compiler["entries"]
+            else ""
+        )
         return f"{where}: the solver is compiled again by each command{kept}"
-    return f"{compiler['entries']} functions, {compiler['size_byte'] / 1e6:.3g} MB, in {compiler['folder']}"
+    return (
+        f"{compiler['entries']} functions, {compiler['size_byte'] / 1e6:.3g} MB, in "
+        f"{compiler['folder']}"
+    )
 
 
 def _store_words(store: Mapping[str, Any]) -> str:

@@ -34,7 +34,9 @@ if TYPE_CHECKING:
 
 @app.command()
 def demo(
-    output: Annotated[Path, typer.Option("-o", "--output", metavar="DIR", help="The result folder to make.")] = Path("vibroimpact-demo"),
+    output: Annotated[
+        Path, typer.Option("-o", "--output", metavar="DIR", help="The result folder to make.")
+    ] = Path("vibroimpact-demo"),
     force: Force = False,
     as_json: Json = False,
 ) -> None:
@@ -49,20 +51,32 @@ def demo(
 def run(
     case: CaseArgument,
     output: Annotated[
-        Path | None, typer.Option("-o", "--output", metavar="DIR", help="The result folder to make; by default named after the case.")
+        Path | None,
+        typer.Option(
+            "-o",
+            "--output",
+            metavar="DIR",
+            help="The result folder to make; by default named after the case.",
+        ),
     ] = None,
     changes: Changes = None,
     figures: Figures = False,
     drop: Annotated[
         int | None,
-        typer.Option("--drop", metavar="N", min=0, help="Number of the drop to run, as in drops.csv, for a case with a [sweep] section."),
+        typer.Option(
+            "--drop",
+            metavar="N",
+            min=0,
+            help="Number of the drop to run, as in drops.csv, for a case with a [sweep] section.",
+        ),
     ] = None,
     force: Force = False,
     as_json: Json = False,
 ) -> None:
     """Run a case and write its result folder.
 
-    The folder contains the full case, the impact table, the data as NetCDF, and a report with interactive charts.
+    The folder contains the full case, the impact table, the data as NetCDF, and a report with
+    interactive charts.
     """
     _run(case, output, settings_of(changes), drop, figures=figures, force=force, as_json=as_json)
 
@@ -92,14 +106,26 @@ def check(case: CaseArgument, changes: Changes = None, as_json: Json = False) ->
         return
     study = prefix_errors(case, lambda: read_sweep(table))
     show(
-        lambda: {"study": sweep_document(study), **prefix_errors(case, lambda: case_document(study.case, study.axes))},
+        lambda: {
+            "study": sweep_document(study),
+            **prefix_errors(case, lambda: case_document(study.case, study.axes)),
+        },
         lambda: explain_sweep(study),
         lambda: prefix_errors(case, lambda: case_explained(study.case, study.axes)),
         as_json=as_json,
     )
 
 
-def _run(name: str, output: Path | None, changes: dict[str, Any], drop: int | None, *, figures: bool, force: bool, as_json: bool) -> None:
+def _run(
+    name: str,
+    output: Path | None,
+    changes: dict[str, Any],
+    drop: int | None,
+    *,
+    figures: bool,
+    force: bool,
+    as_json: bool,
+) -> None:
     from vibroimpact.cases.costs import describe_costs
     from vibroimpact.cases.reader import load_case, prefix_errors
     from vibroimpact.dynamics.simulate import simulate
@@ -112,10 +138,16 @@ def _run(name: str, output: Path | None, changes: dict[str, Any], drop: int | No
     from vibroimpact.studies.one_drop import load_drop
 
     case = load_case(name, changes) if drop is None else load_drop(name, drop, changes)
-    target = Path(stem(name) if drop is None else f"{stem(name)}-drop-{drop}") if output is None else output
+    target = (
+        Path(stem(name) if drop is None else f"{stem(name)}-drop-{drop}")
+        if output is None
+        else output
+    )
     check_free(target, force=force)  # fail before the computation
     if case.sweep is not None:
-        words = f"vibroimpact sweep {shlex.quote(name)} runs the study, and --drop N one of its drops"
+        words = (
+            f"vibroimpact sweep {shlex.quote(name)} runs the study, and --drop N one of its drops"
+        )
         note(f"[sweep] is left out, as this is a single drop; {words}")
     for sentence in describe_costs(case):
         note(sentence)
@@ -127,12 +159,21 @@ def _run(name: str, output: Path | None, changes: dict[str, Any], drop: int | No
             response = simulate(problem, progress)
         with new_folder(target, force=force) as folder:
             result = write_data(response, folder)
-            del response  # of a long run it may take as much memory as the result: release it before charts are made
+            # of a long run it may take as much memory as the result: release it before charts are
+            # made
+            del response
             write_report(result, folder)
             if figures:
                 _draw(result, folder, screen)
-    show(lambda: {"folder": str(target), **summary_of(result)}, lambda: result_summary(result, screen.width), as_json=as_json)
-    say(f"wrote {target / 'report.html'}" + (", and figures beside it" if figures else ""), err=as_json)
+    show(
+        lambda: {"folder": str(target), **summary_of(result)},
+        lambda: result_summary(result, screen.width),
+        as_json=as_json,
+    )
+    say(
+        f"wrote {target / 'report.html'}" + (", and figures beside it" if figures else ""),
+        err=as_json,
+    )
 
 
 def _draw(result: Result, folder: Path, screen: Console) -> None:
@@ -147,10 +188,19 @@ def _draw(result: Result, folder: Path, screen: Console) -> None:
 @app.command()
 def modes(
     case: CaseArgument,
-    output: Annotated[Path | None, typer.Option("-o", "--output", metavar="DIR", help="The folder to make; by default CASE-modes.")] = None,
+    output: Annotated[
+        Path | None,
+        typer.Option(
+            "-o", "--output", metavar="DIR", help="The folder to make; by default CASE-modes."
+        ),
+    ] = None,
     measured: Annotated[
         list[Path] | None,
-        typer.Option("--measured", metavar="FILE", help="A universal file with frequency responses; its modes are compared."),
+        typer.Option(
+            "--measured",
+            metavar="FILE",
+            help="A universal file with frequency responses; its modes are compared.",
+        ),
     ] = None,
     changes: Changes = None,
     figures: Figures = False,
@@ -161,7 +211,8 @@ def modes(
 
     In place of a case a universal file with frequency responses may be given.
 
-    The folder contains a table of frequencies, a report with the first mode shapes, and the meshes for ParaView, Nastran and Abaqus.
+    The folder contains a table of frequencies, a report with the first mode shapes, and the meshes
+    for ParaView, Nastran and Abaqus.
     """
     from vibroimpact.cases.costs import describe_costs
     from vibroimpact.cases.elastic.modes import compute_modes
@@ -180,7 +231,9 @@ def modes(
         if changes:
             raise InputError(f"{case} is a measurement, which has no keys; leave it out", "--set")
         check_free(target, force=force)
-        measured_modes([Path(case), *(measured or [])], target, figures=figures, force=force, as_json=as_json)
+        measured_modes(
+            [Path(case), *(measured or [])], target, figures=figures, force=force, as_json=as_json
+        )
         return
     found = load_case(case, settings_of(changes))
     check_free(target, force=force)
@@ -191,16 +244,27 @@ def modes(
         with patient_progress("computing modes", screen) as progress:
             bodies = prefix_errors(case, lambda: compute_modes(found, progress, note))
         beside = modes_beside_table(bodies, measured) if measured else None
-        folder = save_modes(found, bodies, target, force=force, figures=("png",) if figures else (), measured=beside)
-    document = modes_document(found, bodies) | ({} if beside is None else {"measured": list(beside.rows), "doubts": list(beside.doubts)})
-    tables = [lambda: modes_summary(found, bodies), *([] if beside is None else [lambda: compared_summary(beside)])]
+        folder = save_modes(
+            found, bodies, target, force=force, figures=("png",) if figures else (), measured=beside
+        )
+    document = modes_document(found, bodies) | (
+        {} if beside is None else {"measured": list(beside.rows), "doubts": list(beside.doubts)}
+    )
+    tables = [
+        lambda: modes_summary(found, bodies),
+        *([] if beside is None else [lambda: compared_summary(beside)]),
+    ]
     show(lambda: {"folder": str(folder), **document}, *tables, as_json=as_json)
-    tables_written = "modes.csv and meshes" if beside is None else "modes.csv, measured.csv and meshes"
+    tables_written = (
+        "modes.csv and meshes" if beside is None else "modes.csv, measured.csv and meshes"
+    )
     say(f"wrote {folder / 'report.html'}, and {tables_written} beside it", err=as_json)
 
 
 @app.command()
-def report(directory: Annotated[Path, typer.Argument(metavar="DIR", help="A result folder.")]) -> None:
+def report(
+    directory: Annotated[Path, typer.Argument(metavar="DIR", help="A result folder.")],
+) -> None:
     """Regenerate the report of a result folder."""
     from vibroimpact.remake import remake_report
 
@@ -209,10 +273,23 @@ def report(directory: Annotated[Path, typer.Argument(metavar="DIR", help="A resu
 
 @app.command()
 def figures(
-    directory: Annotated[Path, typer.Argument(metavar="DIR", help="A result folder, or the folder of a study.")],
-    formats: Annotated[str, typer.Option("--format", metavar="NAMES", help="Formats, separated by commas: png, svg, pdf.")] = "png",
+    directory: Annotated[
+        Path, typer.Argument(metavar="DIR", help="A result folder, or the folder of a study.")
+    ],
+    formats: Annotated[
+        str,
+        typer.Option(
+            "--format", metavar="NAMES", help="Formats, separated by commas: png, svg, pdf."
+        ),
+    ] = "png",
     output: Annotated[
-        Path | None, typer.Option("-o", "--output", metavar="FOLDER", help="The folder to write to; by default DIR/figures.")
+        Path | None,
+        typer.Option(
+            "-o",
+            "--output",
+            metavar="FOLDER",
+            help="The folder to write to; by default DIR/figures.",
+        ),
     ] = None,
 ) -> None:
     """Write the charts of a run or a study as files.

@@ -14,10 +14,18 @@ from vibroimpact.errors import InputError
 
 @app.command()
 def export(
-    directory: Annotated[Path | None, typer.Argument(metavar="[DIR]", help="A result folder, or a calibration folder.")] = None,
+    directory: Annotated[
+        Path | None,
+        typer.Argument(metavar="[DIR]", help="A result folder, or a calibration folder."),
+    ] = None,
     to: Annotated[
         str | None,
-        typer.Option("--to", metavar="FORMAT", autocompletion=complete_format, help="The format; without it the formats are listed."),
+        typer.Option(
+            "--to",
+            metavar="FORMAT",
+            autocompletion=complete_format,
+            help="The format; without it the formats are listed.",
+        ),
     ] = None,
     output: Annotated[
         Path | None,
@@ -25,10 +33,13 @@ def export(
             "-o",
             "--output",
             metavar="PATH",
-            help="The folder, or the file of a format with a single file; by default the folder DIR-FORMAT.",
+            help="The folder, or the file of a format with a single file; by default the folder "
+            "DIR-FORMAT.",
         ),
     ] = None,
-    force: Annotated[bool, typer.Option("--force", help="Replace files of the same names.")] = False,
+    force: Annotated[
+        bool, typer.Option("--force", help="Replace files of the same names.")
+    ] = False,
     formats: Annotated[bool, typer.Option("--formats", help="List the formats.")] = False,
     as_json: Json = False,
 ) -> None:
@@ -51,7 +62,15 @@ def export(
         return
     found = find_export_format(to)
     if directory is None:
-        raise InputError(f"name the folder that is to be exported: vibroimpact export DIR --to {to}")
+        raise InputError(
+            f"name the folder that is to be exported: vibroimpact export DIR --to {to}"
+        )
     drop = found.prepare(load_drop(directory))
-    written = save_export(drop, found, default_output(directory, to) if output is None else output, force=force)
-    show(lambda: export_document(drop, found, written), lambda: export_summary(drop, found, written), as_json=as_json)
+    written = save_export(
+        drop, found, default_output(directory, to) if output is None else output, force=force
+    )
+    show(
+        lambda: export_document(drop, found, written),
+        lambda: export_summary(drop, found, written),
+        as_json=as_json,
+    )

@@ -1,4 +1,6 @@
-"""The table of features in docs/signals.md: `make docs` writes it again, and a test finds it stale."""
+"""The table of features in docs/signals.md: `make docs` writes it again, and a test finds
+it stale.
+"""
 
 from __future__ import annotations
 
@@ -30,8 +32,18 @@ def feature_page(page: str) -> str:
     _, end, after = rest.partition(END)
     if not begin or not end:
         raise InputError(f"signals.md: the lines {BEGIN} and {END} must stand around the table")
-    rows = ((f"`{one.name}`", one.unit_for("x"), _cell(one.meaning), f"`{_cell(one.equation)}`", one.source) for one in features().values())
-    return f"{before}{BEGIN}\n{markdown_table(('feature', 'unit', 'what', 'equation', 'source'), rows)}\n{END}{after}"
+    rows = (
+        (
+            f"`{one.name}`",
+            one.unit_for("x"),
+            _cell(one.meaning),
+            f"`{_cell(one.equation)}`",
+            one.source,
+        )
+        for one in features().values()
+    )
+    table = markdown_table(("feature", "unit", "what", "equation", "source"), rows)
+    return f"{before}{BEGIN}\n{table}\n{END}{after}"
 
 
 def _cell(text: str) -> str:

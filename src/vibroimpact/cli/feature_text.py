@@ -29,12 +29,17 @@ def feature_list() -> RenderableType:
         TerminalColumn("equation", [one.equation for one in found], text=True),
         TerminalColumn("source", [one.source for one in found], text=True),
     )
-    note = "x are the samples, and their unit; a is their envelope, X their transform, P their energy by frequency f."
+    note = (
+        "x are the samples, and their unit; a is their envelope, X their transform, P their "
+        "energy by frequency f."
+    )
     return Group(TerminalTable(columns), Text(), Text(note))
 
 
 def features_document() -> dict[str, Any]:
-    """Return the features by name: unit (with x for that of the signal), meaning, equation, source, and how they scale."""
+    """Return the features by name: unit (with x for that of the signal), meaning,
+    equation, source, and how they scale.
+    """
     return {
         "features": {
             one.name: {
@@ -67,28 +72,53 @@ def table_document(table: RecordTable) -> dict[str, Any]:
                 "drift": table.drift[row],
                 "lacking": table.lacking(row),
             }
-            for row, (one, number, values) in enumerate(zip(table.records, table.numbers, table.values.tolist(), strict=True))
+            for row, (one, number, values) in enumerate(
+                zip(table.records, table.numbers, table.values.tolist(), strict=True)
+            )
         ]
     }
 
 
 def table_summary(table: RecordTable) -> RenderableType:
-    """Return each feature with its least, middle and largest value over the signals, and why signals lack it."""
+    """Return each feature with its least, middle and largest value over the signals, and
+    why signals lack it.
+    """
     units = {one.unit for one in table.records}
     unit = units.pop() if len(units) == 1 else _SIGNAL
     cells: list[tuple[str, ...]] = []
     for name, values, reasons in zip(table.names, table.values.T, table.reasons.T, strict=True):
         there = values[~np.isnan(values)]
-        shown = [digits(float(one)) for one in np.percentile(there, (0, 50, 100), method="nearest")] if there.size else [""] * 3
-        lacking = "; ".join(f"{count}: {Reason(code).text}" for code, count in Counter(reasons[reasons > 0].tolist()).items())
-        cells.append((name, features()[name].unit_for(unit), *(shown if len(table.records) > 1 else shown[:1]), lacking))
+        shown = (
+            [digits(float(one)) for one in np.percentile(there, (0, 50, 100), method="nearest")]
+            if there.size
+            else [""] * 3
+        )
+        lacking = "; ".join(
+            f"{count}: {Reason(code).text}"
+            for code, count in Counter(reasons[reasons > 0].tolist()).items()
+        )
+        cells.append(
+            (
+                name,
+                features()[name].unit_for(unit),
+                *(shown if len(table.records) > 1 else shown[:1]),
+                lacking,
+            )
+        )
     for name, removed in (("offset", table.offset), ("drift", table.drift)):
         if any(removed):
-            shown = [digits(float(one)) for one in np.percentile(removed, (0, 50, 100), method="nearest")]
-            cells.append((f"{name} removed", unit, *(shown if len(table.records) > 1 else shown[:1]), ""))
+            shown = [
+                digits(float(one)) for one in np.percentile(removed, (0, 50, 100), method="nearest")
+            ]
+            cells.append(
+                (f"{name} removed", unit, *(shown if len(table.records) > 1 else shown[:1]), "")
+            )
     heads = ("least", "median", "largest") if len(table.records) > 1 else ("value",)
     names, of_units, *numbers, lacking_cells = zip(*cells, strict=True)
-    columns = [TerminalColumn("feature", names, text=True), *(TerminalColumn(head, one) for head, one in zip(heads, numbers, strict=True))]
+    columns = [
+        TerminalColumn("feature", names, text=True),
+        *(TerminalColumn(head, one) for head, one in zip(heads, numbers, strict=True)),
+    ]
     columns.append(TerminalColumn("unit", of_units, text=True))
     if any(lacking_cells):
         columns.append(TerminalColumn("signals without it", lacking_cells, text=True))

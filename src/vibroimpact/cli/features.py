@@ -9,7 +9,18 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from vibroimpact.cli.completion import complete_features
-from vibroimpact.cli.shared import Columns, Json, app, console, exit_on_interrupt, names_in, note, quantity_in, say, show
+from vibroimpact.cli.shared import (
+    Columns,
+    Json,
+    app,
+    console,
+    exit_on_interrupt,
+    names_in,
+    note,
+    quantity_in,
+    say,
+    show,
+)
 from vibroimpact.errors import InputError
 
 if TYPE_CHECKING:
@@ -23,38 +34,71 @@ _TOLD = 10
 def features(
     paths: Annotated[
         list[Path] | None,
-        typer.Argument(metavar="[DIR|FILE...]", help="Folders of results or data sets, or files: CSV, WAV, UFF, NetCDF-4."),
+        typer.Argument(
+            metavar="[DIR|FILE...]",
+            help="Folders of results or data sets, or files: CSV, WAV, UFF, NetCDF-4.",
+        ),
     ] = None,
-    output: Annotated[Path | None, typer.Option("-o", "--output", metavar="CSV", help="Write the table into this file.")] = None,
+    output: Annotated[
+        Path | None,
+        typer.Option("-o", "--output", metavar="CSV", help="Write the table into this file."),
+    ] = None,
     only: Annotated[
         str | None,
-        typer.Option("--only", metavar="NAMES", autocompletion=complete_features, help="Features to compute, separated by commas."),
+        typer.Option(
+            "--only",
+            metavar="NAMES",
+            autocompletion=complete_features,
+            help="Features to compute, separated by commas.",
+        ),
     ] = None,
     threshold: Annotated[
         float | None,
         typer.Option(
             "--threshold",
             metavar="NUMBER",
-            help="Threshold of the envelope, in the SI unit of the signal; by default a tenth of its maximum.",
+            help="Threshold of the envelope, in the SI unit of the signal; by default a tenth of "
+            "its maximum.",
         ),
     ] = None,
     dead_time: Annotated[
-        str, typer.Option("--dead-time", metavar="TIME", help="Time below the threshold after which a packet ends.")
+        str,
+        typer.Option(
+            "--dead-time",
+            metavar="TIME",
+            help="Time below the threshold after which a packet ends.",
+        ),
     ] = "5 ms",
     window: Annotated[
-        str | None, typer.Option("--window", metavar="TIME", help='Length of each record to use, from its onset on, such as "40 ms".')
+        str | None,
+        typer.Option(
+            "--window",
+            metavar="TIME",
+            help='Length of each record to use, from its onset on, such as "40 ms".',
+        ),
     ] = None,
     columns: Columns = None,
-    packets: Annotated[bool, typer.Option("--packets", help="One row for each packet, instead of one for each record.")] = False,
-    listed: Annotated[bool, typer.Option("--list", help="List the features: name, unit, equation, source.")] = False,
+    packets: Annotated[
+        bool,
+        typer.Option("--packets", help="One row for each packet, instead of one for each record."),
+    ] = False,
+    listed: Annotated[
+        bool, typer.Option("--list", help="List the features: name, unit, equation, source.")
+    ] = False,
     force: Annotated[bool, typer.Option("--force", help="Replace an existing file.")] = False,
     as_json: Json = False,
 ) -> None:
     """Compute features of signals, or list the features.
 
-    Each row of the table is a signal. Where a feature has no value, the last column gives the reason.
+    Each row of the table is a signal. Where a feature has no value, the last column gives the
+    reason.
     """
-    from vibroimpact.cli.feature_text import feature_list, features_document, table_document, table_summary
+    from vibroimpact.cli.feature_text import (
+        feature_list,
+        features_document,
+        table_document,
+        table_summary,
+    )
 
     if listed:
         if paths or output:
@@ -62,14 +106,19 @@ def features(
         show(features_document, feature_list, as_json=as_json)
         return
     if not paths:
-        raise InputError("name the files or folders with signals: vibroimpact features DIR|FILE... -o table.csv; --list lists the features")
+        raise InputError(
+            "name the files or folders with signals: vibroimpact features DIR|FILE... -o "
+            "table.csv; --list lists the features"
+        )
     from vibroimpact.files.atomic_write import write_file
     from vibroimpact.files.recover import recover
     from vibroimpact.report.progress import counting_progress
     from vibroimpact.signals.record_table import record_table
 
     if packets and window is not None:
-        raise InputError("a row is a packet with --packets, and a window with --window; give one of them")
+        raise InputError(
+            "a row is a packet with --packets, and a window with --window; give one of them"
+        )
     if output is not None and output.is_dir():
         raise InputError(f"{output} is a folder; name a file for the table")
     if output is not None and output.exists() and not force:
@@ -82,19 +131,36 @@ def features(
     records = _records(paths, columns, threshold, silence, length, packets=packets)
     screen = console(err=as_json)
     with exit_on_interrupt(), counting_progress("signals", screen) as count:
-        table = record_table(records, names, threshold=threshold, dead_time=silence, progress=lambda done: count(done, None))
+        table = record_table(
+            records,
+            names,
+            threshold=threshold,
+            dead_time=silence,
+            progress=lambda done: count(done, None),
+        )
     if not table.records:
-        raise InputError("there are no signals" + (" with a packet above the threshold" if packets else ""))
+        raise InputError(
+            "there are no signals" + (" with a packet above the threshold" if packets else "")
+        )
     if output is not None:
         recover(output)
         write_file(output, table.csv_text())
     show(lambda: table_document(table), lambda: table_summary(table), as_json=as_json)
     if output is not None:
-        say(f"wrote {output}: {len(table.records)} signals, {len(table.names)} features", err=as_json)
+        say(
+            f"wrote {output}: {len(table.records)} signals, {len(table.names)} features",
+            err=as_json,
+        )
 
 
 def _records(
-    paths: list[Path], columns: str | None, threshold: float | None, dead_time: float, window: float | None, *, packets: bool
+    paths: list[Path],
+    columns: str | None,
+    threshold: float | None,
+    dead_time: float,
+    window: float | None,
+    *,
+    packets: bool,
 ) -> Iterator[Record]:
     """Yield the records of files and folders, or their windows from the onset, or their packets."""
     from vibroimpact.files.reading import with_path
@@ -114,8 +180,15 @@ def _records(
                 if packets:
                     yield from packet_records(record, threshold, dead_time)
                 else:
-                    yield record if window is None else from_onset(record, window, threshold=threshold)
+                    yield (
+                        record
+                        if window is None
+                        else from_onset(record, window, threshold=threshold)
+                    )
             except InputError as error:
                 raise with_path(record.source, error) from None
     if len(told) > _TOLD:
-        note(f"doubt: there are {len(told) - _TOLD:,} further doubts about records; offset and drift of a table (-o) are what was removed")
+        note(
+            f"doubt: there are {len(told) - _TOLD:,} further doubts about records; offset "
+            "and drift of a table (-o) are what was removed"
+        )

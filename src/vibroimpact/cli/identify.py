@@ -1,4 +1,6 @@
-"""The command `identify`, which estimates force, position, size and speed of an impact from records."""
+"""The command `identify`, which estimates force, position, size and speed of an impact
+from records.
+"""
 
 from __future__ import annotations
 
@@ -29,41 +31,82 @@ from vibroimpact.cli.shared import (
 def identify(
     case: CaseArgument,
     records: Annotated[
-        list[Path], typer.Argument(metavar="RECORD...", help="Records of one fall: CSV, WAV, UFF, NetCDF-4 or the folder of a run.")
+        list[Path],
+        typer.Argument(
+            metavar="RECORD...",
+            help="Records of one fall: CSV, WAV, UFF, NetCDF-4 or the folder of a run.",
+        ),
     ],
     output: Annotated[
-        Path | None, typer.Option("-o", "--output", metavar="DIR", help="The folder to make; by default CASE-identified.")
+        Path | None,
+        typer.Option(
+            "-o", "--output", metavar="DIR", help="The folder to make; by default CASE-identified."
+        ),
     ] = None,
     place: Annotated[
         str | None,
-        typer.Option("--place", metavar="X,Y", help='Position of the impact, such as "60 mm, 40 mm"; by default it is estimated.'),
+        typer.Option(
+            "--place",
+            metavar="X,Y",
+            help='Position of the impact, such as "60 mm, 40 mm"; by default it is estimated.',
+        ),
     ] = None,
     window: Annotated[
-        str, typer.Option("--window", metavar="TIME", help="Time from first touch on that is used; it must end before the next impact.")
+        str,
+        typer.Option(
+            "--window",
+            metavar="TIME",
+            help="Time from first touch on that is used; it must end before the next impact.",
+        ),
     ] = "5 ms",
     frequency_error: Annotated[
         float,
         typer.Option(
             "--frequency-error",
             metavar="PART",
-            help="Uncertainty of the plate's frequencies, in addition to the error of the mesh: 0.01 for 1 %.",
+            help="Uncertainty of the plate's frequencies, in addition to the error of the mesh: "
+            "0.01 for 1 %.",
         ),
     ] = 0.0,
     sensor_error: Annotated[
-        str, typer.Option("--sensor-error", metavar="LENGTH", help="Uncertainty of the position of each sensor along x and y.")
+        str,
+        typer.Option(
+            "--sensor-error",
+            metavar="LENGTH",
+            help="Uncertainty of the position of each sensor along x and y.",
+        ),
     ] = "0 mm",
     gain_error: Annotated[
-        float, typer.Option("--gain-error", metavar="PART", help="Uncertainty of the sensitivity of each sensor: 0.02 for 2 %.")
+        float,
+        typer.Option(
+            "--gain-error",
+            metavar="PART",
+            help="Uncertainty of the sensitivity of each sensor: 0.02 for 2 %.",
+        ),
     ] = 0.0,
     thickness_error: Annotated[
-        float, typer.Option("--thickness-error", metavar="PART", help="Uncertainty of the thickness of the plate: 0.01 for 1 %.")
+        float,
+        typer.Option(
+            "--thickness-error",
+            metavar="PART",
+            help="Uncertainty of the thickness of the plate: 0.01 for 1 %.",
+        ),
     ] = 0.0,
     modulus_error: Annotated[
-        float, typer.Option("--modulus-error", metavar="PART", help="Uncertainty of Young's modulus of the plate: 0.03 for 3 %.")
+        float,
+        typer.Option(
+            "--modulus-error",
+            metavar="PART",
+            help="Uncertainty of Young's modulus of the plate: 0.03 for 3 %.",
+        ),
     ] = 0.0,
     resonance_error: Annotated[
         float,
-        typer.Option("--resonance-error", metavar="PART", help="Uncertainty of the mounted resonance of each accelerometer: 0.1 for 10 %."),
+        typer.Option(
+            "--resonance-error",
+            metavar="PART",
+            help="Uncertainty of the mounted resonance of each accelerometer: 0.1 for 10 %.",
+        ),
     ] = 0.0,
     columns: Columns = None,
     changes: Changes = None,
@@ -71,10 +114,12 @@ def identify(
     force: Force = False,
     as_json: Json = False,
 ) -> None:
-    """Identify an impact from records of sensors. Force, position, size and speed are estimated with 95 % intervals.
+    """Identify an impact from records of sensors. Force, position, size and speed are estimated
+    with 95 % intervals.
 
-    The case specifies the plate, the sensors, named as the records, and the material of the sphere. Errors of what it specifies are in the
-    intervals only if they are stated, as standard deviations.
+    The case specifies the plate, the sensors, named as the records, and the material of the sphere.
+    Errors of what it specifies are in the intervals only if they are stated, as standard
+    deviations.
     """
     from vibroimpact.cases.reader import load_case
     from vibroimpact.identification.document import summary_of_identification
@@ -91,10 +136,29 @@ def identify(
     check_free(target, force=force)
     where = None if place is None else pair_in("--place", place, "m", "x and y", "60 mm, 40 mm")
     length = quantity_in("--window", window, "s")
-    errors = SetupErrors(quantity_in("--sensor-error", sensor_error, "m"), gain_error, thickness_error, modulus_error, resonance_error)
+    errors = SetupErrors(
+        quantity_in("--sensor-error", sensor_error, "m"),
+        gain_error,
+        thickness_error,
+        modulus_error,
+        resonance_error,
+    )
     heard = [record for path in records for record in read_records(path, columns)]
     with exit_on_interrupt():
         with patient_progress("identifying", console(err=as_json)) as progress:
-            told = identified(found, heard, place=where, window=length, frequency_error=frequency_error, errors=errors, progress=progress)
+            told = identified(
+                found,
+                heard,
+                place=where,
+                window=length,
+                frequency_error=frequency_error,
+                errors=errors,
+                progress=progress,
+            )
         folder = save_identification(told, target, force=force, figures=("png",) if figures else ())
-    show_folder(folder, lambda: summary_of_identification(told), lambda: identification_summary(told), as_json=as_json)
+    show_folder(
+        folder,
+        lambda: summary_of_identification(told),
+        lambda: identification_summary(told),
+        as_json=as_json,
+    )

@@ -22,7 +22,10 @@ def material_library_table() -> RenderableType:
         numbers("Poisson's", "-", [f"{one.poissons_ratio:g}" for one in library.values()]),
         TerminalColumn("what", [one.description for one in library.values()], text=True),
     )
-    notes = 'Also "rigid" for a plate. "vibroimpact materials NAME" gives the source of each number. Rock and coal vary widely.'
+    notes = (
+        'Also "rigid" for a plate. "vibroimpact materials NAME" gives the source of each '
+        "number. Rock and coal vary widely."
+    )
     return Group(TerminalTable(columns), Text(), Text(notes))
 
 
@@ -46,7 +49,9 @@ def material_sheet(name: str) -> RenderableType:
     ):
         value = getattr(material, key)
         if value is not None:
-            rows.append((key, f"{value:g}\u00a0{unit}".strip("\u00a0"), material.sources.get(key, "")))
+            rows.append(
+                (key, f"{value:g}\u00a0{unit}".strip("\u00a0"), material.sources.get(key, ""))
+            )
     note = [Text(material.note)] if material.note else []
     return Group(Text(f"{material.name}: {material.description}", style="bold"), facts(rows), *note)
 

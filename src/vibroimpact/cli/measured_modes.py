@@ -13,7 +13,9 @@ if TYPE_CHECKING:
     from vibroimpact.modes.measured_table import MeasuredTable
 
 
-def measured_modes(paths: Sequence[Path], target: Path, *, figures: bool, force: bool, as_json: bool) -> None:
+def measured_modes(
+    paths: Sequence[Path], target: Path, *, figures: bool, force: bool, as_json: bool
+) -> None:
     """Print and write the modes in the frequency responses of universal files."""
     from vibroimpact.correlation.measured.document import summary_of_measured
     from vibroimpact.correlation.measured.folder import save_measured_modes
@@ -23,8 +25,15 @@ def measured_modes(paths: Sequence[Path], target: Path, *, figures: bool, force:
     name = stem(str(paths[0]))
     with exit_on_interrupt():
         found = modes_of_files(paths)
-        folder = save_measured_modes(found, name, target, force=force, figures=("png",) if figures else ())
-    show_folder(folder, lambda: summary_of_measured(found), lambda: measured_summary(found, name), as_json=as_json)
+        folder = save_measured_modes(
+            found, name, target, force=force, figures=("png",) if figures else ()
+        )
+    show_folder(
+        folder,
+        lambda: summary_of_measured(found),
+        lambda: measured_summary(found, name),
+        as_json=as_json,
+    )
 
 
 def modes_beside_table(bodies: Mapping[str, BodyModes], paths: Sequence[Path]) -> MeasuredTable:

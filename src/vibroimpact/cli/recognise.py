@@ -1,4 +1,6 @@
-"""The command `recognise`, which trains and validates classifiers of a data set, or applies a saved one."""
+"""The command `recognise`, which trains and validates classifiers of a data set, or
+applies a saved one.
+"""
 
 from __future__ import annotations
 
@@ -9,7 +11,17 @@ from typing import Annotated
 
 import typer
 
-from vibroimpact.cli.shared import Figures, Force, Json, app, exit_on_interrupt, note, say, show, stem
+from vibroimpact.cli.shared import (
+    Figures,
+    Force,
+    Json,
+    app,
+    exit_on_interrupt,
+    note,
+    say,
+    show,
+    stem,
+)
 from vibroimpact.errors import InputError
 
 _EVERY = 10.0
@@ -18,36 +30,68 @@ _EVERY = 10.0
 
 @app.command()
 def recognise(
-    dataset: Annotated[str, typer.Argument(metavar="DATASET", help="The folder of a data set, or its dataset.nc.")],
+    dataset: Annotated[
+        str, typer.Argument(metavar="DATASET", help="The folder of a data set, or its dataset.nc.")
+    ],
     output: Annotated[
-        Path | None, typer.Option("-o", "--output", metavar="DIR", help="The folder to make; by default DATASET-recognised.")
+        Path | None,
+        typer.Option(
+            "-o",
+            "--output",
+            metavar="DIR",
+            help="The folder to make; by default DATASET-recognised.",
+        ),
     ] = None,
     model: Annotated[
-        Path | None, typer.Option("--model", metavar="DIR", help="Apply the model saved in DIR by an earlier recognise, without training.")
+        Path | None,
+        typer.Option(
+            "--model",
+            metavar="DIR",
+            help="Apply the model saved in DIR by an earlier recognise, without training.",
+        ),
     ] = None,
     group: Annotated[
-        str, typer.Option("--group", metavar="NAME", help="Groups kept together in the cross-validation: rock, plate or fall.")
+        str,
+        typer.Option(
+            "--group",
+            metavar="NAME",
+            help="Groups kept together in the cross-validation: rock, plate or fall.",
+        ),
     ] = "rock",
     folds: Annotated[
         int | None,
         typer.Option(
             "--folds",
             metavar="N",
-            help="Number of folds of the cross-validation; by default 5, or the smallest number of groups of a class, if below 10.",
+            help="Number of folds of the cross-validation; by default 5, or the smallest number "
+            "of groups of a class, if below 10.",
         ),
     ] = None,
-    seeds: Annotated[int, typer.Option("--seeds", metavar="N", help="Number of seeds over which the scores are averaged.")] = 5,
+    seeds: Annotated[
+        int,
+        typer.Option(
+            "--seeds", metavar="N", help="Number of seeds over which the scores are averaged."
+        ),
+    ] = 5,
     seed: Annotated[int, typer.Option("--seed", metavar="N", min=0, help="The first seed.")] = 0,
     most: Annotated[
-        int, typer.Option("--most", metavar="N", help="Largest number of signals; of more, whole groups are drawn at random, one at least.")
+        int,
+        typer.Option(
+            "--most",
+            metavar="N",
+            help="Largest number of signals; of more, whole groups are drawn at random, one at "
+            "least.",
+        ),
     ] = 4000,
     figures: Figures = False,
     force: Force = False,
     as_json: Json = False,
 ) -> None:
-    """Train classifiers of impact signals, and validate them. Their accuracy is estimated by grouped cross-validation.
+    """Train classifiers of impact signals, and validate them. Their accuracy is estimated by
+    grouped cross-validation.
 
-    Baselines and four classifiers are compared in a grouped and in a random split; the best one is saved, and --model applies it.
+    Baselines and four classifiers are compared in a grouped and in a random split; the best one is
+    saved, and --model applies it.
     """
     from vibroimpact.recognition.apply import apply_recogniser, recognised_document, save_recognised
     from vibroimpact.recognition.folder import save_recognition
@@ -61,23 +105,44 @@ def recognise(
     check_free(target, force=force)
     for given in (Path(dataset), *([] if model is None else [model])):
         if given.exists() and target.resolve() in (given.resolve(), *given.resolve().parents):
-            raise InputError(f"{target}: {given} lies there, and would be replaced; name another place for the result")
+            raise InputError(
+                f"{target}: {given} lies there, and would be replaced; "
+                "name another place for the result"
+            )
     if model is not None:
         with exit_on_interrupt():
             applied = apply_recogniser(model, dataset)
             folder = save_recognised(applied, target, force=force)
-        show(lambda: {"folder": str(folder), **recognised_document(applied)}, lambda: recognised_summary(applied), as_json=as_json)
+        show(
+            lambda: {"folder": str(folder), **recognised_document(applied)},
+            lambda: recognised_summary(applied),
+            as_json=as_json,
+        )
         say(f"wrote {folder / 'predictions.csv'}", err=as_json)
         return
     with exit_on_interrupt():
-        done = recognise_signals(dataset, group=group, folds=folds, seeds=seeds, seed=seed, most=most, progress=_progress_lines())
+        done = recognise_signals(
+            dataset,
+            group=group,
+            folds=folds,
+            seeds=seeds,
+            seed=seed,
+            most=most,
+            progress=_progress_lines(),
+        )
         folder = save_recognition(done, target, force=force, figures=("png",) if figures else ())
-    show(lambda: {"folder": str(folder), **summary_of_recognition(done)}, lambda: recognition_summary(done), as_json=as_json)
+    show(
+        lambda: {"folder": str(folder), **summary_of_recognition(done)},
+        lambda: recognition_summary(done),
+        as_json=as_json,
+    )
     say(f"wrote {folder / 'report.html'} and {folder / 'model'}", err=as_json)
 
 
 def _progress_lines() -> Callable[[str, int, int], None]:
-    """Return a callback that prints a line when something begins, and every ten seconds while it lasts."""
+    """Return a callback that prints a line when something begins, and every ten seconds
+    while it lasts.
+    """
     said = time.monotonic()
 
     def progress(what: str, done: int, total: int) -> None:

@@ -1,4 +1,6 @@
-"""The commands for reference: `cases`, `new`, `units`, `laws`, `materials`, `schema` and `doctor`."""
+"""The commands for reference: `cases`, `new`, `units`, `laws`, `materials`, `schema` and
+`doctor`.
+"""
 
 from __future__ import annotations
 
@@ -23,7 +25,12 @@ def cases(as_json: Json = False) -> None:
 
 @app.command()
 def new(
-    name: Annotated[str, typer.Argument(metavar="NAME", help="Name of the case; the file is NAME.toml in the current folder.")],
+    name: Annotated[
+        str,
+        typer.Argument(
+            metavar="NAME", help="Name of the case; the file is NAME.toml in the current folder."
+        ),
+    ],
     source: Annotated[
         str,
         typer.Option(
@@ -55,14 +62,25 @@ def new(
     recover(path)
     write_text_file(path, text)
     quoted, command = shlex.quote(str(path)), command_for(load_table(path))
-    say(f"wrote {path}; explain it: vibroimpact check {quoted}; {command} it: vibroimpact {command} {quoted}")
+    say(
+        f"wrote {path}; explain it: vibroimpact check {quoted}; {command} it: vibroimpact "
+        f"{command} {quoted}"
+    )
 
 
 @app.command(context_settings={"ignore_unknown_options": True})  # a number may be negative
 def units(
-    quantity: Annotated[list[str], typer.Argument(metavar="NUMBER UNIT", help='Such as 5.115e8 N/m^1.5, or "179.75 N s/m".')],
+    quantity: Annotated[
+        list[str],
+        typer.Argument(metavar="NUMBER UNIT", help='Such as 5.115e8 N/m^1.5, or "179.75 N s/m".'),
+    ],
     to: Annotated[
-        str | None, typer.Option("--to", metavar="UNIT", help="In quotes if it has blanks; without it the common unit systems are shown.")
+        str | None,
+        typer.Option(
+            "--to",
+            metavar="UNIT",
+            help="In quotes if it has blanks; without it the common unit systems are shown.",
+        ),
     ] = None,
     as_json: Json = False,
 ) -> None:
@@ -82,26 +100,41 @@ def units(
 
 
 def _quotes_hint(quantity: list[str], to: str | None) -> str:
-    """Return a hint that the unit of --to needs quotes, if its last words became those of the quantity; else an empty text."""
+    """Return a hint that the unit of --to needs quotes, if its last words became those of
+    the quantity; else an empty text.
+    """
     from vibroimpact.units.reading import convert_units, parse_quantity
 
     for count in range(1, len(quantity) - 1) if to else ():
         try:
-            convert_units(*parse_quantity(" ".join(quantity[:-count])), " ".join([str(to), *quantity[-count:]]))
+            convert_units(
+                *parse_quantity(" ".join(quantity[:-count])),
+                " ".join([str(to), *quantity[-count:]]),
+            )
         except InputError:
             continue
-        return f'; a unit with blanks needs quotes: --to "{" ".join([str(to), *quantity[-count:]])}"'
+        return (
+            f'; a unit with blanks needs quotes: --to "{" ".join([str(to), *quantity[-count:]])}"'
+        )
     return ""
 
 
 @app.command()
 def laws(
-    name: Annotated[str | None, typer.Argument(metavar="[NAME]", autocompletion=complete_law, help="Show one law.")] = None,
-    output: Annotated[Path | None, typer.Option("-o", "--output", metavar="PNG", help="Write its curves to this image file.")] = None,
+    name: Annotated[
+        str | None,
+        typer.Argument(metavar="[NAME]", autocompletion=complete_law, help="Show one law."),
+    ] = None,
+    output: Annotated[
+        Path | None,
+        typer.Option("-o", "--output", metavar="PNG", help="Write its curves to this image file."),
+    ] = None,
     force: Annotated[bool, typer.Option("--force", help="Replace an existing image file.")] = False,
     as_json: Json = False,
 ) -> None:
-    """List the contact and friction laws, or show one. With -o PNG the curves of a contact law are drawn."""
+    """List the contact and friction laws, or show one. With -o PNG the curves of a
+    contact law are drawn.
+    """
     from vibroimpact.contact.registry import find_contact_law, friction_laws
     from vibroimpact.laws.document import law_document, laws_document
     from vibroimpact.laws.sheet import law_sheet, law_table
@@ -113,7 +146,9 @@ def laws(
         return
     law = friction_laws().get(name) or find_contact_law(name)
     if output is not None and name in friction_laws():
-        raise InputError(f"{name} is a friction law, and curves are drawn of contact laws only", "-o")
+        raise InputError(
+            f"{name} is a friction law, and curves are drawn of contact laws only", "-o"
+        )
     if output is not None:
         from vibroimpact.laws.curves import check_picture
 
@@ -129,12 +164,21 @@ def laws(
 def materials(
     name: Annotated[
         str | None,
-        typer.Argument(metavar="[NAME]", autocompletion=complete_material, help="Show one material, with the source of each number."),
+        typer.Argument(
+            metavar="[NAME]",
+            autocompletion=complete_material,
+            help="Show one material, with the source of each number.",
+        ),
     ] = None,
     as_json: Json = False,
 ) -> None:
     """List the shipped materials, or one with its sources."""
-    from vibroimpact.cli.material_text import material_document, material_library_table, material_sheet, materials_document
+    from vibroimpact.cli.material_text import (
+        material_document,
+        material_library_table,
+        material_sheet,
+        materials_document,
+    )
 
     if name:
         show(lambda: material_document(name), lambda: material_sheet(name), as_json=as_json)
@@ -155,7 +199,10 @@ def schema() -> None:
 @app.command()
 def doctor(
     clear_store: Annotated[
-        bool, typer.Option("--clear-store", help="Remove the computed modes and the compiled code that are kept.")
+        bool,
+        typer.Option(
+            "--clear-store", help="Remove the computed modes and the compiled code that are kept."
+        ),
     ] = False,
     as_json: Json = False,
 ) -> None:
@@ -170,7 +217,11 @@ def doctor(
         removed = clear()
         functions = clear_code()
         show(lambda: {"removed": removed, "removed_functions": functions}, as_json=as_json)
-        say(f"removed {removed} entries from the store of modes, and {functions} compiled functions", err=as_json)
+        say(
+            f"removed {removed} entries from the store of modes, and {functions} compiled "
+            "functions",
+            err=as_json,
+        )
         return
     found = diagnose()
     show(
@@ -180,5 +231,8 @@ def doctor(
     )
     error = first_rebound_error()
     if not error < 1e-7:
-        raise ComputationError(f"self-test failed: the speed of the paper's first rebound is off by {error:.1e}; reinstall the package")
+        raise ComputationError(
+            "self-test failed: the speed of the paper's first rebound is off by "
+            f"{error:.1e}; reinstall the package"
+        )
     say("self-test passed: the speed of the paper's first rebound is right to 1e-7", err=as_json)

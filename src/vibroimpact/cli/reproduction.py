@@ -14,27 +14,48 @@ from vibroimpact.cli.shared import Json, app, console, fail, names_in, note, sho
 
 @app.command()
 def reproduce(
-    output: Annotated[Path, typer.Option("-o", "--output", metavar="DIR", help="The folder to make, or to continue.")] = Path(
-        "vibroimpact-paper"
-    ),
+    output: Annotated[
+        Path,
+        typer.Option("-o", "--output", metavar="DIR", help="The folder to make, or to continue."),
+    ] = Path("vibroimpact-paper"),
     only: Annotated[
         str | None,
-        typer.Option("--only", metavar="A,B,C", autocompletion=complete_parts, help="Only these parts; existing ones are computed again."),
+        typer.Option(
+            "--only",
+            metavar="A,B,C",
+            autocompletion=complete_parts,
+            help="Only these parts; existing ones are computed again.",
+        ),
     ] = None,
-    force: Annotated[bool, typer.Option("--force", help="Replace an existing folder with all its parts.")] = False,
+    force: Annotated[
+        bool, typer.Option("--force", help="Replace an existing folder with all its parts.")
+    ] = False,
     as_json: Json = False,
 ) -> None:
-    """Reproduce the numbers and figures of the paper. Each printed value is compared with the computed one.
+    """Reproduce the numbers and figures of the paper. Each printed value is compared with the
+    computed one.
 
-    The report states for each value whether it is reproduced, explained, or not reproduced, and why, and whether it is a result or an input
-    or was inferred or fitted. An interrupted run is continued with the same command.
+    The report states for each value whether it is reproduced, explained, or not reproduced, and
+    why, and whether it is a result or an input or was inferred or fitted. An interrupted run is
+    continued with the same command.
 
-    The parts: table1, section3.1, fig3, section3.2, fig4 to fig8, damping, table2, section4, fig9, section5.1, fig10 to fig13,
-    section5.2, fig14 to fig17, section5.3, fig18 to fig23, conclusions, recovery, sampling, unresolved, corrections.
+    The parts: table1, section3.1, fig3, section3.2, fig4 to fig8, damping, table2, section4, fig9,
+    section5.1, fig10 to fig13, section5.2, fig14 to fig17, section5.3, fig18 to fig23, conclusions,
+    recovery, sampling, unresolved, corrections.
     """
     from vibroimpact._version import __version__
-    from vibroimpact.paper.report.folder import missing_parts, read_parts, reproduce_paper, reproduced_values
-    from vibroimpact.paper.report.page import kind_counts, kind_summary, verdict_counts, verdict_table
+    from vibroimpact.paper.report.folder import (
+        missing_parts,
+        read_parts,
+        reproduce_paper,
+        reproduced_values,
+    )
+    from vibroimpact.paper.report.page import (
+        kind_counts,
+        kind_summary,
+        verdict_counts,
+        verdict_table,
+    )
     from vibroimpact.report.progress import patient_progress
 
     names = None if only is None else names_in(only)
@@ -44,9 +65,14 @@ def reproduce(
             folder = reproduce_paper(output, names, force=force, progress=progress, tell=note)
     except KeyboardInterrupt:
         left = [name for name in missing_parts(output) if names is not None and name in names]
-        again = left or names  # of parts that were there before it is not known which were computed again
+        # of parts that were there before it is not known which were computed again
+        again = left or names
         some = f" --only {','.join(again)}" if again else ""
-        fail(f"interrupted; completed parts are kept; continue with: vibroimpact reproduce -o {shlex.quote(str(output))}{some}", 130)
+        fail(
+            "interrupted; completed parts are kept; continue with: vibroimpact reproduce "
+            f"-o {shlex.quote(str(output))}{some}",
+            130,
+        )
     parts = read_parts(folder)
     show_folder(
         folder,

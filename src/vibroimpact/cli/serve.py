@@ -15,9 +15,18 @@ _PORT = 8421
 
 @app.command()
 def serve(
-    case: Annotated[str | None, typer.Argument(metavar="[CASE]", help="The case to open, such as paper:type3 or a TOML file.")] = None,
-    port: Annotated[int, typer.Option("--port", metavar="N", help="Port on this machine; 0 for any free port.")] = _PORT,
-    browser: Annotated[bool, typer.Option("--browser/--no-browser", help="Whether to open the browser.")] = True,
+    case: Annotated[
+        str | None,
+        typer.Argument(
+            metavar="[CASE]", help="The case to open, such as paper:type3 or a TOML file."
+        ),
+    ] = None,
+    port: Annotated[
+        int, typer.Option("--port", metavar="N", help="Port on this machine; 0 for any free port.")
+    ] = _PORT,
+    browser: Annotated[
+        bool, typer.Option("--browser/--no-browser", help="Whether to open the browser.")
+    ] = True,
 ) -> None:
     """Open a browser page that recomputes a case as it changes.
 
@@ -27,7 +36,10 @@ def serve(
         from vibroimpact.app.server import HOST
         from vibroimpact.app.server import serve as serve_page
     except ImportError as error:
-        raise InputError(f'the live page needs {error.name}, which is not installed: pip install "vibroimpact[app]"') from None
+        raise InputError(
+            f"the live page needs {error.name}, which is not installed: pip install "
+            '"vibroimpact[app]"'
+        ) from None
     fragment = _fragment_of(case)
     listening = _listen(HOST, port)
     port = int(listening.getsockname()[1])
@@ -36,7 +48,10 @@ def serve(
 
     def tell() -> None:
         say(f"the live page is at {place if browser else address}; Ctrl-C ends it")
-        note(f"on another machine: ssh -L {port}:{HOST}:{port} THIS-MACHINE, and open {place if browser else address} there")
+        note(
+            f"on another machine: ssh -L {port}:{HOST}:{port} THIS-MACHINE, and open "
+            f"{place if browser else address} there"
+        )
         if browser and not _open(address):
             note(f"no browser could be opened; open this address in one: {address}")
 
@@ -62,7 +77,9 @@ def _fragment_of(case: str | None) -> str:
 def _listen(host: str, port: int) -> Any:
     """Return a socket that is bound to a port of this machine."""
     if not 0 <= port <= 65535:
-        raise InputError(f"{port} is not a port; give one from 1 to 65535, or 0 for any that is free", "--port")
+        raise InputError(
+            f"{port} is not a port; give one from 1 to 65535, or 0 for any that is free", "--port"
+        )
     listening = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
     listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
     try:
@@ -71,7 +88,8 @@ def _listen(host: str, port: int) -> Any:
     except OSError as error:
         listening.close()
         raise InputError(
-            f"port {port} can't be used: {error.strerror or error}; is a live page open already? --port 0 takes any free port"
+            f"port {port} can't be used: {error.strerror or error}; is a live page open "
+            "already? --port 0 takes any free port"
         ) from None
     return listening
 

@@ -1,4 +1,6 @@
-"""Elements common to all commands: the application, options, console output, and exits on failure or interrupt."""
+"""Elements common to all commands: the application, options, console output, and exits on
+failure or interrupt.
+"""
 
 from __future__ import annotations
 
@@ -35,7 +37,12 @@ app = typer.Typer(
 )
 
 CaseArgument = Annotated[
-    str, typer.Argument(metavar="CASE", autocompletion=complete_case, help='A TOML file, or a shipped case such as "paper:type1-theory".')
+    str,
+    typer.Argument(
+        metavar="CASE",
+        autocompletion=complete_case,
+        help='A TOML file, or a shipped case such as "paper:type1-theory".',
+    ),
 ]
 Changes = Annotated[
     list[str] | None,
@@ -52,14 +59,22 @@ Columns = Annotated[
         "--columns",
         metavar="NAME=UNIT,...",
         help=(
-            'Columns of the tables in place of their headers, such as "time=s,-,force=N", with - for one that is left out; '
+            'Columns of the tables in place of their headers, such as "time=s,-,force=N", '
+            "with - for one that is left out; "
             'without times with the rate of the rows, "rate=10 kHz,force=N".'
         ),
     ),
 ]
 Force = Annotated[bool, typer.Option("--force", help="Replace an existing result folder.")]
-Json = Annotated[bool, typer.Option("--json", help="Print one JSON document instead of tables, in SI units and full precision.")]
-Figures = Annotated[bool, typer.Option("--figures", help="Write the charts of the report as files too, as PNG.")]
+Json = Annotated[
+    bool,
+    typer.Option(
+        "--json", help="Print one JSON document instead of tables, in SI units and full precision."
+    ),
+]
+Figures = Annotated[
+    bool, typer.Option("--figures", help="Write the charts of the report as files too, as PNG.")
+]
 
 
 def _show_version(wanted: bool) -> None:
@@ -72,27 +87,48 @@ def _show_version(wanted: bool) -> None:
 
 @app.callback()
 def common(
-    version: Annotated[bool, typer.Option("--version", callback=_show_version, is_eager=True, help="Show the version and exit.")] = False,
+    version: Annotated[
+        bool,
+        typer.Option(
+            "--version", callback=_show_version, is_eager=True, help="Show the version and exit."
+        ),
+    ] = False,
 ) -> None:
-    """Simulate the impact of a particle on a plate: contact force, restitution, energy and vibration."""
+    """Simulate the impact of a particle on a plate: contact force, restitution, energy
+    and vibration.
+    """
 
 
-_LONGEST_STEM = 60  # leaves room, within the 255 bytes of a file name, for the suffixes of the commands and of exports
+# leaves room, within the 255 bytes of a file name, for the suffixes of the commands and of exports
+_LONGEST_STEM = 60
 
 
 def stem(case: str) -> str:
-    """Return the base name of folders for a case: its file name, shortened, without unprintable characters."""
+    """Return the base name of folders for a case: its file name, shortened, without
+    unprintable characters.
+    """
     name = Path(case.removeprefix("paper:").removeprefix("signals:")).stem[:_LONGEST_STEM]
     return "".join(character if character.isprintable() else "_" for character in name)
 
 
-def settings_of(texts: list[str] | None, example: str = 'plate.size.thickness="10 mm"') -> dict[str, Any]:
-    """Return the values that `--set` gives by key, read as in a case file; a text, also with a unit, needs no quotes.
+def settings_of(
+    texts: list[str] | None, example: str = 'plate.size.thickness="10 mm"'
+) -> dict[str, Any]:
+    """Return the values that `--set` gives by key, read as in a case file; a text, also with a
+    unit, needs no quotes.
 
     Examples
     --------
-    >>> settings_of(["run.impacts=3", "plate.size.thickness=10 mm", "contact.law=flores", "drop.position=[0.1, 0]"])
-    {'run.impacts': 3, 'plate.size.thickness': '10 mm', 'contact.law': 'flores', 'drop.position': [0.1, 0]}
+    >>> settings_of(
+    ...     [
+    ...         "run.impacts=3",
+    ...         "plate.size.thickness=10 mm",
+    ...         "contact.law=flores",
+    ...         "drop.position=[0.1, 0]",
+    ...     ]
+    ... )
+    {'run.impacts': 3, 'plate.size.thickness': '10 mm', 'contact.law': 'flores', 'drop.position':
+    [0.1, 0]}
     """
     settings: dict[str, Any] = {}
     for text in texts or ():
@@ -107,7 +143,9 @@ def settings_of(texts: list[str] | None, example: str = 'plate.size.thickness="1
 
 
 def console(*, err: bool = False) -> Console:
-    """Return the console of standard output, or of standard error, with a fixed width of 160 off a terminal."""
+    """Return the console of standard output, or of standard error, with a fixed width of
+    160 off a terminal.
+    """
     from vibroimpact.report.console import TerminalConsole
 
     screen = TerminalConsole(stderr=err)
@@ -116,8 +154,11 @@ def console(*, err: bool = False) -> Console:
     return screen
 
 
-def show(document: Callable[[], Mapping[str, Any]], *tables: Callable[[], RenderableType], as_json: bool) -> None:
-    """Print tables, each as soon as it is made; or in their place the document with their data, as JSON.
+def show(
+    document: Callable[[], Mapping[str, Any]], *tables: Callable[[], RenderableType], as_json: bool
+) -> None:
+    """Print tables, each as soon as it is made; or in their place the document with their data, as
+    JSON.
 
     Parameters
     ----------
@@ -138,14 +179,21 @@ def show(document: Callable[[], Mapping[str, Any]], *tables: Callable[[], Render
             screen.print(table())
 
 
-def show_folder(folder: Path, document: Callable[[], Mapping[str, Any]], *tables: Callable[[], RenderableType], as_json: bool) -> None:
+def show_folder(
+    folder: Path,
+    document: Callable[[], Mapping[str, Any]],
+    *tables: Callable[[], RenderableType],
+    as_json: bool,
+) -> None:
     """Print what a folder with a report holds, as `show` does, and that it was written."""
     show(lambda: {"folder": str(folder), **document()}, *tables, as_json=as_json)
     say(f"wrote {folder / 'report.html'}", err=as_json)
 
 
 def say(text: str, *, err: bool = False) -> None:
-    """Print lines, transliterated to the encoding of the stream and with control characters escaped."""
+    """Print lines, transliterated to the encoding of the stream and with control
+    characters escaped.
+    """
     from vibroimpact.report.encodable import encodable
 
     stream, text = sys.stderr if err else sys.stdout, "\n".join(map(visible, text.split("\n")))
@@ -154,7 +202,9 @@ def say(text: str, *, err: bool = False) -> None:
 
 
 def never_fail_to_print() -> None:
-    """Let standard output and error escape characters that they can't encode, instead of raising."""
+    """Let standard output and error escape characters that they can't encode, instead of
+    raising.
+    """
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")
@@ -175,13 +225,16 @@ def pair_in(option: str, text: str, unit: str, what: str, example: str) -> tuple
     """
     parts = names_in(text)
     if len(parts) != 2 or text.count(",") != 1:
-        raise InputError(f'{option} "{text}": give {what}, separated by a comma, such as "{example}"')
+        raise InputError(
+            f'{option} "{text}": give {what}, separated by a comma, such as "{example}"'
+        )
     first, second = (quantity_in(option, part, unit) for part in parts)
     return first, second
 
 
 def quantity_in(option: str, text: str, unit: str) -> float:
-    """Return the value of an option in SI; a bare number, which has no quotes in a shell, is in SI already.
+    """Return the value of an option in SI; a bare number, which has no quotes in a shell, is in SI
+    already.
 
     Examples
     --------
@@ -199,11 +252,15 @@ def quantity_in(option: str, text: str, unit: str) -> float:
 
 
 def written_in(option: str, text: str, unit: str) -> Written:
-    """Return the value of an option in SI with its standard deviation, which is given in it or left open by its digits.
+    """Return the value of an option in SI with its standard deviation, which is given in it or left
+    open by its digits.
 
     Examples
     --------
-    >>> written_in("--height", "0.30 m +- 5 mm", "m").deviation, round(written_in("--height", "0.30", "m").deviation, 5)
+    >>> (
+    ...     written_in("--height", "0.30 m +- 5 mm", "m").deviation,
+    ...     round(written_in("--height", "0.30", "m").deviation, 5),
+    ... )
     (0.005, 0.00289)
     """
     from vibroimpact.units.quantity_text import number_and_unit
@@ -211,7 +268,9 @@ def written_in(option: str, text: str, unit: str) -> Written:
 
     parts = number_and_unit(text)
     try:
-        return read_written(text if parts is None or parts[1] or not unit else f"{text} {unit}", unit)
+        return read_written(
+            text if parts is None or parts[1] or not unit else f"{text} {unit}", unit
+        )
     except InputError as error:
         raise InputError(error.message, option) from None
 
@@ -222,10 +281,14 @@ def note(text: str) -> None:
 
 
 def note_warnings() -> None:
-    """Show warnings about charts that could not be drawn, and about laws that are not compiled, as notes."""
+    """Show warnings about charts that could not be drawn, and about laws that are not
+    compiled, as notes.
+    """
     show_others = warnings.showwarning
 
-    def show_warning(message: Warning | str, category: type[Warning], *where: Any, **to: Any) -> None:
+    def show_warning(
+        message: Warning | str, category: type[Warning], *where: Any, **to: Any
+    ) -> None:
         if issubclass(category, ChartWarning | SlowLawWarning):
             note(str(message))
         else:
@@ -238,7 +301,9 @@ def note_warnings() -> None:
 
 @contextmanager
 def exit_on_interrupt() -> Iterator[None]:
-    """Exit on Ctrl-C with the message that nothing was written: results inside are written atomically at the end."""
+    """Exit on Ctrl-C with the message that nothing was written: results inside are
+    written atomically at the end.
+    """
     try:
         yield
     except KeyboardInterrupt:
@@ -247,7 +312,8 @@ def exit_on_interrupt() -> Iterator[None]:
 
 @contextmanager
 def interrupt_flag(message: str) -> Iterator[Callable[[], bool]]:
-    """Yield a function that returns whether SIGINT or SIGTERM was received, so that running work can finish; a second one exits at once.
+    """Yield a function that returns whether SIGINT or SIGTERM was received, so that running work
+    can finish; a second one exits at once.
 
     An exception raised in a signal handler can surface where it is swallowed, and be lost.
 
@@ -266,7 +332,8 @@ def interrupt_flag(message: str) -> Iterator[Callable[[], bool]]:
             os._exit(130)  # worker processes end with this one
         note("stopping after what is under way; Ctrl-C once more stops at once")
 
-    before = {number: signal.signal(number, press) for number in (signal.SIGINT, signal.SIGTERM)}  # schedulers send SIGTERM
+    # schedulers send SIGTERM
+    before = {number: signal.signal(number, press) for number in (signal.SIGINT, signal.SIGTERM)}
     try:
         yield lambda: pressed > 0
     finally:

@@ -11,7 +11,18 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from vibroimpact.cli.completion import complete_case
-from vibroimpact.cli.shared import Json, app, console, fail, interrupt_flag, note, quantity_in, say, show, stem
+from vibroimpact.cli.shared import (
+    Json,
+    app,
+    console,
+    fail,
+    interrupt_flag,
+    note,
+    quantity_in,
+    say,
+    show,
+    stem,
+)
 from vibroimpact.errors import InputError
 from vibroimpact.shown import shown
 
@@ -25,26 +36,59 @@ MOST_BYTES_UNCONFIRMED = 10e9
 """Size of the results on disk above which a study must be confirmed [byte]."""
 
 
-Output = Annotated[Path | None, typer.Option("-o", "--output", metavar="DIR", help="The folder to make; by default STUDY-sweep.")]
-Resume = Annotated[bool, typer.Option("--resume", help="Continue the study in the folder, or start it if there is none.")]
+Output = Annotated[
+    Path | None,
+    typer.Option(
+        "-o", "--output", metavar="DIR", help="The folder to make; by default STUDY-sweep."
+    ),
+]
+Resume = Annotated[
+    bool,
+    typer.Option(
+        "--resume", help="Continue the study in the folder, or start it if there is none."
+    ),
+]
 Force = Annotated[bool, typer.Option("--force", help="Replace the folder of an existing study.")]
 Yes = Annotated[
     bool,
-    typer.Option("--yes", help=f"Confirm more than {MOST_DROPS_UNCONFIRMED:,} drops, or {MOST_BYTES_UNCONFIRMED / 1e9:g} GB of results."),
+    typer.Option(
+        "--yes",
+        help=f"Confirm more than {MOST_DROPS_UNCONFIRMED:,} drops, or "
+        f"{MOST_BYTES_UNCONFIRMED / 1e9:g} GB of results.",
+    ),
 ]
-Processes = Annotated[int | None, typer.Option("--processes", metavar="N", min=1, help="Number of processes; by default one per core.")]
+Processes = Annotated[
+    int | None,
+    typer.Option(
+        "--processes", metavar="N", min=1, help="Number of processes; by default one per core."
+    ),
+]
 Scheduler = Annotated[
     str | None,
-    typer.Option("--scheduler", metavar="ADDRESS", help='Dask scheduler, such as tcp://10.0.0.5:8786; "local" starts one on this machine.'),
+    typer.Option(
+        "--scheduler",
+        metavar="ADDRESS",
+        help='Dask scheduler, such as tcp://10.0.0.5:8786; "local" starts one on this machine.',
+    ),
 ]
 Memory = Annotated[
-    str, typer.Option("--memory", metavar="SIZE", help="Memory that each process may use for the drops that it computes at once.")
+    str,
+    typer.Option(
+        "--memory",
+        metavar="SIZE",
+        help="Memory that each process may use for the drops that it computes at once.",
+    ),
 ]
 
 
 @app.command()
 def sweep(
-    study: Annotated[str, typer.Argument(metavar="STUDY", autocompletion=complete_case, help="A case with a [sweep] section.")],
+    study: Annotated[
+        str,
+        typer.Argument(
+            metavar="STUDY", autocompletion=complete_case, help="A case with a [sweep] section."
+        ),
+    ],
     output: Output = None,
     resume: Resume = False,
     force: Force = False,
@@ -56,22 +100,40 @@ def sweep(
 ) -> None:
     """Run a parameter study on all cores, or on a Dask cluster.
 
-    The [sweep] section of the case specifies the swept keys. Completed drops are kept if the study is interrupted; --resume continues it.
+    The [sweep] section of the case specifies the swept keys. Completed drops are kept if the study
+    is interrupted; --resume continues it.
     """
-    options = {"resume": resume, "force": force, "yes": yes, "processes": processes, "memory": memory}
+    options = {
+        "resume": resume,
+        "force": force,
+        "yes": yes,
+        "processes": processes,
+        "memory": memory,
+    }
     _interruptible("sweep", study, output, None, scheduler, as_json=as_json, **options)
 
 
 @app.command()
 def dataset(
     study: Annotated[
-        str, typer.Argument(metavar="STUDY", autocompletion=complete_case, help="A case with a [sweep] section that has classes.")
+        str,
+        typer.Argument(
+            metavar="STUDY",
+            autocompletion=complete_case,
+            help="A case with a [sweep] section that has classes.",
+        ),
     ],
     output: Annotated[
-        Path | None, typer.Option("-o", "--output", metavar="DIR", help="The folder to make; by default STUDY-dataset.")
+        Path | None,
+        typer.Option(
+            "-o", "--output", metavar="DIR", help="The folder to make; by default STUDY-dataset."
+        ),
     ] = None,
     samples: Annotated[
-        int | None, typer.Option("--samples", metavar="N", min=1, help="Number of falls; by default that of the study.")
+        int | None,
+        typer.Option(
+            "--samples", metavar="N", min=1, help="Number of falls; by default that of the study."
+        ),
     ] = None,
     resume: Resume = False,
     force: Force = False,
@@ -83,24 +145,50 @@ def dataset(
 ) -> None:
     """Compute a data set of labelled signals. It has falls of rocks of several classes.
 
-    Completed falls are kept if it is interrupted; --resume continues it. "vibroimpact recognise" trains classifiers on it.
+    Completed falls are kept if it is interrupted; --resume continues it. "vibroimpact recognise"
+    trains classifiers on it.
     """
-    options = {"resume": resume, "force": force, "yes": yes, "processes": processes, "memory": memory}
+    options = {
+        "resume": resume,
+        "force": force,
+        "yes": yes,
+        "processes": processes,
+        "memory": memory,
+    }
     _interruptible("dataset", study, output, samples, scheduler, as_json=as_json, **options)
 
 
 def _interruptible(
-    command: str, study: str, output: Path | None, samples: int | None, scheduler: str | None, *, as_json: bool, **options: Any
+    command: str,
+    study: str,
+    output: Path | None,
+    samples: int | None,
+    scheduler: str | None,
+    *,
+    as_json: bool,
+    **options: Any,
 ) -> None:
     """Run a study; after Ctrl-C tell the command that goes on."""
     target = Path(f"{stem(study)}-{command}") if output is None else output
     told = "" if scheduler is None else f" --scheduler {shlex.quote(scheduler)}"
     told += "" if samples is None else f" --samples {samples}"
-    again = f"vibroimpact {command} {shlex.quote(study)} -o {shlex.quote(str(target))} --resume{told}"
+    again = (
+        f"vibroimpact {command} {shlex.quote(study)} -o {shlex.quote(str(target))} --resume{told}"
+    )
     message = f"interrupted; completed drops are kept; continue with: {again}"
     try:
-        with interrupt_flag(message) as stopped:  # entered first, so that no Ctrl-C is lost during imports
-            _run_sweep(command, study, target, stopped, samples=samples, scheduler=scheduler, as_json=as_json, **options)
+        # entered first, so that no Ctrl-C is lost during imports
+        with interrupt_flag(message) as stopped:
+            _run_sweep(
+                command,
+                study,
+                target,
+                stopped,
+                samples=samples,
+                scheduler=scheduler,
+                as_json=as_json,
+                **options,
+            )
     except KeyboardInterrupt:
         fail(message, 130)
 
@@ -145,7 +233,10 @@ def _run_sweep(
     _check_confirmed(study, found, yes=yes or (resume and has_study(target)))
     for doubt in sweep_slips(found):
         note(f"doubt: {doubt}")  # before the computation, not only in the report
-    with patient_progress("computing modes", screen) as modes, counting_progress("drops", screen) as count:
+    with (
+        patient_progress("computing modes", screen) as modes,
+        counting_progress("drops", screen) as count,
+    ):
 
         def raise_if_stopped() -> None:
             if stopped():
@@ -173,30 +264,51 @@ def _run_sweep(
             tell=note,
         )
     done = read_study(folder)
-    show(lambda: {"folder": str(folder), **study_document(done)}, lambda: study_summary(done, screen.width), as_json=as_json)
+    show(
+        lambda: {"folder": str(folder), **study_document(done)},
+        lambda: study_summary(done, screen.width),
+        as_json=as_json,
+    )
     written = ["study.nc", *(["card.md"] if done.labels else []), "report.html"]
-    say(f"wrote {', '.join(str(folder / name) for name in written[:-1])} and {folder / written[-1]}", err=as_json)
+    say(
+        f"wrote {', '.join(str(folder / name) for name in written[:-1])} and "
+        f"{folder / written[-1]}",
+        err=as_json,
+    )
 
 
 def _check_labelled(study: str, found: Sweep) -> None:
     """Raise InputError if a study has no classes, or does not keep signals."""
     if found.population is None:
-        words = 'a data set has classes: give design = "population" and tables such as [sweep.classes.coal.over]'
+        words = (
+            'a data set has classes: give design = "population" and tables such as '
+            "[sweep.classes.coal.over]"
+        )
         raise InputError(f"{study}: sweep.design: {words}")
     if "signals" not in found.section.keep:
-        raise InputError(f'{study}: sweep.keep: a data set has signals, and these are not kept; give keep = ["signals"]')
+        raise InputError(
+            f"{study}: sweep.keep: a data set has signals, and these are not kept; give "
+            'keep = ["signals"]'
+        )
 
 
 def _check_confirmed(study: str, found: Sweep, *, yes: bool) -> None:
     """Raise InputError if a study is large and not confirmed."""
     if found.size > MOST_DROPS_UNCONFIRMED and not yes:
         raise InputError(
-            f"{study}: there would be {found.size:,} drops, more than {MOST_DROPS_UNCONFIRMED:,}; confirm that they are wanted with --yes"
+            f"{study}: there would be {found.size:,} drops, more than "
+            f"{MOST_DROPS_UNCONFIRMED:,}; confirm that they are wanted with --yes"
         )
     if found.bytes > MOST_BYTES_UNCONFIRMED and not yes:
-        words = f"the results would take about {found.bytes / 1e9:.3g} GB, more than {MOST_BYTES_UNCONFIRMED / 1e9:g} GB"
+        words = (
+            f"the results would take about {found.bytes / 1e9:.3g} GB, more than "
+            f"{MOST_BYTES_UNCONFIRMED / 1e9:g} GB"
+        )
         keep = shown(list(found.section.keep))
-        raise InputError(f"{study}: {words}; confirm that they are wanted with --yes, or keep less: sweep.keep is {keep}")
+        raise InputError(
+            f"{study}: {words}; confirm that they are wanted with --yes, or keep less: "
+            f"sweep.keep is {keep}"
+        )
 
 
 def _cores() -> int:

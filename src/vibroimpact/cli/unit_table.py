@@ -21,7 +21,9 @@ _SYSTEMS: dict[str, dict[str, str]] = {
     "cm, g, dyn, s (cgs)": {"force": "dyn", "mass": "g", "length": "cm", "time": "s"},
     "in, lb, lbf, s (Adams IPS)": {"force": "lbf", "mass": "lb", "length": "in", "time": "s"},
 }
-"""Unit systems with the unit of each dimension; where force is not mass length / time^2, contact parameters contain the unit of force."""
+"""Unit systems with the unit of each dimension; where force is not mass length / time^2,
+contact parameters contain the unit of force.
+"""
 
 
 def in_unit_systems(value: float, unit: str) -> list[tuple[str, float, str]]:
@@ -30,7 +32,8 @@ def in_unit_systems(value: float, unit: str) -> list[tuple[str, float, str]]:
     Raises
     ------
     InputError
-        If the unit is unknown, dimensionless, or has other dimensions than force, mass, length and time.
+        If the unit is unknown, dimensionless, or has other dimensions than force, mass, length and
+        time.
 
     Examples
     --------
@@ -41,7 +44,8 @@ def in_unit_systems(value: float, unit: str) -> list[tuple[str, float, str]]:
     others = dimension.keys() - _SYSTEMS["SI"].keys()
     if others or not dimension:
         raise InputError(
-            f'"{unit}" holds {", ".join(sorted(others)) or "no dimension"}; only units of force, mass, length and time are shown'
+            f'"{unit}" holds {", ".join(sorted(others)) or "no dimension"}; only units of '
+            "force, mass, length and time are shown"
         )
     found = []
     for name, units in _SYSTEMS.items():
@@ -61,7 +65,10 @@ def converted(value: float, unit: str, to: str) -> RenderableType:
     there = convert_units(value, unit, to)
     power = dimension_of(unit).get("length", 0.0)
     from_metres = value != 0.0 and abs(there / value * 1000.0**-power - 1.0) < 1e-9
-    return Group(Text(f"{number_text(value)} {unit} = {number_text(there)} {to}"), *(_power_note(unit) if from_metres else []))
+    return Group(
+        Text(f"{number_text(value)} {unit} = {number_text(there)} {to}"),
+        *(_power_note(unit) if from_metres else []),
+    )
 
 
 def unit_table(value: float, unit: str) -> RenderableType:
@@ -75,7 +82,11 @@ def unit_table(value: float, unit: str) -> RenderableType:
     names, values, there = zip(*in_unit_systems(value, unit), strict=True)
     shown = [number_text(one) for one in values]
     table = TerminalTable(
-        [TerminalColumn("unit system", names, text=True), TerminalColumn("number", shown), TerminalColumn("unit", there, text=True)]
+        [
+            TerminalColumn("unit system", names, text=True),
+            TerminalColumn("number", shown),
+            TerminalColumn("unit", there, text=True),
+        ]
     )
     return Group(Text(f"{number_text(value)} {unit}", style="bold"), table, *_power_note(unit))
 
@@ -96,7 +107,10 @@ def unit_document(value: float, unit: str, to: str | None = None) -> dict[str, A
     if to is not None:
         found = [{"number": convert_units(value, unit, to), "unit": to}]
     else:
-        found = [{"unit_system": name, "number": number, "unit": there} for name, number, there in in_unit_systems(value, unit)]
+        found = [
+            {"unit_system": name, "number": number, "unit": there}
+            for name, number, there in in_unit_systems(value, unit)
+        ]
     return {"number": value, "unit": unit, "converted": found}
 
 
@@ -112,11 +126,19 @@ def number_text(number: float) -> str:
 
 
 def _power_note(unit: str) -> list[RenderableType]:
-    """Return the note on a common error by hand: a length to the power p converts with the factor to the power p."""
+    """Return the note on a common error by hand: a length to the power p converts with
+    the factor to the power p.
+    """
     dimension = dimension_of(unit)
     power = dimension.get("length", 0.0)
     if "force" not in dimension or power in (0.0, 1.0):
         return []
     does, size = ("divided" if power < 0.0 else "multiplied"), abs(power)
     factor = f"1000^{size:g} = {number_text(1000.0**size)}, not by 1000" if size != 1.0 else "1000"
-    return [Text(f" From metres to millimetres the number is {does} by {factor}: length has the power {power:g} in it.", style="dim")]
+    return [
+        Text(
+            f" From metres to millimetres the number is {does} by {factor}: length has the "
+            f"power {power:g} in it.",
+            style="dim",
+        )
+    ]

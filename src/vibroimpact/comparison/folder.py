@@ -1,4 +1,6 @@
-"""Writes a comparison of contact laws as a folder: data and report, and figures where they are asked for."""
+"""Writes a comparison of contact laws as a folder: data and report, and figures where
+they are asked for.
+"""
 
 from __future__ import annotations
 
@@ -26,7 +28,13 @@ from vibroimpact.results.csv_files import impact_rows, write_csv
 from vibroimpact.results.folder import new_folder, write_summary
 
 
-def save_comparison(comparison: Comparison, directory: str | PathLike[str], *, force: bool = False, figures: Sequence[str] = ()) -> Path:
+def save_comparison(
+    comparison: Comparison,
+    directory: str | PathLike[str],
+    *,
+    force: bool = False,
+    figures: Sequence[str] = (),
+) -> Path:
     """Write a comparison atomically: `comparison.csv`, `summary.json`, the cases and a report.
 
     Parameters
@@ -38,7 +46,8 @@ def save_comparison(comparison: Comparison, directory: str | PathLike[str], *, f
     force : bool, default False
         Replace an existing result folder.
     figures : sequence of str
-        Formats in which the charts are also written as files, into a folder `figures`: of "png", "svg" and "pdf".
+        Formats in which the charts are also written as files, into a folder `figures`: of "png",
+        "svg" and "pdf".
 
     Raises
     ------
@@ -51,17 +60,27 @@ def save_comparison(comparison: Comparison, directory: str | PathLike[str], *, f
     >>> import vibroimpact as vi
     >>> comparison = vi.compare_laws(vi.load_case("paper:type1-theory"), ["tsuji", "flores"])
     >>> with TemporaryDirectory() as folder:
-    ...     sorted(file.name for file in vi.save_comparison(comparison, f"{folder}/compared").iterdir())
+    ...     sorted(
+    ...         file.name for file in vi.save_comparison(comparison, f"{folder}/compared").iterdir()
+    ...     )
     ['cases', 'comparison.csv', 'report.html', 'summary.json']
     """
     with new_folder(directory, force=force) as folder:
-        rows = [{"law": name, **row} for name, one in comparison.results.items() for row in impact_rows(one.impacts)]
-        columns = impact_columns(name for one in comparison.results.values() for name in one.impacts)
+        rows = [
+            {"law": name, **row}
+            for name, one in comparison.results.items()
+            for row in impact_rows(one.impacts)
+        ]
+        columns = impact_columns(
+            name for one in comparison.results.values() for name in one.impacts
+        )
         write_csv(rows, ["law", *columns], folder / "comparison.csv")
         write_summary(summary_of_comparison(comparison), folder)
         (folder / "cases").mkdir()
         for name, one in comparison.results.items():
-            (folder / "cases" / f"{name}.toml").write_text(tomli_w.dumps(one.case), encoding="utf-8")
+            (folder / "cases" / f"{name}.toml").write_text(
+                tomli_w.dumps(one.case), encoding="utf-8"
+            )
         charts = comparison_charts(comparison)
         write_figures(charts, folder, figures)
         headers, cells = comparison_table(comparison)
@@ -72,7 +91,10 @@ def save_comparison(comparison: Comparison, directory: str | PathLike[str], *, f
             subtitle=comparison_subtitle(comparison),
             headers=headers,
             rows=cells,
-            free=[(name, free_parameter_words(law), comparison.results[name].status) for name, law in comparison.laws.items()],
+            free=[
+                (name, free_parameter_words(law), comparison.results[name].status)
+                for name, law in comparison.laws.items()
+            ],
             doubts=comparison_doubts(comparison),
             version=__version__,
         )

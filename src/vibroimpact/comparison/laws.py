@@ -21,14 +21,22 @@ from vibroimpact.ranges import Range
 from vibroimpact.shown import shown
 
 _BESIDE_THE_LAW = (*LocalSection.model_fields, "friction")
-"""Keys of the [contact] section that stay under each law: the liquid, friction, and how the law is combined with elastic bodies."""
+"""Keys of the [contact] section that stay under each law: the liquid, friction, and how
+the law is combined with elastic bodies.
+"""
 
 
-def cases_under(case: Case, laws: Iterable[str], given: Mapping[str, Any] | None = None, achieving: float | None = None) -> dict[str, Case]:
+def cases_under(
+    case: Case,
+    laws: Iterable[str],
+    given: Mapping[str, Any] | None = None,
+    achieving: float | None = None,
+) -> dict[str, Case]:
     """Return a case under each of several contact laws.
 
-    A law takes each parameter from `given`, or else from the law of the case where that has one of the same name and unit, or else
-    from the bodies. Friction, a liquid and the treatment of local indentation are those of the case.
+    A law takes each parameter from `given`, or else from the law of the case where that has one of
+    the same name and unit, or else from the bodies. Friction, a liquid and the treatment of local
+    indentation are those of the case.
 
     Parameters
     ----------
@@ -37,10 +45,11 @@ def cases_under(case: Case, laws: Iterable[str], given: Mapping[str, Any] | None
     laws : iterable of str
         Names of laws.
     given : mapping of str, optional
-        Parameters, as a case file would hold them: "KEY" for every law that has it, "LAW.KEY" for one.
+        Parameters, as a case file would hold them: "KEY" for every law that has it, "LAW.KEY" for
+        one.
     achieving : float, optional
-        Give each law the value of its free parameter with which it achieves this restitution [-] at the speed of the first impact, without
-        gravity, and without the losses in a liquid.
+        Give each law the value of its free parameter with which it achieves this restitution [-] at
+        the speed of the first impact, without gravity, and without the losses in a liquid.
 
     Returns
     -------
@@ -50,13 +59,15 @@ def cases_under(case: Case, laws: Iterable[str], given: Mapping[str, Any] | None
     Raises
     ------
     InputError
-        If a law or key is unknown, a parameter is missing, or a law can't achieve the restitution. A law without a free parameter
-        is not tuned.
+        If a law or key is unknown, a parameter is missing, or a law can't achieve the restitution.
+        A law without a free parameter is not tuned.
 
     Examples
     --------
     >>> from vibroimpact.cases.reader import load_case
-    >>> cases = cases_under(load_case("paper:type1-theory"), ["hertz", "flores"], {"flores.restitution": 0.7})
+    >>> cases = cases_under(
+    ...     load_case("paper:type1-theory"), ["hertz", "flores"], {"flores.restitution": 0.7}
+    ... )
     >>> cases["flores"].contact.parameters["restitution"]
     0.7
     """
@@ -64,7 +75,9 @@ def cases_under(case: Case, laws: Iterable[str], given: Mapping[str, Any] | None
     if not names:
         raise InputError("name at least one contact law")
     if achieving is not None:
-        Range(at_least=0, at_most=1).check(achieving, shown=f"a restitution of {achieving:g} to achieve")
+        Range(at_least=0, at_most=1).check(
+            achieving, shown=f"a restitution of {achieving:g} to achieve"
+        )
     for name in names:
         if names.count(name) > 1:
             raise InputError(f'"{name}" is named twice; a law can only be compared with others')
@@ -73,7 +86,9 @@ def cases_under(case: Case, laws: Iterable[str], given: Mapping[str, Any] | None
     return {name: _case_under(case, law, table, achieving) for name, law in classes.items()}
 
 
-def _case_under(case: Case, law: type[ContactLaw], given: Mapping[str, Any], achieving: float | None) -> Case:
+def _case_under(
+    case: Case, law: type[ContactLaw], given: Mapping[str, Any], achieving: float | None
+) -> Case:
     known = {item.name: item for item in fields(law)}
     own = {item.name: item for item in fields(find_contact_law(case.contact.law))}
     contact: dict[str, Any] = {"law": law.name}
@@ -86,7 +101,8 @@ def _case_under(case: Case, law: type[ContactLaw], given: Mapping[str, Any], ach
         if value is not None:
             contact[key] = value
         elif achieving is not None and not _can_be_left_out(case, law, contact, item):
-            contact[key] = item.metadata["example"]  # placeholder, valid only for the parameter that is tuned
+            # placeholder, valid only for the parameter that is tuned
+            contact[key] = item.metadata["example"]
             placeholders.append(key)
     own_name = case.name or "a drop"  # it may mention the law of the case
     named = own_name if law.name == case.contact.law else f"{law.name} on the drop of: {own_name}"
@@ -96,8 +112,13 @@ def _case_under(case: Case, law: type[ContactLaw], given: Mapping[str, Any], ach
     try:
         found = read_case(table)
         tuned = contact_laws_of(found)[0].free_parameter
-        if any(key != tuned for key in placeholders):  # placeholders of other parameters are dropped, so that these are reported as missing
-            table["contact"] = {key: value for key, value in table["contact"].items() if key not in placeholders or key == tuned}
+        # placeholders of other parameters are dropped, so that these are reported as missing
+        if any(key != tuned for key in placeholders):
+            table["contact"] = {
+                key: value
+                for key, value in table["contact"].items()
+                if key not in placeholders or key == tuned
+            }
             found = read_case(table)
         if achieving is None or tuned is None:
             return found
@@ -105,41 +126,72 @@ def _case_under(case: Case, law: type[ContactLaw], given: Mapping[str, Any], ach
             raise InputError(f"{tuned} is tuned to achieve {achieving:g}, so it can't be given too")
         return _tuned(found, table, tuned, achieving)
     except InputError as error:
-        hint = " (give parameters with LAW.KEY=VALUE)" if "missing" in error.message or "needs" in error.message else ""
+        hint = (
+            " (give parameters with LAW.KEY=VALUE)"
+            if "missing" in error.message or "needs" in error.message
+            else ""
+        )
         raise InputError(f"{law.name}: {str(error).removeprefix(f'{law.name} ')}{hint}") from None
 
 
-def _can_be_left_out(case: Case, law: type[ContactLaw], contact: Mapping[str, Any], item: Field[Any]) -> bool:
-    """Return whether a parameter is given, has no typical value, a default, or another one that is given in its place."""
+def _can_be_left_out(
+    case: Case, law: type[ContactLaw], contact: Mapping[str, Any], item: Field[Any]
+) -> bool:
+    """Return whether a parameter is given, has no typical value, a default, or another
+    one that is given in its place.
+    """
     if item.name in contact or item.metadata["example"] is None:
         return True
     if item.default is not None:
         return item.default is not MISSING
     try:
-        law.for_pair(contact_pair(case), **{key: value for key, value in contact.items() if isinstance(value, (int, float, list))})
+        law.for_pair(
+            contact_pair(case),
+            **{
+                key: value
+                for key, value in contact.items()
+                if isinstance(value, (int, float, list))
+            },
+        )
     except InputError:
         return False
     return True
 
 
 def _tuned(case: Case, table: Mapping[str, Any], parameter: str, achieving: float) -> Case:
-    """Return a case with the free parameter of its law tuned to a restitution at the speed of the first impact."""
+    """Return a case with the free parameter of its law tuned to a restitution at the
+    speed of the first impact.
+    """
     law, speed = contact_laws_of(case)[0], touch_speed(case)
     tuned = law_achieving(law, achieving, contact_pair(case).effective_mass, speed)
-    return read_case({**table, "contact": {**table["contact"], parameter: getattr(tuned, parameter)}})
+    return read_case(
+        {**table, "contact": {**table["contact"], parameter: getattr(tuned, parameter)}}
+    )
 
 
 def _check_given(given: Mapping[str, Any], laws: Mapping[str, type[ContactLaw]]) -> None:
-    """Raise InputError unless every given parameter belongs to a compared law, with one unit in all of them."""
+    """Raise InputError unless every given parameter belongs to a compared law, with one
+    unit in all of them.
+    """
     keys = {item.name for law in laws.values() for item in fields(law)}
     known = [*keys, *(f"{name}.{item.name}" for name, law in laws.items() for item in fields(law))]
     for key, value in given.items():
         if key not in known:
-            raise InputError(f"{shown(key)} is not a parameter of {', '.join(laws)}.{did_you_mean(key, known)}")
-        units = {name: _unit(item) for name, law in laws.items() for item in fields(law) if item.name == key}
+            raise InputError(
+                f"{shown(key)} is not a parameter of {', '.join(laws)}.{did_you_mean(key, known)}"
+            )
+        units = {
+            name: _unit(item)
+            for name, law in laws.items()
+            for item in fields(law)
+            if item.name == key
+        }
         if len(set(units.values())) > 1 and not isinstance(value, str):
             of_each = ", ".join(f"{name} [{unit}]" for name, unit in units.items())
-            raise InputError(f'"{key}" does not have the same unit in all laws: {of_each}; give LAW.{key} for each')
+            raise InputError(
+                f'"{key}" does not have the same unit in all laws: {of_each}; give '
+                f"LAW.{key} for each"
+            )
 
 
 def _unit(item: Field[Any]) -> str:

@@ -1,4 +1,6 @@
-"""The code of one compiled function on the disk, which numba asks for before it compiles, and keeps afterwards."""
+"""The code of one compiled function on the disk, which numba asks for before it compiles,
+and keeps afterwards.
+"""
 
 from __future__ import annotations
 
@@ -18,10 +20,11 @@ from vibroimpact.compiler.symbols import are_linked, called_by_symbol
 
 
 class CodeCache(caching._Cache):  # type: ignore[misc]
-    """Compiled code of a function in the project's own folder, under its digest; damage counts as absence.
+    """Compiled code of a function in the project's own folder, under its digest; damage counts as
+    absence.
 
-    Numba's own cache looks at the file of a function and not at its callees, does not survive damaged files, and takes a folder for all
-    that use numba in this process.
+    Numba's own cache looks at the file of a function and not at its callees, does not survive
+    damaged files, and takes a folder for all that use numba in this process.
 
     Parameters
     ----------
@@ -42,7 +45,9 @@ class CodeCache(caching._Cache):  # type: ignore[misc]
         self.trouble = ""
         """Why the code is not on the disk, or ""."""
         self.size = 0
-        """Size of the machine code [bytes], once it is compiled or loaded; 0 if it can't be kept."""
+        """Size of the machine code [bytes], once it is compiled or loaded; 0 if it can't
+        be kept.
+        """
 
     @property
     def cache_path(self) -> str:
@@ -104,7 +109,8 @@ def _size_of(parts: tuple[Any, ...]) -> int:
 def _register_runtime(target_context: Any) -> None:
     """Make numba's memory manager known to the linker, which is all that loading needs.
 
-    `refresh`, which numba calls here, loads the modules with all that it can compile, for a tenth of a second or two.
+    `refresh`, which numba calls here, loads the modules with all that it can compile, for a tenth
+    of a second or two.
     """
     try:
         for name, address in _nrt_python.c_helpers.items():
@@ -114,7 +120,9 @@ def _register_runtime(target_context: Any) -> None:
 
 
 class _Unpickler(pickle.Unpickler):
-    """Reads code without loading the modules of numba that it was made by, for a tenth of a second or two."""
+    """Reads code without loading the modules of numba that it was made by, for a tenth of
+    a second or two.
+    """
 
     def find_class(self, module: str, name: str) -> Any:
         if (module, name) == (environment.__name__, "_rebuild_env"):
@@ -123,7 +131,9 @@ class _Unpickler(pickle.Unpickler):
 
 
 def _environment(module: str, constants: list[Any], name: str) -> Any:
-    """Return what numba keeps for a function: its globals, which only interpreted parts read, and its constants."""
+    """Return what numba keeps for a function: its globals, which only interpreted parts
+    read, and its constants.
+    """
     if module in sys.modules or not module.startswith("numba."):
         return environment._rebuild_env(module, constants, name)
     kept = environment.lookup_environment(name)

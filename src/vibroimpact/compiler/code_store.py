@@ -1,7 +1,8 @@
 """Compiled code on disk, in a folder for each combination of processor, Python, NumPy and compiler.
 
-A file is a SHA-256 followed by code; one that is damaged counts as absent. Files are named by a digest of what they were compiled from,
-so that none is ever out of date, and the least recently used are removed where all take more room than `LARGEST`.
+A file is a SHA-256 followed by code; one that is damaged counts as absent. Files are named by a
+digest of what they were compiled from, so that none is ever out of date, and the least recently
+used are removed where all take more room than `LARGEST`.
 """
 
 from __future__ import annotations
@@ -26,7 +27,9 @@ PLACE = "VIBROIMPACT_CODE_STORE"
 """Environment variable with the folder of compiled code."""
 
 FORMAT = 3
-"""Part of every folder's name: to be increased when the files, or the options of the compiler, change."""
+"""Part of every folder's name: to be increased when the files, or the options of the
+compiler, change.
+"""
 
 LARGEST = 100_000_000
 """Largest size of the store [bytes]."""
@@ -37,7 +40,9 @@ _LONGEST_WAIT = 300.0  # seconds
 
 
 def code_folder() -> Path:
-    """Return the folder of compiled code: that of the environment variable VIBROIMPACT_CODE_STORE, else one in the user's cache."""
+    """Return the folder of compiled code: that of the environment variable
+    VIBROIMPACT_CODE_STORE, else one in the user's cache.
+    """
     from platformdirs import user_cache_path
 
     given = os.environ.get(PLACE)
@@ -91,7 +96,9 @@ def save_code(folder: Path, name: str, data: bytes) -> str:
 
 @contextmanager
 def compiling_alone(folder: Path) -> Iterator[None]:
-    """Wait while another process compiles, so that it is done once, and its code is found afterwards."""
+    """Wait while another process compiles, so that it is done once, and its code is found
+    afterwards.
+    """
     with suppress(OSError):
         folder.mkdir(parents=True, exist_ok=True)
     with alone(folder, _LONGEST_WAIT):

@@ -1,4 +1,6 @@
-"""A function that is compiled when it is first called, and for which numba is not loaded before that."""
+"""A function that is compiled when it is first called, and for which numba is not loaded
+before that.
+"""
 
 from __future__ import annotations
 
@@ -16,7 +18,9 @@ INTERPRETING = ContextVar("INTERPRETING", default=False)
 
 @contextmanager
 def interpreted() -> Iterator[None]:
-    """Run functions of the core as plain Python, for a computation so short that loading numba would take longer."""
+    """Run functions of the core as plain Python, for a computation so short that loading
+    numba would take longer.
+    """
     token = INTERPRETING.set(True)
     try:
         yield
@@ -37,7 +41,12 @@ class DeferredFunction:
         Returns why nothing is compiled, or "".
     """
 
-    def __init__(self, function: Callable[..., Any], signature: Callable[[Any], Any], why_not: Callable[[], str]) -> None:
+    def __init__(
+        self,
+        function: Callable[..., Any],
+        signature: Callable[[Any], Any],
+        why_not: Callable[[], str],
+    ) -> None:
         update_wrapper(self, function)
         self.py_func = function
         self._signature = signature
@@ -46,7 +55,9 @@ class DeferredFunction:
 
     @cached_property
     def compiled(self) -> Any:
-        """The compiled function, as Python calls it; the Python function if numba turns out not to load."""
+        """The compiled function, as Python calls it; the Python function if numba turns
+        out not to load.
+        """
         if self._why_not():
             return self.py_func
         from vibroimpact.compiler.functions import CompiledFunction
@@ -61,7 +72,8 @@ class DeferredFunction:
         return CompiledFunction(self.py_func, self._signature, inner=True)
 
     @property
-    def _numba_type_(self) -> Any:  # what numba asks for where a function that it compiles calls this one
+    # what numba asks for where a function that it compiles calls this one
+    def _numba_type_(self) -> Any:
         return self.inner._numba_type_
 
     def __call__(self, *arguments: Any) -> Any:

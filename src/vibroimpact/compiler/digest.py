@@ -1,4 +1,6 @@
-"""The digest of a function: its code, and everything that compiled code takes from outside of it."""
+"""The digest of a function: its code, and everything that compiled code takes from
+outside of it.
+"""
 
 from __future__ import annotations
 
@@ -10,7 +12,9 @@ from typing import Any, cast
 import numpy as np
 
 _KNOWN_PACKAGES = ("numpy", "math", "cmath", "operator", "builtins", "numba", "llvmlite")
-"""Packages whose versions are in the name of the folder, so that their functions need only be named."""
+"""Packages whose versions are in the name of the folder, so that their functions need
+only be named.
+"""
 
 
 _OWN_PACKAGE = "vibroimpact"
@@ -33,10 +37,13 @@ class Digest:
     Raises
     ------
     NotDigestible
-        If it refers to something other than functions, modules, types, numbers, strings, arrays, and tuples of them.
+        If it refers to something other than functions, modules, types, numbers, strings, arrays,
+        and tuples of them.
     """
 
-    def __init__(self, function: Callable[..., Any], replaced: Mapping[Any, Callable[..., Any]]) -> None:
+    def __init__(
+        self, function: Callable[..., Any], replaced: Mapping[Any, Callable[..., Any]]
+    ) -> None:
         self.is_own = True
         """Are all functions those of this package, or of NumPy and the like?"""
         self._replaced = replaced
@@ -46,7 +53,9 @@ class Digest:
 
     @property
     def text(self) -> str:
-        """A hash that changes whenever the compiled code may: with the function, its callees, or the constants that they use."""
+        """A hash that changes whenever the compiled code may: with the function, its
+        callees, or the constants that they use.
+        """
         return hashlib.sha256("\n".join(self._words).encode()).hexdigest()[:32]
 
     def _add(self, value: Any) -> None:
@@ -62,13 +71,19 @@ class Digest:
             self._words.append(f"{type(value).__qualname__} of {len(value)}")
             for member in value:
                 self._add(member)
-        elif isinstance(value, bool | int | float | complex | str | bytes | np.generic) or value is None:
+        elif (
+            isinstance(value, bool | int | float | complex | str | bytes | np.generic)
+            or value is None
+        ):
             self._words.append(f"{type(value).__qualname__} {value!r}")
         elif isinstance(value, ModuleType):
             self._words.append(f"module {value.__name__}")
         elif isinstance(value, type) and issubclass(value, tuple):
             self._words.append(f"{value.__qualname__} {getattr(value, '_fields', ())}")
-        elif isinstance(value, type | BuiltinFunctionType | np.ufunc) or _package(value) in _KNOWN_PACKAGES:
+        elif (
+            isinstance(value, type | BuiltinFunctionType | np.ufunc)
+            or _package(value) in _KNOWN_PACKAGES
+        ):
             self._words.append(f"{_package(value)} {getattr(value, '__qualname__', value)!r}")
         else:
             raise NotDigestible(f"{type(value).__qualname__} {value!r}")
@@ -105,14 +120,25 @@ def _package(value: Any) -> str:
 
 
 def _used(function: FunctionType) -> list[tuple[str, Any]]:
-    """Return what a function takes from outside: globals, variables of functions around it, and members of modules."""
+    """Return what a function takes from outside: globals, variables of functions around
+    it, and members of modules.
+    """
     names = set(_names(function.__code__))
     values = {name: function.__globals__[name] for name in names if name in function.__globals__}
     for name, cell in zip(function.__code__.co_freevars, function.__closure__ or (), strict=True):
         values[name] = cell.cell_contents
     new = values
-    while modules := [value for value in new.values() if isinstance(value, ModuleType) and value.__name__ not in _KNOWN_PACKAGES]:
-        members = {f"{module.__name__}.{name}": getattr(module, name) for module in modules for name in names if hasattr(module, name)}
+    while modules := [
+        value
+        for value in new.values()
+        if isinstance(value, ModuleType) and value.__name__ not in _KNOWN_PACKAGES
+    ]:
+        members = {
+            f"{module.__name__}.{name}": getattr(module, name)
+            for module in modules
+            for name in names
+            if hasattr(module, name)
+        }
         new = {name: member for name, member in members.items() if name not in values}
         values = values | new
     return sorted(values.items(), key=lambda item: item[0])

@@ -1,7 +1,8 @@
 """The functions of a contact law as function values, which compiled functions pass on and call.
 
-From Python a law is given by the addresses of its machine code, as numba takes some 40 us to make a function value of an argument; compiled
-code makes one of an address by `force_at` and its like. Without a compiler all of them are the Python function.
+From Python a law is given by the addresses of its machine code, as numba takes some 40 us to make a
+function value of an argument; compiled code makes one of an address by `force_at` and its like.
+Without a compiler all of them are the Python function.
 """
 
 from __future__ import annotations
@@ -22,7 +23,9 @@ LAW_FUNCTIONS = {
     "levels": "scalar_levels",
     "compressed": "scalar_compressed",
 }
-"""The functions of a law, in the order of `law_addresses`, with the attributes of its class that hold them."""
+"""The functions of a law, in the order of `law_addresses`, with the attributes of its
+class that hold them.
+"""
 
 MOST_COEFFICIENTS = 24
 """Largest number of coefficients of a law."""
@@ -30,9 +33,12 @@ MOST_COEFFICIENTS = 24
 _NUMBERS = count(1)
 
 _HELD: WeakValueDictionary[int, Any] = WeakValueDictionary()
-"""Laws without functions of floats, by the numbers by which they are called; no number is given twice."""
+"""Laws without functions of floats, by the numbers by which they are called; no number is
+given twice.
+"""
 
-_MOST_CHANGED = 256  # laws under other memories that are kept, since a law is called many times under each
+# laws under other memories that are kept, since a law is called many times under each
+_MOST_CHANGED = 256
 
 
 def force_at(address: Any) -> Any:
@@ -41,7 +47,9 @@ def force_at(address: Any) -> Any:
 
 
 def energies_at(address: Any) -> Any:
-    """Return the function value of a law's energies at an address; for use in compiled functions."""
+    """Return the function value of a law's energies at an address; for use in compiled
+    functions.
+    """
     return address
 
 
@@ -51,12 +59,17 @@ def levels_at(address: Any) -> Any:
 
 
 def compressed_at(address: Any) -> Any:
-    """Return the function value of a law's change by compression at an address; for use in compiled functions."""
+    """Return the function value of a law's change by compression at an address; for use
+    in compiled functions.
+    """
     return address
 
 
-def multiply_row(room: Any, values: Any, matrices: Any, matrix: Any, width: Any, columns: Any, product: Any) -> None:
-    """Write the product of a row of an array with a matrix into another row; for use in compiled functions.
+def multiply_row(
+    room: Any, values: Any, matrices: Any, matrix: Any, width: Any, columns: Any, product: Any
+) -> None:
+    """Write the product of a row of an array with a matrix into another row; for use in compiled
+    functions.
 
     Parameters
     ----------
@@ -81,8 +94,9 @@ def multiply_row(room: Any, values: Any, matrices: Any, matrix: Any, width: Any,
 def law_coefficients(law: Any) -> Floats:
     """Return the coefficients of a contact law for its functions.
 
-    For a law that has only methods these are a number, by which the law itself is called, and its memories; the law must be kept as long
-    as they are used, those that `compressed` has made of them included.
+    For a law that has only methods these are a number, by which the law itself is called, and its
+    memories; the law must be kept as long as they are used, those that `compressed` has made of
+    them included.
     """
     coefficients = np.zeros(MOST_COEFFICIENTS)
     if type(law).missing_functions():
@@ -95,16 +109,23 @@ def law_coefficients(law: Any) -> Floats:
 
 
 def interpreted_function(law_class: type[Any], kind: str) -> Callable[..., Any]:
-    """Return a function of a law as a Python function of floats and coefficients; `kind`: of `LAW_FUNCTIONS`.
+    """Return a function of a law as a Python function of floats and coefficients; `kind`: of
+    `LAW_FUNCTIONS`.
 
     Of a law that lacks any of the four it is one that calls its methods.
     """
-    function: Callable[..., Any] = _OF_HELD[kind] if law_class.missing_functions() else getattr(law_class, LAW_FUNCTIONS[kind])
+    function: Callable[..., Any] = (
+        _OF_HELD[kind] if law_class.missing_functions() else getattr(law_class, LAW_FUNCTIONS[kind])
+    )
     return function
 
 
-def forces_of_held(delta: float, delta_dot: float, approach_speed: float, coefficients: Any) -> tuple[float, float]:
-    """Return the forces of the law with the number and the memories that `law_coefficients` returned."""
+def forces_of_held(
+    delta: float, delta_dot: float, approach_speed: float, coefficients: Any
+) -> tuple[float, float]:
+    """Return the forces of the law with the number and the memories that
+    `law_coefficients` returned.
+    """
     static, dissipative = _held(coefficients).forces(delta, delta_dot, approach_speed)
     return float(static), float(dissipative)
 
@@ -116,7 +137,9 @@ def energies_of_held(delta: float, coefficients: Any) -> tuple[float, float]:
 
 
 def levels_of_held(coefficients: Any) -> tuple[float, ...]:
-    """Return the levels of such a law; any compression may change a memory, and no more than two breakpoints are known."""
+    """Return the levels of such a law; any compression may change a memory, and no more
+    than two breakpoints are known.
+    """
     law = _held(coefficients)
     touch_level = float(law.touch_level)
     memory_level = touch_level if law.memories() else np.inf
@@ -125,7 +148,8 @@ def levels_of_held(coefficients: Any) -> tuple[float, ...]:
 
 
 def compress_held(deepest: float, coefficients: Any, changed: Any) -> float:
-    """Write the memories of such a law after compression, and return the indentation beyond which they may change again.
+    """Write the memories of such a law after compression, and return the indentation beyond which
+    they may change again.
 
     It is the deepest one, since a law remembers its largest indentation.
     """
@@ -136,7 +160,9 @@ def compress_held(deepest: float, coefficients: Any, changed: Any) -> float:
 
 
 def _number(law: Any) -> int:
-    """Return the number of a law; a copy of a law, which comes with the number of that, gets its own."""
+    """Return the number of a law; a copy of a law, which comes with the number of that,
+    gets its own.
+    """
     number = int(vars(law).get("_number", 0))
     if _HELD.get(number) is not law:
         number = vars(law)["_number"] = next(_NUMBERS)
@@ -156,7 +182,9 @@ def _memories(number: int) -> tuple[str, ...]:
 
 @lru_cache(maxsize=_MOST_CHANGED)
 def _under(number: int, memories: tuple[float, ...]) -> Any:
-    """Return a law under other memories than its own; it lives on here, but its original does not."""
+    """Return a law under other memories than its own; it lives on here, but its original
+    does not.
+    """
     return _HELD[number].changed(dict(zip(_memories(number), memories, strict=True)))
 
 

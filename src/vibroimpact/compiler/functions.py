@@ -1,4 +1,6 @@
-"""Compiled functions: each is compiled, or taken from the disk, when it is first called. Loading this module loads numba."""
+"""Compiled functions: each is compiled, or taken from the disk, when it is first called.
+Loading this module loads numba.
+"""
 
 from __future__ import annotations
 
@@ -24,7 +26,9 @@ from vibroimpact.compiler.notice import say_how_long, say_trouble
 from vibroimpact.compiler.symbols import call_by_symbol, is_large
 
 _OPTIONS = {"error_model": "numpy"}
-"""Division by zero gives infinity, as in NumPy; no `fastmath`, so that sums do not depend on the compiler."""
+"""Division by zero gives infinity, as in NumPy; no `fastmath`, so that sums do not depend
+on the compiler.
+"""
 
 _SECONDS = 6e-4
 """Time to compile a byte of Python's code [s]."""
@@ -37,9 +41,11 @@ _REPLACED: dict[Any, Callable[..., Any]] = {}
 
 
 class CompiledFunction(CPUDispatcher):  # type: ignore[misc]
-    """A function with one signature, compiled when Python calls it, or when a function that calls it is compiled.
+    """A function with one signature, compiled when Python calls it, or when a function that calls
+    it is compiled.
 
-    A function whose code is on the disk holds that of its callees too, so these are then neither compiled nor loaded.
+    A function whose code is on the disk holds that of its callees too, so these are then neither
+    compiled nor loaded.
 
     Parameters
     ----------
@@ -50,16 +56,32 @@ class CompiledFunction(CPUDispatcher):  # type: ignore[misc]
     nogil : bool, default True
         Release the interpreter's lock in calls from Python.
     inner : bool, default False
-        Only compiled code calls it: no code is made that takes the arguments of Python apart, which takes a quarter of all time to compile.
+        Only compiled code calls it: no code is made that takes the arguments of Python apart, which
+        takes a quarter of all time to compile.
     """
 
     is_busy = False
     """Is a function being compiled? Those that it calls are compiled meanwhile."""
     _cache: Any
 
-    def __init__(self, function: Callable[..., Any], signature: Callable[[Any], Any], nogil: bool = True, inner: bool = False) -> None:
+    def __init__(
+        self,
+        function: Callable[..., Any],
+        signature: Callable[[Any], Any],
+        nogil: bool = True,
+        inner: bool = False,
+    ) -> None:
         wrappers = {"no_cfunc_wrapper": inner, "no_cpython_wrapper": inner}
-        super().__init__(function, targetoptions={"nopython": True, "boundscheck": None, "nogil": nogil, **wrappers, **_OPTIONS})
+        super().__init__(
+            function,
+            targetoptions={
+                "nopython": True,
+                "boundscheck": None,
+                "nogil": nogil,
+                **wrappers,
+                **_OPTIONS,
+            },
+        )
         self._signature_of = signature
         self._is_inner = inner
         self._is_ready = False
@@ -94,7 +116,9 @@ class CompiledFunction(CPUDispatcher):  # type: ignore[misc]
             call_by_symbol(self, result)
 
     def _own_number(self) -> int:
-        """Return the number of this function, which is that of its code: other code finds it by a name with this number in any process."""
+        """Return the number of this function, which is that of its code: other code finds
+        it by a name with this number in any process.
+        """
         return self._cache.number if self.is_kept else randbits(_BITS)
 
     @property
@@ -105,7 +129,9 @@ class CompiledFunction(CPUDispatcher):  # type: ignore[misc]
 
     @property
     def is_kept(self) -> bool:
-        """Is the code kept on the disk? So it is unless it depends on something whose content is not known."""
+        """Is the code kept on the disk? So it is unless it depends on something whose
+        content is not known.
+        """
         return isinstance(self._cache, CodeCache)
 
     def is_on_disk(self) -> bool:
@@ -121,7 +147,9 @@ class CompiledFunction(CPUDispatcher):  # type: ignore[misc]
         return bool(self._cache.has_code(self.targetctx))
 
     def _alone(self) -> Any:
-        return compiling_alone(self._cache.folder(self.targetctx)) if self.is_kept else nullcontext()
+        return (
+            compiling_alone(self._cache.folder(self.targetctx)) if self.is_kept else nullcontext()
+        )
 
     def address(self) -> int:
         """Return the address of the machine code, which is valid as long as this object exists."""
@@ -129,7 +157,8 @@ class CompiledFunction(CPUDispatcher):  # type: ignore[misc]
         (result,) = self.overloads.values()
         return int(result.library.get_pointer_to_function(result.fndesc.llvm_func_name))
 
-    # numba's hooks: the first call from Python, a call or a use as function value in a function that is being compiled
+    # numba's hooks: the first call from Python, a call or a use as function value in a function
+    # that is being compiled
 
     def _compile_for_args(self, *arguments: Any, **keywords: Any) -> Any:
         if self._is_ready:
@@ -157,7 +186,9 @@ class CompiledFunction(CPUDispatcher):  # type: ignore[misc]
 
 
 def _compiled_named(module: str, name: str, inner: bool) -> Any:
-    """Return the compiled function with a name in a module, as Python or as compiled code calls it."""
+    """Return the compiled function with a name in a module, as Python or as compiled code
+    calls it.
+    """
     function: Any = import_module(module)
     for part in name.split("."):
         function = getattr(function, part)
@@ -166,10 +197,12 @@ def _compiled_named(module: str, name: str, inner: bool) -> Any:
 
 @contextmanager
 def _numbers_from(own: int) -> Iterator[None]:
-    """Let numba number a function as given, and those that are compiled with it from a random number on.
+    """Let numba number a function as given, and those that are compiled with it from a random
+    number on.
 
-    It tells functions of one name apart by these numbers, which begin with 1 in each process. Two of one name (made by a function, such as
-    the forces of two laws) that had one number in two processes would be one function to the linker in a process that loads both.
+    It tells functions of one name apart by these numbers, which begin with 1 in each process. Two
+    of one name (made by a function, such as the forces of two laws) that had one number in two
+    processes would be one function to the linker in a process that loads both.
     """
     outer = FunctionIdentity._unique_ids
     FunctionIdentity._unique_ids = chain([own], count(randbits(_BITS)))
@@ -181,7 +214,11 @@ def _numbers_from(own: int) -> Iterator[None]:
 
 def _seconds() -> float:
     """Return about how long it takes to compile all that is not on the disk [s]."""
-    missing = [function for function in DEFERRED if not (function.inner.is_on_disk() or function.compiled.is_on_disk())]
+    missing = [
+        function
+        for function in DEFERRED
+        if not (function.inner.is_on_disk() or function.compiled.is_on_disk())
+    ]
     return _SECONDS * sum(len(function.py_func.__code__.co_code) for function in missing)
 
 
@@ -211,8 +248,8 @@ def _inserting(of_address: Any) -> Callable[..., Any]:
 
 
 def _multiplying(room, values, matrices, matrix, width, columns, product):  # type: ignore[no-untyped-def]
-    return lambda room, values, matrices, matrix, width, columns, product: intrinsics.product_of_rows(
-        room, values, matrices, matrix, width, columns, product
+    return lambda room, values, matrices, matrix, width, columns, product: (
+        intrinsics.product_of_rows(room, values, matrices, matrix, width, columns, product)
     )
 
 

@@ -38,19 +38,37 @@ _LANES = 8  # doubles of a vector; a machine with shorter ones takes several
 
 
 @intrinsic  # type: ignore[untyped-decorator]
-def product_of_rows(typing_context: Any, room: Any, values: Any, matrices: Any, matrix: Any, width: Any, columns: Any, product: Any) -> Any:
-    """Write the product of a row of an array with a matrix into another row, as `function_values.multiply_row` says."""
+def product_of_rows(
+    typing_context: Any,
+    room: Any,
+    values: Any,
+    matrices: Any,
+    matrix: Any,
+    width: Any,
+    columns: Any,
+    product: Any,
+) -> Any:
+    """Write the product of a row of an array with a matrix into another row, as
+    `function_values.multiply_row` says.
+    """
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         array, cube = (
             context.make_array(kind)(context, builder, value)
-            for kind, value in zip((types.matrix, types.cube), (arguments[0], arguments[2]), strict=True)
+            for kind, value in zip(
+                (types.matrix, types.cube), (arguments[0], arguments[2]), strict=True
+            )
         )
         row_length = builder.extract_value(array.shape, 1)
-        rows, row_of_matrix = builder.extract_value(cube.shape, 1), builder.extract_value(cube.shape, 2)
+        rows, row_of_matrix = (
+            builder.extract_value(cube.shape, 1),
+            builder.extract_value(cube.shape, 2),
+        )
         source = builder.gep(array.data, [builder.mul(arguments[1], row_length)])
         target = builder.gep(array.data, [builder.mul(arguments[6], row_length)])
-        first = builder.gep(cube.data, [builder.mul(arguments[3], builder.mul(rows, row_of_matrix))])
+        first = builder.gep(
+            cube.data, [builder.mul(arguments[3], builder.mul(rows, row_of_matrix))]
+        )
         double, integer = ir.DoubleType(), ir.IntType(64)
         lanes = ir.VectorType(double, _LANES)
         nothing = ir.Constant(lanes, [0.0] * _LANES)
@@ -70,11 +88,19 @@ def product_of_rows(typing_context: Any, room: Any, values: Any, matrices: Any, 
                     row = builder.add(begin, integer(number))
                     value = builder.load(builder.gep(source, [row]))
                     alike = builder.insert_element(nothing, value, ir.IntType(32)(0))
-                    alike = builder.shuffle_vector(alike, nothing, ir.Constant(ir.VectorType(ir.IntType(32), _LANES), [0] * _LANES))
-                    place = builder.gep(first, [builder.add(builder.mul(row, row_of_matrix), column)])
+                    alike = builder.shuffle_vector(
+                        alike,
+                        nothing,
+                        ir.Constant(ir.VectorType(ir.IntType(32), _LANES), [0] * _LANES),
+                    )
+                    place = builder.gep(
+                        first, [builder.add(builder.mul(row, row_of_matrix), column)]
+                    )
                     weights = builder.load(vector_at(place), align=8)
                     one = sums[number % 2]
-                    builder.store(builder.fadd(builder.load(one), builder.fmul(alike, weights)), one)
+                    builder.store(
+                        builder.fadd(builder.load(one), builder.fmul(alike, weights)), one
+                    )
             whole = builder.fadd(builder.load(sums[0]), builder.load(sums[1]))
             builder.store(whole, vector_at(builder.gep(target, [column])), align=8)
         return context.get_dummy_value()

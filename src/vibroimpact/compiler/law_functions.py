@@ -1,4 +1,6 @@
-"""The compiled functions of contact laws, and calls of those that cannot be compiled. Loading this module loads numba."""
+"""The compiled functions of contact laws, and calls of those that cannot be compiled.
+Loading this module loads numba.
+"""
 
 from __future__ import annotations
 
@@ -13,7 +15,9 @@ from vibroimpact.compiler.functions import CompiledFunction
 from vibroimpact.errors import SlowLawWarning
 
 _COMPILED: dict[Any, CompiledFunction] = {}
-"""Compiled functions by their Python functions; they are kept, since addresses of them are in use."""
+"""Compiled functions by their Python functions; they are kept, since addresses of them
+are in use.
+"""
 
 _REASONS: dict[Any, str] = {}
 """Why a function is not compiled, by its Python function; "" if it is."""
@@ -23,19 +27,26 @@ _WARNED: set[type[Any]] = set()
 
 
 def compiled_law_function(law_class: type[Any], kind: str) -> CompiledFunction:
-    """Return a function of a law as a function value, compiled once a process; `kind`: of `LAW_FUNCTIONS`."""
+    """Return a function of a law as a function value, compiled once a process; `kind`: of
+    `LAW_FUNCTIONS`.
+    """
     source = interpreted_function(law_class, kind)
     if source not in _COMPILED:
         missing = law_class.missing_functions()
         reason = f"it has no {_listed(missing)}" if missing else _why_not_compiled(source, kind)
         if reason:
-            _COMPILED[source] = CompiledFunction(_CALLING[kind](source), _signature(kind), nogil=False)
+            _COMPILED[source] = CompiledFunction(
+                _CALLING[kind](source), _signature(kind), nogil=False
+            )
             _COMPILED[source].ready()
         _REASONS[source] = reason
     if _REASONS[source] and law_class not in _WARNED:
         _WARNED.add(law_class)
         name = getattr(law_class, "name", law_class.__name__)
-        said = f"the law {name} is not compiled, and its force takes microseconds in place of nanoseconds: {_REASONS[source]}"
+        said = (
+            f"the law {name} is not compiled, and its force takes microseconds in place of "
+            f"nanoseconds: {_REASONS[source]}"
+        )
         warnings.warn(SlowLawWarning(said), stacklevel=4)
     return _COMPILED[source]
 
@@ -49,7 +60,8 @@ def _why_not_compiled(source: Callable[..., Any], kind: str) -> str:
     function = CompiledFunction(source, _signature(kind))
     try:
         function.ready()
-    except Exception as error:  # numba has many kinds, and a function of another package may be anything
+    except Exception as error:
+        # numba has many kinds, and a function of another package may be anything
         return _first_reason(error)
     _COMPILED[source] = function
     return ""
@@ -78,7 +90,9 @@ def _calling_energies(source: Callable[..., Any]) -> Callable[..., Any]:
 
 def _calling_levels(source: Callable[..., Any]) -> Callable[..., Any]:
     def levels(coefficients):  # type: ignore[no-untyped-def]
-        with objmode(touch="float64", release="float64", memory="float64", first="float64", second="float64"):
+        with objmode(
+            touch="float64", release="float64", memory="float64", first="float64", second="float64"
+        ):
             touch, release, memory, first, second = source(coefficients)
         return touch, release, memory, first, second
 

@@ -8,7 +8,9 @@ from typing import Any, TypeVar
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 SCALAR: list[tuple[Callable[..., Any], Callable[..., Any] | None]] = []
-"""The functions that `scalar` marks, each with the one that compiled code calls in its place, if any."""
+"""The functions that `scalar` marks, each with the one that compiled code calls in its
+place, if any.
+"""
 
 DEFERRED: list[Any] = []
 """The functions that `compiled` marks: each is compiled when it is first called."""
@@ -17,15 +19,18 @@ DEFERRED: list[Any] = []
 def scalar(function: Function) -> Function:
     """Mark a function of floats, or of arrays elementwise, as one that compiled code may call.
 
-    It takes and returns floats (or a tuple of floats), or arrays of them by NumPy's rules, and uses NumPy's functions that are there for
-    both: `np.sqrt`, `np.minimum` and so on, but not `np.where`. Indices into its coefficients are constants.
+    It takes and returns floats (or a tuple of floats), or arrays of them by NumPy's rules, and uses
+    NumPy's functions that are there for both: `np.sqrt`, `np.minimum` and so on, but not
+    `np.where`. Indices into its coefficients are constants.
     """
     SCALAR.append((function, None))
     return function
 
 
 def scalar_as(of_floats: Callable[..., Any]) -> Callable[[Function], Function]:
-    """Mark a function as `scalar` does, with another body for floats, which may branch where that for arrays can't."""
+    """Mark a function as `scalar` does, with another body for floats, which may branch
+    where that for arrays can't.
+    """
 
     def mark(function: Function) -> Function:
         SCALAR.append((function, of_floats))

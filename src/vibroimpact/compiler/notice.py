@@ -18,7 +18,9 @@ _LISTENER: ContextVar[Hear | None] = ContextVar("_LISTENER", default=None)
 
 @contextmanager
 def heard_by(hear: Hear) -> Iterator[None]:
-    """Tell a function, too, that the solver is being compiled, while the block lasts and in the threads that it starts with its context."""
+    """Tell a function, too, that the solver is being compiled, while the block lasts and
+    in the threads that it starts with its context.
+    """
     token = _LISTENER.set(hear)
     try:
         yield
@@ -27,7 +29,8 @@ def heard_by(hear: Hear) -> Iterator[None]:
 
 
 def say_how_long(estimate: Callable[[], float]) -> None:
-    """Say that the solver is being compiled, and about how long that takes, if it takes long: in a terminal once, to a listener each time.
+    """Say that the solver is being compiled, and about how long that takes, if it takes long: in a
+    terminal once, to a listener each time.
 
     Parameters
     ----------
@@ -41,7 +44,10 @@ def say_how_long(estimate: Callable[[], float]) -> None:
     seconds = estimate()
     if seconds <= _LONG:
         return
-    sentence = f"Compiling the solver for this machine, once; about {_ROUNDED * max(1, round(seconds / _ROUNDED))} s."
+    sentence = (
+        "Compiling the solver for this machine, once; about "
+        f"{_ROUNDED * max(1, round(seconds / _ROUNDED))} s."
+    )
     if hear is not None:
         hear(sentence)
     if prints:
@@ -53,7 +59,10 @@ def say_trouble(trouble: str) -> None:
     """Say in a terminal, once, that compiled code is not kept."""
     if "trouble" not in _SAID and _is_terminal():
         _SAID.add("trouble")
-        print(f"The compiled solver can't be kept, and is compiled again the next time: {trouble}.", file=sys.stderr)
+        print(
+            f"The compiled solver can't be kept, and is compiled again the next time: {trouble}.",
+            file=sys.stderr,
+        )
 
 
 def _is_terminal() -> bool:

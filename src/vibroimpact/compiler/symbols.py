@@ -1,8 +1,9 @@
 """Large compiled functions, which compiled code calls by the names of their symbols.
 
-Numba copies the code of a function into every function that calls it, directly or not, and there it is optimised and translated again. For
-a small function that is what makes its calls free. For a large one a call costs nothing beside it, and the copies most of the time that
-compiling takes; such a function therefore keeps its code to itself, and the linker of the process finds it by name.
+Numba copies the code of a function into every function that calls it, directly or not, and there it
+is optimised and translated again. For a small function that is what makes its calls free. For a
+large one a call costs nothing beside it, and the copies most of the time that compiling takes; such
+a function therefore keeps its code to itself, and the linker of the process finds it by name.
 """
 
 from __future__ import annotations
@@ -39,12 +40,16 @@ def call_by_symbol(function: Any, result: Any) -> None:
 
 def called_by_symbol(library: Any) -> list[tuple[str, Any]]:
     """Return the symbols that the code of a library calls, each with its function."""
-    names = [function.name for function in library._final_module.functions if function.is_declaration]
+    names = [
+        function.name for function in library._final_module.functions if function.is_declaration
+    ]
     return [(name, _FUNCTIONS[name]) for name in names if name in _FUNCTIONS]
 
 
 def are_linked(called: list[tuple[str, Any]]) -> bool:
-    """Make functions ready that code calls by their symbols; are they now where the linker finds them? If not, it would end the process."""
+    """Make functions ready that code calls by their symbols; are they now where the
+    linker finds them? If not, it would end the process.
+    """
     for _, function in called:
         function.ready()
     return all(symbol in _FUNCTIONS for symbol, _ in called)

@@ -23,16 +23,21 @@ complexes = types.complex128[::1]
 pair = types.UniTuple(real, 2)
 
 force = types.FunctionType(pair(real, real, real, vector))
-"""The force of a contact law: indentation, its rate, approach speed and coefficients give static and dissipative force."""
+"""The force of a contact law: indentation, its rate, approach speed and coefficients give
+static and dissipative force.
+"""
 
 energies = types.FunctionType(pair(real, vector))
 """Of a contact law: indentation and coefficients give elastic energy and plastic work."""
 
 levels = types.FunctionType(types.UniTuple(real, 5)(vector))
-"""Of a contact law: coefficients give the indentations at touch, release, change of memory, and two breakpoints."""
+"""Of a contact law: coefficients give the indentations at touch, release, change of
+memory, and two breakpoints.
+"""
 
 compressed = types.FunctionType(real(real, vector, vector))
-"""Of a contact law: what a deepest indentation changes in the coefficients is written into a copy of them, the last argument.
+"""Of a contact law: what a deepest indentation changes in the coefficients is written into a copy
+of them, the last argument.
 
 It returns the indentation beyond which compression changes the memory again.
 """
@@ -44,11 +49,19 @@ def tuple(*members: types.Type) -> types.Type:
 
 
 def of(kind: type) -> types.Type:
-    """Return the type of a named tuple whose members are annotated with names of types, as `Vector`, or of other named tuples."""
+    """Return the type of a named tuple whose members are annotated with names of types,
+    as `Vector`, or of other named tuples.
+    """
     module = sys.modules[kind.__module__]
-    members = [_member(annotation.__forward_arg__, module) for annotation in kind.__annotations__.values()]
+    members = [
+        _member(annotation.__forward_arg__, module) for annotation in kind.__annotations__.values()
+    ]
     alike = len(set(members)) == 1
-    return types.NamedUniTuple(members[0], len(members), kind) if alike else types.NamedTuple(members, kind)
+    return (
+        types.NamedUniTuple(members[0], len(members), kind)
+        if alike
+        else types.NamedTuple(members, kind)
+    )
 
 
 def _member(name: str, module: ModuleType) -> types.Type:

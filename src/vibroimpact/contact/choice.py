@@ -1,4 +1,6 @@
-"""A choice between two values that compiled code makes as well, since numba's `np.where` of floats is an array."""
+"""A choice between two values that compiled code makes as well, since numba's `np.where`
+of floats is an array.
+"""
 
 from __future__ import annotations
 

@@ -12,7 +12,14 @@ import numpy as np
 from vibroimpact.arrays import Array
 from vibroimpact.compiled import scalar
 from vibroimpact.contact.choice import where
-from vibroimpact.contact.law import CompliantLaw, Levels, ScalarCompressed, ScalarEnergies, ScalarForces, ScalarLevels
+from vibroimpact.contact.law import (
+    CompliantLaw,
+    Levels,
+    ScalarCompressed,
+    ScalarEnergies,
+    ScalarForces,
+    ScalarLevels,
+)
 from vibroimpact.contact.parameters import memory
 from vibroimpact.contact.power_law import power
 
@@ -24,10 +31,12 @@ LoadingState = Callable[[Array, Any], tuple[Array, Array, Array]]
 
 
 class LoadingCurve(NamedTuple):
-    """The curve of loading: functions of an indentation on it [m], and of the coefficients of the law.
+    """The curve of loading: functions of an indentation on it [m], and of the coefficients of the
+    law.
 
-    force: loading force [N]. state: this force, its integral from zero indentation [J], and the elastic recovery on unloading from there
-    [m], which are computed together since compiling takes a twentieth of a second for each function.
+    force: loading force [N]. state: this force, its integral from zero indentation [J], and the
+    elastic recovery on unloading from there [m], which are computed together since compiling takes
+    a twentieth of a second for each function.
     """
 
     force: OfIndentation
@@ -51,14 +60,16 @@ def _levels(coefficients: Any) -> Levels:
 def law_functions(curve: LoadingCurve) -> LawFunctions:
     """Return the functions of floats of an elastic-plastic law.
 
-    Its coefficients are largest indentation so far, touch level, elastic recovery, largest force, exponent of unloading, and plastic loss
-    so far; those of the loading curve follow. The recovery is one where nothing has been loaded, and the largest force zero, so that no
-    force is 0/0.
+    Its coefficients are largest indentation so far, touch level, elastic recovery, largest force,
+    exponent of unloading, and plastic loss so far; those of the loading curve follow. The recovery
+    is one where nothing has been loaded, and the largest force zero, so that no force is 0/0.
     """
     loading_force, loading_state = curve
 
     @scalar
-    def forces(delta: Array, delta_dot: Array, approach_speed: Array, coefficients: Any) -> tuple[Array, Array]:
+    def forces(
+        delta: Array, delta_dot: Array, approach_speed: Array, coefficients: Any
+    ) -> tuple[Array, Array]:
         loaded_to, touch_level = coefficients[0], coefficients[1]
         recovery, largest_force, exponent = coefficients[2], coefficients[3], coefficients[4]
         loading = loading_force(np.maximum(delta, loaded_to), coefficients)
@@ -72,7 +83,9 @@ def law_functions(curve: LoadingCurve) -> LawFunctions:
         deepest = np.maximum(delta, loaded_to)
         force, work, recovery = loading_state(deepest, coefficients)
         recovered = force * recovery / (exponent + 1.0)
-        recovery_left = np.maximum(delta - (deepest - recovery), 0.0) / where(recovery > 0.0, recovery, 1.0)
+        recovery_left = np.maximum(delta - (deepest - recovery), 0.0) / where(
+            recovery > 0.0, recovery, 1.0
+        )
         lost = work - recovered - plastic_loss
         return recovered * power(recovery_left, exponent + 1.0), where(delta > loaded_to, lost, 0.0)
 
@@ -92,12 +105,15 @@ def law_functions(curve: LoadingCurve) -> LawFunctions:
 
 @dataclass(frozen=True, kw_only=True)
 class ElasticPlasticLaw(CompliantLaw):
-    r"""Base of the laws with a loading curve and, from each of its points, the elastic unloading curve
+    r"""Base of the laws with a loading curve and, from each of its points, the elastic unloading
+    curve
 
     .. math:: F = F_m \left(\frac{\delta - \delta_r}{\delta_m - \delta_r}\right)^q
 
-    from the largest indentation :math:`(\delta_m, F_m)` to the residual indentation :math:`\delta_r`; reloading follows the same
-    curve. A law defines its `loading_curve`, from which its functions of floats follow, and the `loading_coefficients` of this.
+    from the largest indentation :math:`(\delta_m, F_m)` to the residual indentation
+    :math:`\delta_r`; reloading follows the same
+    curve. A law defines its `loading_curve`, from which its functions of floats follow, and the
+    `loading_coefficients` of this.
     """
 
     contact_end = "zero-force"
@@ -130,7 +146,9 @@ class ElasticPlasticLaw(CompliantLaw):
 
     @cached_property
     def coefficients(self) -> tuple[Array, ...]:
-        """Those of a dented contact, which `law_functions` lists, and those of the loading curve."""
+        """Those of a dented contact, which `law_functions` lists, and those of the
+        loading curve.
+        """
         coefficients = list(self._undented)
         self._functions.compressed(self.loaded_to, self._undented, coefficients)
         return tuple(coefficients)
@@ -152,17 +170,25 @@ class ElasticPlasticLaw(CompliantLaw):
         return self.changed({"loaded_to": np.maximum(self.loaded_to, deepest)})
 
     def closed_form_restitution(self, mass: Array, speed: Array) -> Array:
-        """Return the square root of the energy recovered over the kinetic energy, from the energy balance."""
+        """Return the square root of the energy recovered over the kinetic energy, from
+        the energy balance.
+        """
         energy = np.asarray(0.5 * mass * speed * speed, dtype=float)
         wanted = energy + self.loading_work(self.loaded_to) - self._unloading_work(self.loaded_to)
         deepest = np.full(np.shape(wanted), 1e-6)
-        for _ in range(60):  # Newton's method in logarithms, since the loading work is nearly a power of the indentation
+        # Newton's method in logarithms, since the loading work is nearly a power of the indentation
+        for _ in range(60):
             work = self.loading_work(deepest)
             step = np.log(wanted / work) * work / (deepest * self.loading_force(deepest))
             deepest = deepest * np.exp(step)
-            if np.all(np.abs(step) < 1e-9):  # convergence is quadratic: the next step would be below rounding
+            # convergence is quadratic: the next step would be below rounding
+            if np.all(np.abs(step) < 1e-9):
                 break
-        return np.where(deepest > self.loaded_to, np.sqrt(np.minimum(self._unloading_work(deepest) / energy, 1.0)), 1.0)[()]
+        return np.where(
+            deepest > self.loaded_to,
+            np.sqrt(np.minimum(self._unloading_work(deepest) / energy, 1.0)),
+            1.0,
+        )[()]
 
     @cached_property
     def _undented(self) -> tuple[Array, ...]:

@@ -1,4 +1,6 @@
-"""Hysteretic damping, proportional to the elastic force and the indentation rate, and its restitution."""
+"""Hysteretic damping, proportional to the elastic force and the indentation rate, and its
+restitution.
+"""
 
 from __future__ import annotations
 
@@ -14,28 +16,52 @@ from vibroimpact.contact.law import ScalarForces
 from vibroimpact.contact.parameters import parameter
 from vibroimpact.contact.power_law import PowerLaw, power
 
-# power series e(D) = 1 - 2 D/3 + ... of the equation in `hysteretic_restitution`, exact to 1e-17 for D < 0.02
-_SERIES = (1.0, -2 / 3, 4 / 9, -44 / 135, 104 / 405, -40 / 189, 7648 / 42525, -2848 / 18225, 31712 / 229635)
+# power series e(D) = 1 - 2 D/3 + ... of the equation in `hysteretic_restitution`, exact to 1e-17
+# for D < 0.02
+_SERIES = (
+    1.0,
+    -2 / 3,
+    4 / 9,
+    -44 / 135,
+    104 / 405,
+    -40 / 189,
+    7648 / 42525,
+    -2848 / 18225,
+    31712 / 229635,
+)
 _SMALL = 0.02
 
 
 @scalar
-def _forces(delta: Array, delta_dot: Array, approach_speed: Array, coefficients: Any) -> tuple[Array, Array]:
-    stiffness, exponent, damping_factor, dissipation = coefficients[0], coefficients[1], coefficients[2], coefficients[3]
+def _forces(
+    delta: Array, delta_dot: Array, approach_speed: Array, coefficients: Any
+) -> tuple[Array, Array]:
+    stiffness, exponent, damping_factor, dissipation = (
+        coefficients[0],
+        coefficients[1],
+        coefficients[2],
+        coefficients[3],
+    )
     elastic = stiffness * power(delta, exponent)
     return elastic, elastic * ((damping_factor / approach_speed + dissipation) * delta_dot)
 
 
 @dataclass(frozen=True, kw_only=True)
 class HystereticLaw(PowerLaw):
-    r"""Base of the laws :math:`F = K \delta^n (1 + D\, \dot\delta/\dot\delta_0)`, each with its own :math:`D`."""
+    r"""Base of the laws :math:`F = K \delta^n (1 + D\, \dot\delta/\dot\delta_0)`, each
+    with its own :math:`D`.
+    """
 
     contact_end = "zero-indentation"
     tension = "none"
     scalar_forces: ClassVar[ScalarForces | None] = staticmethod(_forces)
 
     restitution: Array = parameter(
-        "restitution asked for, e", detail="Restitution asked for, :math:`e`.", example=0.7, at_least=0, at_most=1
+        "restitution asked for, e",
+        detail="Restitution asked for, :math:`e`.",
+        example=0.7,
+        at_least=0,
+        at_most=1,
     )
 
     @property
@@ -44,12 +70,16 @@ class HystereticLaw(PowerLaw):
         raise NotImplementedError
 
     def damping_factor_at(self, approach_speed: Array) -> Array:
-        """Return the damping factor of an impact at an approach speed [m/s]; here the same at all speeds."""
+        """Return the damping factor of an impact at an approach speed [m/s]; here the
+        same at all speeds.
+        """
         return self.damping_factor
 
     @cached_property
     def coefficients(self) -> tuple[Array, ...]:
-        """Stiffness, exponent, damping factor, and the dissipation that does not depend on the approach speed [s/m]."""
+        """Stiffness, exponent, damping factor, and the dissipation that does not depend
+        on the approach speed [s/m].
+        """
         return self.stiffness, self.exponent, self.damping_factor, 0.0
 
     def closed_form_restitution(self, mass: Array, speed: Array) -> Array:
@@ -58,7 +88,8 @@ class HystereticLaw(PowerLaw):
 
 
 def hysteretic_restitution(damping_factor: Array) -> Array:
-    r"""Return the restitution of :math:`F = K \delta^n (1 + D\, \dot\delta/\dot\delta_0)` without gravity.
+    r"""Return the restitution of :math:`F = K \delta^n (1 + D\, \dot\delta/\dot\delta_0)` without
+    gravity.
 
     It is independent of K, n, mass and speed, and solves
 
@@ -71,8 +102,8 @@ def hysteretic_restitution(damping_factor: Array) -> Array:
 
     References
     ----------
-    Gonthier, Y., McPhee, J., Lange, C. and Piedboeuf, J.-C. (2004). A regularized contact model with asymmetric
-    damping and dwell-time dependent friction. Multibody Syst. Dyn. 11, 209-233.
+    Gonthier, Y., McPhee, J., Lange, C. and Piedboeuf, J.-C. (2004). A regularized contact model
+    with asymmetric damping and dwell-time dependent friction. Multibody Syst. Dyn. 11, 209-233.
 
     Examples
     --------
@@ -82,8 +113,8 @@ def hysteretic_restitution(damping_factor: Array) -> Array:
     factor = np.asarray(damping_factor, dtype=float)
     small = factor < _SMALL
     series = np.polynomial.polynomial.polyval(np.where(small, factor, 0.0), _SERIES)
-    # with e D = 1 - exp(-w) the equation is w + exp(-w) - 1 = D - ln(1 + D): convex in w, so that Newton's method
-    # converges monotonically from an upper bound of the root
+    # with e D = 1 - exp(-w) the equation is w + exp(-w) - 1 = D - ln(1 + D): convex in w, so that
+    # Newton's method converges monotonically from an upper bound of the root
     large = np.where(small, 1.0, factor)
     wanted = large - np.log1p(large)
     w = np.minimum(wanted + 1.0, wanted + np.sqrt(2.0 * wanted))

@@ -1,4 +1,6 @@
-"""The Kelvin-Voigt model (linear spring and dashpot in parallel), and the restitution of its damping ratio."""
+"""The Kelvin-Voigt model (linear spring and dashpot in parallel), and the restitution of
+its damping ratio.
+"""
 
 from __future__ import annotations
 
@@ -16,21 +18,27 @@ from vibroimpact.contact.power_law import spring_energies
 
 
 @scalar
-def _forces(delta: Array, delta_dot: Array, approach_speed: Array, coefficients: Any) -> tuple[Array, Array]:
+def _forces(
+    delta: Array, delta_dot: Array, approach_speed: Array, coefficients: Any
+) -> tuple[Array, Array]:
     stiffness, dashpot = coefficients[0], coefficients[1]
     return stiffness * delta, dashpot * delta_dot
 
 
 @dataclass(frozen=True, kw_only=True)
 class KelvinVoigtLaw(CompliantLaw):
-    r"""Base of the laws :math:`F = k \delta + c \dot\delta`, whose contact ends at zero indentation."""
+    r"""Base of the laws :math:`F = k \delta + c \dot\delta`, whose contact ends at zero
+    indentation.
+    """
 
     contact_end = "zero-indentation"
     tension = "kept"
     scalar_forces: ClassVar[ScalarForces | None] = staticmethod(_forces)
     scalar_energies: ClassVar[ScalarEnergies | None] = staticmethod(spring_energies)
 
-    stiffness: Array = parameter("spring stiffness k", "N/m", detail="Spring stiffness :math:`k`.", example=2e6, above=0)
+    stiffness: Array = parameter(
+        "spring stiffness k", "N/m", detail="Spring stiffness :math:`k`.", example=2e6, above=0
+    )
 
     @property
     def dashpot(self) -> Array:
@@ -43,12 +51,17 @@ class KelvinVoigtLaw(CompliantLaw):
         return self.stiffness, self.dashpot
 
     def closed_form_restitution(self, mass: Array, speed: Array) -> Array:
-        r"""Return :math:`\exp(-\pi\beta/\sqrt{1 - \beta^2})` with :math:`\beta = c/(2\sqrt{k m})`, independent of the speed."""
-        return restitution_from_damping_ratio(self.dashpot / (2.0 * np.sqrt(self.stiffness * mass)) + 0.0 * speed)
+        r"""Return :math:`\exp(-\pi\beta/\sqrt{1 - \beta^2})` with :math:`\beta =
+        c/(2\sqrt{k m})`, independent of the speed.
+        """
+        return restitution_from_damping_ratio(
+            self.dashpot / (2.0 * np.sqrt(self.stiffness * mass)) + 0.0 * speed
+        )
 
 
 def dashpot_for_restitution(restitution: Array, stiffness: Array, mass: Array) -> Array:
-    r"""Return the dashpot constant :math:`c = 2 \beta(e) \sqrt{k m}` [N s/m] that gives a mass [kg] a restitution.
+    r"""Return the dashpot constant :math:`c = 2 \beta(e) \sqrt{k m}` [N s/m] that gives a mass [kg]
+    a restitution.
 
     Examples
     --------
@@ -73,7 +86,8 @@ def damping_ratio_from_restitution(restitution: Array) -> Array:
 
 
 def restitution_from_damping_ratio(damping_ratio: Array) -> Array:
-    r"""Return the restitution :math:`e = \exp(-\pi\beta/\sqrt{1 - \beta^2})` [-] of a damping ratio; zero at and above critical damping.
+    r"""Return the restitution :math:`e = \exp(-\pi\beta/\sqrt{1 - \beta^2})` [-] of a damping
+    ratio; zero at and above critical damping.
 
     Examples
     --------

@@ -1,14 +1,16 @@
 """The interface of a contact law.
 
-A law is a frozen dataclass in a file of its own under `vibroimpact.contact.laws`, where the registry finds it. It declares
+A law is a frozen dataclass in a file of its own under `vibroimpact.contact.laws`, where the
+registry finds it. It declares
 
 * `name`, `equation` and `source`, which the command line and the documentation print;
 * `departure`, if it is not as its sources have it;
 * its parameters, each with `parameter(...)`: meaning, unit, range, default;
 * the state variables on which its force depends, if any, each with `memory(...)`;
-* and, if it is a `CompliantLaw`, when its contact ends, whether its force may be tensile, and functions that compiled code calls with
-  floats and everything else with arrays, and the `coefficients` they are called with: `scalar_forces` and `scalar_energies`, and, if it
-  has a memory or breakpoints, `scalar_levels` and `scalar_compressed`.
+* and, if it is a `CompliantLaw`, when its contact ends, whether its force may be tensile, and
+  functions that compiled code calls with floats and everything else with arrays, and the
+  `coefficients` they are called with: `scalar_forces` and `scalar_energies`, and, if it has a
+  memory or breakpoints, `scalar_levels` and `scalar_compressed`.
 """
 
 from __future__ import annotations
@@ -26,19 +28,26 @@ from vibroimpact.compiled import scalar
 from vibroimpact.contact.parameters import Parameters
 
 ScalarForces = Callable[[Array, Array, Array, Any], tuple[Array, Array]]
-"""A function of indentation [m], its rate [m/s], approach speed [m/s] and coefficients: static and dissipative force [N]."""
+"""A function of indentation [m], its rate [m/s], approach speed [m/s] and coefficients:
+static and dissipative force [N].
+"""
 
 ScalarEnergies = Callable[[Array, Any], tuple[Array, Array]]
-"""A function of indentation [m] and coefficients: elastic energy, and plastic work since the state of the coefficients [J]."""
+"""A function of indentation [m] and coefficients: elastic energy, and plastic work since
+the state of the coefficients [J].
+"""
 
 Levels = tuple[Array, Array, Array, Array, Array]
-"""Indentations [m]: of touch, of release, beyond which compression changes the memory, and two breakpoints; infinite if there is none."""
+"""Indentations [m]: of touch, of release, beyond which compression changes the memory,
+and two breakpoints; infinite if there is none.
+"""
 
 ScalarLevels = Callable[[Any], Levels]
 """A function of coefficients: the levels of a law."""
 
 ScalarCompressed = Callable[[Array, Any, Any], Array]
-"""A function of an indentation [m], coefficients and a copy of these, which writes what compression to there changes into the copy.
+"""A function of an indentation [m], coefficients and a copy of these, which writes what compression
+to there changes into the copy.
 
 It returns the indentation beyond which compression changes the memory again [m].
 """
@@ -49,12 +58,16 @@ _METHODS = {
     "scalar_levels": ("touch_level", "release_level", "breakpoints"),
     "scalar_compressed": ("after_compression",),
 }
-"""The functions of floats of a law, and the methods that stand for each in a law that is not compiled."""
+"""The functions of floats of a law, and the methods that stand for each in a law that is
+not compiled.
+"""
 
 
 @scalar
 def levels_of_smooth_contact(coefficients: Any) -> Levels:
-    """Return the levels of a law without memory and breakpoints, whose contact begins and ends at zero indentation [m]."""
+    """Return the levels of a law without memory and breakpoints, whose contact begins and
+    ends at zero indentation [m].
+    """
     return 0.0, 0.0, np.inf, np.inf, np.inf
 
 
@@ -81,7 +94,9 @@ class ContactLaw(Parameters):
 
     @property
     def free_parameter(self) -> str | None:
-        """The name of the parameter that sets the energy loss, which `law_achieving` varies; None if there is none."""
+        """The name of the parameter that sets the energy loss, which `law_achieving`
+        varies; None if there is none.
+        """
         return "restitution" if getattr(self, "restitution", None) is not None else None
 
     def closed_form_restitution(self, mass: Array, speed: Array) -> Array | None:
@@ -98,23 +113,28 @@ class ContactLaw(Parameters):
 
     def memories(self) -> dict[str, Array]:
         """Return the state variables by name."""
-        return {item.name: getattr(self, item.name) for item in fields(self) if item.metadata["memory"]}
+        return {
+            item.name: getattr(self, item.name) for item in fields(self) if item.metadata["memory"]
+        }
 
 
 @dataclass(frozen=True, kw_only=True)
 class CompliantLaw(ContactLaw):
-    """Base of the laws with a contact force, given as a static and a dissipative part, from which the energy ledger follows.
+    """Base of the laws with a contact force, given as a static and a dissipative part, from which
+    the energy ledger follows.
 
-    Signs: indentation `delta` >= 0 in contact, `delta_dot` > 0 in compression, a positive force is repulsive. All arguments
-    broadcast; the last axis is the drop.
+    Signs: indentation `delta` >= 0 in contact, `delta_dot` > 0 in compression, a positive force is
+    repulsive. All arguments broadcast; the last axis is the drop.
 
-    A law whose static force depends on the largest indentation so far declares it with `memory` and updates it in
-    `after_compression`; the force then follows the unloading curve below that indentation and the loading curve beyond it.
+    A law whose static force depends on the largest indentation so far declares it with `memory` and
+    updates it in `after_compression`; the force then follows the unloading curve below that
+    indentation and the loading curve beyond it.
 
     Examples
     --------
-    A law gives its force and its energies as functions of floats or arrays, and the coefficients of these functions. One that defines
-    `forces` and `elastic_energy` instead works as well, but is not compiled.
+    A law gives its force and its energies as functions of floats or arrays, and the coefficients of
+    these functions. One that defines `forces` and `elastic_energy` instead works as well, but is
+    not compiled.
 
     >>> import vibroimpact as vi
     >>> law = vi.find_contact_law("hertz")(stiffness=2.0)
@@ -125,12 +145,18 @@ class CompliantLaw(ContactLaw):
     """
 
     contact_end: ClassVar[Literal["zero-indentation", "zero-force", "pull-off"]]
-    """When the contact ends: at zero indentation, at zero force, or at the pull-off of an adhesive contact."""
+    """When the contact ends: at zero indentation, at zero force, or at the pull-off of an
+    adhesive contact.
+    """
     tension: ClassVar[Literal["none", "cut", "kept"]]
-    """May the force of the formula be tensile in an impact on a rigid plate? No; yes, and clipped at zero; yes, and kept."""
+    """May the force of the formula be tensile in an impact on a rigid plate? No; yes, and
+    clipped at zero; yes, and kept.
+    """
 
     root: ClassVar[int] = 2
-    """The force is smooth in this root of the indentation: 2 with powers such as 3/2, 4 with a power 1/4."""
+    """The force is smooth in this root of the indentation: 2 with powers such as 3/2, 4
+    with a power 1/4.
+    """
 
     lasting: ClassVar[bool] = False
     """Does the state persist, as a dent does, for the next impact on the same spot?"""
@@ -139,18 +165,27 @@ class CompliantLaw(ContactLaw):
     """Does the law define plastic work?"""
 
     scalar_forces: ClassVar[ScalarForces | None] = None
-    """The force as a function of floats, marked by `compiled.scalar`; a law that has none defines `forces`, and is not compiled."""
+    """The force as a function of floats, marked by `compiled.scalar`; a law that has none
+    defines `forces`, and is not compiled.
+    """
 
     scalar_energies: ClassVar[ScalarEnergies | None] = None
-    """Elastic energy and plastic work as a function of floats; a law that has none defines `elastic_energy`, and is not compiled."""
+    """Elastic energy and plastic work as a function of floats; a law that has none
+    defines `elastic_energy`, and is not compiled.
+    """
 
     scalar_levels: ClassVar[ScalarLevels | None] = staticmethod(levels_of_smooth_contact)
-    """Where contact begins and ends, where compression changes the memory, and two breakpoints, as a function of floats."""
+    """Where contact begins and ends, where compression changes the memory, and two
+    breakpoints, as a function of floats.
+    """
 
     scalar_compressed: ClassVar[ScalarCompressed | None] = staticmethod(unchanged)
-    """What compression does to the coefficients, as a function of floats; a law with a memory defines its own."""
+    """What compression does to the coefficients, as a function of floats; a law with a
+    memory defines its own.
+    """
 
-    # what the methods below evaluate: the functions of the law, or those of its base where the law defines the methods anew
+    # what the methods below evaluate: the functions of the law, or those of its base where the law
+    # defines the methods anew
     _array_forces: ClassVar[ScalarForces | None] = None
     _array_energies: ClassVar[ScalarEnergies | None] = None
     _array_levels: ClassVar[ScalarLevels] = staticmethod(levels_of_smooth_contact)
@@ -159,7 +194,9 @@ class CompliantLaw(ContactLaw):
         super().__init_subclass__(**options)
         for function, methods in _METHODS.items():
             if getattr(cls, function) is not None:
-                setattr(cls, function.replace("scalar", "_array"), staticmethod(getattr(cls, function)))
+                setattr(
+                    cls, function.replace("scalar", "_array"), staticmethod(getattr(cls, function))
+                )
             if function not in vars(cls) and any(method in vars(cls) for method in methods):
                 setattr(cls, function, None)  # compiled code would pass over the new method
         if "plastic_work" in vars(cls):
@@ -167,7 +204,9 @@ class CompliantLaw(ContactLaw):
 
     @classmethod
     def missing_functions(cls) -> list[str]:
-        """Return the names of the functions of floats that the law lacks; it is compiled if it has all."""
+        """Return the names of the functions of floats that the law lacks; it is compiled
+        if it has all.
+        """
         return [function for function in _METHODS if getattr(cls, function) is None]
 
     @property
@@ -178,12 +217,15 @@ class CompliantLaw(ContactLaw):
     @property
     def release_level(self) -> Array:
         """Indentation [m] at which contact ends; negative for adhesive contacts."""
-        is_new = type(self).touch_level is not CompliantLaw.touch_level  # it then ends where it begins
+        # it then ends where it begins
+        is_new = type(self).touch_level is not CompliantLaw.touch_level
         return self.touch_level if is_new else self._levels[1]
 
     @property
     def breakpoints(self) -> tuple[Array, ...]:
-        """Indentations [m], ascending, at which the force is not smooth; integration steps end there."""
+        """Indentations [m], ascending, at which the force is not smooth; integration
+        steps end there.
+        """
         return tuple(level for level in self._levels[3:] if np.any(np.isfinite(level)))
 
     @cached_property
@@ -194,7 +236,8 @@ class CompliantLaw(ContactLaw):
     def coefficients(self) -> tuple[Array, ...]:
         """The numbers that the functions of floats take, made once from parameters and memory.
 
-        They are floats, or arrays with one value per drop; compiled code has them as an array of floats, one drop at a time.
+        They are floats, or arrays with one value per drop; compiled code has them as an array of
+        floats, one drop at a time.
         """
         return ()
 
@@ -210,7 +253,9 @@ class CompliantLaw(ContactLaw):
         """
         array_forces = type(self)._array_forces
         if array_forces is None:
-            raise NotImplementedError(f"{type(self).__name__} has neither `scalar_forces` nor `forces`")
+            raise NotImplementedError(
+                f"{type(self).__name__} has neither `scalar_forces` nor `forces`"
+            )
         return array_forces(delta, delta_dot, approach_speed, self.coefficients)
 
     def elastic_energy(self, delta: Array) -> Array:
@@ -227,7 +272,9 @@ class CompliantLaw(ContactLaw):
     def _energies(self, delta: Array) -> tuple[Array, Array]:
         array_energies = type(self)._array_energies
         if array_energies is None:
-            raise NotImplementedError(f"{type(self).__name__} has neither `scalar_energies` nor `elastic_energy`")
+            raise NotImplementedError(
+                f"{type(self).__name__} has neither `scalar_energies` nor `elastic_energy`"
+            )
         return array_energies(delta, self.coefficients)
 
     def after_compression(self, deepest: Array) -> Self:
@@ -237,7 +284,9 @@ class CompliantLaw(ContactLaw):
 
 @dataclass(frozen=True, kw_only=True)
 class InstantaneousLaw(ContactLaw):
-    """Base of the laws of an impact without duration or force, which give the separation speed from the approach speed."""
+    """Base of the laws of an impact without duration or force, which give the separation
+    speed from the approach speed.
+    """
 
     def separation_speed(self, approach_speed: Array, mass: Array) -> Array:
         """Return the separation speed [m/s].
@@ -268,14 +317,24 @@ def unit_of(item: dataclasses.Field[Any], exponent: Any) -> str:
     """
     unit = str(item.metadata["unit"])
     if unit == "N/m^n":
-        return f"N/m^{exponent:g}" if isinstance(exponent, (int, float)) and exponent != 1 else "N/m"
+        return (
+            f"N/m^{exponent:g}" if isinstance(exponent, (int, float)) and exponent != 1 else "N/m"
+        )
     return unit
 
 
 def default_origin(item: dataclasses.Field[Any]) -> str:
-    """Return what a parameter is computed from where a case leaves it out, in words; "" if it is not."""
+    """Return what a parameter is computed from where a case leaves it out, in words; ""
+    if it is not.
+    """
     source = item.metadata["from_pair"]
-    return "" if not source else "from the bodies" if source in ("effective_radius", "effective_mass") else "from the materials"
+    return (
+        ""
+        if not source
+        else "from the bodies"
+        if source in ("effective_radius", "effective_mass")
+        else "from the materials"
+    )
 
 
 def is_conservative(law: ContactLaw) -> bool:
@@ -292,4 +351,8 @@ def is_conservative(law: ContactLaw) -> bool:
     assert isinstance(law, CompliantLaw)
     deltas = np.geomspace(1e-9, 1e-1, 9)[:, None]
     _, dissipative = law.forces(deltas, np.ones((9, 1)), np.ones((9, 1)))
-    return not (np.any(dissipative) or np.any(law.plastic_work(deltas)) or np.any(law.elastic_energy(law.release_level)))
+    return not (
+        np.any(dissipative)
+        or np.any(law.plastic_work(deltas))
+        or np.any(law.elastic_energy(law.release_level))
+    )

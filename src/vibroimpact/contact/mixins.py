@@ -31,18 +31,34 @@ class ElasticPairLaw(ContactLaw):
     """Mixin of the laws that take the effective modulus and radius of the two bodies."""
 
     effective_modulus: Array = parameter(
-        "effective modulus E*", "Pa", detail="Effective modulus :math:`E^*`.", above=0, from_pair="effective_modulus"
+        "effective modulus E*",
+        "Pa",
+        detail="Effective modulus :math:`E^*`.",
+        above=0,
+        from_pair="effective_modulus",
     )
     effective_radius: Array = parameter(
-        "effective radius R", "m", detail="Effective radius :math:`R`.", above=0, from_pair="effective_radius"
+        "effective radius R",
+        "m",
+        detail="Effective radius :math:`R`.",
+        above=0,
+        from_pair="effective_radius",
     )
 
 
 @dataclass(frozen=True, kw_only=True)
 class RestitutionForMassLaw(CompliantLaw):
-    """Mixin of the laws whose dashpot is computed from the restitution asked for and the effective mass."""
+    """Mixin of the laws whose dashpot is computed from the restitution asked for and the
+    effective mass.
+    """
 
-    restitution: Array = parameter("restitution asked for, e", detail="Restitution asked for, :math:`e`.", example=0.7, above=0, at_most=1)
+    restitution: Array = parameter(
+        "restitution asked for, e",
+        detail="Restitution asked for, :math:`e`.",
+        example=0.7,
+        above=0,
+        at_most=1,
+    )
     effective_mass: Array = parameter(
         "mass for which the restitution is asked",
         "kg",
@@ -54,26 +70,40 @@ class RestitutionForMassLaw(CompliantLaw):
 
 @dataclass(frozen=True, kw_only=True)
 class ViscoelasticLaw(CompliantLaw):
-    """Mixin of the laws of viscoelastic spheres, whose energy loss is set by the dissipative constant A."""
+    """Mixin of the laws of viscoelastic spheres, whose energy loss is set by the
+    dissipative constant A.
+    """
 
-    dissipation_time: Array = parameter("dissipative constant A", "s", detail="Dissipative constant :math:`A`.", example=1e-5, at_least=0)
+    dissipation_time: Array = parameter(
+        "dissipative constant A",
+        "s",
+        detail="Dissipative constant :math:`A`.",
+        example=1e-5,
+        at_least=0,
+    )
 
     free_parameter = "dissipation_time"
 
 
 @dataclass(frozen=True, kw_only=True)
 class TwoPhaseLaw(CompliantLaw):
-    """Mixin of the laws whose dissipative force differs in compression and restitution; the state tells the phase."""
+    """Mixin of the laws whose dissipative force differs in compression and restitution;
+    the state tells the phase.
+    """
 
     scalar_levels: ClassVar[ScalarLevels | None] = staticmethod(_two_phase_levels)
     scalar_compressed: ClassVar[ScalarCompressed | None] = staticmethod(_turn)
 
     turned: Array = memory(
-        "has the indentation passed its first maximum? 1 if so", detail="1 once the indentation has passed its first maximum."
+        "has the indentation passed its first maximum? 1 if so",
+        detail="1 once the indentation has passed its first maximum.",
     )
 
-    def coefficients_by_phase(self, stiffness: Array, compression: Array, restitution: Array) -> tuple[Array, ...]:
-        """Return the coefficients: stiffness, the constant of the dissipative force in this phase, `turned`, and that in restitution.
+    def coefficients_by_phase(
+        self, stiffness: Array, compression: Array, restitution: Array
+    ) -> tuple[Array, ...]:
+        """Return the coefficients: stiffness, the constant of the dissipative force in this phase,
+        `turned`, and that in restitution.
 
         Parameters
         ----------
@@ -82,8 +112,15 @@ class TwoPhaseLaw(CompliantLaw):
         compression, restitution : float or array
             The constant of the dissipative force in either phase.
         """
-        return stiffness, np.where(self.turned > 0.0, restitution, compression), self.turned, restitution
+        return (
+            stiffness,
+            np.where(self.turned > 0.0, restitution, compression),
+            self.turned,
+            restitution,
+        )
 
     def after_compression(self, deepest: Array) -> Self:
-        """Return the law for the restitution phase, of the drops whose indentation has been positive."""
+        """Return the law for the restitution phase, of the drops whose indentation has
+        been positive.
+        """
         return self.changed({"turned": np.where(deepest > 0.0, 1.0, self.turned)})

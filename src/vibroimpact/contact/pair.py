@@ -1,4 +1,6 @@
-"""Properties of a pair of elastic bodies in contact: effective modulus, radius and mass, Hertz's stiffness, yield pressure."""
+"""Properties of a pair of elastic bodies in contact: effective modulus, radius and mass,
+Hertz's stiffness, yield pressure.
+"""
 
 from __future__ import annotations
 
@@ -38,7 +40,8 @@ def effective_shear_modulus(first: Material, second: Material) -> Array:
 
     .. math:: 1/G^* = (2 - \nu_1)/(4 G_1) + (2 - \nu_2)/(4 G_2)
 
-    A contact that sticks has the tangential stiffness :math:`2 G^* a`. Infinite if both materials are rigid.
+    A contact that sticks has the tangential stiffness :math:`2 G^* a`. Infinite if both materials
+    are rigid.
 
     References
     ----------
@@ -51,7 +54,10 @@ def effective_shear_modulus(first: Material, second: Material) -> Array:
     >>> f"{effective_shear_modulus(alumina, glass):.4e}"
     '5.4084e+10'
     """
-    shares = [0.5 * (2.0 - one.poissons_ratio) * (1.0 + one.poissons_ratio) / one.youngs_modulus for one in (first, second)]
+    shares = [
+        0.5 * (2.0 - one.poissons_ratio) * (1.0 + one.poissons_ratio) / one.youngs_modulus
+        for one in (first, second)
+    ]
     with np.errstate(divide="ignore"):
         return np.divide(1.0, shares[0] + shares[1])
 
@@ -93,7 +99,8 @@ class ContactPair:
     effective_mass : float or array
         :math:`m_1 m_2 / (m_1 + m_2)` [kg]; the mass of the sphere if the plate is fixed.
     yield_strength, poissons_ratio : float or array, optional
-        Of the material that yields first [Pa], [-]; Poisson's ratio of the sphere if no yield strength is known.
+        Of the material that yields first [Pa], [-]; Poisson's ratio of the sphere if no yield
+        strength is known.
     effective_shear_modulus : float or array, optional
         :math:`G^*` [Pa]; infinite for two rigid materials.
     """
@@ -112,5 +119,7 @@ class ContactPair:
 
     @property
     def yield_pressure(self) -> Array | None:
-        """Largest contact pressure before yield [Pa]: 1.6 times the yield strength (Johnson 1985, eq. 6.9)."""
+        """Largest contact pressure before yield [Pa]: 1.6 times the yield strength
+        (Johnson 1985, eq. 6.9).
+        """
         return None if self.yield_strength is None else 1.6 * self.yield_strength

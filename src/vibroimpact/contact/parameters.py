@@ -1,4 +1,6 @@
-"""The parameters of a law: declared as the fields of a dataclass, checked, and taken from the bodies where a case leaves them out."""
+"""The parameters of a law: declared as the fields of a dataclass, checked, and taken from
+the bodies where a case leaves them out.
+"""
 
 from __future__ import annotations
 
@@ -34,33 +36,44 @@ def parameter(
     unit : str, default ""
         SI unit; "N/m^n" follows the exponent.
     detail : str, optional
-        What it is, in sentences with reStructuredText markup; the law's docstring, sheet and page print it. Left out, it is
-        the meaning as a sentence.
+        What it is, in sentences with reStructuredText markup; the law's docstring, sheet and page
+        print it. Left out, it is the meaning as a sentence.
     from_pair : str, optional
         The attribute of `ContactPair` from which the parameter is taken where a case leaves it out.
     default : optional
         The default value.
     example : float, optional
-        A typical value, for figures and tests, of a parameter with neither `from_pair` nor `default`.
+        A typical value, for figures and tests, of a parameter with neither `from_pair` nor
+        `default`.
     **bounds : float
         The range, in the arguments of `Range`.
     """
-    return dataclasses.field(default=default, metadata=_metadata(meaning, unit, detail, Range(**bounds), from_pair, example))
+    return dataclasses.field(
+        default=default,
+        metadata=_metadata(meaning, unit, detail, Range(**bounds), from_pair, example),
+    )
 
 
 def memory(meaning: str, unit: str = "", *, detail: str = "") -> Any:
-    """Declare a state variable that a law carries through a contact; at least zero, and zero in a fresh contact.
+    """Declare a state variable that a law carries through a contact; at least zero, and zero in a
+    fresh contact.
 
     Parameters
     ----------
     meaning, unit, detail : str
         As those of `parameter`.
     """
-    return dataclasses.field(default=0.0, metadata={**_metadata(meaning, unit, detail, Range(at_least=0)), "memory": True})
+    return dataclasses.field(
+        default=0.0,
+        metadata={**_metadata(meaning, unit, detail, Range(at_least=0)), "memory": True},
+    )
 
 
-def inherited_parameter(base: type[Parameters], name: str, *, detail: str = "", **bounds: float) -> Any:
-    """Declare a parameter or state of a base class again, with another detail or range; the rest is kept.
+def inherited_parameter(
+    base: type[Parameters], name: str, *, detail: str = "", **bounds: float
+) -> Any:
+    """Declare a parameter or state of a base class again, with another detail or range; the rest is
+    kept.
 
     Parameters
     ----------
@@ -74,12 +87,20 @@ def inherited_parameter(base: type[Parameters], name: str, *, detail: str = "", 
         The new range; left out, the range is kept.
     """
     item = base.__dataclass_fields__[name]
-    changes = {"detail": detail or item.metadata["detail"], "range": Range(**bounds) if bounds else item.metadata["range"]}
+    changes = {
+        "detail": detail or item.metadata["detail"],
+        "range": Range(**bounds) if bounds else item.metadata["range"],
+    }
     return dataclasses.field(default=item.default, metadata={**item.metadata, **changes})
 
 
 def _metadata(
-    meaning: str, unit: str, detail: str, allowed: Range, from_pair: str | None = None, example: float | None = None
+    meaning: str,
+    unit: str,
+    detail: str,
+    allowed: Range,
+    from_pair: str | None = None,
+    example: float | None = None,
 ) -> dict[str, Any]:
     return {
         "meaning": meaning,
@@ -94,7 +115,9 @@ def _metadata(
 
 @dataclass(frozen=True, kw_only=True)
 class Parameters:
-    """Base of contact and friction laws: their parameters are floats, or arrays with one value per drop."""
+    """Base of contact and friction laws: their parameters are floats, or arrays with one
+    value per drop.
+    """
 
     name: ClassVar[str]
     equation: ClassVar[str]
@@ -106,8 +129,11 @@ class Parameters:
         for base in reversed(cls.__mro__[1:]):
             items |= getattr(base, "__dataclass_fields__", {})
         # `dataclass` decorates the class after this: its own fields are still class attributes
-        items |= {key: value for key, value in vars(cls).items() if isinstance(value, dataclasses.Field)}
-        declared = {key: item for key, item in items.items() if "meaning" in item.metadata}  # class variables are fields as well
+        items |= {
+            key: value for key, value in vars(cls).items() if isinstance(value, dataclasses.Field)
+        }
+        # class variables are fields as well
+        declared = {key: item for key, item in items.items() if "meaning" in item.metadata}
         if cls.__doc__:  # None under python -OO
             cls.__doc__ = with_parameters(cls.__doc__, declared)
 
@@ -115,7 +141,10 @@ class Parameters:
         for item in fields(self):
             value = getattr(self, item.name)
             if isinstance(value, (str, bytes)):
-                raise InputError(f'"{value!s}" is a text; it must be a number in SI, or an array of them', item.name)
+                raise InputError(
+                    f'"{value!s}" is a text; it must be a number in SI, or an array of them',
+                    item.name,
+                )
             if isinstance(value, (list, tuple)):
                 value = np.asarray(value, dtype=float)
                 object.__setattr__(self, item.name, value)
@@ -127,14 +156,27 @@ class Parameters:
 
     @classmethod
     def example(cls, pair: ContactPair) -> Self:
-        """Return the law of a pair, with typical values of the parameters that the pair does not give, for figures and tests."""
-        given = {item.name for item in fields(cls) if item.metadata["from_pair"] and getattr(pair, item.metadata["from_pair"]) is not None}
-        typical = {item.name: item.metadata["example"] for item in fields(cls) if item.metadata["example"] is not None}
-        return cls.for_pair(pair, **{name: value for name, value in typical.items() if name not in given})
+        """Return the law of a pair, with typical values of the parameters that the pair
+        does not give, for figures and tests.
+        """
+        given = {
+            item.name
+            for item in fields(cls)
+            if item.metadata["from_pair"] and getattr(pair, item.metadata["from_pair"]) is not None
+        }
+        typical = {
+            item.name: item.metadata["example"]
+            for item in fields(cls)
+            if item.metadata["example"] is not None
+        }
+        return cls.for_pair(
+            pair, **{name: value for name, value in typical.items() if name not in given}
+        )
 
     @classmethod
     def for_pair(cls, pair: ContactPair, **parameters: Any) -> Self:
-        """Return the law of two bodies; parameters that are not given come from the pair or from their defaults.
+        """Return the law of two bodies; parameters that are not given come from the pair or from
+        their defaults.
 
         Raises
         ------
@@ -144,7 +186,9 @@ class Parameters:
         known = {item.name: item for item in fields(cls)}
         for key in parameters:
             if key not in known:
-                raise InputError(f'unknown key "{key}"; {cls.name} takes {choices(known, key)}', key)
+                raise InputError(
+                    f'unknown key "{key}"; {cls.name} takes {choices(known, key)}', key
+                )
         given = dict(parameters)
         for key, item in known.items():
             if key not in given and item.metadata["from_pair"]:
@@ -159,8 +203,15 @@ class Parameters:
                         key,
                     )
                 if np.any(np.isinf(given[key])):
-                    of_materials = item.metadata["from_pair"] not in ("effective_radius", "effective_mass")
-                    why = "two rigid materials have no contact stiffness of their own" if of_materials else "that of the pair is infinite"
+                    of_materials = item.metadata["from_pair"] not in (
+                        "effective_radius",
+                        "effective_mass",
+                    )
+                    why = (
+                        "two rigid materials have no contact stiffness of their own"
+                        if of_materials
+                        else "that of the pair is infinite"
+                    )
                     raise InputError(f"it must be given, since {why}", key)
             if key not in given and item.default is dataclasses.MISSING:
                 raise InputError(f"this key is missing; {cls.name} needs {_with_unit(item)}", key)
@@ -168,7 +219,13 @@ class Parameters:
 
     def take(self, drops: Any) -> Self:
         """Return the law of selected drops of a batch: array parameters are indexed by `drops`."""
-        return self.changed({item.name: value[drops] for item in fields(self) if np.ndim(value := getattr(self, item.name))})
+        return self.changed(
+            {
+                item.name: value[drops]
+                for item in fields(self)
+                if np.ndim(value := getattr(self, item.name))
+            }
+        )
 
     def changed(self, changes: Mapping[str, Any]) -> Self:
         """Return a copy with some fields replaced; the new values are not checked."""
@@ -182,4 +239,8 @@ class Parameters:
 
 def _with_unit(item: dataclasses.Field[Any]) -> str:
     """Return the meaning of a parameter with its unit, for messages."""
-    return f"{item.metadata['meaning']} [{item.metadata['unit']}]" if item.metadata["unit"] else str(item.metadata["meaning"])
+    return (
+        f"{item.metadata['meaning']} [{item.metadata['unit']}]"
+        if item.metadata["unit"]
+        else str(item.metadata["meaning"])
+    )

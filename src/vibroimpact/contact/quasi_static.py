@@ -16,10 +16,14 @@ class QuasiStatic:
 
     Its indentation is
 
-    .. math:: s(F) = C F + c(a/R) \frac{F}{E R},\qquad c = c_0 + c_1 \ln x + c_2 x + c_3 x^2,\qquad x = a/R = (F/F_R)^{1/3}
+    .. math::
 
-    The first term is the residual compliance of the truncated modes or, where negative, the compliance that the modes already
-    contain; the second corrects Hertz's half-space for the finite size of the sphere.
+        s(F) = C F + c(a/R) \frac{F}{E R},\qquad c = c_0 + c_1 \ln x + c_2 x + c_3 x^2,\qquad
+        x = a/R = (F/F_R)^{1/3}
+
+    The first term is the residual compliance of the truncated modes or, where negative, the
+    compliance that the modes already contain; the second corrects Hertz's half-space for the finite
+    size of the sphere.
 
     Parameters
     ----------
@@ -60,12 +64,21 @@ class QuasiStatic:
         """Return s [m] and ds/dF [m/N] at a force [N]."""
         x, logs = self._relative_radius(force)
         yielded = force * (self.linear + self.unit * self._factor(x, logs))
-        return yielded, self.linear + self.unit * self._factor(x, logs + 1.0 / 3.0, (4.0 / 3.0, 5.0 / 3.0))
+        return yielded, self.linear + self.unit * self._factor(
+            x, logs + 1.0 / 3.0, (4.0 / 3.0, 5.0 / 3.0)
+        )
 
     def energy(self, force: Array) -> Array:
-        """Return the integral of F ds from zero to a force [J]; negative for a negative compliance."""
+        """Return the integral of F ds from zero to a force [J]; negative for a negative
+        compliance.
+        """
         x, logs = self._relative_radius(force)
-        return 0.5 * force * force * (self.linear + self.unit * self._factor(x, logs + 1.0 / 6.0, (8.0 / 7.0, 1.25)))
+        return (
+            0.5
+            * force
+            * force
+            * (self.linear + self.unit * self._factor(x, logs + 1.0 / 6.0, (8.0 / 7.0, 1.25)))
+        )
 
     def _relative_radius(self, force: Array) -> tuple[Array, Array]:
         """Return x, at least 1e-9, and its logarithm."""
@@ -73,6 +86,8 @@ class QuasiStatic:
         return x, np.log(x)
 
     def _factor(self, x: Array, logs: Array, weights: tuple[float, float] = (1.0, 1.0)) -> Array:
-        """Return c(x) with weighted terms of c2 and c3 and, as its derivative and its integral need them, with a shifted logarithm."""
+        """Return c(x) with weighted terms of c2 and c3 and, as its derivative and its
+        integral need them, with a shifted logarithm.
+        """
         constant, logarithm, linear, square = self.factors
         return constant + logarithm * logs + x * (weights[0] * linear + weights[1] * square * x)

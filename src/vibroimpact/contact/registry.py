@@ -1,4 +1,6 @@
-"""The registries of contact and friction laws: those of this package, and those of other packages by their entry points."""
+"""The registries of contact and friction laws: those of this package, and those of other
+packages by their entry points.
+"""
 
 from __future__ import annotations
 
@@ -18,7 +20,8 @@ Law = TypeVar("Law", bound=Parameters)
 
 @cache
 def contact_laws() -> Mapping[str, type[ContactLaw]]:
-    """Return all contact laws by name: those of this package and those of the entry points "vibroimpact.contact_laws".
+    """Return all contact laws by name: those of this package and those of the entry points
+    "vibroimpact.contact_laws".
 
     Raises
     ------
@@ -35,7 +38,8 @@ def contact_laws() -> Mapping[str, type[ContactLaw]]:
 
 @cache
 def friction_laws() -> Mapping[str, type[FrictionLaw]]:
-    """Return all friction laws by name: those of this package and those of the entry points "vibroimpact.friction_laws".
+    """Return all friction laws by name: those of this package and those of the entry points
+    "vibroimpact.friction_laws".
 
     Raises
     ------
@@ -47,17 +51,30 @@ def friction_laws() -> Mapping[str, type[FrictionLaw]]:
     >>> "mdr" in friction_laws()
     True
     """
-    return _laws("friction law", FrictionLaw, "vibroimpact.contact.friction.laws", "vibroimpact.friction_laws")
+    return _laws(
+        "friction law",
+        FrictionLaw,
+        "vibroimpact.contact.friction.laws",
+        "vibroimpact.friction_laws",
+    )
 
 
 def _laws(kind: str, base: type[Law], package: str, group: str) -> dict[str, type[Law]]:
-    """Return the laws of a kind by name: those of the modules of a package, and those of a group of entry points."""
-    laws = [law for module in modules_in(package) for law in vars(module).values() if _is(law, base) and law.__module__ == module.__name__]
+    """Return the laws of a kind by name: those of the modules of a package, and those of
+    a group of entry points.
+    """
+    laws = [
+        law
+        for module in modules_in(package)
+        for law in vars(module).values()
+        if _is(law, base) and law.__module__ == module.__name__
+    ]
     found: dict[str, type[Law]] = {}
     for law in laws + [_loaded(point, kind, base) for point in entry_points(group=group)]:
         if law.name in found:
             raise InputError(
-                f'two {kind}s are called "{law.name}": {found[law.name].__module__} and {law.__module__}; '
+                f'two {kind}s are called "{law.name}": {found[law.name].__module__} and '
+                f"{law.__module__}; "
                 "rename one, or uninstall its package"
             )
         found[law.name] = law
@@ -72,14 +89,23 @@ def _loaded(point: EntryPoint, kind: str, base: type[Law]) -> type[Law]:
     """Return the law of an entry point."""
     try:
         law = point.load()
-    except Exception as error:  # any error of another package is reported with the entry point's name
+    except Exception as error:
+        # any error of another package is reported with the entry point's name
         raise InputError(
-            f'the {kind} "{point.name}" of the entry point {point.value} can\'t be loaded: {error}; mend or uninstall its package'
+            f'the {kind} "{point.name}" of the entry point {point.value} can\'t be loaded: '
+            f"{error}; mend or uninstall its package"
         ) from error
-    missing = [key for key in ("name", "equation", "source") if not isinstance(getattr(law, key, None), str)]
+    missing = [
+        key
+        for key in ("name", "equation", "source")
+        if not isinstance(getattr(law, key, None), str)
+    ]
     if not _is(law, base) or missing:
         lacks = f"; it has no {', '.join(missing)}" if _is(law, base) else ""
-        raise InputError(f'the entry point "{point.name}", {point.value}, is not a {kind} with name, equation and source{lacks}')
+        raise InputError(
+            f'the entry point "{point.name}", {point.value}, is not a {kind} with name, '
+            f"equation and source{lacks}"
+        )
     return cast("type[Law]", law)
 
 

@@ -16,8 +16,16 @@ _RESIDUAL = 1e-11  # a smaller residual counts as zero
 _JUMP = 1e-8  # a larger residual at the root found is a discontinuity
 
 
-def find_root(function: Callable[[Array], Array], low: Array, high: Array, *, tolerance: float = 1e-13, close: float = 0.0) -> Array:
-    """Return the roots of a function, elementwise, between brackets `low` (not positive) and `high` (positive).
+def find_root(
+    function: Callable[[Array], Array],
+    low: Array,
+    high: Array,
+    *,
+    tolerance: float = 1e-13,
+    close: float = 0.0,
+) -> Array:
+    """Return the roots of a function, elementwise, between brackets `low` (not positive) and `high`
+    (positive).
 
     Inverse quadratic interpolation or bisection, by the criterion of Chandrupatla (1997).
 
@@ -35,16 +43,19 @@ def find_root(function: Callable[[Array], Array], low: Array, high: Array, *, to
     Returns
     -------
     array
-        The end of the bracket at which the function is positive, or the place at which it counts as zero.
+        The end of the bracket at which the function is positive, or the place at which it counts as
+        zero.
 
     References
     ----------
-    Chandrupatla, T. R. (1997). A new hybrid quadratic/bisection algorithm for finding the zero of a nonlinear function
-    without using derivatives. Advances in Engineering Software 28, 145-149.
+    Chandrupatla, T. R. (1997). A new hybrid quadratic/bisection algorithm for finding the zero of a
+    nonlinear function without using derivatives. Advances in Engineering Software 28, 145-149.
 
     Examples
     --------
-    >>> find_root(lambda x: x * x - np.array([2.0, 9.0]), np.zeros(2), np.array([2.0, 10.0])).round(12).tolist()
+    >>> find_root(lambda x: x * x - np.array([2.0, 9.0]), np.zeros(2), np.array([2.0, 10.0])).round(
+    ...     12
+    ... ).tolist()
     [1.414213562373, 3.0]
     """
     # `new` and `far` bracket the root; `old` is the previous point, the third of the interpolation
@@ -69,21 +80,34 @@ def find_root(function: Callable[[Array], Array], low: Array, high: Array, *, to
         if not np.any(~close_by & ~zero):
             break
         with np.errstate(all="ignore"):
-            across, up = (new - far) / (old - far), (new_value - far_value) / (old_value - far_value)
+            across, up = (
+                (new - far) / (old - far),
+                (new_value - far_value) / (old_value - far_value),
+            )
             curved = (up * up < across) & ((1.0 - up) ** 2 < 1.0 - across)
             part = new_value / (far_value - new_value) * old_value / (far_value - old_value)
-            part += (old - new) / (far - new) * new_value / (old_value - new_value) * far_value / (old_value - far_value)
+            part += (
+                (old - new)
+                / (far - new)
+                * new_value
+                / (old_value - new_value)
+                * far_value
+                / (old_value - far_value)
+            )
             edge = np.minimum(least / width, 0.5)
         part = np.where(curved & np.isfinite(part), np.clip(part, edge, 1.0 - edge), 0.5)
         part = np.where(close_by, 0.0, part)  # whatever the others still need
-        part = np.where(zero, np.where(np.abs(new_value) <= np.abs(far_value), 0.0, 1.0), part)  # a root found stays
+        # a root found stays
+        part = np.where(zero, np.where(np.abs(new_value) <= np.abs(far_value), 0.0, 1.0), part)
     nearer = np.abs(new_value) <= np.abs(far_value)
     zero = np.minimum(np.abs(new_value), np.abs(far_value)) < close
     return np.where(np.where(zero, nearer, new_value > 0.0), new, far)
 
 
 class MonotonicRoots(NamedTuple):
-    """Arguments at which a function has the wanted values, NaN where none was found, and the extreme values evaluated."""
+    """Arguments at which a function has the wanted values, NaN where none was found, and
+    the extreme values evaluated.
+    """
 
     place: Array
     least: Array
@@ -91,11 +115,18 @@ class MonotonicRoots(NamedTuple):
 
 
 def solve_monotonic(
-    function: Callable[[Array], Array], wanted: Array, start: Array, allowed: Range, *, falls: bool = False, max_steps: int = _MAX_STEPS
+    function: Callable[[Array], Array],
+    wanted: Array,
+    start: Array,
+    allowed: Range,
+    *,
+    falls: bool = False,
+    max_steps: int = _MAX_STEPS,
 ) -> MonotonicRoots:
     """Return the arguments at which a monotonic function has wanted values of the order of one.
 
-    Roots are bracketed by the ends of the range and by the start times powers of four, then refined.
+    Roots are bracketed by the ends of the range and by the start times powers of four, then
+    refined.
 
     Parameters
     ----------
@@ -106,7 +137,8 @@ def solve_monotonic(
     allowed : Range
         Range of the argument.
     falls : bool, default False
-        Is the function known to decrease? Values above that at the lower end of the range are then not searched for.
+        Is the function known to decrease? Values above that at the lower end of the range are then
+        not searched for.
     max_steps : int, default 20
         Largest number of steps, by a factor of four each, in either direction.
 
@@ -116,14 +148,20 @@ def solve_monotonic(
 
     Examples
     --------
-    >>> solve_monotonic(lambda x: np.exp(-x), np.array([0.5, 2.0]), np.ones(2), Range(at_least=0), falls=True).place.round(6).tolist()
+    >>> solve_monotonic(
+    ...     lambda x: np.exp(-x), np.array([0.5, 2.0]), np.ones(2), Range(at_least=0), falls=True
+    ... ).place.round(6).tolist()
     [0.693147, nan]
     """
     low, high = np.full_like(start, np.nan), np.full_like(start, np.nan)
     least, most = np.full_like(start, np.inf), np.full_like(start, -np.inf)
     unreachable = np.zeros(start.shape, dtype=bool)
     ends = [end + 0.0 * start for end in (allowed.at_least, allowed.at_most) if np.isfinite(end)]
-    steps = (start * 4.0**power for count in range(max_steps) for power in ((-count, count) if count else (0,)))
+    steps = (
+        start * 4.0**power
+        for count in range(max_steps)
+        for power in ((-count, count) if count else (0,))
+    )
     for number, value in enumerate(itertools.chain(ends, steps)):
         trial = allowed.clip(value)
         found = function(trial)
@@ -140,7 +178,8 @@ def solve_monotonic(
     missed = np.isnan(low) | np.isnan(high)
     if missed.all():
         return MonotonicRoots(np.full_like(start, np.nan), least, most)
-    low, high = (np.where(missed, start, bound) for bound in (low, high))  # those without a bracket are discarded at the end
+    # those without a bracket are discarded at the end
+    low, high = (np.where(missed, start, bound) for bound in (low, high))
     place = find_root(lambda value: function(value) - wanted, low, high, close=_RESIDUAL)
     discontinuous = ~(np.abs(function(place) - wanted) <= _JUMP)
     return MonotonicRoots(np.where(missed | discontinuous, np.nan, place), least, most)

@@ -54,7 +54,11 @@ class SpeedFunction:
     @property
     def extremes(self) -> tuple[float, float]:
         """The smallest and the largest value within the range of the fit."""
-        turns = polynomial.polyroots(polynomial.polyder(self.coefficients)) if self.degree > 1 else np.zeros(0)
+        turns = (
+            polynomial.polyroots(polynomial.polyder(self.coefficients))
+            if self.degree > 1
+            else np.zeros(0)
+        )
         inside = np.clip(turns[np.abs(np.imag(turns)) < 1e-9].real, self.slowest, self.fastest)
         values = self(np.array([self.slowest, self.fastest, *inside]))
         return float(values.min()), float(values.max())
@@ -62,7 +66,10 @@ class SpeedFunction:
     @property
     def words(self) -> str:
         """The function in words."""
-        terms = " + ".join(f"{value:.6g}{f' v^{power}' if power else ''}" for power, value in enumerate(self.coefficients))
+        terms = " + ".join(
+            f"{value:.6g}{f' v^{power}' if power else ''}"
+            for power, value in enumerate(self.coefficients)
+        )
         return f"{terms.replace('+ -', '- ')}, v from {self.slowest:.6g} to {self.fastest:.6g} m/s"
 
     def table(self) -> dict[str, Any]:
@@ -72,7 +79,8 @@ class SpeedFunction:
 
 @dataclass(frozen=True)
 class SpeedTable:
-    """Values at several approach speeds, linear between them; beyond the ends the nearest value holds.
+    """Values at several approach speeds, linear between them; beyond the ends the nearest value
+    holds.
 
     Parameters
     ----------
@@ -108,7 +116,11 @@ class SpeedTable:
     def words(self) -> str:
         """The function in words."""
         first, last = (f"{self.values[at]:.6g} at {self.speeds[at]:.6g} m/s" for at in (0, -1))
-        return first if len(self.speeds) == 1 else f"{first} to {last}, linear between {len(self.speeds)} speeds"
+        return (
+            first
+            if len(self.speeds) == 1
+            else f"{first} to {last}, linear between {len(self.speeds)} speeds"
+        )
 
     def table(self) -> dict[str, Any]:
         """Return the table of a case file."""
@@ -134,7 +146,8 @@ BySpeed: TypeAlias = SpeedFunction | SpeedTable
 
 
 def held(function: BySpeed, speed: Any) -> Any:
-    """Return the value of a function at an approach speed [m/s]; beyond its range that at the nearest end.
+    """Return the value of a function at an approach speed [m/s]; beyond its range that at the
+    nearest end.
 
     Examples
     --------

@@ -36,15 +36,28 @@ def _force(law: CompliantLaw, delta: Array) -> Array:
 
 
 def static_work(law: CompliantLaw, delta: Array) -> Array:
-    """Return the integral of the static force from `touch_level` [J], the sum of elastic energy and plastic work."""
-    return law.elastic_energy(delta) + law.plastic_work(delta) if law.yields else law.elastic_energy(delta)
+    """Return the integral of the static force from `touch_level` [J], the sum of elastic
+    energy and plastic work.
+    """
+    return (
+        law.elastic_energy(delta) + law.plastic_work(delta)
+        if law.yields
+        else law.elastic_energy(delta)
+    )
 
 
-def _solve(function: Callable[[Array], tuple[Array, Array]], wanted: Callable[[Array], Array], least: Array, within: float) -> Array:
-    """Return the indentation, at least `least`, at which an increasing function of it has the value `wanted`.
+def _solve(
+    function: Callable[[Array], tuple[Array, Array]],
+    wanted: Callable[[Array], Array],
+    least: Array,
+    within: float,
+) -> Array:
+    """Return the indentation, at least `least`, at which an increasing function of it has the value
+    `wanted`.
 
-    `function` returns the value and an estimate of the local exponent d ln(value) / d ln(delta): the iteration is exact after one
-    step for a power law. Where it does not converge, the root is bracketed.
+    `function` returns the value and an estimate of the local exponent d ln(value) / d ln(delta):
+    the iteration is exact after one step for a power law. Where it does not converge, the root is
+    bracketed.
     """
 
     def excess(delta: Array) -> Array:
@@ -58,11 +71,13 @@ def _solve(function: Callable[[Array], tuple[Array, Array]], wanted: Callable[[A
         for _ in range(30):
             value, power = function(delta)
             step = (wanted(delta) / value) ** (1.0 / power)
-            delta = delta * np.where(unloaded | converged, 1.0, step)  # whatever the others still need
+            # whatever the others still need
+            delta = delta * np.where(unloaded | converged, 1.0, step)
             converged |= np.abs(step - 1.0) < within
             if np.all(converged | unloaded | ~np.isfinite(delta)):
                 break
-        # where it failed, the bracket is extended by factors of four from `least` until it holds the root
+        # where it failed, the bracket is extended by factors of four from `least` until it holds
+        # the root
         failed = ~(converged & (delta > least))
         if np.any(failed):
             failed &= ~unloaded | (excess(least) < 0.0)
@@ -72,6 +87,9 @@ def _solve(function: Callable[[Array], tuple[Array, Array]], wanted: Callable[[A
                 short = ~(excess(high) > 0.0)
                 if not np.any(short & failed):
                     break
-                low, high = np.where(short, high, low), np.where(short, least + 4.0 * (high - least), high)
+                low, high = (
+                    np.where(short, high, low),
+                    np.where(short, least + 4.0 * (high - least), high),
+                )
             delta = np.where(failed, find_root(excess, low, high, tolerance=within), delta)
     return np.asarray(np.where(failed | ~unloaded, delta, least))

@@ -1,4 +1,6 @@
-"""Elastic-plastic contact of a sphere: Hertzian up to yield, with Hertzian unloading of a flattened sphere."""
+"""Elastic-plastic contact of a sphere: Hertzian up to yield, with Hertzian unloading of a
+flattened sphere.
+"""
 
 from __future__ import annotations
 
@@ -10,7 +12,12 @@ import numpy as np
 from vibroimpact.arrays import Array
 from vibroimpact.compiled import scalar
 from vibroimpact.contact.choice import where
-from vibroimpact.contact.elastic_plastic import ElasticPlasticLaw, LoadingCurve, LoadingState, OfIndentation
+from vibroimpact.contact.elastic_plastic import (
+    ElasticPlasticLaw,
+    LoadingCurve,
+    LoadingState,
+    OfIndentation,
+)
 from vibroimpact.contact.law import Levels, ScalarLevels
 from vibroimpact.contact.mixins import ElasticPairLaw
 from vibroimpact.contact.pair import hertz_stiffness
@@ -25,7 +32,8 @@ def _levels(coefficients: Any) -> Levels:
 def yielding_sphere(plastic_force: OfIndentation, plastic_state: LoadingState) -> LoadingCurve:
     """Return the loading curve of a sphere that is Hertzian up to yield.
 
-    Its coefficients, from index 6, are yield indentation, Hertz's stiffness, effective modulus and effective radius; a law adds its own.
+    Its coefficients, from index 6, are yield indentation, Hertz's stiffness, effective modulus and
+    effective radius; a law adds its own.
 
     Parameters
     ----------
@@ -44,13 +52,19 @@ def yielding_sphere(plastic_force: OfIndentation, plastic_state: LoadingState) -
 
     @scalar
     def state(delta: Array, coefficients: Any) -> tuple[Array, Array, Array]:
-        yield_indentation, stiffness, effective_modulus = coefficients[6], coefficients[7], coefficients[8]
+        yield_indentation, stiffness, effective_modulus = (
+            coefficients[6],
+            coefficients[7],
+            coefficients[8],
+        )
         yields = delta > yield_indentation
         elastic = np.minimum(delta, yield_indentation)
         plastic, work, radius = plastic_state(np.maximum(delta, yield_indentation), coefficients)
         force = where(yields, plastic, stiffness * elastic * np.sqrt(elastic))
         # exactly no plastic work up to yield, despite rounding
-        loading_work = 0.4 * stiffness * (elastic * elastic) * np.sqrt(elastic) + where(yields, work, 0.0)
+        loading_work = 0.4 * stiffness * (elastic * elastic) * np.sqrt(elastic) + where(
+            yields, work, 0.0
+        )
         recovery = where(yields, 0.75 * plastic / (effective_modulus * radius), delta)
         return force, loading_work, recovery
 
@@ -61,13 +75,16 @@ def yielding_sphere(plastic_force: OfIndentation, plastic_state: LoadingState) -
 class YieldingSphereLaw(ElasticPairLaw, ElasticPlasticLaw):
     r"""Base of the elastic-plastic laws of a sphere.
 
-    Up to `yield_indentation` the contact is Hertzian. Beyond, it unloads as the Hertzian contact of a sphere of larger radius
-    with the same contact radius :math:`a_m`, which is :math:`\sqrt{R \delta_m}` unless a law has it otherwise, and force
+    Up to `yield_indentation` the contact is Hertzian. Beyond, it unloads as the Hertzian contact of
+    a sphere of larger radius
+    with the same contact radius :math:`a_m`, which is :math:`\sqrt{R \delta_m}` unless a law has it
+    otherwise, and force
     :math:`F_m`, so that
 
     .. math:: \delta_m - \delta_r = \frac{3 F_m}{4 E^* a_m}
 
-    (Thornton 1997, J. Appl. Mech. 64, 383-386). A law takes its `loading_curve` from `yielding_sphere`.
+    (Thornton 1997, J. Appl. Mech. 64, 383-386). A law takes its `loading_curve` from
+    `yielding_sphere`.
     """
 
     scalar_levels: ClassVar[ScalarLevels | None] = staticmethod(_levels)
@@ -89,8 +106,15 @@ class YieldingSphereLaw(ElasticPairLaw, ElasticPlasticLaw):
 
     @property
     def loading_coefficients(self) -> tuple[Array, ...]:
-        """Yield indentation, Hertz's stiffness, effective modulus and radius, and those of loading beyond yield."""
-        sphere = self.yield_indentation, self.stiffness, self.effective_modulus, self.effective_radius
+        """Yield indentation, Hertz's stiffness, effective modulus and radius, and those
+        of loading beyond yield.
+        """
+        sphere = (
+            self.yield_indentation,
+            self.stiffness,
+            self.effective_modulus,
+            self.effective_radius,
+        )
         return *sphere, *self.plastic_coefficients
 
     def contact_radius(self, delta: Array) -> Array:

@@ -1,4 +1,6 @@
-"""Records of a test: the motion of sensors and, if it was measured, the force of the hammer, hit by hit."""
+"""Records of a test: the motion of sensors and, if it was measured, the force of the
+hammer, hit by hit.
+"""
 
 from __future__ import annotations
 
@@ -23,7 +25,9 @@ _SAME_HIT = 0.05
 _APART = 5e-4
 """Pulses of force that are further apart than so long are two [s]."""
 _DRIFT = 0.1
-"""Samples by which records of one rate may drift apart until their end, as rates differ by rounding."""
+"""Samples by which records of one rate may drift apart until their end, as rates differ
+by rounding.
+"""
 LEAD = HALF_LENGTH + 1
 """Samples before an onset that belong to it: as early as a converter's filter lets it be heard."""
 
@@ -47,7 +51,8 @@ class Acquired:
     ends : tuple of int
         The sample after which the force of each hit is over; empty without a force.
     pulses : tuple of (int, int)
-        First and last sample of each pulse of force: of more than there are hits, if a hammer hit twice.
+        First and last sample of each pulse of force: of more than there are hits, if a hammer hit
+        twice.
     recorded : array, shape (S or S + 1, samples)
         The samples with their baselines, as they were recorded; those of the force last.
     removed : tuple of Removed
@@ -71,7 +76,9 @@ class Acquired:
 
     @property
     def pulse_times(self) -> Floats:
-        """Begin and end of each pulse of force, after the first sample, with what a converter's filter spreads of it, (pulses, 2) [s]."""
+        """Begin and end of each pulse of force, after the first sample, with what a
+        converter's filter spreads of it, (pulses, 2) [s].
+        """
         pulses = np.array(self.pulses, dtype=float).reshape(-1, 2)
         room = np.minimum(LEAD, 0.5 * (pulses[1:, 0] - pulses[:-1, 1]))
         before, after = np.append(LEAD, room), np.append(room, LEAD)
@@ -83,7 +90,9 @@ class Acquired:
         return min(sensor.passed for sensor in self.sensors)
 
 
-def acquired_of(sensors: Sequence[Sensor], records: Sequence[Record], force: Record | None) -> Acquired:
+def acquired_of(
+    sensors: Sequence[Sensor], records: Sequence[Record], force: Record | None
+) -> Acquired:
     """Return the records of a test.
 
     Parameters
@@ -98,16 +107,22 @@ def acquired_of(sensors: Sequence[Sensor], records: Sequence[Record], force: Rec
     Raises
     ------
     InputError
-        If there is no record, no sensor of its name, its unit is another, rates differ, records do not overlap in time, one is constant or
-        not finite, or the force is not one.
+        If there is no record, no sensor of its name, its unit is another, rates differ, records do
+        not overlap in time, one is constant or not finite, or the force is not one.
     """
     every = [*records, *([] if force is None else [force])]
     for one in every:
         if abs(one.rate / every[0].rate - 1.0) * len(one.value) > _DRIFT:
-            words = f"the record {shown(one.name)} has {one.rate:.9g} samples per second, and {shown(every[0].name)} {every[0].rate:.9g}"
+            words = (
+                f"the record {shown(one.name)} has {one.rate:.9g} samples per second, and "
+                f"{shown(every[0].name)} {every[0].rate:.9g}"
+            )
             raise InputError(f"{words}; give records of one acquisition, or resample one of them")
         if not np.isfinite(one.value).all():
-            raise InputError(f"a sample of the record {shown(one.name)} is not a finite number; give it without gaps")
+            raise InputError(
+                f"a sample of the record {shown(one.name)} is not a finite "
+                "number; give it without gaps"
+            )
     rate = every[0].rate if every else 1.0
     every = [without_baseline(replace(one, rate=rate)) for one in every]
     used = sensors_of([replace(sensor, rate=rate) for sensor in sensors], every[: len(records)])
@@ -116,31 +131,46 @@ def acquired_of(sensors: Sequence[Sensor], records: Sequence[Record], force: Rec
         raise InputError(f"the record {shown(force.name)} {unit}; the force of a hammer is in N")
     whole, start = on_common_time(every)
     if whole.shape[1] < 2 * LEAD:
-        words = f"the records have {whole.shape[1]} sample{'' if whole.shape[1] == 1 else 's'} in common"
+        words = (
+            f"the records have {whole.shape[1]} sample{'' if whole.shape[1] == 1 else 's'} in "
+            "common"
+        )
         remedy = "give longer records that overlap in time"
         if len(every) == 1:
-            words, remedy = f"the record {shown(every[0].name)} has {whole.shape[1]} samples", "give a longer one"
+            words, remedy = (
+                f"the record {shown(every[0].name)} has {whole.shape[1]} samples",
+                "give a longer one",
+            )
         raise InputError(f"{words}, and {2 * LEAD} are needed; {remedy}")
     for one, value in zip(every, whole, strict=True):
         if np.ptp(value) == 0.0:
             where = " where it overlaps with the others" if len(every) > 1 else ""
             raise InputError(f"the record {shown(one.name)} is constant{where}; it has no onset")
-    recorded, _ = on_common_time([one if one.recorded is None else replace(one, value=one.recorded) for one in every])
+    recorded, _ = on_common_time(
+        [one if one.recorded is None else replace(one, value=one.recorded) for one in every]
+    )
     removed = tuple(one.removed or Removed(0.0, 0.0) for one in every)
     value = whole[: len(records)]
     if force is None:
-        onset = min(onset_time(Record(one.name, part, rate, one.unit, removed=one.removed)) for one, part in zip(every, value, strict=True))
+        onset = min(
+            onset_time(Record(one.name, part, rate, one.unit, removed=one.removed))
+            for one, part in zip(every, value, strict=True)
+        )
         return Acquired(used, value, None, start, (round(onset * rate),), (), (), recorded, removed)
     push = whole[-1]
-    hits = find_packets(Record(force.name, push, rate, "N", removed=removed[-1]), dead_time=_SAME_HIT)
+    hits = find_packets(
+        Record(force.name, push, rate, "N", removed=removed[-1]), dead_time=_SAME_HIT
+    )
     onsets, ends = (tuple(part.tolist()) for part in (hits.first, hits.last))
     return Acquired(used, value, push, start, onsets, ends, _pulses(push, rate), recorded, removed)
 
 
 def _pulses(force: Floats, rate: float) -> tuple[tuple[int, int], ...]:
-    """Return the first and the last sample of each pulse of a force, where it is above a tenth of its largest.
+    """Return the first and the last sample of each pulse of a force, where it is above a tenth of
+    its largest.
 
-    The envelope, by which hits are found, falls so slowly beside a pulse that it joins pulses which are near.
+    The envelope, by which hits are found, falls so slowly beside a pulse that it joins pulses which
+    are near.
     """
     high = np.flatnonzero(np.abs(force) >= THRESHOLD * np.abs(force).max())
     gaps = np.flatnonzero(np.diff(high) > max(1.0, _APART * rate))

@@ -1,4 +1,6 @@
-"""What of the files of a test is compared: their records over time, or their frequency responses. A universal file may have both."""
+"""What of the files of a test is compared: their records over time, or their frequency
+responses. A universal file may have both.
+"""
 
 from __future__ import annotations
 
@@ -16,17 +18,21 @@ KINDS = ("records", "responses")
 
 
 class Compared(NamedTuple):
-    """What is compared, one of `KINDS`, and what is said of the rest, sentences without full stops."""
+    """What is compared, one of `KINDS`, and what is said of the rest, sentences without
+    full stops.
+    """
 
     kind: str
     remarks: tuple[str, ...]
 
 
-def compared_kind(paths: Sequence[str | Path], asked: str | None, hammer: str | None, *, windowed: bool) -> Compared:
+def compared_kind(
+    paths: Sequence[str | Path], asked: str | None, hammer: str | None, *, windowed: bool
+) -> Compared:
     """Return what of the files of a test is compared.
 
-    Of files with both it is the frequency responses; the records where the channel of the hammer is one of them, there is a window, or
-    another file has records alone.
+    Of files with both it is the frequency responses; the records where the channel of the hammer is
+    one of them, there is a window, or another file has records alone.
 
     Parameters
     ----------
@@ -42,10 +48,13 @@ def compared_kind(paths: Sequence[str | Path], asked: str | None, hammer: str | 
     Raises
     ------
     InputError
-        If there is no such kind, a file has nothing of it, or without `asked` one file has records alone and another responses alone.
+        If there is no such kind, a file has nothing of it, or without `asked` one file has records
+        alone and another responses alone.
     """
     if asked is not None and asked not in KINDS:
-        raise InputError(f"{shown(asked)} can't be compared; there are {choices(KINDS, asked)}", "--compare")
+        raise InputError(
+            f"{shown(asked)} can't be compared; there are {choices(KINDS, asked)}", "--compare"
+        )
     every = [(path, contents_of(path)) for path in paths]
     records = [path for path, one in every if not one.responses]
     responses = [path for path, one in every if one.responses and not one.records]
@@ -57,10 +66,15 @@ def compared_kind(paths: Sequence[str | Path], asked: str | None, hammer: str | 
     if lacking:
         has = "no record over time" if kind == "records" else "no frequency response"
         raise InputError(f"{lacking[0]} has {has}; leave it out", "--compare" if asked else "")
-    return Compared(kind, tuple(_remark(path, one, kind) for path, one in every if one.records and one.responses))
+    return Compared(
+        kind,
+        tuple(_remark(path, one, kind) for path, one in every if one.records and one.responses),
+    )
 
 
-def _kind(every: Sequence[tuple[str | Path, Contents]], hammer: str | None, *, windowed: bool) -> str:
+def _kind(
+    every: Sequence[tuple[str | Path, Contents]], hammer: str | None, *, windowed: bool
+) -> str:
     """Return what is compared where nothing is asked for."""
     if not any(one.responses for _, one in every):
         return "records"

@@ -1,4 +1,6 @@
-"""What correlations of records and of frequency responses have in common: criteria over octaves, and modes."""
+"""What correlations of records and of frequency responses have in common: criteria over
+octaves, and modes.
+"""
 
 from __future__ import annotations
 

@@ -15,7 +15,14 @@ from vibroimpact.correlation.mode_pairs import ModePair, damping_field
 from vibroimpact.shown import visible
 from vibroimpact.units.display import MISSING, digits
 
-RECORD_HEADERS = ("Record", "Polarity", "Correlation", "Measured over simulated", "Residual, %", "FRAC")
+RECORD_HEADERS = (
+    "Record",
+    "Polarity",
+    "Correlation",
+    "Measured over simulated",
+    "Residual, %",
+    "FRAC",
+)
 """Headers of the table of records."""
 MODE_HEADERS = (
     "Mode",
@@ -53,12 +60,23 @@ def what_frac_is_of(found: Correlation) -> str:
     """Return of what the frequency response assurance criterion is."""
     if not found.hits:
         return "the spectra of the signals, since no force was measured"
-    return f"the frequency responses to the force, by H1 from {found.hits} hit{'s' if found.hits > 1 else ''}"
+    return (
+        f"the frequency responses to the force, by H1 from {found.hits} "
+        f"hit{'s' if found.hits > 1 else ''}"
+    )
 
 
 def record_rows(found: Correlation) -> list[list[str]]:
     """Return the cells of the table of records."""
-    columns = zip(found.sensors, found.polarity, found.coefficient, found.scale, found.relative_residual, found.frac, strict=True)
+    columns = zip(
+        found.sensors,
+        found.polarity,
+        found.coefficient,
+        found.scale,
+        found.relative_residual,
+        found.frac,
+        strict=True,
+    )
     return [
         [
             visible(sensor.name),
@@ -78,7 +96,8 @@ def octave_headers(found: Criteria) -> list[str]:
 
 
 def response_columns(found: Responses, plain: Mapping[str, str]) -> dict[str, Floats]:
-    """Return the columns of `responses.csv`: the frequency, and of each response magnitude and phase of both, and the coherence.
+    """Return the columns of `responses.csv`: the frequency, and of each response magnitude and
+    phase of both, and the coherence.
 
     Parameters
     ----------
@@ -90,18 +109,32 @@ def response_columns(found: Responses, plain: Mapping[str, str]) -> dict[str, Fl
     columns = {"frequency_Hz": found.frequency}
     for number, sensor in enumerate(found.sensors):
         name = plain[sensor.name]
-        for what, response in (("measured", found.measured_response), ("simulated", found.simulated_response)):
-            columns |= {f"{name}_{what}_magnitude": np.abs(response[number]), f"{name}_{what}_phase_rad": np.angle(response[number])}
+        for what, response in (
+            ("measured", found.measured_response),
+            ("simulated", found.simulated_response),
+        ):
+            columns |= {
+                f"{name}_{what}_magnitude": np.abs(response[number]),
+                f"{name}_{what}_phase_rad": np.angle(response[number]),
+            }
         if found.coherence is not None:
             columns[f"{name}_coherence"] = found.coherence[number]
     return columns
 
 
 def octave_rows(found: Criteria) -> list[list[str]]:
-    """Return the cells of the table of octaves: the criterion of each record over each, and over the whole band."""
-    whole = [f"{found.band[0]:.5g} to {found.band[1]:.5g} Hz, whole", *(f"{value:.3f}" for value in found.frac)]
+    """Return the cells of the table of octaves: the criterion of each record over each,
+    and over the whole band.
+    """
+    whole = [
+        f"{found.band[0]:.5g} to {found.band[1]:.5g} Hz, whole",
+        *(f"{value:.3f}" for value in found.frac),
+    ]
     parts = [
-        [f"{low:.5g} to {high:.5g} Hz", *(MISSING if np.isnan(value) else f"{value:.3f}" for value in values)]
+        [
+            f"{low:.5g} to {high:.5g} Hz",
+            *(MISSING if np.isnan(value) else f"{value:.3f}" for value in values),
+        ]
         for (low, high), values in zip(found.octaves, found.octave_frac.T, strict=True)
     ]
     return [whole, *parts]
@@ -112,8 +145,12 @@ def mode_cells(modes: Sequence[ModePair]) -> tuple[list[str], list[list[str]]]:
     return without_blank_remarks(MODE_HEADERS, [mode_row(pair) for pair in modes])
 
 
-def without_blank_remarks(headers: Sequence[str], rows: Sequence[Sequence[str]]) -> tuple[list[str], list[list[str]]]:
-    """Return headers and rows of a table whose last column has remarks, without that if there is none."""
+def without_blank_remarks(
+    headers: Sequence[str], rows: Sequence[Sequence[str]]
+) -> tuple[list[str], list[list[str]]]:
+    """Return headers and rows of a table whose last column has remarks, without that if
+    there is none.
+    """
     told = len(headers) if any(row[-1] for row in rows) else len(headers) - 1
     return list(headers[:told]), [list(row[:told]) for row in rows]
 
@@ -121,15 +158,38 @@ def without_blank_remarks(headers: Sequence[str], rows: Sequence[Sequence[str]])
 def mode_row(pair: ModePair) -> list[str]:
     """Return the cells of a mode in its table."""
     number = MISSING if pair.number is None else str(pair.number)
-    computed, ratio = (MISSING if pair.number is None else digits(value, 5) for value in (pair.frequency, pair.damping_ratio))
+    computed, ratio = (
+        MISSING if pair.number is None else digits(value, 5)
+        for value in (pair.frequency, pair.damping_ratio)
+    )
     if pair.measured is None:
-        return [number, computed, MISSING, MISSING, MISSING, ratio, MISSING, MISSING, MISSING, pair.remark]
+        return [
+            number,
+            computed,
+            MISSING,
+            MISSING,
+            MISSING,
+            ratio,
+            MISSING,
+            MISSING,
+            MISSING,
+            pair.remark,
+        ]
     mode = pair.measured
     half = mode.frequency.interval[1] - mode.frequency.value
     ratio_and_ends = (mode.damping_ratio.value, *mode.damping_ratio.interval)
     damping = [MISSING if mode.doubt else digits(value, 4) for value in ratio_and_ends]
     difference = MISSING if pair.number is None else signed(100.0 * pair.frequency_difference)
-    return [number, computed, digits(mode.frequency.value, 6), digits(half, 2), difference, ratio, *damping, pair.remark]
+    return [
+        number,
+        computed,
+        digits(mode.frequency.value, 6),
+        digits(half, 2),
+        difference,
+        ratio,
+        *damping,
+        pair.remark,
+    ]
 
 
 def signed(value: float) -> str:
@@ -155,9 +215,21 @@ def mode_record(pair: ModePair) -> dict[str, Any]:
 
 
 def _mode_values(pair: ModePair) -> list[Any]:
-    of_case = [pair.frequency, pair.damping_ratio, pair.response] if pair.number is not None else 3 * [None]
+    of_case = (
+        [pair.frequency, pair.damping_ratio, pair.response]
+        if pair.number is not None
+        else 3 * [None]
+    )
     mode = pair.measured
-    measured = 6 * [None] if mode is None else [part for one in (mode.frequency, mode.damping_ratio) for part in (one.value, *one.interval)]
+    measured = (
+        6 * [None]
+        if mode is None
+        else [
+            part
+            for one in (mode.frequency, mode.damping_ratio)
+            for part in (one.value, *one.interval)
+        ]
+    )
     return [pair.number, *of_case, *measured, pair.damping_measured, pair.remark]
 
 
@@ -199,7 +271,9 @@ def summary_of_correlation(found: Correlation) -> dict[str, Any]:
             }
             for sensor, sign, alike, late, scale, part, of, octaves, scaled, damped in records
         },
-        "removed": {name: {"offset": one.offset, "drift": one.drift} for name, one in found.removed.items()},
+        "removed": {
+            name: {"offset": one.offset, "drift": one.drift} for name, one in found.removed.items()
+        },
         "modes": mode_table(found),
         "damping": damping_field(found.modes),
         "doubts": list(found.doubts),

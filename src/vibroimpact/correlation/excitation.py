@@ -1,4 +1,6 @@
-"""Up to which frequency a force excites a plate: to where its spectrum has fallen by 20 dB, since beyond are its zeros."""
+"""Up to which frequency a force excites a plate: to where its spectrum has fallen by 20
+dB, since beyond are its zeros.
+"""
 
 from __future__ import annotations
 
@@ -18,9 +20,11 @@ _ROOM = np.sqrt(2.0)
 
 
 def force_ends(pushes: Pushes, highest: float) -> float | None:
-    """Return the lowest frequency up to a highest one at which the spectrum of a force has fallen by 20 dB [Hz]; None if there is none.
+    """Return the lowest frequency up to a highest one at which the spectrum of a force has fallen
+    by 20 dB [Hz]; None if there is none.
 
-    The powers of its pulses are added: zeros that two pulses have by their distance are narrow, and there are as many below as above.
+    The powers of its pulses are added: zeros that two pulses have by their distance are narrow, and
+    there are as many below as above.
     """
     frequency = np.linspace(0.0, highest, _FREQUENCIES)
     power = np.zeros(len(frequency))
@@ -38,13 +42,15 @@ def _power(time: Floats, impulse: Floats, frequency: Floats) -> Floats:
 
 
 def is_excited(band: tuple[float, float], ends: float | None) -> bool:
-    """Return whether a force whose spectrum ends at a frequency leaves half an octave of a band, or more."""
+    """Return whether a force whose spectrum ends at a frequency leaves half an octave of
+    a band, or more.
+    """
     return ends is None or ends >= _ROOM * band[0]
 
 
 class Excited(NamedTuple):
-    """The band of frequencies that is compared, that in which modes are sought, and where the spectrum of the force has fallen by 20 dB
-    [Hz], as of `force_ends`.
+    """The band of frequencies that is compared, that in which modes are sought, and where the
+    spectrum of the force has fallen by 20 dB [Hz], as of `force_ends`.
     """
 
     compared: tuple[float, float]

@@ -1,4 +1,6 @@
-"""Writes a correlation as a folder: signals, frequency responses, criteria, modes, the summary, the case and a report."""
+"""Writes a correlation as a folder: signals, frequency responses, criteria, modes, the
+summary, the case and a report.
+"""
 
 from __future__ import annotations
 
@@ -33,11 +35,18 @@ from vibroimpact.results.csv_files import write_columns, write_csv
 from vibroimpact.results.folder import new_folder, write_summary
 
 
-def save_correlation(found: Correlation, directory: str | PathLike[str], *, force: bool = False, figures: Sequence[str] = ()) -> Path:
+def save_correlation(
+    found: Correlation,
+    directory: str | PathLike[str],
+    *,
+    force: bool = False,
+    figures: Sequence[str] = (),
+) -> Path:
     """Write a correlation atomically.
 
-    The folder has `overlay.csv` (time, and of each record measured, simulated and residual), `responses.csv` (frequency, and of each record
-    magnitude and phase of both), `modes.csv`, `summary.json`, `case.toml` and a report.
+    The folder has `overlay.csv` (time, and of each record measured, simulated and residual),
+    `responses.csv` (frequency, and of each record magnitude and phase of both), `modes.csv`,
+    `summary.json`, `case.toml` and a report.
 
     Parameters
     ----------
@@ -48,7 +57,8 @@ def save_correlation(found: Correlation, directory: str | PathLike[str], *, forc
     force : bool, default False
         Replace an existing folder.
     figures : sequence of str
-        Formats in which the charts are also written as files, into a folder `figures`: of "png", "svg" and "pdf".
+        Formats in which the charts are also written as files, into a folder `figures`: of "png",
+        "svg" and "pdf".
 
     Raises
     ------
@@ -59,11 +69,24 @@ def save_correlation(found: Correlation, directory: str | PathLike[str], *, forc
     --------
     >>> from tempfile import TemporaryDirectory
     >>> import vibroimpact as vi
-    >>> plate = {"size": [0.3, 0.3, 0.02], "material": "steel", "model": "elastic", "modes": 10, "supports": "clamped", "damping": 0.01}
-    >>> case = vi.read_case({
-    ...     "sphere": {"radius": 0.02, "material": "steel"}, "plate": plate, "drop": {"speed": 1.0, "position": [0.02, 0.01]},
-    ...     "contact": {"law": "hertz"}, "run": {"duration": 0.1}, "sensors": [{"name": "a", "position": [0.1, 0.03], "rate": 20e3}],
-    ... })
+    >>> plate = {
+    ...     "size": [0.3, 0.3, 0.02],
+    ...     "material": "steel",
+    ...     "model": "elastic",
+    ...     "modes": 10,
+    ...     "supports": "clamped",
+    ...     "damping": 0.01,
+    ... }
+    >>> case = vi.read_case(
+    ...     {
+    ...         "sphere": {"radius": 0.02, "material": "steel"},
+    ...         "plate": plate,
+    ...         "drop": {"speed": 1.0, "position": [0.02, 0.01]},
+    ...         "contact": {"law": "hertz"},
+    ...         "run": {"duration": 0.1},
+    ...         "sensors": [{"name": "a", "position": [0.1, 0.03], "rate": 20e3}],
+    ...     }
+    ... )
     >>> record = vi.Record("a", vi.simulate(case).signals()["a"].value, 20e3, "m/s2")
     >>> found = vi.correlate(case, [record], window=0.05)
     >>> with TemporaryDirectory() as folder:
@@ -81,7 +104,9 @@ def save_correlation(found: Correlation, directory: str | PathLike[str], *, forc
         write_columns(response_columns(found, plain), folder / "responses.csv")
         write_csv(mode_table(found), list(MODE_COLUMNS), folder / "modes.csv")
         write_summary(summary_of_correlation(found), folder)
-        (folder / "case.toml").write_text(tomli_w.dumps(resolved_case(found.case)), encoding="utf-8")
+        (folder / "case.toml").write_text(
+            tomli_w.dumps(resolved_case(found.case)), encoding="utf-8"
+        )
         charts = correlation_charts(found)
         write_figures(charts, folder, figures)
         page = render_page(

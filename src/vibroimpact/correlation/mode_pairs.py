@@ -18,13 +18,18 @@ _FAR = 0.05
 FEWEST = 3
 """Least number of modes whose frequencies have anything in common."""
 _SHIFTS = np.arange(-0.1, 0.1001, 0.005)
-"""Logarithms of factors between the frequencies of both, from which on what all have in common is sought."""
+"""Logarithms of factors between the frequencies of both, from which on what all have in
+common is sought.
+"""
 _CLOSE, _BETTER = 0.1, 0.6
-"""What the mean difference that a shift of more than a little leaves must be below: a fraction of the mean distance of modes, of which
-anything leaves a quarter; and a fraction of the sum without it.
+"""What the mean difference that a shift of more than a little leaves must be below: a fraction of
+the mean distance of modes, of which anything leaves a quarter; and a fraction of the sum without
+it.
 """
 _HEARD = 1e-3
-"""Response of a mode, relative to the strongest in the band, from which on it may be found in the records."""
+"""Response of a mode, relative to the strongest in the band, from which on it may be
+found in the records.
+"""
 WEAK = 0.02
 """Response below which nobody wonders that it is not."""
 
@@ -40,7 +45,8 @@ class ModePair:
     frequency, damping_ratio : float
         Natural frequency [Hz] and damping ratio in the case; NaN if it has none.
     response : float
-        What the mode contributes to the sensor that hears it best, relative to the strongest mode in the band; NaN if the case has none.
+        What the mode contributes to the sensor that hears it best, relative to the strongest mode
+        in the band; NaN if the case has none.
     measured : DecayMode, optional
         The measured mode; None if none was found.
     remark : str
@@ -49,7 +55,14 @@ class ModePair:
     Examples
     --------
     >>> import vibroimpact as vi
-    >>> pair = vi.ModePair(number=1, frequency=420.0, damping_ratio=0.01, response=1.0, measured=None, remark="not excited")
+    >>> pair = vi.ModePair(
+    ...     number=1,
+    ...     frequency=420.0,
+    ...     damping_ratio=0.01,
+    ...     response=1.0,
+    ...     measured=None,
+    ...     remark="not excited",
+    ... )
     >>> pair.frequency, pair.measured
     (420.0, None)
     """
@@ -64,7 +77,11 @@ class ModePair:
     @property
     def frequency_difference(self) -> float:
         """How much higher the measured frequency is, relative to that of the case."""
-        return self.measured.frequency.value / self.frequency - 1.0 if self.measured is not None else float("nan")
+        return (
+            self.measured.frequency.value / self.frequency - 1.0
+            if self.measured is not None
+            else float("nan")
+        )
 
     @property
     def damping_measured(self) -> bool:
@@ -72,21 +89,35 @@ class ModePair:
         return self.number is not None and self.measured is not None and not self.measured.doubt
 
 
-def pairs_of(problem: Problem, sensors: Sequence[Sensor], found: Sequence[DecayMode], band: tuple[float, float]) -> tuple[ModePair, ...]:
-    """Return the modes of a plate within a band beside measured ones, in the order of their frequencies.
+def pairs_of(
+    problem: Problem,
+    sensors: Sequence[Sensor],
+    found: Sequence[DecayMode],
+    band: tuple[float, float],
+) -> tuple[ModePair, ...]:
+    """Return the modes of a plate within a band beside measured ones, in the order of their
+    frequencies.
 
-    Pairs are those whose relative differences of frequency have the least sum, aside from what all have in common where that makes it less;
-    modes that no sensor hears have none.
+    Pairs are those whose relative differences of frequency have the least sum, aside from what all
+    have in common where that makes it less; modes that no sensor hears have none.
     """
     modes = problem.plate.modes
     assert modes is not None  # `plate_problem` has seen to it
-    return paired(modes.frequencies, modes.damping_ratios, _responses(problem, sensors), found, band)
+    return paired(
+        modes.frequencies, modes.damping_ratios, _responses(problem, sensors), found, band
+    )
 
 
 def paired(
-    frequencies: Floats, ratios: Floats, response: Floats, found: Sequence[DecayMode], band: tuple[float, float]
+    frequencies: Floats,
+    ratios: Floats,
+    response: Floats,
+    found: Sequence[DecayMode],
+    band: tuple[float, float],
 ) -> tuple[ModePair, ...]:
-    """Return modes within a band beside measured ones, as `pairs_of`, from frequencies, damping ratios and responses of each, (modes,)."""
+    """Return modes within a band beside measured ones, as `pairs_of`, from frequencies,
+    damping ratios and responses of each, (modes,).
+    """
     inside = np.flatnonzero((frequencies >= band[0]) & (frequencies <= band[1]))
     places, response = frequencies[inside], response[inside]
     response = response / max(float(response.max(initial=0.0)), 1e-300)
@@ -94,22 +125,38 @@ def paired(
     rows = [*_of_case(ratios[inside], inside, places, response, found, partner)]
     taken = set(partner.values())
     nan = float("nan")
-    rows += [ModePair(None, nan, nan, nan, mode, "no mode of the case nearby") for number, mode in enumerate(found) if number not in taken]
+    rows += [
+        ModePair(None, nan, nan, nan, mode, "no mode of the case nearby")
+        for number, mode in enumerate(found)
+        if number not in taken
+    ]
     return tuple(sorted(rows, key=_place))
 
 
 def _place(pair: ModePair) -> float:
-    """Return by which frequency a mode has its place among others: that of the case, if it has one."""
-    return pair.measured.frequency.value if pair.number is None and pair.measured is not None else pair.frequency
+    """Return by which frequency a mode has its place among others: that of the case, if
+    it has one.
+    """
+    return (
+        pair.measured.frequency.value
+        if pair.number is None and pair.measured is not None
+        else pair.frequency
+    )
 
 
 def _responses(problem: Problem, sensors: Sequence[Sensor]) -> Floats:
-    """Return the amplitude of each mode after an impulse at the contact point, at the sensor that hears it best, (modes,)."""
+    """Return the amplitude of each mode after an impulse at the contact point, at the
+    sensor that hears it best, (modes,).
+    """
     modes = problem.plate.modes
     assert modes is not None
-    seen = np.stack([np.abs(modes.points[sensor.name] @ np.asarray(sensor.components)) for sensor in sensors])
+    seen = np.stack(
+        [np.abs(modes.points[sensor.name] @ np.asarray(sensor.components)) for sensor in sensors]
+    )
     orders = np.array([[sensor.order - 1] for sensor in sensors])
-    return np.asarray((np.abs(modes.contact) * seen * modes.angular_frequencies**orders).max(axis=0))
+    return np.asarray(
+        (np.abs(modes.contact) * seen * modes.angular_frequencies**orders).max(axis=0)
+    )
 
 
 def _partners(places: Floats, response: Floats, measured: Sequence[float]) -> dict[int, int]:
@@ -120,40 +167,68 @@ def _partners(places: Floats, response: Floats, measured: Sequence[float]) -> di
     apart = np.log(np.asarray(measured)[None] / places[heard][:, None])
     found, least = _nearest(apart)
     if len(found) >= FEWEST:
-        # a wrong modulus moves all: where modes are dense, some are nearer to a neighbour than to their own
+        # a wrong modulus moves all: where modes are dense, some are nearer to a neighbour than to
+        # their own
         again, other = _nearest_shifted(apart, found)
         found, least = (again, other) if other < least else (found, least)
     if min(apart.shape) >= FEWEST:
-        starts = [pairs for pairs, _ in (_nearest(apart - shift) for shift in _SHIFTS) if len(pairs) >= FEWEST]
-        again, other = min((_nearest_shifted(apart, pairs) for pairs in starts), key=lambda one: one[1], default=(found, least))
+        starts = [
+            pairs
+            for pairs, _ in (_nearest(apart - shift) for shift in _SHIFTS)
+            if len(pairs) >= FEWEST
+        ]
+        again, other = min(
+            (_nearest_shifted(apart, pairs) for pairs in starts),
+            key=lambda one: one[1],
+            default=(found, least),
+        )
         distance = float(np.log(places[heard[-1]] / places[heard[0]])) / (len(heard) - 1)
         if other < min(_CLOSE * distance * min(apart.shape), _BETTER * least):
             found = again
     return {int(heard[row]): column for row, column in found}
 
 
-def _nearest_shifted(apart: Floats, pairs: Sequence[tuple[int, int]]) -> tuple[list[tuple[int, int]], float]:
-    """Return the pairs of the least sum aside from the median difference of given ones, and this sum."""
+def _nearest_shifted(
+    apart: Floats, pairs: Sequence[tuple[int, int]]
+) -> tuple[list[tuple[int, int]], float]:
+    """Return the pairs of the least sum aside from the median difference of given ones,
+    and this sum.
+    """
     return _nearest(apart - float(np.median([apart[pair] for pair in pairs])))
 
 
 def _nearest(apart: Floats) -> tuple[list[tuple[int, int]], float]:
-    """Return the pairs, (row, column), of the least sum of magnitudes of differences (rows, columns), and this sum."""
+    """Return the pairs, (row, column), of the least sum of magnitudes of differences
+    (rows, columns), and this sum.
+    """
     # to leave both alone costs as much as a pair that is too far
     cost = np.minimum(np.abs(apart), _FAR)
     rows, columns = linear_sum_assignment(cost)
     near = cost[rows, columns] < _FAR
-    return list(zip(rows[near].tolist(), columns[near].tolist(), strict=True)), float(cost[rows, columns].sum())
+    return list(zip(rows[near].tolist(), columns[near].tolist(), strict=True)), float(
+        cost[rows, columns].sum()
+    )
 
 
 def _of_case(
-    ratios: Floats, inside: Indices, places: Floats, response: Floats, found: Sequence[DecayMode], partner: dict[int, int]
+    ratios: Floats,
+    inside: Indices,
+    places: Floats,
+    response: Floats,
+    found: Sequence[DecayMode],
+    partner: dict[int, int],
 ) -> Iterator[ModePair]:
-    for number, (index, place, ratio, share) in enumerate(zip(inside.tolist(), places, ratios, response, strict=True)):
+    for number, (index, place, ratio, share) in enumerate(
+        zip(inside.tolist(), places, ratios, response, strict=True)
+    ):
         measured = found[partner[number]] if number in partner else None
         remark = "" if measured is None else measured.doubt
         if measured is None:
-            remark = f"weak: {100.0 * share:.2g} % of the strongest" if share < WEAK else _missing(float(place), float(ratio), found)
+            remark = (
+                f"weak: {100.0 * share:.2g} % of the strongest"
+                if share < WEAK
+                else _missing(float(place), float(ratio), found)
+            )
         yield ModePair(index + 1, float(place), float(ratio), float(share), measured, remark)
 
 
@@ -165,9 +240,18 @@ def _missing(place: float, ratio: float, found: Sequence[DecayMode]) -> str:
 
 
 def damping_field(pairs: Sequence[ModePair]) -> str:
-    """Return the measured damping as it is written in a case, at the frequencies of the case's modes; empty if none was measured."""
-    measured = {pair.frequency: pair.measured.damping_ratio.value for pair in pairs if pair.damping_measured and pair.measured is not None}
+    """Return the measured damping as it is written in a case, at the frequencies of the
+    case's modes; empty if none was measured.
+    """
+    measured = {
+        pair.frequency: pair.measured.damping_ratio.value
+        for pair in pairs
+        if pair.damping_measured and pair.measured is not None
+    }
     if not measured:
         return ""
-    frequencies, ratios = (", ".join(f"{value:.6g}" for value in part) for part in zip(*sorted(measured.items()), strict=True))
+    frequencies, ratios = (
+        ", ".join(f"{value:.6g}" for value in part)
+        for part in zip(*sorted(measured.items()), strict=True)
+    )
     return f"damping = {{ frequencies = [{frequencies}], ratios = [{ratios}] }}"

@@ -11,11 +11,14 @@ from vibroimpact.arrays import Complex, Floats
 from vibroimpact.signals.frac import frac
 
 FEW = 4
-"""Frequencies below which an octave has no criterion: of one it is 1 whatever the signals are, of n that are unrelated about 1/n."""
+"""Frequencies below which an octave has no criterion: of one it is 1 whatever the signals
+are, of n that are unrelated about 1/n.
+"""
 
 
 def octaves_of(band: tuple[float, float]) -> tuple[tuple[float, float], ...]:
-    """Return the octaves within a band: their centres are 1 kHz times powers of 2, and the outer ones end with the band.
+    """Return the octaves within a band: their centres are 1 kHz times powers of 2, and the outer
+    ones end with the band.
 
     Examples
     --------
@@ -28,8 +31,18 @@ def octaves_of(band: tuple[float, float]) -> tuple[tuple[float, float], ...]:
     return tuple(itertools.pairwise([band[0], *inner.tolist(), band[1]]))
 
 
-def frac_of_octaves(octaves: Sequence[tuple[float, float]], frequency: Floats, measured: Complex, simulated: Complex) -> Floats:
-    """Return the criterion of responses, (S, frequencies), over each octave, (S, octaves); NaN with fewer than four frequencies in it."""
+def frac_of_octaves(
+    octaves: Sequence[tuple[float, float]], frequency: Floats, measured: Complex, simulated: Complex
+) -> Floats:
+    """Return the criterion of responses, (S, frequencies), over each octave, (S,
+    octaves); NaN with fewer than four frequencies in it.
+    """
     untold = np.full(len(measured), np.nan)
     parts = [(frequency >= low) & (frequency <= high) for low, high in octaves]
-    return np.stack([frac(measured[:, part], simulated[:, part]) if part.sum() >= FEW else untold for part in parts], axis=1)
+    return np.stack(
+        [
+            frac(measured[:, part], simulated[:, part]) if part.sum() >= FEW else untold
+            for part in parts
+        ],
+        axis=1,
+    )

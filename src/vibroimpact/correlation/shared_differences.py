@@ -1,4 +1,6 @@
-"""What the modes of a case have in common: an error of its modulus, thickness or density, and one of its damping."""
+"""What the modes of a case have in common: an error of its modulus, thickness or density,
+and one of its damping.
+"""
 
 from __future__ import annotations
 
@@ -15,10 +17,12 @@ from vibroimpact.structures.modal_model import ModalBasis
 _LEAST = 2e-3
 """Least relative difference of frequencies that is told."""
 _ALIKE = 0.35
-"""Largest distance from their median, relative to it, of differences that are alike: thick plates and coarse meshes make them
-differ by some of it."""
+"""Largest distance from their median, relative to it, of differences that are alike: thick plates
+and coarse meshes make them differ by some of it."""
 _DAMPED = float(np.log(1.25))
-"""Least logarithm of a ratio of dampings that is told: FRAC of two resonances that differ in nothing else is then 0.99."""
+"""Least logarithm of a ratio of dampings that is told: FRAC of two resonances that differ
+in nothing else is then 0.99.
+"""
 _SURE = 3.0
 """Standard deviations that a difference must exceed."""
 
@@ -45,10 +49,18 @@ class CommonDifference:
         """What it says of the case, without a full stop."""
         way = "higher" if self.value > 0.0 else "lower"
         frequency, stiffness = 100.0 * abs(self.value), 100.0 * ((1.0 + self.value) ** 2 - 1.0)
-        ends = sorted(100.0 * (end if self.value > 0.0 else -end) for end in (self.least, self.largest))
+        ends = sorted(
+            100.0 * (end if self.value > 0.0 else -end) for end in (self.least, self.largest)
+        )
         thickness = f"a thickness that differs by about {100.0 * self.value:+.2g} %"
-        causes = f"as with a Young's modulus over density of the plate that differs from the case's by {stiffness:+.2g} %, or {thickness}"
-        differ = f"the frequencies of {self.modes} modes are {frequency:.2g} % {way} than the case's ({ends[0]:.2g} to {ends[1]:.2g} %)"
+        causes = (
+            "as with a Young's modulus over density of the plate that differs from the case's "
+            f"by {stiffness:+.2g} %, or {thickness}"
+        )
+        differ = (
+            f"the frequencies of {self.modes} modes are {frequency:.2g} % {way} than the "
+            f"case's ({ends[0]:.2g} to {ends[1]:.2g} %)"
+        )
         return f"{differ}, {causes}"
 
 
@@ -75,7 +87,8 @@ class DampingDifference:
     def applied_to(self, ratios: Floats) -> Floats:
         """Return the damping ratios of the modes of a case, (modes,), with the measured ones.
 
-        Modes whose damping was not measured have the median multiple of that of the case; without any, the median of the measured ones.
+        Modes whose damping was not measured have the median multiple of that of the case; without
+        any, the median of the measured ones.
         """
         usual = float(np.median(list(self.measured.values())))
         found = self.value * ratios if np.isfinite(self.value) else np.full(len(ratios), usual)
@@ -87,13 +100,19 @@ class DampingDifference:
     def sentence(self) -> str:
         """What it says of the case, without a full stop."""
         number = len(self.measured)
-        modes = f"the measured damping ratios of {number} modes are" if number > 1 else "the measured damping ratio of a mode is"
+        modes = (
+            f"the measured damping ratios of {number} modes are"
+            if number > 1
+            else "the measured damping ratio of a mode is"
+        )
         if np.isfinite(self.value):
             ends = range_of((self.least, self.largest), 2)
             ends = f" ({ends})" if " " in ends else ""
             differ = f"{modes} {self.value:.2g} times the case's{ends}"
         else:
-            differ = f"{modes} {range_of(list(self.measured.values()), 2)}, and the case has no damping"
+            differ = (
+                f"{modes} {range_of(list(self.measured.values()), 2)}, and the case has no damping"
+            )
         agree = f"the frequencies agree within {100.0 * _LEAST:.1g} %, and the damping does not: "
         return f"{agree if self.apart < _LEAST else ''}{differ}"
 
@@ -111,19 +130,27 @@ class SharedDifferences:
         return tuple(one.sentence for one in (self.frequency, self.damping) if one is not None)
 
     def scaled(self, problem: Problem) -> Problem:
-        """Return a problem with the frequencies of its plate scaled by what they share, as by another modulus; itself if by none."""
+        """Return a problem with the frequencies of its plate scaled by what they share,
+        as by another modulus; itself if by none.
+        """
         if self.frequency is None:
             return problem
         modes, factor = _modes_of(problem), 1.0 + self.frequency.value
         residuals = {name: residual / factor**2 for name, residual in modes.residuals.items()}
-        return _with_modes(problem, replace(modes, frequencies=factor * modes.frequencies, residuals=residuals))
+        return _with_modes(
+            problem, replace(modes, frequencies=factor * modes.frequencies, residuals=residuals)
+        )
 
     def damped(self, problem: Problem) -> Problem:
-        """Return a problem with the measured damping ratios of its plate; itself if they do not differ."""
+        """Return a problem with the measured damping ratios of its plate; itself if they
+        do not differ.
+        """
         if self.damping is None:
             return problem
         modes = _modes_of(problem)
-        return _with_modes(problem, replace(modes, damping_ratios=self.damping.applied_to(modes.damping_ratios)))
+        return _with_modes(
+            problem, replace(modes, damping_ratios=self.damping.applied_to(modes.damping_ratios))
+        )
 
 
 def _modes_of(problem: Problem) -> ModalBasis:
@@ -140,27 +167,43 @@ def shared_differences(pairs: Sequence[ModePair]) -> SharedDifferences:
     return SharedDifferences(common_difference(pairs), damping_difference(pairs))
 
 
-def doubts_of_differences(differences: SharedDifferences, frac: Floats, scaled_frac: Floats, damped_frac: Floats) -> Iterator[str]:
-    """Yield what measured modes have in common that the case has not, with what it does to FRAC, one sentence each without its full stop.
+def doubts_of_differences(
+    differences: SharedDifferences, frac: Floats, scaled_frac: Floats, damped_frac: Floats
+) -> Iterator[str]:
+    """Yield what measured modes have in common that the case has not, with what it does to FRAC,
+    one sentence each without its full stop.
 
     Parameters
     ----------
     differences : SharedDifferences
         The differences.
     frac, scaled_frac, damped_frac : array, shape (S,)
-        FRAC of each record or response; that with frequencies as they were measured; and that with the damping too.
+        FRAC of each record or response; that with frequencies as they were measured; and that with
+        the damping too.
     """
     plain, scaled, damped = (range_of(one) for one in (frac, scaled_frac, damped_frac))
     if differences.frequency is not None:
         yield f"{differences.frequency.sentence}; with that FRAC is {scaled}, and {plain} without"
     if differences.damping is not None:
-        yield f"{differences.damping.sentence}; with the measured damping FRAC is {damped}, and {scaled} without"
+        yield (
+            f"{differences.damping.sentence}; with the measured damping FRAC is {damped}, and "
+            f"{scaled} without"
+        )
 
 
 def common_difference(pairs: Sequence[ModePair]) -> CommonDifference | None:
-    """Return the difference that all paired frequencies have from the case's; None if they have none in common."""
-    both = [(pair.frequency, pair.measured.frequency) for pair in pairs if pair.number is not None and pair.measured is not None]
-    told = [(measured.value / frequency - 1.0, measured.deviation / frequency) for frequency, measured in both]
+    """Return the difference that all paired frequencies have from the case's; None if
+    they have none in common.
+    """
+    both = [
+        (pair.frequency, pair.measured.frequency)
+        for pair in pairs
+        if pair.number is not None and pair.measured is not None
+    ]
+    told = [
+        (measured.value / frequency - 1.0, measured.deviation / frequency)
+        for frequency, measured in both
+    ]
     if len(told) < FEWEST:
         return None
     differences, deviations = np.array(told).T
@@ -172,11 +215,17 @@ def common_difference(pairs: Sequence[ModePair]) -> CommonDifference | None:
 
 
 def damping_difference(pairs: Sequence[ModePair]) -> DampingDifference | None:
-    """Return how the measured damping ratios differ from the case's; None if they do not, most of them in one direction.
+    """Return how the measured damping ratios differ from the case's; None if they do not, most of
+    them in one direction.
 
-    Modes that hardly contribute to the records are left aside, and those whose damping could not be determined.
+    Modes that hardly contribute to the records are left aside, and those whose damping could not be
+    determined.
     """
-    told = [(pair, pair.measured) for pair in pairs if pair.damping_measured and pair.measured is not None and pair.response >= WEAK]
+    told = [
+        (pair, pair.measured)
+        for pair in pairs
+        if pair.damping_measured and pair.measured is not None and pair.response >= WEAK
+    ]
     if not told:
         return None
     of_case = np.array([pair.damping_ratio for pair, _ in told])
@@ -197,6 +246,10 @@ def damping_difference(pairs: Sequence[ModePair]) -> DampingDifference | None:
 
 
 def range_of(values: Floats | Sequence[float], digits: int = 0) -> str:
-    """Return the least and the largest of numbers as text, or the one that they are: with three decimals, or with so many digits."""
-    least, largest = (f"{end:.{digits}g}" if digits else f"{end:.3f}" for end in (min(values), max(values)))
+    """Return the least and the largest of numbers as text, or the one that they are: with
+    three decimals, or with so many digits.
+    """
+    least, largest = (
+        f"{end:.{digits}g}" if digits else f"{end:.3f}" for end in (min(values), max(values))
+    )
     return least if least == largest else f"{least} to {largest}"

@@ -53,13 +53,20 @@ def plate_problem(case: CaseTable, progress: Callable[[float], None] | None = No
         If the plate is rigid or moves, the impact is oblique, or the case has no sensors.
     """
     if case.plate.model == "rigid":
-        raise InputError('the plate is rigid, so that its points do not move; give it model = "elastic"', "plate.model")
+        raise InputError(
+            'the plate is rigid, so that its points do not move; give it model = "elastic"',
+            "plate.model",
+        )
     if case.plate.motion is not None:
-        raise InputError("only an impact on a plate at rest can be correlated; leave this out", "plate.motion")
+        raise InputError(
+            "only an impact on a plate at rest can be correlated; leave this out", "plate.motion"
+        )
     if keys := oblique_keys(case):
         raise InputError("only a normal impact can be correlated; leave this out", keys[0])
     if not case.sensors:
-        raise InputError("the case has no sensors; give those of the records, with their positions", "sensors")
+        raise InputError(
+            "the case has no sensors; give those of the records, with their positions", "sensors"
+        )
     return problem_of(case, progress)
 
 
@@ -79,8 +86,22 @@ def pushes_of_impact(problem: Problem, rate: float, duration: float, impacts: in
     """
     speed = problem.speed
     if speed is None:
-        speed = simulate(replace(problem, impacts=1, duration=None, sensors=())).impacts["approach_speed_m_s"].flat[0]
-    response = simulate(replace(problem, height=None, velocity=0.0, speed=float(speed), impacts=impacts, duration=duration, sensors=()))
+        speed = (
+            simulate(replace(problem, impacts=1, duration=None, sensors=()))
+            .impacts["approach_speed_m_s"]
+            .flat[0]
+        )
+    response = simulate(
+        replace(
+            problem,
+            height=None,
+            velocity=0.0,
+            speed=float(speed),
+            impacts=impacts,
+            duration=duration,
+            sensors=(),
+        )
+    )
     begin, lasting = (response.impacts[name].ravel() for name in ("time_s", "duration_s"))
     nodes, weights = _NODES
     times, impulses = [], []
@@ -90,7 +111,9 @@ def pushes_of_impact(problem: Problem, rate: float, duration: float, impacts: in
         time = (edges[:-1, None] + half * (1.0 + nodes)).ravel()
         times.append(time)
         impulses.append((half * weights).ravel() * response.at(time, ["force_N"])["force_N"])
-    return Pushes(np.concatenate(times), np.concatenate(impulses), np.stack([begin, begin + lasting], axis=1))
+    return Pushes(
+        np.concatenate(times), np.concatenate(impulses), np.stack([begin, begin + lasting], axis=1)
+    )
 
 
 @dataclass(frozen=True)
@@ -112,10 +135,14 @@ class Listening:
     samples: int
 
     def to(self, pushes: Pushes, at: float) -> Floats:
-        """Return the samples, (S, samples), of pushes whose time begins at a time after the first sample [s]."""
+        """Return the samples, (S, samples), of pushes whose time begins at a time after
+        the first sample [s].
+        """
         times = pushes.time + at + _BEFORE / self.rate
         heard = times >= 0.0
-        whole = sampled_responses(self.answers, self.rate, times[heard], pushes.impulse[heard], self.samples + _BEFORE)
+        whole = sampled_responses(
+            self.answers, self.rate, times[heard], pushes.impulse[heard], self.samples + _BEFORE
+        )
         return whole[:, _BEFORE:]
 
 
@@ -130,4 +157,8 @@ def listening(problem: Problem, sensors: Sequence[Sensor], samples: int) -> List
     rate = sensors[0].rate
     there = replace(problem, sensors=tuple(sensors))
     compliance = compliances_of(there, [sensor.name for sensor in sensors])
-    return Listening(responses_at(there, sensors, (samples + _BEFORE) / rate, shapes_of(there), compliance), rate, samples)
+    return Listening(
+        responses_at(there, sensors, (samples + _BEFORE) / rate, shapes_of(there), compliance),
+        rate,
+        samples,
+    )

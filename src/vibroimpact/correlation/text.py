@@ -23,7 +23,9 @@ from vibroimpact.runs.text import doubt_lines
 
 
 def correlation_summary(found: Correlation) -> RenderableType:
-    """Return how records and simulation agree, the modes of both, the damping to be put into the case, and the doubts, for the terminal."""
+    """Return how records and simulation agree, the modes of both, the damping to be put
+    into the case, and the doubts, for the terminal.
+    """
     octaves = octave_rows(found)
     parts: list[RenderableType] = [
         Text(found.case.name or "a test", style="bold"),
@@ -40,5 +42,11 @@ def correlation_summary(found: Correlation) -> RenderableType:
 
 def criteria_table(headers: Sequence[str], rows: Sequence[Sequence[str]]) -> TerminalTable:
     """Return a table of a correlation for the terminal."""
-    columns = zip(headers, zip(*rows, strict=True), strict=True) if rows else ((head, ()) for head in headers)
-    return TerminalTable([TerminalColumn(head, cells, text=head in TEXTS) for head, cells in columns])
+    columns = (
+        zip(headers, zip(*rows, strict=True), strict=True)
+        if rows
+        else ((head, ()) for head in headers)
+    )
+    return TerminalTable(
+        [TerminalColumn(head, cells, text=head in TEXTS) for head, cells in columns]
+    )

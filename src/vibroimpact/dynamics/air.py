@@ -13,7 +13,8 @@ from vibroimpact.errors import InputError
 AIR_DENSITY, AIR_VISCOSITY = 1.2, 1.81e-5
 """Density [kg/m^3] and viscosity [Pa s] of air at 20 C and sea level."""
 
-_DENSEST = 0.02  # largest density, relative to the sphere's: buoyancy then takes as much of gravity, and is left out
+# largest density, relative to the sphere's: buoyancy then takes as much of gravity, and is left out
+_DENSEST = 0.02
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -25,7 +26,8 @@ class Air(Fluid):
     density : float or array, default 1.2
         Density [kg/m^3].
     viscosity : float or array, default 1.81e-5
-        Viscosity [Pa s], from which the Reynolds number and so the drag coefficient follow (`drag_coefficient`).
+        Viscosity [Pa s], from which the Reynolds number and so the drag coefficient follow
+        (`drag_coefficient`).
     drag_coefficient : float or array, optional
         A constant drag coefficient [-] in place of that.
 
@@ -53,12 +55,16 @@ class Air(Fluid):
 
 
 def check_thin(density: Array, of_sphere: Array, key: str = "") -> None:
-    """Raise InputError, with a key, unless air is so thin beside a sphere that drag is what matters of it; densities [kg/m^3]."""
+    """Raise InputError, with a key, unless air is so thin beside a sphere that drag is
+    what matters of it; densities [kg/m^3].
+    """
     part = float(np.max(density / of_sphere))
     if part > _DENSEST:
         raise InputError(
-            f"the medium of the fall has {100.0 * part:.3g} % of the density of the sphere, and {100.0 * _DENSEST:g} % are the most: only "
-            "its drag is computed, and in what is denser buoyancy, the mass of fluid that moves along, and the film over the plate count "
+            f"the medium of the fall has {100.0 * part:.3g} % of the density of the "
+            f"sphere, and {100.0 * _DENSEST:g} % are the most: only "
+            "its drag is computed, and in what is denser buoyancy, the mass of fluid that "
+            "moves along, and the film over the plate count "
             "too; give it as contact.liquid, with a law that takes a restitution",
             key,
         )

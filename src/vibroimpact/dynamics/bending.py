@@ -11,16 +11,21 @@ from vibroimpact.arrays import Floats
 if TYPE_CHECKING:
     from vibroimpact.dynamics.response import Response
 
-_IMPACTS, _POINTS = 3, 64  # number of impacts, the fastest ones, and of instants in a period of the lowest bending mode
-_LONGEST = 16  # periods of an impact that are followed with so many instants; a longer one, of a heavy sphere, with as many in all
-_RIGID = 0.95  # part of rigid motion in a mode's kinetic energy above which it does not count as bending
+# number of impacts, the fastest ones, and of instants in a period of the lowest bending mode
+_IMPACTS, _POINTS = 3, 64
+# periods of an impact that are followed with so many instants; a longer one, of a heavy sphere,
+# with as many in all
+_LONGEST = 16
+# part of rigid motion in a mode's kinetic energy above which it does not count as bending
+_RIGID = 0.95
 
 
 def largest_bending(response: Response) -> float:
-    """Return the largest bending deflection of an elastic plate at the contact [m], about 1 % too small; NaN for a rigid plate.
+    """Return the largest bending deflection of an elastic plate at the contact [m], about 1 % too
+    small; NaN for a rigid plate.
 
-    It is looked for from each touch to a period of the lowest bending mode after the impact. Modes in which the plate moves on its springs
-    as a whole are left out.
+    It is looked for from each touch to a period of the lowest bending mode after the impact. Modes
+    in which the plate moves on its springs as a whole are left out.
 
     Parameters
     ----------
@@ -36,7 +41,9 @@ def largest_bending(response: Response) -> float:
         return 0.0
     period = 1.0 / float(modes.frequencies[bends][0])
     fastest = np.argsort(-impacts["approach_speed_m_s"], kind="stable")[:_IMPACTS]
-    times = np.concatenate([_instants(impacts["time_s"][one], impacts["duration_s"][one], period) for one in fastest])
+    times = np.concatenate(
+        [_instants(impacts["time_s"][one], impacts["duration_s"][one], period) for one in fastest]
+    )
     moved = response.modal(times[times <= response.end_time[0]])["plate"]
     return float(np.abs(moved @ np.where(bends, modes.contact, 0.0)).max(initial=0.0))
 

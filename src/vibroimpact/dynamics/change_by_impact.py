@@ -13,13 +13,19 @@ RELATIVE_CHANGE = 1e-9
 
 
 def change_by_impact(impacts: Mapping[str, Floats], tolerance: float) -> Floats:
-    """Return the relative change of each impact for one of 1e-9 in the drop [-]; 0 where nothing vibrates.
+    """Return the relative change of each impact for one of 1e-9 in the drop [-]; 0 where nothing
+    vibrates.
 
-    The integration error, of the relative size of the tolerance, grows likewise: a tolerance above 1e-9 takes the place of it.
+    The integration error, of the relative size of the tolerance, grows likewise: a tolerance above
+    1e-9 takes the place of it.
 
     Examples
     --------
-    >>> change_by_impact({"impact": np.ones(1), "sensitivity": np.array([1e6])}, 1e-9).round(6).tolist()
+    >>> change_by_impact({"impact": np.ones(1), "sensitivity": np.array([1e6])}, 1e-9).round(
+    ...     6
+    ... ).tolist()
     [0.001]
     """
-    return impacts.get("sensitivity", np.zeros(len(impacts["impact"]))) * max(RELATIVE_CHANGE, tolerance)
+    return impacts.get("sensitivity", np.zeros(len(impacts["impact"]))) * max(
+        RELATIVE_CHANGE, tolerance
+    )

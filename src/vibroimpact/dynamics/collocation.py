@@ -1,7 +1,10 @@
-r"""Radau collocation over one stretch of contact, in a time variable in which the contact force is smooth.
+r"""Radau collocation over one stretch of contact, in a time variable in which the contact force is
+smooth.
 
-A stretch of duration h is mapped from x in [0, 1] by t = h m(x). Hertz's force is not smooth in time where it is zero
-(:math:`\delta^{3/2}`, with :math:`\delta \sim t`), but it is smooth in the root of time. With p the `root` of the law (2 for Hertz), the
+A stretch of duration h is mapped from x in [0, 1] by t = h m(x). Hertz's force is not smooth in
+time where it is zero
+(:math:`\delta^{3/2}`, with :math:`\delta \sim t`), but it is smooth in the root of time. With p the
+`root` of the law (2 for Hertz), the
 maps are
 
 * "touch" :math:`m = x^p`, for a stretch that begins at first touch,
@@ -10,7 +13,8 @@ maps are
 
 On the nodes :math:`x_i` of the right-hand Radau rule, :math:`\dot y = f` becomes
 :math:`y_i = y_0 + h \sum_j Q_{ij} m'_j f_j`, which is of order 2N - 1 at the end of the stretch
-(Hairer and Wanner 1996, section IV.5). The last node is the end of the stretch, where event conditions are imposed.
+(Hairer and Wanner 1996, section IV.5). The last node is the end of the stretch, where event
+conditions are imposed.
 """
 
 from __future__ import annotations
@@ -82,29 +86,43 @@ class Rule:
 
     @cached_property
     def end_slope(self) -> Floats:
-        """Weights (N,) of the nodal values in the time derivative at the end, times the duration; not defined for "release"."""
+        """Weights (N,) of the nodal values in the time derivative at the end, times the
+        duration; not defined for "release".
+        """
         order = np.arange(len(self.nodes))
         return np.asarray((order * (order + 1.0)) @ self.coefficients / self.slope[-1])
 
     @cached_property
     def weights_at_start(self) -> Floats:
         """Weights of the nodal values in their polynomial at x = 0, (N, 1)."""
-        return np.asarray(legendre.legvander(-np.ones(1), len(self.nodes) - 1) @ self.coefficients).T.copy()
+        return np.asarray(
+            legendre.legvander(-np.ones(1), len(self.nodes) - 1) @ self.coefficients
+        ).T.copy()
 
     def interpolate(self, x: Floats, values: Floats) -> Floats:
-        """Return the polynomial through nodal `values` (N,) or (N, B), at x (T,): (T,) or (T, B)."""
-        return np.asarray(legendre.legvander(2.0 * x - 1.0, len(self.nodes) - 1) @ (self.coefficients @ values))
+        """Return the polynomial through nodal `values` (N,) or (N, B), at x (T,): (T,) or
+        (T, B).
+        """
+        return np.asarray(
+            legendre.legvander(2.0 * x - 1.0, len(self.nodes) - 1) @ (self.coefficients @ values)
+        )
 
     def integrate(self, x: Floats, values: Floats) -> Floats:
-        """Return the time integral per unit duration of nodal `values` (N,) or (N, B), from 0 to x (T,)."""
+        """Return the time integral per unit duration of nodal `values` (N,) or (N, B),
+        from 0 to x (T,).
+        """
         return self.integral_to(x) @ values
 
     def integral_to(self, x: Floats) -> Floats:
-        """Return the matrix of `integrate`: from nodal values to time integrals per unit duration up to x (T,), of shape (T, N)."""
+        """Return the matrix of `integrate`: from nodal values to time integrals per unit
+        duration up to x (T,), of shape (T, N).
+        """
         return np.asarray(self.weights(x)[1:].T @ self.integral)  # a polynomial that is zero at 0
 
     def weights(self, x: Floats) -> Floats:
-        """Return the barycentric weights of the values at 0 and at the nodes, for interpolation at x of any shape: (N + 1, ...)."""
+        """Return the barycentric weights of the values at 0 and at the nodes, for
+        interpolation at x of any shape: (N + 1, ...).
+        """
         shape = (-1,) + (1,) * x.ndim
         distance = x - np.concatenate([[0.0], self.nodes]).reshape(shape)
         distance[distance == 0.0] = 1e-300  # at a point itself, its weight dominates all others
@@ -134,20 +152,28 @@ def collocation_rule(number: int, time_map: Map, root: int = 2) -> Rule:
         time, slope = nodes, np.ones(number)
     integral = integral * slope
     points = np.concatenate([[0.0], nodes])
-    barycentric = 1.0 / np.prod(4.0 * (points[:, None] - points) + np.eye(number + 1), axis=1)  # the factor 4 avoids underflow
-    return Rule(time_map, root, nodes, time, slope, integral, integral @ integral, coefficients, barycentric)
+    # the factor 4 avoids underflow
+    barycentric = 1.0 / np.prod(4.0 * (points[:, None] - points) + np.eye(number + 1), axis=1)
+    return Rule(
+        time_map, root, nodes, time, slope, integral, integral @ integral, coefficients, barycentric
+    )
 
 
 @cache
 def _radau(number: int) -> tuple[Floats, Floats, Floats]:
-    """Return the nodes on (0, 1], and the matrices to Legendre coefficients and of integration at the nodes."""
+    """Return the nodes on (0, 1], and the matrices to Legendre coefficients and of
+    integration at the nodes.
+    """
     polynomial = np.zeros(number + 1)
-    polynomial[number], polynomial[number - 1] = 1.0, -1.0  # P_N - P_{N-1} vanishes at the right-hand nodes
+    # P_N - P_{N-1} vanishes at the right-hand nodes
+    polynomial[number], polynomial[number - 1] = 1.0, -1.0
     z = np.sort(legendre.legroots(polynomial).real)
     derivative = legendre.legder(polynomial)
     for _ in range(3):  # refine the roots by Newton's method
         z -= legendre.legval(z, polynomial) / legendre.legval(z, derivative)
     z[-1] = 1.0
-    coefficients: Floats = np.asarray(np.linalg.inv(legendre.legvander(z, number - 1)), dtype=np.float64)
+    coefficients: Floats = np.asarray(
+        np.linalg.inv(legendre.legvander(z, number - 1)), dtype=np.float64
+    )
     antiderivative = legendre.legint(coefficients, lbnd=-1, axis=0) / 2.0
     return (z + 1.0) / 2.0, coefficients, np.asarray(legendre.legvander(z, number) @ antiderivative)

@@ -14,7 +14,8 @@ from vibroimpact.contact.law import CompliantLaw
 RELEASED, CAPTURED, FAILED, SETTLED, RIDING = range(5)
 """Outcomes of a contact.
 
-Only with bodies that vibrate: SETTLED, released below the rest speed and at rest; RIDING, still in contact without being at rest.
+Only with bodies that vibrate: SETTLED, released below the rest speed and at rest; RIDING, still in
+contact without being at rest.
 """
 
 
@@ -45,8 +46,9 @@ class Piece:
 class NormalRecords:
     """The normal motions of B contacts, as the core writes them.
 
-    `steps`: of a smooth part. `shapes`: numbers that tell the parts of each (B,), 0 of one that has to be followed. `begins`: where each
-    begins (B,) in `motions`, with six rows of points; see `core.normal_records`.
+    `steps`: of a smooth part. `shapes`: numbers that tell the parts of each (B,), 0 of one that has
+    to be followed. `begins`: where each begins (B,) in `motions`, with six rows of points; see
+    `core.normal_records`.
     """
 
     steps: int
@@ -59,10 +61,11 @@ class NormalRecords:
 class Contact:
     """One contact of B drops, from first touch to release; arrays are (B,).
 
-    `outcome`: RELEASED, CAPTURED (the energy does not suffice to leave the indentation), FAILED, SETTLED or RIDING.
-    `final_delta`, `final_rate`: indentation [m] and its rate [m/s] at the end. `dissipated`, `plastic`: energy lost in
-    damping and in plastic deformation [J]. `stored`: energy left in the contact [J]. `law`: the law with its memory of
-    this contact. `normals`: its normal motion, where that drives friction, until it is followed.
+    `outcome`: RELEASED, CAPTURED (the energy does not suffice to leave the indentation), FAILED,
+    SETTLED or RIDING. `final_delta`, `final_rate`: indentation [m] and its rate [m/s] at the end.
+    `dissipated`, `plastic`: energy lost in damping and in plastic deformation [J]. `stored`: energy
+    left in the contact [J]. `law`: the law with its memory of this contact. `normals`: its normal
+    motion, where that drives friction, until it is followed.
     """
 
     pieces: list[Piece]
@@ -85,6 +88,16 @@ class Contact:
             here = piece.drops == index
             if here.any():
                 law = piece.law.take(np.array([index]))
-                pieces.append(Piece(np.zeros(1, dtype=np.intp), piece.start[here], piece.motion.take(here), law))
-        arrays = {name: value[index : index + 1] for name, value in vars(self).items() if isinstance(value, np.ndarray)}
-        return replace(self, pieces=pieces, law=self.law.take(np.array([index])), normals=None, **arrays)
+                pieces.append(
+                    Piece(
+                        np.zeros(1, dtype=np.intp), piece.start[here], piece.motion.take(here), law
+                    )
+                )
+        arrays = {
+            name: value[index : index + 1]
+            for name, value in vars(self).items()
+            if isinstance(value, np.ndarray)
+        }
+        return replace(
+            self, pieces=pieces, law=self.law.take(np.array([index])), normals=None, **arrays
+        )

@@ -16,10 +16,12 @@ from vibroimpact.dynamics.law_coefficients import coefficients_of
 
 @dataclass(frozen=True)
 class Encounter:
-    """Data of one impact of B drops: law, effective mass [kg], gravity [m/s^2] and approach speed [m/s].
+    """Data of one impact of B drops: law, effective mass [kg], gravity [m/s^2] and approach speed
+    [m/s].
 
-    `depth`: largest indentation without damping [m]. `speed_scale`: scale of the speed in contact [m/s]: the approach
-    speed, or that due to gravity and adhesion in a soft touch. `floor`: the indentation at separation [m].
+    `depth`: largest indentation without damping [m]. `speed_scale`: scale of the speed in contact
+    [m/s]: the approach speed, or that due to gravity and adhesion in a soft touch. `floor`: the
+    indentation at separation [m].
     """
 
     law: CompliantLaw
@@ -36,26 +38,49 @@ class Encounter:
 
     def pick(self, drops: Indices) -> Encounter:
         """Return the encounter of some drops in any order."""
-        arrays = (self.mass, self.gravity, self.approach_speed, self.depth, self.speed_scale, self.floor)
+        arrays = (
+            self.mass,
+            self.gravity,
+            self.approach_speed,
+            self.depth,
+            self.speed_scale,
+            self.floor,
+        )
         return Encounter(self.law.take(drops), *(array[drops] for array in arrays))
 
     def under(self, law: CompliantLaw) -> Encounter:
         """Return the encounter with another law, or with the same law and another memory."""
-        return self if law is self.law else replace(self, law=law, floor=law.release_level + np.zeros(len(self.mass)))
+        return (
+            self
+            if law is self.law
+            else replace(self, law=law, floor=law.release_level + np.zeros(len(self.mass)))
+        )
 
 
-def encounter_of(law: CompliantLaw, mass: Floats, gravity: Floats, approach_speed: Floats) -> Encounter:
+def encounter_of(
+    law: CompliantLaw, mass: Floats, gravity: Floats, approach_speed: Floats
+) -> Encounter:
     """Return the encounter of B drops, with the undamped depth from the balance of energy."""
     weight = mass * gravity
     depth = undamped_depths(law, 0.5 * mass * approach_speed**2, weight)
     squared = approach_speed**2 + gravity * (depth - law.touch_level)
     if law.contact_end == "pull-off":
-        squared = squared - 2.0 * law.elastic_energy(static_indentation(law, weight)) / mass  # negative: the energy of adhesion
-    return Encounter(law, mass, gravity, approach_speed, depth, np.sqrt(squared), law.release_level + np.zeros(len(mass)))
+        # negative: the energy of adhesion
+        squared = squared - 2.0 * law.elastic_energy(static_indentation(law, weight)) / mass
+    return Encounter(
+        law,
+        mass,
+        gravity,
+        approach_speed,
+        depth,
+        np.sqrt(squared),
+        law.release_level + np.zeros(len(mass)),
+    )
 
 
 def undamped_depths(law: CompliantLaw, energy: Floats, weight: Floats) -> Floats:
-    """Return the largest indentations of B impacts without damping [m], to a relative 1e-3, each as it is without the others.
+    """Return the largest indentations of B impacts without damping [m], to a relative 1e-3, each as
+    it is without the others.
 
     Parameters
     ----------
@@ -69,5 +94,12 @@ def undamped_depths(law: CompliantLaw, energy: Floats, weight: Floats) -> Floats
     size = len(energy)
     depths = np.empty(size)
     with coefficients_of(law, size) as coefficients:
-        write_undamped_depths(law_addresses(type(law)), coefficients, law.touch_level + np.zeros(size), energy, weight, depths)
+        write_undamped_depths(
+            law_addresses(type(law)),
+            coefficients,
+            law.touch_level + np.zeros(size),
+            energy,
+            weight,
+            depths,
+        )
     return depths

@@ -8,7 +8,8 @@ _DIGITS = Context(prec=6, rounding=ROUND_FLOOR)
 
 
 def end_in_words(end: float) -> str:
-    """Return the end of a run [s] in six digits, rounded down so that the time that is named lies within the run.
+    """Return the end of a run [s] in six digits, rounded down so that the time that is named lies
+    within the run.
 
     Examples
     --------

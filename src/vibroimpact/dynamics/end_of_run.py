@@ -28,18 +28,35 @@ def response_of(run: RunState) -> Response:
     closes = energy["closure_relative"] <= CLOSURE_LIMIT
     holds = run.written_off >= -WRITE_OFF_LIMIT * (run.energy_in + added)
     run.outcomes[~(closes & holds)] = Outcome.FAILED.code
-    rest = Rest(run.rest_speed, run.rest_time, run.sag, run.stored, run.written_off, run.bodies.left, tuple(run.bodies.lying))
+    rest = Rest(
+        run.rest_speed,
+        run.rest_time,
+        run.sag,
+        run.stored,
+        run.written_off,
+        run.bodies.left,
+        tuple(run.bodies.lying),
+    )
     outcomes = tuple(OUTCOMES[code] for code in run.outcomes.tolist())
     return Response(run.problem, run.rows.table(), energy, outcomes, run.end_time, rest, None)
 
 
 def _lie_on_plate(run: RunState, oblique: ObliqueMotion, resting: Drops) -> dict[str, Floats]:
-    """Follow drops at rest along the plate, over whose edge they may leave it; return the entries of the ledger for that motion."""
+    """Follow drops at rest along the plate, over whose edge they may leave it; return the
+    entries of the ledger for that motion.
+    """
     if resting.size:
-        lain = oblique.lie(resting, run.gravity[resting], np.maximum(run.end_time - run.time, 0.0)[resting])
+        lain = oblique.lie(
+            resting, run.gravity[resting], np.maximum(run.end_time - run.time, 0.0)[resting]
+        )
         run.end_time[resting] = np.minimum(run.end_time[resting], run.time[resting] + lain)
     kinetic, rotation, potential = oblique.energies()
-    return {"kinetic_J": kinetic, "potential_J": potential, "rotation_J": rotation, "friction_J": oblique.lost}
+    return {
+        "kinetic_J": kinetic,
+        "potential_J": potential,
+        "rotation_J": rotation,
+        "friction_J": oblique.lost,
+    }
 
 
 def _final_motion(run: RunState, resting: Drops) -> tuple[Floats, Floats]:
@@ -52,15 +69,20 @@ def _final_motion(run: RunState, resting: Drops) -> tuple[Floats, Floats]:
     return gap, velocity
 
 
-def _ledger(run: RunState, along: dict[str, Floats], gap: Floats, velocity: Floats) -> tuple[dict[str, Floats], Floats]:
-    """Return the energy ledger [J], and the energy that gravity and adhesion added to that of the start [J].
+def _ledger(
+    run: RunState, along: dict[str, Floats], gap: Floats, velocity: Floats
+) -> tuple[dict[str, Floats], Floats]:
+    """Return the energy ledger [J], and the energy that gravity and adhesion added to that of the
+    start [J].
 
-    `along`: the entries for the motion along the plate. `gap` [m], `velocity` upwards [m/s]: at the end.
+    `along`: the entries for the motion along the plate. `gap` [m], `velocity` upwards [m/s]: at the
+    end.
     """
     fluid = run.problem.fluid
     vibration = run.bodies.energies()
     liquid = run.energy_of_liquid(velocity)
-    added = run.mass * run.gravity * run.deepest + np.maximum(-run.stored, 0.0)  # the stored energy is negative where it sticks
+    # the stored energy is negative where it sticks
+    added = run.mass * run.gravity * run.deepest + np.maximum(-run.stored, 0.0)
     if run.oblique is not None:
         added += np.maximum(-along["potential_J"], 0.0)  # what gravity did down the plate
     if run.problem.motion is not None:

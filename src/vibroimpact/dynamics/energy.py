@@ -10,13 +10,19 @@ import numpy as np
 from vibroimpact.arrays import Floats
 
 CLOSURE_LIMIT = 1e-6
-"""Largest closure error of the ledger, as a part of the energy put in, above which a run has failed."""
+"""Largest closure error of the ledger, as a part of the energy put in, above which a run
+has failed.
+"""
 
 CLOSURE_USUAL = 1e-9
-"""Part of the energy put in below which the closure error of runs at the default tolerance is: rounding, which machines differ in."""
+"""Part of the energy put in below which the closure error of runs at the default
+tolerance is: rounding, which machines differ in.
+"""
 
 WRITE_OFF_LIMIT = 1e-9
-"""Largest negative energy written off at rest, as a part of the energy put in, that counts as rounding."""
+"""Largest negative energy written off at rest, as a part of the energy put in, that
+counts as rounding.
+"""
 
 
 def close_ledger(energy_in: Floats, added: Floats, entries: dict[str, Floats]) -> dict[str, Floats]:
@@ -27,15 +33,16 @@ def close_ledger(energy_in: Floats, added: Floats, entries: dict[str, Floats]) -
     energy_in : array, shape (B,)
         Kinetic and potential energy at the start [J].
     added : array, shape (B,)
-        Work of gravity and adhesion within the indentation, and of gravity down the plate [J]; in a soft touch more than `energy_in`.
+        Work of gravity and adhesion within the indentation, and of gravity down the plate [J]; in a
+        soft touch more than `energy_in`.
     entries : dict of str to array
         The entries of the ledger at the end [J].
 
     Returns
     -------
     dict of str to array
-        `input_J`, the entries, `closure_J` (entries less input) and `closure_relative`, its part of the energy
-        put in by the drop, by gravity and by adhesion.
+        `input_J`, the entries, `closure_J` (entries less input) and `closure_relative`, its part of
+        the energy put in by the drop, by gravity and by adhesion.
     """
     closure = sum(entries.values(), -energy_in)
     relative = np.abs(closure) / (energy_in + added)
@@ -43,7 +50,8 @@ def close_ledger(energy_in: Floats, added: Floats, entries: dict[str, Floats]) -
 
 
 def closure_in_words(relative: float) -> str:
-    """Return the closure error of the ledger as it is printed: a bound of rounding, which is the same on every machine, or its size.
+    """Return the closure error of the ledger as it is printed: a bound of rounding, which is the
+    same on every machine, or its size.
 
     Examples
     --------
@@ -66,12 +74,23 @@ def why_failed(energy: Mapping[str, Any]) -> str:
     >>> why_failed({"closure_relative": 0.0, "written_off_at_rest_J": 0.0, "input_J": 1.0})[:53]
     'the contact could not be integrated to the tolerance;'
     """
-    closure_relative, written_off = float(energy["closure_relative"]), float(energy["written_off_at_rest_J"])
+    closure_relative, written_off = (
+        float(energy["closure_relative"]),
+        float(energy["written_off_at_rest_J"]),
+    )
     if written_off < -WRITE_OFF_LIMIT * float(energy["input_J"]):
-        return f"the sphere was set to rest with {-written_off:.3g} J more than it and the bodies below it had left."
+        return (
+            f"the sphere was set to rest with {-written_off:.3g} J more than it and the bodies "
+            "below it had left."
+        )
     if closure_relative > CLOSURE_LIMIT:
-        return f"the energy ledger does not close: it is off by {closure_relative:.2g} of the energy put in (limit {CLOSURE_LIMIT:g})."
+        return (
+            f"the energy ledger does not close: it is off by {closure_relative:.2g} of the "
+            f"energy put in (limit {CLOSURE_LIMIT:g})."
+        )
     return (
-        "the contact could not be integrated to the tolerance; try a larger tolerance (run.tolerance, up to 1e-6), and see what "
-        "`vibroimpact check` doubts: a plate that deflects by many times its thickness is beyond the theory."
+        "the contact could not be integrated to the tolerance; try a larger tolerance "
+        "(run.tolerance, up to 1e-6), and see what "
+        "`vibroimpact check` doubts: a plate that deflects by many times its thickness is "
+        "beyond the theory."
     )

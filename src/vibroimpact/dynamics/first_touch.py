@@ -22,7 +22,12 @@ def first_touch(problem: Problem) -> float:
     >>> from vibroimpact.bodies.body import Body
     >>> from vibroimpact.bodies.rigid import rigid_plate
     >>> from vibroimpact.contact.laws.newton import Newton
-    >>> drop = Problem(sphere=Body(mass=1.0, contact_offset=0.1), plate=rigid_plate(), laws=(Newton(restitution=0.5),), height=1.1)
+    >>> drop = Problem(
+    ...     sphere=Body(mass=1.0, contact_offset=0.1),
+    ...     plate=rigid_plate(),
+    ...     laws=(Newton(restitution=0.5),),
+    ...     height=1.1,
+    ... )
     >>> round(first_touch(drop), 6)  # sqrt(2 h/g)
     0.451601
     """

@@ -14,8 +14,8 @@ from vibroimpact.dynamics.oblique.state import Sphere, State
 class Flight:
     """Flights of B drops; all arrays are (B,).
 
-    `start`: start times [s]. `gap`: height of the sphere's lowest point above the plate then [m], >= 0.
-    `velocity`: upward [m/s]. `gravity` [m/s^2].
+    `start`: start times [s]. `gap`: height of the sphere's lowest point above the plate then [m],
+    >= 0. `velocity`: upward [m/s]. `gravity` [m/s^2].
     """
 
     start: Floats
@@ -34,14 +34,17 @@ class Flight:
     def at(self, time: Floats) -> tuple[Floats, Floats]:
         """Return gap [m] and upward velocity [m/s] at times [s] (..., B)."""
         elapsed = time - self.start
-        return self.gap + elapsed * (self.velocity - 0.5 * self.gravity * elapsed), self.velocity - self.gravity * elapsed
+        return self.gap + elapsed * (
+            self.velocity - 0.5 * self.gravity * elapsed
+        ), self.velocity - self.gravity * elapsed
 
     def acceleration(self, time: Floats) -> Floats:
         """Return the upward acceleration at times [s] (..., B) [m/s^2]."""
         return np.asarray(0.0 * time - self.gravity)
 
     def touch(self, level: Floats) -> tuple[Floats, Floats]:
-        r"""Return time [s] and approach speed [m/s] of the next touch; the time is infinite if there is none.
+        r"""Return time [s] and approach speed [m/s] of the next touch; the time is infinite if
+        there is none.
 
         .. math:: v = \sqrt{v_0^2 + 2 g h},\qquad t = (v_0 + v)/g = 2 h/(v - v_0)
 
@@ -52,12 +55,16 @@ class Flight:
         with np.errstate(divide="ignore", invalid="ignore"):
             rising = (self.velocity + speed) / self.gravity
             falling = 2.0 * height / (speed - self.velocity)  # the same root without cancellation
-            elapsed = np.where(self.velocity > 0.0, rising, np.where(speed > self.velocity, falling, np.inf))
+            elapsed = np.where(
+                self.velocity > 0.0, rising, np.where(speed > self.velocity, falling, np.inf)
+            )
         never = (self.gravity == 0.0) & (self.velocity >= 0.0)
         return np.where(never, np.inf, self.start + elapsed), speed
 
     def apex(self) -> tuple[Floats, Floats]:
-        """Return time [s] and gap [m] at the top of the flight; infinite without gravity, if rising."""
+        """Return time [s] and gap [m] at the top of the flight; infinite without gravity,
+        if rising.
+        """
         with np.errstate(divide="ignore", invalid="ignore"):
             rise = np.where(self.velocity > 0.0, self.velocity / self.gravity, 0.0)
             height = np.where(self.velocity > 0.0, 0.5 * self.velocity**2 / self.gravity, 0.0)

@@ -1,15 +1,17 @@
 r"""Flight through air or a liquid at rest, whose drag slows the sphere down.
 
-With the velocity v in one dimension or three, the acceleration g at which the sphere would fall without drag, which is less than gravity in
-a liquid, and the drag a of `vibroimpact.dynamics.fluid`,
+With the velocity v in one dimension or three, the acceleration g at which the sphere would fall
+without drag, which is less than gravity in a liquid, and the drag a of
+`vibroimpact.dynamics.fluid`,
 
 .. math:: \dot v = g - a(|v|)\, v / |v|
 
-A flight is solved in pieces: up to its top, which ends one, and down from there. In a piece the acceleration is a polynomial through the
-nodes of a Radau rule, in a time that is finest at the top, where the drag has no second derivative. Its integral gives the velocities at
-the nodes, and these the next acceleration; such sweeps converge fast, as a piece is short beside the time constant of the drag. The motion
-at any time, and at a touch, is that at the end of a piece that ends there. A sphere that has reached its terminal velocity to rounding
-keeps it.
+A flight is solved in pieces: up to its top, which ends one, and down from there. In a piece the
+acceleration is a polynomial through the nodes of a Radau rule, in a time that is finest at the top,
+where the drag has no second derivative. Its integral gives the velocities at the nodes, and these
+the next acceleration; such sweeps converge fast, as a piece is short beside the time constant of
+the drag. The motion at any time, and at a touch, is that at the end of a piece that ends there. A
+sphere that has reached its terminal velocity to rounding keeps it.
 """
 
 from __future__ import annotations
@@ -54,15 +56,22 @@ def _falling_of(falling: Falling, which: Drops) -> Falling:
 def _rules() -> FallRules:
     """Return the rules of pieces up to the top of a flight, and down from there."""
     rules = [collocation_rule(_NODES, time_map, _ROOT) for time_map in ("release", "touch")]
-    return FallRules(*(FallRule(np.ascontiguousarray(rule.integral), rule.integral_twice[-1].copy()) for rule in rules))
+    return FallRules(
+        *(
+            FallRule(np.ascontiguousarray(rule.integral), rule.integral_twice[-1].copy())
+            for rule in rules
+        )
+    )
 
 
 @dataclass(frozen=True)
 class FluidFlight(Flight):
-    """Flights of B drops through air or a liquid, in one dimension or in three; all arrays but those of `along` are (B,).
+    """Flights of B drops through air or a liquid, in one dimension or in three; all arrays but
+    those of `along` are (B,).
 
-    `radius`, `density`: of the spheres [m], [kg/m^3]. `fluid`: what they fly through. `along`: velocities at the start [m/s] and
-    accelerations without drag [m/s^2] along the plate, (2, B), or (0, B) where all motion is along the normal.
+    `radius`, `density`: of the spheres [m], [kg/m^3]. `fluid`: what they fly through. `along`:
+    velocities at the start [m/s] and accelerations without drag [m/s^2] along the plate, (2, B), or
+    (0, B) where all motion is along the normal.
     """
 
     radius: Floats
@@ -74,13 +83,17 @@ class FluidFlight(Flight):
         """Return the flights of some of the drops."""
         motion = (self.start[which], self.gap[which], self.velocity[which], self.gravity[which])
         along = self.along[0][:, which], self.along[1][:, which]
-        return FluidFlight(*motion, self.radius[which], self.density[which], self.fluid.take(which), along)
+        return FluidFlight(
+            *motion, self.radius[which], self.density[which], self.fluid.take(which), along
+        )
 
     def after(self, time: Floats) -> FluidFlight:
         """Return the flights from times on [s] (B,)."""
         moving = self._moving(time)
         along = moving.velocity[:-1], self.along[1]
-        return replace(self, start=time, gap=moving.place[-1], velocity=moving.velocity[-1], along=along)
+        return replace(
+            self, start=time, gap=moving.place[-1], velocity=moving.velocity[-1], along=along
+        )
 
     def at(self, time: Floats) -> tuple[Floats, Floats]:
         """Return gap [m] and upward velocity [m/s] at times [s] (..., B)."""
@@ -88,11 +101,15 @@ class FluidFlight(Flight):
         return moving.place[-1], moving.velocity[-1]
 
     def touch(self, level: Floats) -> tuple[Floats, Floats]:
-        """Return time [s] and approach speed [m/s] of the next touch; the time is infinite if there is none.
+        """Return time [s] and approach speed [m/s] of the next touch; the time is infinite if there
+        is none.
 
         The surfaces meet where the gap has fallen to `level`.
         """
-        falls, level = (self.gravity > 0.0) | (self.velocity < 0.0), level + np.zeros(len(self.start))
+        falls, level = (
+            (self.gravity > 0.0) | (self.velocity < 0.0),
+            level + np.zeros(len(self.start)),
+        )
         while True:
             begin = self._falls[0]
             for corner in self._falls[1:]:
@@ -100,42 +117,68 @@ class FluidFlight(Flight):
                 begin = _put(begin, above, _taken(corner, above))
             height, down = np.maximum(begin.place[-1] - level, 0.0), -begin.velocity[-1]
             front = begin.time == self._falls[-1].time
-            further = falls & front & (_time_to_fall(height, down, 0.5 * self.gravity) > fall.longest_pieces(self._falling, begin.velocity))
+            further = (
+                falls
+                & front
+                & (
+                    _time_to_fall(height, down, 0.5 * self.gravity)
+                    > fall.longest_pieces(self._falling, begin.velocity)
+                )
+            )
             if not further.any():
                 break
             self._fall_on(np.flatnonzero(further))
         ends = np.where(falls, fall.AT_GAP, fall.GIVEN_TIME)
-        found = fall.follow_pieces(_rules().falling, self._falling, begin, ends, np.where(falls, height, 0.0), down)
+        found = fall.follow_pieces(
+            _rules().falling, self._falling, begin, ends, np.where(falls, height, 0.0), down
+        )
         touch = np.where(falls, self.start + found.time, np.inf)
         self._known[:] = [(touch, found)]
         return touch, -found.velocity[-1]
 
     def apex(self) -> tuple[Floats, Floats]:
-        """Return time [s] and gap [m] at the top of the flight; infinite without gravity, if rising."""
+        """Return time [s] and gap [m] at the top of the flight; infinite without gravity,
+        if rising.
+        """
         never, top = (self.gravity == 0.0) & (self.velocity > 0.0), self._falls[0]
-        return np.where(never, np.inf, self.start + top.time), np.where(never, np.inf, top.place[-1])
+        return np.where(never, np.inf, self.start + top.time), np.where(
+            never, np.inf, top.place[-1]
+        )
 
     def lost(self, time: Floats) -> Floats:
-        """Return the energy per mass of the sphere that drag has taken by times [s] (..., B) [J/kg]."""
+        """Return the energy per mass of the sphere that drag has taken by times [s] (...,
+        B) [J/kg].
+        """
         return self._moving(time).lost
 
     def given(self, time: Floats) -> Floats:
-        """Return the energy per mass that the sphere has given to the fluid by times [s] (..., B) [J/kg].
+        """Return the energy per mass that the sphere has given to the fluid by times [s] (..., B)
+        [J/kg].
 
-        This is what drag has taken, and what the fluid that moves along has gained since the start of the flight.
+        This is what drag has taken, and what the fluid that moves along has gained since the start
+        of the flight.
         """
         moving, start = self._moving(time), self._rises[0].velocity
         along = 0.5 * (self.fluid.inertia(self.density) - 1.0)
-        return np.asarray(moving.lost + along * ((moving.velocity**2).sum(axis=0) - (start**2).sum(axis=0)))
+        return np.asarray(
+            moving.lost + along * ((moving.velocity**2).sum(axis=0) - (start**2).sum(axis=0))
+        )
 
     def acceleration(self, time: Floats) -> Floats:
         """Return the upward acceleration at times [s] (..., B) [m/s^2]."""
         velocity = self._moving(time).velocity
-        drops, flat = self._drops(velocity[0]), np.ascontiguousarray(velocity.reshape(len(velocity), -1))
-        return np.asarray(fall.accelerations(self._falling, drops, flat)[-1].reshape(velocity.shape[1:]))
+        drops, flat = (
+            self._drops(velocity[0]),
+            np.ascontiguousarray(velocity.reshape(len(velocity), -1)),
+        )
+        return np.asarray(
+            fall.accelerations(self._falling, drops, flat)[-1].reshape(velocity.shape[1:])
+        )
 
     def carry(self, sphere: Sphere, state: State, time: Floats) -> State:
-        """Return the state along the plate at times [s] (..., B), from that at the start of the flight."""
+        """Return the state along the plate at times [s] (..., B), from that at the start
+        of the flight.
+        """
         moving = self._moving(time)
         return State(state.position + moving.place[:-1], moving.velocity[:-1].copy(), state.spin)
 
@@ -148,7 +191,8 @@ class FluidFlight(Flight):
             drag=fluid.drag_by_square(self.radius, self.density) * alike,
             coefficient=(np.nan if constant is None else constant) * alike,
             inertia=fluid.inertia(self.density) * alike,
-            gravity=np.ascontiguousarray(np.concatenate([self.along[1], -self.gravity[None]])),  # in the order that the core takes
+            # in the order that the core takes
+            gravity=np.ascontiguousarray(np.concatenate([self.along[1], -self.gravity[None]])),
         )
 
     @cached_property
@@ -159,21 +203,36 @@ class FluidFlight(Flight):
         place[-1] = self.gap
         none = np.zeros(len(self.start))
         found = [Moving(none, place, velocity, none)]
-        while (rising := np.flatnonzero((found[-1].velocity[-1] > 0.0) & (self.gravity > 0.0))).size:
-            higher = fall.rise(_rules().rising, _falling_of(self._falling, rising), _taken(found[-1], rising))
+        while (
+            rising := np.flatnonzero((found[-1].velocity[-1] > 0.0) & (self.gravity > 0.0))
+        ).size:
+            higher = fall.rise(
+                _rules().rising, _falling_of(self._falling, rising), _taken(found[-1], rising)
+            )
             found.append(_put(found[-1], rising, higher))
         return found
 
     @cached_property
     def _falls(self) -> list[Moving]:
-        """Motion at the top of the flight, and at the end of each piece from there on, as far as they have been asked for."""
+        """Motion at the top of the flight, and at the end of each piece from there on, as
+        far as they have been asked for.
+        """
         return [self._rises[-1]]
 
     def _fall_on(self, drops: Drops) -> None:
         """Add a piece to the falls of drops."""
         begin, falling = _taken(self._falls[-1], drops), _falling_of(self._falling, drops)
-        longest, given = fall.longest_pieces(falling, begin.velocity), np.full(len(drops), fall.GIVEN_TIME)
-        self._falls.append(_put(self._falls[-1], drops, fall.follow_pieces(_rules().falling, falling, begin, given, longest, longest)))
+        longest, given = (
+            fall.longest_pieces(falling, begin.velocity),
+            np.full(len(drops), fall.GIVEN_TIME),
+        )
+        self._falls.append(
+            _put(
+                self._falls[-1],
+                drops,
+                fall.follow_pieces(_rules().falling, falling, begin, given, longest, longest),
+            )
+        )
 
     def _moving(self, time: Floats) -> Moving:
         """Return the motion at times [s] (..., B): its arrays are (..., B) and (C, ..., B)."""
@@ -206,9 +265,13 @@ class FluidFlight(Flight):
         return []
 
     def _short(self, elapsed: Floats) -> Drops:
-        """Return the drops whose falls have to be followed further to reach some times since the start of the flight (..., B)."""
+        """Return the drops whose falls have to be followed further to reach some times
+        since the start of the flight (..., B).
+        """
         front, last = self._falls[-1], np.fmax.reduce(elapsed.reshape(-1, len(self.start)))
-        return np.flatnonzero(last - front.time > fall.longest_pieces(self._falling, front.velocity))
+        return np.flatnonzero(
+            last - front.time > fall.longest_pieces(self._falling, front.velocity)
+        )
 
     @cached_property
     def _known(self) -> list[tuple[Floats, Moving]]:
@@ -217,29 +280,43 @@ class FluidFlight(Flight):
 
 
 def _time_to_fall(height: Floats, down: Floats, mean: Floats) -> Floats:
-    """Return the time of a fall through a height [s], from a downward velocity and half the mean acceleration of its first part."""
+    """Return the time of a fall through a height [s], from a downward velocity and half
+    the mean acceleration of its first part.
+    """
     with np.errstate(divide="ignore", invalid="ignore"):
         time = 2.0 * height / (down + np.sqrt(np.maximum(down**2 + 4.0 * mean * height, 0.0)))
     return np.where(height > 0.0, time, 0.0)
 
 
 def flights_of(problem: Problem, gap: Floats, velocity: Floats) -> FluidFlight:
-    """Return flights through the air or the liquid of a single drop, from gaps [m] with upward velocities [m/s] (n,).
+    """Return flights through the air or the liquid of a single drop, from gaps [m] with upward
+    velocities [m/s] (n,).
 
     Along the plate they begin with the velocity of the drop.
     """
     oblique, alike = problem.oblique, np.ones(len(gap))
     assert problem.fluid is not None
-    velocities, gravity = (np.zeros(0), np.zeros(0)) if oblique is None else (np.array(oblique.velocity), np.array(oblique.gravity))
+    velocities, gravity = (
+        (np.zeros(0), np.zeros(0))
+        if oblique is None
+        else (np.array(oblique.velocity), np.array(oblique.gravity))
+    )
     mass, radius = problem.sphere.mass * alike, problem.sphere.contact_offset * alike
     part = problem.net_weight / problem.flight_inertia
     along = velocities[:, None] * alike, gravity[:, None] * part * alike
     pull = problem.gravity * part * alike
-    return FluidFlight(0.0 * alike, gap, velocity, pull, radius, mean_density(mass, radius), problem.fluid, along)
+    return FluidFlight(
+        0.0 * alike, gap, velocity, pull, radius, mean_density(mass, radius), problem.fluid, along
+    )
 
 
 def speed_of_fall(problem: Problem) -> float:
-    """Return the speed at the first touch of a single drop from a height through air or a liquid [m/s]."""
+    """Return the speed at the first touch of a single drop from a height through air or a
+    liquid [m/s].
+    """
     assert problem.height is not None
-    gap, velocity = np.array([problem.height - problem.sphere.contact_offset]), np.array([problem.velocity], dtype=float)
+    gap, velocity = (
+        np.array([problem.height - problem.sphere.contact_offset]),
+        np.array([problem.velocity], dtype=float),
+    )
     return float(flights_of(problem, gap, velocity).touch(np.zeros(1))[1][0])

@@ -1,4 +1,6 @@
-r"""What air and liquids have in common: density, viscosity and the drag on a sphere, of one drop or of a batch."""
+r"""What air and liquids have in common: density, viscosity and the drag on a sphere, of
+one drop or of a batch.
+"""
 
 from __future__ import annotations
 
@@ -13,7 +15,9 @@ from vibroimpact.dynamics.core.fall import drag_coefficient
 from vibroimpact.errors import InputError
 
 HIGHEST_REYNOLDS = 3e5
-"""Reynolds number up to which `drag_coefficient` holds; the boundary layer of a smooth sphere becomes turbulent above it."""
+"""Reynolds number up to which `drag_coefficient` holds; the boundary layer of a smooth
+sphere becomes turbulent above it.
+"""
 
 _STILL = 1e-30  # m/s, for a speed of zero, at which Stokes' drag is none
 
@@ -42,10 +46,17 @@ class Fluid:
         for name, value in self._given():
             found = np.asarray(value)
             if not (found.dtype.kind in "iuf" and np.all(np.isfinite(found) & (found > 0.0))):
-                raise InputError(f"{name} of {self.word} must be a finite number greater than 0 in SI, not {value!r}")
+                raise InputError(
+                    f"{name} of {self.word} must be a finite number greater than "
+                    f"0 in SI, not {value!r}"
+                )
 
     def _given(self) -> list[tuple[str, Any]]:
-        return [(item.name, value) for item in fields(self) if (value := getattr(self, item.name)) is not None]
+        return [
+            (item.name, value)
+            for item in fields(self)
+            if (value := getattr(self, item.name)) is not None
+        ]
 
     @property
     def values(self) -> list[Array]:
@@ -61,7 +72,12 @@ class Fluid:
         """Return the fluid of one drop of a batch, or of some."""
         if self.shape == ():
             return self
-        return type(self)(**{name: value if np.ndim(value) == 0 else np.asarray(value)[drops] for name, value in self._given()})
+        return type(self)(
+            **{
+                name: value if np.ndim(value) == 0 else np.asarray(value)[drops]
+                for name, value in self._given()
+            }
+        )
 
     @property
     def constant_coefficient(self) -> Array | None:
@@ -69,11 +85,15 @@ class Fluid:
         return None
 
     def inertia(self, density: Array) -> Array:
-        """Return the mass that is accelerated in flight over that of the sphere [-], from its density [kg/m^3]."""
+        """Return the mass that is accelerated in flight over that of the sphere [-], from
+        its density [kg/m^3].
+        """
         return 1.0 + self.added_mass * self.density / density
 
     def weight(self, density: Array) -> Array:
-        """Return the weight in the fluid over that in a vacuum [-], of a sphere of a density [kg/m^3]."""
+        """Return the weight in the fluid over that in a vacuum [-], of a sphere of a
+        density [kg/m^3].
+        """
         return 1.0 + 0.0 * density
 
     def drag(self, speed: Array, radius: Array, density: Array) -> Array:
@@ -92,7 +112,9 @@ class Fluid:
         """
         fast = np.maximum(speed, _STILL)
         constant = self.constant_coefficient
-        coefficient = drag_coefficient(self.reynolds_number(fast, radius)) if constant is None else constant
+        coefficient = (
+            drag_coefficient(self.reynolds_number(fast, radius)) if constant is None else constant
+        )
         return self.drag_by_square(radius, density) * coefficient * fast**2
 
     def reynolds_number(self, speed: Array, radius: Array) -> Array:
@@ -100,5 +122,7 @@ class Fluid:
         return self.density * speed * 2.0 * radius / self.viscosity
 
     def drag_by_square(self, radius: Array, density: Array) -> Array:
-        """Return the deceleration of a sphere over its drag coefficient and the square of its speed [1/m]."""
+        """Return the deceleration of a sphere over its drag coefficient and the square of
+        its speed [1/m].
+        """
         return 0.375 * self.density / (density * self.inertia(density)) / radius

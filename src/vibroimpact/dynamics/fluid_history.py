@@ -16,8 +16,11 @@ MOTION = ("velocity_m_s", "kinetic_J")
 """Columns of the sphere that those of the fluid follow from."""
 
 
-def fluid_history(problem: Problem, legs: Sequence[Leg], time: Floats, motion: Mapping[str, Floats]) -> dict[str, Floats]:
-    """Return the kinetic energy with that of the liquid that moves along, and what the fluid has taken, of one drop [J] (T,).
+def fluid_history(
+    problem: Problem, legs: Sequence[Leg], time: Floats, motion: Mapping[str, Floats]
+) -> dict[str, Floats]:
+    """Return the kinetic energy with that of the liquid that moves along, and what the fluid has
+    taken, of one drop [J] (T,).
 
     Parameters
     ----------
@@ -34,19 +37,32 @@ def fluid_history(problem: Problem, legs: Sequence[Leg], time: Floats, motion: M
     assert fluid is not None
     assert isinstance(begin, FluidFlight)
     moving = 0.5 * mass * (float(problem.flight_inertia) - 1.0)  # of the liquid
-    along = moving * sum((motion[name] ** 2 for name in _VELOCITIES if name in motion), np.zeros(len(time)))
+    along = moving * sum(
+        (motion[name] ** 2 for name in _VELOCITIES if name in motion), np.zeros(len(time))
+    )
     at_start = moving * float(begin.velocity[0] ** 2 + (begin.along[0] ** 2).sum())
-    return {"kinetic_J": motion["kinetic_J"] + along, f"{fluid.key}_J": _given(legs, mass, time) + at_start - along}
+    return {
+        "kinetic_J": motion["kinetic_J"] + along,
+        f"{fluid.key}_J": _given(legs, mass, time) + at_start - along,
+    }
 
 
 def _given(legs: Sequence[Leg], mass: float, time: Floats) -> Floats:
-    """Return the energy that a sphere of a mass [kg] has given to the fluid by times [J] (T,), from its flights."""
-    begin = np.maximum(np.searchsorted([float(leg.flight.start[0]) for leg in legs], time, side="right") - 1, 0)
+    """Return the energy that a sphere of a mass [kg] has given to the fluid by times [J]
+    (T,), from its flights.
+    """
+    begin = np.maximum(
+        np.searchsorted([float(leg.flight.start[0]) for leg in legs], time, side="right") - 1, 0
+    )
     found, before = np.zeros(len(time)), 0.0
     for number, leg in enumerate(legs):
         if isinstance(leg.flight, FluidFlight):
             here = begin == number
             if here.any():
-                found[here] = before + mass * leg.flight.given(np.minimum(time[here], leg.flight_end[0])[:, None])[:, 0]
+                found[here] = (
+                    before
+                    + mass
+                    * leg.flight.given(np.minimum(time[here], leg.flight_end[0])[:, None])[:, 0]
+                )
             before += mass * float(leg.flight.given(leg.flight_end)[0])
     return found

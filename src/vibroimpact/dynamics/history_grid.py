@@ -16,7 +16,8 @@ _LEAST = 3  # points of a segment: its ends, which are events, and its middle
 def points_kept(points: Indices, most: int) -> Indices:
     """Return the number of points to keep of each segment of a history, about `most` in total.
 
-    If it is too long the first segments keep all of theirs, up to a quarter of `most`; each of the others keeps equally many.
+    If it is too long the first segments keep all of theirs, up to a quarter of `most`; each of the
+    others keeps equally many.
 
     Parameters
     ----------
@@ -39,4 +40,8 @@ def points_kept(points: Indices, most: int) -> Indices:
 
 def thinned(grid: Floats, count: int) -> Floats:
     """Return `count` evenly spaced points of a grid, including its ends."""
-    return grid if count >= len(grid) else grid[np.linspace(0.0, len(grid) - 1.0, count).round().astype(int)]
+    return (
+        grid
+        if count >= len(grid)
+        else grid[np.linspace(0.0, len(grid) - 1.0, count).round().astype(int)]
+    )

@@ -1,4 +1,6 @@
-"""Impacts of laws without a force: a velocity changes at an instant, and a sphere that hardly rebounds rides on a plate that is shaken."""
+"""Impacts of laws without a force: a velocity changes at an instant, and a sphere that
+hardly rebounds rides on a plate that is shaken.
+"""
 
 from __future__ import annotations
 
@@ -14,9 +16,15 @@ from vibroimpact.dynamics.run_state import RunState
 
 
 def collide_at_once(
-    run: RunState, leg: Leg, law: InstantaneousLaw, touch: Floats, speed: Floats, row: dict[str, Floats]
+    run: RunState,
+    leg: Leg,
+    law: InstantaneousLaw,
+    touch: Floats,
+    speed: Floats,
+    row: dict[str, Floats],
 ) -> tuple[Leg, Floats]:
-    """Let the drops of a leg rebound at their touches, write their row, and return the leg and the energy lost [J].
+    """Let the drops of a leg rebound at their touches, write their row, and return the leg and the
+    energy lost [J].
 
     Parameters
     ----------
@@ -43,7 +51,9 @@ def collide_at_once(
     lost = 0.5 * run.mass[drops] * (speed**2 - separation**2)
     work_of_friction = np.zeros(len(drops))  # of that of the plate, as it moves along itself
     if run.oblique is not None:
-        contacts, work_of_friction = run.oblique.collide_at_once(drops, touch, run.mass[drops] * (speed + separation), row)
+        contacts, work_of_friction = run.oblique.collide_at_once(
+            drops, touch, run.mass[drops] * (speed + separation), row
+        )
         leg = replace(leg, oblique_contacts=contacts)
     if not run.problem.shaken:
         return leg, lost
@@ -51,12 +61,19 @@ def collide_at_once(
 
 
 def _ride(
-    run: RunState, leg: Leg, touch: Floats, speed: Floats, energies: tuple[Floats, Floats], row: dict[str, Floats]
+    run: RunState,
+    leg: Leg,
+    touch: Floats,
+    speed: Floats,
+    energies: tuple[Floats, Floats],
+    row: dict[str, Floats],
 ) -> tuple[Leg, Floats]:
-    """Let drops that hardly rebound from a shaken plate ride on it; return the leg with the rides, and the energy lost [J].
+    """Let drops that hardly rebound from a shaken plate ride on it; return the leg with the rides,
+    and the energy lost [J].
 
-    `energies`: lost in the impact without what is lost as they come to ride, and the work of friction by the plate [J]. A sphere that moves
-    along the plate is not followed any further where it rides.
+    `energies`: lost in the impact without what is lost as they come to ride, and the work of
+    friction by the plate [J]. A sphere that moves along the plate is not followed any further where
+    it rides.
     """
     from vibroimpact.dynamics.shaken.bodies import ShakenBodies
 
@@ -71,7 +88,9 @@ def _ride(
     rides = ride.end > touch
     end = np.where(np.isfinite(ride.end), ride.end, touch)
     impulse = ride.mass * (speed + np.where(rides, 0.0, separation))
-    work = work_of_friction + impulse * ride.surface(touch)[1] + ride.energy(end) - ride.energy(touch)
+    work = (
+        work_of_friction + impulse * ride.surface(touch)[1] + ride.energy(end) - ride.energy(touch)
+    )
     run.bodies.work[drops] += work
     row["plate_work_J"][drops] = work
     carried = drops[rides]

@@ -58,7 +58,9 @@ class ImpactRows:
 
     def table(self) -> dict[str, Floats]:
         """Return the columns of all rows, (B, impacts)."""
-        whole = np.concatenate([np.zeros((len(self._columns), 0, self._size)), *self._blocks], axis=1)[:, : self._count]
+        whole = np.concatenate(
+            [np.zeros((len(self._columns), 0, self._size)), *self._blocks], axis=1
+        )[:, : self._count]
         return {name: column.T for name, column in zip(self._columns, whole, strict=True)}
 
     def _row(self, block: Floats, number: int) -> dict[str, Floats]:

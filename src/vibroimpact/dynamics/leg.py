@@ -20,10 +20,11 @@ if TYPE_CHECKING:  # a drop of rigid bodies does not load what vibrates
 
 @dataclass(frozen=True)
 class Leg:
-    """A flight of some drops and the contact that follows it; arrays have one entry for each of `drops` (b,).
+    """A flight of some drops and the contact that follows it; arrays have one entry for each of
+    `drops` (b,).
 
-    `flight_end`: end of the flight [s]. `contact` and `encounter` belong to `contact_drops`; they are
-    None for a flight that ends the run and for an instantaneous law.
+    `flight_end`: end of the flight [s]. `contact` and `encounter` belong to `contact_drops`; they
+    are None for a flight that ends the run and for an instantaneous law.
     """
 
     drops: Indices
@@ -35,7 +36,9 @@ class Leg:
     motions: tuple[FreeMotion, ...] = ()
     """Free motions of the bodies of each drop in flight, where a body vibrates."""
     oblique: tuple[Sphere, State] | None = None
-    """The spheres, and their motion along the plate at the start of the flight, where they have any."""
+    """The spheres, and their motion along the plate at the start of the flight, where
+    they have any.
+    """
     oblique_contacts: ObliqueContacts = ()
     ride: Ride | None = None
     """Rides of `contact_drops` on a shaken plate after an impact of a law without a force."""
@@ -48,15 +51,30 @@ class Leg:
         one, alone = np.zeros(1, dtype=np.intp), self.flight.take(here)
         contact_here = np.flatnonzero(self.contact_drops == drop)
         motions = self.motions[int(here[0]) : int(here[0]) + 1]
-        oblique = None if self.oblique is None else (self.oblique[0].take(here), self.oblique[1].take(here))
+        oblique = (
+            None
+            if self.oblique is None
+            else (self.oblique[0].take(here), self.oblique[1].take(here))
+        )
         along = tuple(
             (one, part.of(place))
             for places, part in self.oblique_contacts
             for place in np.flatnonzero(np.isin(places, contact_here)).tolist()
         )
         if self.contact is None or self.encounter is None or not contact_here.size:
-            ride = self.ride.of(int(contact_here[0])) if self.ride is not None and contact_here.size else None
+            ride = (
+                self.ride.of(int(contact_here[0]))
+                if self.ride is not None and contact_here.size
+                else None
+            )
             here_alone = one, alone, self.flight_end[here], one[: contact_here.size]
-            return Leg(*here_alone, motions=motions, oblique=oblique, oblique_contacts=along, ride=ride)
-        contact, encounter = self.contact.of(int(contact_here[0])), self.encounter.take(contact_here)
-        return Leg(one, alone, self.flight_end[here], one, contact, encounter, motions, oblique, along)
+            return Leg(
+                *here_alone, motions=motions, oblique=oblique, oblique_contacts=along, ride=ride
+            )
+        contact, encounter = (
+            self.contact.of(int(contact_here[0])),
+            self.encounter.take(contact_here),
+        )
+        return Leg(
+            one, alone, self.flight_end[here], one, contact, encounter, motions, oblique, along
+        )

@@ -10,7 +10,8 @@ from vibroimpact.arrays import Floats
 def stacked_inverse(matrices: Floats) -> Floats:
     """Return the inverse of each matrix (B, M, M); NaN where it is singular.
 
-    NumPy raises for the whole stack if one matrix is singular, so the stack is bisected until the singular ones are isolated.
+    NumPy raises for the whole stack if one matrix is singular, so the stack is bisected until the
+    singular ones are isolated.
     """
     try:
         return np.asarray(np.linalg.inv(matrices))

@@ -1,13 +1,16 @@
-r"""A liquid around sphere and plate: buoyancy, drag and added mass in flight, and a film that takes from the rebound.
+r"""A liquid around sphere and plate: buoyancy, drag and added mass in flight, and a film that takes
+from the rebound.
 
 In flight the sphere is accelerated by
 
 .. math:: \dot v = \frac{\rho - \rho_f}{\rho + \tfrac12 \rho_f}\, g - a(v)
 
-with the drag a of `vibroimpact.dynamics.fluid`, and half the displaced mass moves along, as in unbounded liquid without viscosity.
+with the drag a of `vibroimpact.dynamics.fluid`, and half the displaced mass moves along, as in
+unbounded liquid without viscosity.
 
-The film has to be pressed out before sphere and plate touch, and drawn in as they part. What is left of the restitution in air depends on
-the Stokes number alone, the inertia of the sphere over the viscous force of the film.
+The film has to be pressed out before sphere and plate touch, and drawn in as they part. What is
+left of the restitution in air depends on the Stokes number alone, the inertia of the sphere over
+the viscous force of the film.
 """
 
 from __future__ import annotations
@@ -29,14 +32,17 @@ CRITICAL_STOKES = 10.0
 """Stokes number below which spheres were seen to stay on the wall: Joseph and others 2001."""
 
 _DRAINAGE = 35.0
-_LEAST = 1e-3  # part of the restitution that is left at least: laws take none of zero, and so slow a sphere is at rest
+# part of the restitution that is left at least: laws take none of zero, and so slow a sphere is at
+# rest
+_LEAST = 1e-3
 
 Law = TypeVar("Law", bound=ContactLaw)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Liquid(Fluid):
-    """A liquid at rest around sphere and plate; each value is a number, or an array with one a drop.
+    """A liquid at rest around sphere and plate; each value is a number, or an array with one a
+    drop.
 
     Parameters
     ----------
@@ -62,7 +68,9 @@ class Liquid(Fluid):
     viscosity: Array = WATER_VISCOSITY
 
     def weight(self, density: Array) -> Array:
-        """Return the weight in the liquid over that in a vacuum [-], of a sphere of a density [kg/m^3]: less buoyancy."""
+        """Return the weight in the liquid over that in a vacuum [-], of a sphere of a
+        density [kg/m^3]: less buoyancy.
+        """
         return 1.0 - self.density / density
 
     def stokes_number(self, speed: Array, radius: Array, density: Array) -> Array:
@@ -79,7 +87,13 @@ class Liquid(Fluid):
         radius, density : float or array
             Of the sphere [m], [kg/m^3].
         """
-        return (density + self.added_mass * self.density) * 2.0 * radius * speed / (9.0 * self.viscosity)
+        return (
+            (density + self.added_mass * self.density)
+            * 2.0
+            * radius
+            * speed
+            / (9.0 * self.viscosity)
+        )
 
     def around(self, law: Law, speed: Array, radius: Array, density: Array) -> Law:
         """Return the law of an impact with what the film leaves of its restitution.
@@ -94,19 +108,31 @@ class Liquid(Fluid):
         Examples
         --------
         >>> from vibroimpact.contact.laws.newton import Newton
-        >>> round(float(Liquid(viscosity=0.1).around(Newton(restitution=0.9), 1.0, 0.005, 2650.0).restitution), 4)
+        >>> round(
+        ...     float(
+        ...         Liquid(viscosity=0.1)
+        ...         .around(Newton(restitution=0.9), 1.0, 0.005, 2650.0)
+        ...         .restitution
+        ...     ),
+        ...     4,
+        ... )
         0.331
         """
         dry: Array = vars(law)["restitution"]
-        return law.changed({"restitution": dry * restitution_kept(self.stokes_number(speed, radius, density))})
+        return law.changed(
+            {"restitution": dry * restitution_kept(self.stokes_number(speed, radius, density))}
+        )
 
 
 def check_sinks(density: Array, of_sphere: Array, key: str = "") -> None:
-    """Raise InputError, with a key, unless a sphere is denser than the liquid; densities [kg/m^3]."""
+    """Raise InputError, with a key, unless a sphere is denser than the liquid; densities
+    [kg/m^3].
+    """
     if np.any(np.asarray(density) >= np.asarray(of_sphere)):
         part = float(np.max(np.asarray(density) / np.asarray(of_sphere)))
         raise InputError(
-            f"the liquid has {part:.4g} times the density of the sphere, which floats in it and doesn't fall; give one of less density, "
+            f"the liquid has {part:.4g} times the density of the sphere, which floats in "
+            "it and doesn't fall; give one of less density, "
             "or drop.speed with drop.gravity = 0",
             key,
         )
@@ -122,10 +148,12 @@ def restitution_kept(stokes: Array) -> Array:
 
     References
     ----------
-    Legendre, D., Zenit, R., Daniel, C. and Guiraud, P. (2006). A note on the modelling of the bouncing of spherical drops or solid spheres
-    on a wall in viscous fluid. Chem. Eng. Sci. 61, 3543-3549; a fit to the measurements of Gondret, P., Lance, M. and Petit, L. (2002).
-    Bouncing motion of spherical particles in fluids. Phys. Fluids 14, 643-652, and of Joseph, G. G., Zenit, R., Hunt, M. L. and
-    Rosenwinkel, A. M. (2001). Particle-wall collisions in a viscous fluid. J. Fluid Mech. 433, 329-346, among others.
+    Legendre, D., Zenit, R., Daniel, C. and Guiraud, P. (2006). A note on the modelling of the
+    bouncing of spherical drops or solid spheres on a wall in viscous fluid. Chem. Eng. Sci. 61,
+    3543-3549; a fit to the measurements of Gondret, P., Lance, M. and Petit, L. (2002). Bouncing
+    motion of spherical particles in fluids. Phys. Fluids 14, 643-652, and of Joseph, G. G., Zenit,
+    R., Hunt, M. L. and Rosenwinkel, A. M. (2001). Particle-wall collisions in a viscous fluid. J.
+    Fluid Mech. 433, 329-346, among others.
 
     Examples
     --------

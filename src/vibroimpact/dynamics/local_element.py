@@ -1,4 +1,6 @@
-"""Stiffness and damping of a local element, from the largest force and the rebound of one impact."""
+"""Stiffness and damping of a local element, from the largest force and the rebound of one
+impact.
+"""
 
 from __future__ import annotations
 
@@ -15,13 +17,19 @@ from vibroimpact.errors import ComputationError, InputError
 _WITHIN = 1e-9  # relative, of force and speed
 _SWEEPS = 40
 _STEP = 1e-4  # relative, of difference quotients
-_LOSSES = (1e-4, *np.geomspace(0.02, 50.0, 8).tolist())  # damping over that of a critical oscillator of the sphere's mass, to search
+# damping over that of a critical oscillator of the sphere's mass, to search
+_LOSSES = (1e-4, *np.geomspace(0.02, 50.0, 8).tolist())
 
 
 def identify_local_element(
-    problem: Problem, max_force: float, *, separation_speed: float | None = None, rebound_height: float | None = None
+    problem: Problem,
+    max_force: float,
+    *,
+    separation_speed: float | None = None,
+    rebound_height: float | None = None,
 ) -> tuple[float, float]:
-    """Return stiffness [N/m] and damping [N s/m] of the local element that reproduces a measured impact.
+    """Return stiffness [N/m] and damping [N s/m] of the local element that reproduces a measured
+    impact.
 
     Parameters
     ----------
@@ -42,7 +50,8 @@ def identify_local_element(
     Raises
     ------
     InputError
-        If no local element gives both, the message says what can be reached; or not one of speed and height is given.
+        If no local element gives both, the message says what can be reached; or not one of speed
+        and height is given.
 
     Examples
     --------
@@ -55,7 +64,9 @@ def identify_local_element(
     if (separation_speed is None) == (rebound_height is None):
         raise InputError("give either separation_speed [m/s] or rebound_height [m]")
     column, rebound, unit = (
-        ("separation_speed_m_s", separation_speed, "m/s") if rebound_height is None else ("rebound_height_m", rebound_height, "m")
+        ("separation_speed_m_s", separation_speed, "m/s")
+        if rebound_height is None
+        else ("rebound_height_m", rebound_height, "m")
     )
     wanted = np.array([max_force, rebound], dtype=float)
     problem = replace(problem, impacts=1, duration=None, local_element=None)
@@ -66,8 +77,8 @@ def identify_local_element(
     hard = outcome(None)
     if not max_force < hard[0]:
         raise InputError(
-            f"a local element only makes the impact softer: without one the largest force is {hard[0]:.5g} N, and {max_force:.5g} N "
-            "was measured"
+            "a local element only makes the impact softer: without one the largest force "
+            f"is {hard[0]:.5g} N, and {max_force:.5g} N was measured"
         )
     mass = float(problem.sphere.mass)
     speed = float(simulate(problem).impacts["approach_speed_m_s"][0])
@@ -85,19 +96,25 @@ def identify_local_element(
     reached = _reached(outcome, max_force, soft, mass)
     if not reached or min(reached) <= wanted[1] <= max(reached):
         raise InputError(
-            f"no local element was found that gives both a largest force of {max_force:.5g} N and a rebound of {rebound:.5g} {unit}; see "
+            "no local element was found that gives both a largest force of "
+            f"{max_force:.5g} N and a rebound of {rebound:.5g} {unit}; see "
             "whether both are of one impact, and in these units"
         )
     raise InputError(
-        f"no local element gives both: with a largest force of {max_force:.5g} N the rebound can be {min(reached):.3g} to "
+        f"no local element gives both: with a largest force of {max_force:.5g} N the "
+        f"rebound can be {min(reached):.3g} to "
         f"{max(reached):.3g} {unit}, and {rebound:.5g} {unit} was measured"
     )
 
 
 def local_element_deviations(
-    problem: Problem, element: tuple[float, float], max_force_deviation: float, separation_speed_deviation: float
+    problem: Problem,
+    element: tuple[float, float],
+    max_force_deviation: float,
+    separation_speed_deviation: float,
 ) -> tuple[float, float]:
-    """Return the standard deviations of stiffness [N/m] and damping [N s/m] of a local element identified from force and rebound.
+    """Return the standard deviations of stiffness [N/m] and damping [N s/m] of a local element
+    identified from force and rebound.
 
     By linear propagation of independent errors.
 
@@ -122,8 +139,16 @@ def local_element_deviations(
     problem = replace(problem, impacts=1, duration=None)
     column, slopes = "separation_speed_m_s", []
     for number in range(2):
-        high, low = ([value * (1.0 + side * _STEP * (place == number)) for place, value in enumerate(element)] for side in (1.0, -1.0))
-        change = _outcome(problem, (high[0], high[1]), column) - _outcome(problem, (low[0], low[1]), column)
+        high, low = (
+            [
+                value * (1.0 + side * _STEP * (place == number))
+                for place, value in enumerate(element)
+            ]
+            for side in (1.0, -1.0)
+        )
+        change = _outcome(problem, (high[0], high[1]), column) - _outcome(
+            problem, (low[0], low[1]), column
+        )
         slopes.append(change / (2.0 * _STEP * element[number]))
     noise = np.linalg.inv(np.array(slopes).T) * [max_force_deviation, separation_speed_deviation]
     stiffness, damping = np.linalg.norm(noise, axis=1).tolist()
@@ -137,14 +162,18 @@ def _outcome(problem: Problem, element: tuple[float, float] | None, column: str)
 
 
 def _newton(function: Callable[[Floats], Floats], start: Floats) -> Floats | None:
-    """Return a zero of a function of two variables by damped Newton iteration, or None if it does not converge."""
+    """Return a zero of a function of two variables by damped Newton iteration, or None if
+    it does not converge.
+    """
     place = start
     try:
         value = function(place)
         for _ in range(_SWEEPS):
             if np.abs(value).max() < _WITHIN:
                 return place
-            slopes = np.stack([(function(place + step) - value) / 1e-5 for step in 1e-5 * np.eye(2)], axis=1)
+            slopes = np.stack(
+                [(function(place + step) - value) / 1e-5 for step in 1e-5 * np.eye(2)], axis=1
+            )
             step = np.linalg.solve(slopes, value)
             step *= min(1.0, 1.0 / float(np.abs(step).max()))
             for _ in range(6):
@@ -155,20 +184,29 @@ def _newton(function: Callable[[Floats], Floats], start: Floats) -> Floats | Non
             else:
                 return None
             place, value = place - step, new
-    except (np.linalg.LinAlgError, ComputationError, InputError):  # an element too soft or too stiff for a number
+    except (np.linalg.LinAlgError, ComputationError, InputError):
+        # an element too soft or too stiff for a number
         return None
     return None
 
 
-def _reached(outcome: Callable[[tuple[float, float]], Floats], max_force: float, soft: float, mass: float) -> list[float]:
-    """Return the rebounds of elements that give the measured force, from low to high damping; empty if none is found."""
+def _reached(
+    outcome: Callable[[tuple[float, float]], Floats], max_force: float, soft: float, mass: float
+) -> list[float]:
+    """Return the rebounds of elements that give the measured force, from low to high
+    damping; empty if none is found.
+    """
     reached = []
     for loss in _LOSSES:
         low, high = 1e-6 * soft, 1e6 * soft
-        for _ in range(40):  # bisection: the force grows with the stiffness, as the damping is a fixed multiple of critical damping
+        # bisection: the force grows with the stiffness, as the damping is a fixed multiple of
+        # critical damping
+        for _ in range(40):
             middle = float(np.sqrt(low * high))
             try:
-                force, rebound = outcome((middle, 2.0 * loss * float(np.sqrt(middle * mass)))).tolist()
+                force, rebound = outcome(
+                    (middle, 2.0 * loss * float(np.sqrt(middle * mass)))
+                ).tolist()
             except (ComputationError, InputError):  # too soft or too stiff to be computed
                 break
             low, high = (low, middle) if force > max_force else (middle, high)

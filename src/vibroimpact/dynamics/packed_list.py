@@ -1,4 +1,6 @@
-"""A compact list of records, with all numbers in one buffer: 8 bytes each, where a small array takes 120."""
+"""A compact list of records, with all numbers in one buffer: 8 bytes each, where a small
+array takes 120.
+"""
 
 from __future__ import annotations
 
@@ -14,11 +16,13 @@ from vibroimpact.arrays import Floats
 
 Item = TypeVar("Item")
 
-_UNPACKED = 32  # last records that are kept unpacked: packing those of a short run would take a tenth of its time
+# last records that are kept unpacked: packing those of a short run would take a tenth of its time
+_UNPACKED = 32
 
 
 class PackedList(Sequence[Item], Generic[Item]):
-    """List of records of dataclasses, lists, tuples and arrays; all but the last ones are stored packed and rebuilt on access.
+    """List of records of dataclasses, lists, tuples and arrays; all but the last ones are stored
+    packed and rebuilt on access.
 
     Numbers are restored exactly (integers up to 2^53).
 
@@ -86,7 +90,9 @@ class PackedList(Sequence[Item], Generic[Item]):
             return _Row(type(value), tuple([self._split(part) for part in value]))
         if is_dataclass(value) and not isinstance(value, (type, *self._shared)):
             kind: Any = type(value)
-            return _Record(kind, tuple([self._split(getattr(value, name)) for name in _names(kind)]))
+            return _Record(
+                kind, tuple([self._split(getattr(value, name)) for name in _names(kind)])
+            )
         return _Same(value)
 
 

@@ -36,7 +36,9 @@ STANDARD_GRAVITY = 9.80665
 """Standard acceleration of gravity [m/s^2], CGPM 1901."""
 
 MOST_IMPACTS = 100_000
-"""Number of impacts at which a run without a given number is stopped, if it has not come to rest."""
+"""Number of impacts at which a run without a given number is stopped, if it has not come
+to rest.
+"""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -46,13 +48,13 @@ class Problem:
     Parameters
     ----------
     sphere, plate : Body
-        The bodies. The plate is held fixed: its mass is infinite; or it moves as a rigid body, without gravity, as its `rigid` says. They
-        vibrate in the modes that they have.
+        The bodies. The plate is held fixed: its mass is infinite; or it moves as a rigid body,
+        without gravity, as its `rigid` says. They vibrate in the modes that they have.
     laws : tuple of ContactLaw
         The contact law of the first impact, the second, ...; the last one goes on. All of one kind.
     by_speed : mapping of str to SpeedFunction or SpeedTable, optional
-        Parameters of the law that are functions of the approach speed of each impact, in place of their values in `laws`; beyond the
-        range of a function its value at the nearest end holds.
+        Parameters of the law that are functions of the approach speed of each impact, in place of
+        their values in `laws`; beyond the range of a function its value at the nearest end holds.
     height : float or array, optional
         Height of the sphere's centre above the plate's upper surface at rest, at the start [m].
     velocity : float or array, default 0
@@ -62,42 +64,49 @@ class Problem:
     gravity : float or array, default 9.80665
         Acceleration of gravity [m/s^2], >= 0; with an inclined plate its part along the normal.
     oblique : Oblique, optional
-        Velocity along the plate, spin, friction and an inclination of the plate. By default the sphere falls along the normal and
-        does not turn.
+        Velocity along the plate, spin, friction and an inclination of the plate. By default the
+        sphere falls along the normal and does not turn.
     motion : PlateMotion, optional
-        Prescribed motion of the plate's supports. Heights are then above the mean position of the plate's surface, and approach and
-        separation speeds relative to it. By default the supports are at rest.
+        Prescribed motion of the plate's supports. Heights are then above the mean position of the
+        plate's surface, and approach and separation speeds relative to it. By default the supports
+        are at rest.
     air : Air, optional
         What the sphere falls through: its drag slows it down in flight. By default nothing.
     liquid : Liquid, optional
-        What is around sphere and plate, in place of air: buoyancy, drag and added mass act in flight, and a film takes from the
-        restitution of the law, which is that in air. By default nothing.
+        What is around sphere and plate, in place of air: buoyancy, drag and added mass act in
+        flight, and a film takes from the restitution of the law, which is that in air. By default
+        nothing.
     impacts : int, optional
         Stop after so many impacts, at the top of the last rebound. None: go on to rest.
     duration : float, optional
-        Stop at this time [s]; an impact under way is finished first, but not a sphere that rides on what vibrates.
+        Stop at this time [s]; an impact under way is finished first, but not a sphere that rides on
+        what vibrates.
     rest_speed : float or array, optional
         A sphere that leaves more slowly is at rest [m/s]. By default the speed from which it would
         rise no higher than the static indentation under its own weight, but at least 1e-6 of
         the first approach speed. Zero: only a sphere that does not leave at all is at rest. On what
         vibrates it must also be true that nothing that still moves can make it leave faster.
     same_spot : bool, default True
-        Does each impact fall where the last one did, with the same part of the sphere? Then a law whose
-        memory lasts (a permanent dent) goes on with it; else each impact finds fresh surfaces.
+        Does each impact fall where the last one did, with the same part of the sphere? Then a law
+        whose memory lasts (a permanent dent) goes on with it; else each impact finds fresh
+        surfaces.
     sphere_inside : bool, default True
-        Do the modes of the sphere lie inside the contact: in series with the spring of the law, and spanned by its dashpot? Then
-        what the law loses does not depend on how many there are. Else they are in series with all of it.
+        Do the modes of the sphere lie inside the contact: in series with the spring of the law, and
+        spanned by its dashpot? Then what the law loses does not depend on how many there are. Else
+        they are in series with all of it.
     quasi_static : QuasiStatic, optional
         Quasi-static compliance in series with the law.
     local_element : tuple of two floats, optional
-        Stiffness [N/m] and damping [N s/m], > 0, of a spring and a dashpot side by side, in series with the law.
+        Stiffness [N/m] and damping [N s/m], > 0, of a spring and a dashpot side by side, in series
+        with the law.
     sensors : tuple of Sensor, optional
         What watches the plate.
     tolerance : float, default 1e-9
         Relative error allowed in the state at the end of a contact; 1e-13 to 1e-6.
     sensitivity : bool, default True
-        Follow, where bodies vibrate, how a small change of the drop grows from impact to impact? It takes a fifth of the time; without
-        it the impact table has no such column, and all figures count as certain.
+        Follow, where bodies vibrate, how a small change of the drop grows from impact to impact? It
+        takes a fifth of the time; without it the impact table has no such column, and all figures
+        count as certain.
     source : ResolvedCase, optional
         The case that the problem was made from, for provenance.
     facts : mapping, optional
@@ -105,10 +114,11 @@ class Problem:
     models : mapping, optional
         The modes of "sphere" and "plate" on their meshes, for pictures of their deflection.
     at_place : callable, optional
-        The problem with its contact at another place of the plate, x and y [m]; without it a sphere that moves along a plate that
-        vibrates finds it everywhere as where it touches first.
+        The problem with its contact at another place of the plate, x and y [m]; without it a sphere
+        that moves along a plate that vibrates finds it everywhere as where it touches first.
     plate_at_place : callable, optional
-        The plate with its contact there, which tells its motion; the compliance in series is left out, which takes more time.
+        The plate with its contact there, which tells its motion; the compliance in series is left
+        out, which takes more time.
 
     Raises
     ------
@@ -120,7 +130,9 @@ class Problem:
     >>> from vibroimpact.bodies.rigid import rigid_plate
     >>> from vibroimpact.contact.laws.newton import Newton
     >>> ball = Body(mass=1.0, contact_offset=0.1)
-    >>> Problem(sphere=ball, plate=rigid_plate(), laws=(Newton(restitution=0.5),), height=[1.0, 2.0]).shape
+    >>> Problem(
+    ...     sphere=ball, plate=rigid_plate(), laws=(Newton(restitution=0.5),), height=[1.0, 2.0]
+    ... ).shape
     (2,)
     """
 
@@ -150,71 +162,134 @@ class Problem:
     facts: Mapping[str, float | str] = field(default_factory=dict, compare=False)
     models: Mapping[str, ModalModel] = field(default_factory=dict, compare=False)
     at_place: Callable[[tuple[float, float]], Problem] | None = field(default=None, compare=False)
-    plate_at_place: Callable[[tuple[float, float]], Body] | None = field(default=None, compare=False)
+    plate_at_place: Callable[[tuple[float, float]], Body] | None = field(
+        default=None, compare=False
+    )
 
     def __post_init__(self) -> None:
         if isinstance(self.laws, ContactLaw):
             object.__setattr__(self, "laws", (self.laws,))
-        one_kind = isinstance(self.laws, (tuple, list)) and len({type(law) for law in self.laws}) == 1
+        one_kind = (
+            isinstance(self.laws, (tuple, list)) and len({type(law) for law in self.laws}) == 1
+        )
         if not one_kind or not isinstance(self.laws[0], ContactLaw):
             example = 'such as vi.find_contact_law("newton")(restitution=0.7)'
-            raise InputError(f"laws must be one or more contact laws with their parameters, {example}, all of one kind")
+            raise InputError(
+                f"laws must be one or more contact laws with their parameters, {example}, "
+                "all of one kind"
+            )
         for name in self.by_speed:
             if name not in {item.name for item in fields(self.laws[0])}:
-                raise InputError(f"{self.laws[0].name} has no parameter {name} that could be a function of the approach speed")
+                raise InputError(
+                    f"{self.laws[0].name} has no parameter {name} that could be a function "
+                    "of the approach speed"
+                )
         for name in ("height", "velocity", "speed", "gravity", "rest_speed"):
             value = getattr(self, name)
             if value is not None and np.asarray(value).dtype.kind not in "iuf":
-                raise InputError(f"{name} must be a number in SI, or an array of them, not {value!r}")
+                raise InputError(
+                    f"{name} must be a number in SI, or an array of them, not {value!r}"
+                )
         for name in ("duration", "tolerance"):
             value = getattr(self, name)
-            if value is not None and (np.asarray(value).dtype.kind not in "iuf" or np.ndim(value) > 0):
-                raise InputError(f"{name} must be a number in SI, one for all drops of a batch, not {value!r}")
+            if value is not None and (
+                np.asarray(value).dtype.kind not in "iuf" or np.ndim(value) > 0
+            ):
+                raise InputError(
+                    f"{name} must be a number in SI, one for all drops of a batch, not {value!r}"
+                )
         if (self.height is None) == (self.speed is None):
             raise InputError("give either height [m] or speed [m/s] of the drop, and not both")
-        if not (np.all(np.isfinite(self.sphere.mass)) and np.all(np.isfinite(self.sphere.contact_offset))):
+        if not (
+            np.all(np.isfinite(self.sphere.mass))
+            and np.all(np.isfinite(self.sphere.contact_offset))
+        ):
             raise InputError("the sphere's mass and radius must be finite")
         if np.any(np.isfinite(self.plate.mass)):
             raise InputError("the plate must be held fixed: a body with an infinite mass")
-        for name, least in (("height", -np.inf), ("velocity", -np.inf), ("speed", 0.0), ("gravity", 0.0), ("rest_speed", 0.0)):
+        for name, least in (
+            ("height", -np.inf),
+            ("velocity", -np.inf),
+            ("speed", 0.0),
+            ("gravity", 0.0),
+            ("rest_speed", 0.0),
+        ):
             value = getattr(self, name)
             if value is not None and not np.all(np.isfinite(value) & (np.asarray(value) >= least)):
-                raise InputError(f"{name} must be finite{'' if np.isinf(least) else ' and not negative'}")
+                raise InputError(
+                    f"{name} must be finite{'' if np.isinf(least) else ' and not negative'}"
+                )
         if self.speed is not None and not np.all(np.asarray(self.speed) > 0):
             raise InputError("speed must be greater than 0 m/s")
         if self.speed is not None and np.any(self.velocity):
-            raise InputError("velocity is that at a height; with speed, at first touch, leave it out")
+            raise InputError(
+                "velocity is that at a height; with speed, at first touch, leave it out"
+            )
         if self.height is not None:
             if not np.all(np.asarray(self.height) > self.sphere.contact_offset):
                 raise InputError(
-                    "height must be greater than the sphere's radius: it is the height of the centre above the plate's upper surface"
+                    "height must be greater than the sphere's radius: it is the height of "
+                    "the centre above the plate's upper surface"
                 )
             if not np.all(np.asarray(self.gravity) > 0):
-                raise InputError("without gravity a sphere does not fall: give speed instead of height")
-        if self.impacts is not None and not (isinstance(self.impacts, Integral) and 1 <= self.impacts <= MOST_IMPACTS):
+                raise InputError(
+                    "without gravity a sphere does not fall: give speed instead of height"
+                )
+        if self.impacts is not None and not (
+            isinstance(self.impacts, Integral) and 1 <= self.impacts <= MOST_IMPACTS
+        ):
             raise InputError(f"impacts must be a whole number from 1 to {MOST_IMPACTS}")
         if self.duration is not None and not 0 < self.duration < np.inf:
             raise InputError("duration must be greater than 0 s and finite")
         check_tolerance(self.tolerance)
-        if self.local_element is not None and not all(0.0 < value < np.inf for value in self.local_element):
-            raise InputError("stiffness and damping of the local element must be greater than 0 and finite")
+        if self.local_element is not None and not all(
+            0.0 < value < np.inf for value in self.local_element
+        ):
+            raise InputError(
+                "stiffness and damping of the local element must be greater than 0 and finite"
+            )
         if self.plate.rigid is not None and np.any(np.asarray(self.gravity) > 0):
-            words = "the supports let the plate fall or tilt: under gravity it falls away from under the sphere"
+            words = (
+                "the supports let the plate fall or tilt: under gravity it falls away from "
+                "under the sphere"
+            )
             raise InputError(f"{words}; set gravity to 0, and give speed")
         self._check_motion()
         if self.vibrates and isinstance(self.laws[0], InstantaneousLaw):
-            raise InputError(f"{self.laws[0].name} gives no force, and bodies that deform or are free need one; take another law")
+            raise InputError(
+                f"{self.laws[0].name} gives no force, and bodies that deform or are free "
+                "need one; take another law"
+            )
         if self.oblique is not None and not isinstance(self.oblique, Oblique):
             raise InputError(f"oblique must be an Oblique, not {self.oblique!r}")
         if self.oblique is not None and not np.all(np.asarray(self.sphere.contact_offset) > 0.0):
-            raise InputError("a sphere that may turn needs a radius: its contact_offset, greater than 0 m")
-        if self.oblique is not None and self.sphere.inertia is not None and np.any(np.asarray(self.oblique.inertia_ratio) != SOLID):
-            raise InputError("the moment of inertia is given twice; leave out the inertia_ratio, or the inertia of the sphere")
+            raise InputError(
+                "a sphere that may turn needs a radius: its contact_offset, greater than 0 m"
+            )
+        if (
+            self.oblique is not None
+            and self.sphere.inertia is not None
+            and np.any(np.asarray(self.oblique.inertia_ratio) != SOLID)
+        ):
+            raise InputError(
+                "the moment of inertia is given twice; leave out the inertia_ratio, or the "
+                "inertia of the sphere"
+            )
         if self.oblique is not None and self.vibrates:
             self._check_rubbing(self.oblique)
-        if self.oblique is not None and isinstance(self.oblique.friction, CompliantFriction) and isinstance(self.laws[0], InstantaneousLaw):
-            words = f"{self.laws[0].name} gives no normal force for {self.oblique.friction.name} to follow"
-            raise InputError(f"{words}; take another contact law, or friction by the impulse, as of coulomb or rigid")
+        if (
+            self.oblique is not None
+            and isinstance(self.oblique.friction, CompliantFriction)
+            and isinstance(self.laws[0], InstantaneousLaw)
+        ):
+            words = (
+                f"{self.laws[0].name} gives no normal force for {self.oblique.friction.name} "
+                "to follow"
+            )
+            raise InputError(
+                f"{words}; take another contact law, or friction by the impulse, as of "
+                "coulomb or rigid"
+            )
         if self.air is not None:
             self._check_air(self.air)
         if self.liquid is not None:
@@ -222,9 +297,13 @@ class Problem:
         try:
             _ = self.shape
         except ValueError:
-            raise InputError("the arrays of a batch must agree in shape: one value a drop") from None
+            raise InputError(
+                "the arrays of a batch must agree in shape: one value a drop"
+            ) from None
         if len(self.shape) > 1 or 0 in self.shape:
-            raise InputError(f"a batch has one axis with at least one drop, not the shape {self.shape}")
+            raise InputError(
+                f"a batch has one axis with at least one drop, not the shape {self.shape}"
+            )
 
     def _check_rubbing(self, oblique: Oblique) -> None:
         """Check that bodies that deform can move along each other.
@@ -232,13 +311,20 @@ class Problem:
         Raises
         ------
         InputError
-            If the plate's modes do not tell how it moves along its surface, or the friction law has no tangential compliance.
+            If the plate's modes do not tell how it moves along its surface, or the friction law has
+            no tangential compliance.
         """
         bases = [basis for basis in (self.plate.rigid, self.plate.modes) if basis is not None]
         if any(basis.along is None for basis in bases):
-            raise InputError("modes of a plate that is hit obliquely need `along`, the motion of their contact point along the plate")
+            raise InputError(
+                "modes of a plate that is hit obliquely need `along`, the motion of their "
+                "contact point along the plate"
+            )
         if oblique.friction is not None and not isinstance(oblique.friction, CompliantFriction):
-            words = f"{oblique.friction.name} has no tangential compliance, which friction needs on bodies that deform or are shaken"
+            words = (
+                f"{oblique.friction.name} has no tangential compliance, which friction needs "
+                "on bodies that deform or are shaken"
+            )
             raise InputError(f'{words}; take "mdr" or one of the "mindlin" laws')
 
     def _check_motion(self) -> None:
@@ -248,22 +334,41 @@ class Problem:
         if not isinstance(self.motion, PlateMotion):
             raise InputError(f"motion must be a PlateMotion, not {self.motion!r}")
         if self.plate.rigid is not None:
-            words = "the supports let the plate fall or tilt, and a motion of supports is that of a plate that they hold"
+            words = (
+                "the supports let the plate fall or tilt, and a motion of supports is that of a "
+                "plate that they hold"
+            )
             raise InputError(f"{words}; leave out its motion")
         if len(self.motion.phasors) > 1 and self.duration is None:
-            raise InputError("a sphere may ride for ever on a motion of several harmonics: give the duration of the run")
+            raise InputError(
+                "a sphere may ride for ever on a motion of several harmonics: give the "
+                "duration of the run"
+            )
         modes = self.plate.modes
-        if modes is not None and np.isin(modes.angular_frequencies[modes.damping_ratios == 0.0], self.motion.angular_frequency).any():
-            words = "a mode of the plate without damping is driven at its own frequency, and grows without bound"
+        if (
+            modes is not None
+            and np.isin(
+                modes.angular_frequencies[modes.damping_ratios == 0.0],
+                self.motion.angular_frequency,
+            ).any()
+        ):
+            words = (
+                "a mode of the plate without damping is driven at its own "
+                "frequency, and grows without bound"
+            )
             raise InputError(f"{words}; give it damping, or change the frequency of the motion")
         place, speed, _ = self.surface(0.0)
-        if self.height is not None and not np.all(np.asarray(self.height) - self.sphere.contact_offset > place):
+        if self.height is not None and not np.all(
+            np.asarray(self.height) - self.sphere.contact_offset > place
+        ):
             raise InputError(
-                "the plate begins its motion at or above the lowest point of the sphere; let it fall from higher, or change the phase"
+                "the plate begins its motion at or above the lowest point of the sphere; "
+                "let it fall from higher, or change the phase"
             )
         if self.speed is not None and not np.all(np.asarray(self.speed) > -speed):
             raise InputError(
-                "the plate recedes at least as fast as the sphere comes down; give a higher speed, or another phase of the motion"
+                "the plate recedes at least as fast as the sphere comes down; give a higher "
+                "speed, or another phase of the motion"
             )
 
     def _check_air(self, air: Air) -> None:
@@ -271,7 +376,10 @@ class Problem:
         if not isinstance(air, Air):
             raise InputError(f"air must be an Air, not {air!r}")
         if not np.all(np.asarray(self.sphere.contact_offset) > 0.0):
-            raise InputError("a sphere that flies through air needs a radius: its contact_offset, greater than 0 m")
+            raise InputError(
+                "a sphere that flies through air needs a radius: its contact_offset, "
+                "greater than 0 m"
+            )
         check_thin(air.density, self.sphere_density)
 
     def _check_liquid(self, liquid: Liquid) -> None:
@@ -279,13 +387,22 @@ class Problem:
         if not isinstance(liquid, Liquid):
             raise InputError(f"liquid must be a Liquid, not {liquid!r}")
         if not np.all(np.asarray(self.sphere.contact_offset) > 0.0):
-            raise InputError("a sphere that touches in a liquid needs a radius: its contact_offset, greater than 0 m")
+            raise InputError(
+                "a sphere that touches in a liquid needs a radius: its contact_offset, "
+                "greater than 0 m"
+            )
         if self.laws[0].free_parameter != "restitution":
             optional = any(item.name == "restitution" for item in fields(self.laws[0]))
             words, remedy = "takes no", "take another law"
             if optional:
-                words, remedy = "is given without a", f"give it one in place of {self.laws[0].free_parameter}, or take another law"
-            raise InputError(f"{self.laws[0].name} {words} restitution, of which a liquid leaves a part; {remedy}")
+                words, remedy = (
+                    "is given without a",
+                    f"give it one in place of {self.laws[0].free_parameter}, or take another law",
+                )
+            raise InputError(
+                f"{self.laws[0].name} {words} restitution, of which a "
+                f"liquid leaves a part; {remedy}"
+            )
         if self.air is not None:
             raise InputError("the sphere is either in a liquid or in air; leave one of them out")
         if np.any(np.asarray(self.gravity) > 0.0):
@@ -304,7 +421,11 @@ class Problem:
     @property
     def sphere_inertia(self) -> Array:
         """Moment of inertia of the sphere about an axis through its centre [kg m^2]."""
-        return self._unit_inertia * self.inertia_ratio if self.sphere.inertia is None else self.sphere.inertia
+        return (
+            self._unit_inertia * self.inertia_ratio
+            if self.sphere.inertia is None
+            else self.sphere.inertia
+        )
 
     @property
     def inertia_ratio(self) -> Array:
@@ -330,7 +451,9 @@ class Problem:
 
     @property
     def flight_inertia(self) -> Array:
-        """Mass that is accelerated in flight, with that of a liquid that moves along, over that of the sphere [-]."""
+        """Mass that is accelerated in flight, with that of a liquid that moves along,
+        over that of the sphere [-].
+        """
         return 1.0 if self.fluid is None else self.fluid.inertia(self.sphere_density)
 
     @property
@@ -342,18 +465,36 @@ class Problem:
 
     @property
     def shaken(self) -> bool:
-        """Whether the surface of the plate moves without being hit: along its normal, or along itself where the drop is oblique."""
-        along = self.motion is not None and self.oblique is not None and bool(np.any(self.motion.amplitude))
+        """Whether the surface of the plate moves without being hit: along its normal, or
+        along itself where the drop is oblique.
+        """
+        along = (
+            self.motion is not None
+            and self.oblique is not None
+            and bool(np.any(self.motion.amplitude))
+        )
         return self.motion is not None and (along or bool(np.any(self.surface_phasors)))
 
     @cached_property
     def surface_phasors(self) -> Complex:
-        """Phasors of the surface at the contact point where nothing hits it [m] (k,), as `PlateMotion.at` takes them."""
-        return np.zeros(0, dtype=complex) if self.motion is None else steady_phasors(self.motion, self.plate.modes)
+        """Phasors of the surface at the contact point where nothing hits it [m] (k,), as
+        `PlateMotion.at` takes them.
+        """
+        return (
+            np.zeros(0, dtype=complex)
+            if self.motion is None
+            else steady_phasors(self.motion, self.plate.modes)
+        )
 
     def surface(self, time: Array) -> Floats:
-        """Return place [m], velocity [m/s] and acceleration [m/s^2] of that surface, upwards, at times [s] (...), (3, ...)."""
-        return np.zeros((3, *np.shape(time))) if self.motion is None else self.motion.at(time, self.surface_phasors)
+        """Return place [m], velocity [m/s] and acceleration [m/s^2] of that surface,
+        upwards, at times [s] (...), (3, ...).
+        """
+        return (
+            np.zeros((3, *np.shape(time)))
+            if self.motion is None
+            else self.motion.at(time, self.surface_phasors)
+        )
 
     @cached_property
     def shape(self) -> tuple[int, ...]:
@@ -362,7 +503,12 @@ class Problem:
         values += [self.sphere.mass, self.sphere.contact_offset, self.sphere.inertia]
         values += [getattr(law, item.name) for law in self.laws for item in fields(law)]
         values += [] if self.oblique is None else self.oblique.values
-        values += [value for fluid in (self.air, self.liquid) if fluid is not None for value in fluid.values]
+        values += [
+            value
+            for fluid in (self.air, self.liquid)
+            if fluid is not None
+            for value in fluid.values
+        ]
         return np.broadcast_shapes(*(np.shape(value) for value in values if value is not None))
 
     def law_of(self, impact: int) -> ContactLaw:
@@ -370,8 +516,12 @@ class Problem:
         return self.laws[min(impact, len(self.laws) - 1)]
 
     def law_at(self, law: ContactLaw, speed: Array) -> ContactLaw:
-        """Return a law with the parameters that are functions of the approach speed at one [m/s]."""
-        return law.changed({name: held(function, speed) for name, function in self.by_speed.items()})
+        """Return a law with the parameters that are functions of the approach speed at
+        one [m/s].
+        """
+        return law.changed(
+            {name: held(function, speed) for name, function in self.by_speed.items()}
+        )
 
     def take(self, drop: int | slice) -> Problem:
         """Return the problem of one drop of a batch, or of some."""
@@ -380,7 +530,12 @@ class Problem:
             return value if np.ndim(value) == 0 else np.asarray(value)[drop]
 
         def part(body: Body) -> Body:
-            return replace(body, **{name: one(getattr(body, name)) for name in ("mass", "contact_offset", "inertia")})
+            return replace(
+                body,
+                **{
+                    name: one(getattr(body, name)) for name in ("mass", "contact_offset", "inertia")
+                },
+            )
 
         return replace(
             self,
@@ -398,7 +553,9 @@ class Problem:
         )
 
     def on_plate(self, plate: Body, quasi_static: QuasiStatic) -> Problem:
-        """Return the problem of a drop under way whose contact is at another place of the plate: its start is not checked against that."""
+        """Return the problem of a drop under way whose contact is at another place of the
+        plate: its start is not checked against that.
+        """
         found = copy(self)
         vars(found).pop("surface_phasors", None)
         vars(found).update(plate=plate, quasi_static=quasi_static)

@@ -1,4 +1,6 @@
-"""The response of drops: impacts, motion at any time, energy ledger, signals of sensors, and status."""
+"""The response of drops: impacts, motion at any time, energy ledger, signals of sensors,
+and status.
+"""
 
 from __future__ import annotations
 
@@ -58,18 +60,21 @@ class Response:
     problem : Problem
         What was simulated.
     impacts : dict of str to array
-        One entry a column of `impacts.csv`. For one drop an array with one value an impact; for a batch
-        (B, impacts), NaN where a drop had fewer.
+        One entry a column of `impacts.csv`. For one drop an array with one value an impact; for a
+        batch (B, impacts), NaN where a drop had fewer.
     energy : dict of str to float or array
-        The ledger at the end [J], what was put in, and the closure; `closure_relative` is without dimension.
+        The ledger at the end [J], what was put in, and the closure; `closure_relative` is without
+        dimension.
     outcomes : tuple of Outcome
         Which rule ended each drop.
     end_time : array, shape (B,)
         When each run ended [s].
     rest : Rest
-        State of the drops that have come to rest. `rest.left` is what they, and those that ride, have left in vibration [J], (B,).
+        State of the drops that have come to rest. `rest.left` is what they, and those that ride,
+        have left in vibration [J], (B,).
     legs : sequence of Leg, optional
-        Flights and contacts, from which histories are read; None where none are kept, as by `tabulate`.
+        Flights and contacts, from which histories are read; None where none are kept, as by
+        `tabulate`.
 
     See Also
     --------
@@ -98,7 +103,9 @@ class Response:
         return len(self.outcomes)
 
     def __repr__(self) -> str:
-        return f"<Response: {self.status}>" if len(self) == 1 else f"<Response of {len(self)} drops>"
+        return (
+            f"<Response: {self.status}>" if len(self) == 1 else f"<Response of {len(self)} drops>"
+        )
 
     def drop(self, index: int) -> Response:
         """Return the response of one drop of a batch, counted from 0.
@@ -120,20 +127,27 @@ class Response:
             self.outcomes[index : index + 1],
             self.end_time[index : index + 1],
             self.rest.take(index),
-            None if self.legs is None else tuple(small for leg in self.legs if (small := leg.of(index)) is not None),
+            None
+            if self.legs is None
+            else tuple(small for leg in self.legs if (small := leg.of(index)) is not None),
         )
 
     def squeezed(self) -> Response:
         """Return the response of a batch of one as that of a single drop."""
         impacts = {name: column[0] for name, column in self.impacts.items()}
-        return replace(self, impacts=impacts, energy={name: value[0] for name, value in self.energy.items()})
+        return replace(
+            self, impacts=impacts, energy={name: value[0] for name, value in self.energy.items()}
+        )
 
     @property
     def failures(self) -> dict[int, str]:
         """Reasons of failed drops, a sentence each, by the index of the drop."""
         energies = {name: np.atleast_1d(values) for name, values in self.energy.items()}
         failed = [drop for drop, outcome in enumerate(self.outcomes) if outcome is Outcome.FAILED]
-        return {drop: why_failed({name: values[drop] for name, values in energies.items()}) for drop in failed}
+        return {
+            drop: why_failed({name: values[drop] for name, values in energies.items()})
+            for drop in failed
+        }
 
     @property
     def history_columns(self) -> dict[str, tuple[str, str]]:
@@ -149,9 +163,12 @@ class Response:
     def status(self) -> str:
         """Reason and time of the end of the run, in a sentence.
 
-        For a batch, how many drops ended by each rule, and the most that is left in vibration where they rest or ride.
+        For a batch, how many drops ended by each rule, and the most that is left in vibration where
+        they rest or ride.
         """
-        return status_of(Ended(self.problem, self.impacts, self.energy, self.outcomes, self.end_time, self.rest))
+        return status_of(
+            Ended(self.problem, self.impacts, self.energy, self.outcomes, self.end_time, self.rest)
+        )
 
     def at(self, times: Any, columns: Collection[str] | None = None) -> dict[str, Floats]:
         """Return the motion, force and energies of one drop at given times.
@@ -161,7 +178,8 @@ class Response:
         times : array_like
             Times since the start [s], within the run.
         columns : collection of str, optional
-            Names of the columns to compute; by default all. Where bodies vibrate, those of motion and force alone take half the time.
+            Names of the columns to compute; by default all. Where bodies vibrate, those of motion
+            and force alone take half the time.
 
         Returns
         -------
@@ -171,7 +189,8 @@ class Response:
         Raises
         ------
         InputError
-            If a time lies outside the run, there is no such column, or the response is of several drops or without histories.
+            If a time lies outside the run, there is no such column, or the response is of several
+            drops or without histories.
         """
         times = np.asarray(times, dtype=float)
         flat = times.ravel()
@@ -183,7 +202,9 @@ class Response:
         found = {name: np.empty(flat.shape) for name in self._names(columns)}
         for number in np.unique(index):
             here = index == number
-            for name, values in self._history(int(number), flat[here] - starts[number], found).items():
+            for name, values in self._history(
+                int(number), flat[here] - starts[number], found
+            ).items():
                 found[name][here] = values
         return {name: values.reshape(times.shape) for name, values in found.items()}
 
@@ -201,18 +222,28 @@ class Response:
             raise InputError(f"rate must be greater than 0 Hz and finite, not {rate}")
         count = float(self.end_time[0]) * rate
         if count > 1e8:
-            raise InputError(f"{count:.3g} samples are more than 1e8; ask for a lower rate, or for parts by at()")
-        return self.at(np.minimum(np.arange(sample_count(float(self.end_time[0]), rate)) / rate, self.end_time[0]))
+            raise InputError(
+                f"{count:.3g} samples are more than 1e8; ask for a lower rate, or for parts by at()"
+            )
+        return self.at(
+            np.minimum(
+                np.arange(sample_count(float(self.end_time[0]), rate)) / rate, self.end_time[0]
+            )
+        )
 
-    def history(self, most: int | None = None, columns: Collection[str] | None = None) -> dict[str, Floats]:
-        """Return the history of one drop on a grid that resolves every contact, with both sides of each event.
+    def history(
+        self, most: int | None = None, columns: Collection[str] | None = None
+    ) -> dict[str, Floats]:
+        """Return the history of one drop on a grid that resolves every contact, with both sides of
+        each event.
 
         Parameters
         ----------
         most : int, optional
-            How many points there may be, about. Of a longer history the first impacts keep all of theirs, as many as fill a
-            quarter; each flight and each part of a contact after them keeps its ends and equally many points between. Each impact
-            takes about 170 points, and each point 100 bytes, or twice as many where bodies vibrate.
+            How many points there may be, about. Of a longer history the first impacts keep all of
+            theirs, as many as fill a quarter; each flight and each part of a contact after them
+            keeps its ends and equally many points between. Each impact takes about 170 points, and
+            each point 100 bytes, or twice as many where bodies vibrate.
         columns : collection of str, optional
             As in `at`.
 
@@ -226,7 +257,9 @@ class Response:
         history = {name: np.empty(int(kept.sum())) for name in self._names(columns)}
         begin = 0
         for number, (segment, count) in enumerate(zip(self._segments, kept.tolist(), strict=True)):
-            for name, values in self._history(number, thinned(segment.grid(), count), history).items():
+            for name, values in self._history(
+                number, thinned(segment.grid(), count), history
+            ).items():
                 history[name][begin : begin + count] = values
             begin += count
         if "time_s" in history:  # the times of both sides of an event may differ by rounding
@@ -244,7 +277,8 @@ class Response:
         Returns
         -------
         dict of str to array
-            "sphere" and "plate", (T, modes) [kg^1/2 m]; times a mode's shape they are displacements, of a plate relative to its supports.
+            "sphere" and "plate", (T, modes) [kg^1/2 m]; times a mode's shape they are
+            displacements, of a plate relative to its supports.
         """
         from vibroimpact.dynamics.vibrating.bodies import slices_of
 
@@ -255,7 +289,9 @@ class Response:
         found = np.zeros((len(flat), plate.stop))
         for number in () if isinstance(segments, Timeline) else np.unique(index).tolist():
             segment, here = segments[number], index == number
-            found[here] = segment.state(np.minimum(flat[here], segment.end) - segment.start).displacement[:, : plate.stop]
+            found[here] = segment.state(
+                np.minimum(flat[here], segment.end) - segment.start
+            ).displacement[:, : plate.stop]
         motion, modes = self.problem.motion, self.problem.plate.modes
         if motion is not None and modes is not None:
             turned = np.exp(1j * motion.angular_frequency * flat[:, None])
@@ -273,17 +309,21 @@ class Response:
         Raises
         ------
         InputError
-            If the plate is rigid and at rest or has no such point, there would be too many samples, or the response is of several drops or
-            without histories.
+            If the plate is rigid and at rest or has no such point, there would be too many samples,
+            or the response is of several drops or without histories.
         """
         from vibroimpact.dynamics.sensors.record import record
 
         segments = () if isinstance(self._segments, Timeline) else self._segments
-        return record(self.problem, segments, sensors or self.problem.sensors, float(self.end_time[0]))
+        return record(
+            self.problem, segments, sensors or self.problem.sensors, float(self.end_time[0])
+        )
 
     @cached_property
     def truncation(self) -> dict[str, float]:
-        """Estimated relative error of the largest force due to modal truncation, by the name of the body."""
+        """Estimated relative error of the largest force due to modal truncation, by the
+        name of the body.
+        """
         return truncation_estimates(self.problem, self.impacts) if self.problem.vibrates else {}
 
     def save(self, directory: str | PathLike[str], *, force: bool = False) -> None:
@@ -299,7 +339,8 @@ class Response:
         Raises
         ------
         InputError
-            If the folder exists or can't be made, or the response is of several drops or without histories.
+            If the folder exists or can't be made, or the response is of several drops or without
+            histories.
         """
         if self.problem.shape != ():
             raise InputError("save writes one drop: response.drop(0).save(...)")
@@ -308,7 +349,8 @@ class Response:
         vibroimpact.save_result(self, directory, force=force)
 
     def plot(self, name: str = "position") -> go.Figure:
-        """Return a chart of one drop as a figure of plotly, by its name; see `vibroimpact.plot_result`.
+        """Return a chart of one drop as a figure of plotly, by its name; see
+        `vibroimpact.plot_result`.
 
         Parameters
         ----------
@@ -332,7 +374,8 @@ class Response:
 
         return vibroimpact.result_of(self)
 
-    # the history of one drop, segment by segment ---------------------------------------------------
+    # the history of one drop, segment by segment
+    # ---------------------------------------------------
 
     def _names(self, columns: Collection[str] | None) -> Collection[str]:
         """Return the names of columns of a history that were asked for, checked; by default all."""
@@ -347,21 +390,37 @@ class Response:
         segments, problem = self._segments, self.problem
         if isinstance(segments, Timeline):
             written_off = float(self.rest.written_off[0])
-            found, resting = rigid_history(problem, segments, number, times, written_off), isinstance(segments[number], RestSegment)
+            found, resting = (
+                rigid_history(problem, segments, number, times, written_off),
+                isinstance(segments[number], RestSegment),
+            )
         else:
             from vibroimpact.dynamics.vibrating.history import vibrating_history
             from vibroimpact.dynamics.vibrating.rest_motion import RestMotion
 
             others = {**OBLIQUE_HISTORY_COLUMNS, **FLUID_HISTORY_COLUMNS}
-            of_bodies = [*(name for name in columns if name not in others), *(() if problem.fluid is None else MOTION)]
-            found, resting = vibrating_history(problem, segments[number], times, of_bodies), isinstance(segments[number].motion, RestMotion)
+            of_bodies = [
+                *(name for name in columns if name not in others),
+                *(() if problem.fluid is None else MOTION),
+            ]
+            found, resting = (
+                vibrating_history(problem, segments[number], times, of_bodies),
+                isinstance(segments[number].motion, RestMotion),
+            )
         if self.legs is not None and problem.oblique is not None:
             start = segments[number].start
-            flown = np.searchsorted([float(leg.flight.start[0]) for leg in self.legs], start, side="right")
+            flown = np.searchsorted(
+                [float(leg.flight.start[0]) for leg in self.legs], start, side="right"
+            )
             leg = segments.leg_of(number) if isinstance(segments, Timeline) else int(flown) - 1
             lost = float(self.impacts["friction_lost_J"][:leg].sum())
-            along = oblique_history(problem, self.legs[leg], lost, start + times, start if resting else np.inf)
-            found |= {name: values + found[name] if name in found else values for name, values in along.items()}
+            along = oblique_history(
+                problem, self.legs[leg], lost, start + times, start if resting else np.inf
+            )
+            found |= {
+                name: values + found[name] if name in found else values
+                for name, values in along.items()
+            }
         if self.legs is not None and problem.fluid is not None:
             found |= fluid_history(problem, self.legs, segments[number].start + times, found)
         return {name: found[name] for name in columns}
@@ -370,7 +429,9 @@ class Response:
     def _segments(self) -> Sequence[VibratingSegment] | Timeline:
         """Segments of the history of one drop, in order of time."""
         if self.problem.shape != ():
-            raise InputError("a history belongs to one drop: ask response.drop(0), response.drop(1), ...")
+            raise InputError(
+                "a history belongs to one drop: ask response.drop(0), response.drop(1), ..."
+            )
         if self.legs is None:
             raise InputError("tabulate keeps no histories; ask simulate")
         end = float(self.end_time[0])
@@ -387,11 +448,26 @@ class Response:
         elif self.outcomes[0].at_rest:
             weight = float(self.problem.sphere.mass) * float(self.problem.net_gravity)
             points = 2 if self.problem.oblique is None else 97
-            rest = RestSegment(end_of(self.legs[-1]), end, float(self.rest.sag[0]), weight, float(self.rest.stored[0]), points)
-        return timeline_of(self.legs, rest, np.stack([self.impacts["energy_lost_J"] - plastic, plastic, -work], axis=1))
+            rest = RestSegment(
+                end_of(self.legs[-1]),
+                end,
+                float(self.rest.sag[0]),
+                weight,
+                float(self.rest.stored[0]),
+                points,
+            )
+        return timeline_of(
+            self.legs,
+            rest,
+            np.stack([self.impacts["energy_lost_J"] - plastic, plastic, -work], axis=1),
+        )
 
     @cached_property
     def _starts(self) -> Floats:
         """Start times of the segments [s]."""
         segments = self._segments
-        return segments.starts if isinstance(segments, Timeline) else np.array([segment.start for segment in segments])
+        return (
+            segments.starts
+            if isinstance(segments, Timeline)
+            else np.array([segment.start for segment in segments])
+        )

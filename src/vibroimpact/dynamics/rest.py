@@ -18,10 +18,11 @@ if TYPE_CHECKING:  # a drop of rigid bodies does not load what vibrates
 class Rest:
     """State of the drops at rest; arrays are (B,), NaN for the others.
 
-    `speed`: rest speed, below which a sphere that separates counts as at rest [m/s]. `time`: end of the remaining bounces,
-    which are not simulated [s]. `sag`: static indentation [m]. `stored`: energy in it [J].
-    `written_off`: energy that the sphere still had [J]. Where a body vibrates, `left`: what the sphere and what it lies on still
-    hold above their equilibrium then [J], and `lying`: how they move on.
+    `speed`: rest speed, below which a sphere that separates counts as at rest [m/s]. `time`: end of
+    the remaining bounces, which are not simulated [s]. `sag`: static indentation [m]. `stored`:
+    energy in it [J]. `written_off`: energy that the sphere still had [J]. Where a body vibrates,
+    `left`: what the sphere and what it lies on still hold above their equilibrium then [J], and
+    `lying`: how they move on.
     """
 
     speed: Floats
@@ -39,7 +40,9 @@ class Rest:
     @staticmethod
     def joined(parts: Sequence[Rest]) -> Rest:
         """Return the rest of the drops of several batches, in order."""
-        arrays: dict[str, Any] = {name: np.concatenate([getattr(part, name) for part in parts]) for name in _ARRAYS}
+        arrays: dict[str, Any] = {
+            name: np.concatenate([getattr(part, name) for part in parts]) for name in _ARRAYS
+        }
         return Rest(**arrays, lying=tuple(one for part in parts for one in part.lying))
 
 

@@ -26,8 +26,11 @@ Law = TypeVar("Law", bound=ContactLaw)
 _INVERSE_TOLERANCE = 1e-12
 
 
-def achieved_restitution(law: ContactLaw, mass: Array, speed: Array, *, tolerance: float = 1e-9) -> Array:
-    """Return the restitution that a law achieves, by its closed form where there is one, else by integration.
+def achieved_restitution(
+    law: ContactLaw, mass: Array, speed: Array, *, tolerance: float = 1e-9
+) -> Array:
+    """Return the restitution that a law achieves, by its closed form where there is one, else by
+    integration.
 
     Parameters
     ----------
@@ -43,13 +46,14 @@ def achieved_restitution(law: ContactLaw, mass: Array, speed: Array, *, toleranc
     Returns
     -------
     float or array
-        Separation speed over approach speed [-], in the shape that the arguments and the law's parameters have
-        together; zero where the bodies stick.
+        Separation speed over approach speed [-], in the shape that the arguments and the law's
+        parameters have together; zero where the bodies stick.
 
     Raises
     ------
     InputError
-        If mass or speed is not positive and finite, the shapes do not agree, or the tolerance is out of range.
+        If mass or speed is not positive and finite, the shapes do not agree, or the tolerance is
+        out of range.
     ComputationError
         If the contact can't be integrated.
 
@@ -65,11 +69,19 @@ def achieved_restitution(law: ContactLaw, mass: Array, speed: Array, *, toleranc
     [0.768, 0.768]
     """
     shape = _shape(law, mass, speed)
-    found = law.closed_form_restitution(np.asarray(mass, dtype=float), np.asarray(speed, dtype=float))
-    return integrated_restitution(law, mass, speed, tolerance=tolerance) if found is None else np.broadcast_to(found, shape)[()]
+    found = law.closed_form_restitution(
+        np.asarray(mass, dtype=float), np.asarray(speed, dtype=float)
+    )
+    return (
+        integrated_restitution(law, mass, speed, tolerance=tolerance)
+        if found is None
+        else np.broadcast_to(found, shape)[()]
+    )
 
 
-def integrated_restitution(law: ContactLaw, mass: Array, speed: Array, *, tolerance: float = 1e-9) -> Array:
+def integrated_restitution(
+    law: ContactLaw, mass: Array, speed: Array, *, tolerance: float = 1e-9
+) -> Array:
     """Return the restitution that a law achieves, by integrating the contact.
 
     Parameters
@@ -91,14 +103,17 @@ def integrated_restitution(law: ContactLaw, mass: Array, speed: Array, *, tolera
     --------
     >>> from vibroimpact.contact.laws.hunt_crossley import HuntCrossley
     >>> law = HuntCrossley(stiffness=5e8, restitution=0.7)
-    >>> float(abs(integrated_restitution(law, 0.09, 3.0) - achieved_restitution(law, 0.09, 3.0))) < 1e-9
+    >>> float(
+    ...     abs(integrated_restitution(law, 0.09, 3.0) - achieved_restitution(law, 0.09, 3.0))
+    ... ) < 1e-9
     True
     """
     check_tolerance(tolerance)
     found = _by_integration(law, mass, speed, tolerance)
     if np.isnan(found).any():
         raise ComputationError(
-            f"{law.name} could not be integrated to the tolerance for {int(np.isnan(found).sum())} of {np.size(found)} drops"
+            f"{law.name} could not be integrated to the tolerance for "
+            f"{int(np.isnan(found).sum())} of {np.size(found)} drops"
         )
     return found
 
@@ -109,9 +124,13 @@ def _by_integration(law: ContactLaw, mass: Array, speed: Array, tolerance: float
     if isinstance(law, InstantaneousLaw):
         return np.broadcast_to(law.closed_form_restitution(mass, speed), shape)[()]
     assert isinstance(law, CompliantLaw)
-    masses, speeds = (np.broadcast_to(np.asarray(value, dtype=float), shape).ravel() for value in (mass, speed))
+    masses, speeds = (
+        np.broadcast_to(np.asarray(value, dtype=float), shape).ravel() for value in (mass, speed)
+    )
     arrays = {item.name: value for item in fields(law) if np.ndim(value := getattr(law, item.name))}
-    flat = law.changed({name: np.broadcast_to(value, shape).ravel() for name, value in arrays.items()})
+    flat = law.changed(
+        {name: np.broadcast_to(value, shape).ravel() for name, value in arrays.items()}
+    )
     with interpreted() if len(masses) < FEW else nullcontext():
         encounter = encounter_of(flat, masses, np.zeros(len(masses)), speeds)
     with np.errstate(all="ignore"):  # Newton iterates may overflow
@@ -140,7 +159,9 @@ def law_achieving(law: Law, restitution: Array, mass: Array, speed: Array) -> La
     Examples
     --------
     >>> from vibroimpact.contact.laws.flores import Flores
-    >>> law = law_achieving(Flores(stiffness=5e8, restitution=0.7), restitution=0.7, mass=0.09, speed=3.0)
+    >>> law = law_achieving(
+    ...     Flores(stiffness=5e8, restitution=0.7), restitution=0.7, mass=0.09, speed=3.0
+    ... )
     >>> round(law.restitution, 6)
     0.715939
     """
@@ -154,25 +175,38 @@ def law_achieving(law: Law, restitution: Array, mass: Array, speed: Array) -> La
         now = np.asarray(achieved_restitution(law, mass, speed))
         if np.all(np.abs(now - wanted) <= 1e-12):
             return law
-        raise InputError(f"{law.name} has no loss parameter; it achieves {_between(now)}, not {_between(wanted, 12)}")
+        raise InputError(
+            f"{law.name} has no loss parameter; it achieves {_between(now)}, not "
+            f"{_between(wanted, 12)}"
+        )
     shape = np.broadcast_shapes(_shape(law, mass, speed), wanted.shape)
     allowed: Range = next(item for item in fields(law) if item.name == name).metadata["range"]
 
     def achieved(value: Array) -> Array:
         trial = law.changed({name: value})
         found = trial.closed_form_restitution(mass, speed)
-        return np.asarray(_by_integration(trial, mass, speed, _INVERSE_TOLERANCE) if found is None else found)
+        return np.asarray(
+            _by_integration(trial, mass, speed, _INVERSE_TOLERANCE) if found is None else found
+        )
 
     now = np.broadcast_to(np.asarray(getattr(law, name), dtype=float), shape)
-    damps = allowed.at_least == 0.0 and not np.isfinite(allowed.at_most)  # the undamped law achieves the most
+    # the undamped law achieves the most
+    damps = allowed.at_least == 0.0 and not np.isfinite(allowed.at_most)
     found = solve_monotonic(achieved, wanted, np.where(now > 0.0, now, 1.0), allowed, falls=damps)
     missed = np.isnan(found.place)
     if missed.any():
         first = np.flatnonzero(missed.ravel())[0]
-        numbers = (float(np.broadcast_to(value, shape).ravel()[first]) for value in (found.least, found.most, speed, wanted))
+        numbers = (
+            float(np.broadcast_to(value, shape).ravel()[first])
+            for value in (found.least, found.most, speed, wanted)
+        )
         least, most, at, asked = numbers
         highest = _apart(most, asked)
-        reach = f"up to {highest}" if damps and asked > most else f"from {_apart(least, asked)} to {highest}"
+        reach = (
+            f"up to {highest}"
+            if damps and asked > most
+            else f"from {_apart(least, asked)} to {highest}"
+        )
         raise InputError(f"{law.name} reaches restitutions {reach} at {at:.4g} m/s, not {asked:g}")
     return law.changed({name: found.place if shape else float(found.place)})
 
@@ -183,7 +217,8 @@ def _between(values: Array, digits: int = 4) -> str:
 
 
 def _apart(value: float, asked: float) -> str:
-    """Return a value in four digits, or in as many as show on which side of the value asked for it lies.
+    """Return a value in four digits, or in as many as show on which side of the value asked for it
+    lies.
 
     Examples
     --------
@@ -191,13 +226,23 @@ def _apart(value: float, asked: float) -> str:
     ('0.6629', '0.99997')
     """
     texts = (f"{value:.{digits}g}" for digits in range(4, 17))
-    return next((text for text in texts if float(text) != asked and (float(text) < asked) == (value < asked)), f"{value:.4g}")
+    return next(
+        (
+            text
+            for text in texts
+            if float(text) != asked and (float(text) < asked) == (value < asked)
+        ),
+        f"{value:.4g}",
+    )
 
 
 def _shape(law: ContactLaw, mass: Array, speed: Array) -> tuple[int, ...]:
     """Return the common shape of the validated arguments."""
     if not isinstance(law, ContactLaw):
-        raise InputError(f'law must be a contact law with its parameters, such as vi.find_contact_law("hertz")(stiffness=5e8), not {law!r}')
+        raise InputError(
+            "law must be a contact law with its parameters, such as "
+            f'vi.find_contact_law("hertz")(stiffness=5e8), not {law!r}'
+        )
     for name, value, unit in (("mass", mass, "kg"), ("speed", speed, "m/s")):
         try:
             Range(above=0).check(value, unit)
@@ -207,4 +252,6 @@ def _shape(law: ContactLaw, mass: Array, speed: Array) -> tuple[int, ...]:
     try:
         return np.broadcast_shapes(*(np.shape(value) for value in values if value is not None))
     except ValueError:
-        raise InputError("the arrays of mass, speed and the law's parameters must agree in shape") from None
+        raise InputError(
+            "the arrays of mass, speed and the law's parameters must agree in shape"
+        ) from None

@@ -38,19 +38,25 @@ class Run(RunState):
         # up to rest: the logarithm of the speed falls about linearly
         if self.problem.impacts is None and self.rows and not self.problem.shaken:
             first = self.rows.first["approach_speed_m_s"][self.moving]
-            slowed = np.log(first / self.velocity[self.moving]) / np.log(first / self.rest_speed[self.moving])
+            slowed = np.log(first / self.velocity[self.moving]) / np.log(
+                first / self.rest_speed[self.moving]
+            )
             done = max(done, float(np.nanmin(np.clip(slowed, 0.0, 1.0), initial=1.0)))
         return done
 
     def advance(self) -> Leg:
-        """Advance all moving drops to their next touch and through one contact, and return both as a leg."""
+        """Advance all moving drops to their next touch and through one contact, and
+        return both as a leg.
+        """
         drops = np.flatnonzero(self.moving)
         flight = self.flights(drops)
         touch, speed, motions = self.bodies.next_touch(drops, flight, self.law(drops))
         stopped, stop_time, outcome = first_stops(self.stop_rules, drops, flight, touch)
         self.end(drops[stopped], outcome[stopped], stop_time[stopped])
         touches = ~stopped
-        leg = Leg(drops, flight, np.where(stopped, stop_time, touch), drops[touches], motions=motions)
+        leg = Leg(
+            drops, flight, np.where(stopped, stop_time, touch), drops[touches], motions=motions
+        )
         leg = self.fly(leg)
         if touches.any():
             leg = self.collide(leg, touch[touches], speed[touches])
@@ -62,7 +68,9 @@ class Run(RunState):
         return leg
 
     def fly(self, leg: Leg) -> Leg:
-        """Advance drops to the end of their flights, and return the leg with their motion along the plate."""
+        """Advance drops to the end of their flights, and return the leg with their motion
+        along the plate.
+        """
         drops, flight = leg.drops, leg.flight
         self.bodies.pass_flight(drops, leg.motions, leg.flight_end - flight.start)
         if self.oblique is not None:
@@ -83,7 +91,8 @@ class Run(RunState):
             self.rows.last[f"{self.problem.fluid.key}_lost_J"][leg.contact_drops] = lost[touches]
 
     def collide(self, leg: Leg, touch: Floats, speed: Floats) -> Leg:
-        """Solve the contact of drops, write the row of the impact table, and return the leg with the contact.
+        """Solve the contact of drops, write the row of the impact table, and return the leg with
+        the contact.
 
         `touch` [s], `speed` [m/s]: of the approach, of `leg.contact_drops`.
         """
@@ -96,7 +105,9 @@ class Run(RunState):
         else:
             assert isinstance(law, CompliantLaw)
             closing = self.bodies.closing_speed(drops, speed, self.velocity[drops])
-            leg, lost = self.solve_contact(leg, encounter_of(law, self.mass[drops], self.gravity[drops], closing), touch, row)
+            leg, lost = self.solve_contact(
+                leg, encounter_of(law, self.mass[drops], self.gravity[drops], closing), touch, row
+            )
             lost += row["plastic_work_J"][drops]
             law = self.problem.law_at(self.law(drops), speed)  # with its memory of this impact
         self.dissipated[drops] += lost - row["plastic_work_J"][drops]
@@ -106,11 +117,17 @@ class Run(RunState):
         if self.oblique is not None:
             self.leave_dents(drops, self.oblique, row)
         moving = self.moving[drops]
-        self.stop_resting(drops[moving], law if moving.all() else law.take(np.flatnonzero(moving)), row)
+        self.stop_resting(
+            drops[moving], law if moving.all() else law.take(np.flatnonzero(moving)), row
+        )
         return leg
 
-    def write_touch(self, drops: Drops, law: ContactLaw, touch: Floats, speed: Floats, row: dict[str, Floats]) -> None:
-        """Write what the impact table tells of the touches of drops at some times [s], with some approach speeds [m/s]."""
+    def write_touch(
+        self, drops: Drops, law: ContactLaw, touch: Floats, speed: Floats, row: dict[str, Floats]
+    ) -> None:
+        """Write what the impact table tells of the touches of drops at some times [s],
+        with some approach speeds [m/s].
+        """
         row["impact"][drops] = len(self.rows)
         row["time_s"][drops] = touch
         row["approach_speed_m_s"][drops] = speed
@@ -119,46 +136,64 @@ class Run(RunState):
             return
         row["plate_velocity_m_s"][drops] = self.problem.surface(touch)[1]
         if self.oblique is not None:
-            row["place_on_plate_x_m"][drops], row["place_on_plate_y_m"][drops] = self.oblique.seen_from_plate(drops, touch)
+            row["place_on_plate_x_m"][drops], row["place_on_plate_y_m"][drops] = (
+                self.oblique.seen_from_plate(drops, touch)
+            )
 
     def write_rebound(self, drops: Drops, speed: Floats, row: dict[str, Floats]) -> None:
-        """Write the restitution and the rebound of drops that touched with some approach speeds [m/s]."""
+        """Write the restitution and the rebound of drops that touched with some approach
+        speeds [m/s].
+        """
         separation = row["separation_speed_m_s"][drops]
         row["restitution_achieved"][drops] = separation / speed
         rising = separation
         if self.problem.shaken:  # where it leaves, its velocity is not that relative to the plate
             leaves = ~self.bodies.rests(drops, self.velocity[drops], self.rest_speed[drops])
-            rising = np.where(np.isnan(separation), np.nan, np.maximum(self.velocity[drops], 0.0) * leaves)
+            rising = np.where(
+                np.isnan(separation), np.nan, np.maximum(self.velocity[drops], 0.0) * leaves
+            )
         with np.errstate(divide="ignore", invalid="ignore"):
-            rise = np.where(self.gravity[drops] > 0.0, 0.5 * rising**2 / self.gravity[drops], np.nan)
+            rise = np.where(
+                self.gravity[drops] > 0.0, 0.5 * rising**2 / self.gravity[drops], np.nan
+            )
         if self.problem.fluid is not None:
             rise = np.where(rising > 0.0, self.flights(drops).apex()[1] - self.gap[drops], rise)
         row["rebound_height_m"][drops] = self.radius[drops] + self.gap[drops] + rise
 
     def leave_dents(self, drops: Drops, oblique: ObliqueMotion, row: dict[str, Floats]) -> None:
-        """Forget the dents of drops that move on by more than the radius of their contact before they touch again."""
+        """Forget the dents of drops that move on by more than the radius of their contact
+        before they touch again.
+        """
         if not self.memories:
             return
         flight = self.flights(drops)
         away = oblique.distance(drops, flight, flight.touch(np.zeros(1))[0])
-        gone = drops[away > np.sqrt(self.radius[drops] * np.nan_to_num(row["max_indentation_m"][drops]))]
+        gone = drops[
+            away > np.sqrt(self.radius[drops] * np.nan_to_num(row["max_indentation_m"][drops]))
+        ]
         fresh = self.problem.laws[0].memories()
         for name, values in self.memories.items():
-            self.memories[name] = values.copy()  # laws of earlier contacts refer to the previous array
+            # laws of earlier contacts refer to the previous array
+            self.memories[name] = values.copy()
             self.memories[name][gone] = self.spread(fresh[name])[gone]
 
-    def solve_contact(self, leg: Leg, encounter: Encounter, touch: Floats, row: dict[str, Floats]) -> tuple[Leg, Floats]:
+    def solve_contact(
+        self, leg: Leg, encounter: Encounter, touch: Floats, row: dict[str, Floats]
+    ) -> tuple[Leg, Floats]:
         """Return the leg with the contact of drops, and the energy lost in it [J]."""
         drops = leg.contact_drops
         until = (np.inf if self.problem.duration is None else self.problem.duration) - touch
         place = self.gap[drops], self.velocity[drops]
-        contact, force, time_of_force = self.bodies.collide(drops, encounter, place, (self.rest_speed[drops], until), row)
+        contact, force, time_of_force = self.bodies.collide(
+            drops, encounter, place, (self.rest_speed[drops], until), row
+        )
         self.deepest[drops] = np.maximum(self.deepest[drops], contact.max_delta)
         self.time[drops] = touch + contact.duration
         self.gap[drops] = -contact.final_delta
         self.velocity[drops] = -contact.final_rate
         for name, values in contact.law.memories().items():
-            self.memories[name] = self.memories[name].copy()  # laws of earlier contacts refer to the previous array
+            # laws of earlier contacts refer to the previous array
+            self.memories[name] = self.memories[name].copy()
             self.memories[name][drops] = values
         row["duration_s"][drops] = contact.duration
         row["plastic_work_J"][drops] = contact.plastic
@@ -166,7 +201,9 @@ class Run(RunState):
         row["time_of_max_indentation_s"][drops] = touch + contact.time_of_max_delta
         row["max_force_N"][drops] = force
         row["time_of_max_force_s"][drops] = touch + time_of_force
-        row["max_acceleration_m_s2"][drops] = np.maximum(force / encounter.mass - encounter.gravity, encounter.gravity)
+        row["max_acceleration_m_s2"][drops] = np.maximum(
+            force / encounter.mass - encounter.gravity, encounter.gravity
+        )
         stays = self.release(drops, contact, row)
         leg = replace(leg, contact=contact, encounter=encounter)
         if self.oblique is not None:
@@ -174,15 +211,23 @@ class Run(RunState):
         return leg, contact.dissipated + np.where(stays, 0.0, contact.stored)
 
     def release(self, drops: Drops, contact: Contact, row: dict[str, Floats]) -> Bools:
-        """Write the separation of drops after a contact, end the runs of those that do not leave, and return which stay in contact."""
+        """Write the separation of drops after a contact, end the runs of those that do
+        not leave, and return which stay in contact.
+        """
         failed = contact.outcome == FAILED
         riding = contact.outcome == RIDING
         captured = contact.outcome == CAPTURED
         captured |= self.bodies.falls_back(contact, self.next_law(drops), self.gravity[drops])
         leaving = self.bodies.rigid_speed(drops, -contact.final_rate)
-        row["separation_speed_m_s"][drops] = np.where(failed | riding, np.nan, np.where(captured, 0.0, leaving))
-        sticks = captured & (contact.law.elastic_energy(contact.law.release_level + np.zeros(len(drops))) > 0.0)
-        at_end = riding & (self.time[drops] >= (np.inf if self.problem.duration is None else self.problem.duration))
+        row["separation_speed_m_s"][drops] = np.where(
+            failed | riding, np.nan, np.where(captured, 0.0, leaving)
+        )
+        sticks = captured & (
+            contact.law.elastic_energy(contact.law.release_level + np.zeros(len(drops))) > 0.0
+        )
+        at_end = riding & (
+            self.time[drops] >= (np.inf if self.problem.duration is None else self.problem.duration)
+        )
         for ended, outcome in (
             (failed, Outcome.FAILED),
             (captured & ~sticks, Outcome.CAPTURED),
@@ -193,12 +238,16 @@ class Run(RunState):
             self.stop(drops[ended], outcome, self.time[drops[ended]])
         if captured.any():
             law = contact.law.take(np.flatnonzero(captured))
-            self.bring_to_rest(drops[captured], law, self.time[drops[captured]], contact.stored[captured])
+            self.bring_to_rest(
+                drops[captured], law, self.time[drops[captured]], contact.stored[captured]
+            )
         self.stored[drops[riding]] = contact.stored[riding]
         return np.asarray(captured | riding)
 
     def stop_resting(self, drops: Drops, law: ContactLaw, row: dict[str, Floats]) -> None:
-        """Stop the drops that separate more slowly than the rest speed, or not at all, and cannot be lifted again."""
+        """Stop the drops that separate more slowly than the rest speed, or not at all,
+        and cannot be lifted again.
+        """
         resting = self.bodies.rests(drops, self.velocity[drops], self.rest_speed[drops])
         slow = drops[resting]
         if not slow.size:
@@ -207,7 +256,9 @@ class Run(RunState):
             # flights are a geometric series with the ratio of the last restitution
             missing = 1.0 - row["restitution_achieved"][slow]
             speed = self.velocity[slow] - self.problem.surface(self.time[slow])[1]
-            limit = self.time[slow] + 2.0 * speed * self.inertia[slow] / self.gravity[slow] / np.where(missing > 1e-6, missing, 0.0)
+            limit = self.time[slow] + 2.0 * speed * self.inertia[slow] / self.gravity[
+                slow
+            ] / np.where(missing > 1e-6, missing, 0.0)
         self.bring_to_rest(slow, law.take(np.flatnonzero(resting)), limit, np.zeros(len(slow)))
         self.stop(slow, Outcome.REST_SPEED, np.where(np.isfinite(limit), limit, self.time[slow]))
 

@@ -1,4 +1,6 @@
-"""The state of a run: where its drops are, how they move, what they have lost, and how those that stopped ended."""
+"""The state of a run: where its drops are, how they move, what they have lost, and how
+those that stopped ended.
+"""
 
 from __future__ import annotations
 
@@ -9,7 +11,11 @@ from vibroimpact.bodies.ball import mean_density
 from vibroimpact.contact.law import CompliantLaw, ContactLaw
 from vibroimpact.contact.static import static_indentation
 from vibroimpact.dynamics.bodies import Bodies
-from vibroimpact.dynamics.columns import CARRIED_IMPACT_COLUMNS, OBLIQUE_IMPACT_COLUMNS, SHAKEN_IMPACT_COLUMNS
+from vibroimpact.dynamics.columns import (
+    CARRIED_IMPACT_COLUMNS,
+    OBLIQUE_IMPACT_COLUMNS,
+    SHAKEN_IMPACT_COLUMNS,
+)
 from vibroimpact.dynamics.flight import Flight
 from vibroimpact.dynamics.flight_in_fluid import FluidFlight
 from vibroimpact.dynamics.impact_rows import ImpactRows
@@ -23,7 +29,9 @@ _APART = 4e-15  # of the amplitude of a shaken plate: the rounding error of its 
 
 
 class RunState:
-    """State of a batch of B drops between impacts; arrays are (B,). `solve_contact`: solver of contacts of rigid bodies."""
+    """State of a batch of B drops between impacts; arrays are (B,). `solve_contact`:
+    solver of contacts of rigid bodies.
+    """
 
     def __init__(self, problem: Problem, solve_contact: SolvesContact) -> None:
         self.problem = problem
@@ -35,7 +43,8 @@ class RunState:
         self.time = np.zeros(self.size)
         self.gap, self.velocity = self._start()
         self.oblique = self._motion_along_plate()
-        self.ahead: tuple[Drops, FluidFlight] | None = None  # flights whose tops have been computed already
+        # flights whose tops have been computed already
+        self.ahead: tuple[Drops, FluidFlight] | None = None
 
         self.liquid_at_start = self.energy_of_liquid(self.velocity)
         self.energy_in = self.mechanical_energy() + self.liquid_at_start
@@ -53,9 +62,15 @@ class RunState:
         self.sag = np.zeros(self.size)
         self.stored = np.zeros(self.size)
         self.written_off = np.zeros(self.size)
-        self.rest_speed = self.default_rest_speed() if problem.rest_speed is None else self.spread(problem.rest_speed)
+        self.rest_speed = (
+            self.default_rest_speed()
+            if problem.rest_speed is None
+            else self.spread(problem.rest_speed)
+        )
         self.bodies = self._bodies(solve_contact)
-        self.memories = {name: self.spread(value) for name, value in problem.laws[0].memories().items()}
+        self.memories = {
+            name: self.spread(value) for name, value in problem.laws[0].memories().items()
+        }
         self.rows = ImpactRows((*self.bodies.columns, *self._further_columns()), self.size)
 
     def _start(self) -> tuple[Floats, Floats]:
@@ -64,7 +79,11 @@ class RunState:
         if problem.height is not None:
             return self.spread(problem.height) - self.radius, self.spread(problem.velocity)
         # at touch: apart by the rounding error of the place of a plate that is shaken
-        gap = np.zeros(self.size) + problem.surface(0.0)[0] + _APART * np.abs(problem.surface_phasors).sum()
+        gap = (
+            np.zeros(self.size)
+            + problem.surface(0.0)[0]
+            + _APART * np.abs(problem.surface_phasors).sum()
+        )
         return gap, -self.spread(problem.speed)
 
     def _motion_along_plate(self) -> ObliqueMotion | None:
@@ -73,7 +92,9 @@ class RunState:
         if problem.oblique is None:
             return None
         oblique = problem.oblique.with_weight(problem.net_weight)
-        return ObliqueMotion(oblique, self.mass, self.radius, self.spread(problem.sphere_inertia), problem.motion)
+        return ObliqueMotion(
+            oblique, self.mass, self.radius, self.spread(problem.sphere_inertia), problem.motion
+        )
 
     def _bodies(self, solve_contact: SolvesContact) -> Bodies:
         """Return the bodies of the problem."""
@@ -110,12 +131,18 @@ class RunState:
         return np.asarray(self.mass * (0.5 * self.velocity**2 + self.gravity * self.gap))
 
     def energy_of_liquid(self, velocity: Floats) -> Floats:
-        """Return the kinetic energy of the liquid that moves along with the spheres [J], at their velocities along the normal [m/s]."""
-        squares = velocity**2 + (0.0 if self.oblique is None else (self.oblique.state.velocity**2).sum(axis=0))
+        """Return the kinetic energy of the liquid that moves along with the spheres [J],
+        at their velocities along the normal [m/s].
+        """
+        squares = velocity**2 + (
+            0.0 if self.oblique is None else (self.oblique.state.velocity**2).sum(axis=0)
+        )
         return np.asarray(0.5 * self.mass * (self.inertia - 1.0) * squares)
 
     def default_rest_speed(self) -> Floats:
-        """Return the speed from which a drop would rise by its static indentation [m/s], at least 1e-6 of the first approach speed."""
+        """Return the speed from which a drop would rise by its static indentation [m/s],
+        at least 1e-6 of the first approach speed.
+        """
         law = self.problem.law_of(0)
         least = 1e-6 * self.flights(np.arange(self.size)).touch(np.zeros(1))[1]
         if not isinstance(law, CompliantLaw):
@@ -131,14 +158,31 @@ class RunState:
         return law if len(drops) == self.size else law.take(drops)
 
     def law_at(self, drops: Drops, speed: Floats) -> ContactLaw:
-        """Return the law of the next impact of drops at an approach speed [m/s], with what a liquid leaves of its restitution."""
-        law, liquid, radius = self.problem.law_at(self.law(drops), speed), self.problem.liquid, self.radius[drops]
-        return law if liquid is None else liquid.take(drops).around(law, speed, radius, mean_density(self.mass[drops], radius))
+        """Return the law of the next impact of drops at an approach speed [m/s], with
+        what a liquid leaves of its restitution.
+        """
+        law, liquid, radius = (
+            self.problem.law_at(self.law(drops), speed),
+            self.problem.liquid,
+            self.radius[drops],
+        )
+        return (
+            law
+            if liquid is None
+            else liquid.take(drops).around(
+                law, speed, radius, mean_density(self.mass[drops], radius)
+            )
+        )
 
     def flights(self, drops: Drops) -> Flight:
         """Return the flights that drops are about to make."""
         fluid = self.problem.fluid
-        now = self.time[drops], self.gap[drops], self.velocity[drops], self.gravity[drops] / self.inertia[drops]
+        now = (
+            self.time[drops],
+            self.gap[drops],
+            self.velocity[drops],
+            self.gravity[drops] / self.inertia[drops],
+        )
         if fluid is None:
             return Flight(*now)
         if self.ahead is None or not np.array_equal(self.ahead[0], drops):
@@ -146,7 +190,9 @@ class RunState:
             velocity, pull = (none, none) if self.oblique is None else self.oblique.pulled(drops)
             radius = self.radius[drops]
             density = mean_density(self.mass[drops], radius)
-            flights = FluidFlight(*now, radius, density, fluid.take(drops), (velocity, pull / self.inertia[drops]))
+            flights = FluidFlight(
+                *now, radius, density, fluid.take(drops), (velocity, pull / self.inertia[drops])
+            )
             self.ahead = drops, flights
         return self.ahead[1]
 
@@ -157,7 +203,9 @@ class RunState:
         return law
 
     def bring_to_rest(self, drops: Drops, law: ContactLaw, time: Floats, stored: Floats) -> None:
-        """Put drops that have come to rest, with energy `stored` in the contact [J], into their static indentation."""
+        """Put drops that have come to rest, with energy `stored` in the contact [J], into
+        their static indentation.
+        """
         weight = self.mass[drops] * self.gravity[drops]
         energy = self.mechanical_energy()[drops] + stored
         self.rest_time[drops] = time

@@ -22,9 +22,11 @@ from vibroimpact.errors import ComputationError, InputError
 def simulate(problem: StatesProblem, progress: Callable[[float], None] | None = None) -> Response:
     """Return the response of a sphere that falls and bounces until a stop rule.
 
-    Flight is exact. A contact is solved by Gauss collocation of whole phases, speed over indentation, or, where that does not come out to
-    the tolerance, in steps of order 8, in a variable in which the force is smooth; histories are read in such steps. Bodies that have
-    modes vibrate: between contacts exactly, and the next touch is the first meeting with the surface as it moves.
+    Flight is exact. A contact is solved by Gauss collocation of whole phases, speed over
+    indentation, or, where that does not come out to the tolerance, in steps of order 8, in a
+    variable in which the force is smooth; histories are read in such steps. Bodies that have modes
+    vibrate: between contacts exactly, and the next touch is the first meeting with the surface as
+    it moves.
 
     Parameters
     ----------
@@ -36,8 +38,8 @@ def simulate(problem: StatesProblem, progress: Callable[[float], None] | None = 
     Returns
     -------
     Response
-        Impacts, histories, energy and a status sentence. In a batch a drop that failed says so in its
-        outcome, and the others go on.
+        Impacts, histories, energy and a status sentence. In a batch a drop that failed says so in
+        its outcome, and the others go on.
 
     Raises
     ------
@@ -50,15 +52,23 @@ def simulate(problem: StatesProblem, progress: Callable[[float], None] | None = 
     >>> from vibroimpact.bodies.rigid import rigid_plate
     >>> from vibroimpact.contact.laws.newton import Newton
     >>> from vibroimpact.dynamics.problem import Problem
-    >>> problem = Problem(sphere=Body(mass=1.0, contact_offset=0.1), plate=rigid_plate(),
-    ...                   laws=(Newton(restitution=0.5),), height=1.1, impacts=3)
+    >>> problem = Problem(
+    ...     sphere=Body(mass=1.0, contact_offset=0.1),
+    ...     plate=rigid_plate(),
+    ...     laws=(Newton(restitution=0.5),),
+    ...     height=1.1,
+    ...     impacts=3,
+    ... )
     >>> simulate(problem).impacts["rebound_height_m"].round(6).tolist()
     [0.35, 0.1625, 0.115625]
     """
     if not hasattr(problem, "to_problem"):
-        raise InputError(f"simulate takes a Problem, or a case as vi.load_case(...) reads it, not {problem!r}")
+        raise InputError(
+            f"simulate takes a Problem, or a case as vi.load_case(...) reads it, not {problem!r}"
+        )
     stated = problem.to_problem()
-    with np.errstate(all="ignore"):  # Newton iterates may overflow; results that are not finite are detected and retried
+    # Newton iterates may overflow; results that are not finite are detected and retried
+    with np.errstate(all="ignore"):
         run = Run(stated, solver_for(stated))
         legs: PackedList[Leg] | list[Leg] = []
         if stated.shape == () and not stated.vibrates:

@@ -30,7 +30,9 @@ class Ended:
 
 
 def status_of(run: Ended) -> str:
-    """Return the reason and time of the end of a run, in certain digits; of a batch, the number of drops that each rule ended."""
+    """Return the reason and time of the end of a run, in certain digits; of a batch, the
+    number of drops that each rule ended.
+    """
     if len(run.outcomes) > 1 or run.problem.shape != ():
         return "; ".join(_ended_by(run, outcome) for outcome in Outcome if outcome in run.outcomes)
     number, end, outcome = len(run.impacts["impact"]), float(run.end_time[0]), run.outcomes[0]
@@ -41,35 +43,54 @@ def status_of(run: Ended) -> str:
         words = "a law without a force does not determine its motion along the plate then"
         return f"Stopped {after}, at {_time(run, end, 6)} s: {_riding(run)}, and {words}."
     if outcome is Outcome.RIDING:
-        from vibroimpact.dynamics.vibrating.visit import MOST_STEPS, MOST_STEPS_TO_A_TIME  # where bodies vibrate
+        # where bodies vibrate
+        from vibroimpact.dynamics.vibrating.visit import MOST_STEPS, MOST_STEPS_TO_A_TIME
 
         steps = f"{MOST_STEPS} steps of the integration; give a duration to follow it for longer"
         if run.problem.duration is not None:
             steps = f"{MOST_STEPS_TO_A_TIME} steps of the integration"
-        return f"Stopped {after}, at {_time(run, end, 6)} s: {_riding(run)}. A ride is followed for at most {steps}."
+        return (
+            f"Stopped {after}, at {_time(run, end, 6)} s: {_riding(run)}. A ride is followed "
+            f"for at most {steps}."
+        )
     if outcome is Outcome.DURATION:
         asked = float(run.problem.duration or end)
-        finished = f", and the contact under way was finished, at {_time(run, end, 9)} s" if end > asked else ""
+        finished = (
+            f", and the contact under way was finished, at {_time(run, end, 9)} s"
+            if end > asked
+            else ""
+        )
         rides = run.problem.shaken and number and np.isnan(run.impacts["separation_speed_m_s"][-1])
         riding = f"; {_riding(run)}" if np.isfinite(run.rest.left[0]) or rides else ""
         return f"Stopped {after} at {asked:.6g} s, the end of the run{finished}{riding}."
     if outcome is Outcome.LIMIT:
-        return f"Stopped {after}, the most that are followed, at {_time(run, end, 6)} s; the sphere is not at rest."
+        return (
+            f"Stopped {after}, the most that are followed, at {_time(run, end, 6)} s; the "
+            "sphere is not at rest."
+        )
     if outcome is Outcome.LEFT:
         return f"The sphere leaves {after} and, without gravity, never comes back."
     if outcome is Outcome.FELL:
-        return f"The sphere falls off the edge of the plate {after}, and is level with its surface at {_time(run, end, 6)} s."
+        return (
+            f"The sphere falls off the edge of the plate {after}, and is level with its "
+            f"surface at {_time(run, end, 6)} s."
+        )
     if outcome is Outcome.FAILED:
         return f"Failed {after}: {why_failed(run.energy)}"
     if run.problem.shaken:
         when = _time(run, float(run.rest.time[0]), 7)
         until = "before the run ends" if run.problem.duration else "again"
-        return f"At rest {after}: from {when} s on the sphere moves with the plate, which does not fall away from under it {until}."
+        return (
+            f"At rest {after}: from {when} s on the sphere moves with the plate, which does "
+            f"not fall away from under it {until}."
+        )
     return f"At rest {after}: {_at_rest(run)}{_moves_on(run)}"
 
 
 def _ended_by(run: Ended, outcome: Outcome) -> str:
-    """Return the number of drops of a batch that a rule ended, and the energy left in vibration, in words."""
+    """Return the number of drops of a batch that a rule ended, and the energy left in
+    vibration, in words.
+    """
     ended = np.array([one is outcome for one in run.outcomes])
     left = run.rest.left[ended & np.isfinite(run.rest.left)]
     counted = f"{np.count_nonzero(ended)} of {len(run.outcomes)} drops: {outcome.value}"
@@ -80,13 +101,23 @@ def _ended_by(run: Ended, outcome: Outcome) -> str:
 
 
 def _top_or_touch(run: Ended) -> str:
-    """Return where a run stops after its last impact: at the top of the rebound, or where a plate that is shaken touches sooner."""
-    top, sooner = "at the top of the last rebound", "at the next touch, before the top of the last rebound"
+    """Return where a run stops after its last impact: at the top of the rebound, or where
+    a plate that is shaken touches sooner.
+    """
+    top, sooner = (
+        "at the top of the last rebound",
+        "at the next touch, before the top of the last rebound",
+    )
     if not run.problem.shaken:
         return top
     if run.problem.oblique is not None:
         return f"{top}, or at the next touch if that is sooner"
-    still = _STANDING**2 * 0.5 * float(run.problem.sphere.mass) * float(run.impacts["approach_speed_m_s"][0]) ** 2
+    still = (
+        _STANDING**2
+        * 0.5
+        * float(run.problem.sphere.mass)
+        * float(run.impacts["approach_speed_m_s"][0]) ** 2
+    )
     return top if float(run.energy["kinetic_J"]) <= still else sooner
 
 
@@ -94,15 +125,23 @@ def _riding(run: Ended) -> str:
     """Return the sentence on a sphere that is still in contact and not at rest."""
     if run.problem.shaken:
         return "the sphere rides on the plate, which is shaken"
-    return f"the sphere rides on the plate and is not at rest, with {_shown(run, float(run.rest.left[0]), 3)} J left in vibration"
+    return (
+        "the sphere rides on the plate and is not at rest, with "
+        f"{_shown(run, float(run.rest.left[0]), 3)} J left in vibration"
+    )
 
 
 def _moves_on(run: Ended) -> str:
-    """Return the sentence on a sphere that bounces no more and moves on along the plate; empty if it does not."""
+    """Return the sentence on a sphere that bounces no more and moves on along the plate;
+    empty if it does not.
+    """
     fluid, mass = run.problem.fluid, float(run.problem.sphere.mass)
-    moved = mass if fluid is None else mass * float(fluid.inertia(run.problem.sphere_density))  # a liquid moves along
+    # a liquid moves along
+    moved = mass if fluid is None else mass * float(fluid.inertia(run.problem.sphere_density))
     speed = float(np.sqrt(2.0 * max(float(run.energy["kinetic_J"]), 0.0) / moved))
-    if run.problem.oblique is None or speed < _STANDING * float(run.impacts["approach_speed_m_s"][0]):
+    if run.problem.oblique is None or speed < _STANDING * float(
+        run.impacts["approach_speed_m_s"][0]
+    ):
         return ""
     return f" It moves on along the plate, at {speed:.4g} m/s when the run ends."
 
@@ -111,34 +150,58 @@ _STANDING = 1e-9  # of the first approach speed
 
 
 def _at_rest(run: Ended) -> str:
-    """Return the rule by which the sphere is at rest, and the energy left in what carries it, in words."""
+    """Return the rule by which the sphere is at rest, and the energy left in what carries
+    it, in words.
+    """
     time, left = float(run.rest.time[0]), float(run.rest.left[0])
-    vibration = "" if np.isnan(left) else f" {_shown(run, left, 3)} J are left in vibration, too little at the contact to lift it."
+    vibration = (
+        ""
+        if np.isnan(left)
+        else f" {_shown(run, left, 3)} J are left in vibration, too little at the contact to "
+        "lift it."
+    )
     when = _time(run, time, 7)
     if run.outcomes[0] is Outcome.CAPTURED:
         if vibration:
             return f"from {when} s on it stays in its indentation.{vibration}"
-        return f"from {when} s on it has too little energy left to get out of its indentation, and stays in it."
+        return (
+            f"from {when} s on it has too little energy left to get out of its indentation, "
+            "and stays in it."
+        )
     if run.outcomes[0] is Outcome.STUCK:
-        return f"from {when} s on it has too little energy left to break the adhesion, and sticks.{vibration}"
+        return (
+            f"from {when} s on it has too little energy left to break the adhesion, and "
+            f"sticks.{vibration}"
+        )
     speed, last = float(run.rest.speed[0]), float(run.impacts["separation_speed_m_s"][-1])
-    limit = f" Bounces with the last restitution would end at {when} s." if np.isfinite(time) else ""
+    limit = (
+        f" Bounces with the last restitution would end at {when} s." if np.isfinite(time) else ""
+    )
     if not last:
         return f"it did not leave again (rest-speed rule).{vibration}"
-    return f"it left at {_shown(run, last, 3)} m/s, below the rest speed of {speed:.3g} m/s (rest-speed rule).{limit}{vibration}"
+    return (
+        f"it left at {_shown(run, last, 3)} m/s, below the rest speed of {speed:.3g} m/s "
+        f"(rest-speed rule).{limit}{vibration}"
+    )
 
 
 def _time(run: Ended, time: float, significant: int) -> str:
-    """Return an end time in the given number of digits, or in fewer that are certain; each flight is as certain as the impact before it."""
+    """Return an end time in the given number of digits, or in fewer that are certain;
+    each flight is as certain as the impact before it.
+    """
     change, begin = change_by_impact(run.impacts, run.problem.tolerance), run.impacts["time_s"]
     if not len(begin) or not np.isfinite(time):
         return f"{time:.{significant}g}"
     flights = np.diff(begin, append=max(time, float(begin[-1])))
-    return _digits(time, float(np.minimum(np.nan_to_num(change, nan=1.0), 1.0) @ flights) / time, significant)
+    return _digits(
+        time, float(np.minimum(np.nan_to_num(change, nan=1.0), 1.0) @ flights) / time, significant
+    )
 
 
 def _shown(run: Ended, value: float, significant: int) -> str:
-    """Return a quantity of the last impact in the given number of digits, or in fewer that are certain."""
+    """Return a quantity of the last impact in the given number of digits, or in fewer
+    that are certain.
+    """
     change = change_by_impact(run.impacts, run.problem.tolerance)
     return _digits(value, float(change[-1]) if len(change) else 0.0, significant)
 

@@ -1,7 +1,8 @@
 """Definition of a system of several bodies with several contacts.
 
-Each free body has three translations and, if it has an inertia, three rotations, and the vibration modes it is given. A contact is a
-point, a direction and a law. Displacements are small: directions and points stay those of the start, also through impacts.
+Each free body has three translations and, if it has an inertia, three rotations, and the vibration
+modes it is given. A contact is a point, a direction and a law. Displacements are small: directions
+and points stay those of the start, also through impacts.
 """
 
 from __future__ import annotations
@@ -43,7 +44,8 @@ class MovingBody:
     velocity, angular_velocity : array, shape (3,)
         Of the centre [m/s], and about it [rad/s], at the start.
     modes : ModalBasis, optional
-        Vibration modes. Its `points` give the mode shapes at each contact, by the name of the contact.
+        Vibration modes. Its `points` give the mode shapes at each contact, by the name of the
+        contact.
 
     Examples
     --------
@@ -72,9 +74,14 @@ class MovingBody:
             _check_modes(self.modes)
         moves = np.any(self.velocity) or np.any(self.angular_velocity)
         if moves and np.isinf(self.mass):
-            raise InputError("a body that is held, of infinite mass, has no velocity and no angular_velocity")
+            raise InputError(
+                "a body that is held, of infinite mass, has no velocity and no angular_velocity"
+            )
         if np.any(self.angular_velocity) and self.inertia is None:
-            raise InputError("a body without an inertia does not turn: give inertia [kg m^2], or no angular_velocity")
+            raise InputError(
+                "a body without an inertia does not turn: give inertia [kg m^2], or no "
+                "angular_velocity"
+            )
 
     @property
     def held(self) -> bool:
@@ -82,13 +89,18 @@ class MovingBody:
         return bool(np.isinf(self.mass))
 
     def coordinates(self) -> tuple[Floats, Floats]:
-        """Return the rigid motions of unit mass: translation of the centre and rotation in each [kg^-1/2, rad/(kg^1/2 m)], (r, 3) each."""
+        """Return the rigid motions of unit mass: translation of the centre and rotation
+        in each [kg^-1/2, rad/(kg^1/2 m)], (r, 3) each.
+        """
         if self.held:
             return np.zeros((0, 3)), np.zeros((0, 3))
         along, turning = np.eye(3) / np.sqrt(self.mass), np.zeros((3, 3))
         if self.inertia is not None:
             moments, axes = np.linalg.eigh(self.inertia)
-            along, turning = np.concatenate([along, np.zeros((3, 3))]), np.concatenate([turning, axes.T / np.sqrt(moments)[:, None]])
+            along, turning = (
+                np.concatenate([along, np.zeros((3, 3))]),
+                np.concatenate([turning, axes.T / np.sqrt(moments)[:, None]]),
+            )
         return along, turning
 
 
@@ -111,7 +123,8 @@ class PointContact:
     series : QuasiStatic, optional
         Quasi-static compliance in series with the law.
     same_spot : bool, default True
-        Whether each impact of this contact falls where the last one did; otherwise it meets undeformed surfaces.
+        Whether each impact of this contact falls where the last one did; otherwise it meets
+        undeformed surfaces.
 
     Examples
     --------
@@ -138,11 +151,17 @@ class PointContact:
         if not isinstance(self.law, CompliantLaw):
             if not isinstance(self.law, ContactLaw):
                 raise InputError(
-                    f'law must be a contact law with its parameters, such as vi.find_contact_law("hertz")(stiffness=5e8), not {self.law!r}'
+                    "law must be a contact law with its parameters, such as "
+                    f'vi.find_contact_law("hertz")(stiffness=5e8), not {self.law!r}'
                 )
-            raise InputError(f"the law of a contact of a system must give a force, which {self.law!r} does not")
+            raise InputError(
+                f"the law of a contact of a system must give a force, which {self.law!r} does not"
+            )
         if any(np.ndim(getattr(self.law, item.name)) for item in fields(self.law)):
-            raise InputError("the parameters of the law of a contact must be numbers: a system is one, and no batch")
+            raise InputError(
+                "the parameters of the law of a contact must be numbers: a "
+                "system is one, and no batch"
+            )
         if not isinstance(self.series, QuasiStatic):
             raise InputError(f"series must be a QuasiStatic, not {self.series!r}")
         if not isinstance(self.same_spot, bool):
@@ -150,10 +169,14 @@ class PointContact:
         for name in ("point", "normal"):
             object.__setattr__(self, name, _vector(name, getattr(self, name)))
         if abs(np.linalg.norm(self.normal) - 1.0) > _UNIT:
-            raise InputError(f"normal must be a vector of length 1, not {np.asarray(self.normal).tolist()}")
+            raise InputError(
+                f"normal must be a vector of length 1, not {np.asarray(self.normal).tolist()}"
+            )
         if not 0.0 <= _number("gap", self.gap) < np.inf:
             words = "below 0 m the bodies overlap at the start"
-            raise InputError(f"gap must be a finite number that is not negative, not {self.gap:g} m; {words}")
+            raise InputError(
+                f"gap must be a finite number that is not negative, not {self.gap:g} m; {words}"
+            )
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -167,14 +190,16 @@ class System:
     contacts : mapping of str to PointContact
         By their names; at least one.
     gravity : array, shape (3,), default 0
-        Acceleration of gravity [m/s^2]. Modal displacements are measured from the equilibrium under it.
+        Acceleration of gravity [m/s^2]. Modal displacements are measured from the equilibrium under
+        it.
     tolerance : float, default 1e-9
         Relative error allowed in the state at the end of each stretch of contact; 1e-13 to 1e-6.
 
     Raises
     ------
     InputError
-        If a contact names an unknown body or the same body twice, both its bodies are held, or the modes of a body lack the contact point.
+        If a contact names an unknown body or the same body twice, both its bodies are held, or the
+        modes of a body lack the contact point.
 
     Examples
     --------
@@ -182,8 +207,14 @@ class System:
 
     >>> import vibroimpact as vi
     >>> law = vi.find_contact_law("hertz")(stiffness=1e9)
-    >>> balls = {"hit": vi.MovingBody(mass=0.1), "hitting": vi.MovingBody(mass=0.1, velocity=(0, 0, -1.0))}
-    >>> system = vi.System(bodies=balls, contacts={"contact": vi.PointContact(above="hitting", below="hit", law=law)})
+    >>> balls = {
+    ...     "hit": vi.MovingBody(mass=0.1),
+    ...     "hitting": vi.MovingBody(mass=0.1, velocity=(0, 0, -1.0)),
+    ... }
+    >>> system = vi.System(
+    ...     bodies=balls,
+    ...     contacts={"contact": vi.PointContact(above="hitting", below="hit", law=law)},
+    ... )
     >>> vi.simulate_system(system, duration=1e-3).at(1e-3)["hit"].velocity.round(9).tolist()
     [0.0, 0.0, -1.0]
     """
@@ -197,32 +228,56 @@ class System:
         object.__setattr__(self, "gravity", _vector("gravity", self.gravity))
         for name, kind in (("bodies", MovingBody), ("contacts", PointContact)):
             given = getattr(self, name)
-            if not isinstance(given, Mapping) or not all(isinstance(key, str) and isinstance(one, kind) for key, one in given.items()):
-                raise InputError(f'{name} must be a mapping of names to {kind.__name__}, as {{"name": vi.{kind.__name__}(...)}}', name)
+            if not isinstance(given, Mapping) or not all(
+                isinstance(key, str) and isinstance(one, kind) for key, one in given.items()
+            ):
+                raise InputError(
+                    f'{name} must be a mapping of names to {kind.__name__}, as {{"name": '
+                    f"vi.{kind.__name__}(...)}}",
+                    name,
+                )
         if not self.contacts:
-            raise InputError("the system has no contact: nothing can happen between its bodies", "contacts")
+            raise InputError(
+                "the system has no contact: nothing can happen between its bodies", "contacts"
+            )
         check_tolerance(_number("tolerance", self.tolerance))
         for name, contact in self.contacts.items():
             key = f"contacts.{name}"
             for body in (contact.above, contact.below):
                 if body not in self.bodies:
-                    raise InputError(f'there is no body "{body}"{did_you_mean(body, self.bodies)}', key)
+                    raise InputError(
+                        f'there is no body "{body}"{did_you_mean(body, self.bodies)}', key
+                    )
                 modes = self.bodies[body].modes
                 if modes is not None and name not in modes.points:
-                    raise InputError(f'the modes of "{body}" have no shapes at its contact: add "{name}" to their points', key)
+                    raise InputError(
+                        f'the modes of "{body}" have no shapes at its contact: add '
+                        f'"{name}" to their points',
+                        key,
+                    )
             if contact.above == contact.below:
                 raise InputError(f'a body cannot touch itself, as "{contact.above}" does here', key)
             if all(self.bodies[body].held for body in (contact.above, contact.below)):
-                raise InputError(f'neither "{contact.above}" nor "{contact.below}" can move: both are held', key)
+                raise InputError(
+                    f'neither "{contact.above}" nor "{contact.below}" can move: both are held', key
+                )
 
     @cached_property
     def slices(self) -> dict[str, tuple[slice, slice]]:
-        """Slices of the rigid motions and of the modes of each body among the coordinates; the rigid motions of all bodies come first."""
+        """Slices of the rigid motions and of the modes of each body among the
+        coordinates; the rigid motions of all bodies come first.
+        """
         rigid = [len(body.coordinates()[0]) for body in self.bodies.values()]
-        modes = [0 if body.modes is None else len(body.modes.frequencies) for body in self.bodies.values()]
+        modes = [
+            0 if body.modes is None else len(body.modes.frequencies)
+            for body in self.bodies.values()
+        ]
         at = np.cumsum([0, *rigid, *modes])
         number = len(rigid)
-        return {name: (slice(at[i], at[i + 1]), slice(at[number + i], at[number + i + 1])) for i, name in enumerate(self.bodies)}
+        return {
+            name: (slice(at[i], at[i + 1]), slice(at[number + i], at[number + i + 1]))
+            for i, name in enumerate(self.bodies)
+        }
 
     def linear(self) -> tuple[LinearSystem, State]:
         """Return the bodies as one linear system, and its state at the start."""
@@ -239,8 +294,12 @@ class System:
             if body.inertia is not None and not body.held:
                 start[rigid] += turning @ body.inertia @ body.angular_velocity
             if body.modes is not None:
-                frequency[vibrating], damping[vibrating] = body.modes.angular_frequencies, body.modes.damping_ratios
-            # the approach of a contact grows with the motion of the body below along the normal, and shrinks with that of the one above
+                frequency[vibrating], damping[vibrating] = (
+                    body.modes.angular_frequencies,
+                    body.modes.damping_ratios,
+                )
+            # the approach of a contact grows with the motion of the body below along the normal,
+            # and shrinks with that of the one above
             for row, (where, contact) in enumerate(self.contacts.items()):
                 sign = (contact.below == name) * 1.0 - (contact.above == name)
                 if not sign:
@@ -249,10 +308,25 @@ class System:
                 shape[row, rigid] = sign * (along @ contact.normal + turning @ lever)
                 if body.modes is not None:
                     shape[row, vibrating] = sign * (body.modes.points[where] @ contact.normal)
-        no, nothing, counted = np.zeros(number, dtype=bool), np.zeros(0), np.ones(shape.shape, dtype=bool)
+        no, nothing, counted = (
+            np.zeros(number, dtype=bool),
+            np.zeros(0),
+            np.ones(shape.shape, dtype=bool),
+        )
         gaps = np.array([-contact.gap for contact in self.contacts.values()])
         levels = np.array([float(contact.law.touch_level) for contact in self.contacts.values()])
-        system = LinearSystem(frequency, damping, shape, gaps + levels, load, no, counted, nothing, nothing, np.zeros(0, dtype=np.intp))
+        system = LinearSystem(
+            frequency,
+            damping,
+            shape,
+            gaps + levels,
+            load,
+            no,
+            counted,
+            nothing,
+            nothing,
+            np.zeros(0, dtype=np.intp),
+        )
         return system, State(np.zeros(number), start, nothing)
 
 
@@ -267,7 +341,9 @@ def _number(name: str, value: object) -> float:
 
 
 def _array(value: object) -> Floats:
-    """Return an array of finite numbers below 1e15 in magnitude, or an empty one if the value is not such an array."""
+    """Return an array of finite numbers below 1e15 in magnitude, or an empty one if the
+    value is not such an array.
+    """
     try:
         found = np.asarray(value)
         found = found.astype(float) if found.dtype.kind in "iuf" else np.zeros(0)
@@ -280,7 +356,10 @@ def _vector(name: str, value: object) -> Floats:
     """Return a vector of three finite numbers."""
     found = _array(value)
     if found.shape != (3,):
-        raise InputError(f"{name} must be three finite numbers, along x, y and z, below {_LARGEST:g} in magnitude; not {value!r}")
+        raise InputError(
+            f"{name} must be three finite numbers, along x, y and z, below {_LARGEST:g} in "
+            f"magnitude; not {value!r}"
+        )
     return found
 
 
@@ -294,7 +373,8 @@ def _inertia(value: object) -> Floats:
         if moments[0] > 0.0 and moments[2] <= (1.0 + 1e-9) * (moments[0] + moments[1]):
             return found
     raise InputError(
-        "inertia must be a moment of inertia [kg m^2], > 0, three of them, or a symmetric matrix of 3 by 3, none of whose principal "
+        "inertia must be a moment of inertia [kg m^2], > 0, three of them, or a symmetric "
+        "matrix of 3 by 3, none of whose principal "
         f"moments is more than the sum of the others; not {value!r}"
     )
 
@@ -305,8 +385,21 @@ def _check_modes(modes: ModalBasis) -> None:
     if not all(hasattr(modes, name) for name in names) or not isinstance(modes.points, Mapping):
         raise InputError(f"modes must be a ModalBasis, not {type(modes).__name__}", "modes")
     frequencies, ratios = _array(modes.frequencies), _array(modes.damping_ratios)
-    if frequencies.ndim != 1 or not (frequencies > 0.0).all() or ratios.shape != frequencies.shape or not (ratios >= 0.0).all():
-        raise InputError("modes need frequencies greater than 0 Hz and as many damping ratios, not negative, all finite", "modes")
+    if (
+        frequencies.ndim != 1
+        or not (frequencies > 0.0).all()
+        or ratios.shape != frequencies.shape
+        or not (ratios >= 0.0).all()
+    ):
+        raise InputError(
+            "modes need frequencies greater than 0 Hz and as many damping ratios, not "
+            "negative, all finite",
+            "modes",
+        )
     for name, shapes in modes.points.items():
         if _array(shapes).shape != (len(frequencies), 3):
-            raise InputError(f'the shapes of the point "{name}" must be finite, three for each of the {len(frequencies)} modes', "modes")
+            raise InputError(
+                f'the shapes of the point "{name}" must be finite, three for each of the '
+                f"{len(frequencies)} modes",
+                "modes",
+            )

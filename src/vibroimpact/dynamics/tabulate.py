@@ -17,14 +17,18 @@ from vibroimpact.dynamics.rigid.solve_contact import solver_for
 from vibroimpact.dynamics.run import Run
 from vibroimpact.errors import InputError
 
-_BLOCK, _OBLIQUE_BLOCK = 2000, 16000  # drops run together, for the cache; oblique ones take more calls, each of some drops
+# drops run together, for the cache; oblique ones take more calls, each of some drops
+_BLOCK, _OBLIQUE_BLOCK = 2000, 16000
 
 
-def tabulate(problem: StatesProblem, progress: Callable[[float], None] | None = None, *, threads: int = 1) -> Response:
+def tabulate(
+    problem: StatesProblem, progress: Callable[[float], None] | None = None, *, threads: int = 1
+) -> Response:
     """Return the response of drops without their histories.
 
-    The numbers are those of `simulate` to the tolerance, for every problem. It keeps no histories, which are read within the
-    contacts and need more nodes, and runs a large batch in blocks that stay in the cache.
+    The numbers are those of `simulate` to the tolerance, for every problem. It keeps no histories,
+    which are read within the contacts and need more nodes, and runs a large batch in blocks that
+    stay in the cache.
 
     Parameters
     ----------
@@ -38,7 +42,8 @@ def tabulate(problem: StatesProblem, progress: Callable[[float], None] | None = 
     Returns
     -------
     Response
-        Without histories. A drop that failed says so in its outcome and in `failures`, and the others go on.
+        Without histories. A drop that failed says so in its outcome and in `failures`, and the
+        others go on.
 
     Raises
     ------
@@ -54,12 +59,16 @@ def tabulate(problem: StatesProblem, progress: Callable[[float], None] | None = 
     >>> import vibroimpact as vi
     >>> law = vi.find_contact_law("hunt-crossley")(stiffness=5e8, restitution=[0.5, 0.7, 0.9])
     >>> ball = vi.Body(mass=0.1, contact_offset=0.02)
-    >>> table = tabulate(vi.Problem(sphere=ball, plate=vi.rigid_plate(), laws=(law,), height=1.0, impacts=2))
+    >>> table = tabulate(
+    ...     vi.Problem(sphere=ball, plate=vi.rigid_plate(), laws=(law,), height=1.0, impacts=2)
+    ... )
     >>> table.impacts["restitution_achieved"].round(4).tolist()
     [[0.6628, 0.6627], [0.7679, 0.7678], [0.909, 0.909]]
     """
     if not hasattr(problem, "to_problem"):
-        raise InputError(f"tabulate takes a Problem, or a case as vi.load_case(...) reads it, not {problem!r}")
+        raise InputError(
+            f"tabulate takes a Problem, or a case as vi.load_case(...) reads it, not {problem!r}"
+        )
     if threads < 1:
         raise InputError(f"{threads} is no number of threads; give 1 or more", "threads")
     stated = problem.to_problem()
@@ -78,7 +87,9 @@ def tabulate(problem: StatesProblem, progress: Callable[[float], None] | None = 
 
 
 def _tables_of(blocks: Sequence[Problem], threads: int) -> Iterator[Response]:
-    """Yield the responses of blocks of drops in order, some of them computed at once: compiled code releases the interpreter's lock."""
+    """Yield the responses of blocks of drops in order, some of them computed at once:
+    compiled code releases the interpreter's lock.
+    """
     if threads == 1:
         yield from map(_table_of, blocks)
         return
@@ -88,7 +99,8 @@ def _tables_of(blocks: Sequence[Problem], threads: int) -> Iterator[Response]:
 
 def _table_of(problem: Problem) -> Response:
     """Return the response of a block of drops, with arrays of a batch, and without its history."""
-    with np.errstate(all="ignore"):  # Newton iterates may overflow; results that are not finite are detected and retried
+    # Newton iterates may overflow; results that are not finite are detected and retried
+    with np.errstate(all="ignore"):
         run = Run(problem, solver_for(problem))
         while run.moving.any():
             run.advance()
@@ -100,7 +112,10 @@ def _joined(problem: Problem, parts: Sequence[Response]) -> Response:
     rows = max(part.impacts["impact"].shape[1] for part in parts)
     return Response(
         problem,
-        {name: np.concatenate([_padded(part.impacts[name], rows) for part in parts]) for name in parts[0].impacts},
+        {
+            name: np.concatenate([_padded(part.impacts[name], rows) for part in parts])
+            for name in parts[0].impacts
+        },
         {name: np.concatenate([part.energy[name] for part in parts]) for name in parts[0].energy},
         tuple(outcome for part in parts for outcome in part.outcomes),
         np.concatenate([part.end_time for part in parts]),

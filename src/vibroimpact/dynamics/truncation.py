@@ -16,12 +16,17 @@ if TYPE_CHECKING:
 
 
 def truncation_estimates(problem: Problem, impacts: dict[str, Floats]) -> dict[str, float]:
-    r"""Return the estimated relative error of the first impact's largest force due to modal truncation, for each body that vibrates.
+    r"""Return the estimated relative error of the first impact's largest force due to modal
+    truncation, for each body that vibrates.
 
-    The compliance of the modes left out is known where the law or a static solution carries it; what is missing then is their
-    inertia, :math:`\sum \chi^2 / \omega^4\,\ddot F`, and at most all of what they do. Its sum over the modes left out is not
-    more than that over the last octave of those kept, since :math:`\chi^2` times the density of modes is constant in a plate and
-    grows with :math:`\omega^2` in a solid. Where nothing carries it, the same is done with :math:`\sum \chi^2 / \omega^2\,F`.
+    The compliance of the modes left out is known where the law or a static solution carries it;
+    what is missing then is their
+    inertia, :math:`\sum \chi^2 / \omega^4\,\ddot F`, and at most all of what they do. Its sum over
+    the modes left out is not
+    more than that over the last octave of those kept, since :math:`\chi^2` times the density of
+    modes is constant in a plate and
+    grows with :math:`\omega^2` in a solid. Where nothing carries it, the same is done with
+    :math:`\sum \chi^2 / \omega^2\,F`.
     Both over the tangent compliance of the contact, two thirds of indentation over force.
 
     Parameters
@@ -46,7 +51,8 @@ def truncation_estimates(problem: Problem, impacts: dict[str, Floats]) -> dict[s
 
 
 def time_of_contact(impacts: Mapping[str, Any]) -> float:
-    """Return the contact duration of the first impact [s]; for several contacts, that of a Hertzian contact of the same depth.
+    """Return the contact duration of the first impact [s]; for several contacts, that of a Hertzian
+    contact of the same depth.
 
     Parameters
     ----------
@@ -56,13 +62,22 @@ def time_of_contact(impacts: Mapping[str, Any]) -> float:
     duration, contacts = float(impacts["duration_s"][0]), impacts.get("contacts")
     if contacts is None or contacts[0] < 2:
         return duration
-    return min(duration, HERTZ_TIME * float(impacts["max_indentation_m"][0]) / float(impacts["approach_speed_m_s"][0]))
+    return min(
+        duration,
+        HERTZ_TIME
+        * float(impacts["max_indentation_m"][0])
+        / float(impacts["approach_speed_m_s"][0]),
+    )
 
 
 def _estimate(modes: ModalBasis, impacts: dict[str, Floats], carried: bool) -> float:
     if not len(impacts["impact"]):
         return float("nan")
-    force, depth, duration = float(impacts["max_force_N"][0]), float(impacts["max_indentation_m"][0]), time_of_contact(impacts)
+    force, depth, duration = (
+        float(impacts["max_force_N"][0]),
+        float(impacts["max_indentation_m"][0]),
+        time_of_contact(impacts),
+    )
     omega, shape = modes.angular_frequencies, modes.contact
     octave = omega > 0.5 * omega[-1]
     compliance = (shape[octave] / omega[octave]) ** 2

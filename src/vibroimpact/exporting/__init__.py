@@ -1,1 +1,3 @@
-"""Export to other programs: multibody and discrete-element codes, data formats, audio and visualization."""
+"""Export to other programs: multibody and discrete-element codes, data formats, audio and
+visualization.
+"""

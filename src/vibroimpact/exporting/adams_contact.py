@@ -1,4 +1,6 @@
-"""The contact force of a drop as Adams run-time expressions, in millimetres, kilograms, newtons and seconds."""
+"""The contact force of a drop as Adams run-time expressions, in millimetres, kilograms,
+newtons and seconds.
+"""
 
 from __future__ import annotations
 
@@ -25,7 +27,9 @@ _ANY_PENETRATION = 1e-4
 
 
 class Names(NamedTuple):
-    """References to markers, sensor and variables in the expressions: numbers in a dataset, names in Adams View."""
+    """References to markers, sensor and variables in the expressions: numbers in a
+    dataset, names in Adams View.
+    """
 
     centre: str
     spot: str
@@ -51,9 +55,9 @@ class Names(NamedTuple):
 class AdamsContact:
     """A contact law in Adams' units; its methods return expressions for given `Names`.
 
-    `damping` is the coefficient C [N s/mm] of IMPACT, or the factor D [-] of a hysteretic law: a number, or an expression of
-    `speed`, the stored approach speed [mm/s]; `meaning` describes it in words. `penetration`, that of full damping [mm], is None for a
-    hysteretic law.
+    `damping` is the coefficient C [N s/mm] of IMPACT, or the factor D [-] of a hysteretic law: a
+    number, or an expression of `speed`, the stored approach speed [mm/s]; `meaning` describes it in
+    words. `penetration`, that of full damping [mm], is None for a hysteretic law.
     """
 
     radius: float
@@ -68,7 +72,9 @@ class AdamsContact:
 
     @property
     def holds_speed(self) -> bool:
-        """Whether the force depends on the approach speed of the current contact, which a sensor then stores."""
+        """Whether the force depends on the approach speed of the current contact, which a
+        sensor then stores.
+        """
         return self.varies or self.penetration is None
 
     def gap(self, names: Names) -> str:
@@ -76,11 +82,18 @@ class AdamsContact:
         return f"{names.height} - {adams_number(self.radius)}"
 
     def coming_speed(self, names: Names) -> str:
-        """Return the approach speed of the next contact [mm/s], from the energy, which is constant during free flight."""
-        return f"SQRT({names.velocity}**2 + {adams_number(2.0 * self.gravity)} * MAX({self.gap(names)}, 0.0))"
+        """Return the approach speed of the next contact [mm/s], from the energy, which is
+        constant during free flight.
+        """
+        return (
+            f"SQRT({names.velocity}**2 + {adams_number(2.0 * self.gravity)} * "
+            f"MAX({self.gap(names)}, 0.0))"
+        )
 
     def held_speed(self, names: Names) -> str:
-        """Return the stored approach speed of the current contact [mm/s]; that of the first contact until the sensor fires."""
+        """Return the stored approach speed of the current contact [mm/s]; that of the
+        first contact until the sensor fires.
+        """
         first = adams_number(self.first_speed)
         return f"IF(SENVAL({names.sensor}): {first}, {first}, SENVAL({names.sensor}))"
 
@@ -91,18 +104,34 @@ class AdamsContact:
     def force(self, names: Names) -> str:
         """Return the contact force [N]."""
         height, velocity = names.height, names.velocity
-        stiffness, exponent, radius = adams_number(self.stiffness), adams_number(self.exponent), adams_number(self.radius)
+        stiffness, exponent, radius = (
+            adams_number(self.stiffness),
+            adams_number(self.exponent),
+            adams_number(self.radius),
+        )
         damping = f"VARVAL({names.damping})" if self.varies else self.damping
         if self.penetration is not None:
-            return f"IMPACT({height}, {velocity}, {radius}, {stiffness}, {exponent}, {damping}, {adams_number(self.penetration)})"
-        return f"{stiffness} * MAX({radius} - {height}, 0.0)**{exponent} * (1.0 - {damping} * {velocity} / VARVAL({names.speed}))"
+            return (
+                f"IMPACT({height}, {velocity}, {radius}, {stiffness}, {exponent}, {damping}, "
+                f"{adams_number(self.penetration)})"
+            )
+        return (
+            f"{stiffness} * MAX({radius} - {height}, 0.0)**{exponent} * (1.0 - {damping} * "
+            f"{velocity} / VARVAL({names.speed}))"
+        )
 
     def readings(self, names: Names, force: str) -> dict[int, tuple[str, str]]:
-        """Return title and expression of each output, by the column of an Adams request, whose first and fifth are magnitudes.
+        """Return title and expression of each output, by the column of an Adams request, whose
+        first and fifth are magnitudes.
 
-        Height [mm], velocity [mm/s] and contact force [N] (the force element `force`); approach speed and damping if they are stored.
+        Height [mm], velocity [mm/s] and contact force [N] (the force element `force`); approach
+        speed and damping if they are stored.
         """
-        outputs = {2: ("height", names.height), 3: ("velocity", names.velocity), 4: ("force", f"SFORCE({force}, 0, 4, {names.spot})")}
+        outputs = {
+            2: ("height", names.height),
+            3: ("velocity", names.velocity),
+            4: ("force", f"SFORCE({force}, 0, 4, {names.spot})"),
+        }
         if self.holds_speed:
             outputs[6] = ("approach_speed", f"VARVAL({names.speed})")
         if self.varies:
@@ -122,8 +151,18 @@ def adams_contact(drop: Drop) -> AdamsContact:
     --------
     >>> from vibroimpact.materials import find_material
     >>> steel, law = find_material("steel"), AdamsImpact(stiffness=1e9, damping_max=150.0)
-    >>> drop = Drop(name="a drop", radius=0.025, mass=0.1, sphere_material=steel, plate_material=steel, height=1.0, gravity=9.8,
-    ...             laws=(law,), end_time=1.0, impacts={"approach_speed_m_s": np.array([4.4])})
+    >>> drop = Drop(
+    ...     name="a drop",
+    ...     radius=0.025,
+    ...     mass=0.1,
+    ...     sphere_material=steel,
+    ...     plate_material=steel,
+    ...     height=1.0,
+    ...     gravity=9.8,
+    ...     laws=(law,),
+    ...     end_time=1.0,
+    ...     impacts={"approach_speed_m_s": np.array([4.4])},
+    ... )
     >>> round(adams_contact(drop).stiffness, 6), adams_contact(drop).damping
     (31622.776602, '0.15')
     """
@@ -131,32 +170,44 @@ def adams_contact(drop: Drop) -> AdamsContact:
     laws = drop.laws[: len(speeds)]
     law = laws[0]
     if not isinstance(law, (AdamsImpact, Hertz, HystereticLaw)):
-        hysteretic = ", ".join(name for name, kind in contact_laws().items() if issubclass(kind, HystereticLaw))
-        raise InputError(
-            f"{law.name} can't be written for Adams; adams-impact, hertz and the laws with hysteretic damping ({hysteretic}) can. "
-            '"vibroimpact calibrate" finds the damping of adams-impact that achieves the same restitution'
+        hysteretic = ", ".join(
+            name for name, kind in contact_laws().items() if issubclass(kind, HystereticLaw)
         )
-    # damping that changes from impact to impact becomes an expression of the approach speed, by which the impacts are distinguished
+        raise InputError(
+            f"{law.name} can't be written for Adams; adams-impact, hertz and the laws with "
+            f"hysteretic damping ({hysteretic}) can. "
+            '"vibroimpact calibrate" finds the damping of adams-impact that achieves the '
+            "same restitution"
+        )
+    # damping that changes from impact to impact becomes an expression of the approach speed, by
+    # which the impacts are distinguished
     dampings = [_damping(one, speed) for one, speed in zip(laws, speeds, strict=False)]
     by_speed = isinstance(law, HuntCrossley) and law.dissipation is not None and len(laws) == 1
     varies = drop.function is not None or by_speed or len(set(dampings)) > 1
     if drop.function is not None:
         damping, meaning = _by_function(law, *drop.function)
     elif by_speed:  # the stored speed is in mm/s
-        damping, meaning = f"{adams_number(dampings[0] / (1000.0 * speeds[0]))} * speed", "the dissipation times the approach speed"
+        damping, meaning = (
+            f"{adams_number(dampings[0] / (1000.0 * speeds[0]))} * speed",
+            "the dissipation times the approach speed",
+        )
     elif varies:
         damping, meaning = _by_steps(dampings, speeds, impact_law=isinstance(law, AdamsImpact))
     else:
         damping, meaning = adams_number(dampings[0]), "the same in every impact"
     for one in laws[1:]:
         if _stiffness_terms(one) != _stiffness_terms(law):
-            raise InputError("Adams' contact can change its damping from impact to impact, and nothing else", "contact")
+            raise InputError(
+                "Adams' contact can change its damping from impact to impact, and nothing else",
+                "contact",
+            )
     stiffness, exponent, penetration = _stiffness_terms(law)
     # from SI to mm, N and s
     return AdamsContact(
         radius=1e3 * drop.radius,
         gravity=1e3 * drop.gravity,
-        first_speed=1e3 * float(np.sqrt(drop.speed**2 + 2.0 * drop.gravity * max(drop.height - drop.radius, 0.0))),
+        first_speed=1e3
+        * float(np.sqrt(drop.speed**2 + 2.0 * drop.gravity * max(drop.height - drop.radius, 0.0))),
         stiffness=stiffness / 1000.0**exponent,
         exponent=exponent,
         penetration=None if penetration is None else 1e3 * penetration,
@@ -167,11 +218,18 @@ def adams_contact(drop: Drop) -> AdamsContact:
 
 
 def adams_number(value: float) -> str:
-    """Return a number in Adams' syntax with 15 digits: with a decimal point, and an exponent with capital E.
+    """Return a number in Adams' syntax with 15 digits: with a decimal point, and an exponent with
+    capital E.
 
     Examples
     --------
-    >>> adams_number(1e-05), adams_number(25.0), adams_number(0.1 + 0.2), adams_number(5), adams_number(1e22)
+    >>> (
+    ...     adams_number(1e-05),
+    ...     adams_number(25.0),
+    ...     adams_number(0.1 + 0.2),
+    ...     adams_number(5),
+    ...     adams_number(1e22),
+    ... )
     ('1.0E-05', '25.0', '0.3', '5.0', '1.0E+22')
     """
     mantissa, _, exponent = repr(float(f"{value:.15g}")).partition("e")
@@ -184,32 +242,48 @@ def adams_numbers(values: Sequence[float]) -> str:
 
 
 def column_titles(readings: Mapping[int, tuple[str, str]]) -> str:
-    """Return the titles of the columns of a request up to the last one used, empty for unused columns."""
-    return ", ".join(f'"{readings.get(column, ("",))[0]}"' for column in range(1, max(readings) + 1))
+    """Return the titles of the columns of a request up to the last one used, empty for
+    unused columns.
+    """
+    return ", ".join(
+        f'"{readings.get(column, ("",))[0]}"' for column in range(1, max(readings) + 1)
+    )
 
 
 def _stiffness_terms(law: ContactLaw) -> tuple[float, float, float | None]:
     """Return stiffness [N/m^n], exponent and penetration of full damping [m]."""
     assert isinstance(law, (AdamsImpact, Hertz, HystereticLaw))
-    penetration = None if isinstance(law, HystereticLaw) else float(getattr(law, "full_damping_penetration", _ANY_PENETRATION))
+    penetration = (
+        None
+        if isinstance(law, HystereticLaw)
+        else float(getattr(law, "full_damping_penetration", _ANY_PENETRATION))
+    )
     return float(law.stiffness), float(law.exponent), penetration
 
 
 def _damping(law: ContactLaw, speed: float) -> float:
-    """Return the largest damping coefficient [N s/mm], or the damping factor of a hysteretic law at an approach speed [m/s] [-]."""
+    """Return the largest damping coefficient [N s/mm], or the damping factor of a
+    hysteretic law at an approach speed [m/s] [-].
+    """
     if isinstance(law, HystereticLaw):
         return float(law.damping_factor_at(speed))
     return float(getattr(law, "damping_max", 0.0)) / 1000.0
 
 
 def _by_function(law: ContactLaw, name: str, function: SpeedFunction) -> tuple[str, str]:
-    """Return the damping as a polynomial of the stored approach speed, clipped at zero since IMPACT requires it."""
+    """Return the damping as a polynomial of the stored approach speed, clipped at zero
+    since IMPACT requires it.
+    """
     if not (isinstance(law, AdamsImpact) and name == "damping_max"):
         raise InputError(
-            f"of {law.name}, {name} as a function of the approach speed can't be written for Adams; damping_max of adams-impact can"
+            f"of {law.name}, {name} as a function of the approach speed can't be written "
+            "for Adams; damping_max of adams-impact can"
         )
     # from N s/m over (m/s)^k to N s/mm over (mm/s)^k
-    factors = [coefficient / 1000.0 ** (power + 1) for power, coefficient in enumerate(function.coefficients)]
+    factors = [
+        coefficient / 1000.0 ** (power + 1)
+        for power, coefficient in enumerate(function.coefficients)
+    ]
     polynomial = adams_number(factors[-1])
     for factor in factors[-2::-1]:
         polynomial = f"{adams_number(factor)} + speed * ({polynomial})"
@@ -217,13 +291,18 @@ def _by_function(law: ContactLaw, name: str, function: SpeedFunction) -> tuple[s
     return f"MAX({polynomial}, 0.0)", f"a polynomial of the approach speed, fitted over {fitted}"
 
 
-def _by_steps(dampings: Sequence[float], speeds: Sequence[float], *, impact_law: bool) -> tuple[str, str]:
-    """Return the damping as a step function of the stored approach speed, with edges midway between the speeds of the impacts."""
+def _by_steps(
+    dampings: Sequence[float], speeds: Sequence[float], *, impact_law: bool
+) -> tuple[str, str]:
+    """Return the damping as a step function of the stored approach speed, with edges
+    midway between the speeds of the impacts.
+    """
     by_function = ", or damping_max as a function of the speed" if impact_law else ""
     for impact, (fast, slow) in enumerate(pairwise(speeds[: len(dampings)]), 1):
         if not slow < fast:
             raise InputError(
-                f"impact {impact + 1} is not slower than impact {impact}, so that Adams can't select their dampings by the "
+                f"impact {impact + 1} is not slower than impact {impact}, so that Adams "
+                "can't select their dampings by the "
                 f"approach speed; give one damping for all{by_function}",
                 "contact",
             )
@@ -231,4 +310,8 @@ def _by_steps(dampings: Sequence[float], speeds: Sequence[float], *, impact_law:
     for damping, (fast, slow) in reversed(list(zip(dampings[:-1], pairwise(speeds), strict=False))):
         edge = adams_number(1000.0 * 0.5 * (fast + slow))
         steps = f"IF(speed - {edge}: {steps}, {adams_number(damping)}, {adams_number(damping)})"
-    return steps, "one value an impact, selected by the approach speed; the edges lie midway between the speeds of neighbouring impacts"
+    return (
+        steps,
+        "one value an impact, selected by the approach speed; the edges lie midway between "
+        "the speeds of neighbouring impacts",
+    )

@@ -36,8 +36,10 @@ SENSOR_ERROR = 1e-4
 """Tolerance of the sensor on the gap [mm]: 1/1000 of Adams' penetration of full damping."""
 
 TESTED = (
-    "a strict parser of the documented syntax, which integrates the contact of what it reads; restitution, peak force and rebound "
-    "heights of vibroimpact's drops between rigid bodies within 1e-7, velocities after friction within 2e-5. No Adams was run"
+    "a strict parser of the documented syntax, which integrates the contact of what it "
+    "reads; restitution, peak force and rebound "
+    "heights of vibroimpact's drops between rigid bodies within 1e-7, velocities after "
+    "friction within 2e-5. No Adams was run"
 )
 
 
@@ -52,7 +54,9 @@ class MaterialData(NamedTuple):
 
 @dataclass(frozen=True)
 class AdamsModel:
-    """The model; the plate's upper surface is z = 0, z upwards; `plate` is its size [mm], None if unknown."""
+    """The model; the plate's upper surface is z = 0, z upwards; `plate` is its size [mm],
+    None if unknown.
+    """
 
     name: str
     title: str
@@ -103,11 +107,16 @@ def adams_model(drop: Drop) -> AdamsModel:
     """
     contact = adams_contact(drop)
     duration, _ = first_contact(laws_of_impacts(drop)[0], drop)
-    both = [drop.sphere_material] if drop.sphere_material == drop.plate_material else [drop.sphere_material, drop.plate_material]
+    both = (
+        [drop.sphere_material]
+        if drop.sphere_material == drop.plate_material
+        else [drop.sphere_material, drop.plate_material]
+    )
     x, y = drop.position
     return AdamsModel(
         name=legal_name(drop.name),
-        # without underscores: Adams View takes a comment adams_view_name='...' as the name of the next element
+        # without underscores: Adams View takes a comment adams_view_name='...' as the name of the
+        # next element
         title=f'the case "{plain_words(drop.name).replace("_", " ")}"',
         contact=contact,
         mass=drop.mass,
@@ -115,7 +124,9 @@ def adams_model(drop: Drop) -> AdamsModel:
         centre=(1e3 * x, 1e3 * y, 1e3 * drop.height),
         velocity=-1e3 * drop.speed,
         motion=adams_motion(drop),
-        plate=None if drop.plate_size is None else (1e3 * drop.plate_size[0], 1e3 * drop.plate_size[1], 1e3 * drop.plate_size[2]),
+        plate=None
+        if drop.plate_size is None
+        else (1e3 * drop.plate_size[0], 1e3 * drop.plate_size[1], 1e3 * drop.plate_size[2]),
         materials=_material_data([material for material in both if _is_elastic(material)]),
         notes=tuple(adams_notes(drop)),
         end=drop.end_time,
@@ -130,7 +141,9 @@ def adams_notes(drop: Drop) -> list[str]:
 
 
 def adams_dialog(drop: Drop) -> list[dict[str, Any]]:
-    """Return the fields of the dialog of a contact for each impact; none if the law is not IMPACT."""
+    """Return the fields of the dialog of a contact for each impact; none if the law is
+    not IMPACT.
+    """
     return dialog_rows(laws_of_impacts(drop))
 
 
@@ -138,21 +151,30 @@ def remarks(model: AdamsModel) -> list[str]:
     """Return the remarks at the head of the file, one line each."""
     contact = model.contact
     lines = [
-        "written by vibroimpact; units: mm, kg, N, s (MMKS); z is up, the plate's upper surface is z = 0",
+        "written by vibroimpact; units: mm, kg, N, s (MMKS); z is up, the plate's upper "
+        "surface is z = 0",
         "the plate is part of the ground; both bodies are rigid, and do not use the materials",
         f"stiffness in N/mm^n = that in N/m^n over 1000^n, n = {contact.exponent:g}",
-        ("largest damping C [N s/mm]: " if contact.penetration is not None else "hysteretic damping factor D [-]: ") + contact.meaning,
-        f"the longest step is about 1/{_STEPS} of the first contact, the output step about 1/{_OUTPUTS}: with steps as long as the contact "
+        (
+            "largest damping C [N s/mm]: "
+            if contact.penetration is not None
+            else "hysteretic damping factor D [-]: "
+        )
+        + contact.meaning,
+        f"the longest step is about 1/{_STEPS} of the first contact, the output step about "
+        f"1/{_OUTPUTS}: with steps as long as the contact "
         "it gets one output or none, and the largest force is missed",
     ]
     if contact.holds_speed:
         lines.append(
-            "the sensor is true while the sphere is free; it then stores the speed of the next touch, from the energy, which is "
+            "the sensor is true while the sphere is free; it then stores the speed of the "
+            "next touch, from the energy, which is "
             "the same at any moment of a flight; in contact it is false, and the value is held"
         )
     if model.motion is not None:
         lines.append(
-            "friction is the coefficient times the contact force, against the slip; a slip that is not large beside "
+            "friction is the coefficient times the contact force, against the slip; a slip "
+            "that is not large beside "
             f"{model.motion.creep:.3g} mm/s has less"
         )
     return [*lines, *model.notes]
@@ -172,7 +194,11 @@ def legal_name(text: str) -> str:
 
 def header_comments(model: AdamsModel) -> list[str]:
     """Return the comment lines at the head of a file."""
-    return [f"! {line}" for remark in (model.title, *remarks(model)) for line in wrap(remark, LINE - 2, break_on_hyphens=False)]
+    return [
+        f"! {line}"
+        for remark in (model.title, *remarks(model))
+        for line in wrap(remark, LINE - 2, break_on_hyphens=False)
+    ]
 
 
 def wrap_expression(text: str, width: int) -> list[str]:
@@ -197,14 +223,19 @@ def _is_elastic(material: Material) -> bool:
 
 
 def _material_data(materials: list[Material]) -> tuple[MaterialData, ...]:
-    """Return materials with names distinct from each other and from those of other elements, ignoring case."""
+    """Return materials with names distinct from each other and from those of other
+    elements, ignoring case.
+    """
     names: list[str] = []
     for material in materials:
         name = legal_name(material.name or "material")
         taken = name.lower() in _OWN_NAMES or name.lower() in (one.lower() for one in names)
         names.append(f"{name}_material_{len(names) + 1}" if taken else name)
     each = zip(names, materials, strict=True)
-    return tuple(MaterialData(name, 1e-9 * one.density, 1e-6 * one.youngs_modulus, one.poissons_ratio) for name, one in each)
+    return tuple(
+        MaterialData(name, 1e-9 * one.density, 1e-6 * one.youngs_modulus, one.poissons_ratio)
+        for name, one in each
+    )
 
 
 def _round_down(value: float) -> float:

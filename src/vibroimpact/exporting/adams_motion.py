@@ -1,4 +1,6 @@
-"""The motion along the plate and the friction of a drop for Adams, in millimetres, kilograms, newtons, seconds and radians."""
+"""The motion along the plate and the friction of a drop for Adams, in millimetres,
+kilograms, newtons, seconds and radians.
+"""
 
 from __future__ import annotations
 
@@ -11,12 +13,16 @@ from vibroimpact.exporting.drop import Drop
 from vibroimpact.exporting.program_friction import COULOMB, friction_in
 
 _CREEP = 1e-3
-"""Slip beside which others must be large for all of the friction, over the first approach speed: it rounds off Coulomb's law."""
+"""Slip beside which others must be large for all of the friction, over the first approach
+speed: it rounds off Coulomb's law.
+"""
 
 
 @dataclass(frozen=True)
 class AdamsMotion:
-    """Velocity along the plate [mm/s], spin [rad/s] and gravity along the plate [mm/s^2], and Coulomb's friction; `creep` [mm/s]."""
+    """Velocity along the plate [mm/s], spin [rad/s] and gravity along the plate [mm/s^2],
+    and Coulomb's friction; `creep` [mm/s].
+    """
 
     velocity: tuple[float, float]
     spin: tuple[float, float, float]
@@ -26,7 +32,8 @@ class AdamsMotion:
     creep: float
 
     def variables(self, names: Names, force: str) -> dict[str, tuple[str, str]]:
-        """Return reference and expression of each variable, by its name: the slip [mm/s], and friction over slip [N s/mm].
+        """Return reference and expression of each variable, by its name: the slip [mm/s], and
+        friction over slip [N s/mm].
 
         `force`: the reference of the contact force.
         """
@@ -49,8 +56,14 @@ class AdamsMotion:
     def readings(self, names: Names) -> dict[int, tuple[str, str]]:
         """Return title and expression of each output, as `AdamsContact.readings` does."""
         measure = f"({names.centre}, {names.spot}, {names.spot}"
-        along = {2: ("velocity_x", f"VX{measure}, {names.spot})"), 3: ("velocity_y", f"VY{measure}, {names.spot})")}
-        return along | {6 + axis: (f"spin_{name}", f"W{name.upper()}{measure})") for axis, name in enumerate("xyz")}
+        along = {
+            2: ("velocity_x", f"VX{measure}, {names.spot})"),
+            3: ("velocity_y", f"VY{measure}, {names.spot})"),
+        }
+        return along | {
+            6 + axis: (f"spin_{name}", f"W{name.upper()}{measure})")
+            for axis, name in enumerate("xyz")
+        }
 
 
 def adams_motion(drop: Drop) -> AdamsMotion | None:
@@ -70,7 +83,9 @@ def adams_motion(drop: Drop) -> AdamsMotion | None:
     if drop.oblique is None:
         return None
     law, given = adams_friction(drop), drop.oblique
-    (x, y), (about_x, about_y, about_z), (pull_x, pull_y) = (tuple(map(float, one)) for one in (given.velocity, given.spin, given.gravity))
+    (x, y), (about_x, about_y, about_z), (pull_x, pull_y) = (
+        tuple(map(float, one)) for one in (given.velocity, given.spin, given.gravity)
+    )
     return AdamsMotion(
         velocity=(1e3 * x, 1e3 * y),
         spin=(about_x, about_y, about_z),

@@ -1,4 +1,6 @@
-"""Contact parameters of a drop for programs with contact laws of their own, and the limitations of such an export."""
+"""Contact parameters of a drop for programs with contact laws of their own, and the
+limitations of such an export.
+"""
 
 from __future__ import annotations
 
@@ -35,17 +37,27 @@ def approach_speeds(drop: Drop) -> list[float]:
     InputError
         If it has no impact, or gravity is zero.
     """
-    assert drop.rigid is None, "the approach speeds of what deforms are not those that rigid bodies have: take as_rigid(drop)"
+    assert drop.rigid is None, (
+        "the approach speeds of what deforms are not those that rigid "
+        "bodies have: take as_rigid(drop)"
+    )
     if drop.gravity == 0.0:
-        raise InputError("there is no gravity in this run; a drop that is written for another program needs it, to come back")
+        raise InputError(
+            "there is no gravity in this run; a drop that is written for another program "
+            "needs it, to come back"
+        )
     speeds = [float(speed) for speed in drop.impacts["approach_speed_m_s"]]
     if not speeds:
-        raise InputError("the sphere does not reach the plate in this run; a drop that is written for another program needs an impact")
+        raise InputError(
+            "the sphere does not reach the plate in this run; a drop that is written for "
+            "another program needs an impact"
+        )
     return speeds
 
 
 def laws_of_impacts(drop: Drop) -> list[ContactLaw]:
-    """Return the contact law of the first impact, the second, ..., with a fitted function evaluated at each approach speed.
+    """Return the contact law of the first impact, the second, ..., with a fitted function evaluated
+    at each approach speed.
 
     One law if it is the same for all impacts.
     """
@@ -56,14 +68,20 @@ def laws_of_impacts(drop: Drop) -> list[ContactLaw]:
 
 
 def laws_at_impacts(problem: Problem, speeds: Floats) -> tuple[ContactLaw, ...]:
-    """Return the contact laws of the impacts of a drop, with functions of the approach speed evaluated at those of its impacts [m/s]."""
+    """Return the contact laws of the impacts of a drop, with functions of the approach
+    speed evaluated at those of its impacts [m/s].
+    """
     if not problem.by_speed or not len(speeds):
         return problem.laws
-    return tuple(problem.law_at(problem.law_of(impact), float(speed)) for impact, speed in enumerate(speeds))
+    return tuple(
+        problem.law_at(problem.law_of(impact), float(speed)) for impact, speed in enumerate(speeds)
+    )
 
 
 def law_at(law: ContactLaw, name: str, function: SpeedFunction, speed: float) -> ContactLaw:
-    """Return a law whose parameter `name` is a function of the approach speed [m/s], evaluated there and clipped to its range."""
+    """Return a law whose parameter `name` is a function of the approach speed [m/s],
+    evaluated there and clipped to its range.
+    """
     allowed: Range = next(item for item in fields(law) if item.name == name).metadata["range"]
     return law.changed({name: float(allowed.clip(function(speed)))})
 
@@ -91,13 +109,15 @@ def power_law_spring(law: ContactLaw, program: str) -> tuple[float, float]:
     if isinstance(law, AdamsPoisson):
         return float(law.penalty), 1.0
     raise InputError(
-        f"{law.name} can't be written for {program}: its spring is not K delta^n; take a law that has one, "
+        f"{law.name} can't be written for {program}: its spring is not K delta^n; take a "
+        "law that has one, "
         'such as tsuji, with the restitution that "vibroimpact calibrate" finds'
     )
 
 
 def linear_or_hertzian(drop: Drop, program: str) -> tuple[float, float]:
-    """Return stiffness and exponent of the spring of all impacts, for a program that supports only the exponents 1 and 1.5.
+    """Return stiffness and exponent of the spring of all impacts, for a program that supports only
+    the exponents 1 and 1.5.
 
     Raises
     ------
@@ -107,89 +127,144 @@ def linear_or_hertzian(drop: Drop, program: str) -> tuple[float, float]:
     springs = {power_law_spring(law, program) for law in laws_of_impacts(drop)}
     if len(springs) > 1:
         raise InputError(
-            f"the spring changes from impact to impact, which can't be written for {program}; give it one value",
+            "the spring changes from impact to impact, which can't be written for "
+            f"{program}; give it one value",
             f"contact.{_spring_key(drop)}",
         )
     stiffness, exponent = springs.pop()
     if exponent not in (1.0, 1.5):
-        raise InputError(f"{exponent:g} can't be written for {program}, whose springs have 1 or 1.5", "contact.exponent")
+        raise InputError(
+            f"{exponent:g} can't be written for {program}, whose springs have 1 or 1.5",
+            "contact.exponent",
+        )
     return stiffness, exponent
 
 
 def _spring_key(drop: Drop) -> str:
-    """Return the parameter of the contact law of a drop that sets its spring, and changes from impact to impact."""
+    """Return the parameter of the contact law of a drop that sets its spring, and changes
+    from impact to impact.
+    """
     names = [name for name in ("penalty", "exponent", "stiffness") if hasattr(drop.laws[0], name)]
-    return next((name for name in names if len({getattr(law, name) for law in drop.laws}) > 1), names[-1])
+    return next(
+        (name for name in names if len({getattr(law, name) for law in drop.laws}) > 1), names[-1]
+    )
 
 
 def first_contact(law: ContactLaw, drop: Drop) -> tuple[float, float]:
-    """Return duration [s] and peak force [N] of a contact at the drop's first approach speed, between rigid bodies without gravity."""
+    """Return duration [s] and peak force [N] of a contact at the drop's first approach
+    speed, between rigid bodies without gravity.
+    """
     impacts = simulate(
-        Problem(sphere=drop.ball, plate=rigid_plate(), laws=(law,), speed=approach_speeds(drop)[0], gravity=0.0, impacts=1)
+        Problem(
+            sphere=drop.ball,
+            plate=rigid_plate(),
+            laws=(law,),
+            speed=approach_speeds(drop)[0],
+            gravity=0.0,
+            impacts=1,
+        )
     ).impacts
     return float(impacts["duration_s"][0]), float(np.nanmax(impacts["max_force_N"]))
 
 
 def shared_notes(drop: Drop) -> list[str]:
-    """Return the limitations shared by all exports to rigid-body programs, among them a function used beyond its fitted speeds."""
+    """Return the limitations shared by all exports to rigid-body programs, among them a
+    function used beyond its fitted speeds.
+    """
     notes = _rigid_notes(drop)
     if drop.function is not None and drop.function[1].degree:
         name, function = drop.function
         speeds = function.beyond(np.array(approach_speeds(drop)))
         if speeds.size:
-            fitted = f"the function of {name} was fitted over {function.slowest:.4g} to {function.fastest:.4g} m/s"
+            fitted = (
+                f"the function of {name} was fitted over {function.slowest:.4g} to "
+                f"{function.fastest:.4g} m/s"
+            )
             slowest, fastest = f"{speeds.min():.4g}", f"{speeds.max():.4g}"
-            there = f"impacts at {slowest} to {fastest}" if slowest != fastest else f"an impact at {fastest}"
+            there = (
+                f"impacts at {slowest} to {fastest}"
+                if slowest != fastest
+                else f"an impact at {fastest}"
+            )
             notes.append(f"{fitted}, and this drop has {there} m/s.")
     return notes
 
 
 def _rigid_notes(drop: Drop) -> list[str]:
-    """Return what the rigid-body version of a drop neglects, how that changes the restitution, and a remedy."""
+    """Return what the rigid-body version of a drop neglects, how that changes the
+    restitution, and a remedy.
+    """
     lost, remedy = [], []
     if drop.elastic:
         verb = "is" if len(drop.elastic) == 1 else "are"
-        lost.append(f"The {' and '.join(drop.elastic)} {verb} written as rigid, with the contact law alone, without vibration.")
+        lost.append(
+            f"The {' and '.join(drop.elastic)} {verb} written as rigid, with the contact "
+            "law alone, without vibration."
+        )
         remedy.append('model = "rigid" and none of the keys of elastic bodies')
         remedy += ["no [[sensors]]"] if "plate" in drop.elastic else []
     if drop.local_element:
-        lost.append("The local element in series with the contact law, which stands for the sphere's deformation, is left out.")
+        lost.append(
+            "The local element in series with the contact law, which stands for the "
+            "sphere's deformation, is left out."
+        )
         remedy.append("no contact.local_compliance")
     if drop.finite_sphere:
-        lost.append("The contact law is written with Hertz's half space for the sphere, whose finite size was corrected here.")
+        lost.append(
+            "The contact law is written with Hertz's half space for the sphere, whose "
+            "finite size was corrected here."
+        )
         remedy.append("no contact.finite_sphere")
     if not drop.original_impacts:
         return lost
     written, here = (_restitutions(impacts) for impacts in (drop.impacts, drop.original_impacts))
     return [
         *lost,
-        "The exported drop therefore differs from the one that was run: it is the same case between rigid bodies, with the first "
-        "value of the contact law at its first impact, and so on; a parameter that depends on the approach speed has the value at its own.",
+        "The exported drop therefore differs from the one that was run: it is the same case "
+        "between rigid bodies, with the first "
+        "value of the contact law at its first impact, and so on; a parameter that depends "
+        "on the approach speed has the value at its own.",
         f"Restitution from impact to impact: {written} as written, {here} in the run.",
         _remedy(drop, remedy),
     ]
 
 
 def _remedy(drop: Drop, changes: list[str]) -> str:
-    """Return the sentence on how to get rigid bodies that rebound as in the run, with these changes of its case."""
+    """Return the sentence on how to get rigid bodies that rebound as in the run, with
+    these changes of its case.
+    """
     if np.max(drop.original_impacts["restitution_achieved"], initial=0.0) > 1.0:
-        return "Rigid bodies can't rebound as in the run, where an impact has a restitution above 1."
+        return (
+            "Rigid bodies can't rebound as in the run, where an impact has a restitution above 1."
+        )
     lossless = drop.laws[0].free_parameter is None
-    *first, last = [*changes, *(["a contact law with a loss parameter, such as tsuji"] if lossless else [])]
+    *first, last = [
+        *changes,
+        *(["a contact law with a loss parameter, such as tsuji"] if lossless else []),
+    ]
     with_these = f"{', '.join(first)} and {last}" if first else last
     return (
-        f"For rigid bodies that rebound as in the run, calibrate the case with {with_these} to the run's impacts.csv as [calibrate] "
+        "For rigid bodies that rebound as in the run, calibrate the case with "
+        f"{with_these} to the run's impacts.csv as [calibrate] "
         "target, and export the calibration."
     )
 
 
 def _restitutions(impacts: Mapping[str, Floats]) -> str:
     values = impacts["restitution_achieved"].tolist()
-    return ", ".join(f"{value:.3f}" for value in values[:_SHOWN]) + (", ..." if len(values) > _SHOWN else "") if values else "none"
+    return (
+        ", ".join(f"{value:.3f}" for value in values[:_SHOWN])
+        + (", ..." if len(values) > _SHOWN else "")
+        if values
+        else "none"
+    )
 
 
-def clipped_dashpot(stiffness: float, exponent: float, restitution: float, mass: float, speed: float) -> float:
-    r"""Return the dashpot c [N s/m] of :math:`F = \max(0, K \delta^n + c\,\dot\delta)` that achieves a restitution at a speed.
+def clipped_dashpot(
+    stiffness: float, exponent: float, restitution: float, mass: float, speed: float
+) -> float:
+    r"""Return the dashpot c [N s/m] of :math:`F = \max(0, K \delta^n + c\,\dot\delta)` that
+    achieves a restitution at a speed.
 
     Examples
     --------
@@ -202,7 +277,11 @@ def clipped_dashpot(stiffness: float, exponent: float, restitution: float, mass:
 
 @cache
 def _unit_dashpot(exponent: float, restitution: float) -> float:
-    """Return the dashpot for unit stiffness, mass and speed, from which `clipped_dashpot` scales."""
+    """Return the dashpot for unit stiffness, mass and speed, from which `clipped_dashpot`
+    scales.
+    """
     # Adams' IMPACT with a negligible penetration of full damping is this clipped law
-    law = AdamsImpact(stiffness=1.0, exponent=exponent, damping_max=1.0, full_damping_penetration=1e-7)
+    law = AdamsImpact(
+        stiffness=1.0, exponent=exponent, damping_max=1.0, full_damping_penetration=1e-7
+    )
     return float(law_achieving(law, restitution, 1.0, 1.0).damping_max)

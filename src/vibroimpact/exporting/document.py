@@ -11,12 +11,25 @@ from vibroimpact.exporting.export_format import ExportFormat, export_formats
 
 
 def formats_document() -> dict[str, Any]:
-    """Return the export formats by name: the programs that read one, its files, and what its writer was tested against."""
-    return {"formats": {name: {"program": one.program, "files": one.files, "tested": one.tested} for name, one in export_formats().items()}}
+    """Return the export formats by name: the programs that read one, its files, and what
+    its writer was tested against.
+    """
+    return {
+        "formats": {
+            name: {"program": one.program, "files": one.files, "tested": one.tested}
+            for name, one in export_formats().items()
+        }
+    }
 
 
 def export_document(drop: Drop, format: ExportFormat, files: Sequence[Path]) -> dict[str, Any]:
-    """Return the files written, the limitations of the format for this drop, the doubts about it, the tests of the writer, and a dialog."""
-    told: dict[str, Any] = {"format": format.name, "files": [str(file) for file in files], "notes": format.notes(drop)}
+    """Return the files written, the limitations of the format for this drop, the doubts
+    about it, the tests of the writer, and a dialog.
+    """
+    told: dict[str, Any] = {
+        "format": format.name,
+        "files": [str(file) for file in files],
+        "notes": format.notes(drop),
+    }
     told |= {"doubts": list(drop.doubts), "tested": format.tested}
     return told | ({"adams_dialog": dialog} if (dialog := format.dialog(drop)) else {})

@@ -17,7 +17,8 @@ Table = dict[str, TableColumn]
 
 
 def tables_of(drop: Drop) -> dict[str, Table]:
-    """Return the tables "impacts", "history", and "sensors/NAME" of each sensor, as far as the drop has them.
+    """Return the tables "impacts", "history", and "sensors/NAME" of each sensor, as far as the drop
+    has them.
 
     Raises
     ------
@@ -32,7 +33,10 @@ def tables_of(drop: Drop) -> dict[str, Table]:
     for name, plain in plain_names(list(drop.signals)).items():
         tables[f"sensors/{plain}"] = signal_columns(drop.signals[name])
     if not tables:
-        raise InputError(f'"{one_line(drop.name)}" has no impacts, no history and no signals; there is nothing to write')
+        raise InputError(
+            f'"{one_line(drop.name)}" has no impacts, no history and no signals; there is '
+            "nothing to write"
+        )
     return tables
 
 

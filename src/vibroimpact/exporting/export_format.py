@@ -1,4 +1,6 @@
-"""The registry of export formats: each module of `vibroimpact.exporting.formats` defines one `ExportFormat`."""
+"""The registry of export formats: each module of `vibroimpact.exporting.formats` defines
+one `ExportFormat`.
+"""
 
 from __future__ import annotations
 
@@ -27,14 +29,16 @@ class ExportFormat:
     tested : str
         What the writer was tested against.
     write : callable
-        Takes a `Drop`, returns the bytes of each file by its name. Raises InputError if the format can't hold the drop.
+        Takes a `Drop`, returns the bytes of each file by its name. Raises InputError if the format
+        can't hold the drop.
     notes : callable
         Takes a `Drop`, returns the limitations of the format for it, one sentence each.
     dialog : callable
-        Takes a `Drop`, returns the fields of the dialog of a contact in Adams View for each impact (`dialog_rows`); none by default.
+        Takes a `Drop`, returns the fields of the dialog of a contact in Adams View for each impact
+        (`dialog_rows`); none by default.
     prepare : callable
-        Takes a `Drop`, returns the one that is passed to `write` and `notes`: `as_rigid` for programs that simulate the motion of rigid
-        bodies; by default the drop unchanged.
+        Takes a `Drop`, returns the one that is passed to `write` and `notes`: `as_rigid` for
+        programs that simulate the motion of rigid bodies; by default the drop unchanged.
     """
 
     name: str
@@ -57,7 +61,12 @@ def export_formats() -> Mapping[str, ExportFormat]:
     True
     """
     modules = modules_in("vibroimpact.exporting.formats")
-    found = [value for module in modules for value in vars(module).values() if isinstance(value, ExportFormat)]
+    found = [
+        value
+        for module in modules
+        for value in vars(module).values()
+        if isinstance(value, ExportFormat)
+    ]
     return {one.name: one for one in sorted(found, key=lambda one: one.name)}
 
 

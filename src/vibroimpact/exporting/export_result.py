@@ -20,7 +20,11 @@ _MOST_NAMED = 3
 
 
 def export_result(
-    directory: str | PathLike[str], format: str, output: str | PathLike[str] | None = None, *, force: bool = False
+    directory: str | PathLike[str],
+    format: str,
+    output: str | PathLike[str] | None = None,
+    *,
+    force: bool = False,
 ) -> list[Path]:
     """Export a result folder or a calibration folder to a format of another program.
 
@@ -31,8 +35,8 @@ def export_result(
     format : str
         Name of the format; `export_formats()` lists them.
     output : path, optional
-        The folder to write to, which may exist; by default `DIRECTORY-FORMAT`, next to `directory`. If the format writes a single file
-        and the name has a suffix, it is the name of that file.
+        The folder to write to, which may exist; by default `DIRECTORY-FORMAT`, next to `directory`.
+        If the format writes a single file and the name has a suffix, it is the name of that file.
     force : bool, default False
         Replace existing files of the same names. Other files in the folder are left unchanged.
 
@@ -44,8 +48,8 @@ def export_result(
     Raises
     ------
     InputError
-        If the format is unknown, the folder holds no drop, the format can't represent it, or a file exists already or can't be written;
-        then nothing is written.
+        If the format is unknown, the folder holds no drop, the format can't represent it, or a file
+        exists already or can't be written; then nothing is written.
 
     Examples
     --------
@@ -58,7 +62,12 @@ def export_result(
     """
     found = find_export_format(format)
     drop = found.prepare(load_drop(directory))
-    return save_export(drop, found, default_output(directory, format) if output is None else Path(output), force=force)
+    return save_export(
+        drop,
+        found,
+        default_output(directory, format) if output is None else Path(output),
+        force=force,
+    )
 
 
 def default_output(directory: str | PathLike[str], format: str) -> Path:
@@ -74,7 +83,9 @@ def default_output(directory: str | PathLike[str], format: str) -> Path:
     return folder.with_name(f"{folder.name}-{format}")
 
 
-def save_export(drop: Drop, format: ExportFormat, output: Path, *, force: bool = False) -> list[Path]:
+def save_export(
+    drop: Drop, format: ExportFormat, output: Path, *, force: bool = False
+) -> list[Path]:
     """Write a drop, already prepared for the format, as `export_result` does.
 
     Raises
@@ -89,7 +100,9 @@ def save_export(drop: Drop, format: ExportFormat, output: Path, *, force: bool =
     try:
         _write(contents, targets, output)
     except OSError as error:
-        raise InputError(f"{output}: the files can't be written: {error.strerror or error}") from None
+        raise InputError(
+            f"{output}: the files can't be written: {error.strerror or error}"
+        ) from None
     return list(targets.values())
 
 
@@ -102,7 +115,9 @@ def _targets(contents: Mapping[str, bytes], output: Path) -> dict[str, Path]:
         if output.suffix.lower() in suffixes:
             more = ", ..." if len(contents) > _MOST_NAMED else ""
             shown = ", ".join(list(contents)[:_MOST_NAMED])
-            raise InputError(f"{output}: there are {len(contents)} files to write ({shown}{more}); name a folder")
+            raise InputError(
+                f"{output}: there are {len(contents)} files to write ({shown}{more}); name a folder"
+            )
     return {name: output / name for name in contents}
 
 
@@ -110,9 +125,15 @@ def _check_free(targets: Iterable[Path], *, force: bool) -> None:
     """Raise if a destination is a folder, or a file that may not be replaced."""
     for target in targets:
         if target.is_dir():
-            raise InputError(f"{target}: this is a folder, and a file of that name is to be written; name another place")
+            raise InputError(
+                f"{target}: this is a folder, and a file of that name is to be written; "
+                "name another place"
+            )
         if os.path.lexists(target) and not force:
-            raise InputError(f"{target}: the file is there already; name another place, or replace it with --force")
+            raise InputError(
+                f"{target}: the file is there already; name another place, "
+                "or replace it with --force"
+            )
 
 
 def _write(contents: Mapping[str, bytes], targets: Mapping[str, Path], output: Path) -> None:

@@ -11,7 +11,13 @@ from vibroimpact.cases.case import Case
 from vibroimpact.cases.motion import motion_of
 from vibroimpact.cases.oblique import normal_motion_of, oblique_of
 from vibroimpact.cases.reader import load_case, read_case
-from vibroimpact.cases.rigid import by_speed_of, deforms, elastic_names, mass_of_sphere, rigid_problem
+from vibroimpact.cases.rigid import (
+    by_speed_of,
+    deforms,
+    elastic_names,
+    mass_of_sphere,
+    rigid_problem,
+)
 from vibroimpact.contact.speed_function import SpeedFunction
 from vibroimpact.errors import InputError
 from vibroimpact.exporting.contact_parameters import laws_at_impacts
@@ -24,7 +30,8 @@ from vibroimpact.results.result import Result, result_of
 
 
 def load_drop(directory: str | PathLike[str]) -> Drop:
-    """Return the drop of a result folder, or of the calibrated case of a calibration folder, which is simulated.
+    """Return the drop of a result folder, or of the calibrated case of a calibration folder, which
+    is simulated.
 
     Parameters
     ----------
@@ -34,7 +41,8 @@ def load_drop(directory: str | PathLike[str]) -> Drop:
     Raises
     ------
     InputError
-        If it is neither, a file is missing or damaged, or the result is that of a problem defined in Python, which has no case.
+        If it is neither, a file is missing or damaged, or the result is that of a problem defined
+        in Python, which has no case.
     """
     folder = Path(directory)
     recover(folder)
@@ -42,15 +50,21 @@ def load_drop(directory: str | PathLike[str]) -> Drop:
         return _of_calibration(folder)
     result = read_result(folder)
     if not result.case:
-        raise InputError(f"{folder}: this run has no case.toml, as its problem was defined in Python; an export needs a case")
+        raise InputError(
+            f"{folder}: this run has no case.toml, as its problem was defined in Python; "
+            "an export needs a case"
+        )
     try:
         return drop_of_result(result, read_case(result.case))
     except InputError as error:
         raise InputError(f"{folder / 'case.toml'}: {error}") from None
 
 
-def drop_of_result(result: Result, case: Case, function: tuple[str, SpeedFunction] | None = None) -> Drop:
-    """Return the drop of a run, with the corresponding rigid-body problem if bodies deform or a function of the speed is given.
+def drop_of_result(
+    result: Result, case: Case, function: tuple[str, SpeedFunction] | None = None
+) -> Drop:
+    """Return the drop of a run, with the corresponding rigid-body problem if bodies deform or a
+    function of the speed is given.
 
     Parameters
     ----------
@@ -63,10 +77,19 @@ def drop_of_result(result: Result, case: Case, function: tuple[str, SpeedFunctio
     """
     _check_flat(case)
     if function is not None and by_speed_of(case):
-        words = f"{function[0]} is fitted over the approach speed, and another parameter is given as a function of it"
-        raise InputError(f"{words}; give that as a number", f"contact.{next(iter(by_speed_of(case)))}")
+        words = (
+            f"{function[0]} is fitted over the approach speed, and another parameter is given "
+            "as a function of it"
+        )
+        raise InputError(
+            f"{words}; give that as a number", f"contact.{next(iter(by_speed_of(case)))}"
+        )
     found, motion = result.deflection, normal_motion_of(case)
-    surface = {} if found is None else {"time": found.time, "x": found.x, "y": found.y, "height": found.height.astype(float)}
+    surface = (
+        {}
+        if found is None
+        else {"time": found.time, "x": found.x, "y": found.y, "height": found.height.astype(float)}
+    )
     if found is not None:
         surface["sphere_position"] = found.sphere_position
     return Drop(
@@ -104,7 +127,10 @@ def drop_of_result(result: Result, case: Case, function: tuple[str, SpeedFunctio
 def _check_flat(case: Case) -> None:
     """Raise if the sphere falls on another sphere, which no export format supports."""
     if case.plate.radius is not None:
-        raise InputError("only a drop on a flat plate can be exported, and this sphere falls on another sphere", "plate.radius")
+        raise InputError(
+            "only a drop on a flat plate can be exported, and this sphere falls on another sphere",
+            "plate.radius",
+        )
 
 
 def _of_calibration(folder: Path) -> Drop:
@@ -120,20 +146,29 @@ def _of_calibration(folder: Path) -> Drop:
     except DamageError as error:
         raise InputError(f"{folder / name}: {error}; make the calibration anew") from None
     except KeyError as error:
-        raise InputError(f"{folder / name}: the file is damaged: it has no {error}; make the calibration anew") from None
+        raise InputError(
+            f"{folder / name}: the file is damaged: it has no {error}; make the calibration anew"
+        ) from None
     except (OSError, ValueError, TypeError, AttributeError) as error:
-        raise InputError(f"{folder / name}: the file is missing or damaged: {short_reason(error)}; make the calibration anew") from None
+        raise InputError(
+            f"{folder / name}: the file is missing or damaged: {short_reason(error)}; make "
+            "the calibration anew"
+        ) from None
     case = load_case(folder / name)
     _check_flat(case)
     return drop_of_result(result_of(simulate(case.to_problem())), case, function)
 
 
 def _fitted(found: dict[str, Any]) -> tuple[str, SpeedFunction] | None:
-    """Return the fitted function; None if it is a constant, which the case holds, or not of a parameter of the contact law."""
+    """Return the fitted function; None if it is a constant, which the case holds, or not
+    of a parameter of the contact law.
+    """
     if "parameters" in found:  # of the friction
         return None
     fit = found["fit"]
     coefficients = tuple(float(one) for one in fit["coefficients"])
     if len(coefficients) == 1 or "." in found["parameter"]:
         return None
-    return str(found["parameter"]), SpeedFunction(coefficients, float(fit["from_speed_m_s"]), float(fit["to_speed_m_s"]))
+    return str(found["parameter"]), SpeedFunction(
+        coefficients, float(fit["from_speed_m_s"]), float(fit["to_speed_m_s"])
+    )

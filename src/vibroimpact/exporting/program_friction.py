@@ -1,4 +1,6 @@
-"""Friction of a drop for programs with friction laws of their own, and the limitations of such an export."""
+"""Friction of a drop for programs with friction laws of their own, and the limitations of
+such an export.
+"""
 
 from __future__ import annotations
 
@@ -19,7 +21,9 @@ from vibroimpact.errors import InputError
 from vibroimpact.exporting.contact_parameters import approach_speeds, laws_of_impacts
 from vibroimpact.exporting.drop import Drop
 
-COULOMB = dict.fromkeys(("coulomb", "mdr", "mindlin", "mindlin-rescale", "mindlin-force"), "coulomb")
+COULOMB = dict.fromkeys(
+    ("coulomb", "mdr", "mindlin", "mindlin-rescale", "mindlin-force"), "coulomb"
+)
 """The friction laws for which Coulomb's stands in programs that have no other."""
 
 
@@ -33,7 +37,8 @@ def friction_in(drop: Drop, program: str, stands_for: Mapping[str, str]) -> Fric
     program : str
         Name of the program.
     stands_for : mapping of str to str
-        Which friction law stands for which in the program, by their names: those that it has itself stand for themselves.
+        Which friction law stands for which in the program, by their names: those that it has itself
+        stand for themselves.
 
     Raises
     ------
@@ -44,26 +49,39 @@ def friction_in(drop: Drop, program: str, stands_for: Mapping[str, str]) -> Fric
     --------
     >>> from types import SimpleNamespace
     >>> coulomb = find_friction_law("coulomb")(coefficient=0.3)
-    >>> friction_in(SimpleNamespace(oblique=SimpleNamespace(friction=coulomb)), "EXUDYN", {"coulomb": "coulomb"}).coefficient
+    >>> friction_in(
+    ...     SimpleNamespace(oblique=SimpleNamespace(friction=coulomb)),
+    ...     "EXUDYN",
+    ...     {"coulomb": "coulomb"},
+    ... ).coefficient
     0.3
     """
     law = None if drop.oblique is None else drop.oblique.friction
     if law is None:
         return None
     if law.name not in stands_for:
-        elastic = all(issubclass(find_friction_law(name), CompliantFriction) for name in stands_for.values())
+        elastic = all(
+            issubclass(find_friction_law(name), CompliantFriction) for name in stands_for.values()
+        )
         of_spring = ", with a contact law whose spring has the exponent 1.5" if elastic else ""
         others = f"{', '.join(stands_for)} can{of_spring}"
-        raise InputError(f"{law.name} can't be written for {program}; {others}", "contact.friction.law")
+        raise InputError(
+            f"{law.name} can't be written for {program}; {others}", "contact.friction.law"
+        )
     kind = find_friction_law(stands_for[law.name])
     return kind(**{item.name: getattr(law, item.name) for item in fields(kind)})
 
 
-def spring_of_overlap(law: CompliantFriction, drop: Drop, stiffness: float, exponent: float) -> float:
-    r"""Return the tangential stiffness over the root of the overlap [N/m^1.5], from which a program takes the radius of the contact.
+def spring_of_overlap(
+    law: CompliantFriction, drop: Drop, stiffness: float, exponent: float
+) -> float:
+    r"""Return the tangential stiffness over the root of the overlap [N/m^1.5], from which a program
+    takes the radius of the contact.
 
-    Here that is Hertz's under the normal force, :math:`a = \sqrt{R D}`. For the spring :math:`K \delta^{3/2}` the two are
-    proportional; for another exponent they agree at the largest overlap of the first impact, without damping.
+    Here that is Hertz's under the normal force, :math:`a = \sqrt{R D}`. For the spring :math:`K
+    \delta^{3/2}` the two are
+    proportional; for another exponent they agree at the largest overlap of the first impact,
+    without damping.
 
     Parameters
     ----------
@@ -74,33 +92,42 @@ def spring_of_overlap(law: CompliantFriction, drop: Drop, stiffness: float, expo
     stiffness, exponent : float
         Of the normal spring [N/m^n].
     """
-    depth = (0.5 * (exponent + 1.0) * drop.mass * approach_speeds(drop)[0] ** 2 / stiffness) ** (1.0 / (exponent + 1.0))
+    depth = (0.5 * (exponent + 1.0) * drop.mass * approach_speeds(drop)[0] ** 2 / stiffness) ** (
+        1.0 / (exponent + 1.0)
+    )
     hertz = float(hertz_stiffness(law.effective_modulus, law.effective_radius))
     wider = (stiffness * depth ** (exponent - 1.5) / hertz) ** (1.0 / 3.0)
     return float(2.0 * law.effective_shear_modulus * np.sqrt(law.effective_radius) * wider)
 
 
 def friction_notes(drop: Drop, program: str, written: FrictionLaw | None) -> list[str]:
-    """Return the limitations of the motion along the plate in a program that has the friction law `written` for it."""
+    """Return the limitations of the motion along the plate in a program that has the
+    friction law `written` for it.
+    """
     law = None if drop.oblique is None else drop.oblique.friction
     if drop.oblique is None or law is None or written is None:
         return []
     notes = []
     if written.name != law.name:
         notes += [
-            f"{program} has no {law.name}; its {written.name} stands for it, which is the same as long as all of the contact slips.",
-            f"The first impact ends at {_first_rebound(drop, written):.4g} m/s along the plate under {written.name}, and at "
+            f"{program} has no {law.name}; its {written.name} stands for it, which is the "
+            "same as long as all of the contact slips.",
+            f"The first impact ends at {_first_rebound(drop, written):.4g} m/s along the "
+            f"plate under {written.name}, and at "
             f"{_first_rebound(drop, law):.4g} m/s under {law.name}.",
         ]
     hertz = isinstance(drop.laws[0], Hertz) and drop.laws[0].exponent == 1.5
     if isinstance(written, CompliantFriction) and not hertz:
         notes.append(
-            f"{program} takes the radius of the contact from the overlap; here it follows from the normal force with its damping. "
+            f"{program} takes the radius of the contact from the overlap; here it follows "
+            "from the normal force with its damping. "
             "Where the contact sticks, velocities along the plate differ."
         )
     if law.rolling_coefficient:
         given = f"contact.friction.rolling_coefficient, {law.rolling_coefficient:g},"
-        notes.append(f"This input of {program} is written without rolling resistance: {given} is left out.")
+        notes.append(
+            f"This input of {program} is written without rolling resistance: {given} is left out."
+        )
     if isinstance(law, CompliantFriction) and drop.oblique.spin[2]:
         notes.append(f"{program} leaves the spin about the normal as it is.")
     return notes
@@ -113,7 +140,11 @@ def _first_rebound(drop: Drop, friction: FrictionLaw) -> float:
     oblique = replace(
         drop.oblique,
         velocity=(first["approach_velocity_x_m_s"], first["approach_velocity_y_m_s"]),
-        spin=(first["spin_x_before_rad_s"], first["spin_y_before_rad_s"], first["spin_z_before_rad_s"]),
+        spin=(
+            first["spin_x_before_rad_s"],
+            first["spin_y_before_rad_s"],
+            first["spin_z_before_rad_s"],
+        ),
         friction=friction,
         size=None,
     )

@@ -1,4 +1,6 @@
-"""Interpolation of the sphere's motion at given times, from a history that is dense in contact and sparse in flight."""
+"""Interpolation of the sphere's motion at given times, from a history that is dense in
+contact and sparse in flight.
+"""
 
 from __future__ import annotations
 
@@ -11,22 +13,32 @@ from vibroimpact.dynamics.columns import OBLIQUE_HISTORY_COLUMNS
 
 
 def motion_at(history: Mapping[str, Floats], times: Floats) -> dict[str, Floats]:
-    """Return position, velocity, acceleration and force of the sphere, by column name; also its motion along the plate, if it has one.
+    """Return position, velocity, acceleration and force of the sphere, by column name; also its
+    motion along the plate, if it has one.
 
-    Positions and the velocity along the normal are cubic Hermite interpolants, the others are interpolated linearly between the points
-    of the history; all are exact in free flight.
+    Positions and the velocity along the normal are cubic Hermite interpolants, the others are
+    interpolated linearly between the points of the history; all are exact in free flight.
 
     Parameters
     ----------
     history : mapping of str to array
-        As in a `Drop`; times do not decrease, and a time occurs twice where a quantity is discontinuous.
+        As in a `Drop`; times do not decrease, and a time occurs twice where a quantity is
+        discontinuous.
     times : array, shape (times,)
         Times within the history [s].
 
     Examples
     --------
-    >>> fall = {"time_s": [0, 1], "position_m": [5, 0], "velocity_m_s": [0, -10], "acceleration_m_s2": [-10, -10], "force_N": [0, 0]}
-    >>> motion_at({name: np.array(values, dtype=float) for name, values in fall.items()}, np.array([0.5]))["position_m"].tolist()
+    >>> fall = {
+    ...     "time_s": [0, 1],
+    ...     "position_m": [5, 0],
+    ...     "velocity_m_s": [0, -10],
+    ...     "acceleration_m_s2": [-10, -10],
+    ...     "force_N": [0, 0],
+    ... }
+    >>> motion_at(
+    ...     {name: np.array(values, dtype=float) for name, values in fall.items()}, np.array([0.5])
+    ... )["position_m"].tolist()
     [3.75]
     """
     time = history["time_s"]
@@ -43,7 +55,11 @@ def motion_at(history: Mapping[str, Floats], times: Floats) -> dict[str, Floats]
         "force_N": _linear(force, before, part),
     }
     if "position_x_m" in history:
-        found |= {name: _linear(history[name], before, part) for name, column in OBLIQUE_HISTORY_COLUMNS.items() if not column.in_ledger}
+        found |= {
+            name: _linear(history[name], before, part)
+            for name, column in OBLIQUE_HISTORY_COLUMNS.items()
+            if not column.in_ledger
+        }
         for axis in "xy":
             along, speed = history[f"position_{axis}_m"], history[f"velocity_{axis}_m_s"]
             found[f"position_{axis}_m"] = _cubic(along, speed, before, step, part)

@@ -1,4 +1,6 @@
-"""The rigid-body version of a drop, for programs that support rigid bodies only: all deformation is in the contact law."""
+"""The rigid-body version of a drop, for programs that support rigid bodies only: all
+deformation is in the contact law.
+"""
 
 from __future__ import annotations
 
@@ -22,9 +24,10 @@ _SAME = 1e-11
 def as_rigid(drop: Drop) -> Drop:
     """Return the same drop between rigid bodies, simulated anew.
 
-    The contact laws keep the order of the impacts: the first law is that of the first impact of the rigid bodies, and so on, though
-    the approach speeds differ from those of elastic bodies, which absorb energy. A drop of rigid bodies is returned unchanged, unless
-    a parameter is a function of the approach speed; then it is simulated with that function.
+    The contact laws keep the order of the impacts: the first law is that of the first impact of the
+    rigid bodies, and so on, though the approach speeds differ from those of elastic bodies, which
+    absorb energy. A drop of rigid bodies is returned unchanged, unless a parameter is a function of
+    the approach speed; then it is simulated with that function.
 
     Raises
     ------
@@ -32,19 +35,31 @@ def as_rigid(drop: Drop) -> Drop:
         If the sphere flies through air or touches in a liquid, or the plate is moved.
     """
     if drop.motion is not None:
-        raise InputError("programs get a plate at rest; formats of data hold a drop on one that moves", "plate.motion")
+        raise InputError(
+            "programs get a plate at rest; formats of data hold a drop on one that moves",
+            "plate.motion",
+        )
     if drop.in_air:
-        raise InputError("programs get drops in a vacuum; formats of data hold one in air", "drop.air")
+        raise InputError(
+            "programs get drops in a vacuum; formats of data hold one in air", "drop.air"
+        )
     if drop.in_liquid:
-        raise InputError("programs get contacts without a liquid; formats of data hold one in it", "contact.liquid")
+        raise InputError(
+            "programs get contacts without a liquid; formats of data hold one in it",
+            "contact.liquid",
+        )
     if drop.rigid is None:
         return drop
-    response = simulate(drop.rigid) if drop.function is None else _by_function(drop.rigid, *drop.function)
+    response = (
+        simulate(drop.rigid) if drop.function is None else _by_function(drop.rigid, *drop.function)
+    )
     deforms = bool(drop.elastic or drop.local_element or drop.finite_sphere)
     return replace(
         drop,
         name=f"{drop.name}, rigid" if deforms else drop.name,
-        laws=laws_at_impacts(drop.rigid, response.impacts["approach_speed_m_s"]) if drop.rigid.by_speed else drop.laws,
+        laws=laws_at_impacts(drop.rigid, response.impacts["approach_speed_m_s"])
+        if drop.rigid.by_speed
+        else drop.laws,
         rigid=None,
         original_impacts=drop.impacts if deforms else {},
         end_time=float(response.end_time[0]),
@@ -56,15 +71,23 @@ def as_rigid(drop: Drop) -> Drop:
 
 
 def _by_function(problem: Problem, name: str, function: SpeedFunction) -> Response:
-    """Return the response in which the parameter of each impact is the function at its own approach speed.
+    """Return the response in which the parameter of each impact is the function at its own approach
+    speed.
 
-    Fixed-point iteration: the speed of an impact depends on the impacts before it only, so that each pass fixes at least one more.
-    Convergence is usually much faster, since the parameter varies slowly with the speed.
+    Fixed-point iteration: the speed of an impact depends on the impacts before it only, so that
+    each pass fixes at least one more. Convergence is usually much faster, since the parameter
+    varies slowly with the speed.
     """
     law, speeds = problem.laws[0], np.array([first_approach_speed(problem)])
     for _ in range(_PASSES):
-        response = simulate(replace(problem, laws=tuple(law_at(law, name, function, float(speed)) for speed in speeds)))
+        response = simulate(
+            replace(
+                problem, laws=tuple(law_at(law, name, function, float(speed)) for speed in speeds)
+            )
+        )
         before, speeds = speeds, response.impacts["approach_speed_m_s"]
-        if not len(speeds) or (len(speeds) == len(before) and np.allclose(speeds, before, rtol=_SAME, atol=0.0)):
+        if not len(speeds) or (
+            len(speeds) == len(before) and np.allclose(speeds, before, rtol=_SAME, atol=0.0)
+        ):
             break
     return response

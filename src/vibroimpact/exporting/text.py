@@ -24,20 +24,37 @@ _MOST = 6
 def format_table() -> RenderableType:
     """Return the table of export formats."""
     formats = export_formats()
-    said = {"read by": [one.program for one in formats.values()], "files": [one.files for one in formats.values()]}
+    said = {
+        "read by": [one.program for one in formats.values()],
+        "files": [one.files for one in formats.values()],
+    }
     said["tested"] = [one.tested for one in formats.values()]
     table = TerminalTable(
-        [TerminalColumn("format", list(formats), text=True), *(TerminalColumn(name, cells, text=True) for name, cells in said.items())]
+        [
+            TerminalColumn("format", list(formats), text=True),
+            *(TerminalColumn(name, cells, text=True) for name, cells in said.items()),
+        ]
     )
-    return Group(table, Text(), Text("vibroimpact export DIR --to FORMAT writes a result folder, or a calibration folder, in one of them."))
+    return Group(
+        table,
+        Text(),
+        Text(
+            "vibroimpact export DIR --to FORMAT writes a result folder, or a calibration "
+            "folder, in one of them."
+        ),
+    )
 
 
 def export_summary(drop: Drop, format: ExportFormat, files: Sequence[Path]) -> RenderableType:
-    """Return the files written, what a dialog takes, the limitations of the format, the doubts about the drop, and how it was tested."""
+    """Return the files written, what a dialog takes, the limitations of the format, the
+    doubts about the drop, and how it was tested.
+    """
     shown = files if len(files) <= _MOST else files[: _MOST - 1]
     dialog, speeds = format.dialog(drop), drop.impacts["approach_speed_m_s"].tolist()
     names = [f"impact {number} at {digits(speed)} m/s" for number, speed in enumerate(speeds, 1)]
-    typed: list[RenderableType] = [Text(DIALOG_TITLE), cells_table(dialog_cells(dialog, names))] if dialog else []
+    typed: list[RenderableType] = (
+        [Text(DIALOG_TITLE), cells_table(dialog_cells(dialog, names))] if dialog else []
+    )
     more = f"and {len(files) - len(shown)} more files in {commonpath(files)}"
     return Group(
         *(Text(f"wrote {file}") for file in shown),

@@ -1,7 +1,9 @@
-"""Atomic writes of a file, of a folder, and of several files into an existing folder: complete, or not at all.
+"""Atomic writes of a file, of a folder, and of several files into an existing folder: complete, or
+not at all.
 
-Everything is written under a working name on the same file system (`vibroimpact.files.working_files`) and renamed at the end. What a
-process that died has left is cleared or completed by `vibroimpact.files.recover`.
+Everything is written under a working name on the same file system
+(`vibroimpact.files.working_files`) and renamed at the end. What a process that died has left is
+cleared or completed by `vibroimpact.files.recover`.
 """
 
 from __future__ import annotations
@@ -18,10 +20,21 @@ from pathlib import Path
 from typing import Any
 
 from vibroimpact.errors import InputError
-from vibroimpact.files.working_files import COMPLETE, NEW, OLD, inner_path, locked, new_working_path, remove, working_path
+from vibroimpact.files.working_files import (
+    COMPLETE,
+    NEW,
+    OLD,
+    inner_path,
+    locked,
+    new_working_path,
+    remove,
+    working_path,
+)
 
 _PUT, _GONE = "put", "gone"
-"""Subfolders of a working folder: files to be moved to their destinations, and empty files named as those to be deleted."""
+"""Subfolders of a working folder: files to be moved to their destinations, and empty
+files named as those to be deleted.
+"""
 
 _CURRENT_FOLDER = -100  # AT_FDCWD of Linux: relative paths start from the current directory
 _EXCHANGE = 2  # RENAME_EXCHANGE of renameat2(2)
@@ -32,14 +45,17 @@ _EXCHANGE = 2  # RENAME_EXCHANGE of renameat2(2)
 
 @contextmanager
 def atomic_file(target: Path) -> Iterator[Path]:
-    """Yield the path of an empty working file, which replaces `target` when the block ends without an error.
+    """Yield the path of an empty working file, which replaces `target` when the block ends without
+    an error.
 
-    The working file is locked; HDF5 locks the files that it writes too, so open it there with `locking=False`.
+    The working file is locked; HDF5 locks the files that it writes too, so open it there with
+    `locking=False`.
 
     Parameters
     ----------
     target : pathlib.Path
-        The destination, unchanged until then. If it is a symbolic link, the file that it points to is replaced.
+        The destination, unchanged until then. If it is a symbolic link, the file that it points to
+        is replaced.
 
     Raises
     ------
@@ -62,7 +78,8 @@ def write_file(target: Path, content: bytes | Iterable[bytes], *, durable: bool 
     content : bytes or iterable of bytes
         The content of the file.
     durable : bool, default False
-        Flush it to the disk (fsync) before it is renamed, so that a loss of power leaves no incomplete file.
+        Flush it to the disk (fsync) before it is renamed, so that a loss of power leaves no
+        incomplete file.
 
     Raises
     ------
@@ -112,15 +129,16 @@ def _make_empty_file(path: Path) -> None:
 
 @contextmanager
 def atomic_folder(target: Path, check: Callable[[], None]) -> Iterator[Path]:
-    """Yield the path of an empty working folder, which replaces `target` when the block ends without an error.
+    """Yield the path of an empty working folder, which replaces `target` when the block ends
+    without an error.
 
     Parameters
     ----------
     target : pathlib.Path
         The destination; an existing folder stays until then.
     check : callable
-        Raises if the folder may not be placed there. Called just before the replacement, since another process may have created
-        `target` in the meantime.
+        Raises if the folder may not be placed there. Called just before the replacement, since
+        another process may have created `target` in the meantime.
 
     Raises
     ------
@@ -142,7 +160,8 @@ def _put_in_place(working: Path, target: Path) -> None:
     if exchange(working, target):
         remove(working)
         return
-    # between the two renames nothing has the name `target`; if this process dies then, `recover` restores the old folder
+    # between the two renames nothing has the name `target`; if this process dies then, `recover`
+    # restores the old folder
     aside = working_path(target, OLD)
     with locked(target):
         target.rename(aside)
@@ -155,7 +174,9 @@ def _put_in_place(working: Path, target: Path) -> None:
 
 
 def _flush(folder: Path) -> None:
-    """Flush the files of a folder to the disk (fsync), so that either the old or the new folder survives a loss of power."""
+    """Flush the files of a folder to the disk (fsync), so that either the old or the new
+    folder survives a loss of power.
+    """
     for place, _, names in os.walk(folder):
         for name in names:
             descriptor = os.open(os.path.join(place, name), os.O_RDWR)
@@ -171,7 +192,8 @@ def exchange(first: Path, second: Path) -> bool:
     Returns
     -------
     bool
-        False, with nothing changed, if the system or the file system does not support it, or one of the names does not exist.
+        False, with nothing changed, if the system or the file system does not support it, or one of
+        the names does not exist.
 
     Examples
     --------
@@ -179,7 +201,13 @@ def exchange(first: Path, second: Path) -> bool:
     False
     """
     rename = _renameat2()
-    return rename is not None and rename(_CURRENT_FOLDER, os.fsencode(first), _CURRENT_FOLDER, os.fsencode(second), _EXCHANGE) == 0
+    return (
+        rename is not None
+        and rename(
+            _CURRENT_FOLDER, os.fsencode(first), _CURRENT_FOLDER, os.fsencode(second), _EXCHANGE
+        )
+        == 0
+    )
 
 
 @cache
@@ -189,7 +217,13 @@ def _renameat2() -> Any:
         return None
     function = getattr(ctypes.CDLL(None), "renameat2", None)
     if function is not None:
-        function.argtypes = (ctypes.c_int, ctypes.c_char_p, ctypes.c_int, ctypes.c_char_p, ctypes.c_uint)
+        function.argtypes = (
+            ctypes.c_int,
+            ctypes.c_char_p,
+            ctypes.c_int,
+            ctypes.c_char_p,
+            ctypes.c_uint,
+        )
     return function
 
 
@@ -199,8 +233,9 @@ def _renameat2() -> Any:
 def write_into(folder: Path, write: Callable[[Path], None], goes: tuple[str, ...] = ()) -> None:
     """Write files into an existing folder: all of them or none.
 
-    They are written into a working folder inside it, which is renamed once all are complete; then each file is moved to its
-    destination. If the process dies in between, `recover` moves the rest, so that files of two writes never stay mixed.
+    They are written into a working folder inside it, which is renamed once all are complete; then
+    each file is moved to its destination. If the process dies in between, `recover` moves the rest,
+    so that files of two writes never stay mixed.
 
     Parameters
     ----------
@@ -220,7 +255,9 @@ def write_into(folder: Path, write: Callable[[Path], None], goes: tuple[str, ...
         (working / _PUT).mkdir()
         write(working / _PUT)
         written = _files(working / _PUT)
-        for name in {file.relative_to(folder) for pattern in goes for file in folder.glob(pattern)} - set(written):
+        for name in {
+            file.relative_to(folder) for pattern in goes for file in folder.glob(pattern)
+        } - set(written):
             (working / _GONE / name).parent.mkdir(parents=True, exist_ok=True)
             (working / _GONE / name).touch()
         check_destinations(working, folder)
@@ -230,7 +267,8 @@ def write_into(folder: Path, write: Callable[[Path], None], goes: tuple[str, ...
 
 
 def check_destinations(working: Path, folder: Path) -> None:
-    """Raise OSError unless all files of a working folder can be moved to, or deleted from, their places inside `folder`.
+    """Raise OSError unless all files of a working folder can be moved to, or deleted from, their
+    places inside `folder`.
 
     A link that leads out of `folder` is refused: nothing outside of it is written or deleted.
     """
@@ -241,13 +279,16 @@ def check_destinations(working: Path, folder: Path) -> None:
             if place.is_dir():
                 raise IsADirectoryError(EISDIR, os.strerror(EISDIR), str(place))
             if not place.parent.resolve().is_relative_to(inside):
-                raise OSError(ELOOP, "this is a link that leads out of the folder", str(place.parent))
+                raise OSError(
+                    ELOOP, "this is a link that leads out of the folder", str(place.parent)
+                )
             if place.parent.exists() and not os.access(place.parent, os.W_OK):
                 raise PermissionError(EACCES, os.strerror(EACCES), str(place.parent))
 
 
 def move_files(complete: Path, folder: Path) -> None:
-    """Move the files of a complete working folder to their destinations, delete the files it lists for deletion, and remove it.
+    """Move the files of a complete working folder to their destinations, delete the files it lists
+    for deletion, and remove it.
 
     Raises
     ------
@@ -264,4 +305,8 @@ def move_files(complete: Path, folder: Path) -> None:
 
 def _files(folder: Path) -> list[Path]:
     """Return the relative paths of all files below a folder, sorted."""
-    return [path.relative_to(folder) for path in sorted(folder.rglob("*")) if not path.is_dir() or path.is_symlink()]
+    return [
+        path.relative_to(folder)
+        for path in sorted(folder.rglob("*"))
+        if not path.is_dir() or path.is_symlink()
+    ]

@@ -15,7 +15,9 @@ from vibroimpact.files.json_reading import JSON_TABLE, read_json_table
 from vibroimpact.files.reading import FileKind, with_path
 
 SHA256, CHECK_SUMS = "sha256", "check_sums"
-"""Keys of a JSON file: the checksum of the rest of its content, and the checksums of other files."""
+"""Keys of a JSON file: the checksum of the rest of its content, and the checksums of
+other files.
+"""
 
 
 _SUMMARY = "summary.json"
@@ -26,11 +28,15 @@ class DamageError(ValueError):
 
 
 def digest(content: Any) -> str:
-    """Return the SHA-256 of numbers, texts, and nested tables and lists of them; independent of the order of keys.
+    """Return the SHA-256 of numbers, texts, and nested tables and lists of them; independent of the
+    order of keys.
 
     Examples
     --------
-    >>> digest({"a": 1.0, "b": [2.0]}) == digest({"b": [2.0], "a": 1.0}), digest([1.0]) == digest([1.5])
+    >>> (
+    ...     digest({"a": 1.0, "b": [2.0]}) == digest({"b": [2.0], "a": 1.0}),
+    ...     digest([1.0]) == digest([1.5]),
+    ... )
     (True, False)
     """
     return hashlib.sha256(json.dumps(content, sort_keys=True, default=_plain).encode()).hexdigest()
@@ -40,18 +46,22 @@ def sealed(table: Mapping[str, Any]) -> bytes:
     """Return a table as JSON in UTF-8 that includes its own checksum."""
     text = bytearray()
     # by parts, as json.dumps keeps millions of them for a table of many rows
-    for characters in json.JSONEncoder(indent=2, allow_nan=False).iterencode({**table, SHA256: digest(table)}):
+    for characters in json.JSONEncoder(indent=2, allow_nan=False).iterencode(
+        {**table, SHA256: digest(table)}
+    ):
         text += characters.encode()
     return bytes(text + b"\n")
 
 
 def read_sealed(path: Path, kind: FileKind = JSON_TABLE) -> dict[str, Any]:
-    """Read a table written by `sealed` and verify its checksum; one without checksum, from an earlier version, is not verified.
+    """Read a table written by `sealed` and verify its checksum; one without checksum, from an
+    earlier version, is not verified.
 
     Raises
     ------
     DamageError
-        If it can't be read, is not a table in JSON of bounded size, or its checksum does not match; the message does not include the path.
+        If it can't be read, is not a table in JSON of bounded size, or its checksum does not match;
+        the message does not include the path.
     """
     try:
         table = read_json_table(path, kind)
@@ -84,7 +94,8 @@ def check_file(path: Path, expected: str | None) -> None:
 
 
 def recorded_digest(path: Path) -> str | None:
-    """Return the SHA-256 of a file that the `summary.json` beside it records; None if there is no summary, or it records none.
+    """Return the SHA-256 of a file that the `summary.json` beside it records; None if there is no
+    summary, or it records none.
 
     Raises
     ------

@@ -15,19 +15,26 @@ from vibroimpact.files.check_sums import CHANGED, DamageError, check_file
 from vibroimpact.files.hdf5 import read_array, short_reason
 
 _TIMEOUT = 20.0  # seconds
-_SOLID = 32_000_000  # bytes up to which an array is read as a trial; of larger ones the places of their parts are looked up
-_OTHER_PROCESS = "import sys; from pathlib import Path; from vibroimpact.files.damaged_part import {0}; print({0}(Path(sys.argv[1])))"
+# bytes up to which an array is read as a trial; of larger ones the places of their parts are looked
+# up
+_SOLID = 32_000_000
+_OTHER_PROCESS = (
+    "import sys; from pathlib import Path; from vibroimpact.files.damaged_part import {0}; "
+    "print({0}(Path(sys.argv[1])))"
+)
 
 
 def check_hdf5(path: Path, expected: str | None) -> None:
-    """Verify the SHA-256 of an HDF5 file; where none is known, verify that HDF5 neither hangs nor crashes on it.
+    """Verify the SHA-256 of an HDF5 file; where none is known, verify that HDF5 neither hangs nor
+    crashes on it.
 
     Raises
     ------
     OSError
         If it can't be read.
     DamageError
-        If it does not match; the message names the damaged part, if it can be located. If HDF5 crashes, or does not end in time.
+        If it does not match; the message names the damaged part, if it can be located. If HDF5
+        crashes, or does not end in time.
     """
     if expected is None:
         if not endures(path):
@@ -40,7 +47,9 @@ def check_hdf5(path: Path, expected: str | None) -> None:
 
 
 def damaged_part(path: Path) -> str:
-    """Return a description of the damaged part of an HDF5 file, beginning with its name; "" if it can't be located."""
+    """Return a description of the damaged part of an HDF5 file, beginning with its name;
+    "" if it can't be located.
+    """
     done = _in_other_process(first_damaged, path)
     return done.stdout.strip() if done is not None and done.returncode == 0 else ""
 
@@ -59,21 +68,30 @@ def endures(path: Path) -> bool:
         return True
     if done is None:
         cause = "it is damaged, or its disk or this computer is too slow for it"
-        raise DamageError(f"HDF5 did not get through the file within {_TIMEOUT:g} s: {cause}; copy it to another disk, or make it anew")
+        raise DamageError(
+            f"HDF5 did not get through the file within {_TIMEOUT:g} s: {cause}; copy it to "
+            "another disk, or make it anew"
+        )
     return done.returncode >= 0
 
 
-def _in_other_process(function: Callable[[Path], object], path: Path) -> subprocess.CompletedProcess[str] | None:
+def _in_other_process(
+    function: Callable[[Path], object], path: Path
+) -> subprocess.CompletedProcess[str] | None:
     """Run a function of this module on a file in another process; None if it takes too long."""
     command = [sys.executable, "-c", _OTHER_PROCESS.format(function.__name__), str(path)]
     try:
-        return subprocess.run(command, capture_output=True, text=True, timeout=_TIMEOUT, check=False)
+        return subprocess.run(
+            command, capture_output=True, text=True, timeout=_TIMEOUT, check=False
+        )
     except subprocess.TimeoutExpired:
         return None
 
 
 def first_damaged(path: Path) -> str:
-    """Return the description of the first damaged group or dataset, found in this process; "" if there is none."""
+    """Return the description of the first damaged group or dataset, found in this
+    process; "" if there is none.
+    """
     with h5py.File(path, "r") as file:
         for name, member in _all_members(file, set()):
             if isinstance(member, Exception):
@@ -87,7 +105,9 @@ def first_damaged(path: Path) -> str:
 
 
 def try_all(path: Path) -> None:
-    """Open all groups, attributes and arrays of a file; a fault that raises an error is left to who reads the file."""
+    """Open all groups, attributes and arrays of a file; a fault that raises an error is
+    left to who reads the file.
+    """
     with suppress(Exception), h5py.File(path, "r") as file:
         for member in (file, *(member for _, member in _all_members(file, set()))):
             with suppress(Exception):
@@ -100,7 +120,9 @@ def try_all(path: Path) -> None:
 
 
 def _all_members(group: h5py.Group, seen: set[int]) -> Iterator[tuple[str, Any]]:
-    """Yield the path and the content of all members of a group, or the error that they raise; links to other files are left out."""
+    """Yield the path and the content of all members of a group, or the error that they
+    raise; links to other files are left out.
+    """
     for name in group:
         path = f"{group.name.strip('/')}/{name}".lstrip("/")
         try:

@@ -18,13 +18,17 @@ from vibroimpact.errors import InputError
 from vibroimpact.files.check_sums import DamageError
 
 FORMAT = ("v110", "v110")
-"""File format of HDF5 1.10 (2016): object headers have checksums, and small datasets have little overhead."""
+"""File format of HDF5 1.10 (2016): object headers have checksums, and small datasets have
+little overhead.
+"""
 
 CHECKED: dict[str, Any] = {"fletcher32": True}
 """Dataset options of arrays: HDF5's Fletcher-32 checksum."""
 
 PACKED: dict[str, Any] = {"compression": "gzip", "compression_opts": 1, "shuffle": True, **CHECKED}
-"""Dataset options of smooth data: fast compression. It also reveals a block overwritten by zeros, whose Fletcher sum is zero too."""
+"""Dataset options of smooth data: fast compression. It also reveals a block overwritten
+by zeros, whose Fletcher sum is zero too.
+"""
 
 _CHUNK = 2**18  # bytes
 _PACKING = 1100  # the most that gzip reduces data by
@@ -32,11 +36,15 @@ _UNPACKED = 100_000_000  # bytes that any array may take, however few of them ar
 _FAILED_CHECKS = ("checksum", "fletcher32", "inflate", "filter returned failure")
 """Words by which HDF5 tells that what it read is not what was written."""
 _LACKING_FILTERS = ("is not registered", "can't open directory")
-"""Words by which it tells that a filter, by which a file is packed, is neither built in nor among its plugins."""
+"""Words by which it tells that a filter, by which a file is packed, is neither built in
+nor among its plugins.
+"""
 
 
 class _ErrorStoringFile(FileIO):
-    """A file that stores its first write error in `error` instead of raising it: raised inside HDF5, it would end the process."""
+    """A file that stores its first write error in `error` instead of raising it: raised
+    inside HDF5, it would end the process.
+    """
 
     error: OSError | None = None
 
@@ -62,7 +70,8 @@ class _ErrorStoringFile(FileIO):
 
 @contextmanager
 def new_hdf5(path: Path) -> Iterator[h5py.File]:
-    """Yield a new HDF5 file, written to the disk as it grows; a full disk raises OSError instead of ending the process.
+    """Yield a new HDF5 file, written to the disk as it grows; a full disk raises OSError instead of
+    ending the process.
 
     Raises
     ------
@@ -81,22 +90,34 @@ def new_hdf5(path: Path) -> Iterator[h5py.File]:
 
 
 def new_array(group: h5py.Group, name: str, values: Any, **packing: Any) -> h5py.Dataset:
-    """Write an array with the dataset options CHECKED or PACKED; scalars are stored in the object header, which has a checksum."""
+    """Write an array with the dataset options CHECKED or PACKED; scalars are stored in
+    the object header, which has a checksum.
+    """
     values = np.asarray(values)
     if values.size and values.ndim:
-        return group.create_dataset(name, data=values, chunks=chunk_shape(values.shape, values.dtype.itemsize), **(packing or CHECKED))
+        return group.create_dataset(
+            name,
+            data=values,
+            chunks=chunk_shape(values.shape, values.dtype.itemsize),
+            **(packing or CHECKED),
+        )
     if values.ndim or values.dtype.kind not in "fiu":
         return group.create_dataset(name, data=values)
     properties = h5p.create(h5p.DATASET_CREATE)
     properties.set_layout(h5d.COMPACT)
     properties.set_obj_track_times(False)
-    data = h5py.Dataset(h5d.create(group.id, name.encode(), h5t.py_create(values.dtype), h5s.create(h5s.SCALAR), properties))
+    data = h5py.Dataset(
+        h5d.create(
+            group.id, name.encode(), h5t.py_create(values.dtype), h5s.create(h5s.SCALAR), properties
+        )
+    )
     data[()] = values
     return data
 
 
 def chunk_shape(shape: Sequence[int], itemsize: int) -> tuple[int, ...]:
-    """Return the chunk shape of an array: contiguous in memory, so that data written in order touch each chunk once.
+    """Return the chunk shape of an array: contiguous in memory, so that data written in order touch
+    each chunk once.
 
     Examples
     --------
@@ -107,7 +128,8 @@ def chunk_shape(shape: Sequence[int], itemsize: int) -> tuple[int, ...]:
     for place, length in enumerate(shape):
         inner = itemsize * prod(shape[place + 1 :])
         most = max(1, min(length, _CHUNK // max(1, inner)))
-        found.append(-(-length // -(-length // most)))  # of even size, since the last chunk is stored in full size
+        # of even size, since the last chunk is stored in full size
+        found.append(-(-length // -(-length // most)))
     return tuple(found)
 
 
@@ -117,7 +139,8 @@ def read_array(data: h5py.Dataset, place: Any = ()) -> NDArray[Any]:
     Raises
     ------
     DamageError
-        If it can't be read, because its checksum does not match for instance, or the file does not hold so many values.
+        If it can't be read, because its checksum does not match for instance, or the file does not
+        hold so many values.
     InputError
         If there is too little memory for it, or it is packed by a filter that HDF5 does not have.
     """
@@ -125,13 +148,22 @@ def read_array(data: h5py.Dataset, place: Any = ()) -> NDArray[Any]:
         stored = int(data.id.get_storage_size())
         size = int(data.size or 0) * data.dtype.itemsize
         if size > _UNPACKED and size > _PACKING * stored:
-            raise ValueError(f"its shape {data.shape} is of {size / 1e9:.3g} GB, of which the file holds {stored} bytes")
+            raise ValueError(
+                f"its shape {data.shape} is of {size / 1e9:.3g} GB, of which the file "
+                f"holds {stored} bytes"
+            )
         return np.asarray(data[place])
     except MemoryError:
-        raise InputError(f"{data.name.lstrip('/')} needs more memory than there is, for its shape {data.shape}; split the file") from None
+        raise InputError(
+            f"{data.name.lstrip('/')} needs more memory than there is, for its shape "
+            f"{data.shape}; split the file"
+        ) from None
     except Exception as error:  # of any type, depending on the damage
         if any(words in str(error) for words in _LACKING_FILTERS):
-            words = "is packed by a filter that HDF5 lacks here; where it is installed, pack the file by h5repack -f GZIP=1"
+            words = (
+                "is packed by a filter that HDF5 lacks here; where it is installed, pack the "
+                "file by h5repack -f GZIP=1"
+            )
             raise InputError(f"{data.name.lstrip('/')} {words}") from None
         raise DamageError(f"{data.name.lstrip('/')} is damaged ({short_reason(error)})") from None
 
@@ -152,7 +184,9 @@ def members(group: h5py.Group) -> dict[str, h5py.Dataset | h5py.Group]:
         try:
             member = group[name]
         except Exception as error:  # of any type, depending on the damage
-            raise DamageError(f"{place} is a link that leads nowhere, or is damaged ({short_reason(error)})") from None
+            raise DamageError(
+                f"{place} is a link that leads nowhere, or is damaged ({short_reason(error)})"
+            ) from None
         if isinstance(member, h5py.Dataset) and (member.is_virtual or member.external):
             raise DamageError(f"the values of {place} lie in another file")
         found[name] = member

@@ -1,4 +1,6 @@
-"""JSON that is read: bounded in size, in its number of values and in depth, and text that can be written again."""
+"""JSON that is read: bounded in size, in its number of values and in depth, and text that
+can be written again.
+"""
 
 from __future__ import annotations
 
@@ -34,7 +36,8 @@ def parse_json(data: bytes, what: str = "it") -> Any:
     Raises
     ------
     InputError
-        If they are not JSON, hold text that can't be written, or too many values, or tables and lists too deep in one another.
+        If they are not JSON, hold text that can't be written, or too many values, or tables and
+        lists too deep in one another.
 
     Examples
     --------
@@ -50,7 +53,8 @@ def parse_json(data: bytes, what: str = "it") -> Any:
     try:
         content = json.loads(data.decode("utf-8-sig"), parse_constant=_refuse)
         if _SURROGATE.search(data):
-            json.dumps(content, ensure_ascii=False).encode()  # half of a surrogate pair is no text, and can't be written
+            # half of a surrogate pair is no text, and can't be written
+            json.dumps(content, ensure_ascii=False).encode()
     except RecursionError:
         raise _too_deep(what) from None
     except ValueError:
@@ -70,7 +74,8 @@ def read_json_table(path: str | PathLike[str], kind: FileKind = JSON_TABLE) -> d
     Raises
     ------
     InputError
-        If it can't be read, is too large, or is not a table in JSON; the message does not include the path.
+        If it can't be read, is too large, or is not a table in JSON; the message does not include
+        the path.
     """
     content = parse_json(read_bytes(path, kind))
     if not isinstance(content, dict):

@@ -9,7 +9,8 @@ from typing import Any
 
 
 def json_text(document: Mapping[str, Any]) -> str:
-    r"""Return a document as JSON text in printable ASCII; a number that is not finite becomes null, as JSON has none.
+    r"""Return a document as JSON text in printable ASCII; a number that is not finite becomes null,
+    as JSON has none.
 
     Parameters
     ----------

@@ -9,7 +9,8 @@ from pathlib import Path
 
 @contextmanager
 def made_folder(folder: Path) -> Iterator[None]:
-    """Make a folder with those above it; if the block fails, those that were made are removed where they are empty.
+    """Make a folder with those above it; if the block fails, those that were made are removed where
+    they are empty.
 
     Raises
     ------

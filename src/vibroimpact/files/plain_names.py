@@ -1,7 +1,8 @@
-"""Sanitizing of names of cases, sensors and materials for files of other programs, which must not interpret them as syntax.
+"""Sanitizing of names of cases, sensors and materials for files of other programs, which must not
+interpret them as syntax.
 
-`plain_words` is for comments, `plain_names` for names of files, groups and columns, `identifier` for identifiers of a program, and
-`one_line` for text that only people read.
+`plain_words` is for comments, `plain_names` for names of files, groups and columns, `identifier`
+for identifiers of a program, and `one_line` for text that only people read.
 """
 
 from __future__ import annotations
@@ -11,11 +12,18 @@ from collections.abc import Iterable
 
 _LONGEST = 80
 # reserved file names of Windows, with any suffix
-_DEVICES = {"con", "prn", "aux", "nul", *(f"{port}{number}" for port in ("com", "lpt") for number in range(10))}
+_DEVICES = {
+    "con",
+    "prn",
+    "aux",
+    "nul",
+    *(f"{port}{number}" for port in ("com", "lpt") for number in range(10)),
+}
 
 
 def plain_names(names: Iterable[str]) -> dict[str, str]:
-    """Return for each name a distinct name for a file or a group, of letters, digits and a few signs.
+    """Return for each name a distinct name for a file or a group, of letters, digits and a few
+    signs.
 
     Names are distinct ignoring case, as some file systems require.
 
@@ -42,7 +50,9 @@ def _apart(wanted: dict[str, str]) -> dict[str, str]:
     return found
 
 
-def identifier(name: str, allowed: str, otherwise: str, between: str = "_", longest: int = _LONGEST) -> str:
+def identifier(
+    name: str, allowed: str, otherwise: str, between: str = "_", longest: int = _LONGEST
+) -> str:
     """Return a name in the characters that a program allows, of limited length.
 
     Parameters
@@ -52,7 +62,8 @@ def identifier(name: str, allowed: str, otherwise: str, between: str = "_", long
     allowed : str
         Allowed ASCII characters, as in a character set of a regular expression.
     otherwise : str
-        Replacement for a name without allowed characters; also the prefix of a name that Windows reserves for a device.
+        Replacement for a name without allowed characters; also the prefix of a name that Windows
+        reserves for a device.
     between : str, default "_"
         Replacement for other characters.
     longest : int, default 80
@@ -60,7 +71,11 @@ def identifier(name: str, allowed: str, otherwise: str, between: str = "_", long
 
     Examples
     --------
-    >>> identifier("the paper's Type 1", "A-Za-z0-9", "drop", "-"), identifier("NUL", "A-Z", "drop"), identifier("$&", "A-Z", "drop")
+    >>> (
+    ...     identifier("the paper's Type 1", "A-Za-z0-9", "drop", "-"),
+    ...     identifier("NUL", "A-Z", "drop"),
+    ...     identifier("$&", "A-Z", "drop"),
+    ... )
     ('the-paper-s-Type-1', 'drop_NUL', 'drop')
     """
     plain = re.sub(f"[^{allowed}]+", between, name, flags=re.ASCII).strip("_-") or otherwise
@@ -70,10 +85,12 @@ def identifier(name: str, allowed: str, otherwise: str, between: str = "_", long
 
 
 def plain_words(name: str) -> str:
-    """Return a name for a comment in a file, without characters that any of the programs could interpret, of at most 80 characters.
+    """Return a name for a comment in a file, without characters that any of the programs could
+    interpret, of at most 80 characters.
 
-    ASCII letters, digits and `.,'()+=%/_-` remain. So there are no line breaks, double quotes, `$` and `&` (variables and continuation
-    lines of LAMMPS and Adams), `<`, `--` and `*/` (ends of comments).
+    ASCII letters, digits and `.,'()+=%/_-` remain. So there are no line breaks, double quotes, `$`
+    and `&` (variables and continuation lines of LAMMPS and Adams), `<`, `--` and `*/` (ends of
+    comments).
 
     Examples
     --------

@@ -26,7 +26,12 @@ _SAVE_AS_UTF8 = "the file is not UTF-8 text but UTF-16; save it as UTF-8"
 _LONG_NAME = 200
 """Largest length of a path in messages."""
 
-_OPENING = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_CLOEXEC", 0) | getattr(os, "O_BINARY", 0)
+_OPENING = (
+    os.O_RDONLY
+    | getattr(os, "O_NONBLOCK", 0)
+    | getattr(os, "O_CLOEXEC", 0)
+    | getattr(os, "O_BINARY", 0)
+)
 """Non-blocking, since a pipe may have taken the place of the file since its type was checked."""
 
 _NO_FILES = {
@@ -62,7 +67,8 @@ def read_bytes(path: str | PathLike[str], kind: FileKind) -> bytes:
     Raises
     ------
     InputError
-        If it is not a regular file, can't be read or is too large; the message does not include the path.
+        If it is not a regular file, can't be read or is too large; the message does not include the
+        path.
 
     Examples
     --------
@@ -114,11 +120,13 @@ def read_text_bytes(path: str | PathLike[str], kind: FileKind) -> bytes:
     return b"".join(blocks)
 
 
-def text_lines(path: str | PathLike[str], kind: FileKind, longest: int, doubts: list[str] | None = None) -> Generator[str, None, None]:
+def text_lines(
+    path: str | PathLike[str], kind: FileKind, longest: int, doubts: list[str] | None = None
+) -> Generator[str, None, None]:
     """Yield the lines of a text file in blocks; of a line `longest` + 1 characters at most.
 
-    It is UTF-8, with or without byte-order mark, or UTF-16 with one. A byte that is not UTF-8 but a printable character of Latin-1, as
-    older programs write units, is read as that.
+    It is UTF-8, with or without byte-order mark, or UTF-16 with one. A byte that is not UTF-8 but a
+    printable character of Latin-1, as older programs write units, is read as that.
 
     Parameters
     ----------
@@ -127,7 +135,8 @@ def text_lines(path: str | PathLike[str], kind: FileKind, longest: int, doubts: 
     longest : int
         Characters of a line.
     doubts : list of str, optional
-        A sentence on the first byte that is read as Latin-1 is added to it; without it such a byte is refused.
+        A sentence on the first byte that is read as Latin-1 is added to it; without it such a byte
+        is refused.
 
     Raises
     ------
@@ -137,7 +146,12 @@ def text_lines(path: str | PathLike[str], kind: FileKind, longest: int, doubts: 
     with opened(path, kind) as file:
         buffered = BufferedReader(file, _BLOCK)
         encoding = "utf-16" if buffered.peek(2).startswith(_UTF16) else "utf-8-sig"
-        text = TextIOWrapper(buffered, encoding=encoding, errors="strict" if doubts is None else _OR_LATIN_1, newline=None)
+        text = TextIOWrapper(
+            buffered,
+            encoding=encoding,
+            errors="strict" if doubts is None else _OR_LATIN_1,
+            newline=None,
+        )
         left, number = kind.largest, 0
         try:
             while line := text.readline(longest + 1):
@@ -147,20 +161,32 @@ def text_lines(path: str | PathLike[str], kind: FileKind, longest: int, doubts: 
                 if "\0" in line:
                     raise InputError(f"this is not a text file; {kind.what}")
                 number += 1
-                if doubts is not None and not line.isascii() and (place := _latin_1_in(line)) is not None:
+                if (
+                    doubts is not None
+                    and not line.isascii()
+                    and (place := _latin_1_in(line)) is not None
+                ):
                     line, byte = line.translate(_FROM_LATIN_1), ord(line[place]) - _PRIVATE
                     if not doubts:
-                        words = f'line {number} has the byte {byte:02X}, which is not UTF-8: it is read as "{chr(byte)}" of Latin-1'
+                        words = (
+                            f"line {number} has the byte {byte:02X}, which is not UTF-8: it is "
+                            f'read as "{chr(byte)}" of Latin-1'
+                        )
                         doubts.append(f"{words}; save the file as UTF-8 if it should be another")
                 yield line
         except UnicodeError:
             if encoding == "utf-16":
-                raise InputError("the file begins with the mark of UTF-16 text, and is no such text; save it as UTF-8") from None
+                raise InputError(
+                    "the file begins with the mark of UTF-16 text, and is no such text; "
+                    "save it as UTF-8"
+                ) from None
             raise _not_utf8(kind) from None
 
 
 def _or_latin_1(error: UnicodeError) -> tuple[str, int]:
-    """Decode a byte that is not UTF-8 to a mark of its own, if it is a printable character of Latin-1."""
+    """Decode a byte that is not UTF-8 to a mark of its own, if it is a printable
+    character of Latin-1.
+    """
     if not isinstance(error, UnicodeDecodeError) or error.object[error.start] < _FIRST_PRINTABLE:
         raise error
     return chr(_PRIVATE + error.object[error.start]), error.start + 1
@@ -172,7 +198,9 @@ def _latin_1_in(line: str) -> int | None:
 
 
 _OR_LATIN_1, _PRIVATE, _FIRST_PRINTABLE = "vibroimpact-or-latin-1", 0x10FF00, 0xA0
-"""Name of the decoding, and the characters for private use that mark its bytes until a line is complete."""
+"""Name of the decoding, and the characters for private use that mark its bytes until a
+line is complete.
+"""
 _FROM_LATIN_1 = {_PRIVATE + byte: byte for byte in range(_FIRST_PRINTABLE, 0x100)}
 register_error(_OR_LATIN_1, _or_latin_1)
 
@@ -228,7 +256,8 @@ def _blocks(path: str | PathLike[str], kind: FileKind) -> Iterator[bytes]:
 
 @contextmanager
 def opened(path: str | PathLike[str], kind: FileKind) -> Iterator[FileIO]:
-    """Yield a regular file of allowed size, opened for reading; errors in the block are raised as InputError too.
+    """Yield a regular file of allowed size, opened for reading; errors in the block are raised as
+    InputError too.
 
     Raises
     ------
@@ -247,13 +276,17 @@ def opened(path: str | PathLike[str], kind: FileKind) -> Iterator[FileIO]:
     except OSError as error:
         raise InputError(f"the file can't be read: {error.strerror or error}") from None
     except ValueError:  # a NUL character, or an unpaired surrogate
-        raise InputError("no file can have such a name: it holds a character that names of files can't hold") from None
+        raise InputError(
+            "no file can have such a name: it holds a character that names of files can't hold"
+        ) from None
 
 
 def _check(found: os.stat_result, kind: FileKind) -> None:
     """Raise unless it is a regular file of allowed size."""
     if not stat.S_ISREG(found.st_mode):
-        raise InputError(f"this is {_NO_FILES.get(stat.S_IFMT(found.st_mode), 'no regular file')}; {kind.what}")
+        raise InputError(
+            f"this is {_NO_FILES.get(stat.S_IFMT(found.st_mode), 'no regular file')}; {kind.what}"
+        )
     if found.st_size > kind.largest:
         raise _too_large(kind)
 
@@ -263,5 +296,9 @@ def _not_utf8(kind: FileKind) -> InputError:
 
 
 def _too_large(kind: FileKind) -> InputError:
-    size = f"{kind.largest / 1e9:g} GB" if kind.largest >= 1_000_000_000 else f"{kind.largest / 1e6:g} MB"
+    size = (
+        f"{kind.largest / 1e9:g} GB"
+        if kind.largest >= 1_000_000_000
+        else f"{kind.largest / 1e6:g} MB"
+    )
     return InputError(f"the file is larger than {size}; {kind.smaller}")

@@ -1,4 +1,6 @@
-"""Recovery after a process died while it wrote: run by the next command that uses the file or folder."""
+"""Recovery after a process died while it wrote: run by the next command that uses the
+file or folder.
+"""
 
 from __future__ import annotations
 
@@ -7,14 +9,23 @@ from contextlib import suppress
 from pathlib import Path
 
 from vibroimpact.files.atomic_write import check_destinations, move_files
-from vibroimpact.files.working_files import COMPLETE, OLD, abandoned, all_working_paths, inner_working_paths, remove, working_paths
+from vibroimpact.files.working_files import (
+    COMPLETE,
+    OLD,
+    abandoned,
+    all_working_paths,
+    inner_working_paths,
+    remove,
+    working_paths,
+)
 
 
 def recover(target: Path) -> None:
-    """Clear or complete the leftovers of a file or a folder, next to it and inside it; those of running processes stay.
+    """Clear or complete the leftovers of a file or a folder, next to it and inside it; those of
+    running processes stay.
 
-    A replaced folder whose successor is missing gets its name back. Files of a complete working folder are moved to their destinations.
-    Where nothing can be written, everything stays as it is.
+    A replaced folder whose successor is missing gets its name back. Files of a complete working
+    folder are moved to their destinations. Where nothing can be written, everything stays as it is.
 
     Parameters
     ----------
@@ -39,7 +50,9 @@ def recover(target: Path) -> None:
 
 
 def _complete(path: Path, kind: str, folder: Path) -> None:
-    """Move the files of a complete working folder to their destinations; remove one that is incomplete, or whose files may not go there."""
+    """Move the files of a complete working folder to their destinations; remove one that
+    is incomplete, or whose files may not go there.
+    """
     if kind == COMPLETE:
         try:
             check_destinations(path, folder)

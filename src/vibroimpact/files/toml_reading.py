@@ -26,12 +26,15 @@ def parse_toml(text: str) -> dict[str, Any]:
     >>> parse_toml("sphere = ")
     Traceback (most recent call last):
         ...
-    vibroimpact.files.check_sums.DamageError: the file is damaged: it is not TOML: Invalid value (at end of document)
+    vibroimpact.files.check_sums.DamageError: the file is damaged: it is not TOML: Invalid value (at
+    end of document)
     """
     try:
         return tomllib.loads(text)
     except RecursionError:
-        raise DamageError("the file is damaged: it is not TOML: its tables lie too deep in one another") from None
+        raise DamageError(
+            "the file is damaged: it is not TOML: its tables lie too deep in one another"
+        ) from None
     except ValueError as error:
         raise DamageError(f"the file is damaged: it is not TOML: {error}") from None
 

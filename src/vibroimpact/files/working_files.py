@@ -1,9 +1,11 @@
-"""Working files and folders of atomic writes: their names, their locks, and the leftovers of processes that died.
+"""Working files and folders of atomic writes: their names, their locks, and the leftovers of
+processes that died.
 
-A working file or folder is called `.vibroimpact-PLACE-NUMBER.KIND`: a digest of the name of its target, a random number, and its kind.
-The writing process holds an advisory lock (flock) on the working file or folder itself; the kernel releases the lock when the process
-ends, however it ends. A working file that nobody has locked is a leftover. This needs no lock file and no process number (which may be
-reused), and the lock stays in force when the file or folder is renamed.
+A working file or folder is called `.vibroimpact-PLACE-NUMBER.KIND`: a digest of the name of its
+target, a random number, and its kind. The writing process holds an advisory lock (flock) on the
+working file or folder itself; the kernel releases the lock when the process ends, however it ends.
+A working file that nobody has locked is a leftover. This needs no lock file and no process number
+(which may be reused), and the lock stays in force when the file or folder is renamed.
 """
 
 from __future__ import annotations
@@ -24,12 +26,15 @@ except ImportError:  # Windows
     fcntl = None  # type: ignore[assignment]
 
 NEW, OLD, COMPLETE = "new", "old", "whole"
-"""Kinds: not yet complete; the replaced folder, kept until the new one is in place; complete, its files being moved."""
+"""Kinds: not yet complete; the replaced folder, kept until the new one is in place;
+complete, its files being moved.
+"""
 
 _NAME = re.compile(rf"\.vibroimpact-([0-9a-f]{{16}})-[0-9a-f]{{12}}\.({NEW}|{OLD}|{COMPLETE})")
 _TRIES = 100
 _PAUSE = 0.05  # seconds between two looks at a lock
-_ABANDONED = 86_400.0  # seconds without a change after which it counts as a leftover, on file systems without locks
+# seconds without a change after which it counts as a leftover, on file systems without locks
+_ABANDONED = 86_400.0
 
 
 def working_path(target: Path, kind: str) -> Path:
@@ -54,18 +59,25 @@ def working_paths(target: Path) -> list[tuple[Path, str]]:
 
 
 def inner_working_paths(folder: Path) -> list[tuple[Path, str]]:
-    """Return the working folders of files to be written into a folder, each with its kind, in use or left over."""
+    """Return the working folders of files to be written into a folder, each with its
+    kind, in use or left over.
+    """
     return _found(folder, _place(""))
 
 
 def all_working_paths(folder: Path) -> list[tuple[Path, str]]:
-    """Return all working files and folders in a folder, whatever their target, each with its kind."""
+    """Return all working files and folders in a folder, whatever their target, each with
+    its kind.
+    """
     return _found(folder, None)
 
 
 @contextmanager
-def new_working_path(name: Callable[[], Path], make: Callable[[Path], object], target: Path) -> Iterator[Path]:
-    """Create a working file or folder, lock it for the duration of the block, and remove it if the block raises.
+def new_working_path(
+    name: Callable[[], Path], make: Callable[[Path], object], target: Path
+) -> Iterator[Path]:
+    """Create a working file or folder, lock it for the duration of the block, and remove it if the
+    block raises.
 
     Parameters
     ----------
@@ -81,7 +93,8 @@ def new_working_path(name: Callable[[], Path], make: Callable[[Path], object], t
     OSError
         If it can't be created, or the block raises one.
     """
-    # another process may clear a working file between its creation and its lock: then try the next name
+    # another process may clear a working file between its creation and its lock: then try the next
+    # name
     for _ in range(_TRIES):
         working = name()
         try:
@@ -119,7 +132,8 @@ def locked(path: Path) -> Iterator[bool]:
 
 @contextmanager
 def alone(folder: Path, longest: float) -> Iterator[None]:
-    """Keep other processes that ask for the same out of a folder during the block; wait for them, but not longer than `longest` [s].
+    """Keep other processes that ask for the same out of a folder during the block; wait for them,
+    but not longer than `longest` [s].
 
     Where the system or the file system has no locks, nothing is waited for.
     """
@@ -138,7 +152,9 @@ def alone(folder: Path, longest: float) -> Iterator[None]:
 
 @contextmanager
 def abandoned(path: Path) -> Iterator[bool]:
-    """Yield whether a working file or folder is a leftover; if so, it is locked against other processes during the block."""
+    """Yield whether a working file or folder is a leftover; if so, it is locked against
+    other processes during the block.
+    """
     if path.is_symlink():
         yield True  # the replaced target was a symbolic link
         return
@@ -168,7 +184,9 @@ def _place(name: str) -> str:
 
 
 def _found(folder: Path, place: str | None) -> list[tuple[Path, str]]:
-    """Return the working files in a folder, each with its kind: those of one target, or of all if `place` is None."""
+    """Return the working files in a folder, each with its kind: those of one target, or
+    of all if `place` is None.
+    """
     try:
         names = os.listdir(folder)
     except OSError:
@@ -188,7 +206,9 @@ def _opened(path: Path) -> int | None:
 
 
 def _lock(descriptor: int, *, shared: bool) -> bool | None:
-    """Try to lock a descriptor without waiting; return whether it succeeded, or None if the file system does not support the lock."""
+    """Try to lock a descriptor without waiting; return whether it succeeded, or None if
+    the file system does not support the lock.
+    """
     try:
         fcntl.flock(descriptor, (fcntl.LOCK_SH if shared else fcntl.LOCK_EX) | fcntl.LOCK_NB)
     except BlockingIOError:

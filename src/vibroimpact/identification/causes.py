@@ -1,4 +1,6 @@
-"""What of a set-up explains what a fit leaves of the records: tried by a fit in which all of it is free."""
+"""What of a set-up explains what a fit leaves of the records: tried by a fit in which all
+of it is free.
+"""
 
 from __future__ import annotations
 
@@ -17,9 +19,13 @@ from vibroimpact.shown import shown
 from vibroimpact.units.display import digits
 
 _WIDE = {"sensor_place": 0.01, "gain": 0.1, "thickness": 0.02, "resonance": 0.1}
-"""Deviations with which the set-up is free; thickness stands for modulus too, since frequencies hardly tell them apart."""
+"""Deviations with which the set-up is free; thickness stands for modulus too, since
+frequencies hardly tell them apart.
+"""
 _LESS = 0.5
-"""Part of what the fit leaves, down to which it is left with the set-up free, that is an explanation."""
+"""Part of what the fit leaves, down to which it is left with the set-up free, that is an
+explanation.
+"""
 _SURE = 3.0
 """Standard deviations from which on a difference is named."""
 _LEAST = {"sensor_place": 1e-3, "gain": 0.01, "thickness": 5e-4, "resonance": 0.02}
@@ -29,15 +35,20 @@ _NAMED = 3
 
 
 class Cause(NamedTuple):
-    """A difference of the set-up from the case: in words, which of `SetupErrors` states it, and its size."""
+    """A difference of the set-up from the case: in words, which of `SetupErrors` states
+    it, and its size.
+    """
 
     words: str
     name: str
     size: float
 
 
-def causes(plate: Plate, measured: Measured, sphere: SphereFit, start: Candidate, place: Place | None) -> tuple[list[Cause], float]:
-    """Return what explains what a fit leaves, the largest first, and what is left with it; nothing if no set-up does.
+def causes(
+    plate: Plate, measured: Measured, sphere: SphereFit, start: Candidate, place: Place | None
+) -> tuple[list[Cause], float]:
+    """Return what explains what a fit leaves, the largest first, and what is left with it; nothing
+    if no set-up does.
 
     Parameters
     ----------
@@ -59,13 +70,17 @@ def causes(plate: Plate, measured: Measured, sphere: SphereFit, start: Candidate
     less = float((free.noise / measured.noise).max() / (sphere.noise / measured.noise).max())
     if less > _LESS:
         return [], less
-    found = _differences(free, [sensor.name for sensor in measured.sensors], float(plate.thickness_exponents.mean()))
+    found = _differences(
+        free, [sensor.name for sensor in measured.sensors], float(plate.thickness_exponents.mean())
+    )
     return sorted(found, key=lambda one: one.size / _LEAST[one.name], reverse=True), less
 
 
 def remedy(plate: Plate, found: list[Cause]) -> str:
     """Return the options that state differences, and what was stated before."""
-    sizes = {one.name: max(_up(other.size) for other in found if other.name == one.name) for one in found}
+    sizes = {
+        one.name: max(_up(other.size) for other in found if other.name == one.name) for one in found
+    }
     return plate.errors.at_least(sizes).options
 
 
@@ -76,31 +91,54 @@ def told(found: list[Cause]) -> str:
 
 
 def _differences(free: SphereFit, sensors: list[str], exponent: float) -> Iterator[Cause]:
-    """Yield how a set-up that was found differs from the case; the thickness to the power of an exponent gives frequencies."""
+    """Yield how a set-up that was found differs from the case; the thickness to the power
+    of an exponent gives frequencies.
+    """
     setup, deviations = free.setting.found, free.setting.deviations
     x, y, _, resonance = deviations[2:].reshape(4, -1)
     if len(sensors) > 1:
-        # a gain of all is a heavier or faster sphere; the difference from the middle one is told by the records
+        # a gain of all is a heavier or faster sphere; the difference from the middle one is told by
+        # the records
         middle = int(np.argsort(setup.gain)[len(sensors) // 2])
         of_gain = free.setting.errors[2 + 2 * len(sensors) :][: len(sensors)]
-        more, spread = setup.gain - setup.gain[middle], np.linalg.norm(of_gain - of_gain[middle], axis=1)
+        more, spread = (
+            setup.gain - setup.gain[middle],
+            np.linalg.norm(of_gain - of_gain[middle], axis=1),
+        )
     else:
         more, spread = setup.gain, deviations[4:5]
     along = np.append([exponent, 0.5], np.zeros(len(deviations) - 2))
     stretch = exponent * setup.thickness + 0.5 * setup.modulus
-    if abs(stretch) > max(_LEAST["thickness"], _SURE * float(np.linalg.norm(along @ free.setting.errors))):
-        words = f"the plate's frequencies are on average {_percent(stretch)} than in the case, by another thickness or modulus"
+    if abs(stretch) > max(
+        _LEAST["thickness"], _SURE * float(np.linalg.norm(along @ free.setting.errors))
+    ):
+        words = (
+            f"the plate's frequencies are on average {_percent(stretch)} than in the case, by "
+            "another thickness or modulus"
+        )
         yield Cause(words, "thickness", abs(stretch) / exponent)
     for number, name in enumerate(sensors):
         off = float(np.hypot(*setup.moved[number]))
         if off > max(_LEAST["sensor_place"], _SURE * math.hypot(x[number], y[number])):
-            yield Cause(f"{shown(name)} lies about {digits(1e3 * off, 2)} mm from its place in the case", "sensor_place", off)
+            yield Cause(
+                f"{shown(name)} lies about {digits(1e3 * off, 2)} mm from its place in the case",
+                "sensor_place",
+                off,
+            )
         if abs(more[number]) > max(_LEAST["gain"], _SURE * float(spread[number])):
             beside = " beside the others" if len(sensors) > 1 else ""
-            yield Cause(f"{shown(name)} reads {_percent(float(more[number]))} than it should{beside}", "gain", abs(float(more[number])))
+            yield Cause(
+                f"{shown(name)} reads {_percent(float(more[number]))} than it should{beside}",
+                "gain",
+                abs(float(more[number])),
+            )
         off = float(setup.resonance[number])
         if abs(off) > max(_LEAST["resonance"], _SURE * resonance[number]):
-            yield Cause(f"{shown(name)} has a mounted resonance {_percent(off)} than in the case", "resonance", abs(off))
+            yield Cause(
+                f"{shown(name)} has a mounted resonance {_percent(off)} than in the case",
+                "resonance",
+                abs(off),
+            )
 
 
 def _percent(part: float) -> str:

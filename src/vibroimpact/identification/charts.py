@@ -33,13 +33,29 @@ def identification_charts(found: Identification) -> list[Chart]:
     Examples
     --------
     >>> import vibroimpact as vi
-    >>> plate = {"size": [0.3, 0.3, 0.02], "material": "steel", "model": "elastic", "modes": 20, "supports": "clamped", "damping": 0.01}
-    >>> case = vi.read_case({
-    ...     "sphere": {"radius": 0.02, "material": "rock-paper"}, "plate": plate, "drop": {"speed": 2.0, "position": [0.02, 0.01]},
-    ...     "contact": {"law": "hertz"}, "run": {"impacts": 1}, "sensors": [{"name": "a", "position": [0.1, 0.03], "rate": 20e3}],
-    ... })
+    >>> plate = {
+    ...     "size": [0.3, 0.3, 0.02],
+    ...     "material": "steel",
+    ...     "model": "elastic",
+    ...     "modes": 20,
+    ...     "supports": "clamped",
+    ...     "damping": 0.01,
+    ... }
+    >>> case = vi.read_case(
+    ...     {
+    ...         "sphere": {"radius": 0.02, "material": "rock-paper"},
+    ...         "plate": plate,
+    ...         "drop": {"speed": 2.0, "position": [0.02, 0.01]},
+    ...         "contact": {"law": "hertz"},
+    ...         "run": {"impacts": 1},
+    ...         "sensors": [{"name": "a", "position": [0.1, 0.03], "rate": 20e3}],
+    ...     }
+    ... )
     >>> records = [vi.Record("a", vi.simulate(case).signals()["a"].value, 20e3, "m/s2")]
-    >>> [chart.name for chart in identification_charts(vi.identify(case, records, place=(0.02, 0.01)))]
+    >>> [
+    ...     chart.name
+    ...     for chart in identification_charts(vi.identify(case, records, place=(0.02, 0.01)))
+    ... ]
     ['records', 'force']
     """
     makers = {"records": _records_chart, "force": _force_chart}
@@ -52,9 +68,15 @@ def _records_chart(found: Identification) -> Chart:
     measured = found.measured
     time = np.arange(measured.value.shape[1]) / measured.rate - found.sphere.parameters[4]
     axis, rows = Axis("Time since first touch", "s"), []
-    for sensor, value, left in zip(measured.sensors, measured.value, found.sphere.residual, strict=True):
+    for sensor, value, left in zip(
+        measured.sensors, measured.value, found.sphere.residual, strict=True
+    ):
         name = shortened(visible(sensor.name), 40)
-        lines = (Line(time, value, "record"), Line(time, value - left, "fit", "fit"), Line(time, left, "what is left", "mark line"))
+        lines = (
+            Line(time, value, "record"),
+            Line(time, value - left, "fit", "fit"),
+            Line(time, left, "what is left", "mark line"),
+        )
         rows.append((Panel(axis, Axis(sensor.quantity.capitalize(), sensor.unit), lines, name),))
     caption = "Each record, the signal of the sphere that explains all of them, and the difference."
     return Chart("records", "Records and fit", tuple(rows), caption, _HEIGHT)
@@ -63,16 +85,20 @@ def _records_chart(found: Identification) -> Chart:
 def _force_chart(found: Identification) -> Chart:
     force, contact = found.force, found.sphere.force
     touch = float(found.sphere.parameters[4])
-    marks: tuple[Band | Line, ...] = (Line(contact.time, contact.value, "contact of the sphere that was found", "fit"),)
+    marks: tuple[Band | Line, ...] = (
+        Line(contact.time, contact.value, "contact of the sphere that was found", "fit"),
+    )
     caption = (
-        "The force of the sphere that was found under the contact law of the case. That from the records alone contradicts it: withheld."
+        "The force of the sphere that was found under the contact law of the case. That from "
+        "the records alone contradicts it: withheld."
     )
     if force is not None:
         time, spread = force.time - touch, Estimate(0.0, 1.0).interval[1] * force.found.deviation
         band = Band(time, force.found.force - spread, force.found.force + spread, "95 %", "band")
         marks = (band, Line(time, force.found.force, "from the records alone"), *marks)
         caption = (
-            "The force from the records alone, with its 95 % band, and that of the sphere that was found under the contact law of the case."
+            "The force from the records alone, with its 95 % band, and that of the sphere that "
+            "was found under the contact law of the case."
         )
     panel = Panel(Axis("Time since first touch", "s"), Axis("Contact force", "N"), marks)
     return Chart("force", "Contact force", ((panel,),), caption, _HEIGHT)
@@ -80,10 +106,19 @@ def _force_chart(found: Identification) -> Chart:
 
 def _place_chart(found: Identification) -> Chart:
     search, sensors = found.search, {sensor.name: sensor for sensor in found.measured.sensors}
-    there = [(one.name, one.position) for one in found.plate.case.sensors if one.name in sensors and not isinstance(one.position, str)]
-    names, at = [shortened(visible(name), 40) for name, _ in there], np.array([place for _, place in there]).reshape(-1, 2)
+    there = [
+        (one.name, one.position)
+        for one in found.plate.case.sensors
+        if one.name in sensors and not isinstance(one.position, str)
+    ]
+    names, at = (
+        [shortened(visible(name), 40) for name, _ in there],
+        np.array([place for _, place in there]).reshape(-1, 2),
+    )
     scale = Axis("Part of the records' energy that a pulse there explains", range=(0.0, 1.0))
-    places = np.array([found.sphere.parameters[:2].tolist(), *(one.place for one in search.candidates[1:])])
+    places = np.array(
+        [found.sphere.parameters[:2].tolist(), *(one.place for one in search.candidates[1:])]
+    )
     texts = ("the force", *("as likely" for _ in search.candidates[1:]))
     marks = (
         Map(search.x, search.y, 1.0 - search.misfit, scale),
@@ -92,7 +127,8 @@ def _place_chart(found: Identification) -> Chart:
     )
     panel = Panel(Axis("x on the plate", "m"), Axis("y on the plate", "m"), marks)
     caption = (
-        "What the best pulse of force at each place explains of the records. Where it is high at several places, the records do not tell "
+        "What the best pulse of force at each place explains of the records. Where it is "
+        "high at several places, the records do not tell "
         "them apart. The place is that of the final fit."
     )
     return Chart("place", "Place of the force", ((panel,),), caption, 4.6)

@@ -1,4 +1,6 @@
-"""The contact force of a sphere of some size and speed, as the case's contact law has it on the elastic plate."""
+"""The contact force of a sphere of some size and speed, as the case's contact law has it
+on the elastic plate.
+"""
 
 from __future__ import annotations
 
@@ -19,7 +21,9 @@ from vibroimpact.dynamics.simulate import simulate_together
 _NODES = np.polynomial.legendre.leggauss(96)
 """Nodes on [-1, 1] and weights of the quadrature of a force."""
 _INSTANTS, _REFINEMENTS = 400, 4
-"""Instants at which it is seen where the first of several touches ends, and how often they are refined."""
+"""Instants at which it is seen where the first of several touches ends, and how often
+they are refined.
+"""
 
 
 @dataclass(frozen=True)
@@ -45,8 +49,9 @@ class ContactForce:
 class Spheres(NamedTuple):
     """Spheres that hit a plate at one place.
 
-    `case`: material and mean density of the sphere, contact law. `plate`: its problem with the contact at the place. `radius`, `speed`:
-    radius [m] and approach speed [m/s] of each sphere, (n,).
+    `case`: material and mean density of the sphere, contact law. `plate`: its problem with the
+    contact at the place. `radius`, `speed`: radius [m] and approach speed [m/s] of each sphere,
+    (n,).
     """
 
     case: CaseTable
@@ -58,8 +63,12 @@ class Spheres(NamedTuple):
     def problem(self) -> Problem:
         """The problem of their impacts."""
         case, radius, speed = self.case, self.radius, self.speed
-        drop = case.drop.model_copy(update={"speed": speed, "height": None, "velocity": None, "air": None})
-        rigid = rigid_problem(case.model_copy(update={"sphere": resized(case.sphere, radius), "drop": drop}))
+        drop = case.drop.model_copy(
+            update={"speed": speed, "height": None, "velocity": None, "air": None}
+        )
+        rigid = rigid_problem(
+            case.model_copy(update={"sphere": resized(case.sphere, radius), "drop": drop})
+        )
         return replace(
             self.plate,
             sphere=rigid.sphere,
@@ -73,7 +82,9 @@ class Spheres(NamedTuple):
         )
 
 
-def contact_forces(case: CaseTable, plate: Problem, radius: Floats, speed: Floats) -> list[ContactForce]:
+def contact_forces(
+    case: CaseTable, plate: Problem, radius: Floats, speed: Floats
+) -> list[ContactForce]:
     """Return the contact forces of spheres, from first touch until they first leave the plate.
 
     Parameters
@@ -85,13 +96,17 @@ def contact_forces(case: CaseTable, plate: Problem, radius: Floats, speed: Float
 
 
 def contact_forces_of(several: Sequence[Spheres]) -> list[ContactForce]:
-    """Return the contact forces of spheres that hit different plates, computed side by side, in order.
+    """Return the contact forces of spheres that hit different plates, computed side by side, in
+    order.
 
-    A sphere that leaves the plate more slowly than the plate follows it touches again within one impact. These touches come and go with
-    the parameters, and the records that are used end before the next touch.
+    A sphere that leaves the plate more slowly than the plate follows it touches again within one
+    impact. These touches come and go with the parameters, and the records that are used end before
+    the next touch.
     """
     found = []
-    for spheres, response in zip(several, simulate_together([spheres.problem for spheres in several]), strict=True):
+    for spheres, response in zip(
+        several, simulate_together([spheres.problem for spheres in several]), strict=True
+    ):
         if isinstance(response, Exception):
             raise response
         found += _forces_in(response, len(spheres.radius))
@@ -117,10 +132,14 @@ def _forces_in(response: Response, number_of_drops: int) -> list[ContactForce]:
 
 
 def _first_touch(response: Response, duration: float) -> tuple[float, float]:
-    """Return the duration [s] and the largest force [N] of the first touch of an impact that has several."""
+    """Return the duration [s] and the largest force [N] of the first touch of an impact
+    that has several.
+    """
     begin, end = 0.0, duration
     for _ in range(_REFINEMENTS):  # between the last instant with a force and the first without one
         time = np.linspace(begin, end, _INSTANTS)
         without = 1 + int(np.argmax(response.at(time[1:], ["force_N"])["force_N"] == 0.0))
         begin, end = time[without - 1], time[without]
-    return float(begin), float(response.at(np.linspace(0.0, begin, _INSTANTS), ["force_N"])["force_N"].max())
+    return float(begin), float(
+        response.at(np.linspace(0.0, begin, _INSTANTS), ["force_N"])["force_N"].max()
+    )

@@ -1,4 +1,6 @@
-"""An identification as data and as text: its summary, what `identify --json` prints, and the table that the terminal and the page show."""
+"""An identification as data and as text: its summary, what `identify --json` prints, and
+the table that the terminal and the page show.
+"""
 
 from __future__ import annotations
 
@@ -49,7 +51,10 @@ def summary_of_identification(found: Identification) -> dict[str, Any]:
     return {
         "name": found.plate.case.name,
         "version": __version__,
-        "estimates": {name: {"value": one.value, "low": one.interval[0], "high": one.interval[1]} for name, one in found.estimates.items()},
+        "estimates": {
+            name: {"value": one.value, "low": one.interval[0], "high": one.interval[1]}
+            for name, one in found.estimates.items()
+        },
         "other_places_m": [list(one.place) for one in found.search.candidates[1:]],
         "records": {
             sensor.name: {
@@ -62,7 +67,14 @@ def summary_of_identification(found: Identification) -> dict[str, Any]:
                 "inverted": bool(polarity < 0.0),
             }
             for sensor, noise, part, value, removed, heard, polarity in zip(
-                measured.sensors, measured.noise, left, measured.value, measured.removed, measured.heard, measured.polarity, strict=True
+                measured.sensors,
+                measured.noise,
+                left,
+                measured.value,
+                measured.removed,
+                measured.heard,
+                measured.polarity,
+                strict=True,
             )
         },
         "differences": _differences(found),
@@ -72,15 +84,29 @@ def summary_of_identification(found: Identification) -> dict[str, Any]:
 
 
 def _differences(found: Identification) -> dict[str, Any]:
-    """Return how the plate and its sensors differ from the case, of what is not taken as certain: values and standard deviations."""
+    """Return how the plate and its sensors differ from the case, of what is not taken as
+    certain: values and standard deviations.
+    """
     sensors = [sensor.name for sensor in found.measured.sensors]
     numbers, deviations = found.sphere.setting.numbers, found.sphere.setting.deviations
-    of_plate = zip(("thickness", "modulus"), numbers[:2].tolist(), deviations[:2].tolist(), strict=True)
-    of_sensors = zip(
-        ("x_m", "y_m", "gain", "resonance"), numbers[2:].reshape(4, -1).tolist(), deviations[2:].reshape(4, -1).tolist(), strict=True
+    of_plate = zip(
+        ("thickness", "modulus"), numbers[:2].tolist(), deviations[:2].tolist(), strict=True
     )
-    return {name: {"value": value, "deviation": deviation} for name, value, deviation in of_plate if deviation} | {
-        name: {sensor: {"value": one, "deviation": its} for sensor, one, its in zip(sensors, values, spreads, strict=True)}
+    of_sensors = zip(
+        ("x_m", "y_m", "gain", "resonance"),
+        numbers[2:].reshape(4, -1).tolist(),
+        deviations[2:].reshape(4, -1).tolist(),
+        strict=True,
+    )
+    return {
+        name: {"value": value, "deviation": deviation}
+        for name, value, deviation in of_plate
+        if deviation
+    } | {
+        name: {
+            sensor: {"value": one, "deviation": its}
+            for sensor, one, its in zip(sensors, values, spreads, strict=True)
+        }
         for name, values, spreads in of_sensors
         if any(spreads)
     }

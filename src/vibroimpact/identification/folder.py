@@ -12,7 +12,11 @@ from vibroimpact._version import __version__
 from vibroimpact.cases.build import resolved_case
 from vibroimpact.charts.figures_folder import write_figures
 from vibroimpact.identification.charts import identification_charts
-from vibroimpact.identification.document import HEADERS, identification_rows, summary_of_identification
+from vibroimpact.identification.document import (
+    HEADERS,
+    identification_rows,
+    summary_of_identification,
+)
 from vibroimpact.identification.identify import Identification
 from vibroimpact.report.page import render_page
 from vibroimpact.results.csv_files import write_columns
@@ -20,10 +24,17 @@ from vibroimpact.results.folder import new_folder, write_summary
 from vibroimpact.signals.estimate import Estimate
 
 
-def save_identification(found: Identification, directory: str | PathLike[str], *, force: bool = False, figures: Sequence[str] = ()) -> Path:
+def save_identification(
+    found: Identification,
+    directory: str | PathLike[str],
+    *,
+    force: bool = False,
+    figures: Sequence[str] = (),
+) -> Path:
     """Write an identification atomically: `force.csv`, `summary.json`, `case.toml` and a report.
 
-    A force from the records alone that is withheld, since it contradicts the contact, is not written.
+    A force from the records alone that is withheld, since it contradicts the contact, is not
+    written.
 
     Parameters
     ----------
@@ -34,7 +45,8 @@ def save_identification(found: Identification, directory: str | PathLike[str], *
     force : bool, default False
         Replace an existing folder.
     figures : sequence of str
-        Formats in which the charts are also written as files, into a folder `figures`: of "png", "svg" and "pdf".
+        Formats in which the charts are also written as files, into a folder `figures`: of "png",
+        "svg" and "pdf".
 
     Raises
     ------
@@ -45,13 +57,34 @@ def save_identification(found: Identification, directory: str | PathLike[str], *
     --------
     >>> from tempfile import TemporaryDirectory
     >>> import vibroimpact as vi
-    >>> plate = {"size": [0.3, 0.3, 0.02], "material": "steel", "model": "elastic", "modes": 20, "supports": "clamped", "damping": 0.01}
-    >>> case = vi.read_case({
-    ...     "sphere": {"radius": 0.02, "material": "rock-paper"}, "plate": plate, "drop": {"speed": 2.0, "position": [0.02, 0.01]},
-    ...     "contact": {"law": "hertz"}, "run": {"impacts": 1},
-    ...     "sensors": [{"name": "a", "position": [0.1, 0.03], "rate": 20e3}, {"name": "b", "position": [-0.05, 0.08], "rate": 20e3}],
-    ... })
-    >>> found = vi.identify(case, [vi.Record(name, one.value, 20e3, "m/s2") for name, one in vi.simulate(case).signals().items()])
+    >>> plate = {
+    ...     "size": [0.3, 0.3, 0.02],
+    ...     "material": "steel",
+    ...     "model": "elastic",
+    ...     "modes": 20,
+    ...     "supports": "clamped",
+    ...     "damping": 0.01,
+    ... }
+    >>> case = vi.read_case(
+    ...     {
+    ...         "sphere": {"radius": 0.02, "material": "rock-paper"},
+    ...         "plate": plate,
+    ...         "drop": {"speed": 2.0, "position": [0.02, 0.01]},
+    ...         "contact": {"law": "hertz"},
+    ...         "run": {"impacts": 1},
+    ...         "sensors": [
+    ...             {"name": "a", "position": [0.1, 0.03], "rate": 20e3},
+    ...             {"name": "b", "position": [-0.05, 0.08], "rate": 20e3},
+    ...         ],
+    ...     }
+    ... )
+    >>> found = vi.identify(
+    ...     case,
+    ...     [
+    ...         vi.Record(name, one.value, 20e3, "m/s2")
+    ...         for name, one in vi.simulate(case).signals().items()
+    ...     ],
+    ... )
     >>> with TemporaryDirectory() as folder:
     ...     place = vi.save_identification(found, f"{folder}/identified")
     ...     round(vi.load_case(place / "case.toml").sphere.radius, 3)
@@ -69,7 +102,9 @@ def save_identification(found: Identification, directory: str | PathLike[str], *
             }
             write_columns(columns, folder / "force.csv")
         write_summary(summary_of_identification(found), folder)
-        (folder / "case.toml").write_text(tomli_w.dumps(resolved_case(found.plate.case)), encoding="utf-8")
+        (folder / "case.toml").write_text(
+            tomli_w.dumps(resolved_case(found.plate.case)), encoding="utf-8"
+        )
         charts = identification_charts(found)
         write_figures(charts, folder, figures)
         page = render_page(

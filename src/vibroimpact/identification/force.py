@@ -21,7 +21,9 @@ _BEFORE, _AFTER = 0.35, 1.8
 _MOST = 120
 """Largest number of nodes."""
 _KINK, _KINKS = 0.06, (0.0, 3.0, 15.0, 63.0, 255.0)
-"""How far the kinks of a force at its begin and end reach, in durations, and how much larger its third differences may be there."""
+"""How far the kinks of a force at its begin and end reach, in durations, and how much
+larger its third differences may be there.
+"""
 
 
 @dataclass(frozen=True)
@@ -60,7 +62,14 @@ class Force:
         return float(weights @ self.found.force), self.found.deviation_of(weights)
 
 
-def force_behind(plate: Plate, measured: Measured, place: Place, touch: float, duration: float, setting: Setting | None = None) -> Force:
+def force_behind(
+    plate: Plate,
+    measured: Measured,
+    place: Place,
+    touch: float,
+    duration: float,
+    setting: Setting | None = None,
+) -> Force:
     """Return the force behind records, at a place that is known.
 
     Parameters
@@ -82,20 +91,31 @@ def force_behind(plate: Plate, measured: Measured, place: Place, touch: float, d
     answers = gains * plate.heard(names).at(shapes_of(there), compliances_of(there, names))
     points = max(1.0, np.ceil((_BEFORE + _AFTER) * duration * measured.rate * FINENESS / _MOST))
     step = float(points) / (measured.rate * FINENESS)
-    time = touch - _BEFORE * duration + step * np.arange(int((_BEFORE + _AFTER) * duration / step) + 1)
+    time = (
+        touch - _BEFORE * duration + step * np.arange(int((_BEFORE + _AFTER) * duration / step) + 1)
+    )
     # the force of a node is a hat, by Gauss's rule on either half of it
     nodes, weights = np.polynomial.legendre.leggauss(4)
     half = 0.5 * (1.0 + nodes)
-    spread, share = step * np.concatenate([half - 1.0, 1.0 - half]), 0.5 * step * np.concatenate([weights * half, weights * half])
-    columns = [sampled_responses(answers, measured.rate, one + spread, share, samples) for one in time]
+    spread, share = (
+        step * np.concatenate([half - 1.0, 1.0 - half]),
+        0.5 * step * np.concatenate([weights * half, weights * half]),
+    )
+    columns = [
+        sampled_responses(answers, measured.rate, one + spread, share, samples) for one in time
+    ]
     matrix = np.stack([(column * measured.weights).ravel() for column in columns], axis=1)
     record = (measured.value * measured.weights).ravel()
     # third differences lie between the nodes; those of a kink are large
     beside = time[0] + step * (np.arange(len(time) + 3) - 1.5)
-    kinks = sum(np.exp(-(((beside - one) / (_KINK * duration)) ** 2)) for one in (touch, touch + duration))
+    kinks = sum(
+        np.exp(-(((beside - one) / (_KINK * duration)) ** 2)) for one in (touch, touch + duration)
+    )
     first = _smooth(matrix, record, kinks)
     times, impulses = (time[:, None] + spread).ravel(), (first.force[:, None] * share).ravel()
-    errors = gains * model_error_signals(plate, there, names, measured.rate, times, impulses, samples)
+    errors = gains * model_error_signals(
+        plate, there, names, measured.rate, times, impulses, samples
+    )
     if setting is not None:
 
         def signals(of: Floats) -> Floats:
@@ -111,11 +131,16 @@ def force_behind(plate: Plate, measured: Measured, place: Place, touch: float, d
 
 def _smooth(matrix: Floats, record: Floats, kinks: Floats) -> Deconvolved:
     """Return the force with the kinks, where it begins and ends, that the records prefer."""
-    return max((deconvolve(matrix, record, 1.0 + more * kinks) for more in _KINKS), key=lambda found: found.evidence)
+    return max(
+        (deconvolve(matrix, record, 1.0 + more * kinks) for more in _KINKS),
+        key=lambda found: found.evidence,
+    )
 
 
 def whitening(errors: Floats) -> Callable[[Floats], Floats]:
-    """Return the map that makes the sum of unit white noise and of errors (samples, n) with unit deviations white."""
+    """Return the map that makes the sum of unit white noise and of errors (samples, n)
+    with unit deviations white.
+    """
     vectors, deviations, _ = np.linalg.svd(errors, full_matrices=False)
     less = 1.0 - 1.0 / np.sqrt(1.0 + deviations**2)
     return lambda values: values - (vectors * less) @ (vectors.T @ values)

@@ -1,4 +1,6 @@
-"""Identification: from records of sensors on a plate to the force, its place, and the size and speed of the sphere, with intervals."""
+"""Identification: from records of sensors on a plate to the force, its place, and the
+size and speed of the sphere, with intervals.
+"""
 
 from __future__ import annotations
 
@@ -27,7 +29,13 @@ from vibroimpact.units.display import digits
 
 WINDOW = 5e-3
 """Time from first touch on that is used unless another is given [s]."""
-_ALWAYS_CERTAIN = ("damping", "supports", "density of the plate", "material of the sphere", "contact law")
+_ALWAYS_CERTAIN = (
+    "damping",
+    "supports",
+    "density of the plate",
+    "material of the sphere",
+    "contact law",
+)
 """What is always taken as certain."""
 _TOLD = 0.5
 """Least product of band and duration for which a force has a shape that is heard."""
@@ -50,11 +58,13 @@ class Identification:
     sphere : SphereFit
         The sphere whose contact explains the records.
     force : Force, optional
-        The force from the records alone, without a contact law; None where it contradicts the contact that was fitted.
+        The force from the records alone, without a contact law; None where it contradicts the
+        contact that was fitted.
     estimates : dict of str to Estimate
-        What was found, by names that end in their units: `place_x_m`, `place_y_m`, `first_touch_s`, `radius_m`, `mass_kg`, `speed_m_s`,
-        `duration_s`, `max_force_N` and `impulse_N_s` from the contact that was fitted; `recovered_max_force_N` and
-        `recovered_impulse_N_s` from the records alone, unless they contradict the contact. A place that was given has no deviation.
+        What was found, by names that end in their units: `place_x_m`, `place_y_m`, `first_touch_s`,
+        `radius_m`, `mass_kg`, `speed_m_s`, `duration_s`, `max_force_N` and `impulse_N_s` from the
+        contact that was fitted; `recovered_max_force_N` and `recovered_impulse_N_s` from the
+        records alone, unless they contradict the contact. A place that was given has no deviation.
     doubts : tuple of str
         What could not be told, and why.
 
@@ -65,13 +75,31 @@ class Identification:
     Examples
     --------
     >>> import vibroimpact as vi
-    >>> plate = {"size": [0.3, 0.3, 0.02], "material": "steel", "model": "elastic", "modes": 20, "supports": "clamped", "damping": 0.01}
-    >>> case = vi.read_case({
-    ...     "sphere": {"radius": 0.02, "material": "rock-paper"}, "plate": plate, "drop": {"speed": 2.0, "position": [0.02, 0.01]},
-    ...     "contact": {"law": "hertz"}, "run": {"impacts": 1},
-    ...     "sensors": [{"name": "a", "position": [0.1, 0.03], "rate": 20e3}, {"name": "b", "position": [-0.05, 0.08], "rate": 20e3}],
-    ... })
-    >>> records = [vi.Record(name, one.value, 20e3, "m/s2") for name, one in vi.simulate(case).signals().items()]
+    >>> plate = {
+    ...     "size": [0.3, 0.3, 0.02],
+    ...     "material": "steel",
+    ...     "model": "elastic",
+    ...     "modes": 20,
+    ...     "supports": "clamped",
+    ...     "damping": 0.01,
+    ... }
+    >>> case = vi.read_case(
+    ...     {
+    ...         "sphere": {"radius": 0.02, "material": "rock-paper"},
+    ...         "plate": plate,
+    ...         "drop": {"speed": 2.0, "position": [0.02, 0.01]},
+    ...         "contact": {"law": "hertz"},
+    ...         "run": {"impacts": 1},
+    ...         "sensors": [
+    ...             {"name": "a", "position": [0.1, 0.03], "rate": 20e3},
+    ...             {"name": "b", "position": [-0.05, 0.08], "rate": 20e3},
+    ...         ],
+    ...     }
+    ... )
+    >>> records = [
+    ...     vi.Record(name, one.value, 20e3, "m/s2")
+    ...     for name, one in vi.simulate(case).signals().items()
+    ... ]
     >>> found = vi.identify(case, records)
     >>> round(found.estimates["radius_m"].value, 3), found.estimates["radius_m"].interval[0] < 0.02
     (0.02, True)
@@ -101,13 +129,14 @@ def identify(
     errors: SetupErrors | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> Identification:
-    """Return force, place, size and speed of an impact on an elastic plate, identified from records of its sensors.
+    """Return force, place, size and speed of an impact on an elastic plate, identified from records
+    of its sensors.
 
     Parameters
     ----------
     case : Case
-        The plate with its supports and damping, the sensors, the material of the sphere and the contact law. Radius, speed and place in
-        it are not used.
+        The plate with its supports and damping, the sensors, the material of the sphere and the
+        contact law. Radius, speed and place in it are not used.
     records : sequence of Record
         Records of one fall, named after the sensors.
     place : tuple of two floats, optional
@@ -115,40 +144,67 @@ def identify(
     window : float, default 5e-3
         Time from first touch on that is used [s]; it must end before the next impact.
     frequency_error : float, default 0
-        Standard deviation of the relative error of the plate's frequencies, beside the estimated error of the mesh [-].
+        Standard deviation of the relative error of the plate's frequencies, beside the estimated
+        error of the mesh [-].
     errors : SetupErrors, optional
-        Standard deviations of what the case states about the plate and its sensors; by default all of it is taken as certain.
+        Standard deviations of what the case states about the plate and its sensors; by default all
+        of it is taken as certain.
     progress : callable, optional
         Called with the fraction done while modes are computed.
 
     Raises
     ------
     InputError
-        If the plate is rigid, a record has no sensor, is too short, or its sampling is too slow for the contact.
+        If the plate is rigid, a record has no sensor, is too short, or its sampling is too slow for
+        the contact.
 
     Notes
     -----
-    First a Hertzian pulse is sought over the plate, its impulse, duration and instant being eliminated at each place. From there the case's
-    contact, computed on the elastic plate, is fitted to the records by least squares: place, radius, speed and first touch. Intervals
-    follow from what the fit leaves, with the errors of the plate's frequencies and of the modes left out as unknowns with a prior, and with
-    those of the set-up that are given. Records read from the folder of a run of the same plate have no errors of mesh and modes.
+    First a Hertzian pulse is sought over the plate, its impulse, duration and instant being
+    eliminated at each place. From there the case's contact, computed on the elastic plate, is
+    fitted to the records by least squares: place, radius, speed and first touch. Intervals follow
+    from what the fit leaves, with the errors of the plate's frequencies and of the modes left out
+    as unknowns with a prior, and with those of the set-up that are given. Records read from the
+    folder of a run of the same plate have no errors of mesh and modes.
 
     Examples
     --------
     >>> import vibroimpact as vi
-    >>> plate = {"size": [0.3, 0.3, 0.02], "material": "steel", "model": "elastic", "modes": 20, "supports": "clamped", "damping": 0.01}
-    >>> case = vi.read_case({
-    ...     "sphere": {"radius": 0.02, "material": "rock-paper"}, "plate": plate, "drop": {"speed": 2.0, "position": [0.02, 0.01]},
-    ...     "contact": {"law": "hertz"}, "run": {"impacts": 1},
-    ...     "sensors": [{"name": "a", "position": [0.1, 0.03], "rate": 20e3}, {"name": "b", "position": [-0.05, 0.08], "rate": 20e3}],
-    ... })
+    >>> plate = {
+    ...     "size": [0.3, 0.3, 0.02],
+    ...     "material": "steel",
+    ...     "model": "elastic",
+    ...     "modes": 20,
+    ...     "supports": "clamped",
+    ...     "damping": 0.01,
+    ... }
+    >>> case = vi.read_case(
+    ...     {
+    ...         "sphere": {"radius": 0.02, "material": "rock-paper"},
+    ...         "plate": plate,
+    ...         "drop": {"speed": 2.0, "position": [0.02, 0.01]},
+    ...         "contact": {"law": "hertz"},
+    ...         "run": {"impacts": 1},
+    ...         "sensors": [
+    ...             {"name": "a", "position": [0.1, 0.03], "rate": 20e3},
+    ...             {"name": "b", "position": [-0.05, 0.08], "rate": 20e3},
+    ...         ],
+    ...     }
+    ... )
     >>> signals = vi.simulate(case).signals()
-    >>> found = identify(case, [Record(name, one.value, 20e3, "m/s2") for name, one in signals.items()])
-    >>> [round(found.estimates[name].value, 3) for name in ("radius_m", "speed_m_s", "place_x_m", "place_y_m")]
+    >>> found = identify(
+    ...     case, [Record(name, one.value, 20e3, "m/s2") for name, one in signals.items()]
+    ... )
+    >>> [
+    ...     round(found.estimates[name].value, 3)
+    ...     for name in ("radius_m", "speed_m_s", "place_x_m", "place_y_m")
+    ... ]
     [0.02, 2.0, 0.02, 0.01]
     """
     model_error = 0.0 if is_own_run(case, records) else 1.0
-    plate = prepared_plate(case, window, frequency_error, progress, errors=errors, model_error=model_error)
+    plate = prepared_plate(
+        case, window, frequency_error, progress, errors=errors, model_error=model_error
+    )
     return identify_on(plate, records, place)
 
 
@@ -168,7 +224,8 @@ def prepared_plate(
     case, window, frequency_error, progress, errors
         As those of `identify`.
     model_error : float, default 1
-        Part of the estimated errors of the mesh and of the modes left out that the records have: 0 for those of a run of this model.
+        Part of the estimated errors of the mesh and of the modes left out that the records have: 0
+        for those of a run of this model.
 
     Raises
     ------
@@ -176,15 +233,20 @@ def prepared_plate(
         If the plate is rigid, the case has no sensors, or a number is not allowed.
     """
     if not 0.0 < window <= 1.0:
-        raise InputError(f"a window of {window:g} s is not allowed; it must be greater than 0 and at most 1 s")
+        raise InputError(
+            f"a window of {window:g} s is not allowed; it must be greater than 0 and at most 1 s"
+        )
     if not 0.0 <= frequency_error < 0.5:
         raise InputError(
-            f"an error of frequencies of {frequency_error:g} is not allowed; it must be at least 0 and less than 0.5 (0.01 is 1 %)"
+            f"an error of frequencies of {frequency_error:g} is not allowed; it must be at "
+            "least 0 and less than 0.5 (0.01 is 1 %)"
         )
     return plate_of(case, window, frequency_error, progress, errors=errors, model_error=model_error)
 
 
-def identify_on(plate: Plate, records: Sequence[Record], place: Place | None = None) -> Identification:
+def identify_on(
+    plate: Plate, records: Sequence[Record], place: Place | None = None
+) -> Identification:
     """Return what records tell of an impact on a plate.
 
     Parameters
@@ -202,18 +264,42 @@ def identify_on(plate: Plate, records: Sequence[Record], place: Place | None = N
     records = [without_baseline(record) for record in records]
     measured, search = _started(plate, records, place)
     sphere = fit_sphere(plate, measured, search.candidates[0], place)
-    at, duration = (float(sphere.parameters[0]), float(sphere.parameters[1])), float(sphere.force.facts[2])
+    at, duration = (
+        (float(sphere.parameters[0]), float(sphere.parameters[1])),
+        float(sphere.force.facts[2]),
+    )
     about = replace(measured, noise=np.maximum(measured.noise, sphere.noise))
-    force = force_behind(sphere.plate, about, at, float(sphere.parameters[4]), duration, None if plate.errors.is_none else sphere.setting)
+    force = force_behind(
+        sphere.plate,
+        about,
+        at,
+        float(sphere.parameters[4]),
+        duration,
+        None if plate.errors.is_none else sphere.setting,
+    )
     withheld = contradiction(sphere, force)
     estimates = _estimates(plate.case, measured, sphere, None if withheld else force)
-    doubts = [*doubts_about(plate, measured, search, sphere, place), *([withheld] if withheld else [])]
+    doubts = [
+        *doubts_about(plate, measured, search, sphere, place),
+        *([withheld] if withheld else []),
+    ]
     of_files = dict.fromkeys(doubt for record in records for doubt in record.named_doubts)
-    return Identification(plate, measured, search, sphere, None if withheld else force, estimates, (*of_files, *doubts))
+    return Identification(
+        plate,
+        measured,
+        search,
+        sphere,
+        None if withheld else force,
+        estimates,
+        (*of_files, *doubts),
+    )
 
 
-def identify_force(case: CaseTable, records: Sequence[Record], place: Place, *, window: float = WINDOW) -> Force:
-    """Return the force behind records at a place that is known, from the records alone: no contact law is assumed.
+def identify_force(
+    case: CaseTable, records: Sequence[Record], place: Place, *, window: float = WINDOW
+) -> Force:
+    """Return the force behind records at a place that is known, from the records alone: no contact
+    law is assumed.
 
     Parameters
     ----------
@@ -228,13 +314,28 @@ def identify_force(case: CaseTable, records: Sequence[Record], place: Place, *, 
     Examples
     --------
     >>> import vibroimpact as vi
-    >>> plate = {"size": [0.3, 0.3, 0.02], "material": "steel", "model": "elastic", "modes": 20, "supports": "clamped", "damping": 0.01}
-    >>> case = vi.read_case({
-    ...     "sphere": {"radius": 0.02, "material": "rock-paper"}, "plate": plate, "drop": {"speed": 2.0, "position": [0.02, 0.01]},
-    ...     "contact": {"law": "hertz"}, "run": {"impacts": 1}, "sensors": [{"name": "a", "position": [0.1, 0.03], "rate": 20e3}],
-    ... })
+    >>> plate = {
+    ...     "size": [0.3, 0.3, 0.02],
+    ...     "material": "steel",
+    ...     "model": "elastic",
+    ...     "modes": 20,
+    ...     "supports": "clamped",
+    ...     "damping": 0.01,
+    ... }
+    >>> case = vi.read_case(
+    ...     {
+    ...         "sphere": {"radius": 0.02, "material": "rock-paper"},
+    ...         "plate": plate,
+    ...         "drop": {"speed": 2.0, "position": [0.02, 0.01]},
+    ...         "contact": {"law": "hertz"},
+    ...         "run": {"impacts": 1},
+    ...         "sensors": [{"name": "a", "position": [0.1, 0.03], "rate": 20e3}],
+    ...     }
+    ... )
     >>> response = vi.simulate(case)
-    >>> force = vi.identify_force(case, [vi.Record("a", response.signals()["a"].value, 20e3, "m/s2")], (0.02, 0.01))
+    >>> force = vi.identify_force(
+    ...     case, [vi.Record("a", response.signals()["a"].value, 20e3, "m/s2")], (0.02, 0.01)
+    ... )
     >>> speeds = response.impacts["approach_speed_m_s"] + response.impacts["separation_speed_m_s"]
     >>> round(float(force.impulse[0] / (response.problem.sphere.mass * speeds[0])), 2)
     1.0
@@ -245,38 +346,67 @@ def identify_force(case: CaseTable, records: Sequence[Record], place: Place, *, 
     return force_behind(plate, measured, place, pulse.touch, pulse.duration)
 
 
-def _started(plate: Plate, records: Sequence[Record], place: Place | None) -> tuple[Measured, Search]:
+def _started(
+    plate: Plate, records: Sequence[Record], place: Place | None
+) -> tuple[Measured, Search]:
     """Return records around first touch, and the pulse that explains them.
 
     Raises
     ------
     InputError
-        If a place lies outside the plate, a record is not one of a sensor, or its sampling is too slow for the contact.
+        If a place lies outside the plate, a record is not one of a sensor, or its sampling is too
+        slow for the contact.
     """
     low, high = plate.bounds
     if place is not None and not ((low <= place) & (place <= high)).all():
-        words = f"the place ({place[0]:.10g}, {place[1]:.10g}) m is off the plate, or too near its edge"
-        raise InputError(f"{words}; x must be from {low[0]:.10g} to {high[0]:.10g} m, and y from {low[1]:.10g} to {high[1]:.10g} m")
-    measured, search = upright(plate, measured_of(plate.problem.sensors, records, plate.window), place)
+        words = (
+            f"the place ({place[0]:.10g}, {place[1]:.10g}) m is off the plate, or too near its edge"
+        )
+        raise InputError(
+            f"{words}; x must be from {low[0]:.10g} to {high[0]:.10g} m, and y from "
+            f"{low[1]:.10g} to {high[1]:.10g} m"
+        )
+    measured, search = upright(
+        plate, measured_of(plate.problem.sensors, records, plate.window), place
+    )
     pulse = search.candidates[0]
     if pulse.duration * measured.band < _TOLD:
         shortest = digits(1e6 * _TOLD / measured.band, 3)
-        words = f"the sensors hear up to {measured.band:,.0f} Hz, enough for contacts of {shortest} us or longer"
-        remedy = f"sample faster than at {measured.rate:.10g} Hz, with an anti-alias filter that passes more"
-        raise InputError(f"the records do not determine the duration of the contact: {words}; {remedy}")
+        words = (
+            f"the sensors hear up to {measured.band:,.0f} Hz, enough for contacts of "
+            f"{shortest} us or longer"
+        )
+        remedy = (
+            f"sample faster than at {measured.rate:.10g} Hz, with an "
+            "anti-alias filter that passes more"
+        )
+        raise InputError(
+            f"the records do not determine the duration of the contact: {words}; {remedy}"
+        )
     if pulse.spread > _VAGUE:
-        words = f"the standard deviation of its logarithm is {digits(pulse.spread, 2)}, from what the best pulse leaves of them"
-        remedy = "measure with less noise, or check that they are of an impact on the plate of the case"
-        raise InputError(f"the records do not determine the duration of the contact: {words}; {remedy}")
+        words = (
+            f"the standard deviation of its logarithm is {digits(pulse.spread, 2)}, from what "
+            "the best pulse leaves of them"
+        )
+        remedy = (
+            "measure with less noise, or check that they are of an impact on the plate of the case"
+        )
+        raise InputError(
+            f"the records do not determine the duration of the contact: {words}; {remedy}"
+        )
     return measured, search
 
 
-def _estimates(case: CaseTable, measured: Measured, sphere: SphereFit, force: Force | None) -> dict[str, Estimate]:
+def _estimates(
+    case: CaseTable, measured: Measured, sphere: SphereFit, force: Force | None
+) -> dict[str, Estimate]:
     """Return what was found, by names that end in their units."""
     at_x, at_y, radius, speed, touch = sphere.parameters.tolist()
     deviations = np.sqrt(np.diag(sphere.covariance)).tolist()
     of_force = np.sqrt(np.diag(sphere.force_covariance)).tolist()
-    peak, impulse, duration = (Estimate(*pair) for pair in zip(sphere.force.facts.tolist(), of_force, strict=True))
+    peak, impulse, duration = (
+        Estimate(*pair) for pair in zip(sphere.force.facts.tolist(), of_force, strict=True)
+    )
     mass = float(ball_of(resized(case.sphere, math.exp(radius))).mass)
     found = {
         "place_x_m": Estimate(at_x, deviations[0]),
@@ -291,4 +421,8 @@ def _estimates(case: CaseTable, measured: Measured, sphere: SphereFit, force: Fo
     }
     if force is None:
         return found
-    return {**found, "recovered_max_force_N": Estimate(*force.peak), "recovered_impulse_N_s": Estimate(*force.impulse)}
+    return {
+        **found,
+        "recovered_max_force_N": Estimate(*force.peak),
+        "recovered_impulse_N_s": Estimate(*force.impulse),
+    }

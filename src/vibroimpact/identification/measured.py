@@ -91,7 +91,8 @@ class Measured:
 
 
 def measured_of(sensors: Sequence[Sensor], records: Sequence[Record], window: float) -> Measured:
-    """Return records around their first touch, without their baselines, for the sensors that they are named after.
+    """Return records around their first touch, without their baselines, for the sensors that they
+    are named after.
 
     Parameters
     ----------
@@ -105,23 +106,29 @@ def measured_of(sensors: Sequence[Sensor], records: Sequence[Record], window: fl
     Raises
     ------
     InputError
-        If there is no sensor of that name, its unit or rate is another, two records have one name, they were not sampled at the same
-        instants, or one is too short, not finite or constant.
+        If there is no sensor of that name, its unit or rate is another, two records have one name,
+        they were not sampled at the same instants, or one is too short, not finite or constant.
     """
     used = sensors_of(sensors, records)
     rate = used[0].rate
     records = [without_baseline(record) for record in records]
     whole, start = on_common_time(records)
-    of_samples = [replace(record, value=clipped_samples(record).astype(float)) for record in records]
+    of_samples = [
+        replace(record, value=clipped_samples(record).astype(float)) for record in records
+    ]
     clipped = on_common_time(of_samples)[0] > 0.0
     end = start + whole.shape[1] / rate
     onset = min(onset_time(record) for record in records)
     first = max(0, round((onset - start) * rate) - HALF_LENGTH - 1)
     last = min(round((onset + window - start) * rate), round((end - start) * rate))
     if last - round((onset - start) * rate) < _LEAST:
-        words = f"the records have {max(0, last - round((onset - start) * rate))} samples in common from first touch on, to at most"
+        words = (
+            f"the records have {max(0, last - round((onset - start) * rate))} samples in "
+            "common from first touch on, to at most"
+        )
         raise InputError(
-            f"{words} {1e3 * window:g} ms; {_LEAST} are needed, which are {digits(1e3 * _LEAST / rate, 3)} ms at {rate:.10g} Hz"
+            f"{words} {1e3 * window:g} ms; {_LEAST} are needed, which are "
+            f"{digits(1e3 * _LEAST / rate, 3)} ms at {rate:.10g} Hz"
         )
     value, heard = whole[:, first:last], ~clipped[:, first:last]
     quiet = first >= _QUIET
@@ -131,7 +138,16 @@ def measured_of(sensors: Sequence[Sensor], records: Sequence[Record], window: fl
     removed = tuple(record.removed or Removed(0.0, 0.0) for record in records)
     deviation = noise if quiet else _UNKNOWN * rms
     return Measured(
-        used, value, heard, rate, start + first / rate, onset - start - first / rate, deviation, quiet, removed, np.ones(len(used))
+        used,
+        value,
+        heard,
+        rate,
+        start + first / rate,
+        onset - start - first / rate,
+        deviation,
+        quiet,
+        removed,
+        np.ones(len(used)),
     )
 
 
@@ -146,18 +162,25 @@ def sensors_of(sensors: Sequence[Sensor], records: Sequence[Record]) -> tuple[Se
     Raises
     ------
     InputError
-        If there is no record, no sensor of that name, its unit or rate is another, or two records have one name.
+        If there is no record, no sensor of that name, its unit or rate is another, or two records
+        have one name.
     """
     known = {sensor.name: sensor for sensor in sensors}
     chosen: dict[str, Sensor] = {}
     for record in records:
-        name = next((name for name in (record.name, *known) if name in known and is_named(record, name)), None)
+        name = next(
+            (name for name in (record.name, *known) if name in known and is_named(record, name)),
+            None,
+        )
         if name is None:
             there = ", ".join(f'"{name}"' for name in known)
             words = f"the case has no sensor {shown(record.name)}; it has {there}"
             first = next(iter(known.values()))
             if record.source.lower().endswith(".csv"):
-                words += f'; a column of a CSV file is named after its sensor and has its unit, such as "{first.name} [{first.unit}]"'
+                words += (
+                    "; a column of a CSV file is named after its sensor and has its unit, "
+                    f'such as "{first.name} [{first.unit}]"'
+                )
             raise InputError(f"{words}.{did_you_mean(record.name, known)}")
         if name in chosen:
             raise InputError(f"there are two records {shown(name)}; give those of one fall")
@@ -169,7 +192,8 @@ def sensors_of(sensors: Sequence[Sensor], records: Sequence[Record]) -> tuple[Se
 
 
 def on_common_time(records: Sequence[Record]) -> tuple[Floats, float]:
-    """Return the samples of records in the time that they have in common, (S, samples), and its begin [s].
+    """Return the samples of records in the time that they have in common, (S, samples), and its
+    begin [s].
 
     Raises
     ------
@@ -181,7 +205,9 @@ def on_common_time(records: Sequence[Record]) -> tuple[Floats, float]:
     end = min(record.start + len(record.value) / rate for record in records)
     offsets = [(start - record.start) * rate for record in records]
     if any(abs(offset - round(offset)) > _SAME * max(1.0, offset) for offset in offsets):
-        raise InputError("the records were not sampled at the same instants; give those of one acquisition")
+        raise InputError(
+            "the records were not sampled at the same instants; give those of one acquisition"
+        )
     samples = max(0, round((end - start) * rate))
     whole = [record.value[round(offset) :] for record, offset in zip(records, offsets, strict=True)]
     samples = min(samples, *(len(one) for one in whole))
@@ -192,11 +218,23 @@ def _check(record: Record, sensor: Sensor) -> None:
     """Raise InputError unless a record can be that of a sensor."""
     if record.unit.replace("^", "") != sensor.unit and (record.unit, sensor.unit) != _STRAIN:
         given = f"in {record.unit}" if record.unit else "without a unit"
-        raise InputError(f"the record {shown(record.name)} is {given}, and the sensor of that name reads {sensor.unit}")
+        raise InputError(
+            f"the record {shown(record.name)} is {given}, and the sensor of that name "
+            f"reads {sensor.unit}"
+        )
     if abs(record.rate / sensor.rate - 1.0) > _SAME:
-        words = f"the record {shown(record.name)} has {record.rate:.10g} samples per second, and the sensor of that name {sensor.rate:.10g}"
-        raise InputError(f"{words}; write rate = {record.rate:.10g} in the case, with the anti-alias filter that the record has")
+        words = (
+            f"the record {shown(record.name)} has {record.rate:.10g} samples per second, and "
+            f"the sensor of that name {sensor.rate:.10g}"
+        )
+        raise InputError(
+            f"{words}; write rate = {record.rate:.10g} in the case, with the anti-alias "
+            "filter that the record has"
+        )
     if not np.isfinite(record.value).all():
         raise InputError(f"the record {shown(record.name)} has samples that are not finite numbers")
     if not len(record.value) or np.ptp(record.value) == 0.0:
-        raise InputError(f"the record {shown(record.name)} {'is constant' if len(record.value) else 'has no samples'}; it shows no impact")
+        raise InputError(
+            f"the record {shown(record.name)} "
+            f"{'is constant' if len(record.value) else 'has no samples'}; it shows no impact"
+        )

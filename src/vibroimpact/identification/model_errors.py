@@ -13,12 +13,19 @@ from vibroimpact.identification.plate import Plate, compliances_of, shapes_of
 
 
 def model_error_signals(
-    plate: Plate, there: Problem, names: Sequence[str], rate: float, times: Floats, impulses: Floats, samples: int
+    plate: Plate,
+    there: Problem,
+    names: Sequence[str],
+    rate: float,
+    times: Floats,
+    impulses: Floats,
+    samples: int,
 ) -> Floats:
-    """Return the changes of the records of a force by one standard deviation of each error of the plate's model, (S + modes, S, samples).
+    """Return the changes of the records of a force by one standard deviation of each error of the
+    plate's model, (S + modes, S, samples).
 
-    The errors are those of the static response of the modes left out to each sensor, whose standard deviation is that response, as it
-    grows towards their frequencies, and those of the frequencies.
+    The errors are those of the static response of the modes left out to each sensor, whose standard
+    deviation is that response, as it grows towards their frequencies, and those of the frequencies.
 
     Parameters
     ----------
@@ -40,6 +47,17 @@ def model_error_signals(
     def signals(at: Floats) -> Floats:
         return sampled_responses(at, rate, times, impulses, samples)
 
-    static = plate.model_error * np.eye(len(names))[:, :, None] * signals(compliances_of(there, names)[:, None] * residual)
+    static = (
+        plate.model_error
+        * np.eye(len(names))[:, :, None]
+        * signals(compliances_of(there, names)[:, None] * residual)
+    )
     scaled = (plate.frequency_errors * shapes)[:, None, None] * plate.detuned(names)
-    return np.concatenate([static, signals(scaled.reshape(len(shapes) * len(names), -1)).reshape(len(shapes), len(names), samples)])
+    return np.concatenate(
+        [
+            static,
+            signals(scaled.reshape(len(shapes) * len(names), -1)).reshape(
+                len(shapes), len(names), samples
+            ),
+        ]
+    )

@@ -16,8 +16,12 @@ _RUN = ("result.nc", "case.toml")
 
 
 def is_own_run(case: CaseTable, records: Sequence[Record]) -> bool:
-    """Return whether records are from the folder of a run whose plate is modelled as in a case: then they have no errors of that model."""
-    folders = {Path(record.source).parent for record in records if Path(record.source).name == _RUN[0]}
+    """Return whether records are from the folder of a run whose plate is modelled as in a
+    case: then they have no errors of that model.
+    """
+    folders = {
+        Path(record.source).parent for record in records if Path(record.source).name == _RUN[0]
+    }
     if len(folders) != 1 or any(Path(record.source).name != _RUN[0] for record in records):
         return False
     file = folders.pop() / _RUN[1]

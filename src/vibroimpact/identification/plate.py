@@ -18,7 +18,11 @@ from vibroimpact.cases.fields.elastic_body import BroughtMeshTable
 from vibroimpact.cases.oblique import oblique_keys
 from vibroimpact.cases.schema import CaseTable
 from vibroimpact.dynamics.problem import Problem
-from vibroimpact.dynamics.sensors.place_responses import PlaceResponses, sensor_shapes, unit_responses
+from vibroimpact.dynamics.sensors.place_responses import (
+    PlaceResponses,
+    sensor_shapes,
+    unit_responses,
+)
 from vibroimpact.dynamics.sensors.sensor import Sensor
 from vibroimpact.dynamics.vibrating.bodies import bases_of_plate
 from vibroimpact.errors import InputError
@@ -40,9 +44,13 @@ _ALIKE = 1e-4
 _TOUCHED = 4
 """Number of places of the contact that are kept."""
 _LEFT_OUT = 16
-"""Number of modes that stand for those left out: so dense that they do not swing back during a contact."""
+"""Number of modes that stand for those left out: so dense that they do not swing back
+during a contact.
+"""
 _FINER, _PLACES, _MIDDLE = 1.5, 32, 0.6
-"""How much finer a mesh is whose static compliance is compared, at how many places, over what part of the length and width of the plate."""
+"""How much finer a mesh is whose static compliance is compared, at how many places, over
+what part of the length and width of the plate.
+"""
 _MARGIN = 1.5
 """Least distance of a place from the edge, in thicknesses."""
 _SHEAR = 5.0 / 6.0
@@ -66,8 +74,8 @@ class Plate:
     errors : SetupErrors
         What is not certain of the case.
     model_error : float
-        Part of the estimated errors of the mesh and of the modes left out that records have: 1 of those of a plate, 0 of those of a run of
-        this same model.
+        Part of the estimated errors of the mesh and of the modes left out that records have: 1 of
+        those of a plate, 0 of those of a run of this same model.
     setup : Setup, optional
         How the plate and its sensors differ from the case.
     stated : Plate, optional
@@ -75,7 +83,8 @@ class Plate:
     responses : dict
         Responses that were computed, by the names of sensors.
     detunings : dict
-        Their derivatives in the frequencies, with these frequencies, which plates in similar set-ups share.
+        Their derivatives in the frequencies, with these frequencies, which plates in similar
+        set-ups share.
     """
 
     case: CaseTable
@@ -93,7 +102,10 @@ class Plate:
     def bounds(self) -> tuple[Floats, Floats]:
         """Least and largest x and y of a place [m], (2,) each."""
         model = self.problem.models["plate"]
-        nodes, margin = model.mesh.nodes[:, :2], _MARGIN * (model.thickness or float(model.mesh.extent[2]))
+        nodes, margin = (
+            model.mesh.nodes[:, :2],
+            _MARGIN * (model.thickness or float(model.mesh.extent[2])),
+        )
         return nodes.min(axis=0) + margin, nodes.max(axis=0) - margin
 
     @property
@@ -105,45 +117,60 @@ class Plate:
 
     @cached_property
     def grid(self) -> tuple[Floats, Floats, Floats]:
-        """x and y of a grid of places that no mode oscillates between [m], and the deflections there, (y, x, modes)."""
+        """x and y of a grid of places that no mode oscillates between [m], and the
+        deflections there, (y, x, modes).
+        """
         low, high = self.bounds
         (length, width), modes = high - low, len(self.problem.models["plate"].angular_frequencies)
-        step = np.sqrt(np.pi * length * width / modes) / _PER_WAVE  # a mode has the area of its wavelength squared over pi (Weyl)
+        # a mode has the area of its wavelength squared over pi (Weyl)
+        step = np.sqrt(np.pi * length * width / modes) / _PER_WAVE
         x, y = (
-            np.linspace(start, end, max(5, round((end - start) / step) + 1)) for start, end in zip(low.tolist(), high.tolist(), strict=True)
+            np.linspace(start, end, max(5, round((end - start) / step) + 1))
+            for start, end in zip(low.tolist(), high.tolist(), strict=True)
         )
         places = np.stack(np.meshgrid(x, y), axis=-1)
         return x, y, self.deflections(places.reshape(-1, 2)).reshape(len(y), len(x), -1)
 
     @cached_property
     def lacking(self) -> tuple[float, float]:
-        """Mean and deviation over places of the part of its static compliance that the mesh lacks, 0 for the mesh of a file [-].
+        """Mean and deviation over places of the part of its static compliance that the mesh lacks,
+        0 for the mesh of a file [-].
 
-        It is what a finer mesh adds, which is most of it: near a point force the error falls with the square of the element size or faster.
+        It is what a finer mesh adds, which is most of it: near a point force the error falls with
+        the square of the element size or faster.
         """
         if self.stated is not None:  # it is relative to what changes
             return self.stated.lacking
         recipe = elastic_bodies(self.case)["plate"].recipe
         if not isinstance(recipe.shape, PlateOfPlates | PlateOfSolids):
             return 0.0, 0.0
-        finer = replace(recipe, shape=replace(recipe.shape, element_size=recipe.shape.element_size / _FINER))
-        spread = _MIDDLE * np.asarray(recipe.shape.size[:2]) * (Halton(2, scramble=False).random(_PLACES + 1)[1:] - 0.5)
+        finer = replace(
+            recipe, shape=replace(recipe.shape, element_size=recipe.shape.element_size / _FINER)
+        )
+        spread = (
+            _MIDDLE
+            * np.asarray(recipe.shape.size[:2])
+            * (Halton(2, scramble=False).random(_PLACES + 1)[1:] - 0.5)
+        )
         places = [(x, y) for x, y in spread.tolist()]
         added = computed_compliances(finer, places) / computed_compliances(recipe, places) - 1.0
         return float(added.mean()), float(added.std())
 
     @cached_property
     def thickness_exponents(self) -> Floats:
-        r"""Exponent n of each mode, by which its frequency is proportional to :math:`h^n` with the thickness h, (modes,).
+        r"""Exponent n of each mode, by which its frequency is proportional to :math:`h^n` with the
+        thickness h, (modes,).
 
-        That of a plane bending wave of the wavenumber k in Mindlin's theory, :math:`\omega \propto k^2 h\,(1 + c (k h)^2)^{-1/2}`: one in
+        That of a plane bending wave of the wavenumber k in Mindlin's theory, :math:`\omega \propto
+        k^2 h\,(1 + c (k h)^2)^{-1/2}`: one in
         thin plates, and less where shear and rotary inertia count.
         """
         material, model = self.case.plate.material, self.problem.models["plate"]
         thickness, ratio = model.thickness or float(model.mesh.extent[2]), material.poissons_ratio
         share = (1.0 + 2.0 / (_SHEAR * (1.0 - ratio))) / 12.0
         speed = np.sqrt(material.youngs_modulus / (12.0 * material.density * (1.0 - ratio**2)))
-        square = (self.modes.angular_frequencies * thickness / speed) ** 2  # (kh)^4 / (1 + c (kh)^2)
+        # (kh)^4 / (1 + c (kh)^2)
+        square = (self.modes.angular_frequencies * thickness / speed) ** 2
         shear = 0.5 * share * (share * square + np.sqrt((share * square) ** 2 + 4.0 * square))
         return np.asarray(1.0 / (1.0 + shear))
 
@@ -153,20 +180,41 @@ class Plate:
         if self.setup is None or not self.setup.modulus:
             return self.case
         material = self.case.plate.material
-        stiffer = replace(material, youngs_modulus=(1.0 + self.setup.modulus) * material.youngs_modulus)
-        return self.case.model_copy(update={"plate": self.case.plate.model_copy(update={"material": stiffer})})
+        stiffer = replace(
+            material, youngs_modulus=(1.0 + self.setup.modulus) * material.youngs_modulus
+        )
+        return self.case.model_copy(
+            update={"plate": self.case.plate.model_copy(update={"material": stiffer})}
+        )
 
     def under(self, setup: Setup, names: Sequence[str]) -> Plate:
         """Return the plate of a set-up that differs from the case, whose sensors are these."""
-        moved = {name: self._at_sensor(name, (float(x), float(y))) for name, (x, y) in zip(names, setup.moved, strict=True) if x or y}
+        moved = {
+            name: self._at_sensor(name, (float(x), float(y)))
+            for name, (x, y) in zip(names, setup.moved, strict=True)
+            if x or y
+        }
         resonances = dict(zip(names, setup.resonance.tolist(), strict=True))
-        sensors = tuple(with_resonance(sensor, resonances.get(sensor.name, 0.0)) for sensor in self.problem.sensors)
+        sensors = tuple(
+            with_resonance(sensor, resonances.get(sensor.name, 0.0))
+            for sensor in self.problem.sensors
+        )
         modes = replace(self.modes, points={**self.modes.points, **moved})
-        problem = replace(self.problem, plate=replace(self.problem.plate, modes=modes), sensors=sensors)
-        return replace(self, problem=stretched(problem, setup, self.thickness_exponents), setup=setup, stated=self, responses={})
+        problem = replace(
+            self.problem, plate=replace(self.problem.plate, modes=modes), sensors=sensors
+        )
+        return replace(
+            self,
+            problem=stretched(problem, setup, self.thickness_exponents),
+            setup=setup,
+            stated=self,
+            responses={},
+        )
 
     def _at_sensor(self, name: str, by: Place) -> Floats:
-        """Return the mode shapes at a sensor that is moved along x and y [m], (modes, 3); those of supports are not moved."""
+        """Return the mode shapes at a sensor that is moved along x and y [m], (modes, 3);
+        those of supports are not moved.
+        """
         model, body = self.problem.models["plate"], elastic_bodies(self.case)["plate"]
         if name in body.pressed:
             return self.modes.points[name]
@@ -180,31 +228,45 @@ class Plate:
             return model.at(place[None], side)[0][:, 0]
 
         there, here = np.clip([x + by[0], y + by[1]], low, high), np.array([x, y])
-        # the difference, since the shapes at the sensor include what the theory of plates adds at a face
+        # the difference, since the shapes at the sensor include what the theory of plates adds at a
+        # face
         return np.asarray(self.modes.points[name] + seen(there, side) - seen(here, side))
 
     def deflections(self, places: Floats) -> Floats:
-        """Return the upward deflection at places (P, 2) in each rigid motion and mode, (P, modes) [kg^-1/2]."""
-        model, lighter = self.problem.models["plate"], 1.0 if self.setup is None else (1.0 + self.setup.thickness) ** -0.5
+        """Return the upward deflection at places (P, 2) in each rigid motion and mode,
+        (P, modes) [kg^-1/2].
+        """
+        model, lighter = (
+            self.problem.models["plate"],
+            1.0 if self.setup is None else (1.0 + self.setup.thickness) ** -0.5,
+        )
         of_modes = lighter * model.at(places, "upper")[0][:, :, 2].T
         if self.problem.plate.rigid is None:
             return np.asarray(of_modes)
         rigid = [rigid_basis(model, ((float(x), float(y)), "upper"), {}) for x, y in places]
-        return np.concatenate([[lighter * one.contact for one in rigid if one is not None], of_modes], axis=1)
+        return np.concatenate(
+            [[lighter * one.contact for one in rigid if one is not None], of_modes], axis=1
+        )
 
     def at(self, place: Place) -> Problem:
         """Return the problem with the contact at a place."""
         if self.setup is None or self.stated is None:
             return self._touched(place)
         touched = self.stated._touched(place)
-        there = stretched(self.problem.on_plate(touched.plate, touched.quasi_static), self.setup, self.thickness_exponents)
+        there = stretched(
+            self.problem.on_plate(touched.plate, touched.quasi_static),
+            self.setup,
+            self.thickness_exponents,
+        )
         assert there.plate.modes is not None  # as those of the plate
         modes = replace(there.plate.modes, points=self.modes.points)
         return there.on_plate(replace(there.plate, modes=modes), there.quasi_static)
 
     @cached_property
     def _touched(self) -> Callable[[Place], Problem]:
-        """The problem with the contact at a place; the last ones are kept, as plates in similar set-ups are touched at one place."""
+        """The problem with the contact at a place; the last ones are kept, as plates in
+        similar set-ups are touched at one place.
+        """
         return lru_cache(maxsize=_TOUCHED)(partial(at_place, self.case, self.problem))
 
     def sensors(self, names: Sequence[str]) -> list[Sensor]:
@@ -228,13 +290,20 @@ class Plate:
         return self.responses[key]
 
     def detuned(self, names: Sequence[str]) -> Floats:
-        """Return the derivatives of the responses in the logarithm of the frequency of each mode, (modes, S, points)."""
+        """Return the derivatives of the responses in the logarithm of the frequency of
+        each mode, (modes, S, points).
+        """
         return np.asarray(self.seen(names)[:, :, None] * self.unit_detuned(names))
 
     def unit_detuned(self, names: Sequence[str]) -> Floats:
-        """Return those of `unit`; those of a set-up that differs little in frequency are taken from there."""
+        """Return those of `unit`; those of a set-up that differs little in frequency are
+        taken from there.
+        """
         key, frequencies = tuple(names), self.modes.frequencies
-        if key not in self.detunings or np.abs(frequencies / self.detunings[key][0] - 1.0).max() > _ALIKE:
+        if (
+            key not in self.detunings
+            or np.abs(frequencies / self.detunings[key][0] - 1.0).max() > _ALIKE
+        ):
             modes = replace(self.modes, frequencies=(1.0 + _DETUNED) * frequencies)
             problem = replace(self.problem, plate=replace(self.problem.plate, modes=modes))
             higher = unit_responses(problem, self.sensors(names), self.window)
@@ -243,25 +312,36 @@ class Plate:
 
 
 def shapes_of(problem: Problem) -> Floats:
-    """Return the upward displacement of the contact point of a problem in each rigid motion and mode of its plate, (modes,)."""
+    """Return the upward displacement of the contact point of a problem in each rigid
+    motion and mode of its plate, (modes,).
+    """
     return np.concatenate([basis.contact for basis in bases_of_plate(problem)])
 
 
 def compliances_of(problem: Problem, names: Sequence[str]) -> Floats:
-    """Return the residual compliances between the contact point of a problem and sensors [m/N], (S,)."""
+    """Return the residual compliances between the contact point of a problem and sensors
+    [m/N], (S,).
+    """
     assert problem.plate.modes is not None  # `plate_of` has seen to it
     directions = {sensor.name: np.asarray(sensor.components) for sensor in problem.sensors}
     residuals = problem.plate.modes.residuals
-    return np.array([residuals[name] @ directions[name] if name in residuals else 0.0 for name in names])
+    return np.array(
+        [residuals[name] @ directions[name] if name in residuals else 0.0 for name in names]
+    )
 
 
 def with_modes_left_out(problem: Problem) -> list[Problem]:
-    r"""Return problems whose plate has an estimate of the modes left out at the contact: those of the next octave, and those above it.
+    r"""Return problems whose plate has an estimate of the modes left out at the contact: those of
+    the next octave, and those above it.
 
-    Where the modes above the last, at :math:`\omega_c`, are as dense as in the octave below it and move the contact as much, their
-    receptance at :math:`\omega` is :math:`\int_{\omega_c}^\infty C \omega_c\,d\varpi/(\varpi^2 - \omega^2)`, with their static compliance
-    C. By the rule of Gauss and Legendre in :math:`\xi = \omega_c/\varpi`, with nodes :math:`\xi_k` and weights :math:`w_k`, it is that of
-    modes at :math:`\omega_c/\xi_k` of compliances :math:`C w_k`, those of the next octave with :math:`\xi_k > 1/2`. Statically nothing
+    Where the modes above the last, at :math:`\omega_c`, are as dense as in the octave below it and
+    move the contact as much, their
+    receptance at :math:`\omega` is :math:`\int_{\omega_c}^\infty C \omega_c\,d\varpi/(\varpi^2 -
+    \omega^2)`, with their static compliance
+    C. By the rule of Gauss and Legendre in :math:`\xi = \omega_c/\varpi`, with nodes :math:`\xi_k`
+    and weights :math:`w_k`, it is that of
+    modes at :math:`\omega_c/\xi_k` of compliances :math:`C w_k`, those of the next octave with
+    :math:`\xi_k > 1/2`. Statically nothing
     changes, since all compliance is there already.
     """
     modes = problem.plate.modes
@@ -269,13 +349,20 @@ def with_modes_left_out(problem: Problem) -> list[Problem]:
     last = float(modes.angular_frequencies[-1])
     octave = modes.angular_frequencies > 0.5 * last
     compliance = float((modes.contact[octave] ** 2).sum()) / (0.5 * last) / last
-    nodes, weights = (both[: _LEFT_OUT - 1 : -1] for both in np.polynomial.legendre.leggauss(2 * _LEFT_OUT))
+    nodes, weights = (
+        both[: _LEFT_OUT - 1 : -1] for both in np.polynomial.legendre.leggauss(2 * _LEFT_OUT)
+    )
     next_octave = nodes > 0.5
-    return [_with_modes(problem, last / nodes[part], compliance * weights[part]) for part in (next_octave, ~next_octave)]
+    return [
+        _with_modes(problem, last / nodes[part], compliance * weights[part])
+        for part in (next_octave, ~next_octave)
+    ]
 
 
 def _with_modes(problem: Problem, frequencies: Floats, compliances: Floats) -> Problem:
-    """Return a problem whose plate has more modes at the contact, of angular frequencies [rad/s] and static compliances [m/N] (n,)."""
+    """Return a problem whose plate has more modes at the contact, of angular frequencies
+    [rad/s] and static compliances [m/N] (n,).
+    """
     modes = problem.plate.modes
     assert modes is not None
     number = len(frequencies)
@@ -291,24 +378,35 @@ def _with_modes(problem: Problem, frequencies: Floats, compliances: Floats) -> P
         residuals={},
         along=None,
     )
-    return replace(with_compliance(problem, -compliances.sum()), plate=replace(problem.plate, modes=above), sensors=())
+    return replace(
+        with_compliance(problem, -compliances.sum()),
+        plate=replace(problem.plate, modes=above),
+        sensors=(),
+    )
 
 
 def with_compliance(problem: Problem, more: float) -> Problem:
     """Return a problem with more static compliance at its contact [m/N]."""
-    return replace(problem, quasi_static=replace(problem.quasi_static, linear=problem.quasi_static.linear + more))
+    return replace(
+        problem,
+        quasi_static=replace(problem.quasi_static, linear=problem.quasi_static.linear + more),
+    )
 
 
 def compliance_error(plate: Plate, problem: Problem) -> tuple[float, float]:
-    """Return mean and standard deviation of what the static compliance of the plate lacks at the contact of a problem [m/N].
+    """Return mean and standard deviation of what the static compliance of the plate lacks at the
+    contact of a problem [m/N].
 
-    Its mesh makes a plate too stiff. What makes the frequencies too high does too: the errors of all its modes have one sign.
+    Its mesh makes a plate too stiff. What makes the frequencies too high does too: the errors of
+    all its modes have one sign.
     """
     modes = problem.plate.modes
     assert modes is not None  # `plate_of` has seen to it
     of_modes = (modes.contact / modes.angular_frequencies) ** 2
     mean, spread = (float(part * of_modes.sum()) for part in plate.lacking)
-    return mean, math.hypot(spread, 2.0 * float(plate.frequency_errors[-len(of_modes) :] @ of_modes))
+    return mean, math.hypot(
+        spread, 2.0 * float(plate.frequency_errors[-len(of_modes) :] @ of_modes)
+    )
 
 
 def plate_of(
@@ -329,7 +427,8 @@ def plate_of(
     window : float
         Time from first touch on that is used [s].
     frequency_error : float, default 0
-        Standard deviation of the relative error of the frequencies of the plate, beside what the mesh makes [-].
+        Standard deviation of the relative error of the frequencies of the plate, beside what the
+        mesh makes [-].
     progress : callable, optional
         Called with the fraction done while modes are computed.
     errors : SetupErrors, optional
@@ -340,34 +439,59 @@ def plate_of(
     Raises
     ------
     InputError
-        If the plate is rigid, narrow or moves, the case has no sensors, or the sphere's own modes would change with its size.
+        If the plate is rigid, narrow or moves, the case has no sensors, or the sphere's own modes
+        would change with its size.
     """
     check_case(case)
     if case.plate.model == "rigid":
-        raise InputError('the plate is rigid, so that its points do not move; give it model = "elastic"', "plate.model")
+        raise InputError(
+            'the plate is rigid, so that its points do not move; give it model = "elastic"',
+            "plate.model",
+        )
     if case.plate.motion is not None:
-        raise InputError("only an impact on a plate that is at rest before it is identified; leave this out", "plate.motion")
+        raise InputError(
+            "only an impact on a plate that is at rest before it is identified; leave this out",
+            "plate.motion",
+        )
     if not case.sensors:
         raise InputError("the case has no sensors; say where those of the records are", "sensors")
     if isinstance(case.plate.mesh, BroughtMeshTable) and case.plate.mesh.contact:
-        raise InputError("an identification places the force itself, and this fixes its place; leave it out", "plate.mesh.contact")
+        raise InputError(
+            "an identification places the force itself, and this fixes its place; leave it out",
+            "plate.mesh.contact",
+        )
     if case.sphere.model == "elastic":
-        raise InputError('the modes of a sphere change with its size, which is sought; leave it "rigid"', "sphere.model")
+        raise InputError(
+            'the modes of a sphere change with its size, which is sought; leave it "rigid"',
+            "sphere.model",
+        )
     if case.contact.local.finite_sphere or treatment_of(case) == "identified":
         key = "finite_sphere" if case.contact.local.finite_sphere else "local_compliance"
-        raise InputError("it changes with the size of the sphere, which is sought; leave it out", f"contact.{key}")
+        raise InputError(
+            "it changes with the size of the sphere, which is sought; leave it out",
+            f"contact.{key}",
+        )
     if keys := oblique_keys(case):
         raise InputError("only an impact along the normal is identified; leave this out", keys[0])
     problem = replace(problem_of(case, progress), impacts=1, duration=None)
     rigid, modes = problem.plate.rigid, problem.plate.modes
     assert modes is not None  # the plate is elastic
-    of_mesh = np.zeros(len(modes.frequencies)) if modes.frequency_errors is None else np.nan_to_num(modes.frequency_errors)
+    of_mesh = (
+        np.zeros(len(modes.frequencies))
+        if modes.frequency_errors is None
+        else np.nan_to_num(modes.frequency_errors)
+    )
     of_frequencies = np.concatenate(
-        [np.zeros(0 if rigid is None else len(rigid.frequencies)), np.hypot(model_error * of_mesh, frequency_error)]
+        [
+            np.zeros(0 if rigid is None else len(rigid.frequencies)),
+            np.hypot(model_error * of_mesh, frequency_error),
+        ]
     )
     plate = Plate(case, problem, window, of_frequencies, errors or SetupErrors(), model_error)
     low, high = plate.bounds
     if not (low < high).all():
         words = f"an impact is identified {_MARGIN:g} thicknesses or more from the edge"
-        raise InputError(f"{words}, and the plate is at most {2.0 * _MARGIN:g} thicknesses long or wide", "plate")
+        raise InputError(
+            f"{words}, and the plate is at most {2.0 * _MARGIN:g} thicknesses long or wide", "plate"
+        )
     return plate

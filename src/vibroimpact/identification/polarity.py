@@ -14,10 +14,13 @@ _BETTER = 0.6
 """Part of what is left by one sign that is left by the other, down to which this one is right."""
 
 
-def upright(plate: Plate, measured: Measured, place: Place | None = None) -> tuple[Measured, Search]:
+def upright(
+    plate: Plate, measured: Measured, place: Place | None = None
+) -> tuple[Measured, Search]:
     """Return records with the signs that a force explains best, and the search for its place.
 
-    Signs are changed one after the other as long as much less is left, or all at once. That a force pushes tells the sign of a single one.
+    Signs are changed one after the other as long as much less is left, or all at once. That a force
+    pushes tells the sign of a single one.
 
     Parameters
     ----------
@@ -32,7 +35,10 @@ def upright(plate: Plate, measured: Measured, place: Place | None = None) -> tup
         signs = [1.0 - 2.0 * np.eye(sensors)[one] for one in range(sensors)]
         if sensors > 1:
             signs.append(-np.ones(sensors))
-        tried = [(other, search_place(plate, other, place)) for other in (measured.inverted(one) for one in signs)]
+        tried = [
+            (other, search_place(plate, other, place))
+            for other in (measured.inverted(one) for one in signs)
+        ]
         best = min(tried, key=lambda one: float(one[1].misfit.min()))
         if float(best[1].misfit.min()) > _BETTER * float(search.misfit.min()):
             break

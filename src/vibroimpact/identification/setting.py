@@ -1,4 +1,6 @@
-"""What the records change with the set-up: the plate and its sensors as they differ from the case."""
+"""What the records change with the set-up: the plate and its sensors as they differ from
+the case.
+"""
 
 from __future__ import annotations
 
@@ -13,7 +15,9 @@ from vibroimpact.identification.plate import Place, Plate, compliances_of, shape
 from vibroimpact.identification.setup import Setup
 
 STEPS = np.array([1e-4, 1e-4, 1e-5, 1e-5, 1e-3, 1e-3])
-"""Steps of derivatives in thickness, modulus [-], and of each sensor x, y [m], sensitivity and resonance [-]."""
+"""Steps of derivatives in thickness, modulus [-], and of each sensor x, y [m],
+sensitivity and resonance [-].
+"""
 OF_PLATE = 2
 """Number of those of the plate, which come first."""
 _GAIN = 4
@@ -50,9 +54,15 @@ class Setting:
 
 
 def setup_slopes(
-    plate: Plate, here: Plate, numbers: Floats, names: Sequence[str], place: Place, signals: Callable[[Floats], Floats]
+    plate: Plate,
+    here: Plate,
+    numbers: Floats,
+    names: Sequence[str],
+    place: Place,
+    signals: Callable[[Floats], Floats],
 ) -> Floats:
-    """Return derivatives of the records of a force in the numbers of a set-up that are not certain, zero for others, (2 + 4 S, S, samples).
+    """Return derivatives of the records of a force in the numbers of a set-up that are not certain,
+    zero for others, (2 + 4 S, S, samples).
 
     Parameters
     ----------
@@ -67,21 +77,33 @@ def setup_slopes(
     place : tuple of two floats
         Where the force acts [m].
     signals : callable
-        Takes the responses of the sensors to a unit impulse at the place, (S, points), and returns the records (S, samples).
+        Takes the responses of the sensors to a unit impulse at the place, (S, points), and returns
+        the records (S, samples).
     """
     sensors, deviations = len(names), plate.errors.deviations(len(names))
     gains, unit = 1.0 + Setup.of(numbers).gain[:, None], here.unit(names)
 
     def answers_of(there: Plate) -> Floats:
-        """Return responses to an impulse in a set-up that differs little: shapes exactly, frequencies by derivatives."""
+        """Return responses to an impulse in a set-up that differs little: shapes exactly,
+        frequencies by derivatives.
+        """
         touched = there.at(place)
         shapes, compliances = shapes_of(touched), compliances_of(touched, names)
-        if any(one != other for one, other in zip(there.sensors(names), here.sensors(names), strict=True)):
-            return responses_at(there.problem, there.sensors(names), plate.window, shapes, compliances)
+        if any(
+            one != other
+            for one, other in zip(there.sensors(names), here.sensors(names), strict=True)
+        ):
+            return responses_at(
+                there.problem, there.sensors(names), plate.window, shapes, compliances
+            )
         both = shapes[:, None] * there.seen(names)
         higher = np.zeros(len(both))
-        higher[-len(there.modes.frequencies) :] = np.log(there.modes.frequencies / here.modes.frequencies)
-        found: Floats = np.einsum("is,isp->sp", both, unit.values) + compliances[:, None] * unit.residual
+        higher[-len(there.modes.frequencies) :] = np.log(
+            there.modes.frequencies / here.modes.frequencies
+        )
+        found: Floats = (
+            np.einsum("is,isp->sp", both, unit.values) + compliances[:, None] * unit.residual
+        )
         if higher.any():
             found += np.einsum("is,isp->sp", higher[:, None] * both, here.unit_detuned(names))
         return found
@@ -95,12 +117,22 @@ def setup_slopes(
         if number == _GAIN:
             change = bare
         else:
-            change = gains * (signals(answers_of(plate.under(Setup.of(numbers + step * which), names))) - bare) / step
+            change = (
+                gains
+                * (signals(answers_of(plate.under(Setup.of(numbers + step * which), names))) - bare)
+                / step
+            )
         # a sensor of its own place, gain and resonance alone
         found[which] = change if number < OF_PLATE else np.eye(sensors)[:, :, None] * change
     return found
 
 
 def numbers_of(number: int, sensors: int) -> Floats:
-    """Return which of the numbers of a set-up are one of `STEPS`, (2 + 4 S,) of bool: one of the plate, or one of each sensor."""
-    return np.asarray(np.repeat(np.arange(len(STEPS)) == number, [1] * OF_PLATE + [sensors] * (len(STEPS) - OF_PLATE)))
+    """Return which of the numbers of a set-up are one of `STEPS`, (2 + 4 S,) of bool: one
+    of the plate, or one of each sensor.
+    """
+    return np.asarray(
+        np.repeat(
+            np.arange(len(STEPS)) == number, [1] * OF_PLATE + [sensors] * (len(STEPS) - OF_PLATE)
+        )
+    )

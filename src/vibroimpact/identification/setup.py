@@ -1,4 +1,6 @@
-"""What a laboratory does not know exactly of a plate and its sensors: errors that are stated, and values that a fit finds."""
+"""What a laboratory does not know exactly of a plate and its sensors: errors that are
+stated, and values that a fit finds.
+"""
 
 from __future__ import annotations
 
@@ -36,7 +38,8 @@ _MOST_PLACE, _MOST_PART = 0.1, 0.3
 
 @dataclass(frozen=True)
 class SetupErrors:
-    """Standard deviations of what a case states about the plate and its sensors; what is not given here is taken as certain.
+    """Standard deviations of what a case states about the plate and its sensors; what is not given
+    here is taken as certain.
 
     Parameters
     ----------
@@ -49,7 +52,8 @@ class SetupErrors:
     modulus : float, default 0
         Of the relative error of Young's modulus of the plate [-], at most 0.3.
     resonance : float, default 0
-        Of the relative error of the mounted resonance of each accelerometer that has one [-], at most 0.3.
+        Of the relative error of the mounted resonance of each accelerometer that has one [-], at
+        most 0.3.
 
     Raises
     ------
@@ -75,14 +79,23 @@ class SetupErrors:
             of_place = name == "sensor_place"
             most, given = _MOST_PLACE if of_place else _MOST_PART, getattr(self, name)
             if not 0.0 <= given <= most:
-                allowed = f"it must be 0 to {most:g} m (5 mm is 0.005)" if of_place else f"it must be 0 to {most:g} (2 % is 0.02)"
-                raise InputError(f"an error of {given:.10g} of the {meaning} is not allowed; {allowed}")
+                allowed = (
+                    f"it must be 0 to {most:g} m (5 mm is 0.005)"
+                    if of_place
+                    else f"it must be 0 to {most:g} (2 % is 0.02)"
+                )
+                raise InputError(
+                    f"an error of {given:.10g} of the {meaning} is not allowed; {allowed}"
+                )
 
     @property
     def options(self) -> str:
         """The options of the command that state them."""
         stated = {name: getattr(self, name) for name in _OPTIONS if getattr(self, name)}
-        texts = {name: f'"{1e3 * value:g} mm"' if name == "sensor_place" else f"{value:g}" for name, value in stated.items()}
+        texts = {
+            name: f'"{1e3 * value:g} mm"' if name == "sensor_place" else f"{value:g}"
+            for name, value in stated.items()
+        }
         return " ".join(f"{_OPTIONS[name]} {text}" for name, text in texts.items())
 
     @property
@@ -104,7 +117,13 @@ class SetupErrors:
         '--gain-error 0.3 --thickness-error 0.01'
         """
         most = {name: _MOST_PLACE if name == "sensor_place" else _MOST_PART for name in _MEANINGS}
-        return replace(self, **{name: min(max(getattr(self, name), size), most[name]) for name, size in sizes.items()})
+        return replace(
+            self,
+            **{
+                name: min(max(getattr(self, name), size), most[name])
+                for name, size in sizes.items()
+            },
+        )
 
     def deviations(self, sensors: int) -> Floats:
         """Return the standard deviations of the numbers of a `Setup` of S sensors, (2 + 4 S,)."""
@@ -134,7 +153,9 @@ class Setup:
 
     @classmethod
     def of(cls, numbers: Floats) -> Setup:
-        """Return a set-up from its numbers: thickness, modulus, then x, y, gain and resonance, each of all sensors, (2 + 4 S,)."""
+        """Return a set-up from its numbers: thickness, modulus, then x, y, gain and
+        resonance, each of all sensors, (2 + 4 S,).
+        """
         x, y, gain, resonance = numbers[2:].reshape(4, -1)
         return cls(float(numbers[0]), float(numbers[1]), np.stack([x, y], axis=1), gain, resonance)
 
@@ -142,9 +163,10 @@ class Setup:
 def stretched(problem: Problem, setup: Setup, exponents: Floats) -> Problem:
     r"""Return a problem whose plate has the thickness and the modulus of a set-up.
 
-    With the thickness h, the modulus E and modes of unit modal mass, deflections are proportional to :math:`h^{-1/2}`, frequencies to
-    :math:`E^{1/2} h^n` with the exponent n of each mode, static compliances to :math:`1/(E h^3)`; strains of a face to h times the
-    deflections, forces of supports to :math:`E h^3` times these.
+    With the thickness h, the modulus E and modes of unit modal mass, deflections are proportional
+    to :math:`h^{-1/2}`, frequencies to
+    :math:`E^{1/2} h^n` with the exponent n of each mode, static compliances to :math:`1/(E h^3)`;
+    strains of a face to h times the deflections, forces of supports to :math:`E h^3` times these.
     """
     modes, thicker, stiffer = problem.plate.modes, 1.0 + setup.thickness, 1.0 + setup.modulus
     assert modes is not None  # `plate_of` has seen to it
@@ -166,11 +188,15 @@ def stretched(problem: Problem, setup: Setup, exponents: Floats) -> Problem:
     )
     rigid = None if problem.plate.rigid is None else _lighter(problem.plate.rigid, moved)
     plate = replace(problem.plate, modes=changed, rigid=rigid)
-    return problem.on_plate(plate, replace(problem.quasi_static, linear=softer * problem.quasi_static.linear))
+    return problem.on_plate(
+        plate, replace(problem.quasi_static, linear=softer * problem.quasi_static.linear)
+    )
 
 
 def _lighter(rigid: ModalBasis, moved: float) -> ModalBasis:
-    """Return rigid motions of unit modal mass of a body whose mass changes, by the change of their shapes."""
+    """Return rigid motions of unit modal mass of a body whose mass changes, by the change
+    of their shapes.
+    """
     return replace(
         rigid,
         contact=moved * rigid.contact,
@@ -182,8 +208,12 @@ def _lighter(rigid: ModalBasis, moved: float) -> ModalBasis:
 
 
 def with_resonance(sensor: Sensor, difference: float) -> Sensor:
-    """Return a sensor whose accelerometer has another mounted resonance, by a relative difference, if it has one."""
+    """Return a sensor whose accelerometer has another mounted resonance, by a relative
+    difference, if it has one.
+    """
     instrument = sensor.instrument
     if not isinstance(instrument, Accelerometer) or instrument.resonance is None:
         return sensor
-    return replace(sensor, instrument=replace(instrument, resonance=(1.0 + difference) * instrument.resonance))
+    return replace(
+        sensor, instrument=replace(instrument, resonance=(1.0 + difference) * instrument.resonance)
+    )

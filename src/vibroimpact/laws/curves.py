@@ -1,4 +1,6 @@
-"""The chart of a contact law: force over indentation, and restitution over approach speed; and its picture."""
+"""The chart of a contact law: force over indentation, and restitution over approach
+speed; and its picture.
+"""
 
 from __future__ import annotations
 
@@ -48,11 +50,13 @@ class _Example:
 
 
 def law_chart(law: type[ContactLaw]) -> Chart:
-    """Return the curves of a contact law with typical parameters, for a sphere on a plate without gravity.
+    """Return the curves of a contact law with typical parameters, for a sphere on a plate without
+    gravity.
 
-    Left the force over the indentation at three approach speeds (not for an instantaneous law), right the restitution over the
-    approach speed. Laws with a yield strength or yield pressure are shown with a steel sphere, adhesive laws with a small sphere, all
-    others with the paper's rock sphere.
+    Left the force over the indentation at three approach speeds (not for an instantaneous law),
+    right the restitution over the approach speed. Laws with a yield strength or yield pressure are
+    shown with a steel sphere, adhesive laws with a small sphere, all others with the paper's rock
+    sphere.
 
     Parameters
     ----------
@@ -69,10 +73,16 @@ def law_chart(law: type[ContactLaw]) -> Chart:
     restitution = achieved_restitution(example.law, example.pair.effective_mass, _SPEEDS)
     speeds = _typical_speeds(law, restitution)
     compliant = isinstance(example.law, CompliantLaw)
-    panels = (*([_force_panel(example, speeds)] if compliant else []), _restitution_panel(example, restitution, speeds))
+    panels = (
+        *([_force_panel(example, speeds)] if compliant else []),
+        _restitution_panel(example, restitution, speeds),
+    )
     caption = "Right: the restitution achieved at any approach speed."
     if compliant:
-        caption = f"Left: one impact at each of three approach speeds; the area enclosed by a loop is the energy lost. {caption}"
+        caption = (
+            "Left: one impact at each of three approach speeds; the area enclosed by a loop "
+            f"is the energy lost. {caption}"
+        )
     return Chart(law.name, law.name, (panels,), caption, _HEIGHT, _subtitle(example))
 
 
@@ -82,7 +92,8 @@ def check_picture(target: Path, *, force: bool) -> None:
     Raises
     ------
     InputError
-        If the path is not that of a PNG file in an existing folder, or the file exists and `force` is false.
+        If the path is not that of a PNG file in an existing folder, or the file exists and `force`
+        is false.
 
     Examples
     --------
@@ -96,7 +107,9 @@ def check_picture(target: Path, *, force: bool) -> None:
     if target.is_dir():
         raise InputError(f"{target}: this is a folder; name a file in it")
     if not target.parent.is_dir():
-        raise InputError(f"{target}: there is no folder {target.parent}; make it, or name another place")
+        raise InputError(
+            f"{target}: there is no folder {target.parent}; make it, or name another place"
+        )
     if target.exists() and not force:
         raise InputError(f"{target} is there already; --force replaces it")
 
@@ -129,8 +142,15 @@ def _example(law: type[ContactLaw]) -> _Example:
     if getattr(law, "contact_end", "") == "pull-off":
         pair = _pair_of(1e-4, "rock-paper", "steel-paper")
         one = law.example(pair)
-        if hasattr(one, "dissipation_time"):  # contacts of the smaller sphere are shorter in proportion
-            one = one.changed({"dissipation_time": one.dissipation_time * pair.effective_radius / paper_pair().effective_radius})
+        # contacts of the smaller sphere are shorter in proportion
+        if hasattr(one, "dissipation_time"):
+            one = one.changed(
+                {
+                    "dissipation_time": one.dissipation_time
+                    * pair.effective_radius
+                    / paper_pair().effective_radius
+                }
+            )
         return _Example("Rock sphere, radius 0.1 mm, on a steel plate", pair, one)
     pair = paper_pair()
     return _Example("Rock sphere, radius 25 mm, on a steel plate", pair, law.example(pair))
@@ -142,7 +162,9 @@ def _pair_of(radius: float, sphere: str, plate: str) -> ContactPair:
 
 
 def _typical_speeds(law: type[ContactLaw], restitution: Floats) -> tuple[float, ...]:
-    """Return three approach speeds [m/s] for the force curves, from the sticking or the yield speed on where there is one."""
+    """Return three approach speeds [m/s] for the force curves, from the sticking or the
+    yield speed on where there is one.
+    """
     first, factors = 1.0, (1.0, 3.0, 9.0)
     if getattr(law, "contact_end", "") == "pull-off" and np.any(restitution > 0.0):
         first, factors = _SPEEDS[np.argmax(restitution > 0.0)], (1.0, 2.0, 4.0)
@@ -161,18 +183,36 @@ def _force_panel(example: _Example, speeds: tuple[float, ...]) -> Panel:
         for number, (loop, speed) in enumerate(zip(loops, speeds, strict=True))
     ]
     marks += reversed(lines)  # small loops on top, or larger ones would cover them
-    return Panel(Axis("Indentation", "m"), Axis("Contact force", "N"), tuple(marks), "Force over indentation")
+    return Panel(
+        Axis("Indentation", "m"), Axis("Contact force", "N"), tuple(marks), "Force over indentation"
+    )
 
 
 def _loop(example: _Example, speed: float) -> tuple[Floats, Floats]:
-    """Return indentation [m] and force [N] of one impact, including the jumps of the force at first touch and at the end."""
+    """Return indentation [m] and force [N] of one impact, including the jumps of the
+    force at first touch and at the end.
+    """
     sphere = Body(mass=example.pair.effective_mass, contact_offset=example.pair.effective_radius)
-    response = simulate(Problem(sphere=sphere, plate=rigid_plate(), laws=(example.law,), speed=speed, gravity=0.0, impacts=1))
+    response = simulate(
+        Problem(
+            sphere=sphere,
+            plate=rigid_plate(),
+            laws=(example.law,),
+            speed=speed,
+            gravity=0.0,
+            impacts=1,
+        )
+    )
     duration = float(response.impacts["duration_s"][0])
-    # Chebyshev points, dense at both ends, where the force jumps or is steep; the end itself belongs to the next flight
-    part = response.at(duration * 0.5 * (1.0 - np.cos(np.linspace(0.0, np.pi, _POINTS))) * (1.0 - 1e-12))
+    # Chebyshev points, dense at both ends, where the force jumps or is steep; the end itself
+    # belongs to the next flight
+    part = response.at(
+        duration * 0.5 * (1.0 - np.cos(np.linspace(0.0, np.pi, _POINTS))) * (1.0 - 1e-12)
+    )
     indentation, force = part["indentation_m"], part["force_N"]
-    return np.concatenate([indentation[:1], indentation, indentation[-1:]]), np.concatenate([[0.0], force, [0.0]])
+    return np.concatenate([indentation[:1], indentation, indentation[-1:]]), np.concatenate(
+        [[0.0], force, [0.0]]
+    )
 
 
 def _restitution_panel(example: _Example, restitution: Floats, speeds: tuple[float, ...]) -> Panel:
@@ -182,15 +222,33 @@ def _restitution_panel(example: _Example, restitution: Floats, speeds: tuple[flo
         marks.append(Level(float(asked), "restitution asked"))
     if isinstance(example.law, CompliantLaw):
         at = achieved_restitution(example.law, example.pair.effective_mass, np.array(speeds))
-        marks += [Points(np.array([speed]), at[number : number + 1], role=series(number)) for number, speed in enumerate(speeds)]
+        marks += [
+            Points(np.array([speed]), at[number : number + 1], role=series(number))
+            for number, speed in enumerate(speeds)
+        ]
     speed = Axis("Approach speed", "m/s", log=True, range=(_SPEEDS[0] / 1.1, _SPEEDS[-1] * 1.1))
-    return Panel(speed, Axis("Restitution", range=(0.0, 1.05)), tuple(marks), "Restitution over approach speed")
+    return Panel(
+        speed,
+        Axis("Restitution", range=(0.0, 1.05)),
+        tuple(marks),
+        "Restitution over approach speed",
+    )
 
 
 def _subtitle(example: _Example) -> str:
     """Return the bodies, and the parameters, four per line."""
-    values = [(item, getattr(example.law, item.name)) for item in fields(example.law) if not item.metadata["memory"]]
+    values = [
+        (item, getattr(example.law, item.name))
+        for item in fields(example.law)
+        if not item.metadata["memory"]
+    ]
     exponent = getattr(example.law, "exponent", 1.5)
-    parts = [f"{item.name} {brief(float(value), unit_of(item, exponent))}" for item, value in values if value is not None]
-    lines = [", ".join(parts[start : start + _PER_LINE]) for start in range(0, len(parts), _PER_LINE)]
+    parts = [
+        f"{item.name} {brief(float(value), unit_of(item, exponent))}"
+        for item, value in values
+        if value is not None
+    ]
+    lines = [
+        ", ".join(parts[start : start + _PER_LINE]) for start in range(0, len(parts), _PER_LINE)
+    ]
     return "\n".join([f"{example.words}, without gravity", *lines])

@@ -1,4 +1,6 @@
-"""What `laws --json` prints: the description of a contact law in plain text, with the numbers of its parameters."""
+"""What `laws --json` prints: the description of a contact law in plain text, with the
+numbers of its parameters.
+"""
 
 from __future__ import annotations
 
@@ -30,22 +32,44 @@ def law_document(law: type[ContactLaw | FrictionLaw]) -> dict[str, Any]:
     --------
     >>> from vibroimpact.contact.registry import find_contact_law
     >>> document = law_document(find_contact_law("flores"))
-    >>> document["loss_parameters"], [(one["name"], one["unit"], one["default"]) for one in document["parameters"]][:2]
+    >>> (
+    ...     document["loss_parameters"],
+    ...     [(one["name"], one["unit"], one["default"]) for one in document["parameters"]][:2],
+    ... )
     ('restitution', [('stiffness', 'N/m^n', 'from the materials'), ('exponent', '', 1.5)])
     """
     text = law_text(law)
-    numbers = {item.name: item.default for item in fields(law) if isinstance(item.default, (int, float))}
+    numbers = {
+        item.name: item.default for item in fields(law) if isinstance(item.default, (int, float))
+    }
     pairs = asked_and_achieved(law) if issubclass(law, ContactLaw) else []
     return {
         **asdict(text),
         "title": plain_paragraph(text.title),
-        **{part: [plain_paragraph(one) for one in getattr(text, part)] for part in ("body", "notes", "references", "raises")},
+        **{
+            part: [plain_paragraph(one) for one in getattr(text, part)]
+            for part in ("body", "notes", "references", "raises")
+        },
         "parameters": _parameters(text.parameters, numbers),
         "state": _parameters(text.state, numbers),
-        "restitution": [{"restitution_asked": asked, "restitution_achieved": achieved} for asked, achieved in pairs],
+        "restitution": [
+            {"restitution_asked": asked, "restitution_achieved": achieved}
+            for asked, achieved in pairs
+        ],
     }
 
 
-def _parameters(parameters: Iterable[ParameterText], numbers: dict[str, float]) -> list[dict[str, Any]]:
-    """Return parameters as mappings; a default is a number, or else words on where it comes from."""
-    return [{**asdict(one), "meaning": plain_paragraph(one.meaning), "default": numbers.get(one.name, one.default)} for one in parameters]
+def _parameters(
+    parameters: Iterable[ParameterText], numbers: dict[str, float]
+) -> list[dict[str, Any]]:
+    """Return parameters as mappings; a default is a number, or else words on where it
+    comes from.
+    """
+    return [
+        {
+            **asdict(one),
+            "meaning": plain_paragraph(one.meaning),
+            "default": numbers.get(one.name, one.default),
+        }
+        for one in parameters
+    ]

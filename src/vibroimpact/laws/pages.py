@@ -1,4 +1,6 @@
-"""Documentation of the contact laws in markdown: one page per law, and the table of laws with links to them."""
+"""Documentation of the contact laws in markdown: one page per law, and the table of laws
+with links to them.
+"""
 
 from __future__ import annotations
 
@@ -17,12 +19,17 @@ from vibroimpact.report.markdown_table import markdown_table
 BEGIN, END = "<!-- laws: begin (written by make docs) -->", "<!-- laws: end -->"
 """The marker lines before and after the table in laws.md."""
 
-_ENDS = {"zero-indentation": "at zero indentation", "zero-force": "at zero force", "pull-off": "at pull-off"}
+_ENDS = {
+    "zero-indentation": "at zero indentation",
+    "zero-force": "at zero force",
+    "pull-off": "at pull-off",
+}
 _TENSION = {"none": "never", "cut": "cut at zero", "kept": "before the end"}
 
 
 def law_pages(laws_page: str) -> dict[str, str]:
-    """Return the documentation of this package's contact laws by file name, relative to the documentation folder.
+    """Return the documentation of this package's contact laws by file name, relative to the
+    documentation folder.
 
     Parameters
     ----------
@@ -58,12 +65,19 @@ def law_page(law: type[ContactLaw]) -> str:
         f"```text\n{text.equation}\n```",
         *map(_marked, text.body),
         "## Parameters",
-        _table(("parameter", "meaning", "unit", "allowed", "if left out"), map(_row, text.parameters)),
+        _table(
+            ("parameter", "meaning", "unit", "allowed", "if left out"), map(_row, text.parameters)
+        ),
         *(f"Refused {_marked(line)[:1].lower()}{_marked(line)[1:]}" for line in text.raises),
     ]
     if text.state:
         rows = ((f"`{item.name}`", _cell(item.meaning), item.unit or "-") for item in text.state)
-        parts += ["## State", "Zero at first contact.", _table(("state", "meaning", "unit"), rows), text.persistence]
+        parts += [
+            "## State",
+            "Zero at first contact.",
+            _table(("state", "meaning", "unit"), rows),
+            text.persistence,
+        ]
     parts += ["## End of the contact", f"{text.end} {text.tension}".strip()]
     parts += ["## Departure from the source", text.departure] if text.departure else []
     parts += ["## Notes", *map(_marked, text.notes)] if text.notes else []
@@ -71,12 +85,19 @@ def law_page(law: type[ContactLaw]) -> str:
     if pairs:
         parts += [
             "## Restitution",
-            f"Asked for and achieved, of the paper's rock sphere on its steel plate at {SPEED:g} m/s, without gravity:",
-            _table(("asked", *(f"{asked:g}" for asked, _ in pairs)), [("achieved", *(f"{achieved:.3f}" for _, achieved in pairs))]),
+            "Asked for and achieved, of the paper's rock sphere on its steel plate at "
+            f"{SPEED:g} m/s, without gravity:",
+            _table(
+                ("asked", *(f"{asked:g}" for asked, _ in pairs)),
+                [("achieved", *(f"{achieved:.3f}" for _, achieved in pairs))],
+            ),
         ]
     parts += ["## Curves", f"```console\n$ vibroimpact laws {law.name} -o {law.name}.png\n```"]
     parts += ["draws the curves of the law with typical parameters."]
-    parts += ["## References", "\n".join(f"- {_marked(reference)}" for reference in text.references or (text.source,))]
+    parts += [
+        "## References",
+        "\n".join(f"- {_marked(reference)}" for reference in text.references or (text.source,)),
+    ]
     parts += ["[All contact laws](../laws.md)"]
     return "\n\n".join(parts) + "\n"
 
@@ -105,7 +126,11 @@ def write_law_pages(docs_dir: str | PathLike[str]) -> list[Path]:
 def _table_of(laws: Iterable[type[ContactLaw]]) -> str:
     rows = []
     for law in laws:
-        end, tension = (_ENDS[law.contact_end], _TENSION[law.tension]) if issubclass(law, CompliantLaw) else ("instantaneous", "")
+        end, tension = (
+            (_ENDS[law.contact_end], _TENSION[law.tension])
+            if issubclass(law, CompliantLaw)
+            else ("instantaneous", "")
+        )
         equation = law.equation.replace("|", r"\|")
         source = f"{short_sources(law)}; changed" if law.departure else short_sources(law)
         rows.append((f"[`{law.name}`](laws/{law.name}.md)", f"`{equation}`", end, tension, source))
@@ -113,7 +138,13 @@ def _table_of(laws: Iterable[type[ContactLaw]]) -> str:
 
 
 def _row(item: ParameterText) -> tuple[str, ...]:
-    return f"`{item.name}`", _cell(item.meaning), item.unit or "-", item.allowed or "any number", item.default
+    return (
+        f"`{item.name}`",
+        _cell(item.meaning),
+        item.unit or "-",
+        item.allowed or "any number",
+        item.default,
+    )
 
 
 def _table(heading: tuple[str, ...], rows: Iterable[tuple[str, ...]]) -> str:

@@ -1,4 +1,6 @@
-"""Conversion of LaTeX formulas in docstrings to plain text for the terminal, in the notation of the laws' equations."""
+"""Conversion of LaTeX formulas in docstrings to plain text for the terminal, in the
+notation of the laws' equations.
+"""
 
 from __future__ import annotations
 
@@ -6,7 +8,13 @@ import re
 
 _PART = r"\{([^{}]*)\}"
 _ROLE = re.compile(r":math:`([^`]*)`")
-_NAMES = {r"\dot\delta_0": " v0 ", r"\dot\delta": " delta_dot ", r"\le": " <= ", r"\ge": " >= ", r"\varepsilon": " epsilon "}
+_NAMES = {
+    r"\dot\delta_0": " v0 ",
+    r"\dot\delta": " delta_dot ",
+    r"\le": " <= ",
+    r"\ge": " >= ",
+    r"\varepsilon": " epsilon ",
+}
 
 
 def plain_text(text: str) -> str:
@@ -14,7 +22,9 @@ def plain_text(text: str) -> str:
 
     Examples
     --------
-    >>> plain_text(r"With :math:`\\dot\\delta_0` the speed, `restitution` is :math:`\\tfrac34 (1 - e^2)`.")
+    >>> plain_text(
+    ...     r"With :math:`\\dot\\delta_0` the speed, `restitution` is :math:`\\tfrac34 (1 - e^2)`."
+    ... )
     'With v0 the speed, restitution is 3/4 (1 - e^2).'
     """
     return _ROLE.sub(lambda match: plain_math(match[1]), text).replace("`", "")
@@ -48,7 +58,11 @@ def plain_math(latex: str) -> str:
         text = re.sub(r"_" + _PART, r"_\1", text)
         text = re.sub(r"\^" + _PART, lambda match: f"^{_grouped(match[1])}", text)
         text = re.sub(r"\\sqrt" + _PART, r" sqrt(\1)", text)
-        text = re.sub(r"\\t?frac" + _PART + _PART, lambda match: f" {_grouped(match[1])}/{_grouped(match[2])} ", text)
+        text = re.sub(
+            r"\\t?frac" + _PART + _PART,
+            lambda match: f" {_grouped(match[1])}/{_grouped(match[2])} ",
+            text,
+        )
     text = re.sub(r"(?<=[A-Za-z0-9)])\\", r" \\", text).replace("\\", "")
     text = text.replace("^*", "*").replace("_+", "+").replace("_-", "-")
     text = re.sub(r"(?<=[A-Za-z])_(?=\d)", "", text)

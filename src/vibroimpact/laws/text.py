@@ -1,4 +1,6 @@
-"""The description of a contact or friction law that the command line and the documentation print, from its declarations and docstring."""
+"""The description of a contact or friction law that the command line and the
+documentation print, from its declarations and docstring.
+"""
 
 from __future__ import annotations
 
@@ -48,12 +50,14 @@ class ParameterText:
 class LawText:
     """The description of a contact or friction law.
 
-    Texts keep the reStructuredText markup; displayed formulas in `body` and `notes` are paragraphs that begin with ".. math::".
+    Texts keep the reStructuredText markup; displayed formulas in `body` and `notes` are paragraphs
+    that begin with ".. math::".
 
     Parameters
     ----------
     name, title, equation, source, departure : str
-        Its name, the first paragraph of its docstring, its equation, its source, and in what it departs from that; "" if in nothing.
+        Its name, the first paragraph of its docstring, its equation, its source, and in what it
+        departs from that; "" if in nothing.
     loss_parameters : str
         The parameters that set the energy loss.
     end, tension : str
@@ -124,8 +128,12 @@ def law_text(law: type[ContactLaw | FrictionLaw]) -> LawText:
         body=tuple(body),
         notes=tuple(_paragraphs(sections.get("Notes", ""))),
         references=tuple(_paragraphs(sections.get("References", ""))),
-        raises=tuple(line.strip() for line in sections.get("Raises", "").splitlines() if line.startswith(" ")),
-        parameters=tuple(_parameter_text(item) for item in fields(law) if not item.metadata["memory"]),
+        raises=tuple(
+            line.strip() for line in sections.get("Raises", "").splitlines() if line.startswith(" ")
+        ),
+        parameters=tuple(
+            _parameter_text(item) for item in fields(law) if not item.metadata["memory"]
+        ),
         state=tuple(_parameter_text(item) for item in fields(law) if item.metadata["memory"]),
     )
 
@@ -144,25 +152,40 @@ def paper_pair() -> ContactPair:
 
 
 def asked_and_achieved(law: type[ContactLaw]) -> list[tuple[float, float]]:
-    """Return pairs of restitution asked for and achieved, of the paper's sphere at 8.8 m/s without gravity.
+    """Return pairs of restitution asked for and achieved, of the paper's sphere at 8.8 m/s without
+    gravity.
 
     Empty for a law without the parameter `restitution`.
 
     Examples
     --------
     >>> from vibroimpact.contact.registry import find_contact_law
-    >>> [(asked, round(achieved, 3)) for asked, achieved in asked_and_achieved(find_contact_law("flores"))]
+    >>> [
+    ...     (asked, round(achieved, 3))
+    ...     for asked, achieved in asked_and_achieved(find_contact_law("flores"))
+    ... ]
     [(0.9, 0.894), (0.7, 0.683), (0.5, 0.47), (0.3, 0.256)]
     """
     if "restitution" not in {item.name for item in fields(law)}:
         return []
     pair = paper_pair()
     one = law.example(pair)
-    return [(asked, float(achieved_restitution(one.changed({"restitution": asked}), pair.effective_mass, SPEED))) for asked in ASKED]
+    return [
+        (
+            asked,
+            float(
+                achieved_restitution(
+                    one.changed({"restitution": asked}), pair.effective_mass, SPEED
+                )
+            ),
+        )
+        for asked in ASKED
+    ]
 
 
 def short_source(law: type[ContactLaw | FrictionLaw]) -> str:
-    """Return the authors and the year of a law's source, or, without a year, the text before the first comma.
+    """Return the authors and the year of a law's source, or, without a year, the text before the
+    first comma.
 
     Examples
     --------
@@ -196,21 +219,29 @@ def _is_year(word: str) -> bool:
 
 
 def _loss_parameters(law: type[ContactLaw]) -> str:
-    """Return the free parameter, or the alternatives of which one is given; "nothing is lost" without a free parameter."""
+    """Return the free parameter, or the alternatives of which one is given; "nothing is
+    lost" without a free parameter.
+    """
     free = law.example(paper_pair()).free_parameter
     if free is None:
         return "nothing is lost"
-    alternatives = [item.name for item in fields(law) if item.default is None and not item.metadata["from_pair"]]
+    alternatives = [
+        item.name for item in fields(law) if item.default is None and not item.metadata["from_pair"]
+    ]
     return " or ".join(alternatives) if free in alternatives else free
 
 
 def _parameter_text(item: Field[Any]) -> ParameterText:
     metadata = item.metadata
-    return ParameterText(item.name, metadata["detail"], metadata["unit"], metadata["range"].words, _default(item))
+    return ParameterText(
+        item.name, metadata["detail"], metadata["unit"], metadata["range"].words, _default(item)
+    )
 
 
 def _default(item: Field[Any]) -> str:
-    """Return the origin or value of a parameter that a case leaves out, or whether it is required."""
+    """Return the origin or value of a parameter that a case leaves out, or whether it is
+    required.
+    """
     if origin := default_origin(item):
         return origin
     if item.default is MISSING:
@@ -221,4 +252,8 @@ def _default(item: Field[Any]) -> str:
 
 def _paragraphs(text: str) -> list[str]:
     """Return the paragraphs of a text, each in one line."""
-    return [" ".join(line.strip() for line in part.splitlines()) for part in text.strip().split("\n\n") if part.strip()]
+    return [
+        " ".join(line.strip() for line in part.splitlines())
+        for part in text.strip().split("\n\n")
+        if part.strip()
+    ]

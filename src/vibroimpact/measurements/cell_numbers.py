@@ -1,11 +1,29 @@
-"""Numbers in the cells of a table, as programs and languages write them: with a decimal comma, grouped, missing, or over the range."""
+"""Numbers in the cells of a table, as programs and languages write them: with a decimal
+comma, grouped, missing, or over the range.
+"""
 
 from __future__ import annotations
 
 import re
 from math import inf, nan
 
-_MISSING = {"", "-", "--", "na", "n/a", "#n/a", "#nv", "null", "none", "nan(ind)", "-nan(ind)", "1.#qnan", "-1.#qnan", "1.#ind", "-1.#ind"}
+_MISSING = {
+    "",
+    "-",
+    "--",
+    "na",
+    "n/a",
+    "#n/a",
+    "#nv",
+    "null",
+    "none",
+    "nan(ind)",
+    "-nan(ind)",
+    "1.#qnan",
+    "-1.#qnan",
+    "1.#ind",
+    "-1.#ind",
+}
 """What programs write in place of a number that is missing, beside nan."""
 
 _OVER = {"∞": inf, "+∞": inf, "-∞": -inf, "\u2212∞": -inf, "1.#inf": inf, "-1.#inf": -inf}
@@ -21,7 +39,8 @@ _EITHER = re.compile(r"[+-]?[1-9]\d{0,2}[.,]\d{3}")
 
 
 def number_in(text: str, mark: str | None) -> float:
-    """Return the number in a cell; nan where it is missing, and infinite where the sample is over the range.
+    """Return the number in a cell; nan where it is missing, and infinite where the sample is over
+    the range.
 
     Parameters
     ----------
@@ -37,7 +56,12 @@ def number_in(text: str, mark: str | None) -> float:
 
     Examples
     --------
-    >>> number_in("1,5", ";"), number_in("1.234,5", ";"), number_in("0,5", ","), number_in("NaN", ",")
+    >>> (
+    ...     number_in("1,5", ";"),
+    ...     number_in("1.234,5", ";"),
+    ...     number_in("0,5", ","),
+    ...     number_in("NaN", ","),
+    ... )
     (1.5, 1234.5, 0.5, nan)
     """
     try:
@@ -75,7 +99,8 @@ def is_number(text: str, mark: str | None) -> bool:
 
 
 def is_either(text: str) -> bool:
-    """Return whether a number is another one where a sign in it groups digits than where it is the decimal point.
+    """Return whether a number is another one where a sign in it groups digits than where it is the
+    decimal point.
 
     Examples
     --------

@@ -1,4 +1,6 @@
-"""Cells of a table's header: names of columns and their units, as people, languages and programs write them."""
+"""Cells of a table's header: names of columns and their units, as people, languages and
+programs write them.
+"""
 
 from __future__ import annotations
 
@@ -35,7 +37,9 @@ _ENDINGS = {
     "_kPa": "kPa",
     "_MPa": "MPa",
 }
-"""Units at the end of a name. MATLAB makes names of variables of a header, in which brackets and signs become underscores."""
+"""Units at the end of a name. MATLAB makes names of variables of a header, in which
+brackets and signs become underscores.
+"""
 
 _LONGEST_FIRST = sorted(_ENDINGS.items(), key=lambda item: -len(item[0]))
 
@@ -43,7 +47,9 @@ _LANGUAGES = {
     "time": "t zeit temps tiempo tempo tijd tid aika czas čas idő zaman время 时间 時間",
     "force": "kraft fuerza forza força kracht voima siła síla erő kuvvet сила 力",
 }
-"""Names of a column in other languages, which instruments write by the language that they are set to."""
+"""Names of a column in other languages, which instruments write by the language that they
+are set to.
+"""
 
 _ENGLISH = {word: name for name, words in _LANGUAGES.items() for word in words.split()}
 
@@ -52,11 +58,17 @@ _QUANTITIES = ("s", "V", "m/s^2", "m/s", "m", "N", "Pa", "A", "Hz", "rad", "rad/
 
 
 def name_and_unit(cell: str) -> tuple[str, str | None]:
-    """Return name and unit of a header cell; None if it has no unit. The words of other languages for time and force are translated.
+    """Return name and unit of a header cell; None if it has no unit. The words of other languages
+    for time and force are translated.
 
     Examples
     --------
-    >>> name_and_unit("Rebound height [mm]"), name_and_unit("time_s"), name_and_unit("count"), name_and_unit("Zeit [ms]")
+    >>> (
+    ...     name_and_unit("Rebound height [mm]"),
+    ...     name_and_unit("time_s"),
+    ...     name_and_unit("count"),
+    ...     name_and_unit("Zeit [ms]"),
+    ... )
     (('rebound_height', 'mm'), ('time', 's'), ('count', None), ('time', 'ms'))
     >>> name_and_unit("position_cm")
     ('position', 'cm')
@@ -65,10 +77,13 @@ def name_and_unit(cell: str) -> tuple[str, str | None]:
     """
     whole = cell.strip()
     if whole.endswith(("]", ")")):
-        # the unit is between the last two brackets; a regular expression for that takes minutes on a long line of brackets
+        # the unit is between the last two brackets; a regular expression for that takes minutes on
+        # a long line of brackets
         inside = whole[:-1]
         start = max(inside.rfind("]"), inside.rfind(")")) + 1
-        opening = min((at for at in (inside.find("[", start), inside.find("(", start)) if at >= 0), default=-1)
+        opening = min(
+            (at for at in (inside.find("[", start), inside.find("(", start)) if at >= 0), default=-1
+        )
         if opening >= 0:
             return _plain(inside[:opening]), inside[opening + 1 :].strip()
     for ending, unit in _LONGEST_FIRST:
@@ -78,7 +93,8 @@ def name_and_unit(cell: str) -> tuple[str, str | None]:
 
 
 def is_time(name: str, unit: str | None) -> bool:
-    """Return whether a column has times: by its name, or since its unit is one of time, which no signal has.
+    """Return whether a column has times: by its name, or since its unit is one of time, which no
+    signal has.
 
     Examples
     --------
@@ -93,11 +109,18 @@ def are_units(cells: Sequence[str]) -> bool:
 
     Examples
     --------
-    >>> are_units(["(ms)", "(V)", ""]), are_units(["second", "Volt"]), are_units(["time", "force"]), are_units(["1", "2"])
+    >>> (
+    ...     are_units(["(ms)", "(V)", ""]),
+    ...     are_units(["second", "Volt"]),
+    ...     are_units(["time", "force"]),
+    ...     are_units(["1", "2"]),
+    ... )
     (True, True, False, False)
     """
     full = [cell.strip() for cell in cells if cell.strip()]
-    return bool(full) and (all(cell[0] + cell[-1] in ("[]", "()") for cell in full) or all(map(_is_unit, full)))
+    return bool(full) and (
+        all(cell[0] + cell[-1] in ("[]", "()") for cell in full) or all(map(_is_unit, full))
+    )
 
 
 def with_unit(cell: str, unit: str) -> str:
@@ -124,7 +147,9 @@ def _is_unit(text: str) -> bool:
     """Return whether a text is a unit that a column may have."""
     if not any(character.isalpha() or character in "%-" for character in text):
         return False
-    return plain_factor(text) is not None or any(_measures(text, quantity) for quantity in _QUANTITIES)
+    return plain_factor(text) is not None or any(
+        _measures(text, quantity) for quantity in _QUANTITIES
+    )
 
 
 def _measures(unit: str, quantity: str) -> bool:

@@ -9,7 +9,13 @@ import numpy as np
 
 from vibroimpact.arrays import Floats
 from vibroimpact.errors import InputError, did_you_mean
-from vibroimpact.measurements.universal_file import SPHERE_FUNCTIONS, Function, UniversalFile, is_universal, read_universal_file
+from vibroimpact.measurements.universal_file import (
+    SPHERE_FUNCTIONS,
+    Function,
+    UniversalFile,
+    is_universal,
+    read_universal_file,
+)
 from vibroimpact.units.reading import to_si
 
 __all__ = ["SPHERE_ACCELERATION", "UniversalRecord", "is_universal", "read_universal_record"]
@@ -48,8 +54,8 @@ def read_universal_record(path: str | Path, which: str | None, by_rebound: bool)
     path : path
         The file.
     which : str, optional
-        First identification line of the function, or its number in the file. By default the only function of its kind, or the one that
-        this program writes for its sphere.
+        First identification line of the function, or its number in the file. By default the only
+        function of its kind, or the one that this program writes for its sphere.
     by_rebound : bool
         Whether a position is preferred to a force.
 
@@ -64,20 +70,35 @@ def read_universal_record(path: str | Path, which: str | None, by_rebound: bool)
         one = _requested(path, file.functions, which)
     else:
         order: tuple[Quantity, ...] = ("position", "force") if by_rebound else ("force", "position")
-        groups = ([one for one in functions if _KINDS[one.kind][0] == quantity] for quantity in (*order, "acceleration"))
+        groups = (
+            [one for one in functions if _KINDS[one.kind][0] == quantity]
+            for quantity in (*order, "acceleration")
+        )
         group = next((group for group in groups if group), [])
         if not group:
-            raise InputError(f"{path}: there is no force, displacement or acceleration over time in it; {_there(file.functions)}", "target")
+            raise InputError(
+                f"{path}: there is no force, displacement or acceleration over time in it; "
+                f"{_there(file.functions)}",
+                "target",
+            )
         own = [one for one in group if one.identification in _OWN]
         group = own if len(own) == 1 else group
         if len(group) > 1:
-            raise InputError(f"{path}: name the function to use: {_there(group)}", "target.function")
+            raise InputError(
+                f"{path}: name the function to use: {_there(group)}", "target.function"
+            )
         one = group[0]
     quantity, unit = _KINDS[one.kind]
     steps = np.diff(one.time)
     if np.any(steps <= 0.0):
-        raise InputError(f'{path}: "{one.identification}": time does not rise at sample {int(np.argmin(steps > 0.0)) + 2}', "target")
-    return UniversalRecord(one.identification, quantity, one.time, one.values * _in_si(path, one, unit, file))
+        raise InputError(
+            f'{path}: "{one.identification}": time does not rise at sample '
+            f"{int(np.argmin(steps > 0.0)) + 2}",
+            "target",
+        )
+    return UniversalRecord(
+        one.identification, quantity, one.time, one.values * _in_si(path, one, unit, file)
+    )
 
 
 def _requested(path: str | Path, functions: list[Function], which: str) -> Function:
@@ -85,26 +106,49 @@ def _requested(path: str | Path, functions: list[Function], which: str) -> Funct
     if len(found) != 1:
         several = "there are several functions" if found else "there is no function"
         hint = "" if found else did_you_mean(which, [one.identification for one in functions])
-        raise InputError(f'{path}: {several} "{which}"; {_there(functions)}.{hint}', "target.function")
+        raise InputError(
+            f'{path}: {several} "{which}"; {_there(functions)}.{hint}', "target.function"
+        )
     if found[0].kind not in _KINDS:
-        raise InputError(f'{path}: "{which}" is no force, displacement or acceleration; {_there(functions)}', "target.function")
+        raise InputError(
+            f'{path}: "{which}" is no force, displacement or acceleration; {_there(functions)}',
+            "target.function",
+        )
     return found[0]
 
 
 def _there(functions: list[Function]) -> str:
     named = [f'{one.number} "{one.identification[:40]}"' for one in functions[:_MOST_NAMED]]
     more = f" and {len(functions) - _MOST_NAMED} more" if len(functions) > _MOST_NAMED else ""
-    return f"there are {', '.join(named)}{more}" if functions else "there is no real function of time"
+    return (
+        f"there are {', '.join(named)}{more}" if functions else "there is no real function of time"
+    )
 
 
 def _in_si(path: str | Path, one: Function, unit: str, file: UniversalFile) -> float:
-    """Return the conversion factor to SI, from the unit label or from dataset 164; if both are given, they must agree."""
-    by_label, by_file = _by_label(one.unit, unit), None if file.factors is None else 1.0 / file.factors[_DIMENSIONS[unit]]
+    """Return the conversion factor to SI, from the unit label or from dataset 164; if
+    both are given, they must agree.
+    """
+    by_label, by_file = (
+        _by_label(one.unit, unit),
+        None if file.factors is None else 1.0 / file.factors[_DIMENSIONS[unit]],
+    )
     if by_label is None and by_file is None:
-        label = f'the label "{one.unit}" is no known unit of this quantity, such as {unit}' if one.unit else "it has no unit"
-        raise InputError(f'{path}: "{one.identification}": {label}, and there is no dataset 164 with the units of the file', "target")
+        label = (
+            f'the label "{one.unit}" is no known unit of this quantity, such as {unit}'
+            if one.unit
+            else "it has no unit"
+        )
+        raise InputError(
+            f'{path}: "{one.identification}": {label}, and there is no dataset 164 with '
+            "the units of the file",
+            "target",
+        )
     if by_label is not None and by_file is not None and abs(by_label / by_file - 1.0) > _SAME:
-        words = f'its unit is "{one.unit}", and by dataset 164 the values are in units of {by_file:g} {unit}'
+        words = (
+            f'its unit is "{one.unit}", and by dataset 164 the values are in units of '
+            f"{by_file:g} {unit}"
+        )
         raise InputError(f'{path}: "{one.identification}": {words}; correct one of them', "target")
     return by_label if by_label is not None else float(by_file or 1.0)
 

@@ -1,4 +1,6 @@
-"""Channels that a table records over time, each with its own times: of several rates, with cells that are missing or over the range."""
+"""Channels that a table records over time, each with its own times: of several rates,
+with cells that are missing or over the range.
+"""
 
 from __future__ import annotations
 
@@ -21,7 +23,9 @@ _LONGEST_GAP = 3
 _MOST_MISSING = 0.05
 """Largest part of the samples that is filled in."""
 _ROUNDED_TIMES, _OFF = 1e-6, 0.01
-"""Distance of times from a clock within which both agree: that of times with six decimals [s], and a part of a step."""
+"""Distance of times from a clock within which both agree: that of times with six decimals
+[s], and a part of a step.
+"""
 
 
 class RecordedChannel(NamedTuple):
@@ -65,33 +69,46 @@ def recorded_channels(
 ) -> list[RecordedChannel]:
     """Return the channels of a table that records something over time.
 
-    The times of a channel are those of the nearest column of times on its left; or they follow from a clock that the file states. Cells
-    that are empty, or nan, before the first sample of a channel and after its last are no part of it.
+    The times of a channel are those of the nearest column of times on its left; or they follow from
+    a clock that the file states. Cells that are empty, or nan, before the first sample of a channel
+    and after its last are no part of it.
 
     Parameters
     ----------
     path : path
         The file.
     unit_of : callable
-        Returns the factor that converts a column to SI, and the SI unit; None for a column that is not read.
+        Returns the factor that converts a column to SI, and the SI unit; None for a column that is
+        not read.
     doubts, columns
         As those of `read_table_file`.
 
     Raises
     ------
     InputError
-        If the file can't be read, there is no time, a unit is missing or unknown, or a channel has no samples.
+        If the file can't be read, there is no time, a unit is missing or unknown, or a channel has
+        no samples.
     """
     found: dict[int, tuple[str, str]] = {}
     times: dict[int, int | None] = {}
 
     def wanted(layout: Layout) -> dict[int, float]:
         factors = {}
-        at = [place for place, cell in enumerate(layout.header) if cell and is_time(*name_and_unit(cell))]
+        at = [
+            place
+            for place, cell in enumerate(layout.header)
+            if cell and is_time(*name_and_unit(cell))
+        ]
         if not at and not layout.clocks:
-            remedy = "state time=s for it" if layout.is_stated else f"Name the times so, {layout.remedy}"
-            words = f"there is no column time [s]; {layout.understood}. {remedy[0].upper()}{remedy[1:]}"
-            raise InputError(f'{words}; rows without times need their rate, --columns "rate=10 kHz,force=N"')
+            remedy = (
+                "state time=s for it" if layout.is_stated else f"Name the times so, {layout.remedy}"
+            )
+            words = (
+                f"there is no column time [s]; {layout.understood}. {remedy[0].upper()}{remedy[1:]}"
+            )
+            raise InputError(
+                f'{words}; rows without times need their rate, --columns "rate=10 kHz,force=N"'
+            )
         for place, cell in enumerate(layout.header):
             name, unit = name_and_unit(cell)
             if place in at:
@@ -99,20 +116,26 @@ def recorded_channels(
             elif cell and (told := unit_of(layout, cell)) is not None:
                 factors[place], found[place] = told[0], (name, told[1])
         if not found:
-            raise InputError(f"there is no column beside the time; each other one is a channel, such as geophone [V]; {layout.understood}")
+            raise InputError(
+                "there is no column beside the time; each other one is a channel, such as "
+                f"geophone [V]; {layout.understood}"
+            )
         times.update({place: _time_of(place, at, found) for place in found})
         return factors
 
     cells = read_cells(path, wanted, _missing, doubts, columns)
     try:
         names = _names(found)
-        return [_channel(cells, place, times[place], names[place], found[place][1]) for place in found]
+        return [
+            _channel(cells, place, times[place], names[place], found[place][1]) for place in found
+        ]
     except InputError as error:
         raise in_table(path, error) from None
 
 
 def filled_in(channel: RecordedChannel) -> tuple[Floats, Floats, str]:
-    """Return times and samples of a channel, by cubic splines where they are missing, and what that adds, as a sentence.
+    """Return times and samples of a channel, by cubic splines where they are missing, and what that
+    adds, as a sentence.
 
     Raises
     ------
@@ -127,16 +150,37 @@ def filled_in(channel: RecordedChannel) -> tuple[Floats, Floats, str]:
     time = time[order]
     longest = int(np.diff(np.flatnonzero(order < len(channel.time))).max()) - 1
     if longest > _LONGEST_GAP or count > _MOST_MISSING * len(time):
-        words = f"{count} cells from there on have no number, up to {longest} in a row" if count > 1 else "the cell has no number"
+        words = (
+            f"{count} cells from there on have no number, up to {longest} in a row"
+            if count > 1
+            else "the cell has no number"
+        )
         limit = f"only {_LONGEST_GAP} in a row and {100.0 * _MOST_MISSING:g} % of all are filled in"
         them = "them" if count > 1 else "it"
-        raise InputError(f"{where}: {words}; {limit}. Fill {them} in, or keep the part before or after {them}")
+        raise InputError(
+            f"{where}: {words}; {limit}. Fill {them} in, or keep the part before or after {them}"
+        )
     if not (np.diff(channel.time) > 0.0).all():
-        raise InputError(f"{where}: the cell has no number, and the times do not rise; fill it in, or leave out the line")
+        raise InputError(
+            f"{where}: the cell has no number, and the times do not rise; fill it in, or "
+            "leave out the line"
+        )
     new = np.array(CubicSpline(channel.time, channel.value)(time))
-    part = 100.0 * float(np.abs(new - np.interp(time, channel.time, channel.value)).max()) / (float(np.ptp(channel.value)) or 1.0)
-    words = f"{count} of its samples {'is' if count == 1 else 'are'} missing, the first in line {channel.missing[0]}"
-    return time, new, f"{words}: filled in by cubic splines, which adds an error, by estimate, of up to {part:.2g} % of its range there"
+    part = (
+        100.0
+        * float(np.abs(new - np.interp(time, channel.time, channel.value)).max())
+        / (float(np.ptp(channel.value)) or 1.0)
+    )
+    words = (
+        f"{count} of its samples {'is' if count == 1 else 'are'} missing, the first in line "
+        f"{channel.missing[0]}"
+    )
+    return (
+        time,
+        new,
+        f"{words}: filled in by cubic splines, which adds an error, by estimate, of up to "
+        f"{part:.2g} % of its range there",
+    )
 
 
 def rising(channel: RecordedChannel) -> Bools:
@@ -153,25 +197,43 @@ def rising(channel: RecordedChannel) -> Bools:
         at = int(back[0])
         one, other = channel.time[at : at + 2]
         words = f"time goes backwards, from {one:.9g} s to {other:.9g} s"
-        raise InputError(f"line {channel.lines[at + 1]}: {words}; if the file has several records, keep one of them")
+        raise InputError(
+            f"line {channel.lines[at + 1]}: {words}; if the file has "
+            "several records, keep one of them"
+        )
     if not (steps > 0.0).any():
         raise InputError("all samples have the same time; a record needs at least two times")
     return np.append(True, steps > 0.0)
 
 
-def _channel(cells: Cells, place: int, time_at: int | None, name: str, unit: str) -> RecordedChannel:
-    """Return a channel: without the cells that are missing, and with what is over the range at the range."""
+def _channel(
+    cells: Cells, place: int, time_at: int | None, name: str, unit: str
+) -> RecordedChannel:
+    """Return a channel: without the cells that are missing, and with what is over the
+    range at the range.
+    """
     cell, value = cells.layout.header[place], cells.columns[place]
-    time = _times(None if time_at is None else cells.columns[time_at], cells.layout.clocks.get(place), len(value))
+    time = _times(
+        None if time_at is None else cells.columns[time_at],
+        cells.layout.clocks.get(place),
+        len(value),
+    )
     is_there = ~np.isnan(value)
     where = f"column {shown(cell)}"
     if not is_there.any():
-        raise InputError(f"{where}: there is no number in it; delete the column, {cells.layout.remedy}")
+        raise InputError(
+            f"{where}: there is no number in it; delete the column, {cells.layout.remedy}"
+        )
     untimed = np.flatnonzero(is_there & ~np.isfinite(time))
     if untimed.size:
-        raise InputError(f"line {cells.lines[int(untimed[0])]}, {where}: the sample has no time; fill it in, or leave out the line")
+        raise InputError(
+            f"line {cells.lines[int(untimed[0])]}, {where}: the sample has no time; fill "
+            "it in, or leave out the line"
+        )
     first, last = np.flatnonzero(is_there)[[0, -1]]
-    missing = first + np.flatnonzero(~is_there[first : last + 1] & np.isfinite(time[first : last + 1]))
+    missing = first + np.flatnonzero(
+        ~is_there[first : last + 1] & np.isfinite(time[first : last + 1])
+    )
     lines = np.asarray(cells.lines)
     value, doubts = _in_range(value[is_there], where)
     granted = (cells.layout.doubts[place],) if place in cells.layout.doubts else ()
@@ -179,12 +241,23 @@ def _channel(cells: Cells, place: int, time_at: int | None, name: str, unit: str
     where_missing = tuple(lines[missing].tolist())
     told = (*granted, *doubts)
     return RecordedChannel(
-        name, cell, unit, time[is_there], value, lines[is_there].tolist(), where_missing, time[missing], told, times_from
+        name,
+        cell,
+        unit,
+        time[is_there],
+        value,
+        lines[is_there].tolist(),
+        where_missing,
+        time[missing],
+        told,
+        times_from,
     )
 
 
 def _in_range(value: Floats, where: str) -> tuple[Floats, tuple[str, ...]]:
-    """Return samples with the largest finite ones in place of those over the range, and a sentence on them."""
+    """Return samples with the largest finite ones in place of those over the range, and a
+    sentence on them.
+    """
     over: Bools = np.isinf(value)
     if not over.any():
         return value, ()
@@ -192,12 +265,19 @@ def _in_range(value: Floats, where: str) -> tuple[Floats, tuple[str, ...]]:
         raise InputError(f"{where}: all samples are over the range; record it with a larger one")
     finite = value[~over]
     are, they_are = ("are", "they are") if over.sum() > 1 else ("is", "it is")
-    words = f"{over.sum()} of its samples {are} over the range (infinite): {they_are} set to the largest or smallest of the others"
-    return np.clip(value, finite.min(), finite.max()), (f"{words}, so that the peak is too small; record it with a larger range",)
+    words = (
+        f"{over.sum()} of its samples {are} over the range (infinite): {they_are} set to the "
+        "largest or smallest of the others"
+    )
+    return np.clip(value, finite.min(), finite.max()), (
+        f"{words}, so that the peak is too small; record it with a larger range",
+    )
 
 
 def _times(column: Floats | None, clock: Clock | None, rows: int) -> Floats:
-    """Return the times of a channel: those of a clock, which has more digits, if its column of times agrees with it."""
+    """Return the times of a channel: those of a clock, which has more digits, if its
+    column of times agrees with it.
+    """
     if clock is None:
         assert column is not None
         return column
@@ -205,16 +285,24 @@ def _times(column: Floats | None, clock: Clock | None, rows: int) -> Floats:
     if column is None or clock.alone:
         return regular
     known = np.isfinite(column)
-    return regular if np.all(np.abs(column - regular)[known] <= max(_ROUNDED_TIMES, _OFF * clock.step)) else column
+    return (
+        regular
+        if np.all(np.abs(column - regular)[known] <= max(_ROUNDED_TIMES, _OFF * clock.step))
+        else column
+    )
 
 
 def _time_of(place: int, times: Sequence[int], channels: dict[int, tuple[str, str]]) -> int | None:
-    """Return the column of times of a channel: the nearest on its left, of several side by side the first; without one the first of all."""
+    """Return the column of times of a channel: the nearest on its left, of several side
+    by side the first; without one the first of all.
+    """
     left = [at for at in times if at < place]
     if not left:
         return times[0] if times else None
     at = left[-1]
-    while (before := max((one for one in times if one < at), default=None)) is not None and not any(before < one < at for one in channels):
+    while (before := max((one for one in times if one < at), default=None)) is not None and not any(
+        before < one < at for one in channels
+    ):
         at = before
     return at
 

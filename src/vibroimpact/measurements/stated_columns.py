@@ -12,7 +12,9 @@ from vibroimpact.units.quantity_text import number_and_unit
 from vibroimpact.units.reading import to_si
 
 STATED = "--columns"
-"""The option, by which messages name where the columns were stated; in a case it is the key `columns`."""
+"""The option, by which messages name where the columns were stated; in a case it is the
+key `columns`.
+"""
 
 _LEFT_OUT = "-"
 _RATE = "rate"
@@ -36,7 +38,8 @@ class StatedColumns(NamedTuple):
 
 
 def stated_columns(text: str) -> StatedColumns:
-    """Return the columns that a text states: NAME=UNIT for each, - for one that is left out, and rate=VALUE without times.
+    """Return the columns that a text states: NAME=UNIT for each, - for one that is left out, and
+    rate=VALUE without times.
 
     Raises
     ------
@@ -59,14 +62,23 @@ def stated_columns(text: str) -> StatedColumns:
         elif name == _LEFT_OUT and not sign:
             cells.append("")
         elif not name or (sign and not unit):
-            words = f'{shown(entry.strip())} is no column; state NAME=UNIT for each, and - for one that is left out: "time=s,-,force=N"'
+            words = (
+                f"{shown(entry.strip())} is no column; state NAME=UNIT for each, and - for one "
+                'that is left out: "time=s,-,force=N"'
+            )
             raise InputError(f"{STATED} {shown(text)}: {words}")
         else:
             cells.append(f"{name} [{unit}]" if sign else name)
     if not any(cells):
-        raise InputError(f'{STATED} {shown(text)}: it names no column; state NAME=UNIT for each, such as "time=s,force=N"')
+        raise InputError(
+            f"{STATED} {shown(text)}: it names no column; state NAME=UNIT for each, such "
+            'as "time=s,force=N"'
+        )
     if rate is not None and any(is_time(*name_and_unit(cell)) for cell in cells if cell):
-        raise InputError(f"{STATED} {shown(text)}: the rate follows from the column of times; leave rate out, or - for that column")
+        raise InputError(
+            f"{STATED} {shown(text)}: the rate follows from the column of times; leave "
+            "rate out, or - for that column"
+        )
     return StatedColumns(tuple(cells), rate)
 
 
@@ -76,16 +88,24 @@ def remedy_for(header: Sequence[str]) -> str:
     Examples
     --------
     >>> remedy_for(["t", "x", "force [N]"])
-    'or give --columns "time=s,x=UNIT,force=N", with - for a column to leave out (in a case the key columns)'
+    'or give --columns "time=s,x=UNIT,force=N", with - for a column to leave out (in a case the key
+    columns)'
     >>> remedy_for(["sound"])
     'or give --columns "rate=10 kHz,sound=UNIT" (in a case the key columns)'
     """
     if len(header) > _MOST_IN_REMEDY or any("," in cell or "=" in cell for cell in header):
-        return f"or give --columns with NAME=UNIT for each of the {len(header)} columns, - for one to leave out (in a case the key columns)"
+        return (
+            f"or give --columns with NAME=UNIT for each of the {len(header)} columns, - for "
+            "one to leave out (in a case the key columns)"
+        )
     if len(header) == 1 and not is_time(*name_and_unit(header[0])):
-        return f'or give --columns "{_RATE}=10 kHz,{_stated(header[0])}" (in a case the key columns)'
+        return (
+            f'or give --columns "{_RATE}=10 kHz,{_stated(header[0])}" (in a case the key columns)'
+        )
     cells = ",".join(map(_stated, header or ("time [s]", "force [N]")))
-    return f'or give --columns "{cells}", with - for a column to leave out (in a case the key columns)'
+    return (
+        f'or give --columns "{cells}", with - for a column to leave out (in a case the key columns)'
+    )
 
 
 def _stated(cell: str) -> str:

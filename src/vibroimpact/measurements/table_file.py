@@ -24,7 +24,9 @@ from vibroimpact.shown import shortened, shown
 from vibroimpact.units.reading import to_si
 from vibroimpact.units.spelling import plain_factor
 
-TABLE = FileKind("a table is a text file, such as CSV", 500_000_000, "keep the part with the impacts")
+TABLE = FileKind(
+    "a table is a text file, such as CSV", 500_000_000, "keep the part with the impacts"
+)
 """Requirements on a table file."""
 
 MOST_LINES = 10_000_000
@@ -39,7 +41,9 @@ _LONGEST_PATH = 200  # characters of a path in a message
 
 @dataclass(frozen=True)
 class TableFile:
-    """Content of a file: columns (rows,) in SI units by name, the line number of each row, empty lines before the last row, and doubts."""
+    """Content of a file: columns (rows,) in SI units by name, the line number of each
+    row, empty lines before the last row, and doubts.
+    """
 
     path: Path
     columns: Mapping[str, Floats]
@@ -49,7 +53,9 @@ class TableFile:
 
 
 class Cells(NamedTuple):
-    """Columns of a table in SI units by their place (rows,), the number of the line of each row, empty lines, and the layout."""
+    """Columns of a table in SI units by their place (rows,), the number of the line of
+    each row, empty lines, and the layout.
+    """
 
     layout: Layout
     columns: Mapping[int, Floats]
@@ -58,13 +64,17 @@ class Cells(NamedTuple):
 
 
 def read_table_file(
-    path: str | PathLike[str], units: Mapping[str, str], doubts: list[str] | None = None, columns: str | None = None
+    path: str | PathLike[str],
+    units: Mapping[str, str],
+    doubts: list[str] | None = None,
+    columns: str | None = None,
 ) -> TableFile:
     """Read the known columns of a CSV file.
 
-    The first line that is not a comment (#) is the header, with column names and units: `time_s`, `time [ms]`, `force (kN)`; how other
-    headers are found says `table_layout`. Fields are separated by commas, semicolons or tabs, or by blanks; a comma that does not separate
-    them may be the decimal point.
+    The first line that is not a comment (#) is the header, with column names and units: `time_s`,
+    `time [ms]`, `force (kN)`; how other headers are found says `table_layout`. Fields are separated
+    by commas, semicolons or tabs, or by blanks; a comma that does not separate them may be the
+    decimal point.
 
     Parameters
     ----------
@@ -73,14 +83,16 @@ def read_table_file(
     units : mapping of str to str
         The SI unit of each known column; "" for a plain number.
     doubts : list of str, optional
-        Where sentences are told that are added to it; without it a file that is read only with a doubt is refused.
+        Where sentences are told that are added to it; without it a file that is read only with a
+        doubt is refused.
     columns : str, optional
         The columns as a user states them in place of a header, "time=s,force=N".
 
     Raises
     ------
     InputError
-        If the file can't be read, a column has no unit or one of another dimension, or a cell is not a finite number.
+        If the file can't be read, a column has no unit or one of another dimension, or a cell is
+        not a finite number.
 
     Examples
     --------
@@ -101,7 +113,13 @@ def read_table_file(
     found = read_cells(path, known, _refused, doubts, columns)
     last = found.lines[-1]
     values = {names[place]: column for place, column in found.columns.items()}
-    return TableFile(Path(path), values, found.lines, [number for number in found.empty if number < last], tuple(doubts or ()))
+    return TableFile(
+        Path(path),
+        values,
+        found.lines,
+        [number for number in found.empty if number < last],
+        tuple(doubts or ()),
+    )
 
 
 def read_cells(
@@ -120,14 +138,16 @@ def read_cells(
     wanted : callable
         Returns the places of the columns to read, with the factors that convert them to SI.
     without_number : callable
-        Returns the value of a cell that has none (nan), or an infinite one, from this and a sentence on the cell; or raises.
+        Returns the value of a cell that has none (nan), or an infinite one, from this and a
+        sentence on the cell; or raises.
     doubts, columns
         As those of `read_table_file`.
 
     Raises
     ------
     InputError
-        If the file can't be read, a line has more fields than the header, or a cell is not a number.
+        If the file can't be read, a line has more fields than the header, or a cell is not a
+        number.
     """
     file = Path(path)
     try:
@@ -135,7 +155,9 @@ def read_cells(
         header, mark = layout.header, layout.mark
         places = wanted(layout)
         found: list[array[float]] = [array("d") for _ in places]
-        appended = list(zip([values.append for values in found], places, places.values(), strict=True))
+        appended = list(
+            zip([values.append for values in found], places, places.values(), strict=True)
+        )
         lines, empty, decimal = array("q"), array("q"), _DecimalPoint(mark)
         for number, line in layout.rows:
             if not line:
@@ -152,8 +174,16 @@ def read_cells(
     except InputError as error:
         raise in_table(file, error) from None
     if not lines:
-        raise InputError(f"{shortened(str(file), _LONGEST_PATH)}: there are no rows under the header; {layout.understood}")
-    return Cells(layout, {place: np.array(values) for place, values in zip(places, found, strict=True)}, lines, empty)
+        raise InputError(
+            f"{shortened(str(file), _LONGEST_PATH)}: there are no rows under the header; "
+            f"{layout.understood}"
+        )
+    return Cells(
+        layout,
+        {place: np.array(values) for place, values in zip(places, found, strict=True)},
+        lines,
+        empty,
+    )
 
 
 def in_table(path: str | PathLike[str], error: InputError) -> InputError:
@@ -165,7 +195,9 @@ def in_table(path: str | PathLike[str], error: InputError) -> InputError:
     'drop.csv, line 3: the cell is empty'
     """
     where = shortened(str(path), _LONGEST_PATH)
-    return InputError(f"{where}{', ' if error.message.startswith('line ') else ': '}{error.message}")
+    return InputError(
+        f"{where}{', ' if error.message.startswith('line ') else ': '}{error.message}"
+    )
 
 
 def header_of(path: str | PathLike[str], columns: str | None = None) -> list[str]:
@@ -188,34 +220,63 @@ def _numbered(text: Iterable[str]) -> Iterator[tuple[int, str]]:
     """Yield number and text of each line."""
     for number, whole in enumerate(text, 1):
         if number > MOST_LINES:
-            raise InputError(f"the file has more than {MOST_LINES:,} lines; keep the part with the impacts, or fewer samples a second")
+            raise InputError(
+                f"the file has more than {MOST_LINES:,} lines; keep the part with the "
+                "impacts, or fewer samples a second"
+            )
         if len(whole) > _LONGEST:
-            raise InputError(f"line {number}: it has more than {_LONGEST:,} characters; this is not a table")
+            raise InputError(
+                f"line {number}: it has more than {_LONGEST:,} characters; this is not a table"
+            )
         yield number, whole
 
 
 class _DecimalPoint:
-    """Watches whether a table with decimal commas also has points, which may group digits: 1.234 is 1234 or 1.234 then."""
+    """Watches whether a table with decimal commas also has points, which may group
+    digits: 1.234 is 1234 or 1.234 then.
+    """
 
     def __init__(self, mark: str | None) -> None:
         self.comma, self.either = 0, (0, "")
 
     def check(self, number: int, line: str, cells: Sequence[str]) -> None:
         """Raise if a line leaves open what a point in the table means."""
-        if not self.comma and "," in line and any("," in cell for cell in cells if cell[:1].strip('"+- ').isdigit() or cell[:1] == "-"):
+        if (
+            not self.comma
+            and "," in line
+            and any(
+                "," in cell for cell in cells if cell[:1].strip('"+- ').isdigit() or cell[:1] == "-"
+            )
+        ):
             self.comma = number
         if not self.either[0] and "." in line:
-            self.either = next(((number, cell) for cell in cells if "." in cell and is_either(cell)), self.either)
+            self.either = next(
+                ((number, cell) for cell in cells if "." in cell and is_either(cell)), self.either
+            )
         if self.comma and self.either[0]:
             at, cell = self.either
-            words = f"{shown(cell.strip())} has a point, and a number in line {self.comma} a comma: either may group digits"
-            raise InputError(f"line {at}: {words}; write all numbers with the same decimal sign, and do not group digits")
+            words = (
+                f"{shown(cell.strip())} has a point, and a number in line {self.comma} a "
+                "comma: either may group digits"
+            )
+            raise InputError(
+                f"line {at}: {words}; write all numbers with the same decimal sign, and do "
+                "not group digits"
+            )
 
 
 def _too_many(number: int, fields: int, layout: Layout) -> str:
-    hint = "; where a comma is the decimal point, semicolons separate the fields" if layout.mark == "," else ""
+    hint = (
+        "; where a comma is the decimal point, semicolons separate the fields"
+        if layout.mark == ","
+        else ""
+    )
     columns = len(layout.header)
-    known = f"{columns} {'is' if columns == 1 else 'are'} stated" if layout.is_stated else f"the header has {columns}"
+    known = (
+        f"{columns} {'is' if columns == 1 else 'are'} stated"
+        if layout.is_stated
+        else f"the header has {columns}"
+    )
     return f"line {number}: there are {fields} fields, and {known}{hint}; {layout.understood}"
 
 
@@ -228,14 +289,27 @@ def _places(layout: Layout, units: Mapping[str, str]) -> tuple[dict[str, int], l
         if name not in units:
             continue
         if name in places:
-            raise InputError(f'{layout.where}: there are two columns "{name}"; rename one, {layout.remedy}')
+            raise InputError(
+                f'{layout.where}: there are two columns "{name}"; rename one, {layout.remedy}'
+            )
         places[name] = place
         factors.append(factor_to_si(layout, cell, unit, units[name]))
     if not places:
         names = [name_and_unit(cell)[0] for cell in layout.header[:_MOST_NAMED]]
-        hint = next((words for name in names if len(name) < _LONG_NAME and (words := did_you_mean(name, units))), "")
-        listed = ", ".join(shortened(name, _LONG_NAME) for name in names) + (", ..." if len(layout.header) > _MOST_NAMED else "")
-        raise InputError(f"{layout.where}: no column is known among {listed}; {_allowed(units)}.{hint}")
+        hint = next(
+            (
+                words
+                for name in names
+                if len(name) < _LONG_NAME and (words := did_you_mean(name, units))
+            ),
+            "",
+        )
+        listed = ", ".join(shortened(name, _LONG_NAME) for name in names) + (
+            ", ..." if len(layout.header) > _MOST_NAMED else ""
+        )
+        raise InputError(
+            f"{layout.where}: no column is known among {listed}; {_allowed(units)}.{hint}"
+        )
     return places, factors
 
 
@@ -261,34 +335,58 @@ def factor_to_si(layout: Layout, cell: str, unit: str | None, wanted: str) -> fl
     except InputError as error:
         # without the 1 before the unit, and without the hint how to write a number
         given, one = shown(unit, 80), shown(f"1 {unit}", 80)
-        words = error.message.partition(" (a number in ")[0].replace(f"{given} in {one}", given).replace(one, given)
+        words = (
+            error.message.partition(" (a number in ")[0]
+            .replace(f"{given} in {one}", given)
+            .replace(one, given)
+        )
         raise InputError(f"{where}: {words}, such as {wanted}") from None
 
 
-def _number(line: int, column: str, row: list[str], place: int, mark: str | None, without: Callable[[float, str], float]) -> float:
+def _number(
+    line: int,
+    column: str,
+    row: list[str],
+    place: int,
+    mark: str | None,
+    without: Callable[[float, str], float],
+) -> float:
     text = row[place] if place < len(row) else ""
     try:
         value = number_in(text, mark)
     except ValueError:
         hint = f"; {_EITHER}" if is_either(text) else ""
-        raise InputError(f"line {line}, column {shown(column)}: {shown(text.strip())} is not a number{hint}") from None
+        raise InputError(
+            f"line {line}, column {shown(column)}: {shown(text.strip())} is not a number{hint}"
+        ) from None
     if -_LARGEST_NUMBER < value < _LARGEST_NUMBER:
         return value
     where = f"line {line}, column {shown(column)}"
     if place >= len(row):
-        return without(nan, f"{where}: the cell is missing; the line has {len(row)} field{'' if len(row) == 1 else 's'}")
+        return without(
+            nan,
+            f"{where}: the cell is missing; the line has {len(row)} "
+            f"field{'' if len(row) == 1 else 's'}",
+        )
     coded = SCPI.get(value, value)
     if isnan(coded) or isinf(coded):
         return without(coded, f"{where}: {_what_is_there(text.strip(), value, coded)}")
-    raise InputError(f"{where}: {shown(text.strip())} is not a measurement; it must be less than 1e30 in size")
+    raise InputError(
+        f"{where}: {shown(text.strip())} is not a measurement; it must be less than 1e30 in size"
+    )
 
 
 def _what_is_there(text: str, value: float, coded: float) -> str:
-    """Return what a cell without a number has: nothing, words for a missing one, or the code of an instrument for one."""
+    """Return what a cell without a number has: nothing, words for a missing one, or the
+    code of an instrument for one.
+    """
     if not text:
         return "the cell is empty"
     if not (isnan(value) or isinf(value)):
-        return f"{shown(text)} stands for a sample that is {'missing' if isnan(coded) else 'over the range'} (SCPI)"
+        return (
+            f"{shown(text)} stands for a sample that is "
+            f"{'missing' if isnan(coded) else 'over the range'} (SCPI)"
+        )
     try:
         float(text)
     except ValueError:
@@ -296,7 +394,10 @@ def _what_is_there(text: str, value: float, coded: float) -> str:
     return f"{shown(text)} is not finite"
 
 
-_EITHER = "a comma is the decimal point or groups digits there: save the table with semicolons between the fields, or without groups"
+_EITHER = (
+    "a comma is the decimal point or groups digits there: save the table with semicolons "
+    "between the fields, or without groups"
+)
 
 
 def _refused(_: float, fault: str) -> float:
@@ -304,4 +405,8 @@ def _refused(_: float, fault: str) -> float:
 
 
 def _allowed(units: Mapping[str, str]) -> str:
-    return "known are " + ", ".join(f"{name} [{unit}]" if unit else name for name, unit in units.items() if "deviation" not in name)
+    return "known are " + ", ".join(
+        f"{name} [{unit}]" if unit else name
+        for name, unit in units.items()
+        if "deviation" not in name
+    )

@@ -1,4 +1,6 @@
-"""Lines of a table: what separates their fields, which are rows of numbers, and the beginning of a file in which a header is sought."""
+"""Lines of a table: what separates their fields, which are rows of numbers, and the
+beginning of a file in which a header is sought.
+"""
 
 from __future__ import annotations
 
@@ -18,9 +20,11 @@ _NOT_A_COMMENT = ("N/A", "NV", "NUM!", "DIV/0!", "WERT!", "VALUE!")
 
 
 class Clock(NamedTuple):
-    """Times of a column without a column of times of its own: that of its first row [s], and the step from row to row [s].
+    """Times of a column without a column of times of its own: that of its first row [s], and the
+    step from row to row [s].
 
-    `alone` tells whether the column of times beside it, if there is one, belongs to another channel.
+    `alone` tells whether the column of times beside it, if there is one, belongs to another
+    channel.
     """
 
     start: float
@@ -29,7 +33,9 @@ class Clock(NamedTuple):
 
 
 class Head(NamedTuple):
-    """The beginning of a table: number and text of its lines, without comments, and the separator that the file states."""
+    """The beginning of a table: number and text of its lines, without comments, and the
+    separator that the file states.
+    """
 
     lines: list[tuple[int, str]]
     mark: str | None
@@ -64,11 +70,16 @@ class Found(NamedTuple):
 
 def fields_of(line: str, mark: str | None) -> list[str]:
     """Return the fields of a line."""
-    return line.split(mark) if mark is None or '"' not in line else next(csv.reader([line], delimiter=mark))
+    return (
+        line.split(mark)
+        if mark is None or '"' not in line
+        else next(csv.reader([line], delimiter=mark))
+    )
 
 
 def header_cells(line: str, mark: str | None) -> list[str]:
-    """Return the cells of a header; where blanks separate them, a unit in brackets belongs to the word before it.
+    """Return the cells of a header; where blanks separate them, a unit in brackets belongs to the
+    word before it.
 
     Examples
     --------
@@ -100,13 +111,18 @@ def content(whole: str) -> str:
     line = whole.rstrip("\r\n ")  # a tab at the end may stand before an empty field
     if "#" not in line:
         return line if line.strip(" ,;\t") else ""
-    start = next((found.start() for found in re.finditer("#", line) if _begins_comment(line, found.start())), len(line))
+    start = next(
+        (found.start() for found in re.finditer("#", line) if _begins_comment(line, found.start())),
+        len(line),
+    )
     line = line[:start].rstrip()
     return line if line.strip(" ,;\t") else ""
 
 
 def _begins_comment(line: str, place: int) -> bool:
-    """Return whether a # begins a comment: in a name (Channel #1) and in what spreadsheets write (#N/A) it does not."""
+    """Return whether a # begins a comment: in a name (Channel #1) and in what
+    spreadsheets write (#N/A) it does not.
+    """
     before, after = line[:place], line[place + 1 :]
     if after.upper().startswith(_NOT_A_COMMENT):
         return False
@@ -128,12 +144,18 @@ def is_row(line: str, mark: str | None) -> bool:
 
 
 def first_rows(head: Head, least: int = 2) -> tuple[int, str | None] | None:
-    """Return the place of the first of two rows of at least so many fields, one after the other, and what separates their fields."""
+    """Return the place of the first of two rows of at least so many fields, one after the
+    other, and what separates their fields.
+    """
     full = [place for place, (_, line) in enumerate(head.lines) if line]
     for here, after in pairwise(full):
         mark = head.mark or mark_of(head.lines[here][1])
         line = head.lines[here][1]
-        if len(fields_of(line, mark)) >= least and is_row(line, mark) and is_row(head.lines[after][1], mark):
+        if (
+            len(fields_of(line, mark)) >= least
+            and is_row(line, mark)
+            and is_row(head.lines[after][1], mark)
+        ):
             return here, mark
     return None
 

@@ -1,4 +1,6 @@
-"""Reading of universal files (UFF): functions of time and frequency responses in datasets 58, text or binary, and units of dataset 164."""
+"""Reading of universal files (UFF): functions of time and frequency responses in datasets
+58, text or binary, and units of dataset 164.
+"""
 
 from __future__ import annotations
 
@@ -15,7 +17,11 @@ from vibroimpact.arrays import Complex, Floats
 from vibroimpact.errors import InputError
 from vibroimpact.files.reading import FileKind, beginning, read_bytes, with_path
 
-UNIVERSAL = FileKind("a universal file holds datasets between lines of -1", 100_000_000, "keep the functions that are needed")
+UNIVERSAL = FileKind(
+    "a universal file holds datasets between lines of -1",
+    100_000_000,
+    "keep the functions that are needed",
+)
 """Requirements on a universal file."""
 
 SPHERE_FUNCTIONS = {
@@ -24,16 +30,21 @@ SPHERE_FUNCTIONS = {
     "acceleration_m_s2": ("acceleration of the sphere", 12, "m/s2"),
     "force_N": ("contact force on the sphere", 13, "N"),
 }
-"""The motion of the sphere as this program writes and recognizes it: first identification line, data type, unit."""
+"""The motion of the sphere as this program writes and recognizes it: first identification
+line, data type, unit.
+"""
 
 _LARGEST = 1e30
 """Bound of measured values, so that their powers do not overflow."""
 
 _BEGINNING = 4000
-"""Bytes at the beginning in which the first line of -1 stands; the rest of another file is not read."""
+"""Bytes at the beginning in which the first line of -1 stands; the rest of another file
+is not read.
+"""
 
 _MARK = b"-1"
-_HERE = re.compile(rb"[ \t]*-1[ \t\r]*(?:\n|\Z)")  # at the current position: binary data does not end with a line break
+# at the current position: binary data does not end with a line break
+_HERE = re.compile(rb"[ \t]*-1[ \t\r]*(?:\n|\Z)")
 _MARKED = re.compile(rb"^" + _HERE.pattern, re.MULTILINE)
 _HEADER_LINES = 11
 _REAL, _COMPLEX = (2, 4), (5, 6)
@@ -59,7 +70,8 @@ class Function:
     identification : str
         First identification line.
     kind : int
-        Data type of the ordinate in dataset 58: 8 displacement, 9 and 13 force, 11 velocity, 12 acceleration.
+        Data type of the ordinate in dataset 58: 8 displacement, 9 and 13 force, 11 velocity, 12
+        acceleration.
     unit : str
         Unit label; "" if there is none.
     time, values : array, shape (n,)
@@ -75,8 +87,9 @@ class Function:
 
 
 class Freedom(NamedTuple):
-    """A degree of freedom: name of its entity, "" if there is none; node, 0 if there is none; and direction, 1 to 3 along x, y, z,
-    negative against the axis, 4 to 6 of rotations, 0 if it is not stated.
+    """A degree of freedom: name of its entity, "" if there is none; node, 0 if there is none; and
+    direction, 1 to 3 along x, y, z, negative against the axis, 4 to 6 of rotations, 0 if it is not
+    stated.
     """
 
     entity: str
@@ -120,8 +133,8 @@ class FunctionOfFrequency:
 
 
 class UniversalFile(NamedTuple):
-    """Functions of time of a universal file, the divisors that convert its lengths ("m") and forces ("N") to SI, None if the
-    file does not state them, and its frequency responses and coherences.
+    """Functions of time of a universal file, the divisors that convert its lengths ("m") and forces
+    ("N") to SI, None if the file does not state them, and its frequency responses and coherences.
     """
 
     functions: list[Function]
@@ -174,7 +187,11 @@ def read_universal_file(path: str | Path) -> UniversalFile:
                     of_frequency.append(found)
         except (ValueError, IndexError, KeyError, OverflowError):
             what = f"function {number}" if kind != b"164" else "dataset 164, with the units,"
-            size = "" if kind == b"164" else f", or a number there is not finite or not below {_LARGEST:g} in size"
+            size = (
+                ""
+                if kind == b"164"
+                else f", or a number there is not finite or not below {_LARGEST:g} in size"
+            )
             words = f"the file is damaged, or not of the format stated in its first lines{size}"
             raise InputError(f"{file}: {what} can't be read; {words}") from None
     return UniversalFile(functions, factors, of_frequency)
@@ -189,7 +206,8 @@ def _datasets(raw: bytes) -> Iterator[tuple[bytes, int]]:
             header, place = _line(raw, place)
             yield header, place
             words = header.split()
-            if words and words[0] == b"58b":  # skip binary data, which may contain the bytes of a mark
+            # skip binary data, which may contain the bytes of a mark
+            if words and words[0] == b"58b":
                 place = _binary_end(raw, words, place)
 
 
@@ -230,8 +248,12 @@ def _factors(raw: bytes, place: int) -> dict[str, float]:
     return {"m": numbers[0], "N": numbers[1]}
 
 
-def _function(raw: bytes, header: bytes, place: int, number: int) -> Function | FunctionOfFrequency | None:
-    """Return a function of time, a frequency response or a coherence; None of any other function."""
+def _function(
+    raw: bytes, header: bytes, place: int, number: int
+) -> Function | FunctionOfFrequency | None:
+    """Return a function of time, a frequency response or a coherence; None of any other
+    function.
+    """
     lines, place = _lines(raw, place, _HEADER_LINES)
     ordinate, count, even = (int(lines[6][at : at + 10]) for at in (0, 10, 20))
     start, step = (float(lines[6][at : at + 13]) for at in (30, 43))
@@ -255,19 +277,31 @@ def _function(raw: bytes, header: bytes, place: int, number: int) -> Function | 
     if not of_time:
         if (np.abs(values) >= _LARGEST).any():
             raise ValueError
-        kinds, units = (_whole(lines[8][:10]), _whole(lines[9][:10])), (_unit_label(lines[8]), _unit_label(lines[9]))
+        kinds, units = (
+            (_whole(lines[8][:10]), _whole(lines[9][:10])),
+            (_unit_label(lines[8]), _unit_label(lines[9])),
+        )
         ends = _freedom(lines[5], 30), _freedom(lines[5], 55)
-        return FunctionOfFrequency(number, words, function_type, kinds, units, *ends, variables, values)
+        return FunctionOfFrequency(
+            number, words, function_type, kinds, units, *ends, variables, values
+        )
     if not (np.abs(values) < _LARGEST).all():
         raise ValueError
-    return Function(number, words, int(lines[8][:10]), _unit_label(lines[8]), variables, values.real)
+    return Function(
+        number, words, int(lines[8][:10]), _unit_label(lines[8]), variables, values.real
+    )
 
 
 def _is_of_frequency(function_type: int, variable: int, ordinate: int, unit: str) -> bool:
-    """Return whether a function is a frequency response or a coherence that is read: programs leave the kind of the abscissa out."""
+    """Return whether a function is a frequency response or a coherence that is read:
+    programs leave the kind of the abscissa out.
+    """
     if variable != _FREQUENCY and not (variable in _UNSTATED and unit.strip().lower() == _HERTZ):
         return False
-    return (function_type, ordinate in _COMPLEX, ordinate in _REAL) in ((FREQUENCY_RESPONSE, True, False), (COHERENCE, False, True))
+    return (function_type, ordinate in _COMPLEX, ordinate in _REAL) in (
+        (FREQUENCY_RESPONSE, True, False),
+        (COHERENCE, False, True),
+    )
 
 
 def _whole(text: str) -> int:
@@ -283,29 +317,50 @@ def _unit_label(line: str) -> str:
 def _freedom(line: str, at: int) -> Freedom:
     """Return the degree of freedom whose fields begin at a column of the sixth line of a header."""
     entity = line[at + 1 : at + 11].strip()
-    return Freedom("" if entity == "NONE" else entity, _whole(line[at + 11 : at + 21]), _whole(line[at + 21 : at + 25]))
+    return Freedom(
+        "" if entity == "NONE" else entity,
+        _whole(line[at + 11 : at + 21]),
+        _whole(line[at + 21 : at + 25]),
+    )
 
 
-def _binary(raw: bytes, header: bytes, place: int, ordinate: int, count: int, even: bool) -> tuple[Floats | None, Floats | Complex]:
+def _binary(
+    raw: bytes, header: bytes, place: int, ordinate: int, count: int, even: bool
+) -> tuple[Floats | None, Floats | Complex]:
     order, form, _, size = (int(word) for word in header.split()[1:5])
-    end, values, parts = _ENDS[order], "f4" if ordinate in _SINGLE else "f8", 2 if ordinate in _COMPLEX else 1
+    end, values, parts = (
+        _ENDS[order],
+        "f4" if ordinate in _SINGLE else "f8",
+        2 if ordinate in _COMPLEX else 1,
+    )
     if form != _IEEE or place + size > len(raw):
         raise ValueError
     if even:
-        return None, _joined(np.frombuffer(raw, f"{end}{values}", parts * count, place).astype(float), parts)
-    # with double-precision values, times occur in single and in double precision, and the stated size may omit them
+        return None, _joined(
+            np.frombuffer(raw, f"{end}{values}", parts * count, place).astype(float), parts
+        )
+    # with double-precision values, times occur in single and in double precision, and the stated
+    # size may omit them
     after = place + (8 + parts * int(values[1])) * count
     wide = raw[after : after + 12].lstrip().startswith(_MARK)
     times = "f8" if wide else "f4"
-    pairs = np.frombuffer(raw, [("x", f"{end}{times}"), ("y", f"{end}{values}", (parts,))], count, place)
+    pairs = np.frombuffer(
+        raw, [("x", f"{end}{times}"), ("y", f"{end}{values}", (parts,))], count, place
+    )
     return pairs["x"].astype(float), _joined(pairs["y"].astype(float).ravel(), parts)
 
 
-def _text(raw: bytes, place: int, ordinate: int, count: int, even: bool) -> tuple[Floats | None, Floats | Complex]:
+def _text(
+    raw: bytes, place: int, ordinate: int, count: int, even: bool
+) -> tuple[Floats | None, Floats | Complex]:
     width, parts = _WIDTHS[ordinate], 2 if ordinate in _COMPLEX else 1
     single = ordinate in _SINGLE
     # columns of fixed width, not necessarily separated by blanks
-    widths = [width] * (6 if single else 4) if even else [13, *[width] * parts] * ((6 if single else 4) // (1 + parts))
+    widths = (
+        [width] * (6 if single else 4)
+        if even
+        else [13, *[width] * parts] * ((6 if single else 4) // (1 + parts))
+    )
     edges = np.concatenate([[0], np.cumsum(widths)])
     found: list[float] = []
     wanted = (parts if even else 1 + parts) * count

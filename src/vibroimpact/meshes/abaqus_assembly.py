@@ -42,15 +42,31 @@ class _Instance:
         """Return the number in the flat mesh."""
         number = parse_integer(text, line, "the number of a node or element")
         if number >= SPAN:
-            raise line.wrong(f"the number {number} is too large for a part of an assembly; it must be below {SPAN:,}")
+            raise line.wrong(
+                f"the number {number} is too large for a part of an assembly; "
+                f"it must be below {SPAN:,}"
+            )
         return str(self.offset + number)
 
 
 def is_assembly(found: Sequence[Block]) -> bool:
-    """Whether blocks are those of an assembly of several parts or instances, of one that is moved, or with links of its own nodes."""
+    """Whether blocks are those of an assembly of several parts or instances, of one that
+    is moved, or with links of its own nodes.
+    """
     instances = [block for block in found if block.keyword == "INSTANCE"]
-    moves = (parse_real(text, line) for block in instances for line in block.data for text in line.text.split(",") if text.strip())
-    return len(instances) > 1 or sum(block.keyword == "PART" for block in found) > 1 or _has_links(found) or any(moves)
+    moves = (
+        parse_real(text, line)
+        for block in instances
+        for line in block.data
+        for text in line.text.split(",")
+        if text.strip()
+    )
+    return (
+        len(instances) > 1
+        or sum(block.keyword == "PART" for block in found) > 1
+        or _has_links(found)
+        or any(moves)
+    )
 
 
 def _has_links(found: Sequence[Block]) -> bool:
@@ -67,9 +83,11 @@ def _has_links(found: Sequence[Block]) -> bool:
 
 
 def flattened(found: Iterable[Block]) -> Iterator[Block]:
-    """Yield the blocks of an assembly as those of one mesh in which every instance has its own numbers.
+    """Yield the blocks of an assembly as those of one mesh in which every instance has its own
+    numbers.
 
-    Sets and surfaces of an instance get its name and a point before theirs, and all its elements are the set of its name.
+    Sets and surfaces of an instance get its name and a point before theirs, and all its elements
+    are the set of its name.
 
     Parameters
     ----------
@@ -83,7 +101,8 @@ def flattened(found: Iterable[Block]) -> Iterator[Block]:
     """
     parts: dict[str, list[Block]] = {}
     instances: dict[str, _Instance] = {}
-    own = _Instance("", 0, np.eye(3), np.zeros(3))  # the assembly itself: its nodes are reference points
+    # the assembly itself: its nodes are reference points
+    own = _Instance("", 0, np.eye(3), np.zeros(3))
     part: list[Block] | None = None
     placed: _Instance | None = None
     opened: dict[str, TextLine] = {}
@@ -99,7 +118,10 @@ def flattened(found: Iterable[Block]) -> Iterator[Block]:
         if keyword == "PART":
             last_part = block.line
             if _key(block, "NAME") in parts:
-                raise block.line.wrong(f"a part of the name {shown(block.parameters.get('NAME', ''))} was given before; each needs its own")
+                raise block.line.wrong(
+                    f"a part of the name {shown(block.parameters.get('NAME', ''))} was "
+                    "given before; each needs its own"
+                )
             part = parts[_key(block, "NAME")] = []
         elif keyword == "END PART":
             part = None
@@ -117,9 +139,13 @@ def flattened(found: Iterable[Block]) -> Iterator[Block]:
             yield _of_assembly(block, instances, own) if "ASSEMBLY" in opened else block
     if opened:
         keyword, line = opened.popitem()
-        raise line.wrong(f"*{keyword} has no *END {keyword}; the file is cut short, or that line was left out")
+        raise line.wrong(
+            f"*{keyword} has no *END {keyword}; the file is cut short, or that line was left out"
+        )
     if last_part is not None and not instances:
-        raise last_part.wrong("the parts of the file are in no assembly; each must be placed by an *INSTANCE")
+        raise last_part.wrong(
+            "the parts of the file are in no assembly; each must be placed by an *INSTANCE"
+        )
 
 
 def _key(block: Block, parameter: str) -> str:
@@ -130,19 +156,35 @@ def _blocks_of(block: Block, parts: dict[str, list[Block]]) -> list[Block]:
     """Return the blocks of the part of an instance."""
     name = _key(block, "PART")
     if name not in parts:
-        raise block.line.wrong(f"the instance is of the part {shown(block.parameters.get('PART', ''))}, which is not in the file before it")
+        raise block.line.wrong(
+            f"the instance is of the part {shown(block.parameters.get('PART', ''))}, which "
+            "is not in the file before it"
+        )
     return parts[name]
 
 
 def _placed(block: Block, instances: dict[str, _Instance]) -> _Instance:
-    """Return an instance: shifted by its first line, then turned about the axis between two points by the angle of its second line."""
+    """Return an instance: shifted by its first line, then turned about the axis between
+    two points by the angle of its second line.
+    """
     name = block.parameters.get("NAME", "")
     if not name or name.upper() in instances:
-        raise block.line.wrong(f"the instance has no name of its own, but {shown(name)}; every instance must have one")
+        raise block.line.wrong(
+            f"the instance has no name of its own, but {shown(name)}; every instance must have one"
+        )
     if len(instances) >= _MOST_INSTANCES:
-        raise block.line.wrong(f"the assembly has more than {_MOST_INSTANCES:,} instances; leave out those that are not needed")
+        raise block.line.wrong(
+            f"the assembly has more than {_MOST_INSTANCES:,} instances; leave out those "
+            "that are not needed"
+        )
     shift, turn = np.zeros(3), np.eye(3)
-    numbers = [[parse_real(text, line) if text.strip() else 0.0 for text in line.text.rstrip(" ,").split(",")] for line in block.data]
+    numbers = [
+        [
+            parse_real(text, line) if text.strip() else 0.0
+            for text in line.text.rstrip(" ,").split(",")
+        ]
+        for line in block.data
+    ]
     for line, values in zip(block.data, numbers, strict=True):
         if not all(math.isfinite(value) for value in values):
             raise line.wrong("the place of the instance is not finite; it must be")
@@ -151,12 +193,19 @@ def _placed(block: Block, instances: dict[str, _Instance]) -> _Instance:
     if len(numbers) > 1:
         if len(numbers[1]) != 7:
             raise block.data[1].wrong(
-                f"the turn of the instance has {len(numbers[1])} numbers; it must have two points and an angle, 7 in all"
+                f"the turn of the instance has {len(numbers[1])} numbers; it must have two "
+                "points and an angle, 7 in all"
             )
-        first, second, angle = np.array(numbers[1][:3]), np.array(numbers[1][3:6]), math.radians(numbers[1][6])
+        first, second, angle = (
+            np.array(numbers[1][:3]),
+            np.array(numbers[1][3:6]),
+            math.radians(numbers[1][6]),
+        )
         size = float(np.linalg.norm(second - first))
         if not size > 0.0:
-            raise block.data[1].wrong("the two points of the axis of the turn are the same; they must lie apart")
+            raise block.data[1].wrong(
+                "the two points of the axis of the turn are the same; they must lie apart"
+            )
         x, y, z = (second - first) / size
         across = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
         turn = np.eye(3) + math.sin(angle) * across + (1.0 - math.cos(angle)) * across @ across
@@ -168,23 +217,39 @@ def _placed(block: Block, instances: dict[str, _Instance]) -> _Instance:
 def _moved(block: Block, instance: _Instance) -> Block:
     """Return a block of a part as that of an instance of it."""
     at_nodes = block.keyword == "NODE"
-    lines = [_moved_node(line, instance) for line in block.data] if at_nodes else _renamed_lines(block, instance.renamed)
-    return Block(block.line, block.keyword, _renamed_parameters(block, lambda name: instance.renamed(name, block.line)), lines)
+    lines = (
+        [_moved_node(line, instance) for line in block.data]
+        if at_nodes
+        else _renamed_lines(block, instance.renamed)
+    )
+    return Block(
+        block.line,
+        block.keyword,
+        _renamed_parameters(block, lambda name: instance.renamed(name, block.line)),
+        lines,
+    )
 
 
 def _moved_node(line: TextLine, instance: _Instance) -> TextLine:
     texts = line.text.split(",")
-    at = np.array([parse_real(text, line) if text.strip() else 0.0 for text in [*texts[1:4], "", "", ""][:3]])
-    with np.errstate(invalid="ignore", over="ignore"):  # what is not finite is refused where the node is read
+    at = np.array(
+        [parse_real(text, line) if text.strip() else 0.0 for text in [*texts[1:4], "", "", ""][:3]]
+    )
+    # what is not finite is refused where the node is read
+    with np.errstate(invalid="ignore", over="ignore"):
         x, y, z = (instance.turn @ at + instance.shift).tolist()
     return line._replace(text=f"{instance.number(texts[0].strip(), line)}, {x!r}, {y!r}, {z!r}")
 
 
 def _of_assembly(block: Block, instances: dict[str, _Instance], own: _Instance) -> Block:
-    """Return a block of the assembly, in which members of instances have the name of theirs before them, or in a parameter."""
+    """Return a block of the assembly, in which members of instances have the name of
+    theirs before them, or in a parameter.
+    """
     of = block.parameters.get("INSTANCE")
     if of is not None and of.upper() not in instances:
-        raise block.line.wrong(f"there is no instance {shown(of)} before this line; it must be one of the assembly")
+        raise block.line.wrong(
+            f"there is no instance {shown(of)} before this line; it must be one of the assembly"
+        )
     home = own if of is None else instances[of.upper()]
 
     def renamed(text: str, line: TextLine) -> str:
@@ -201,31 +266,53 @@ def _of_assembly(block: Block, instances: dict[str, _Instance], own: _Instance) 
 
 def _renamed_parameters(block: Block, renamed: Callable[[str], str]) -> dict[str, str]:
     keys = (*_SET_NAMES, "NAME") if block.keyword == "SURFACE" else _SET_NAMES
-    return {key: renamed(value) if key in keys and value else value for key, value in block.parameters.items()}
+    return {
+        key: renamed(value) if key in keys and value else value
+        for key, value in block.parameters.items()
+    }
 
 
 def _renamed_lines(block: Block, renamed: Renamed) -> list[TextLine]:
     """Return the data of a block with other numbers and names of nodes, elements and sets."""
     if block.keyword not in _NUMBERED:
-        return [_renamed_line(line, renamed, 0, None) for line in block.data] if block.keyword == "TIE" else block.data
+        return (
+            [_renamed_line(line, renamed, 0, None) for line in block.data]
+            if block.keyword == "TIE"
+            else block.data
+        )
     if block.keyword == "EQUATION":
-        return [line if "," not in line.text.rstrip(" ,") else _renamed_line(line, renamed, 0, _TERMS) for line in block.data]
+        return [
+            line if "," not in line.text.rstrip(" ,") else _renamed_line(line, renamed, 0, _TERMS)
+            for line in block.data
+        ]
     if block.keyword in ("SURFACE", "KINEMATIC COUPLING"):
         return [_renamed_line(line, renamed, 0, len(line.text)) for line in block.data]
     if "GENERATE" in block.parameters:
         return [line._replace(text=",".join(_generated(line, renamed))) for line in block.data]
-    return [_renamed_line(line, renamed, 1 if block.keyword == "MPC" else 0, None) for line in block.data]
+    return [
+        _renamed_line(line, renamed, 1 if block.keyword == "MPC" else 0, None)
+        for line in block.data
+    ]
 
 
 def _renamed_line(line: TextLine, renamed: Renamed, first: int, step: int | None) -> TextLine:
-    """Return a line with every entry from `first` on renamed, or every one at a distance of `step`."""
+    """Return a line with every entry from `first` on renamed, or every one at a distance
+    of `step`.
+    """
     texts = [text.strip() for text in line.text.split(",")]
     chosen = set(range(first, len(texts), step or 1))
-    return line._replace(text=", ".join(renamed(text.strip('"'), line) if text and at in chosen else text for at, text in enumerate(texts)))
+    return line._replace(
+        text=", ".join(
+            renamed(text.strip('"'), line) if text and at in chosen else text
+            for at, text in enumerate(texts)
+        )
+    )
 
 
 def _generated(line: TextLine, renamed: Renamed) -> Iterator[str]:
-    """Yield the entries of a range: first, last, step; a last one beyond the numbers of an instance is its last."""
+    """Yield the entries of a range: first, last, step; a last one beyond the numbers of
+    an instance is its last.
+    """
     for at, text in enumerate(part.strip() for part in line.text.split(",")):
         if at == 1 and text.isdigit() and len(text) <= 18:
             text = str(min(int(text), SPAN - 1))
@@ -235,4 +322,6 @@ def _generated(line: TextLine, renamed: Renamed) -> Iterator[str]:
 def _all_elements(line: TextLine, instance: _Instance) -> Block:
     """Return the set of all elements of an instance."""
     text = f"{instance.offset}, {instance.offset + SPAN - 1}, 1"
-    return Block(line, "ELSET", {"ELSET": instance.name, "GENERATE": ""}, [line._replace(text=text)])
+    return Block(
+        line, "ELSET", {"ELSET": instance.name, "GENERATE": ""}, [line._replace(text=text)]
+    )

@@ -9,12 +9,17 @@ from dataclasses import dataclass, field
 from vibroimpact.meshes.text_files import TextLine
 
 _PARAMETER = re.compile(r'(?:"[^"]*"|[^,])+')
-_INCLUDED = re.compile(r"\*\s*(?:INCLUDE|NODE|ELEMENT|NSET|ELSET)\s*,.*?\bINPUT\s*=\s*(?:\"([^\"]+)\"|([^,\"]+))", re.IGNORECASE)
+_INCLUDED = re.compile(
+    r"\*\s*(?:INCLUDE|NODE|ELEMENT|NSET|ELSET)\s*,.*?\bINPUT\s*=\s*(?:\"([^\"]+)\"|([^,\"]+))",
+    re.IGNORECASE,
+)
 
 
 @dataclass
 class Block:
-    """A keyword in capitals, without its asterisk; its parameters, by name in capitals; its data lines."""
+    """A keyword in capitals, without its asterisk; its parameters, by name in capitals;
+    its data lines.
+    """
 
     line: TextLine
     keyword: str
@@ -54,7 +59,10 @@ def blocks(lines: Iterable[TextLine]) -> Iterator[Block]:
             block = Block(line, " ".join(keyword.upper().split()), _parameters(rest))
             goes_on = text.endswith(",")
         elif block is None:
-            raise line.wrong("there are data before the first keyword; an Abaqus input file starts with a keyword such as *NODE")
+            raise line.wrong(
+                "there are data before the first keyword; an Abaqus input file starts with "
+                "a keyword such as *NODE"
+            )
         elif goes_on and text[0].isalpha():
             block.parameters.update(_parameters(text))
             goes_on = text.endswith(",")
@@ -73,5 +81,7 @@ def _parameters(text: str) -> dict[str, str]:
     >>> _parameters(' TYPE=C3D8 , elset = "upper, left", GENERATE')
     {'TYPE': 'C3D8', 'ELSET': 'upper, left', 'GENERATE': ''}
     """
-    found = (parameter.partition("=") for parameter in _PARAMETER.findall(text) if parameter.strip())
+    found = (
+        parameter.partition("=") for parameter in _PARAMETER.findall(text) if parameter.strip()
+    )
     return {key.strip().upper(): value.strip().strip('"') for key, _, value in found}

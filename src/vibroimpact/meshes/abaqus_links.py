@@ -16,7 +16,18 @@ from vibroimpact.structures.joints import AXES
 _ALL = tuple(range(COMPONENTS))
 _DISPLACEMENTS = tuple(range(AXES))
 _TERMS = 3  # entries of a term of an equation
-_KEYWORDS = {"EQUATION", "MPC", "COUPLING", "KINEMATIC", "DISTRIBUTING", "KINEMATIC COUPLING", "RIGID BODY", "TIE", "SURFACE", "TRANSFORM"}
+_KEYWORDS = {
+    "EQUATION",
+    "MPC",
+    "COUPLING",
+    "KINEMATIC",
+    "DISTRIBUTING",
+    "KINEMATIC COUPLING",
+    "RIGID BODY",
+    "TIE",
+    "SURFACE",
+    "TRANSFORM",
+}
 _CYCLIC = ("CYCLIC SYMMETRY", "MULTISTAGE")
 _FACES: dict[str, dict[int, tuple[int, ...]]] = {
     "S1": {4: (0, 1, 2), 5: (0, 1, 2, 3), 6: (0, 1, 2), 8: (0, 1, 2, 3)},
@@ -33,7 +44,9 @@ Known = Callable[[str, str], Selection | None]
 
 
 class AbaqusLinks:
-    """Collected blocks that link nodes; they are read at the end, as the sets that they name may come later."""
+    """Collected blocks that link nodes; they are read at the end, as the sets that they
+    name may come later.
+    """
 
     def __init__(self) -> None:
         self._blocks: list[Block] = []
@@ -78,7 +91,9 @@ class AbaqusLinks:
 class _Reader:
     """Reader of the blocks, which knows the sets and surfaces."""
 
-    def __init__(self, parts: Parts, known: Known, surfaces: dict[str, Block], turned: Sequence[Block]) -> None:
+    def __init__(
+        self, parts: Parts, known: Known, surfaces: dict[str, Block], turned: Sequence[Block]
+    ) -> None:
         self.parts, self.known, self.surfaces = parts, known, surfaces
         self.turned = Selection()
         for block in turned:
@@ -117,7 +132,10 @@ class _Reader:
                 entries += texts[: len(texts) - len(texts) % _TERMS] if len(texts) > 1 else texts
                 at += 1
             if len(entries) < _TERMS * count:
-                raise first.wrong(f"the equation has {len(entries) // _TERMS} of the {count} terms that it states; all must follow it")
+                raise first.wrong(
+                    f"the equation has {len(entries) // _TERMS} of the {count} terms that "
+                    "it states; all must follow it"
+                )
             equations = self._equation(first, entries[: _TERMS * count])
             if equations is None:
                 left_out.append("EQUATION")
@@ -126,20 +144,33 @@ class _Reader:
         return left_out
 
     def _equation(self, line: TextLine, entries: Sequence[str]) -> list[Equation] | None:
-        """Return the equations of terms: several if the terms are of sets; None if one can't be used."""
+        """Return the equations of terms: several if the terms are of sets; None if one
+        can't be used.
+        """
         terms = []
         for start in range(0, len(entries), _TERMS):
             nodes = self._in_order(entries[start], line)
             component = parse_integer(entries[start + 1], line, "a component of motion") - 1
             value = parse_real(entries[start + 2], line, "a coefficient")
-            if not nodes or component not in _ALL or not abs(value) < float("inf") or any(self._is_turned(node) for node in nodes):
+            if (
+                not nodes
+                or component not in _ALL
+                or not abs(value) < float("inf")
+                or any(self._is_turned(node) for node in nodes)
+            ):
                 return None
             terms.append((nodes, component, value))
         counts = {len(nodes) for nodes, _, _ in terms} - {1}
         if len(terms) < 2 or len(counts) > 1:
             return None  # of one term it is a support
         found = [
-            equation_of(line, [((nodes[min(index, len(nodes) - 1)], component), value) for nodes, component, value in terms])
+            equation_of(
+                line,
+                [
+                    ((nodes[min(index, len(nodes) - 1)], component), value)
+                    for nodes, component, value in terms
+                ],
+            )
             for index in range(max(counts, default=1))
         ]
         usable = [one for one in found if one is not None]
@@ -150,7 +181,12 @@ class _Reader:
         for line in block.data:
             kind, *texts = [text.strip() for text in line.text.split(",") if text.strip()] or [""]
             sets = [self._in_order(text, line) for text in texts]
-            if kind.upper() not in ("TIE", "PIN", "LINK") or len(sets) != 2 or len(sets[0]) != len(sets[1]) or not sets[0]:
+            if (
+                kind.upper() not in ("TIE", "PIN", "LINK")
+                or len(sets) != 2
+                or len(sets[0]) != len(sets[1])
+                or not sets[0]
+            ):
                 left_out.append("MPC")
                 continue
             for first, second in zip(*sets, strict=True):
@@ -158,7 +194,10 @@ class _Reader:
                     self.parts.links.add("*MPC", Distance(line, (first, second)))
                     continue
                 for component in _DISPLACEMENTS if kind.upper() == "PIN" else _ALL:
-                    self.parts.links.add("*MPC", Equation(line, [((first, component), 1.0), ((second, component), -1.0)]))
+                    self.parts.links.add(
+                        "*MPC",
+                        Equation(line, [((first, component), 1.0), ((second, component), -1.0)]),
+                    )
         return left_out
 
     def _tie(self, block: Block) -> list[str]:
@@ -176,16 +215,26 @@ class _Reader:
             given = block.parameters.get("POSITION TOLERANCE")
             reach = parse_real(given, block.line, "a position tolerance") if given else None
             if reach is not None and not 0.0 <= reach < float("inf"):
-                raise block.line.wrong(f"the position tolerance is {reach:g}; it must be 0 or greater, and finite")
+                raise block.line.wrong(
+                    f"the position tolerance is {reach:g}; it must be 0 or greater, and finite"
+                )
             self.parts.ties.append(Tie(line, (names[0], names[1]), surfaces[0], surfaces[1], reach))
         return left_out
 
     def _rigid_body(self, block: Block) -> list[str]:
         reference = self._reference(block)
         nodes = sorted(
-            {node for key in ("NSET", "TIE NSET", "PIN NSET") for node in self._nodes(block.parameters.get(key, ""), block.line)}
+            {
+                node
+                for key in ("NSET", "TIE NSET", "PIN NSET")
+                for node in self._nodes(block.parameters.get(key, ""), block.line)
+            }
         )
-        elements = self.known("ELSET", block.parameters["ELSET"]) if block.parameters.get("ELSET") else None
+        elements = (
+            self.known("ELSET", block.parameters["ELSET"])
+            if block.parameters.get("ELSET")
+            else None
+        )
         nodes = sorted({*nodes, *(self.parts.nodes_of_elements(elements) if elements else ())})
         return self._add_rigid("*RIGID BODY", block.line, reference, nodes, _DISPLACEMENTS)
 
@@ -195,15 +244,23 @@ class _Reader:
         for line in block.data:
             texts = [text.strip() for text in line.text.split(",")]
             components = _range([texts[1:]], line)
-            if not components or ("ORIENTATION" in block.parameters and not set(_DISPLACEMENTS) <= set(components)):
+            if not components or (
+                "ORIENTATION" in block.parameters and not set(_DISPLACEMENTS) <= set(components)
+            ):
                 left_out.append("KINEMATIC COUPLING")
             else:
-                left_out += self._add_rigid("*KINEMATIC COUPLING", line, reference, self._nodes(texts[0], line), components)
+                left_out += self._add_rigid(
+                    "*KINEMATIC COUPLING", line, reference, self._nodes(texts[0], line), components
+                )
         return left_out
 
     def _coupling(self, block: Block, coupling: Block | None) -> list[str]:
         """Read *KINEMATIC or *DISTRIBUTING, which belongs to the *COUPLING before it."""
-        surface = None if coupling is None else self._surface(_upper(coupling.parameters.get("SURFACE", "")))
+        surface = (
+            None
+            if coupling is None
+            else self._surface(_upper(coupling.parameters.get("SURFACE", "")))
+        )
         if coupling is None or surface is None or "CYCLIC SYMMETRY" in block.parameters:
             return [block.keyword]
         reference = self._reference(coupling)
@@ -213,18 +270,39 @@ class _Reader:
         turned = "ORIENTATION" in coupling.parameters
         if block.keyword == "DISTRIBUTING":  # only rotations can be released
             components = tuple(sorted({*components, *_DISPLACEMENTS}))
-        if reference is None or not nodes or not components or (turned and not set(_DISPLACEMENTS) <= set(components)):
+        if (
+            reference is None
+            or not nodes
+            or not components
+            or (turned and not set(_DISPLACEMENTS) <= set(components))
+        ):
             return [block.keyword]
         if block.keyword == "KINEMATIC":
             return self._add_rigid("*KINEMATIC", block.line, reference, nodes, components)
         if block.parameters.get("WEIGHTING METHOD", "UNIFORM").upper() != "UNIFORM":
             return [block.keyword]
-        self.parts.links.add("*DISTRIBUTING", Mean(block.line, reference, components, [(node, 1.0, _DISPLACEMENTS) for node in nodes]))
+        self.parts.links.add(
+            "*DISTRIBUTING",
+            Mean(
+                block.line, reference, components, [(node, 1.0, _DISPLACEMENTS) for node in nodes]
+            ),
+        )
         return []
 
-    def _add_rigid(self, name: str, line: TextLine, reference: int | None, nodes: Sequence[int], components: Sequence[int]) -> list[str]:
+    def _add_rigid(
+        self,
+        name: str,
+        line: TextLine,
+        reference: int | None,
+        nodes: Sequence[int],
+        components: Sequence[int],
+    ) -> list[str]:
         partly = set(components) & set(_DISPLACEMENTS) != set(_DISPLACEMENTS)
-        if reference is None or not nodes or (partly and any(self._is_turned(node) for node in nodes)):
+        if (
+            reference is None
+            or not nodes
+            or (partly and any(self._is_turned(node) for node in nodes))
+        ):
             return [name[1:]]
         followers = [(node, components) for node in nodes if node != reference]
         self.parts.links.add(name, Rigid(line, [(reference, _ALL), *followers]))
@@ -245,14 +323,17 @@ class _Reader:
         return [] if found is None else self.parts.node_numbers(found)
 
     def _in_order(self, text: str, line: TextLine) -> list[int]:
-        """Return the nodes of a set in the order in which they are paired with those of another; none if it is not theirs."""
+        """Return the nodes of a set in the order in which they are paired with those of
+        another; none if it is not theirs.
+        """
         found = self.known("NSET", text.strip().strip('"'))
         nodes = self._nodes(text, line)
         return [] if found is not None and found.unsorted and len(nodes) > 1 else nodes
 
     def _is_turned(self, node: int) -> bool:
         return node in self.turned.numbers or any(
-            first <= node <= last and (node - first) % step == 0 for first, last, step in self.turned.ranges
+            first <= node <= last and (node - first) % step == 0
+            for first, last, step in self.turned.ranges
         )
 
     def _surface(self, name: str) -> MeshSurface | None:
@@ -271,7 +352,9 @@ class _Reader:
                 continue
             label = texts[1].upper() if len(texts) > 1 else ""
             if texts[0].isdigit():
-                chosen: Selection | None = Selection({parse_integer(texts[0], line, "the number of an element")})
+                chosen: Selection | None = Selection(
+                    {parse_integer(texts[0], line, "the number of an element")}
+                )
             else:
                 chosen = self.known("ELSET", texts[0].strip('"'))
             if chosen is None or (label and label not in _FACES):
@@ -288,7 +371,9 @@ def _range(lines: Sequence[Sequence[str]], line: TextLine) -> tuple[int, ...]:
         numbers = [parse_integer(text, line, "a component of motion") for text in texts[:2] if text]
         if numbers:
             stated = True
-            found.update(component for component in _ALL if numbers[0] <= component + 1 <= numbers[-1])
+            found.update(
+                component for component in _ALL if numbers[0] <= component + 1 <= numbers[-1]
+            )
     return tuple(sorted(found)) if stated else _ALL
 
 

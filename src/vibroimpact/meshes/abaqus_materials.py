@@ -1,4 +1,6 @@
-"""Materials of the solid elements of an Abaqus file: *MATERIAL with its options, and *SOLID SECTION."""
+"""Materials of the solid elements of an Abaqus file: *MATERIAL with its options, and
+*SOLID SECTION.
+"""
 
 from __future__ import annotations
 
@@ -17,12 +19,21 @@ _OTHERS = {
     "DEFORMATION PLASTICITY": "of deformation plasticity",
 }
 _SOLID = "SOLID SECTION"
-_KINDS = {"ANISO": "anisotropic", "ORTHO": "orthotropic", "ENGINEERING": "orthotropic", "LAMINA": "orthotropic"}
-"""What a material is by the beginning of the type of its elasticity, where that is not isotropic."""
+_KINDS = {
+    "ANISO": "anisotropic",
+    "ORTHO": "orthotropic",
+    "ENGINEERING": "orthotropic",
+    "LAMINA": "orthotropic",
+}
+"""What a material is by the beginning of the type of its elasticity, where that is not
+isotropic.
+"""
 
 
 class AbaqusMaterials:
-    """Collected *MATERIAL, *DENSITY, *ELASTIC and *SOLID SECTION, and keywords that make a material another than isotropic."""
+    """Collected *MATERIAL, *DENSITY, *ELASTIC and *SOLID SECTION, and keywords that make
+    a material another than isotropic.
+    """
 
     def __init__(self) -> None:
         self._materials: dict[str, StatedMaterial] = {}
@@ -43,7 +54,13 @@ class AbaqusMaterials:
             self._open = name.upper()
             self._materials.setdefault(self._open, StatedMaterial(name))
         elif keyword == _SOLID and parameters.get("ELSET"):
-            self._sections.append((block.line, parameters["ELSET"], "" if "COMPOSITE" in parameters else parameters.get("MATERIAL", "")))
+            self._sections.append(
+                (
+                    block.line,
+                    parameters["ELSET"],
+                    "" if "COMPOSITE" in parameters else parameters.get("MATERIAL", ""),
+                )
+            )
         elif self._open not in self._materials:
             return False
         elif keyword == "DENSITY":
@@ -61,14 +78,24 @@ class AbaqusMaterials:
         unknown = (StatedMaterial(name) for _, _, name in self._sections if name)
         known = {one.name.upper(): one for one in unknown} | self._materials
         composite = StatedMaterial("*SOLID SECTION", other="a layered composite")
-        return [(line, elements, known[name.upper()] if name else composite) for line, elements, name in self._sections]
+        return [
+            (line, elements, known[name.upper()] if name else composite)
+            for line, elements, name in self._sections
+        ]
 
     def _elastic(self, block: Block) -> None:
         kind = block.parameters.get("TYPE", "ISO").upper()
         if not kind.startswith("ISO"):
-            self._change(other=next((word for start, word in _KINDS.items() if kind.startswith(start)), f"of the elasticity {kind}"))
+            self._change(
+                other=next(
+                    (word for start, word in _KINDS.items() if kind.startswith(start)),
+                    f"of the elasticity {kind}",
+                )
+            )
             return
-        rows = [_numbers(replace(block, data=[line]), 2, "an elastic constant") for line in block.data]
+        rows = [
+            _numbers(replace(block, data=[line]), 2, "an elastic constant") for line in block.data
+        ]
         if any(row != rows[0] for row in rows):
             self._change(other="of elastic constants that depend on the temperature or on a field")
         elif rows:
@@ -82,4 +109,7 @@ def _numbers(block: Block, count: int, what: str) -> list[float]:
     """Return the first numbers of the first data line of a block; NaN where there are none."""
     texts = [text.strip() for text in block.data[0].text.split(",")] if block.data else []
     texts = [*texts, *count * [""]][:count]
-    return [nastran_real(text, block.data[0], what, blank=math.nan) if text else math.nan for text in texts]
+    return [
+        nastran_real(text, block.data[0], what, blank=math.nan) if text else math.nan
+        for text in texts
+    ]

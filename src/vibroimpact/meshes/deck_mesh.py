@@ -1,4 +1,6 @@
-"""A mesh prepared for Nastran and Abaqus input decks: element shapes that both support, numbered from 1."""
+"""A mesh prepared for Nastran and Abaqus input decks: element shapes that both support,
+numbered from 1.
+"""
 
 from __future__ import annotations
 
@@ -14,7 +16,8 @@ from vibroimpact.structures.element_kinds import PLATE_ORDER
 from vibroimpact.structures.joints import AXES
 from vibroimpact.structures.mesh import ElementBlock, Mesh
 
-# local node order of a 9-node quadrilateral on a 3 x 3 lattice, as (row, column): corners, mid-edge nodes, centre
+# local node order of a 9-node quadrilateral on a 3 x 3 lattice, as (row, column): corners, mid-edge
+# nodes, centre
 _SQUARE = np.array([(0, 0), (0, 2), (2, 2), (2, 0), (0, 1), (1, 2), (2, 1), (1, 0), (1, 1)])
 
 
@@ -22,10 +25,11 @@ _SQUARE = np.array([(0, 0), (0, 2), (2, 2), (2, 0), (0, 1), (1, 2), (2, 1), (1, 
 class DeckMesh:
     """Nodes in use, and element shapes with connectivity, numbered from 1.
 
-    The shape is the element kind of the block, except for "hex20" in place of hex27, "pyramid13" in place of pyramid14, and "quad8" in
-    place of quad25. `materials` are
-    those of the elements, by number, and of the body if some elements have none of their own: number -1. `equations` are the joints: node,
-    axis from 1 and coefficient of each term, the first of which is the displacement that follows.
+    The shape is the element kind of the block, except for "hex20" in place of hex27, "pyramid13" in
+    place of pyramid14, and "quad8" in place of quad25. `materials` are
+    those of the elements, by number, and of the body if some elements have none of their own:
+    number -1. `equations` are the joints: node, axis from 1 and coefficient of each term, the first
+    of which is the displacement that follows.
     """
 
     points: Floats
@@ -38,7 +42,8 @@ class DeckMesh:
 
 
 def deck_mesh(mesh: Mesh, material: Material | None = None) -> DeckMesh:
-    """Return a mesh with the element shapes of the decks; nodes that no shape uses are dropped, also from the sets.
+    """Return a mesh with the element shapes of the decks; nodes that no shape uses are dropped,
+    also from the sets.
 
     Parameters
     ----------
@@ -64,13 +69,28 @@ def deck_mesh(mesh: Mesh, material: Material | None = None) -> DeckMesh:
         _check_deck_material(one)
     owner = np.repeat(
         np.arange(mesh.number_of_elements),
-        np.concatenate([np.full(len(block.connectivity), 4 if block.kind == "quad25" else 1) for block in mesh.blocks]),
+        np.concatenate(
+            [
+                np.full(len(block.connectivity), 4 if block.kind == "quad25" else 1)
+                for block in mesh.blocks
+            ]
+        ),
     )
     return DeckMesh(
         np.asarray(mesh.nodes, dtype=float)[used],
         [(shape, np.searchsorted(used, nodes) + 1) for shape, nodes in shapes],
-        _without_empty({name: np.flatnonzero(np.isin(used, nodes)) + 1 for name, nodes in mesh.node_sets.items()}),
-        _without_empty({name: np.flatnonzero(np.isin(owner, elements)) + 1 for name, elements in mesh.element_sets.items()}),
+        _without_empty(
+            {
+                name: np.flatnonzero(np.isin(used, nodes)) + 1
+                for name, nodes in mesh.node_sets.items()
+            }
+        ),
+        _without_empty(
+            {
+                name: np.flatnonzero(np.isin(owner, elements)) + 1
+                for name, elements in mesh.element_sets.items()
+            }
+        ),
         materials,
         numbers[owner],
         _equations(mesh, used),
@@ -86,14 +106,18 @@ def _equations(mesh: Mesh, used: Integers) -> list[list[tuple[int, int, float]]]
     found = []
     for follower, weights in mesh.joints.rows():
         terms = [(follower, 1.0), *((unknown, -value) for unknown, value in weights.items())]
-        numbered = [(int(place[unknown // AXES]), unknown % AXES + 1, value) for unknown, value in terms]
-        if all(node for node, _, _ in numbered):  # a node that the shapes of the deck lack is joined to nothing there
+        numbered = [
+            (int(place[unknown // AXES]), unknown % AXES + 1, value) for unknown, value in terms
+        ]
+        # a node that the shapes of the deck lack is joined to nothing there
+        if all(node for node, _, _ in numbered):
             found.append(numbered)
     return found
 
 
 def nine_node_shells(connectivity: Integers) -> Integers:
-    """Return the connectivity of four 9-node shells (corners, edges, centre) for each plate element of 5 by 5 nodes.
+    """Return the connectivity of four 9-node shells (corners, edges, centre) for each plate element
+    of 5 by 5 nodes.
 
     Examples
     --------
@@ -102,7 +126,11 @@ def nine_node_shells(connectivity: Integers) -> Integers:
     """
     lattice = connectivity.reshape(-1, PLATE_ORDER + 1, PLATE_ORDER + 1)
     places = range(0, PLATE_ORDER, 2)
-    squares = [lattice[:, row + _SQUARE[:, 0], column + _SQUARE[:, 1]] for row in places for column in places]
+    squares = [
+        lattice[:, row + _SQUARE[:, 0], column + _SQUARE[:, 1]]
+        for row in places
+        for column in places
+    ]
     return np.stack(squares, axis=1).reshape(-1, len(_SQUARE))
 
 
@@ -128,7 +156,9 @@ def check_shell_thickness(thickness: float | None) -> None:
         If it is not positive and finite.
     """
     if thickness is not None and not 0 < thickness < np.inf:
-        raise InputError(f"{thickness:g} m is not allowed; it must be greater than 0 and finite", "thickness")
+        raise InputError(
+            f"{thickness:g} m is not allowed; it must be greater than 0 and finite", "thickness"
+        )
 
 
 def _shape(block: ElementBlock) -> tuple[str, Integers]:

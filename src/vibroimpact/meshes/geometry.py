@@ -20,17 +20,29 @@ from vibroimpact.structures.mesh import Mesh
 
 STEP, BREP = (".step", ".stp"), (".brep",)
 
-GEOMETRY = FileKind("a geometry is a STEP or BREP file with one solid", 500_000_000, "leave out details that an impact does not feel")
+GEOMETRY = FileKind(
+    "a geometry is a STEP or BREP file with one solid",
+    500_000_000,
+    "leave out details that an impact does not feel",
+)
 """Requirements on a geometry file."""
 
 MOST_SECONDS = 1200.0
-"""Time limit of Gmsh: more than three million elements take; on some damaged geometries it never ends."""
+"""Time limit of Gmsh: more than three million elements take; on some damaged geometries
+it never ends.
+"""
 
 
-def mesh_geometry(path: str | PathLike[str], size: float | None = None, order: int = 2, unit_in_metres: float = 1.0) -> Mesh:
+def mesh_geometry(
+    path: str | PathLike[str],
+    size: float | None = None,
+    order: int = 2,
+    unit_in_metres: float = 1.0,
+) -> Mesh:
     """Mesh the solid in a STEP or BREP file with tetrahedra; requires Gmsh.
 
-    Mid-edge nodes of second-order elements lie on the geometry. Its faces become node sets, named as in the file or `face1`, `face2`,
+    Mid-edge nodes of second-order elements lie on the geometry. Its faces become node sets, named
+    as in the file or `face1`, `face2`,
     ... Gmsh runs in a separate process, which isolates its messages, settings and crashes.
 
     Parameters
@@ -53,18 +65,24 @@ def mesh_geometry(path: str | PathLike[str], size: float | None = None, order: i
     --------
     >>> mesh_geometry("plate.iges")
     Traceback (most recent call last):
-    vibroimpact.errors.InputError: plate.iges: ".iges" is not a geometry that is read; it must be .step, .stp or .brep
+    vibroimpact.errors.InputError: plate.iges: ".iges" is not a geometry that is read; it must be
+    .step, .stp or .brep
     """
     path = Path(path)
     suffix = path.suffix.lower()
     if suffix not in (*STEP, *BREP):
-        raise InputError(f'{path}: "{path.suffix}" is not a geometry that is read; it must be .step, .stp or .brep')
+        raise InputError(
+            f'{path}: "{path.suffix}" is not a geometry that is read; it must be .step, '
+            ".stp or .brep"
+        )
     if size is not None and not 0 < size < math.inf:
         raise InputError(f"{size:g} m is not allowed; it must be greater than 0 and finite", "size")
     if order not in (1, 2):
         raise InputError(f"{order} is not allowed; it must be 1 or 2", "order")
     if suffix in STEP and unit_in_metres != 1.0:
-        raise InputError(f"{path}: a STEP file states its own unit; leave this out", "unit_in_metres")
+        raise InputError(
+            f"{path}: a STEP file states its own unit; leave this out", "unit_in_metres"
+        )
     # STEP is read in millimetres, for which the tolerances of the geometry kernel are intended
     unit = 1e-3 if suffix in STEP else unit_in_metres
     try:
@@ -75,7 +93,15 @@ def mesh_geometry(path: str | PathLike[str], size: float | None = None, order: i
     with TemporaryDirectory() as folder:
         made = Path(folder, "mesh.msh")
         # an absolute path, since a file name that starts with a dash would be taken for an option
-        _run_gmsh(path, [str(path.resolve()), str(made), repr(0.0 if size is None else size / unit), str(order)])
+        _run_gmsh(
+            path,
+            [
+                str(path.resolve()),
+                str(made),
+                repr(0.0 if size is None else size / unit),
+                str(order),
+            ],
+        )
         mesh = read_gmsh(made)
     return replace(mesh, nodes=mesh.nodes * unit)
 
@@ -85,7 +111,14 @@ def _run_gmsh(path: Path, arguments: list[str]) -> None:
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
     command = [sys.executable, "-m", "vibroimpact.meshes.geometry_process", *arguments]
     try:
-        done = subprocess.run(command, env=environment, stdin=subprocess.DEVNULL, capture_output=True, check=False, timeout=MOST_SECONDS)
+        done = subprocess.run(
+            command,
+            env=environment,
+            stdin=subprocess.DEVNULL,
+            capture_output=True,
+            check=False,
+            timeout=MOST_SECONDS,
+        )
     except subprocess.TimeoutExpired:
         raise InputError(
             f"{path}: Gmsh did not end within {MOST_SECONDS / 60:g} minutes and was stopped; "
@@ -98,11 +131,16 @@ def _run_gmsh(path: Path, arguments: list[str]) -> None:
     kind, _, what = reason.partition(": ")
     if not mark:
         raise InputError(
-            f"{path}: Gmsh stopped with status {done.returncode} while it meshed the geometry; check the file in another program"
+            f"{path}: Gmsh stopped with status {done.returncode} while it meshed the "
+            "geometry; check the file in another program"
         )
-    lacking = f"{path}: meshing a geometry needs Gmsh, which can't be loaded ({shortened(what, 200)})"
+    lacking = (
+        f"{path}: meshing a geometry needs Gmsh, which can't be loaded ({shortened(what, 200)})"
+    )
     if kind in ("ImportError", "ModuleNotFoundError"):
         raise InputError(f'{lacking}: pip install "vibroimpact[mesh]"')
     if kind == "OSError":
-        raise InputError(f"{lacking}; install the library that it lacks, or mesh the geometry in another program")
+        raise InputError(
+            f"{lacking}; install the library that it lacks, or mesh the geometry in another program"
+        )
     raise InputError(f"{path}: the geometry can't be meshed: {shortened(what, 300)}")

@@ -31,7 +31,10 @@ class GmshSection:
             If there is no line, or it has fewer words than `least`.
         """
         if not self.has_more:
-            raise self.line.wrong(f"{self.line.text.strip()} ends too soon; the file is cut short or its counts are wrong")
+            raise self.line.wrong(
+                f"{self.line.text.strip()} ends too soon; the file is cut short or its "
+                "counts are wrong"
+            )
         line = self.body[self._at]
         self._at += 1
         words = line.text.split()
@@ -64,10 +67,14 @@ class GmshSection:
             If lines remain.
         """
         if self.has_more:
-            raise self.body[self._at].wrong(f"{self.line.text.strip()} has more lines than it states; the two must agree")
+            raise self.body[self._at].wrong(
+                f"{self.line.text.strip()} has more lines than it states; the two must agree"
+            )
 
 
-def sections(lines: Iterable[TextLine], known: Collection[str], skipped: Counter[str]) -> dict[str, GmshSection]:
+def sections(
+    lines: Iterable[TextLine], known: Collection[str], skipped: Counter[str]
+) -> dict[str, GmshSection]:
     """Return the known sections by name, and count the others.
 
     Raises
@@ -83,7 +90,10 @@ def sections(lines: Iterable[TextLine], known: Collection[str], skipped: Counter
             continue
         if section is None:
             if not text.startswith("$"):
-                raise line.wrong(f"{shown(text)} stands outside a section; a mesh file of Gmsh has sections from $Name to $EndName")
+                raise line.wrong(
+                    f"{shown(text)} stands outside a section; a mesh file of Gmsh has "
+                    "sections from $Name to $EndName"
+                )
             name, section = text[1:], GmshSection(line)
         elif text == f"$End{name}":
             if name not in known:

@@ -29,23 +29,31 @@ _EFFECTS = (
         "masses are not part of the body, which is lighter without them and has higher frequencies",
     ),
     _effect(
-        r"CELAS\d|CBUSH\w*|CGAP|CFAST|CWELD|CSEAM|SPRING\w*|GAP\w+|CONN\w+|\*SPRING|\*GAP|\*CONNECTOR \w+",
-        "springs and connectors are not part of the body, whose frequencies are lower without their stiffness",
+        r"CELAS\d|CBUSH\w*|CGAP|CFAST|CWELD|CSEAM|SPRING\w*|GAP\w+|CONN\w+"
+        r"|\*SPRING|\*GAP|\*CONNECTOR \w+",
+        "springs and connectors are not part of the body, whose frequencies are lower "
+        "without their stiffness",
     ),
-    _effect(r"CDAMP\d|CVISC|DASHPOT\w*|\*DASHPOT", "dampers are not part of the body, which rings for longer without them"),
     _effect(
-        r"RBE[123]|RBAR\w*|RROD|RTRPLT\w*|RSPLINE|RSSCON|MPC\w*|\*EQUATION|\*MPC|\*TIE( of cyclic symmetry)?|\*COUPLING|\*KINEMATIC"
-        r"|\*DISTRIBUTING\w*( COUPLING)?"
-        r"|\*RIGID BODY|\*KINEMATIC COUPLING|\*SHELL TO SOLID COUPLING|\*CYCLIC SYMMETRY MODEL|\*PRE-TENSION SECTION|\*EMBEDDED ELEMENT",
+        r"CDAMP\d|CVISC|DASHPOT\w*|\*DASHPOT",
+        "dampers are not part of the body, which rings for longer without them",
+    ),
+    _effect(
+        r"RBE[123]|RBAR\w*|RROD|RTRPLT\w*|RSPLINE|RSSCON|MPC\w*|\*EQUATION|\*MPC|\*TIE( of "
+        r"cyclic symmetry)?|\*COUPLING|\*KINEMATIC|\*DISTRIBUTING\w*( COUPLING)?"
+        r"|\*RIGID BODY|\*KINEMATIC COUPLING|\*SHELL TO SOLID COUPLING|\*CYCLIC SYMMETRY "
+        r"MODEL|\*PRE-TENSION SECTION|\*EMBEDDED ELEMENT",
         "constraints of nodes are not applied: what they hold or tie together moves freely",
     ),
     _effect(
-        r"BCTABLE|BCTSET|BCTADD|BCONP|BGSET|BGADD|BSURF|BSURFS|BLSEG|\*CONTACT PAIR|\*CONTACT( \w+)?",
+        r"BCTABLE|BCTSET|BCTADD|BCONP|BGSET|BGADD|BSURF|BSURFS|BLSEG|\*CONTACT "
+        r"PAIR|\*CONTACT( \w+)?",
         "surfaces that touch one another do not press on one another",
     ),
     _effect(
         r"CBAR|CBEAM\w?|CBEND|CROD|CONROD|CTUBE|CQUAD\w*|CTRIA\w*|CSHEAR|CRAC\w+|CTRAX\w*|B\d\w*|T[23]D\d\w*|(DS|S|STRI|M3D|PIPE|ELBOW|U)\d\w*|SFM3D\d\w*",
-        "elements other than solids in three dimensions are not part of the body, which lacks their stiffness and mass",
+        "elements other than solids in three dimensions are not part of the body, which "
+        "lacks their stiffness and mass",
     ),
     _effect(
         rf"{FLUID_ELEMENTS}|CHACAB|CHACBR|CAABSF|CACINF\d|AC\w+|F3D\w+",
@@ -60,7 +68,8 @@ _EFFECTS = (
 
 
 def remarks_of(counts: Mapping[str, int]) -> tuple[str, ...]:
-    """Return what is left out of a mesh and what that does to the body, one sentence per effect, without full stops.
+    """Return what is left out of a mesh and what that does to the body, one sentence per effect,
+    without full stops.
 
     Parameters
     ----------
@@ -70,14 +79,21 @@ def remarks_of(counts: Mapping[str, int]) -> tuple[str, ...]:
     Examples
     --------
     >>> remarks_of({"CONM2": 3, "FORCE": 2})
-    ('left out of the mesh file: CONM2 (3); masses are not part of the body, which is lighter without them and has higher frequencies',)
+    ('left out of the mesh file: CONM2 (3); masses are not part of the body, which is lighter
+    without them and has higher frequencies',)
     """
     found = []
     for names, effect in _EFFECTS:
-        present = [f"{shown(name)[1:-1]} ({count})" for name, count in counts.items() if names.fullmatch(name)]
+        present = [
+            f"{shown(name)[1:-1]} ({count})"
+            for name, count in counts.items()
+            if names.fullmatch(name)
+        ]
         if present:
             listed = ", ".join(present[:_MOST_NAMES]) + (
-                f" and {len(present) - _MOST_NAMES} more kinds" if len(present) > _MOST_NAMES else ""
+                f" and {len(present) - _MOST_NAMES} more kinds"
+                if len(present) > _MOST_NAMES
+                else ""
             )
             found.append(f"left out of the mesh file: {listed}; {effect}")
     return tuple(found)

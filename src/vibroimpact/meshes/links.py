@@ -1,4 +1,6 @@
-"""Links between nodes that a mesh file states, as linear equations between their displacements and rotations."""
+"""Links between nodes that a mesh file states, as linear equations between their
+displacements and rotations.
+"""
 
 from __future__ import annotations
 
@@ -18,10 +20,14 @@ COMPONENTS = 6
 """Of the motion of a node: three displacements, and three rotations."""
 
 _TOGETHER = 5e-7
-"""Of the extent of the mesh: nodes within this distance are at one place, as files round coordinates to seven digits."""
+"""Of the extent of the mesh: nodes within this distance are at one place, as files round
+coordinates to seven digits.
+"""
 
 _ROUNDING = 1e-12
-"""Of the extent of the mesh, or of the largest coefficient: smaller components of an arm, or coefficients, are rounding."""
+"""Of the extent of the mesh, or of the largest coefficient: smaller components of an arm,
+or coefficients, are rounding.
+"""
 
 _LOOSE = 1e-6
 """Of the largest singular value: rigid motions that nodes show less do not follow from theirs."""
@@ -41,14 +47,17 @@ class Equation(NamedTuple):
 
 
 class Rigid(NamedTuple):
-    """Components of the motion of nodes that follow one rigid motion; of all six of one node, it is the motion of this."""
+    """Components of the motion of nodes that follow one rigid motion; of all six of one
+    node, it is the motion of this.
+    """
 
     line: TextLine
     members: Sequence[tuple[int, Sequence[int]]]
 
 
 class Mean(NamedTuple):
-    """Components of the motion of a node that are the mean motion of others: the rigid one that fits their displacements best.
+    """Components of the motion of a node that are the mean motion of others: the rigid one that
+    fits their displacements best.
 
     Each member is a node, its weight, and those of its displacements that count.
     """
@@ -80,12 +89,21 @@ class Links:
         self.stated.append((name, link))
 
     def names(self, nodes: Integers) -> dict[str, int]:
-        """Return the names of the links that concern given nodes, by their numbers in the file, and how many there are of each."""
+        """Return the names of the links that concern given nodes, by their numbers in the
+        file, and how many there are of each.
+        """
         mine = set(nodes.tolist()) if self.stated else set()
-        return dict(Counter(name for name, link in self.stated if not mine.isdisjoint(_nodes_of(link))))
+        return dict(
+            Counter(name for name, link in self.stated if not mine.isdisjoint(_nodes_of(link)))
+        )
 
     def joints(
-        self, numbers: Integers, points: Floats, used: Integers, more: Iterable[Link] = (), written: Callable[[int], int] = int
+        self,
+        numbers: Integers,
+        points: Floats,
+        used: Integers,
+        more: Iterable[Link] = (),
+        written: Callable[[int], int] = int,
     ) -> Joints | None:
         """Return the joints of the mesh that the links make.
 
@@ -114,12 +132,18 @@ class Links:
 
 
 class _Unknowns:
-    """Numbers of unknowns: 3 times a node of the mesh plus an axis, and above these all others as they come."""
+    """Numbers of unknowns: 3 times a node of the mesh plus an axis, and above these all
+    others as they come.
+    """
 
-    def __init__(self, numbers: Integers, points: Floats, used: Integers, written: Callable[[int], int]) -> None:
+    def __init__(
+        self, numbers: Integers, points: Floats, used: Integers, written: Callable[[int], int]
+    ) -> None:
         self._numbers, self._points = numbers, points
         self._written = written
-        self._used: dict[object, int] = {int(number): index for index, number in enumerate(numbers[used].tolist())}
+        self._used: dict[object, int] = {
+            int(number): index for index, number in enumerate(numbers[used].tolist())
+        }
         self._others: dict[object, int] = {}
         self._made = 0
         self._extent = float(np.ptp(points[used], axis=0).max(initial=0.0))
@@ -129,7 +153,9 @@ class _Unknowns:
         index = self._used.get(node)
         if component < AXES and index is not None:
             return AXES * index + component
-        return self._others.setdefault((node, component), AXES * len(self._used) + len(self._others))
+        return self._others.setdefault(
+            (node, component), AXES * len(self._used) + len(self._others)
+        )
 
     def at(self, line: TextLine, node: int) -> Floats:
         """Return the place of a node.
@@ -141,11 +167,16 @@ class _Unknowns:
         """
         index = int(np.searchsorted(self._numbers, node))
         if index == len(self._numbers) or self._numbers[index] != node:
-            raise line.wrong(f"the node {self._written(node)} that is joined here is not in the file; every node must be in it")
+            raise line.wrong(
+                f"the node {self._written(node)} that is joined here is not in the file; "
+                "every node must be in it"
+            )
         return np.asarray(self._points[index])
 
     def _arm(self, line: TextLine, node: int, centre: Floats) -> Floats:
-        """Return where a node is from a centre; zero if it is there but for rounding, which would be a hinge in any direction."""
+        """Return where a node is from a centre; zero if it is there but for rounding,
+        which would be a hinge in any direction.
+        """
         arm = self.at(line, node) - centre
         if np.linalg.norm(arm) < _TOGETHER * self._extent:
             return np.zeros_like(arm)
@@ -168,7 +199,9 @@ class _Unknowns:
         return self._mean(link) if isinstance(link, Mean) else self._distance(link)
 
     def _rigid(self, link: Rigid) -> list[Terms]:
-        leads = next((node for node, components in link.members if len(set(components)) == COMPONENTS), None)
+        leads = next(
+            (node for node, components in link.members if len(set(components)) == COMPONENTS), None
+        )
         owner = self._owner() if leads is None else leads
         centre = self.at(link.line, link.members[0][0] if leads is None else leads)
         rows = []
@@ -179,14 +212,19 @@ class _Unknowns:
             for component in components:
                 moved = [(self.number(owner, component), -1.0)]
                 if component < AXES:
-                    moved += [(self.number(owner, AXES + axis), -float(turned[component, axis])) for axis in range(AXES)]
+                    moved += [
+                        (self.number(owner, AXES + axis), -float(turned[component, axis]))
+                        for axis in range(AXES)
+                    ]
                 rows.append(_sum([(self.number(node, component), 1.0), *moved]))
         return rows
 
     def _mean(self, link: Mean) -> list[Terms]:
-        """The rigid motion that fits the displacements of the others best, with weights (of RBE3 and of couplings), at the node.
+        """The rigid motion that fits the displacements of the others best, with weights (of RBE3
+        and of couplings), at the node.
 
-        What the others do not show, as the rotation about the line on which they lie, may take any value.
+        What the others do not show, as the rotation about the line on which they lie, may take any
+        value.
         """
         centre = self.at(link.line, link.node)
         arms = np.array([self._arm(link.line, node, centre) for node, _, _ in link.members])
@@ -196,7 +234,10 @@ class _Unknowns:
         beside = arms - middle
         length = float(np.abs(beside).max(initial=0.0))
         length = length if length > _TOGETHER * self._extent else 1.0
-        rigid = np.concatenate([np.broadcast_to(np.eye(3), (len(arms), 3, 3)), rotation_columns(*(beside / length).T)], axis=2)
+        rigid = np.concatenate(
+            [np.broadcast_to(np.eye(3), (len(arms), 3, 3)), rotation_columns(*(beside / length).T)],
+            axis=2,
+        )
         counted = np.array([[axis in axes for axis in range(AXES)] for _, _, axes in link.members])
         root = (np.sqrt(weights)[:, None] * counted).ravel()
         rows = np.zeros((max(len(root), COMPONENTS), COMPONENTS))
@@ -215,7 +256,12 @@ class _Unknowns:
         unknowns += [self.number(owner, index) for index in range(loose.shape[1])]
         shares = -np.concatenate([fit, loose], axis=1)
         return [
-            _sum([(self.number(link.node, component), 1.0), *zip(unknowns, shares[component].tolist(), strict=True)])
+            _sum(
+                [
+                    (self.number(link.node, component), 1.0),
+                    *zip(unknowns, shares[component].tolist(), strict=True),
+                ]
+            )
             for component in link.components
         ]
 
@@ -224,14 +270,20 @@ class _Unknowns:
         apart = self.at(link.line, second) - self.at(link.line, first)
         size = float(np.linalg.norm(apart))
         if not size > _TOGETHER * self._extent:
-            raise link.line.wrong("the two nodes whose distance is kept are at the same place; they must lie apart")
+            raise link.line.wrong(
+                "the two nodes whose distance is kept are at the same place; they must lie apart"
+            )
         along = (apart / size).tolist()
         ends = [(self.number(second, axis), value) for axis, value in enumerate(along)]
-        return [_sum([*ends, *((self.number(first, axis), -value) for axis, value in enumerate(along))])]
+        return [
+            _sum([*ends, *((self.number(first, axis), -value) for axis, value in enumerate(along))])
+        ]
 
 
 def equation_of(line: TextLine, terms: Sequence[tuple[Free, float]]) -> Equation | None:
-    """Return the equation of terms, of which some may be zero or of one component; None if one alone is left, which is a support."""
+    """Return the equation of terms, of which some may be zero or of one component; None
+    if one alone is left, which is a support.
+    """
     found: dict[Free, float] = {}
     for free, value in terms:
         found[free] = found.get(free, 0.0) + value
@@ -250,7 +302,9 @@ def _nodes_of(link: Link) -> list[int]:
 
 
 def _sum(terms: Iterable[tuple[int, float]]) -> Terms:
-    """Return an equation without terms that are zero but for rounding, as where a node is one of those whose mean it is."""
+    """Return an equation without terms that are zero but for rounding, as where a node is
+    one of those whose mean it is.
+    """
     found: Terms = {}
     largest = 0.0
     for unknown, value in terms:

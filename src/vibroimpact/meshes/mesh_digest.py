@@ -12,7 +12,10 @@ from vibroimpact.meshes.abaqus_blocks import abaqus_include
 from vibroimpact.meshes.nastran_cards import nastran_include
 from vibroimpact.meshes.text_files import MESH, read_lines_with_includes
 
-_INCLUDES = {".inp": abaqus_include, **dict.fromkeys((".bdf", ".dat", ".nas", ".fem"), nastran_include)}
+_INCLUDES = {
+    ".inp": abaqus_include,
+    **dict.fromkeys((".bdf", ".dat", ".nas", ".fem"), nastran_include),
+}
 _MENTIONED = re.compile(rb"include|input\s*=", re.IGNORECASE)
 
 

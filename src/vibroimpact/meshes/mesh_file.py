@@ -45,23 +45,27 @@ def read_mesh(
     unit_in_metres : float, default 1
         Unit of the coordinates [m], such as 0.001 for millimetres; a STEP file states its own.
     size : float, optional
-        Approximate maximum element size of a geometry [m]; by default a twelfth of the largest extent.
+        Approximate maximum element size of a geometry [m]; by default a twelfth of the largest
+        extent.
     materials : mapping of str to Material, optional
-        Materials in place of those of the file, by the name of a material or an element set; see `with_element_materials`.
+        Materials in place of those of the file, by the name of a material or an element set; see
+        `with_element_materials`.
     contact : tuple of a spot and a side, optional
-        Of several parts that share no node and are not joined the one there, such as `((0.0, 0.0), "upper")`; see `part_at`. By default
-        all are returned.
+        Of several parts that share no node and are not joined the one there, such as `((0.0, 0.0),
+        "upper")`; see `part_at`. By default all are returned.
 
     Raises
     ------
     InputError
-        If the file is of another kind, can't be read, or gives its elements several materials that can't be used.
+        If the file is of another kind, can't be read, or gives its elements several materials that
+        can't be used.
 
     Examples
     --------
     >>> read_mesh("plate.stl")
     Traceback (most recent call last):
-    vibroimpact.errors.InputError: plate.stl: ".stl" is not read; a mesh must be .bdf, .dat, .nas, .fem, .inp, .msh, .step, .stp or .brep
+    vibroimpact.errors.InputError: plate.stl: ".stl" is not read; a mesh must be .bdf, .dat, .nas,
+    .fem, .inp, .msh, .step, .stp or .brep
     """
     mesh = mesh_of_file(path, unit_in_metres, size)
     if materials:  # names may be those of any part
@@ -71,8 +75,12 @@ def read_mesh(
     return mesh if materials else with_element_materials(mesh, unit_in_metres)
 
 
-def mesh_of_file(path: str | PathLike[str], unit_in_metres: float = 1.0, size: float | None = None) -> Mesh:
-    """Return all parts of a mesh file, or of a meshed geometry, without materials; parameters and errors are those of `read_mesh`."""
+def mesh_of_file(
+    path: str | PathLike[str], unit_in_metres: float = 1.0, size: float | None = None
+) -> Mesh:
+    """Return all parts of a mesh file, or of a meshed geometry, without materials;
+    parameters and errors are those of `read_mesh`.
+    """
     path = Path(path)
     suffix = path.suffix.lower()
     known = [*READERS, *STEP, *BREP]
@@ -80,10 +88,16 @@ def mesh_of_file(path: str | PathLike[str], unit_in_metres: float = 1.0, size: f
         allowed = f"{', '.join(known[:-1])} or {known[-1]}"
         raise InputError(f'{path}: "{path.suffix}" is not read; a mesh must be {allowed}')
     if not 0 < unit_in_metres < math.inf:
-        raise InputError(f"{unit_in_metres:g} m is not allowed; it must be greater than 0 and finite", "unit_in_metres")
+        raise InputError(
+            f"{unit_in_metres:g} m is not allowed; it must be greater than 0 and finite",
+            "unit_in_metres",
+        )
     if suffix not in READERS:
         return mesh_geometry(path, size, unit_in_metres=unit_in_metres)
     if size is not None:
-        raise InputError(f"{path}: the file is a mesh already; a size is for geometries (.step, .stp or .brep)", "size")
+        raise InputError(
+            f"{path}: the file is a mesh already; a size is for geometries (.step, .stp or .brep)",
+            "size",
+        )
     mesh = READERS[suffix](path)
     return replace(mesh, nodes=mesh.nodes * unit_in_metres)

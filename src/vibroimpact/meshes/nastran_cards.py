@@ -10,7 +10,9 @@ from vibroimpact.meshes.text_files import TextLine, parse_integer, parse_real
 from vibroimpact.shown import shown
 
 _EXPONENT = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+))(?:[dD]([+-]?\d+)|([+-]\d+))")
-_INCLUDE = re.compile(r"""\s*INCLUDE\s+(?:'([^']+)'|"([^"]+)"|([^'"$\s]+))\s*(?:\$.*)?""", re.IGNORECASE)
+_INCLUDE = re.compile(
+    r"""\s*INCLUDE\s+(?:'([^']+)'|"([^"]+)"|([^'"$\s]+))\s*(?:\$.*)?""", re.IGNORECASE
+)
 _FIELDS = 8
 _INCREMENT = re.compile(r"\*(?:\(([^()]+)\)|([+-]?[\d.][^()]*))")
 _COUNT = re.compile(r"=\(?([1-9]\d{0,5})\)?")
@@ -25,7 +27,8 @@ class Card(NamedTuple):
 
 
 def nastran_include(text: str) -> str | None:
-    """Return the name of the file that an INCLUDE line of a Nastran file includes; None for other lines.
+    """Return the name of the file that an INCLUDE line of a Nastran file includes; None for other
+    lines.
 
     Examples
     --------
@@ -36,7 +39,9 @@ def nastran_include(text: str) -> str | None:
     return next(name for name in found.groups() if name) if found else None
 
 
-def nastran_real(text: str, line: TextLine, what: str = "a coordinate", blank: float = 0.0) -> float:
+def nastran_real(
+    text: str, line: TextLine, what: str = "a coordinate", blank: float = 0.0
+) -> float:
     """Return a real number, whose exponent may have a D or no letter; a blank field is `blank`.
 
     Examples
@@ -51,12 +56,14 @@ def nastran_real(text: str, line: TextLine, what: str = "a coordinate", blank: f
 
 
 def cards(lines: Iterable[TextLine]) -> Iterator[Card]:
-    """Yield the cards of bulk data, up to and including ENDDATA; those that repeat the one before them are written out.
+    """Yield the cards of bulk data, up to and including ENDDATA; those that repeat the one before
+    them are written out.
 
     Raises
     ------
     InputError
-        If a continuation line has no card before it, its label does not match, or a repetition can't be read.
+        If a continuation line has no card before it, its label does not match, or a repetition
+        can't be read.
     """
     card, goes_on = None, ""
     repeated = _Repeated()
@@ -67,15 +74,22 @@ def cards(lines: Iterable[TextLine]) -> Iterator[Card]:
         head, fields, end = _split(text.expandtabs(8))
         if not head or head[0] in "+*":
             if card is None:
-                raise line.wrong("a line goes on without a card before it; a card starts with its name, such as GRID")
+                raise line.wrong(
+                    "a line goes on without a card before it; a card starts "
+                    "with its name, such as GRID"
+                )
             if (name := head.lstrip("+*").strip()) and goes_on and name.upper() != goes_on.upper():
                 raise line.wrong(
-                    f"{shown(name)} does not go on with the card before it, which asks for {shown(goes_on)}; it must follow its card"
+                    f"{shown(name)} does not go on with the card before it, which asks for "
+                    f"{shown(goes_on)}; it must follow its card"
                 )
             card.fields.extend(fields)
         elif head[0] == "=":
             if card is None:
-                raise line.wrong("a card is repeated without one before it; a card starts with its name, such as GRID")
+                raise line.wrong(
+                    "a card is repeated without one before it; a card starts "
+                    "with its name, such as GRID"
+                )
             yield card
             made = list(repeated.cards(line, head, text, card))
             yield from made[:-1]
@@ -93,13 +107,16 @@ def cards(lines: Iterable[TextLine]) -> Iterator[Card]:
 
 
 class _Repeated:
-    """Cards that repeat the one before them: "=" for an equal field, "==" for all that follow, "*(x)" for one that is x larger."""
+    """Cards that repeat the one before them: "=" for an equal field, "==" for all that
+    follow, "*(x)" for one that is x larger.
+    """
 
     def __init__(self) -> None:
         self._steps: dict[int, str] = {}
 
     def cards(self, line: TextLine, head: str, text: str, before: Card) -> Iterator[Card]:
-        """Yield the cards of a line that starts with "=", or "=(n)" for n more with the steps of the line before it.
+        """Yield the cards of a line that starts with "=", or "=(n)" for n more with the steps of
+        the line before it.
 
         Raises
         ------
@@ -107,19 +124,35 @@ class _Repeated:
             If the card before goes over several lines, or the line can't be read.
         """
         if len(before.fields) > _FIELDS:
-            raise line.wrong(f"a {before.name} of several lines is repeated, which is not read; write each card out")
+            raise line.wrong(
+                f"a {before.name} of several lines is repeated, which is "
+                "not read; write each card out"
+            )
         count = _COUNT.fullmatch(head)
         if count is None and head != "=":
-            raise line.wrong(f'{shown(head)} is no repetition; it must be "=", or "=(n)" after a line of "=" and "*(x)"')
+            raise line.wrong(
+                f'{shown(head)} is no repetition; it must be "=", or "=(n)" after a line '
+                'of "=" and "*(x)"'
+            )
         if count is None:
-            fields = self._fields(line, [field.strip() for field in text.split(",")][1:] if "," in text else [], before)
+            fields = self._fields(
+                line,
+                [field.strip() for field in text.split(",")][1:] if "," in text else [],
+                before,
+            )
             yield Card(line, before.name, fields)
             return
         if not self._steps:
-            raise line.wrong(f'{shown(head)} repeats steps, and the line before has none; it must have "*(x)" in a field')
+            raise line.wrong(
+                f"{shown(head)} repeats steps, and the line before has none; it must have "
+                '"*(x)" in a field'
+            )
         fields = before.fields
         for _ in range(parse_integer(count[1], line, "the number of repetitions")):
-            fields = [_sum(field, self._steps[at], line) if at in self._steps else field for at, field in enumerate(fields)]
+            fields = [
+                _sum(field, self._steps[at], line) if at in self._steps else field
+                for at, field in enumerate(fields)
+            ]
             yield Card(line, before.name, fields)
 
     def _fields(self, line: TextLine, given: list[str], before: Card) -> list[str]:
@@ -133,7 +166,9 @@ class _Repeated:
             step = _INCREMENT.fullmatch(text)
             if step:
                 self._steps[at] = step[1] or step[2]
-            fields.append(_sum(old, self._steps[at], line) if step else old if text == "=" else text)
+            fields.append(
+                _sum(old, self._steps[at], line) if step else old if text == "=" else text
+            )
         return fields
 
 
@@ -141,11 +176,16 @@ def _sum(text: str, step: str, line: TextLine) -> str:
     """Return the sum of two fields: a whole number if both are, else a real one."""
     if all(re.fullmatch(r"[+-]?\d+", part) for part in (text, step)):
         return str(int(text) + int(step))
-    return repr(nastran_real(text, line, "a number that can be stepped") + nastran_real(step, line, "a step"))
+    return repr(
+        nastran_real(text, line, "a number that can be stepped")
+        + nastran_real(step, line, "a step")
+    )
 
 
 def _split(text: str) -> tuple[str, list[str], str]:
-    """Return the first field, the data fields, padded to 8 (4 in large-field format), and the continuation field."""
+    """Return the first field, the data fields, padded to 8 (4 in large-field format), and
+    the continuation field.
+    """
     if "," in text:
         head, *fields = (field.strip() for field in text.split(","))
         width = 4 if "*" in head else 8
@@ -154,4 +194,8 @@ def _split(text: str) -> tuple[str, list[str], str]:
         return head, fields + [""] * (width - len(fields)), ""
     head = text[:8].strip()
     size = 16 if "*" in head else 8
-    return head, [text[start : start + size].strip() for start in range(8, 72, size)], text[72:80].strip()
+    return (
+        head,
+        [text[start : start + size].strip() for start in range(8, 72, size)],
+        text[72:80].strip(),
+    )

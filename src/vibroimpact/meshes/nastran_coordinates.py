@@ -1,4 +1,6 @@
-"""Coordinate systems of a Nastran file (CORD1R, CORD1C, CORD1S, CORD2R, CORD2C, CORD2S), and the grid points that stand in them."""
+"""Coordinate systems of a Nastran file (CORD1R, CORD1C, CORD1S, CORD2R, CORD2C, CORD2S),
+and the grid points that stand in them.
+"""
 
 from __future__ import annotations
 
@@ -14,7 +16,8 @@ from vibroimpact.meshes.parsed_mesh import Parts
 from vibroimpact.meshes.text_files import TextLine, parse_integer
 
 _DEEPEST = 100  # systems that refer to one another
-_LEAST = 1e-9  # sine of the angle between the axis and the third point, below which the plane is not defined
+# sine of the angle between the axis and the third point, below which the plane is not defined
+_LEAST = 1e-9
 _OF_POINTS, _OF_NUMBERS = ("CORD1R", "CORD1C", "CORD1S"), ("CORD2R", "CORD2C", "CORD2S")
 
 
@@ -29,7 +32,9 @@ class _Grid(NamedTuple):
 
 @dataclass(frozen=True)
 class _Given:
-    """A system by three points, or three nodes: its origin, one on its axis z, and one in its half plane of x and z."""
+    """A system by three points, or three nodes: its origin, one on its axis z, and one in
+    its half plane of x and z.
+    """
 
     line: TextLine
     kind: str
@@ -52,7 +57,11 @@ class _System(NamedTuple):
             local = (a * math.cos(angle), a * math.sin(angle), c)
         elif self.kind == "S":
             polar, azimuth = math.radians(b), math.radians(c)
-            local = (a * math.sin(polar) * math.cos(azimuth), a * math.sin(polar) * math.sin(azimuth), a * math.cos(polar))
+            local = (
+                a * math.sin(polar) * math.cos(azimuth),
+                a * math.sin(polar) * math.sin(azimuth),
+                a * math.cos(polar),
+            )
         else:
             local = point
         return np.asarray(self.origin + np.array(local) @ self.axes)
@@ -89,12 +98,19 @@ class NastranGrids:
         elif name in _OF_NUMBERS:
             values = [nastran_real(field, line) for field in fields[2:11]]
             points = tuple((values[at], values[at + 1], values[at + 2]) for at in (0, 3, 6))
-            self._given[_number(fields[0], line)] = _Given(line, name[-1], _number(fields[1], line), points)
+            self._given[_number(fields[0], line)] = _Given(
+                line, name[-1], _number(fields[1], line), points
+            )
         elif name in _OF_POINTS:
             for start in (0, 4):  # two systems on a card
                 if fields[start]:
-                    numbers = tuple(parse_integer(field, line, "the number of a node") for field in fields[start + 1 : start + 4])
-                    self._given[_number(fields[start], line)] = _Given(line, name[-1], 0, (), numbers)
+                    numbers = tuple(
+                        parse_integer(field, line, "the number of a node")
+                        for field in fields[start + 1 : start + 4]
+                    )
+                    self._given[_number(fields[start], line)] = _Given(
+                        line, name[-1], 0, (), numbers
+                    )
         else:
             return False
         return True
@@ -102,7 +118,10 @@ class NastranGrids:
     def _grid(self, line: TextLine, fields: list[str], count: int) -> None:
         number = parse_integer(fields[0], line, "the number of a node")
         if count < 5:
-            raise line.wrong(f"GRID* {number} has two coordinates; the third must stand in a second line, which starts with *")
+            raise line.wrong(
+                f"GRID* {number} has two coordinates; the third must stand in a second "
+                "line, which starts with *"
+            )
         x, y, z = (nastran_real(field, line) for field in fields[2:5])
         system = _number(fields[1], line) if fields[1] else None
         self._grids.append(_Grid(line, number, system, (x, y, z)))
@@ -111,11 +130,17 @@ class NastranGrids:
 
     @property
     def turned(self) -> set[int]:
-        """The points whose components of motion are along axes other than those of the basic system."""
+        """The points whose components of motion are along axes other than those of the
+        basic system.
+        """
         default = (
-            [grid.number for grid in self._grids if grid.number not in self._of_motion] if self._default_of_motion not in ("", "0") else []
+            [grid.number for grid in self._grids if grid.number not in self._of_motion]
+            if self._default_of_motion not in ("", "0")
+            else []
         )
-        return {number for number, system in self._of_motion.items() if system != "0"} | set(default)
+        return {number for number, system in self._of_motion.items() if system != "0"} | set(
+            default
+        )
 
     def add_to(self, parts: Parts) -> None:
         """Add the grid points in the basic system.
@@ -142,9 +167,14 @@ class NastranGrids:
         given = self._given.get(number)
         if given is None:
             cards = f"{', '.join((*_OF_POINTS, *_OF_NUMBERS[:-1]))} or {_OF_NUMBERS[-1]}"
-            raise line.wrong(f"the coordinate system {number} is not in the file; its {cards} must be")
+            raise line.wrong(
+                f"the coordinate system {number} is not in the file; its {cards} must be"
+            )
         if depth > _DEEPEST:
-            raise given.line.wrong(f"the coordinate system {number} refers to itself, or to more than {_DEEPEST} others in a chain")
+            raise given.line.wrong(
+                f"the coordinate system {number} refers to itself, or to more than "
+                f"{_DEEPEST} others in a chain"
+            )
         if given.nodes:
             at = np.array([self._place(node, given.line, depth + 1) for node in given.nodes])
         else:
@@ -154,7 +184,8 @@ class NastranGrids:
         normal = np.cross(axis, third)
         if not np.linalg.norm(normal) > _LEAST * np.linalg.norm(axis) * np.linalg.norm(third):
             raise given.line.wrong(
-                f"the three points of the coordinate system {number} lie on one line; the third must lie beside its axis z"
+                f"the three points of the coordinate system {number} lie on one line; the "
+                "third must lie beside its axis z"
             )
         z, y = axis / np.linalg.norm(axis), normal / np.linalg.norm(normal)
         self._made[number] = _System(given.kind, at[0], np.stack([np.cross(y, z), y, z]))
@@ -164,7 +195,9 @@ class NastranGrids:
         """Return the place of a grid point that defines a system."""
         grid = next((one for one in self._grids if one.number == number), None)
         if grid is None:
-            raise line.wrong(f"the GRID {number} that defines the coordinate system is not in the file")
+            raise line.wrong(
+                f"the GRID {number} that defines the coordinate system is not in the file"
+            )
         return self._basic(grid, depth)
 
 

@@ -1,4 +1,6 @@
-"""Rigid elements and multipoint constraints of a Nastran file (RBE1, RBE2, RBE3, RBAR, RROD, RTRPLT, MPC)."""
+"""Rigid elements and multipoint constraints of a Nastran file (RBE1, RBE2, RBE3, RBAR,
+RROD, RTRPLT, MPC).
+"""
 
 from __future__ import annotations
 
@@ -72,12 +74,18 @@ class NastranLinks:
                 parts.links.add(card.name, link)
 
     def _sets_in_use(self) -> set[int]:
-        """Return the sets of MPC cards that apply: those of the case control; in a file without one, its only set."""
+        """Return the sets of MPC cards that apply: those of the case control; in a file
+        without one, its only set.
+        """
         added: dict[int, set[int]] = {}
         stated = set()
         for card in self._cards:
             if card.name == "MPCADD":
-                numbers = [parse_integer(field, card.line, "the number of a set") for field in card.fields if field]
+                numbers = [
+                    parse_integer(field, card.line, "the number of a set")
+                    for field in card.fields
+                    if field
+                ]
                 added[numbers[0] if numbers else 0] = set(numbers[1:])
             elif card.name == "MPC":
                 stated.add(_integer(card, 0, "the number of a set"))
@@ -92,12 +100,26 @@ class NastranLinks:
 
 def _link(card: Card, turned: Collection[int]) -> Link | None:
     """Return the link of a card; None if it can't be used."""
-    make = {"RBE1": _rbe1, "RBE2": _rbe2, "RBE3": _rbe3, "RBAR": _rbar, "RROD": _rrod, "RTRPLT": _rtrplt, "MPC": _mpc}[card.name]
+    make = {
+        "RBE1": _rbe1,
+        "RBE2": _rbe2,
+        "RBE3": _rbe3,
+        "RBAR": _rbar,
+        "RROD": _rrod,
+        "RTRPLT": _rtrplt,
+        "MPC": _mpc,
+    }[card.name]
     link = make(card)
     if isinstance(link, Rigid):
         along = [(node, components) for node, components in link.members if node in turned]
     elif isinstance(link, Mean):
-        along = [(node, axes) for node, axes in ((link.node, link.components), *((node, axes) for node, _, axes in link.members))]
+        along = [
+            (node, axes)
+            for node, axes in (
+                (link.node, link.components),
+                *((node, axes) for node, _, axes in link.members),
+            )
+        ]
         along = [(node, axes) for node, axes in along if node in turned]
     elif isinstance(link, Equation):
         along = [(node, (component,)) for (node, component), _ in link.terms if node in turned]
@@ -107,21 +129,30 @@ def _link(card: Card, turned: Collection[int]) -> Link | None:
 
 
 def _is_whole(components: Sequence[int]) -> bool:
-    """Whether components of motion are the same in every system: none or all of the displacements, and of the rotations."""
-    return all(len(set(components) & set(part)) in (0, AXES) for part in (range(AXES), range(AXES, COMPONENTS)))
+    """Whether components of motion are the same in every system: none or all of the
+    displacements, and of the rotations.
+    """
+    return all(
+        len(set(components) & set(part)) in (0, AXES)
+        for part in (range(AXES), range(AXES, COMPONENTS))
+    )
 
 
 def _rbe2(card: Card) -> Rigid:
     leads = _integer(card, 1, _NODE)
     components = _components(card, card.fields[2])
-    words = [field.upper() for field in card.fields[3:] if field and "." not in field]  # a real number is a thermal expansion
+    # a real number is a thermal expansion
+    words = [field.upper() for field in card.fields[3:] if field and "." not in field]
     nodes: list[int] = []
     at = 0
     while at < len(words):
         if words[at] == "THRU" and nodes and at + 1 < len(words):
             last = parse_integer(words[at + 1], card.line, _NODE)
             if last - nodes[-1] > _MOST_OF_A_RANGE:
-                raise card.line.wrong(f"the range up to {last} is of more than {_MOST_OF_A_RANGE:,} nodes; write the nodes out")
+                raise card.line.wrong(
+                    f"the range up to {last} is of more than {_MOST_OF_A_RANGE:,} nodes; "
+                    "write the nodes out"
+                )
             nodes += range(nodes[-1] + 1, last + 1)
             at += 2
         else:
@@ -136,7 +167,10 @@ def _rbe1(card: Card) -> Rigid | None:
     if "UM" not in words or len(pairs) % 2:
         return None
     count = words.index("UM") // 2
-    members = [(parse_integer(node, card.line, _NODE), _components(card, part)) for node, part in zip(pairs[::2], pairs[1::2], strict=True)]
+    members = [
+        (parse_integer(node, card.line, _NODE), _components(card, part))
+        for node, part in zip(pairs[::2], pairs[1::2], strict=True)
+    ]
     return _rigid(card, members[:count], members[count:])
 
 
@@ -149,27 +183,37 @@ def _rtrplt(card: Card) -> Rigid | None:
 
 
 def _of_ends(card: Card, count: int) -> Rigid | None:
-    """Return the rigid motion of a few nodes: their numbers, the components that lead, and those that follow, blank for all others."""
+    """Return the rigid motion of a few nodes: their numbers, the components that lead,
+    and those that follow, blank for all others.
+    """
     fields = [*card.fields, *[""] * (2 * _FIELDS)]
     nodes = [_integer(card, 1 + index, _NODE) for index in range(count)]
-    first = 1 + 2 * count if count == 2 else _FIELDS  # of a plate the components that follow are in a line of their own
+    # of a plate the components that follow are in a line of their own
+    first = 1 + 2 * count if count == 2 else _FIELDS
     leading = [_components(card, fields[1 + count + index]) for index in range(count)]
     following = [_components(card, fields[first + index]) for index in range(count)]
     if not any(leading):
         leading[0] = _ALL
     if not any(following):
         following = [tuple(set(_ALL) - set(components)) for components in leading]
-    return _rigid(card, list(zip(nodes, leading, strict=True)), list(zip(nodes, following, strict=True)))
+    return _rigid(
+        card, list(zip(nodes, leading, strict=True)), list(zip(nodes, following, strict=True))
+    )
 
 
 def _rigid(card: Card, leading: Members, following: Members) -> Rigid | None:
-    """Return the rigid motion of six components that lead, which others follow; None if there are not six."""
+    """Return the rigid motion of six components that lead, which others follow; None if
+    there are not six.
+    """
     if sum(len(components) for _, components in leading) != COMPONENTS:
         return None
     members: dict[int, set[int]] = {}
     for node, components in [*leading, *following]:
         members.setdefault(node, set()).update(components)
-    return Rigid(card.line, [(node, tuple(sorted(components))) for node, components in members.items() if components])
+    return Rigid(
+        card.line,
+        [(node, tuple(sorted(components))) for node, components in members.items() if components],
+    )
 
 
 def _rrod(card: Card) -> Distance:
@@ -181,7 +225,8 @@ def _rbe3(card: Card) -> Mean | None:
     members: list[tuple[int, float, Sequence[int]]] = []
     weight, axes = 0.0, None
     for field in card.fields[4:]:
-        if field.upper() in ("ALPHA", "UM"):  # which components follow makes no difference to the motions that are possible
+        # which components follow makes no difference to the motions that are possible
+        if field.upper() in ("ALPHA", "UM"):
             break
         if "." in field:
             weight, axes = nastran_real(field, card.line, "a weight"), None
@@ -189,21 +234,34 @@ def _rbe3(card: Card) -> Mean | None:
             axes = _components(card, field)
         elif field and axes is not None:
             members.append((parse_integer(field, card.line, _NODE), weight, axes))
-    usable = all(0.0 < weight < float("inf") and set(axes) <= set(range(AXES)) for _, weight, axes in members)
+    usable = all(
+        0.0 < weight < float("inf") and set(axes) <= set(range(AXES)) for _, weight, axes in members
+    )
     return Mean(card.line, node, components, members) if usable and members else None
 
 
 def _mpc(card: Card) -> Equation | None:
-    fields = [field for start in range(0, len(card.fields), _FIELDS) for field in card.fields[start : start + _FIELDS][1:7]]
+    fields = [
+        field
+        for start in range(0, len(card.fields), _FIELDS)
+        for field in card.fields[start : start + _FIELDS][1:7]
+    ]
     terms = []
     for start in range(0, len(fields), 3):
         node, component, value = [*fields[start : start + 3], "", ""][:3]
         if node:
             terms.append((node, component, nastran_real(value, card.line, "a coefficient")))
-    parsed = [((parse_integer(node, card.line, _NODE), _components(card, part)), value) for node, part, value in terms]
-    if any(len(components) != 1 or not abs(value) < float("inf") for (_, components), value in parsed):
+    parsed = [
+        ((parse_integer(node, card.line, _NODE), _components(card, part)), value)
+        for node, part, value in terms
+    ]
+    if any(
+        len(components) != 1 or not abs(value) < float("inf") for (_, components), value in parsed
+    ):
         return None  # of scalar points there is no body
-    return equation_of(card.line, [((node, components[0]), value) for (node, components), value in parsed])
+    return equation_of(
+        card.line, [((node, components[0]), value) for (node, components), value in parsed]
+    )
 
 
 def _components(card: Card, text: str) -> tuple[int, ...]:
@@ -211,7 +269,10 @@ def _components(card: Card, text: str) -> tuple[int, ...]:
     if text in ("", "0"):
         return ()
     if not set(text) <= set("123456"):
-        raise card.line.wrong(f'"{text[:20]}" names no components of motion; they must be digits from 1 to 6, such as 123')
+        raise card.line.wrong(
+            f'"{text[:20]}" names no components of motion; they must be digits from 1 to '
+            "6, such as 123"
+        )
     return tuple(sorted({int(digit) - 1 for digit in text}))
 
 

@@ -1,4 +1,6 @@
-"""Materials of the solid elements of a Nastran file: MAT cards, and the properties that refer to them."""
+"""Materials of the solid elements of a Nastran file: MAT cards, and the properties that
+refer to them.
+"""
 
 from __future__ import annotations
 
@@ -12,7 +14,13 @@ from vibroimpact.meshes.selection import Selection
 from vibroimpact.meshes.text_files import TextLine, parse_integer
 from vibroimpact.structures.stated_materials import StatedMaterial
 
-_OTHERS = {"MAT9": "anisotropic", "MAT11": "orthotropic", "MATHP": "hyperelastic", "MATHE": "hyperelastic", "MAT10": FLUID}
+_OTHERS = {
+    "MAT9": "anisotropic",
+    "MAT11": "orthotropic",
+    "MATHP": "hyperelastic",
+    "MATHE": "hyperelastic",
+    "MAT10": FLUID,
+}
 _FLUID_FUNCTIONS = ("PFLUID", "FFLUID")
 _COMPOSITES = ("PCOMPS", "PCOMPLS")
 
@@ -42,20 +50,33 @@ class NastranMaterials:
             number = parse_integer(fields[0], line, "the number of a material")
             self._others[number] = StatedMaterial(f"MID{number}", other=_OTHERS[name])
         elif name in ("PSOLID", "PLSOLID"):
-            material = parse_integer(fields[1], line, "the number of a material") if fields[1] else None
+            material = (
+                parse_integer(fields[1], line, "the number of a material") if fields[1] else None
+            )
             fluid = FLUID if fields[6].upper() in _FLUID_FUNCTIONS else ""
-            self._properties[parse_integer(fields[0], line, "the number of a property")] = material, fluid
+            self._properties[parse_integer(fields[0], line, "the number of a property")] = (
+                material,
+                fluid,
+            )
         elif name in _COMPOSITES:
-            self._properties[parse_integer(fields[0], line, "the number of a property")] = None, "a layered composite"
+            self._properties[parse_integer(fields[0], line, "the number of a property")] = (
+                None,
+                "a layered composite",
+            )
         elif name == "PARAM" and fields[0].upper() == "WTMASS":
             self._mass_per_weight = nastran_real(fields[1], line, "the value of WTMASS", blank=1.0)
         else:
             return False
         return True
 
-    def sections(self, element_sets: Mapping[str, Selection]) -> list[tuple[Selection, StatedMaterial]]:
+    def sections(
+        self, element_sets: Mapping[str, Selection]
+    ) -> list[tuple[Selection, StatedMaterial]]:
         """Return the elements of each property, which are the sets `PIDn`, with its material."""
-        known = {number: replace(one, density=one.density * self._mass_per_weight) for number, one in self._isotropic.items()}
+        known = {
+            number: replace(one, density=one.density * self._mass_per_weight)
+            for number, one in self._isotropic.items()
+        }
         known = {**self._others, **known}
         found = []
         for number, (material, other) in self._properties.items():
@@ -70,8 +91,12 @@ class NastranMaterials:
 
 
 def _isotropic(name: str, fields: list[str], line: TextLine) -> StatedMaterial:
-    """Return the material of a MAT1 card; of the two moduli and Poisson's ratio one follows from the others."""
-    modulus, shear, ratio = (nastran_real(field, line, "an elastic constant", blank=math.nan) for field in fields[1:4])
+    """Return the material of a MAT1 card; of the two moduli and Poisson's ratio one
+    follows from the others.
+    """
+    modulus, shear, ratio = (
+        nastran_real(field, line, "an elastic constant", blank=math.nan) for field in fields[1:4]
+    )
     density = nastran_real(fields[4], line, "a density", blank=math.nan)
     if math.isnan(ratio) and shear:
         ratio = 0.5 * modulus / shear - 1.0

@@ -1,4 +1,6 @@
-"""Node numbering of elements in other programs, each node given by the corners whose midpoint it is."""
+"""Node numbering of elements in other programs, each node given by the corners whose
+midpoint it is.
+"""
 
 from __future__ import annotations
 
@@ -23,12 +25,17 @@ NASTRAN = {
     "hex20": f"0 1 2 3 4 5 6 7 {_HEX_BOTTOM} {_HEX_UP} {_HEX_TOP}",
     "wedge15": "0 1 2 3 4 5 01 12 20 03 14 25 34 45 53",
 }
-ABAQUS = {"hex27": f"0 1 2 3 4 5 6 7 {_HEX_BOTTOM} {_HEX_TOP} {_HEX_UP} 01234567 0123 4567 0154 1265 2376 0374"}
+ABAQUS = {
+    "hex27": f"0 1 2 3 4 5 6 7 {_HEX_BOTTOM} {_HEX_TOP} {_HEX_UP} 01234567 0123 4567 0154 1265 "
+    "2376 0374"
+}
 """Abaqus differs from this package in hex27 only: the centre node precedes the face nodes."""
 
 
 def from_ours(kind: str, foreign: str) -> Integers:
-    """Return the permutation from our node order to another one: `theirs = ours[from_ours(...)]`."""
+    """Return the permutation from our node order to another one: `theirs =
+    ours[from_ours(...)]`.
+    """
     return np.argsort(to_ours(kind, foreign)).astype(np.int64)
 
 
@@ -48,6 +55,8 @@ def to_ours(kind: str, foreign: str) -> Integers:
     [0, 1, 2, 3, 4, 5, 6, 7, 9, 8]
     """
     reference = ELEMENT_KINDS[kind].reference
-    theirs = np.array([reference[[int(corner) for corner in node]].mean(axis=0) for node in foreign.split()])
+    theirs = np.array(
+        [reference[[int(corner) for corner in node]].mean(axis=0) for node in foreign.split()]
+    )
     distance = np.abs(reference[:, None, :] - theirs[None, :, :]).max(axis=2)
     return np.asarray(distance.argmin(axis=1), dtype=np.int64)

@@ -27,10 +27,14 @@ from vibroimpact.structures.surface import Faces
 
 LARGEST_COORDINATE = 1e15
 MOST_MEMBERS = 10_000_000
-"""Limit for all node sets, or all element sets, together: with nested sets and ranges a short file could exhaust the memory."""
+"""Limit for all node sets, or all element sets, together: with nested sets and ranges a
+short file could exhaust the memory.
+"""
 
 FLUID = "fluid"
-"""What a stated material is whose elements are left out: they have pressures and no displacements."""
+"""What a stated material is whose elements are left out: they have pressures and no
+displacements.
+"""
 
 FLUID_ELEMENTS = "elements of a fluid"
 """Name of these among the items that a reader skipped."""
@@ -67,13 +71,16 @@ class Parts:
     ties : list of Tie
         Surfaces that are tied to one another.
     span : int or None
-        Numbers that each instance of an assembly has for itself: above it, a number is that of the file and a multiple of this.
+        Numbers that each instance of an assembly has for itself: above it, a number is that of the
+        file and a multiple of this.
     """
 
     path: Path
     orders: Mapping[str, str] = field(default_factory=dict)
     node_sets: defaultdict[str, Selection] = field(default_factory=lambda: defaultdict(Selection))
-    element_sets: defaultdict[str, Selection] = field(default_factory=lambda: defaultdict(Selection))
+    element_sets: defaultdict[str, Selection] = field(
+        default_factory=lambda: defaultdict(Selection)
+    )
     skipped: Counter[str] = field(default_factory=Counter)
     materials: dict[str, StatedMaterial] = field(default_factory=dict)
     sections: list[tuple[Selection, StatedMaterial]] = field(default_factory=list)
@@ -101,7 +108,8 @@ class Parts:
         for coordinate in point:
             if not -LARGEST_COORDINATE < coordinate < LARGEST_COORDINATE:
                 raise line.wrong(
-                    f"node {self.written(number)} has the coordinate {coordinate:g}; it must be finite and less than 1e15 in size"
+                    f"node {self.written(number)} has the coordinate {coordinate:g}; it "
+                    "must be finite and less than 1e15 in size"
                 )
         self._node_lines.append(line)
         self._node_numbers.append(number)
@@ -121,7 +129,8 @@ class Parts:
         chosen.update(more)
 
     def add_element(self, line: TextLine, kind: str, number: int, nodes: Sequence[int]) -> None:
-        """Add an element of a kind, its nodes in the order of the file; their number must be that of the kind.
+        """Add an element of a kind, its nodes in the order of the file; their number must be that
+        of the kind.
 
         Nodes in the middle of edges may be `edge_nodes.OMITTED`.
         """
@@ -149,10 +158,22 @@ class Parts:
         for chosen, by_corners in surface.faces:
             for kind, elements in self._elements.items():
                 corners = by_corners.get(ELEMENT_KINDS[kind].corners)
-                order = to_ours(kind, self.orders[kind]) if kind in self.orders else np.arange(len(ELEMENT_KINDS[kind].reference))
+                order = (
+                    to_ours(kind, self.orders[kind])
+                    if kind in self.orders
+                    else np.arange(len(ELEMENT_KINDS[kind].reference))
+                )
                 if corners is not None:
-                    on_face = order[Faces(ELEMENT_KINDS[kind], corners, np.zeros((0, 0), dtype=np.int64)).has_node].tolist()
-                    found.update(elements.nodes[row][node] for row in _chosen_rows(elements, chosen) for node in on_face)
+                    on_face = order[
+                        Faces(
+                            ELEMENT_KINDS[kind], corners, np.zeros((0, 0), dtype=np.int64)
+                        ).has_node
+                    ].tolist()
+                    found.update(
+                        elements.nodes[row][node]
+                        for row in _chosen_rows(elements, chosen)
+                        for node in on_face
+                    )
         return found
 
     def mesh(self) -> Mesh:
@@ -161,27 +182,39 @@ class Parts:
         Raises
         ------
         InputError
-            If an element number occurs twice, a node number with other coordinates, a node is missing or there is no element.
+            If an element number occurs twice, a node number with other coordinates, a node is
+            missing or there is no element.
         """
         self._leave_out_fluids()
         if not self._elements:
-            left_out = ", ".join(f"{shown(name)[1:-1]} ({count})" for name, count in self.skipped.most_common(5))
+            left_out = ", ".join(
+                f"{shown(name)[1:-1]} ({count})" for name, count in self.skipped.most_common(5)
+            )
             raise InputError(
-                f"{self.path}: the file has no solid element; a mesh is of tetrahedra, pyramids, wedges or bricks"
+                f"{self.path}: the file has no solid element; a mesh is of tetrahedra, "
+                "pyramids, wedges or bricks"
                 f"{left_out and '; left out: ' + left_out}"
             )
         complete = with_edge_nodes(
-            {kind: self._nodes_of(kind) for kind in ELEMENT_KINDS if kind in self._elements}, *self._distinct_nodes()
+            {kind: self._nodes_of(kind) for kind in ELEMENT_KINDS if kind in self._elements},
+            *self._distinct_nodes(),
         )
         numbers, points = complete.numbers, complete.points
-        blocks = {kind: self._places_of_nodes(kind, nodes, numbers) for kind, nodes in complete.elements.items()}
-        used, places = np.unique(np.concatenate([places.ravel() for places in blocks.values()]), return_inverse=True)
+        blocks = {
+            kind: self._places_of_nodes(kind, nodes, numbers)
+            for kind, nodes in complete.elements.items()
+        }
+        used, places = np.unique(
+            np.concatenate([places.ravel() for places in blocks.values()]), return_inverse=True
+        )
         ends = np.cumsum([places.size for places in blocks.values()])[:-1]
         renumbered = zip(blocks, np.split(places, ends), blocks.values(), strict=True)
         elements = self._distinct_elements(list(blocks))
         mesh = Mesh(
             points[used],
-            tuple(ElementBlock(kind, flat.reshape(shaped.shape)) for kind, flat, shaped in renumbered),
+            tuple(
+                ElementBlock(kind, flat.reshape(shaped.shape)) for kind, flat, shaped in renumbered
+            ),
             self._sets(self.node_sets, numbers[used], np.arange(len(used))),
             self._sets(self.element_sets, *elements),
             dict(self.skipped),
@@ -189,8 +222,12 @@ class Parts:
         )
         return renumbered_by_volume(self._joined(mesh, complete, used, elements))
 
-    def _joined(self, mesh: Mesh, complete: EdgeNodes, used: Integers, elements: tuple[Integers, Integers]) -> Mesh:
-        """Return the mesh with the joints that the file states, and remarks on them and on nodes that were made."""
+    def _joined(
+        self, mesh: Mesh, complete: EdgeNodes, used: Integers, elements: tuple[Integers, Integers]
+    ) -> Mesh:
+        """Return the mesh with the joints that the file states, and remarks on them and
+        on nodes that were made.
+        """
         tied = tied_nodes(mesh, self.ties, complete.numbers[used], elements)
         line = TextLine(self.path, 0, "")
         halves = [
@@ -200,11 +237,20 @@ class Parts:
         ]
         points = complete.points.copy()
         points[used] = tied.nodes
-        joints = self.links.joints(complete.numbers, points, used, [*halves, *tied.equations], self.written)
-        joined_by = {**self.links.names(complete.numbers[used]), **({"*TIE": len(self.ties)} if tied.equations else {})}
+        joints = self.links.joints(
+            complete.numbers, points, used, [*halves, *tied.equations], self.written
+        )
+        joined_by = {
+            **self.links.names(complete.numbers[used]),
+            **({"*TIE": len(self.ties)} if tied.equations else {}),
+        }
         made = [_made_text(complete)] if complete.made else []
         return replace(
-            mesh, nodes=tied.nodes, joints=joints, joined_by=joined_by if joints else {}, remarks=(*mesh.remarks, *made, *tied.remarks)
+            mesh,
+            nodes=tied.nodes,
+            joints=joints,
+            joined_by=joined_by if joints else {},
+            remarks=(*mesh.remarks, *made, *tied.remarks),
         )
 
     def _leave_out_fluids(self) -> None:
@@ -221,12 +267,19 @@ class Parts:
                 dry = np.flatnonzero(~wet).tolist()
                 del self._elements[kind]
                 if dry:
-                    lines, left = [found.lines[index] for index in dry], [found.numbers[index] for index in dry]
-                    self._elements[kind] = _Elements(lines, left, [found.nodes[index] for index in dry])
+                    lines, left = (
+                        [found.lines[index] for index in dry],
+                        [found.numbers[index] for index in dry],
+                    )
+                    self._elements[kind] = _Elements(
+                        lines, left, [found.nodes[index] for index in dry]
+                    )
 
     def _stated(self, numbers: Integers, places: Integers) -> StatedMaterials | None:
         """Return the materials that the file gives its elements; None if it gives none."""
-        materials = tuple(dict.fromkeys(material for _, material in self.sections if material.other != FLUID))
+        materials = tuple(
+            dict.fromkeys(material for _, material in self.sections if material.other != FLUID)
+        )
         if not materials:
             return None
         of_elements = np.full(len(numbers), -1)
@@ -235,11 +288,20 @@ class Parts:
                 of_elements[places[chosen.places(numbers)]] = materials.index(material)
         used = np.unique(of_elements[of_elements >= 0])
         renumbered = np.append(np.searchsorted(used, np.arange(len(materials))), -1)
-        return StatedMaterials(tuple(materials[index] for index in used), renumbered[of_elements]) if len(used) else None
+        return (
+            StatedMaterials(tuple(materials[index] for index in used), renumbered[of_elements])
+            if len(used)
+            else None
+        )
 
     def _distinct_nodes(self) -> tuple[Integers, Floats]:
-        """Return the node numbers, sorted, and the coordinates; raise if a node is given twice with different coordinates."""
-        numbers, points = np.array(self._node_numbers, dtype=np.int64), np.array(self._points, dtype=float).reshape(-1, 3)
+        """Return the node numbers, sorted, and the coordinates; raise if a node is given
+        twice with different coordinates.
+        """
+        numbers, points = (
+            np.array(self._node_numbers, dtype=np.int64),
+            np.array(self._points, dtype=float).reshape(-1, 3),
+        )
         order = np.argsort(numbers, kind="stable")
         numbers, points = numbers[order], points[order]
         again = numbers[1:] == numbers[:-1]
@@ -248,7 +310,8 @@ class Parts:
             at = int(np.argmax(moved)) + 1
             first = self._node_lines[order[at - 1]]
             raise self._node_lines[order[at]].wrong(
-                f"node {self.written(int(numbers[at]))} was given other coordinates in {_place_of(first, self._node_lines[order[at]])}; "
+                f"node {self.written(int(numbers[at]))} was given other coordinates in "
+                f"{_place_of(first, self._node_lines[order[at]])}; "
                 "a node may be given again at the same place only"
             )
         once = np.append(~again, True) if len(numbers) else np.ones(0, dtype=bool)
@@ -262,20 +325,24 @@ class Parts:
     def _places_of_nodes(self, kind: str, wanted: Integers, numbers: Integers) -> Integers:
         """Return the connectivity as indices into `numbers`."""
         found = self._elements[kind]
-        places = np.minimum(np.searchsorted(numbers, wanted), max(len(numbers) - 1, 0)).astype(np.int64)
+        places = np.minimum(np.searchsorted(numbers, wanted), max(len(numbers) - 1, 0)).astype(
+            np.int64
+        )
         missing = numbers[places] != wanted if len(numbers) else np.ones(wanted.shape, dtype=bool)
         if missing.any():
             row, column = np.argwhere(missing)[0]
             raise found.lines[row].wrong(
-                f"element {self.written(found.numbers[row])} has the node {self.written(int(wanted[row, column]))}, "
-                "which the file does not give; "
+                f"element {self.written(found.numbers[row])} has the node "
+                f"{self.written(int(wanted[row, column]))}, which the file does not give; "
                 "every node of an element must be in the file"
             )
         return places
 
     def _distinct_elements(self, kinds: list[str]) -> tuple[Integers, Integers]:
         """Return the element numbers, sorted, and their indices counted through all blocks."""
-        numbers = np.concatenate([np.array(self._elements[kind].numbers, dtype=np.int64) for kind in kinds])
+        numbers = np.concatenate(
+            [np.array(self._elements[kind].numbers, dtype=np.int64) for kind in kinds]
+        )
         order = np.argsort(numbers, kind="stable")
         again = np.flatnonzero(np.diff(numbers[order]) == 0)
         if len(again):
@@ -284,10 +351,15 @@ class Parts:
             if first.path == second.path and first.number > second.number:  # of two kinds
                 first, second = second, first
             element = self.written(int(numbers[order[again[0]]]))
-            raise second.wrong(f"element {element} was given in {_place_of(first, second)} already; an element may be given once")
+            raise second.wrong(
+                f"element {element} was given in {_place_of(first, second)} already; an "
+                "element may be given once"
+            )
         return numbers[order], order
 
-    def _sets(self, sets: Mapping[str, Selection], numbers: Integers, places: Integers) -> dict[str, Integers]:
+    def _sets(
+        self, sets: Mapping[str, Selection], numbers: Integers, places: Integers
+    ) -> dict[str, Integers]:
         """Return the sets as indices; members that the mesh does not have are dropped."""
         found: dict[str, Integers] = {}
         total = 0
@@ -310,18 +382,30 @@ def _chosen_rows(elements: _Elements, chosen: Selection) -> list[int]:
 
 def _place_of(line: TextLine, other: TextLine) -> str:
     """Return where a line is, for a message that names the file of another one."""
-    return f"line {line.number}" if line.path == other.path else f"line {line.number} of {shortened(str(line.path), 200)}"
+    return (
+        f"line {line.number}"
+        if line.path == other.path
+        else f"line {line.number} of {shortened(str(line.path), 200)}"
+    )
 
 
 def _made_text(complete: EdgeNodes) -> str:
     """Return what nodes were made, as a remark."""
-    straight = f", of which {len(complete.linear)} move as the straight edges of neighbours of first order" if complete.linear else ""
+    straight = (
+        f", of which {len(complete.linear)} move as the straight edges of neighbours of first order"
+        if complete.linear
+        else ""
+    )
     were = "was" if complete.made == 1 else "were"
     return (
-        f"the mesh file leaves out nodes in the middle of edges of elements of second order: {complete.made} {were} made halfway "
+        "the mesh file leaves out nodes in the middle of edges of elements of second "
+        f"order: {complete.made} {were} made halfway "
         f"between the corners{straight}; a curved edge is straight there"
     )
 
 
 def _too_many_members() -> str:
-    return f"the sets have more than {MOST_MEMBERS:,} members in all; leave out those that are not needed"
+    return (
+        f"the sets have more than {MOST_MEMBERS:,} members in all; leave out "
+        "those that are not needed"
+    )

@@ -16,7 +16,12 @@ from vibroimpact.meshes.left_out import remarks_of
 from vibroimpact.meshes.node_order import ABAQUS
 from vibroimpact.meshes.parsed_mesh import Parts
 from vibroimpact.meshes.selection import Selection
-from vibroimpact.meshes.text_files import TextLine, parse_integer, parse_real, read_lines_with_includes
+from vibroimpact.meshes.text_files import (
+    TextLine,
+    parse_integer,
+    parse_real,
+    read_lines_with_includes,
+)
 from vibroimpact.shown import shown
 from vibroimpact.structures.element_kinds import ELEMENT_KINDS
 from vibroimpact.structures.mesh import Mesh
@@ -36,15 +41,26 @@ _SOLID = re.compile(r"C3D(\d+)[A-Z]*")
 _OTHER_SOLID = re.compile(r"E?C3D|SC[68]|CSS8|CCL\d|Q3D")
 _MAKES_MESH = {"NGEN", "NFILL", "NCOPY", "NMAP", "ELGEN", "ELCOPY", "SYMMETRIC MODEL GENERATION"}
 _INPUTS = {"INCLUDE", "NODE", "ELEMENT", "NSET", "ELSET"}
-_QUIET = {"HEADING", "INCLUDE", "PART", "END PART", "ASSEMBLY", "END ASSEMBLY", "INSTANCE", "END INSTANCE"}
+_QUIET = {
+    "HEADING",
+    "INCLUDE",
+    "PART",
+    "END PART",
+    "ASSEMBLY",
+    "END ASSEMBLY",
+    "INSTANCE",
+    "END INSTANCE",
+}
 
 
 def read_abaqus(path: str | PathLike[str]) -> Mesh:
-    """Read the solid elements of an Abaqus input file, flat or with an assembly of instances of parts.
+    """Read the solid elements of an Abaqus input file, flat or with an assembly of instances of
+    parts.
 
-    The mesh consists of C3D4, C3D5, C3D6, C3D8, C3D10, C3D13, C3D15, C3D20 and C3D27 elements of every formulation, and the sets of
-    *NSET, *ELSET, *NODE and *ELEMENT. The materials of *SOLID SECTION are in `Mesh.stated`. Other keywords, and elements that are not
-    solid, are counted in `Mesh.skipped`. Equations, couplings, rigid bodies and tied surfaces are in `Mesh.joints`.
+    The mesh consists of C3D4, C3D5, C3D6, C3D8, C3D10, C3D13, C3D15, C3D20 and C3D27 elements of
+    every formulation, and the sets of *NSET, *ELSET, *NODE and *ELEMENT. The materials of *SOLID
+    SECTION are in `Mesh.stated`. Other keywords, and elements that are not solid, are counted in
+    `Mesh.skipped`. Equations, couplings, rigid bodies and tied surfaces are in `Mesh.joints`.
 
     Parameters
     ----------
@@ -59,7 +75,8 @@ def read_abaqus(path: str | PathLike[str]) -> Mesh:
     Examples
     --------
     >>> from tempfile import TemporaryDirectory
-    >>> deck = "*NODE\\n1,0,0,0\\n2,1,0,0\\n3,0,1,0\\n4,0,0,1\\n*ELEMENT,TYPE=C3D4,ELSET=all\\n1,1,2,3,4\\n"
+    >>> nodes = "*NODE\\n1,0,0,0\\n2,1,0,0\\n3,0,1,0\\n4,0,0,1\\n"
+    >>> deck = nodes + "*ELEMENT,TYPE=C3D4,ELSET=all\\n1,1,2,3,4\\n"
     >>> with TemporaryDirectory() as folder:
     ...     file = Path(folder, "tet.inp")
     ...     _ = file.write_text(deck)
@@ -90,17 +107,31 @@ class _Reader:
     def take(self, block: Block) -> None:
         keyword = block.keyword
         # an included file that is not recognized must not be ignored silently
-        if (keyword == "INCLUDE" or "INPUT" in block.parameters) and abaqus_include(block.line.text) is None and keyword in _INPUTS:
-            raise block.line.wrong(f"the file to include is not given; *{keyword} must have INPUT=file on its first line")
+        if (
+            (keyword == "INCLUDE" or "INPUT" in block.parameters)
+            and abaqus_include(block.line.text) is None
+            and keyword in _INPUTS
+        ):
+            raise block.line.wrong(
+                f"the file to include is not given; *{keyword} must have "
+                "INPUT=file on its first line"
+            )
         if keyword in _MAKES_MESH:
-            raise block.line.wrong(f"*{keyword} makes nodes or elements by a rule, which is not read; write each one out")
+            raise block.line.wrong(
+                f"*{keyword} makes nodes or elements by a rule, which is "
+                "not read; write each one out"
+            )
         if keyword == "SYSTEM" and block.data:
-            raise block.line.wrong("*SYSTEM moves the nodes that follow, which is not read; write their global coordinates")
+            raise block.line.wrong(
+                "*SYSTEM moves the nodes that follow, which is not read; "
+                "write their global coordinates"
+            )
         if f"END {keyword}" in _QUIET:
             self.open[keyword] = block.line
         elif keyword.startswith("END "):
             self.open.pop(keyword.removeprefix("END "), None)
-        # reference points of an assembly are numbered separately: their numbers may coincide with those of nodes of the part
+        # reference points of an assembly are numbered separately: their numbers may coincide with
+        # those of nodes of the part
         self.in_assembly = keyword in ("ASSEMBLY", "END INSTANCE") or (
             self.in_assembly and keyword not in ("END ASSEMBLY", "INSTANCE", "PART")
         )
@@ -108,17 +139,26 @@ class _Reader:
             self._nodes(block)
         elif keyword == "ELEMENT":
             self._elements(block)
-        elif keyword in ("NSET", "ELSET") and (not self.in_assembly or "INSTANCE" in block.parameters):
+        elif keyword in ("NSET", "ELSET") and (
+            not self.in_assembly or "INSTANCE" in block.parameters
+        ):
             self._set(block)
-        elif not self.materials.take(block) and not self.links.take(block) and keyword not in _QUIET:
+        elif (
+            not self.materials.take(block) and not self.links.take(block) and keyword not in _QUIET
+        ):
             self.parts.skipped[f"*{keyword}"] += 1
 
     def mesh(self) -> Mesh:
         if self.open:
             keyword, line = self.open.popitem()
-            raise line.wrong(f"*{keyword} has no *END {keyword}; the file is cut short, or that line was left out")
+            raise line.wrong(
+                f"*{keyword} has no *END {keyword}; the file is cut short, "
+                "or that line was left out"
+            )
         sections = self.materials.sections()
-        self.parts.sections = [(self._of_section(name, line), material) for line, name, material in sections]
+        self.parts.sections = [
+            (self._of_section(name, line), material) for line, name, material in sections
+        ]
         self.links.add_to(self.parts, self._set_of)
         mesh = self.parts.mesh()
         return replace(mesh, remarks=(*mesh.remarks, *remarks_of(mesh.skipped)))
@@ -130,14 +170,26 @@ class _Reader:
 
     def _nodes(self, block: Block) -> None:
         if block.parameters.get("SYSTEM", "R").upper() != "R":
-            raise block.line.wrong("the nodes are in cylindrical or spherical coordinates; only SYSTEM=R is read")
-        chosen = self._selection("NSET", block.parameters["NSET"]) if block.parameters.get("NSET") else Selection()
+            raise block.line.wrong(
+                "the nodes are in cylindrical or spherical coordinates; only SYSTEM=R is read"
+            )
+        chosen = (
+            self._selection("NSET", block.parameters["NSET"])
+            if block.parameters.get("NSET")
+            else Selection()
+        )
         for line in block.data:
             fields = line.text.split(",")
             if len(fields) < 2:
-                raise line.wrong("a node must have a number and up to three coordinates, with commas between them")
+                raise line.wrong(
+                    "a node must have a number and up to three "
+                    "coordinates, with commas between them"
+                )
             number = parse_integer(fields[0], line, "the number of a node")
-            x, y, z = (parse_real(text, line) if text.strip() else 0.0 for text in [*fields[1:4], "", ""][:3])
+            x, y, z = (
+                parse_real(text, line) if text.strip() else 0.0
+                for text in [*fields[1:4], "", ""][:3]
+            )
             self.parts.add_node(line, number, (x, y, z))
             chosen.numbers.add(number)
 
@@ -148,17 +200,20 @@ class _Reader:
             if _OTHER_SOLID.match(given):
                 if solid is not None and solid[1] in _KINDS:
                     raise block.line.wrong(
-                        f"{shown(given)} in the assembly is a solid element that is not read; it must be in a part or an instance"
+                        f"{shown(given)} in the assembly is a solid element that is not "
+                        "read; it must be in a part or an instance"
                     )
                 raise block.line.wrong(
                     f"{shown(given)} is an element that is not read; solid elements must be "
-                    "C3D4, C3D5, C3D6, C3D8, C3D10, C3D13, C3D15, C3D20 or C3D27, also with letters behind, as C3D8R"
+                    "C3D4, C3D5, C3D6, C3D8, C3D10, C3D13, C3D15, C3D20 or C3D27, also with "
+                    "letters behind, as C3D8R"
                 )
             if not given:
                 raise block.line.wrong("*ELEMENT has no TYPE; it must have one, such as TYPE=C3D10")
             if block.parameters.get("ELSET"):  # which other sets may refer to
                 self._selection("ELSET", block.parameters["ELSET"])
-            # an element continues on the next line after a trailing comma, so that the other lines count the elements
+            # an element continues on the next line after a trailing comma, so that the other lines
+            # count the elements
             ends = sum(not line.text.rstrip().endswith(",") for line in block.data)
             self.parts.skipped[given] += max(ends, 1)
             return
@@ -173,17 +228,26 @@ class _Reader:
                 first = line
             texts = line.text.split(",")
             goes_on = not texts[-1].strip()
-            numbers += [parse_integer(text, line, "the number of an element or node") for text in (texts[:-1] if goes_on else texts)]
+            numbers += [
+                parse_integer(text, line, "the number of an element or node")
+                for text in (texts[:-1] if goes_on else texts)
+            ]
             if len(numbers) == wanted:
                 self.parts.add_element(first, kind, numbers[0], numbers[1:])
                 chosen.numbers.add(numbers[0])
                 numbers = []
             elif not goes_on or len(numbers) > wanted:
                 element = self.parts.written(numbers[0])
-                raise first.wrong(f"element {element} has {len(numbers) - 1} nodes; {given} must have {wanted - 1}")
+                raise first.wrong(
+                    f"element {element} has {len(numbers) - 1} nodes; {given} must have "
+                    f"{wanted - 1}"
+                )
         if numbers:
             element = self.parts.written(numbers[0])
-            raise first.wrong(f"element {element} has {len(numbers) - 1} nodes and its lines end there; {given} must have {wanted - 1}")
+            raise first.wrong(
+                f"element {element} has {len(numbers) - 1} nodes and its lines end there; "
+                f"{given} must have {wanted - 1}"
+            )
 
     def _set(self, block: Block) -> None:
         kind = block.keyword
@@ -202,7 +266,8 @@ class _Reader:
                 chosen.ranges.add(_range(texts, line))
                 continue
             for text in texts:
-                number = text.rpartition(".")[2]  # in a set of the assembly, members may be written instance.number
+                # in a set of the assembly, members may be written instance.number
+                number = text.rpartition(".")[2]
                 if number.isdigit():
                     chosen.numbers.add(parse_integer(number, line, "the number of a member"))
                 elif text not in included:
@@ -210,31 +275,51 @@ class _Reader:
                     self.parts.add_members(line, chosen, self._known(kind, text.strip('"'), line))
 
     def _set_of(self, kind: str, name: str) -> Selection | None:
-        """Return the set of a name, with or without the instance before it; None if there is none."""
-        exact = next((key for key in (name.upper(), name.rpartition(".")[2].upper()) if (kind, key) in self.names), None)
+        """Return the set of a name, with or without the instance before it; None if there
+        is none.
+        """
+        exact = next(
+            (
+                key
+                for key in (name.upper(), name.rpartition(".")[2].upper())
+                if (kind, key) in self.names
+            ),
+            None,
+        )
         return None if exact is None else self._selection(kind, exact)
 
     def _known(self, kind: str, name: str, line: TextLine) -> Selection:
         found = self._set_of(kind, name)
         if found is None:
             suggestion = self._suggestion(kind, name)
-            raise line.wrong(f"{shown(name)} is neither a number nor a *{kind} before this line; it must be one of them.{suggestion}")
+            raise line.wrong(
+                f"{shown(name)} is neither a number nor a *{kind} before this line; it "
+                f"must be one of them.{suggestion}"
+            )
         return found
 
     def _of_section(self, name: str, line: TextLine) -> Selection:
         """Return the elements of a section, whose set may come after it."""
         found = self._set_of("ELSET", name)
         if found is None:
-            raise line.wrong(f"the file has no element set {shown(name)}, of which the section is.{self._suggestion('ELSET', name)}")
+            raise line.wrong(
+                f"the file has no element set {shown(name)}, of which the section "
+                f"is.{self._suggestion('ELSET', name)}"
+            )
         return found
 
     def _suggestion(self, kind: str, name: str) -> str:
-        return did_you_mean(name.upper(), [key for of, key in self.names if of == kind and len(key) < 100][:1000])
+        return did_you_mean(
+            name.upper(), [key for of, key in self.names if of == kind and len(key) < 100][:1000]
+        )
 
 
 def _range(texts: list[str], line: TextLine) -> tuple[int, int, int]:
     numbers = [parse_integer(text, line, "the bound of a range") for text in texts]
     first, last, step = [*numbers, 1][:3] if len(numbers) in (2, 3) else (1, 0, 1)
     if last < first or step < 1:
-        raise line.wrong("GENERATE needs first and last, and may have a step; last must be at least first, and step at least 1")
+        raise line.wrong(
+            "GENERATE needs first and last, and may have a step; last must be at least "
+            "first, and step at least 1"
+        )
     return first, last, step

@@ -39,8 +39,8 @@ _VERSIONS = re.compile(r"2(\.\d+)?|4(\.[01]0*)?")
 def read_gmsh(path: str | PathLike[str]) -> Mesh:
     """Read the solid elements of an ASCII Gmsh mesh file, version 2, 4.0 or 4.1.
 
-    Physical groups of points, lines and surfaces become node sets, those of volumes element sets; an unnamed group n is called
-    `group<n>`.
+    Physical groups of points, lines and surfaces become node sets, those of volumes element sets;
+    an unnamed group n is called `group<n>`.
 
     Parameters
     ----------
@@ -50,7 +50,8 @@ def read_gmsh(path: str | PathLike[str]) -> Mesh:
     Raises
     ------
     InputError
-        If it is not such a file, is binary, or has prisms of 18 nodes or elements of higher than second order.
+        If it is not such a file, is binary, or has prisms of 18 nodes or elements of higher than
+        second order.
 
     Examples
     --------
@@ -70,9 +71,16 @@ def read_gmsh(path: str | PathLike[str]) -> Mesh:
     except InputError as error:
         raise with_path(path, error) from None
     if _BINARY.match(start):
-        raise InputError(f"{path}: this is a binary file; save the mesh as ASCII (in Gmsh the option Mesh.Binary = 0)")
+        raise InputError(
+            f"{path}: this is a binary file; save the mesh as ASCII (in Gmsh the option "
+            "Mesh.Binary = 0)"
+        )
     reader = _Reader(path)
-    found = sections(read_lines(path), ("MeshFormat", "PhysicalNames", "Entities", "Nodes", "Elements"), reader.parts.skipped)
+    found = sections(
+        read_lines(path),
+        ("MeshFormat", "PhysicalNames", "Entities", "Nodes", "Elements"),
+        reader.parts.skipped,
+    )
     reader.read(found)
     return reader.parts.mesh()
 
@@ -91,13 +99,15 @@ class _Reader:
         for wanted in ("MeshFormat", "Nodes", "Elements"):
             if wanted not in found:
                 raise InputError(
-                    f"{self.parts.path}: the file has no ${wanted}; a mesh file of Gmsh must have $MeshFormat, $Nodes and $Elements"
+                    f"{self.parts.path}: the file has no ${wanted}; a mesh file of Gmsh "
+                    "must have $MeshFormat, $Nodes and $Elements"
                 )
         line, words = found["MeshFormat"].words(1)
         self.version = words[0]
         if not _VERSIONS.fullmatch(self.version):
             raise line.wrong(
-                f"the version {shown(self.version)} is not read; it must be 2, 4.0 or 4.1 (in Gmsh the option Mesh.MshFileVersion)"
+                f"the version {shown(self.version)} is not read; it must be 2, 4.0 or 4.1 "
+                "(in Gmsh the option Mesh.MshFileVersion)"
             )
         if "PhysicalNames" in found:
             self._names(found["PhysicalNames"])
@@ -122,7 +132,10 @@ class _Reader:
         while section.has_more:
             line, words = section.words(3)
             name = " ".join(words[2:]).strip('"')
-            dimension, tag = (parse_integer(word, line, "the dimension or number of a group") for word in words[:2])
+            dimension, tag = (
+                parse_integer(word, line, "the dimension or number of a group")
+                for word in words[:2]
+            )
             self.names[dimension, tag] = name or f"group{tag}"
 
     def _entities(self, section: GmshSection) -> None:
@@ -130,12 +143,22 @@ class _Reader:
         first, counts = section.words(4)
         for dimension, word in enumerate(counts[:4]):
             box = 3 if dimension == 0 and not self.is_40 else 6
-            for line, entity in section.take(parse_integer(word, first, "the number of entities"), 2 + box):
+            for line, entity in section.take(
+                parse_integer(word, first, "the number of entities"), 2 + box
+            ):
                 count = parse_integer(entity[1 + box], line, "the number of groups")
                 if count > _MOST_GROUPS:
-                    raise line.wrong(f"the entity belongs to {count} groups; it may belong to at most {_MOST_GROUPS}")
-                tags = [parse_integer(tag.lstrip("-"), line, "the number of a group") for tag in entity[2 + box : 2 + box + count]]
-                self.groups[dimension, parse_integer(entity[0], line, "the number of an entity")] = tags
+                    raise line.wrong(
+                        f"the entity belongs to {count} groups; it may belong "
+                        f"to at most {_MOST_GROUPS}"
+                    )
+                tags = [
+                    parse_integer(tag.lstrip("-"), line, "the number of a group")
+                    for tag in entity[2 + box : 2 + box + count]
+                ]
+                self.groups[
+                    dimension, parse_integer(entity[0], line, "the number of an entity")
+                ] = tags
 
     def _nodes_2(self, section: GmshSection) -> None:
         first, counts = section.words(1)
@@ -157,20 +180,32 @@ class _Reader:
                 for (_, tag), (line, words) in zip(tags, section.take(count, 3), strict=True):
                     self._node(line, tag[0], words)
         if left:
-            raise section.line.wrong("$Nodes holds another number of nodes than it states; the two must agree")
+            raise section.line.wrong(
+                "$Nodes holds another number of nodes than it states; the two must agree"
+            )
 
     def _node(self, line: TextLine, number: str, point: list[str]) -> None:
         x, y, z = point[:3]
         self.parts.add_node(
-            line, parse_integer(number, line, "the number of a node"), (parse_real(x, line), parse_real(y, line), parse_real(z, line))
+            line,
+            parse_integer(number, line, "the number of a node"),
+            (parse_real(x, line), parse_real(y, line), parse_real(z, line)),
         )
 
     def _elements_2(self, section: GmshSection) -> None:
         first, counts = section.words(1)
-        for line, words in section.take(parse_integer(counts[0], first, "the number of elements"), 4):
+        for line, words in section.take(
+            parse_integer(counts[0], first, "the number of elements"), 4
+        ):
             count = parse_integer(words[2], line, "the number of tags")
             tags = [parse_integer(word.lstrip("-"), line, "a tag") for word in words[3 : 3 + count]]
-            self._element(line, parse_integer(words[1], line, "a type of element"), words[0], words[3 + count :], tags[:1])
+            self._element(
+                line,
+                parse_integer(words[1], line, "a type of element"),
+                words[0],
+                words[3 + count :],
+                tags[:1],
+            )
 
     def _elements_4(self, section: GmshSection) -> None:
         line, words = section.words(2)
@@ -178,25 +213,38 @@ class _Reader:
         while section.has_more:
             line, words = section.words(4)
             dimension, entity, kind, count = (
-                parse_integer(word, line, "the dimension, entity, type or number of elements") for word in words[:4]
+                parse_integer(word, line, "the dimension, entity, type or number of elements")
+                for word in words[:4]
             )
             left -= count
             tags = self.groups.get((entity, dimension) if self.is_40 else (dimension, entity), [])
             for line, words in section.take(count, 2):
                 self._element(line, kind, words[0], words[1:], tags)
         if left:
-            raise section.line.wrong("$Elements holds another number of elements than it states; the two must agree")
+            raise section.line.wrong(
+                "$Elements holds another number of elements than it states; the two must agree"
+            )
 
-    def _element(self, line: TextLine, gmsh_type: int, number: str, words: list[str], tags: list[int]) -> None:
+    def _element(
+        self, line: TextLine, gmsh_type: int, number: str, words: list[str], tags: list[int]
+    ) -> None:
         if gmsh_type not in _SOLIDS and gmsh_type not in _SKINS:
             if gmsh_type == _PRISM18:
-                raise line.wrong("the element is a prism of 18 nodes, which is not read; prisms must have 6 or 15 nodes")
-            allowed = "all must be of first or second order, and solids tetrahedra, prisms, pyramids or bricks"
+                raise line.wrong(
+                    "the element is a prism of 18 nodes, which is not read; prisms must "
+                    "have 6 or 15 nodes"
+                )
+            allowed = (
+                "all must be of first or second order, and solids "
+                "tetrahedra, prisms, pyramids or bricks"
+            )
             raise line.wrong(f"the element is of type {gmsh_type}, which is not read; {allowed}")
         solid = _SOLIDS.get(gmsh_type)
         dimension, count = (3, len(ELEMENT_KINDS[solid].reference)) if solid else _SKINS[gmsh_type]
         if len(words) != count:
-            raise line.wrong(f"the element has {len(words)} nodes; its type {gmsh_type} must have {count}")
+            raise line.wrong(
+                f"the element has {len(words)} nodes; its type {gmsh_type} must have {count}"
+            )
         nodes = [parse_integer(word, line, "the number of a node") for word in words]
         names = [self.names.get((dimension, tag), f"group{tag}") for tag in tags if tag]
         if not solid:
@@ -205,7 +253,11 @@ class _Reader:
             return
         element = parse_integer(number, line, "the number of an element")
         # version 2 repeats an element of several groups under several numbers
-        again = self.known.setdefault(tuple(nodes), element) if self.version.startswith("2") else element
+        again = (
+            self.known.setdefault(tuple(nodes), element)
+            if self.version.startswith("2")
+            else element
+        )
         for name in names:
             self.parts.element_sets[name].numbers.add(again)
         if again == element:

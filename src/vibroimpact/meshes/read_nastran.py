@@ -37,13 +37,16 @@ _SET_NAME = re.compile(r"\$ node set (\d{1,18}): (\S.*)")
 
 
 def read_nastran(path: str | PathLike[str]) -> Mesh:
-    """Read the solid elements of a Nastran file (bulk data, with or without executive and case control).
+    """Read the solid elements of a Nastran file (bulk data, with or without executive and case
+    control).
 
-    The mesh consists of CTETRA, CPYRAM, CPENTA, CHEXA and GRID cards, also in coordinate systems of CORD1 and CORD2 cards. The elements of
-    property n form the set `PIDn`, the nodes of SPC1 cards the set `SPCn`, and those of `SET n` in case control the set `SETn`, or the
-    name in a comment "$ node set n: name". The materials of PSOLID cards are in `Mesh.stated`, as `MIDn`; elements of a fluid are left
-    out. Rigid elements and multipoint constraints are in `Mesh.joints`. Nodes in the middle of edges that are left blank are those of
-    neighbours, or new ones halfway. Other cards are counted in `Mesh.skipped`.
+    The mesh consists of CTETRA, CPYRAM, CPENTA, CHEXA and GRID cards, also in coordinate systems of
+    CORD1 and CORD2 cards. The elements of property n form the set `PIDn`, the nodes of SPC1 cards
+    the set `SPCn`, and those of `SET n` in case control the set `SETn`, or the name in a comment "$
+    node set n: name". The materials of PSOLID cards are in `Mesh.stated`, as `MIDn`; elements of a
+    fluid are left out. Rigid elements and multipoint constraints are in `Mesh.joints`. Nodes in the
+    middle of edges that are left blank are those of neighbours, or new ones halfway. Other cards
+    are counted in `Mesh.skipped`.
 
     Parameters
     ----------
@@ -82,7 +85,10 @@ def read_nastran(path: str | PathLike[str]) -> Mesh:
         if not ended and not materials.take(card) and not links.take(card):
             _read_card(card, parts, grids, held)
     if begin is not None and not ended:
-        raise InputError(f"{path}: there is a BEGIN BULK but no ENDDATA; the file is cut short, or that line was left out")
+        raise InputError(
+            f"{path}: there is a BEGIN BULK but no ENDDATA; the file is cut short, or that "
+            "line was left out"
+        )
     grids.add_to(parts)
     links.add_to(parts, grids.turned)
     parts.sections = materials.sections(parts.element_sets)
@@ -97,7 +103,9 @@ def _check_begin(line: TextLine) -> None:
 
 
 def _read_card(card: Card, parts: Parts, grids: NastranGrids, held: Counter[str]) -> None:
-    """Read a card; `held` counts the cards that hold nodes, of which the mesh has sets or nothing."""
+    """Read a card; `held` counts the cards that hold nodes, of which the mesh has sets or
+    nothing.
+    """
     line, name, fields = card
     if name == "GRID" and any(fields[6:7]):
         held["PS of GRID"] += 1
@@ -106,14 +114,25 @@ def _read_card(card: Card, parts: Parts, grids: NastranGrids, held: Counter[str]
     if name in _KINDS:
         _read_solid(card, parts)
     elif name.startswith(_OTHER_SOLIDS):
-        raise line.wrong(f"{shown(name)} is a solid element that is not read; the elements must be CTETRA, CPYRAM, CPENTA or CHEXA")
+        raise line.wrong(
+            f"{shown(name)} is a solid element that is not read; the elements must be "
+            "CTETRA, CPYRAM, CPENTA or CHEXA"
+        )
     elif name.startswith("INCLUDE"):
-        raise line.wrong("the file to include is not given; its name must be on the line of INCLUDE, in quotes if it has blanks")
+        raise line.wrong(
+            "the file to include is not given; its name must be on the line of INCLUDE, in "
+            "quotes if it has blanks"
+        )
     elif name == "SPC1":
         chosen = _selection([field for field in fields[2:] if field])
         if chosen is None:
-            raise line.wrong("the nodes of SPC1 can't be read; they must be numbers, or a number, THRU and a number")
-        parts.node_sets[f"SPC{parse_integer(fields[0], line, 'the number of a set')}"].update(chosen)
+            raise line.wrong(
+                "the nodes of SPC1 can't be read; they must be numbers, or "
+                "a number, THRU and a number"
+            )
+        parts.node_sets[f"SPC{parse_integer(fields[0], line, 'the number of a set')}"].update(
+            chosen
+        )
         held["SPC1"] += 1
     else:
         parts.skipped[name] += 1
@@ -122,14 +141,19 @@ def _read_card(card: Card, parts: Parts, grids: NastranGrids, held: Counter[str]
 def _read_solid(card: Card, parts: Parts) -> None:
     line, name, fields = card
     number = parse_integer(fields[0], line, "the number of an element")
-    nodes = [parse_integer(field, line, "the number of a node") if field else 0 for field in fields[2:]]
+    nodes = [
+        parse_integer(field, line, "the number of a node") if field else 0 for field in fields[2:]
+    ]
     while nodes and nodes[-1] == 0:
         nodes.pop()
     kinds = _KINDS[name]
     corners, most = kinds
     if not corners <= len(nodes) <= most or 0 in nodes[:corners]:
         given = len(nodes) - nodes.count(0)
-        raise line.wrong(f"{name} {number} has {given} nodes; it must have {corners} or {most}, and only nodes on edges may be left blank")
+        raise line.wrong(
+            f"{name} {number} has {given} nodes; it must have {corners} or {most}, and "
+            "only nodes on edges may be left blank"
+        )
     count = corners if len(nodes) == corners else most
     nodes = [node or OMITTED for node in [*nodes, *[0] * (count - len(nodes))]]
     parts.add_element(line, kinds[count], number, nodes)
@@ -138,7 +162,9 @@ def _read_solid(card: Card, parts: Parts) -> None:
 
 
 def _read_sets(lines: Iterable[TextLine], parts: Parts) -> None:
-    """Read the sets of case control; sets that are not lists of numbers and ranges are counted as skipped."""
+    """Read the sets of case control; sets that are not lists of numbers and ranges are
+    counted as skipped.
+    """
     names: dict[str, str] = {}
     listed: dict[str, list[str]] = {}
     open_set = ""
@@ -164,7 +190,9 @@ def _selection(words: Sequence[str]) -> Selection | None:
     """Return the selection of a list such as "1 5 THRU 10"; None if the list has other entries."""
     found = Selection()
     words = [word.upper() for word in words]
-    numbers = [int(word) if word.isascii() and word.isdigit() and len(word) <= 18 else -1 for word in words]
+    numbers = [
+        int(word) if word.isascii() and word.isdigit() and len(word) <= 18 else -1 for word in words
+    ]
     at = 0
     while at < len(words):
         if numbers[at] < 0:

@@ -42,10 +42,16 @@ class Selection:
         if not self.ranges:  # avoid arrays of the size of `known`: there may be many small sets
             return places
         ranges = np.array(list(self.ranges), dtype=np.int64)
-        starts, stops = np.searchsorted(known, ranges[:, 0]), np.searchsorted(known, ranges[:, 1], side="right")
+        starts, stops = (
+            np.searchsorted(known, ranges[:, 0]),
+            np.searchsorted(known, ranges[:, 1], side="right"),
+        )
         unit_step = ranges[:, 2] == 1
-        # ranges of step 1 by the cumulative sum of their starts and ends: thousands cost as much as one
-        ends = np.bincount(starts[unit_step], minlength=len(known) + 1) - np.bincount(stops[unit_step], minlength=len(known) + 1)
+        # ranges of step 1 by the cumulative sum of their starts and ends: thousands cost as much as
+        # one
+        ends = np.bincount(starts[unit_step], minlength=len(known) + 1) - np.bincount(
+            stops[unit_step], minlength=len(known) + 1
+        )
         chosen = np.cumsum(ends[:-1]) > 0
         chosen[places] = True
         others = (part[~unit_step].tolist() for part in (ranges, starts, stops))

@@ -10,7 +10,11 @@ from vibroimpact.errors import InputError
 from vibroimpact.files.reading import FileKind, read_text_bytes, with_path
 from vibroimpact.shown import shortened, shown
 
-MESH = FileKind("a mesh is a file of nodes and elements, in plain text (UTF-8 or Latin-1)", 2_000_000_000, "write a coarser mesh")
+MESH = FileKind(
+    "a mesh is a file of nodes and elements, in plain text (UTF-8 or Latin-1)",
+    2_000_000_000,
+    "write a coarser mesh",
+)
 """Requirements on a mesh file."""
 
 
@@ -27,7 +31,8 @@ class TextLine(NamedTuple):
 
 
 def read_lines(path: Path) -> list[TextLine]:
-    """Return the lines of a text file in UTF-8, or if it is not UTF-8, in Latin-1, which older programs write.
+    """Return the lines of a text file in UTF-8, or if it is not UTF-8, in Latin-1, which older
+    programs write.
 
     Raises
     ------
@@ -48,8 +53,11 @@ def read_lines(path: Path) -> list[TextLine]:
     return [TextLine(path, number, row) for number, row in enumerate(rows, 1)]
 
 
-def read_lines_with_includes(path: Path, included: Callable[[str], str | None]) -> Iterator[TextLine]:
-    """Yield the lines of a file, with the lines of an included file after the line that includes it.
+def read_lines_with_includes(
+    path: Path, included: Callable[[str], str | None]
+) -> Iterator[TextLine]:
+    """Yield the lines of a file, with the lines of an included file after the line that includes
+    it.
 
     A file may be included once, which rules out cycles and exponential growth.
 
@@ -58,7 +66,8 @@ def read_lines_with_includes(path: Path, included: Callable[[str], str | None]) 
     path : Path
         The main file.
     included : callable
-        Returns the name of the file that a line includes, relative to the including or the main file; None if it includes none.
+        Returns the name of the file that a line includes, relative to the including or the main
+        file; None if it includes none.
 
     Raises
     ------
@@ -79,14 +88,21 @@ def read_lines_with_includes(path: Path, included: Callable[[str], str | None]) 
 
 
 def _included_lines(line: TextLine, name: str, root: Path, seen: set[Path]) -> list[TextLine]:
-    """Return the lines of an included file, found relative to the including file or to the main file."""
+    """Return the lines of an included file, found relative to the including file or to
+    the main file.
+    """
     name = name.replace("\\", "/")
     try:
-        inner = next((folder / name for folder in (line.path.parent, root) if (folder / name).is_file()), root / name)
+        inner = next(
+            (folder / name for folder in (line.path.parent, root) if (folder / name).is_file()),
+            root / name,
+        )
         place = inner.resolve()
         lines = read_lines(inner)
     except (InputError, OSError, ValueError, RuntimeError) as error:
-        raise line.wrong(f"the file to include can't be read: {getattr(error, 'strerror', None) or error}") from None
+        raise line.wrong(
+            f"the file to include can't be read: {getattr(error, 'strerror', None) or error}"
+        ) from None
     if place in seen:
         raise line.wrong(f"{shown(name)} is included a second time; a file may be included once")
     seen.add(place)
@@ -103,7 +119,10 @@ def parse_integer(text: str, line: TextLine, what: str) -> int:
     """
     text = text.strip()
     if not (text.isascii() and text.isdigit() and len(text) <= 18):
-        raise line.wrong(f"{shown(text)} is not {what}; it must be a whole number of at most 18 digits, without a sign")
+        raise line.wrong(
+            f"{shown(text)} is not {what}; it must be a whole number of at "
+            "most 18 digits, without a sign"
+        )
     return int(text)
 
 
@@ -120,4 +139,6 @@ def parse_real(text: str, line: TextLine, what: str = "a coordinate") -> float:
             raise ValueError
         return float(text)
     except ValueError:
-        raise line.wrong(f"{shown(text.strip())} is not {what}; it must be a number such as 0.25 or 2.5e-3") from None
+        raise line.wrong(
+            f"{shown(text.strip())} is not {what}; it must be a number such as 0.25 or 2.5e-3"
+        ) from None

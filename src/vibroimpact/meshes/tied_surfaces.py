@@ -1,4 +1,6 @@
-"""Surfaces that a mesh file ties to one another: nodes of the one follow the faces of the other on which they lie."""
+"""Surfaces that a mesh file ties to one another: nodes of the one follow the faces of the
+other on which they lie.
+"""
 
 from __future__ import annotations
 
@@ -17,10 +19,12 @@ from vibroimpact.structures.mesh import Mesh
 from vibroimpact.structures.nearest_face import nearest_places
 from vibroimpact.structures.surface import Faces, outer_faces
 
-_REACH = 0.05  # of the mean length of edges of the faces: where a file gives no distance, as in Abaqus
+# of the mean length of edges of the faces: where a file gives no distance, as in Abaqus
+_REACH = 0.05
 _COARSER = 1.2  # ratio of mean lengths of edges
 _LEAST = 1e-12  # weight of a node below which it is rounding
-_MOVED = 1e-6  # of the extent of the mesh: smaller moves of nodes onto a face are rounding of the file
+# of the extent of the mesh: smaller moves of nodes onto a face are rounding of the file
+_MOVED = 1e-6
 
 
 @dataclass
@@ -30,7 +34,8 @@ class MeshSurface:
     Parameters
     ----------
     faces : list of (Selection, tuple of tuple of int)
-        Elements, and by their number of corners the corners of the face of each; none for all outer faces.
+        Elements, and by their number of corners the corners of the face of each; none for all outer
+        faces.
     nodes : Selection
         Nodes.
     """
@@ -64,14 +69,18 @@ class Tie:
 
 @dataclass
 class TiedNodes:
-    """What the ties of a file do: equations between the nodes of the mesh, nodes that are moved onto a face, and remarks."""
+    """What the ties of a file do: equations between the nodes of the mesh, nodes that are
+    moved onto a face, and remarks.
+    """
 
     equations: list[Equation]
     nodes: Floats
     remarks: list[str]
 
 
-def tied_nodes(mesh: Mesh, ties: Sequence[Tie], numbers: Integers, elements: tuple[Integers, Integers]) -> TiedNodes:
+def tied_nodes(
+    mesh: Mesh, ties: Sequence[Tie], numbers: Integers, elements: tuple[Integers, Integers]
+) -> TiedNodes:
     """Return what ties do to a mesh.
 
     Parameters
@@ -90,11 +99,14 @@ def tied_nodes(mesh: Mesh, ties: Sequence[Tie], numbers: Integers, elements: tup
     for tie in ties:
         names = " to ".join(shown(name)[1:-1] for name in tie.names)
         leader = _faces(mesh, tie.leader, elements)
-        followers = np.union1d(_nodes_of(_faces(mesh, tie.follower, elements)), tie.follower.nodes.places(numbers)).astype(np.int64)
+        followers = np.union1d(
+            _nodes_of(_faces(mesh, tie.follower, elements)), tie.follower.nodes.places(numbers)
+        ).astype(np.int64)
         followers = np.setdiff1d(followers[~tied[followers]], _nodes_of(leader))
         if not leader or not len(followers):
             found.remarks.append(
-                f"the tie {names} of the mesh file joins nothing: the second surface has no faces of solid elements, or the first has no "
+                f"the tie {names} of the mesh file joins nothing: the second surface has "
+                "no faces of solid elements, or the first has no "
                 "nodes of them but those of the second and those that are tied already"
             )
             continue
@@ -103,7 +115,8 @@ def tied_nodes(mesh: Mesh, ties: Sequence[Tie], numbers: Integers, elements: tup
         own = _faces(mesh, tie.follower, elements)
         if own and _mean_edge(mesh, own) > _COARSER * _mean_edge(mesh, leader):
             found.remarks.append(
-                f"of the surfaces that the mesh file ties, {names}, the first is the coarser: nodes of the second between its nodes move "
+                f"of the surfaces that the mesh file ties, {names}, the first is the "
+                "coarser: nodes of the second between its nodes move "
                 "freely, and the joint is too soft; name the finer one first"
             )
         places = nearest_places(mesh.nodes, leader, mesh.nodes[followers], reach)
@@ -115,21 +128,29 @@ def tied_nodes(mesh: Mesh, ties: Sequence[Tie], numbers: Integers, elements: tup
             furthest = max(furthest, place.distance)
             found.nodes[node] = place.position
             shares = [
-                (int(other), -float(weight)) for other, weight in zip(place.nodes, place.weights, strict=True) if abs(weight) > _LEAST
+                (int(other), -float(weight))
+                for other, weight in zip(place.nodes, place.weights, strict=True)
+                if abs(weight) > _LEAST
             ]
             for axis in range(AXES):
-                terms = [((int(numbers[node]), axis), 1.0), *(((int(numbers[other]), axis), weight) for other, weight in shares)]
+                terms = [
+                    ((int(numbers[node]), axis), 1.0),
+                    *(((int(numbers[other]), axis), weight) for other, weight in shares),
+                ]
                 found.equations.append(Equation(tie.line, terms))
         away = sum(place is None for place in places)
         if away:
             are = "is" if away == 1 else "are"
             found.remarks.append(
-                f"of the {len(places)} nodes that the mesh file ties by {names}, {away} {are} further than {reach:.4g} (in the unit of the "
-                f"file) from the faces of the second, and {are} not tied; give the tie a larger POSITION TOLERANCE"
+                f"of the {len(places)} nodes that the mesh file ties by {names}, {away} "
+                f"{are} further than {reach:.4g} (in the unit of the "
+                f"file) from the faces of the second, and {are} not tied; give the tie a "
+                "larger POSITION TOLERANCE"
             )
         if furthest > rounding:
             found.remarks.append(
-                f"nodes that the mesh file ties by {names} are moved onto the faces of the second, by up to "
+                f"nodes that the mesh file ties by {names} are moved onto the faces of the "
+                "second, by up to "
                 f"{furthest:.4g} (in the unit of the file)"
             )
     return found
@@ -150,7 +171,9 @@ def _faces(mesh: Mesh, surface: MeshSurface, elements: tuple[Integers, Integers]
             rows = here[(here >= first) & (here < first + len(block.connectivity))] - first
             first += len(block.connectivity)
             corners = by_corners.get(block.element.corners)
-            face = next((one for one in block.element.faces if corners and set(one) == set(corners)), None)
+            face = next(
+                (one for one in block.element.faces if corners and set(one) == set(corners)), None
+            )
             if face is not None and len(rows):
                 found.append(Faces(block.element, face, block.connectivity[rows]))
     return found
@@ -165,7 +188,9 @@ def _of_elements(mesh: Mesh, outer: Sequence[Faces], chosen: Integers) -> list[F
         mine = {tuple(row) for row in block.connectivity[rows].tolist()}
         for faces in outer:
             if faces.kind is block.element:
-                inside = np.array([tuple(row) in mine for row in faces.connectivity.tolist()], dtype=bool)
+                inside = np.array(
+                    [tuple(row) in mine for row in faces.connectivity.tolist()], dtype=bool
+                )
                 if inside.any():
                     found.append(Faces(faces.kind, faces.corners, faces.connectivity[inside]))
     return found
@@ -173,7 +198,14 @@ def _of_elements(mesh: Mesh, outer: Sequence[Faces], chosen: Integers) -> list[F
 
 def _nodes_of(groups: Sequence[Faces]) -> Integers:
     """Return the nodes of faces."""
-    return np.unique(np.concatenate([np.zeros(0, dtype=np.int64), *(faces.connectivity[:, faces.has_node].ravel() for faces in groups)]))
+    return np.unique(
+        np.concatenate(
+            [
+                np.zeros(0, dtype=np.int64),
+                *(faces.connectivity[:, faces.has_node].ravel() for faces in groups),
+            ]
+        )
+    )
 
 
 def _mean_edge(mesh: Mesh, groups: Sequence[Faces]) -> float:

@@ -1,4 +1,6 @@
-"""Time series of a mesh for ParaView: a .vtu file for each time, and a .pvd file that lists them."""
+"""Time series of a mesh for ParaView: a .vtu file for each time, and a .pvd file that
+lists them.
+"""
 
 from __future__ import annotations
 
@@ -15,15 +17,22 @@ from vibroimpact.meshes.write_vtu import cells_of, checked_values, grid_text, vt
 from vibroimpact.structures.mesh import Mesh
 
 
-def write_vtu_series(mesh: Mesh, path: str | PathLike[str], times: ArrayLike, point_data: Iterable[Mapping[str, ArrayLike]]) -> list[Path]:
-    """Write nodal values of a mesh over time, in single precision, into a folder that is being made: the files appear one by one.
+def write_vtu_series(
+    mesh: Mesh,
+    path: str | PathLike[str],
+    times: ArrayLike,
+    point_data: Iterable[Mapping[str, ArrayLike]],
+) -> list[Path]:
+    """Write nodal values of a mesh over time, in single precision, into a folder that is being
+    made: the files appear one by one.
 
     Parameters
     ----------
     mesh : Mesh
         The mesh.
     path : path
-        The .pvd file to open in ParaView; the .vtu files are written to a folder of the same name next to it.
+        The .pvd file to open in ParaView; the .vtu files are written to a folder of the same name
+        next to it.
     times : array_like
         Times [s].
     point_data : iterable of mapping of str to array
@@ -37,7 +46,8 @@ def write_vtu_series(mesh: Mesh, path: str | PathLike[str], times: ArrayLike, po
     Raises
     ------
     InputError
-        If the numbers of values and times differ, values have a wrong shape, or a file can't be written.
+        If the numbers of values and times differ, values have a wrong shape, or a file can't be
+        written.
 
     Examples
     --------
@@ -45,36 +55,66 @@ def write_vtu_series(mesh: Mesh, path: str | PathLike[str], times: ArrayLike, po
     >>> from vibroimpact.structures.mesh import ElementBlock
     >>> tet = Mesh(np.eye(4, 3), (ElementBlock("tet4", np.array([[3, 0, 1, 2]])),))
     >>> with TemporaryDirectory() as folder:
-    ...     files = write_vtu_series(tet, Path(folder, "tet.pvd"), [0.0, 1e-3], [{"displacement_m": np.zeros((4, 3))}] * 2)
+    ...     files = write_vtu_series(
+    ...         tet,
+    ...         Path(folder, "tet.pvd"),
+    ...         [0.0, 1e-3],
+    ...         [{"displacement_m": np.zeros((4, 3))}] * 2,
+    ...     )
     ...     [file.name for file in files]
     ['tet_000.vtu', 'tet_001.vtu']
     """
     target, instants, data = Path(path), np.asarray(times, dtype=float), iter(point_data)
     nodes, ends, types = cells_of(mesh)
-    grid = grid_text(mesh.nodes.astype(np.float32), nodes.astype(np.int32), ends.astype(np.int32), types)  # the same at all times
+    # the same at all times
+    grid = grid_text(
+        mesh.nodes.astype(np.float32), nodes.astype(np.int32), ends.astype(np.int32), types
+    )
     folder, files = target.parent / target.stem, []
     try:
         folder.mkdir(exist_ok=True)
         for number, values in zip(range(len(instants)), data, strict=False):
-            single = {name: checked_values(name, given, len(mesh.nodes)).astype(np.float32) for name, given in values.items()}
+            single = {
+                name: checked_values(name, given, len(mesh.nodes)).astype(np.float32)
+                for name, given in values.items()
+            }
             files.append(folder / f"{target.stem}_{number:03d}.vtu")
             files[-1].write_bytes(vtu_text(grid, single).encode())
         if len(files) < len(instants) or next(data, None) is not None:
-            raise InputError(f"there must be values for each of the {len(instants)} times, and no more", "point_data")
-        target.write_bytes(collection_text(instants.tolist(), [f"{target.stem}/{file.name}" for file in files]).encode())
+            raise InputError(
+                f"there must be values for each of the {len(instants)} times, and no more",
+                "point_data",
+            )
+        target.write_bytes(
+            collection_text(
+                instants.tolist(), [f"{target.stem}/{file.name}" for file in files]
+            ).encode()
+        )
     except OSError as error:
-        raise InputError(f"{error.filename or target}: it can't be written: {error.strerror}") from None
+        raise InputError(
+            f"{error.filename or target}: it can't be written: {error.strerror}"
+        ) from None
     return files
 
 
 def collection_text(times: Iterable[float], files: Iterable[str]) -> str:
     """Return the content of a .pvd file that lists a file for each time [s]."""
-    rows = [f'<DataSet timestep="{time!r}" part="0" file={quoteattr(file)}/>' for time, file in zip(times, files, strict=True)]
-    head = '<?xml version="1.0"?>\n<VTKFile type="Collection" version="0.1" byte_order="LittleEndian">\n<Collection>'
+    rows = [
+        f'<DataSet timestep="{time!r}" part="0" file={quoteattr(file)}/>'
+        for time, file in zip(times, files, strict=True)
+    ]
+    head = (
+        '<?xml version="1.0"?>\n<VTKFile type="Collection" version="0.1" '
+        'byte_order="LittleEndian">\n<Collection>'
+    )
     return "\n".join([head, *rows, "</Collection>", "</VTKFile>", ""])
 
 
 def series_size(mesh: Mesh, vectors: int) -> int:
-    """Return the approximate size of the file of one time [bytes], with a given number of nodal vectors."""
+    """Return the approximate size of the file of one time [bytes], with a given number of
+    nodal vectors.
+    """
     nodes, ends, _ = cells_of(mesh)
-    return int((4 * len(nodes) + 5 * len(ends) + 12 * (1 + vectors) * len(mesh.nodes)) * 4 / 3) + 2000
+    return (
+        int((4 * len(nodes) + 5 * len(ends) + 12 * (1 + vectors) * len(mesh.nodes)) * 4 / 3) + 2000
+    )

@@ -28,11 +28,16 @@ _A_LINE = 16
 """Largest number of entries on a line."""
 
 
-def write_abaqus(mesh: Mesh, path: str | PathLike[str], material: Material | None = None, thickness: float | None = None) -> None:
+def write_abaqus(
+    mesh: Mesh,
+    path: str | PathLike[str],
+    material: Material | None = None,
+    thickness: float | None = None,
+) -> None:
     """Write a mesh with its sets as an Abaqus input file in metres, kilograms and seconds.
 
-    27-node bricks become C3D20, which other programs read too, and 14-node pyramids C3D13, which Abaqus does not have;
-    each plate element becomes four S8R. Joints become ``*EQUATION``.
+    27-node bricks become C3D20, which other programs read too, and 14-node pyramids C3D13, which
+    Abaqus does not have; each plate element becomes four S8R. Joints become ``*EQUATION``.
 
     Parameters
     ----------
@@ -41,7 +46,8 @@ def write_abaqus(mesh: Mesh, path: str | PathLike[str], material: Material | Non
     path : path
         The file; an existing one is replaced.
     material : Material, optional
-        Material of the elements that have none of their own, written with the section definitions that use it.
+        Material of the elements that have none of their own, written with the section definitions
+        that use it.
     thickness : float, optional
         Thickness of the shells [m]; without it the shell section is omitted.
 
@@ -65,14 +71,19 @@ def write_abaqus(mesh: Mesh, path: str | PathLike[str], material: Material | Non
     export = deck_mesh(mesh, material)
     check_shell_thickness(thickness)
     rows = ["*NODE"]
-    rows += [f"{number}, {x!r}, {y!r}, {z!r}" for number, (x, y, z) in enumerate(export.points.tolist(), 1)]
+    rows += [
+        f"{number}, {x!r}, {y!r}, {z!r}"
+        for number, (x, y, z) in enumerate(export.points.tolist(), 1)
+    ]
     number = 0
     sections: dict[tuple[str, int], list[int]] = {}  # elements by kind of section and material
     for shape, nodes in export.blocks:
         rows.append(f"*ELEMENT, TYPE={_TYPES[shape]}")
         part = "SHELLS" if shape == "quad8" else "SOLIDS"
         for members in nodes.tolist():
-            sections.setdefault((part, int(export.element_materials[number])), []).append(number + 1)
+            sections.setdefault((part, int(export.element_materials[number])), []).append(
+                number + 1
+            )
             number += 1
             rows += _rows([number, *members])
     for keyword, sets in (("NSET", export.node_sets), ("ELSET", export.element_sets)):
@@ -83,7 +94,11 @@ def write_abaqus(mesh: Mesh, path: str | PathLike[str], material: Material | Non
         rows += [f"{node}, {axis}, {value!r}" for node, axis, value in equation]
     names: dict[int, str] = {}
     for of, one in export.materials.items():
-        names[of] = _quoted(one.name or "material") if _quoted(one.name or "material") not in names.values() else f"material-{of + 1}"
+        names[of] = (
+            _quoted(one.name or "material")
+            if _quoted(one.name or "material") not in names.values()
+            else f"material-{of + 1}"
+        )
         rows += [
             f"*MATERIAL, NAME={names[of]}",
             "*DENSITY",
@@ -96,8 +111,14 @@ def write_abaqus(mesh: Mesh, path: str | PathLike[str], material: Material | Non
         if of in names and data is not None:
             elset = part if of < 0 else f"{part}-{of + 1}"
             runs = np.split(elements, np.flatnonzero(np.diff(elements) != 1) + 1)
-            rows += [f"*ELSET, ELSET={elset}, GENERATE", *(f"{run[0]}, {run[-1]}, 1" for run in runs)]
-            rows += [f"*{part[:-1]} SECTION, ELSET={elset}, MATERIAL={names[of]}", *([data] if data else [])]
+            rows += [
+                f"*ELSET, ELSET={elset}, GENERATE",
+                *(f"{run[0]}, {run[-1]}, 1" for run in runs),
+            ]
+            rows += [
+                f"*{part[:-1]} SECTION, ELSET={elset}, MATERIAL={names[of]}",
+                *([data] if data else []),
+            ]
     write_text_file(path, "\n".join([*rows, ""]))
 
 
@@ -108,7 +129,11 @@ def _rows(numbers: Sequence[int]) -> Iterator[str]:
 
 
 def _quoted(name: str) -> str:
-    """Return a name as an Abaqus label, quoted unless it consists of letters, digits, "_" and "-" only."""
+    """Return a name as an Abaqus label, quoted unless it consists of letters, digits, "_"
+    and "-" only.
+    """
     label = one_line(name.replace('"', "'"))  # at most 80 characters, the limit of Abaqus
-    plain = label.isascii() and label.replace("_", "").replace("-", "").isalnum() and label[0].isalpha()
+    plain = (
+        label.isascii() and label.replace("_", "").replace("-", "").isalnum() and label[0].isalpha()
+    )
     return label if plain else f'"{label}"'

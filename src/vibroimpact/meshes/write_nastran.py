@@ -29,17 +29,24 @@ _CARDS = {
 _JOINTS = 1
 """Set of the multipoint constraints."""
 _SOLIDS, _SHELLS, _OWN = 1, 2, 3
-"""Property of solids of the body's material, of shells, and the first one of solids with materials of their own."""
+"""Property of solids of the body's material, of shells, and the first one of solids with
+materials of their own.
+"""
 
 
 def write_nastran(
-    mesh: Mesh, path: str | PathLike[str], material: Material | None = None, title: str = "", thickness: float | None = None
+    mesh: Mesh,
+    path: str | PathLike[str],
+    material: Material | None = None,
+    title: str = "",
+    thickness: float | None = None,
 ) -> None:
     """Write a mesh as Nastran bulk data in metres, kilograms and seconds.
 
-    27-node bricks become 20-node CHEXA, 14-node pyramids 13-node CPYRAM, each plate element four CQUAD8. Solids have property 1, shells
-    property 2, and solids with materials of their own the properties from 3 on, which have the numbers of the materials. Node sets
-    become SETs of case control, named in comments; element sets are omitted. Joints become MPC.
+    27-node bricks become 20-node CHEXA, 14-node pyramids 13-node CPYRAM, each plate element four
+    CQUAD8. Solids have property 1, shells property 2, and solids with materials of their own the
+    properties from 3 on, which have the numbers of the materials. Node sets become SETs of case
+    control, named in comments; element sets are omitted. Joints become MPC.
 
     Parameters
     ----------
@@ -83,12 +90,17 @@ def write_nastran(
     shapes = {shape for shape, _ in export.blocks}
     for number, one in export.materials.items():
         own = _SOLIDS if number < 0 else _OWN + number
-        youngs, poisson, density = (nastran_number(value) for value in (one.youngs_modulus, one.poissons_ratio, one.density))
+        youngs, poisson, density = (
+            nastran_number(value) for value in (one.youngs_modulus, one.poissons_ratio, one.density)
+        )
         rows += [f"MAT1*   {own:16d}{youngs:>16}{'':16}{poisson:>16}", f"*       {density:>16}"]
         if shapes - {"quad8"}:
             rows.append(f"PSOLID  {own:8d}{own:8d}")
     if thickness is not None and "quad8" in shapes:
-        rows += [f"PSHELL* {_SHELLS:16d}{1:16d}{nastran_number(thickness):>16}{1:16d}", f"*       {'':16}{1:16d}"]
+        rows += [
+            f"PSHELL* {_SHELLS:16d}{1:16d}{nastran_number(thickness):>16}{1:16d}",
+            f"*       {'':16}{1:16d}",
+        ]
     for number, point in enumerate(export.points.tolist(), 1):
         x, y, z = map(nastran_number, point)
         rows += [f"GRID*   {number:16d}{'':16}{x:>16}{y:>16}", f"*       {z:>16}"]
@@ -98,7 +110,14 @@ def write_nastran(
         for members in theirs.tolist():
             own = int(export.element_materials[number])
             number += 1
-            rows += _card(_CARDS[shape], [number, _SHELLS if shape == "quad8" else _SOLIDS if own < 0 else _OWN + own, *members])
+            rows += _card(
+                _CARDS[shape],
+                [
+                    number,
+                    _SHELLS if shape == "quad8" else _SOLIDS if own < 0 else _OWN + own,
+                    *members,
+                ],
+            )
     for equation in export.equations:
         rows += _constraint(equation)
     write_text_file(path, "\n".join([*rows, "ENDDATA", ""]))
@@ -109,7 +128,12 @@ def nastran_number(value: float) -> str:
 
     Examples
     --------
-    >>> nastran_number(0.1), nastran_number(-1 / 3), nastran_number(-1.2345678901234567e-12), nastran_number(2e11)
+    >>> (
+    ...     nastran_number(0.1),
+    ...     nastran_number(-1 / 3),
+    ...     nastran_number(-1.2345678901234567e-12),
+    ...     nastran_number(2e11),
+    ... )
     ('.1', '-.33333333333333', '-1.2345678901-12', '200000000000.')
     """
     # try the shortest text that gives the same number first: 0.1 rather than 0.10000000000000001
@@ -131,24 +155,39 @@ def nastran_number(value: float) -> str:
 
 def _card(name: str, numbers: Sequence[int]) -> Iterator[str]:
     for start in range(0, len(numbers), 8):
-        yield f"{name if start == 0 else '+':8}" + "".join(f"{number:8d}" for number in numbers[start : start + 8])
+        yield f"{name if start == 0 else '+':8}" + "".join(
+            f"{number:8d}" for number in numbers[start : start + 8]
+        )
 
 
 def _constraint(equation: Sequence[tuple[int, int, float]]) -> Iterator[str]:
-    """Yield the lines of a multipoint constraint in large fields, two terms to each pair of lines."""
+    """Yield the lines of a multipoint constraint in large fields, two terms to each pair
+    of lines.
+    """
     for start in range(0, len(equation), 2):
-        terms = [f"{node:16d}{axis:16d}{nastran_number(value):>16}" for node, axis, value in equation[start : start + 2]]
+        terms = [
+            f"{node:16d}{axis:16d}{nastran_number(value):>16}"
+            for node, axis, value in equation[start : start + 2]
+        ]
         yield f"MPC*    {_JOINTS:16d}{terms[0]}" if start == 0 else f"*       {'':16}{terms[0]}"
         yield f"*       {terms[1]}" if len(terms) > 1 else "*"
 
 
 def _set(number: int, nodes: Integers) -> Iterator[str]:
-    """Yield the lines of a SET of case control; runs of consecutive numbers are written as ranges (THRU)."""
+    """Yield the lines of a SET of case control; runs of consecutive numbers are written
+    as ranges (THRU).
+    """
     runs = np.split(nodes, np.flatnonzero(np.diff(nodes) != 1) + 1)
-    items = [f"{run[0]} THRU {run[-1]}" if len(run) > 2 else ", ".join(map(str, run)) for run in runs]
+    items = [
+        f"{run[0]} THRU {run[-1]}" if len(run) > 2 else ", ".join(map(str, run)) for run in runs
+    ]
     for start in range(0, len(items), 3):
         last = start + 3 >= len(items)
-        yield (f"SET {number} = " if start == 0 else "    ") + ", ".join(items[start : start + 3]) + ("" if last else ",")
+        yield (
+            (f"SET {number} = " if start == 0 else "    ")
+            + ", ".join(items[start : start + 3])
+            + ("" if last else ",")
+        )
 
 
 def _one_line(text: str) -> str:

@@ -31,11 +31,20 @@ _CELLS = {
 }
 _PYRAMID_NODES = 13
 """Of the pyramid of VTK that ParaView draws for that of 14 nodes."""
-_TYPES = {"float64": "Float64", "float32": "Float32", "int64": "Int64", "int32": "Int32", "uint8": "UInt8"}
+_TYPES = {
+    "float64": "Float64",
+    "float32": "Float32",
+    "int64": "Int64",
+    "int32": "Int32",
+    "uint8": "UInt8",
+}
 
 
-def write_vtu(mesh: Mesh, path: str | PathLike[str], point_data: Mapping[str, ArrayLike] | None = None) -> None:
-    """Write a mesh, and values at its nodes, as a VTK unstructured grid (.vtu), which ParaView opens.
+def write_vtu(
+    mesh: Mesh, path: str | PathLike[str], point_data: Mapping[str, ArrayLike] | None = None
+) -> None:
+    """Write a mesh, and values at its nodes, as a VTK unstructured grid (.vtu), which ParaView
+    opens.
 
     Each plate element becomes four biquadratic quadrilaterals.
 
@@ -64,16 +73,30 @@ def write_vtu(mesh: Mesh, path: str | PathLike[str], point_data: Mapping[str, Ar
     ...     "displacement_m" in Path(folder, "tet.vtu").read_text()
     True
     """
-    values = {name: checked_values(name, data, len(mesh.nodes)) for name, data in (point_data or {}).items()}
-    write_text_file(path, vtu_text(grid_text(np.asarray(mesh.nodes, dtype=float), *cells_of(mesh)), values))
+    values = {
+        name: checked_values(name, data, len(mesh.nodes))
+        for name, data in (point_data or {}).items()
+    }
+    write_text_file(
+        path, vtu_text(grid_text(np.asarray(mesh.nodes, dtype=float), *cells_of(mesh)), values)
+    )
 
 
 def cells_of(mesh: Mesh) -> tuple[Integers, Integers, NDArray[np.uint8]]:
     """Return the cells of a mesh as VTK arrays: connectivity, offsets and cell types."""
-    cells: list[tuple[int, Integers]] = [(_CELLS[block.kind], _cell_nodes(block)) for block in mesh.blocks]
-    sizes = np.concatenate([np.zeros(0, dtype=np.int64), *(np.full(len(nodes), nodes.shape[1]) for _, nodes in cells)])
+    cells: list[tuple[int, Integers]] = [
+        (_CELLS[block.kind], _cell_nodes(block)) for block in mesh.blocks
+    ]
+    sizes = np.concatenate(
+        [np.zeros(0, dtype=np.int64), *(np.full(len(nodes), nodes.shape[1]) for _, nodes in cells)]
+    )
     nodes = np.concatenate([np.zeros(0, dtype=np.int64), *(nodes.ravel() for _, nodes in cells)])
-    types = np.concatenate([np.zeros(0, dtype=np.uint8), *(np.full(len(nodes), cell, dtype=np.uint8) for cell, nodes in cells)])
+    types = np.concatenate(
+        [
+            np.zeros(0, dtype=np.uint8),
+            *(np.full(len(nodes), cell, dtype=np.uint8) for cell, nodes in cells),
+        ]
+    )
     return nodes, np.cumsum(sizes), types
 
 
@@ -81,14 +104,24 @@ def _cell_nodes(block: ElementBlock) -> Integers:
     """Return the nodes of the cells of a block."""
     if block.kind == "quad25":
         return nine_node_shells(block.connectivity)
-    return block.connectivity[:, :_PYRAMID_NODES] if block.kind == "pyramid14" else block.connectivity
+    return (
+        block.connectivity[:, :_PYRAMID_NODES] if block.kind == "pyramid14" else block.connectivity
+    )
 
 
-def grid_text(points: NDArray[np.floating], nodes: NDArray[np.integer], ends: NDArray[np.integer], types: NDArray[np.uint8]) -> str:
-    """Return the points and cells of a .vtu file, with all that comes before them; each array is written with its own precision."""
+def grid_text(
+    points: NDArray[np.floating],
+    nodes: NDArray[np.integer],
+    ends: NDArray[np.integer],
+    types: NDArray[np.uint8],
+) -> str:
+    """Return the points and cells of a .vtu file, with all that comes before them; each
+    array is written with its own precision.
+    """
     rows = [
         '<?xml version="1.0"?>',
-        '<VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian" header_type="UInt64">',
+        '<VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian" '
+        'header_type="UInt64">',
         "<UnstructuredGrid>",
         f'<Piece NumberOfPoints="{len(points)}" NumberOfCells="{len(types)}">',
         "<Points>",
@@ -104,7 +137,9 @@ def grid_text(points: NDArray[np.floating], nodes: NDArray[np.integer], ends: ND
 
 
 def vtu_text(grid: str, point_data: Mapping[str, NDArray[np.floating]]) -> str:
-    """Return the content of a .vtu file from its points and cells, by `grid_text`, and the values at its points."""
+    """Return the content of a .vtu file from its points and cells, by `grid_text`, and
+    the values at its points.
+    """
     rows = [
         grid,
         "<PointData>",
@@ -132,9 +167,15 @@ def checked_values(name: str, data: ArrayLike, nodes: int) -> Floats:
             raise TypeError
         values = values.astype(float)
     except (TypeError, ValueError):
-        raise InputError("the values are not real numbers; ParaView takes no others", name) from None
+        raise InputError(
+            "the values are not real numbers; ParaView takes no others", name
+        ) from None
     if values.shape not in ((nodes,), (nodes, 3)):
-        raise InputError(f"the values have the shape {values.shape}; it must be ({nodes},) or ({nodes}, 3), for {nodes} nodes", name)
+        raise InputError(
+            f"the values have the shape {values.shape}; it must be ({nodes},) or ({nodes}, "
+            f"3), for {nodes} nodes",
+            name,
+        )
     return values
 
 
@@ -144,4 +185,7 @@ def _array(name: str, values: NDArray[np.generic]) -> str:
     text = base64.b64encode(len(raw).to_bytes(8, "little") + raw).decode("ascii")
     label = quoteattr("".join(letter for letter in name if letter.isprintable()))
     components = f' NumberOfComponents="{values.shape[1]}"' if values.ndim == 2 else ""
-    return f'<DataArray type="{_TYPES[values.dtype.name]}" Name={label}{components} format="binary">{text}</DataArray>'
+    return (
+        f'<DataArray type="{_TYPES[values.dtype.name]}" Name={label}{components} '
+        f'format="binary">{text}</DataArray>'
+    )

@@ -39,14 +39,25 @@ def mode_charts(modes: Mapping[str, BodyModes]) -> list[Chart]:
     Examples
     --------
     >>> import vibroimpact as vi
-    >>> case = vi.read_case({
-    ...     "sphere": {"radius": "25 mm", "material": "rock-paper", "model": "elastic", "modes": 5},
-    ...     "plate": {"material": "rigid"}, "drop": {"speed": 1.0}, "contact": {"law": "hertz"},
-    ... })
+    >>> case = vi.read_case(
+    ...     {
+    ...         "sphere": {
+    ...             "radius": "25 mm",
+    ...             "material": "rock-paper",
+    ...             "model": "elastic",
+    ...             "modes": 5,
+    ...         },
+    ...         "plate": {"material": "rigid"},
+    ...         "drop": {"speed": 1.0},
+    ...         "contact": {"law": "hertz"},
+    ...     }
+    ... )
     >>> [(chart.name, len(chart.panels)) for chart in mode_charts(vi.compute_modes(case))]
     [('sphere_modes', 8)]
     """
-    return made_charts({f"{name}_modes": partial(_chart, name, body) for name, body in modes.items()})
+    return made_charts(
+        {f"{name}_modes": partial(_chart, name, body) for name, body in modes.items()}
+    )
 
 
 def is_plate(model: ModalModel) -> bool:
@@ -66,7 +77,10 @@ def _chart(name: str, body: BodyModes) -> Chart:
         shape = float(np.clip(extent[1] / extent[0], 0.3, 1.5))
     else:
         size = f"{brief(extent.max(), 'm')} large"
-        meaning = "Red is outwards, blue is inwards; where it only twists, what is lighter moves more. Dashed: at rest."
+        meaning = (
+            "Red is outwards, blue is inwards; where it only twists, what is lighter moves "
+            "more. Dashed: at rest."
+        )
         shape = 1.0
     columns = min(_COLUMNS, number)
     blank = Panel(panels[0].x, panels[0].y, (), picture=True)
@@ -74,6 +88,17 @@ def _chart(name: str, body: BodyModes) -> Chart:
     rows = tuple(tuple(panels[start : start + columns]) for start in range(0, len(panels), columns))
     title = f"Modes of the {name}" if number > 1 else f"The mode of the {name}"
     way = "up" if flat else "outwards"
-    drawn = f"The first {number} of {len(model.frequencies)} modes, each drawn as large as the others" if number > 1 else "The lowest mode"
+    drawn = (
+        f"The first {number} of {len(model.frequencies)} modes, each drawn as large as the others"
+        if number > 1
+        else "The lowest mode"
+    )
     caption = f"{drawn}; which way is {way} is arbitrary."
-    return Chart(f"{name}_modes", title, rows, caption, _WIDTH * shape + _TITLE, f"The {name} is {size}. {meaning}")
+    return Chart(
+        f"{name}_modes",
+        title,
+        rows,
+        caption,
+        _WIDTH * shape + _TITLE,
+        f"The {name} is {size}. {meaning}",
+    )

@@ -1,4 +1,6 @@
-"""The modes of a case as data: the tables and the summary of their folder, and what `modes --json` and `check --json` print."""
+"""The modes of a case as data: the tables and the summary of their folder, and what
+`modes --json` and `check --json` print.
+"""
 
 from __future__ import annotations
 
@@ -26,23 +28,44 @@ MODE_COLUMNS = (
     "effective_mass_y_kg",
     "effective_mass_z_kg",
 )
-POINT_COLUMNS = ("body", "point", "mode", "frequency_Hz", "shape_x_per_sqrt_kg", "shape_y_per_sqrt_kg", "shape_z_per_sqrt_kg")
+POINT_COLUMNS = (
+    "body",
+    "point",
+    "mode",
+    "frequency_Hz",
+    "shape_x_per_sqrt_kg",
+    "shape_y_per_sqrt_kg",
+    "shape_z_per_sqrt_kg",
+)
 
 
 def modes_document(case: Case, modes: Mapping[str, BodyModes]) -> dict[str, Any]:
-    """Return what `modes --json` prints: the summary of the folder, and for each body the rows of `modes.csv` and `points.csv`."""
+    """Return what `modes --json` prints: the summary of the folder, and for each body the
+    rows of `modes.csv` and `points.csv`.
+    """
     summary = summary_of_modes(case, modes)
-    tables = {name: {"modes": mode_rows(name, body), "points": point_rows(name, body)} for name, body in modes.items()}
-    return {**summary, "modes": {name: {**one, **tables[name]} for name, one in summary["modes"].items()}}
+    tables = {
+        name: {"modes": mode_rows(name, body), "points": point_rows(name, body)}
+        for name, body in modes.items()
+    }
+    return {
+        **summary,
+        "modes": {name: {**one, **tables[name]} for name, one in summary["modes"].items()},
+    }
 
 
 def summary_of_modes(case: Case, modes: Mapping[str, BodyModes]) -> dict[str, Any]:
     """Return the content of `summary.json` in the folder of modes."""
-    return {"name": case.name, "version": __version__, "modes": {name: _body_summary(body) for name, body in modes.items()}}
+    return {
+        "name": case.name,
+        "version": __version__,
+        "modes": {name: _body_summary(body) for name, body in modes.items()},
+    }
 
 
 def mesh_facts(case: Case) -> dict[str, dict[str, Any]]:
-    """Return what is known of the mesh of each elastic body of a case before its modes are computed.
+    """Return what is known of the mesh of each elastic body of a case before its modes are
+    computed.
 
     Raises
     ------
@@ -52,12 +75,17 @@ def mesh_facts(case: Case) -> dict[str, dict[str, Any]]:
     meshes = meshes_of(case)
     return {
         name: {
-            "elements": ", ".join(f"{len(block.connectivity)} {block.kind}" for block in meshes[name].blocks),
+            "elements": ", ".join(
+                f"{len(block.connectivity)} {block.kind}" for block in meshes[name].blocks
+            ),
             "nodes": len(meshes[name].nodes),
             "degrees_of_freedom": meshes[name].dofs_per_node * len(meshes[name].nodes),
             "modes_computed": has_model(model_key(body.recipe)),
             "materials": meshes[name].materials_text,
-            "remarks": [*meshes[name].remarks, *contradictions(meshes[name].stated, getattr(case, name).material)],
+            "remarks": [
+                *meshes[name].remarks,
+                *contradictions(meshes[name].stated, getattr(case, name).material),
+            ],
         }
         for name, body in elastic_bodies(case).items()
     }
@@ -89,7 +117,13 @@ def mode_rows(name: str, body: BodyModes) -> list[dict[str, Any]]:
 def point_rows(name: str, body: BodyModes) -> list[dict[str, Any]]:
     """Return the shapes of a body at the watched points as rows of `POINT_COLUMNS`."""
     return [
-        dict(zip(POINT_COLUMNS, (name, point, mode + 1, float(body.basis.frequencies[mode]), *map(float, shape)), strict=True))
+        dict(
+            zip(
+                POINT_COLUMNS,
+                (name, point, mode + 1, float(body.basis.frequencies[mode]), *map(float, shape)),
+                strict=True,
+            )
+        )
         for point in body.body.watched
         for mode, shape in enumerate(body.basis.points[point])
     ]

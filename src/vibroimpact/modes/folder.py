@@ -1,4 +1,6 @@
-"""Write the modes of a case: tables, the report page, and the meshes for other programs; figures where they are asked for."""
+"""Write the modes of a case: tables, the report page, and the meshes for other programs;
+figures where they are asked for.
+"""
 
 from __future__ import annotations
 
@@ -17,7 +19,13 @@ from vibroimpact.meshes.write_abaqus import write_abaqus
 from vibroimpact.meshes.write_nastran import write_nastran
 from vibroimpact.meshes.write_vtu import write_vtu
 from vibroimpact.modes.charts import mode_charts
-from vibroimpact.modes.document import MODE_COLUMNS, POINT_COLUMNS, mode_rows, point_rows, summary_of_modes
+from vibroimpact.modes.document import (
+    MODE_COLUMNS,
+    POINT_COLUMNS,
+    mode_rows,
+    point_rows,
+    summary_of_modes,
+)
 from vibroimpact.modes.measured_table import MeasuredTable
 from vibroimpact.modes.page import modes_page
 from vibroimpact.results.csv_files import write_csv
@@ -48,15 +56,16 @@ def save_modes(
     force : bool, default False
         Replace an existing result folder.
     figures : sequence of str
-        Formats in which the charts are also written as files, into a folder `figures`: of "png", "svg" and "pdf".
+        Formats in which the charts are also written as files, into a folder `figures`: of "png",
+        "svg" and "pdf".
     measured : MeasuredTable, optional
         Measured modes, for the report and `measured.csv`.
 
     Returns
     -------
     pathlib.Path
-        The folder: `report.html`, `modes.csv`, `points.csv` if points are watched, `summary.json`, `case.toml`, and for each body
-        its mesh as .bdf and .inp and its shapes as .vtu.
+        The folder: `report.html`, `modes.csv`, `points.csv` if points are watched, `summary.json`,
+        `case.toml`, and for each body its mesh as .bdf and .inp and its shapes as .vtu.
 
     Raises
     ------
@@ -67,27 +76,47 @@ def save_modes(
     --------
     >>> from tempfile import TemporaryDirectory
     >>> import vibroimpact as vi
-    >>> case = vi.read_case({
-    ...     "sphere": {"radius": "25 mm", "material": "rock-paper", "model": "elastic", "modes": 5},
-    ...     "plate": {"material": "rigid"}, "drop": {"speed": 1.0}, "contact": {"law": "hertz"},
-    ... })
+    >>> case = vi.read_case(
+    ...     {
+    ...         "sphere": {
+    ...             "radius": "25 mm",
+    ...             "material": "rock-paper",
+    ...             "model": "elastic",
+    ...             "modes": 5,
+    ...         },
+    ...         "plate": {"material": "rigid"},
+    ...         "drop": {"speed": 1.0},
+    ...         "contact": {"law": "hertz"},
+    ...     }
+    ... )
     >>> with TemporaryDirectory() as folder:
     ...     place = vi.save_modes(case, vi.compute_modes(case), f"{folder}/modes")
     ...     sorted(file.name for file in place.iterdir())
-    ['case.toml', 'modes.csv', 'report.html', 'sphere.bdf', 'sphere.inp', 'sphere.vtu', 'summary.json']
+    ['case.toml', 'modes.csv', 'report.html', 'sphere.bdf', 'sphere.inp', 'sphere.vtu',
+    'summary.json']
     """
     with new_folder(directory, force=force) as folder:
         (folder / "case.toml").write_text(tomli_w.dumps(resolved_case(case)), encoding="utf-8")
-        write_csv([row for name, body in modes.items() for row in mode_rows(name, body)], list(MODE_COLUMNS), folder / "modes.csv")
+        write_csv(
+            [row for name, body in modes.items() for row in mode_rows(name, body)],
+            list(MODE_COLUMNS),
+            folder / "modes.csv",
+        )
         points = [row for name, body in modes.items() for row in point_rows(name, body)]
         if points:
             write_csv(points, list(POINT_COLUMNS), folder / "points.csv")
         if measured is not None:
-            write_csv([dict(row) for row in measured.rows], list(measured.columns), folder / "measured.csv")
+            write_csv(
+                [dict(row) for row in measured.rows],
+                list(measured.columns),
+                folder / "measured.csv",
+            )
         summary = summary_of_modes(case, modes)
         write_summary(summary, folder)
         charts = mode_charts(modes)
-        (folder / "report.html").write_text(modes_page(case, modes, charts, measured), encoding="utf-8")
+        (folder / "report.html").write_text(
+            modes_page(case, modes, charts, measured), encoding="utf-8"
+        )
         write_figures(charts, folder, figures)
         for name, body in modes.items():
             _write_meshes(folder, name, body, getattr(case, name).material)

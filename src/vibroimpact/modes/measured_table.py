@@ -9,8 +9,8 @@ from typing import Any, NamedTuple
 class MeasuredTable(NamedTuple):
     """Measured modes beside those of a case.
 
-    `headers` and `cells` are the table of the page, `texts` the headers of its columns of words; `columns` and `rows` the table of
-    `measured.csv`; and `doubts` what is not sure.
+    `headers` and `cells` are the table of the page, `texts` the headers of its columns of words;
+    `columns` and `rows` the table of `measured.csv`; and `doubts` what is not sure.
     """
 
     headers: Sequence[str]

@@ -20,7 +20,12 @@ from vibroimpact.modes.tables import ROWS, body_facts, mode_table, rows_left_out
 from vibroimpact.report.page import render_page
 
 
-def modes_page(case: Case, modes: Mapping[str, BodyModes], charts: Sequence[Chart], measured: MeasuredTable | None = None) -> str:
+def modes_page(
+    case: Case,
+    modes: Mapping[str, BodyModes],
+    charts: Sequence[Chart],
+    measured: MeasuredTable | None = None,
+) -> str:
     """Return the page of the modes of a case as one self-contained HTML file.
 
     Parameters
@@ -38,7 +43,9 @@ def modes_page(case: Case, modes: Mapping[str, BodyModes], charts: Sequence[Char
     scene: dict[str, Any] | None = None
     lost: list[Chart] = []
     if plate is not None:
-        scene, lost = made_scene(lambda: mode_scene(plate, min(MOST_SHAPES, len(plate.model.frequencies))))
+        scene, lost = made_scene(
+            lambda: mode_scene(plate, min(MOST_SHAPES, len(plate.model.frequencies)))
+        )
     name = case.name or "a case"
     return render_page(
         __package__,
@@ -55,7 +62,9 @@ def modes_page(case: Case, modes: Mapping[str, BodyModes], charts: Sequence[Char
 
 
 def _told(name: str, found: BodyModes) -> dict[str, Any]:
-    """Return what the page tells of a body: its facts and doubts, its table with a row of dots where modes are left out, and its chart."""
+    """Return what the page tells of a body: its facts and doubts, its table with a row of
+    dots where modes are left out, and its chart.
+    """
     headers, rows = mode_table(found)
     if rows_left_out(found):
         rows.insert(ROWS, ["\u2026", *[""] * (len(headers) - 1)])

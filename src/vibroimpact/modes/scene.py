@@ -17,7 +17,8 @@ _HEIGHT = 0.12
 
 
 def mode_scene(body: BodyModes, number: int) -> dict[str, Any] | None:
-    """Return what a page draws of the first modes of a plate in motion; None if all of them are in its plane.
+    """Return what a page draws of the first modes of a plate in motion; None if all of them are in
+    its plane.
 
     Parameters
     ----------
@@ -29,8 +30,9 @@ def mode_scene(body: BodyModes, number: int) -> dict[str, Any] | None:
     Returns
     -------
     dict, optional
-        `x`, `y`: lines of the grid [m]; `modes`: name, period [s] and shape of each, scaled so that it can be seen [m]; `exaggeration`,
-        which is 1; `supports`: their outlines; `sensors`: their names and places.
+        `x`, `y`: lines of the grid [m]; `modes`: name, period [s] and shape of each, scaled so that
+        it can be seen [m]; `exaggeration`, which is 1; `supports`: their outlines; `sensors`: their
+        names and places.
     """
     mesh = body.model.mesh
     grid = surface_grid(mesh)
@@ -41,14 +43,23 @@ def mode_scene(body: BodyModes, number: int) -> dict[str, Any] | None:
         if not is_in_plane(moved):
             height = grid.interpolate(moved[:, 2])
             shape = (size / np.nanmax(np.abs(height)) * height).ravel()
-            modes.append({"name": mode_title(body.model, mode), "period": 1.0 / float(body.model.frequencies[mode]), "shape": shape})
+            modes.append(
+                {
+                    "name": mode_title(body.model, mode),
+                    "period": 1.0 / float(body.model.frequencies[mode]),
+                    "shape": shape,
+                }
+            )
     return (
         {
             "x": grid.x,
             "y": grid.y,
             "modes": modes,
             "exaggeration": 1.0,
-            "supports": [np.column_stack(outline) for outline in support_outlines(body.body.recipe.supports, mesh)],
+            "supports": [
+                np.column_stack(outline)
+                for outline in support_outlines(body.body.recipe.supports, mesh)
+            ],
             "sensors": [{"name": name, "x": x, "y": y} for name, x, y in sensor_places(body)],
         }
         if modes

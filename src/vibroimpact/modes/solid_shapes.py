@@ -1,4 +1,6 @@
-"""Mode shapes of a solid body: its deformed surface, seen obliquely from above, coloured by the displacement outwards."""
+"""Mode shapes of a solid body: its deformed surface, seen obliquely from above, coloured
+by the displacement outwards.
+"""
 
 from __future__ import annotations
 
@@ -18,7 +20,9 @@ _FACETS = 3000
 
 _MOST_DIVISIONS = 6
 _MOST_DRAWN = 40_000
-"""Facets of all shapes; a body with so many faces that it would have more is shown in fewer modes."""
+"""Facets of all shapes; a body with so many faces that it would have more is shown in
+fewer modes.
+"""
 
 _EXAGGERATED = 0.12
 """Largest drawn displacement over the size of the body."""
@@ -27,7 +31,9 @@ _TWISTING = 0.05
 """Part of the largest displacement below which the displacement outwards is none."""
 
 _OVERLAP = 0.01
-"""Part by which the facets that are turned to the viewer are larger than the silhouette of a body that is not convex."""
+"""Part by which the facets that are turned to the viewer are larger than the silhouette
+of a body that is not convex.
+"""
 
 _AWAY = np.array([np.sin(TURN) * np.cos(TILT), np.cos(TURN) * np.cos(TILT), -np.sin(TILT)])
 """The direction of view."""
@@ -43,7 +49,11 @@ def solid_panels(model: ModalModel, number: int) -> list[Panel]:
     number : int
         Number of modes, at most.
     """
-    across, up, scale = Axis("across", "m"), Axis("up", "m"), Axis("Displacement outwards, part of the largest")
+    across, up, scale = (
+        Axis("across", "m"),
+        Axis("up", "m"),
+        Axis("Displacement outwards, part of the largest"),
+    )
     faces = _Surface(model)
     size = float(np.ptp(faces.corners, axis=(0, 1)).max())
     middle, rest = faces.corners.mean(axis=(0, 1)), _silhouette(faces.corners)
@@ -60,9 +70,16 @@ def solid_panels(model: ModalModel, number: int) -> list[Panel]:
         marks: tuple[Mark, ...]
         if np.abs(radial).max() < _TWISTING * most:
             distance = np.linalg.norm(moved, axis=-1).mean(axis=1)[seen][order]
-            marks = Facets(corners, distance / most), Label(0.5, 0.0, "twisting", "below", corner=True)
+            marks = (
+                Facets(corners, distance / most),
+                Label(0.5, 0.0, "twisting", "below", corner=True),
+            )
         else:
-            marks = (Facets(corners, radial[seen][order] / np.abs(radial).max(), diverging=True, scale=scale),)
+            marks = (
+                Facets(
+                    corners, radial[seen][order] / np.abs(radial).max(), diverging=True, scale=scale
+                ),
+            )
         panels.append(Panel(across, up, (*marks, *rest), mode_title(model, mode), picture=True))
     return panels
 
@@ -78,8 +95,11 @@ def _silhouette(corners: Floats) -> tuple[Line, ...]:
     seen, _ = _seen(corners)
     facets = _projected(corners[seen])
     hull = ConvexHull(facets.reshape(-1, 2))
-    (a, b), (c, d) = (np.moveaxis(facets[:, end] - facets[:, start], -1, 0) for start, end in ((0, 2), (1, 3)))
-    if 0.5 * float(np.abs(a * d - b * c).sum()) > (1.0 + _OVERLAP) * hull.volume:  # facets hide others
+    (a, b), (c, d) = (
+        np.moveaxis(facets[:, end] - facets[:, start], -1, 0) for start, end in ((0, 2), (1, 3))
+    )
+    # facets hide others
+    if 0.5 * float(np.abs(a * d - b * c).sum()) > (1.0 + _OVERLAP) * hull.volume:
         return ()
     x, y = facets.reshape(-1, 2)[np.append(hull.vertices, hull.vertices[0])].T
     return (Line(x, y, role="ghost"),)
@@ -93,7 +113,9 @@ def _seen(corners: Floats) -> tuple[Bools, Indices]:
 
 
 class _Surface:
-    """The facets of the surface of a body, (facets, 4, 3), those of triangles with their last corner twice; and their displacements."""
+    """The facets of the surface of a body, (facets, 4, 3), those of triangles with their
+    last corner twice; and their displacements.
+    """
 
     def __init__(self, model: ModalModel) -> None:
         self.model = model
@@ -112,7 +134,9 @@ class _Surface:
         for group in self.groups:
             cells = _cells(len(group.corners), self.divisions)
             weights = group.shape_functions(cells.reshape(-1, 2))[0]
-            parts.append(np.einsum("qk,eki->eqi", weights, values[group.connectivity]).reshape(-1, 4, 3))
+            parts.append(
+                np.einsum("qk,eki->eqi", weights, values[group.connectivity]).reshape(-1, 4, 3)
+            )
         return np.concatenate(parts)
 
 
@@ -126,10 +150,17 @@ def _cells(corners: int, divisions: int) -> Floats:
     >>> len(_cells(3, 2))
     4
     """
-    a, b = (side.ravel() for side in np.meshgrid(np.arange(divisions), np.arange(divisions), indexing="ij"))
+    a, b = (
+        side.ravel()
+        for side in np.meshgrid(np.arange(divisions), np.arange(divisions), indexing="ij")
+    )
     begin = np.stack([a, b], axis=1)[:, None]
     if corners == 4:
-        return np.asarray((begin + np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])) / divisions)
+        return np.asarray(
+            (begin + np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])) / divisions
+        )
     lower = begin[a + b < divisions] + np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [0.0, 1.0]])
-    upper = begin[a + b < divisions - 1] + np.array([[1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.0, 1.0]])
+    upper = begin[a + b < divisions - 1] + np.array(
+        [[1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.0, 1.0]]
+    )
     return np.asarray(np.concatenate([lower, upper]) / divisions)

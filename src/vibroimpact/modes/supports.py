@@ -14,7 +14,8 @@ from vibroimpact.structures.supports.support import Support
 
 
 def support_outlines(supports: Sequence[Support], mesh: Mesh) -> list[tuple[Floats, Floats]]:
-    """Return the outlines of supports as x and y [m]; edges are narrow strips, sets of nodes are left out.
+    """Return the outlines of supports as x and y [m]; edges are narrow strips, sets of nodes are
+    left out.
 
     Examples
     --------

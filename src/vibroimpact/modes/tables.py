@@ -1,4 +1,6 @@
-"""What is said of the modes of a body, as text for the terminal and the page: its facts, and the table of its lowest modes."""
+"""What is said of the modes of a body, as text for the terminal and the page: its facts,
+and the table of its lowest modes.
+"""
 
 from __future__ import annotations
 
@@ -19,19 +21,29 @@ Cells = tuple[list[tuple[str, str]], list[list[str]]]
 
 
 def body_facts(name: str, found: BodyModes) -> list[tuple[str, str]]:
-    """Return mass and mesh of a body, how it is held, its rigid motions and its damping: what each is, and words."""
+    """Return mass and mesh of a body, how it is held, its rigid motions and its damping:
+    what each is, and words.
+    """
     properties, facts = found.model.properties, found.model.facts
     rows = [
-        (name, f"{properties.mass:.6g} kg, {facts['elements']}, {facts['degrees of freedom']} degrees of freedom"),
+        (
+            name,
+            f"{properties.mass:.6g} kg, {facts['elements']}, {facts['degrees of freedom']} "
+            "degrees of freedom",
+        ),
         ("held by", supports_text(found.body)),
         ("rigid motions", str(len(found.model.rigid_coefficients))),
         ("damping", found.body.damping.description),
     ]
-    return rows + [(what, facts[what]) for what in ("materials", "left out of the file") if what in facts]
+    return rows + [
+        (what, facts[what]) for what in ("materials", "left out of the file") if what in facts
+    ]
 
 
 def mode_table(found: BodyModes) -> Cells:
-    """Return the table of the lowest modes, and of the highest one if some are left out; without columns that say nothing."""
+    """Return the table of the lowest modes, and of the highest one if some are left out;
+    without columns that say nothing.
+    """
     basis, number = found.basis, len(found.basis.frequencies)
     shown = list(range(min(ROWS, number))) + ([number - 1] if number > ROWS else [])
     effective = basis.participation[:, 2] ** 2
@@ -52,7 +64,9 @@ def mode_table(found: BodyModes) -> Cells:
         _fixed_texts(effective[shown], found.model.properties.mass),
     ]
     told = [number for number, cells in enumerate(columns) if set(cells) - {"0", _UNKNOWN}]
-    return [headers[number] for number in told], [list(row) for row in zip(*(columns[number] for number in told), strict=True)]
+    return [headers[number] for number in told], [
+        list(row) for row in zip(*(columns[number] for number in told), strict=True)
+    ]
 
 
 def rows_left_out(found: BodyModes) -> int:
@@ -62,7 +76,9 @@ def rows_left_out(found: BodyModes) -> int:
 
 def supports_text(body: ElasticBody) -> str:
     """Return in words how a body is held."""
-    return "; ".join(support.description for support in body.recipe.supports) or "nothing: it is free"
+    return (
+        "; ".join(support.description for support in body.recipe.supports) or "nothing: it is free"
+    )
 
 
 def _error_texts(errors: Floats) -> list[str]:
@@ -71,5 +87,7 @@ def _error_texts(errors: Floats) -> list[str]:
 
 
 def _fixed_texts(values: Floats, reference: float) -> list[str]:
-    """Return numbers with four decimals, or 0 where they are rounding errors relative to a reference value."""
+    """Return numbers with four decimals, or 0 where they are rounding errors relative to
+    a reference value.
+    """
     return [fixed(float(value), 4) if abs(value) > 1e-6 * reference else "0" for value in values]

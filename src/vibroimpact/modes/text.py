@@ -16,7 +16,9 @@ from vibroimpact.report.terminal_table import TerminalTable, facts, numbers, wit
 
 
 def modes_summary(case: Case, modes: Mapping[str, BodyModes]) -> RenderableType:
-    """Return the console report on the modes of a case: each body, its lowest modes, and the doubts."""
+    """Return the console report on the modes of a case: each body, its lowest modes, and
+    the doubts.
+    """
     parts: list[RenderableType] = [Text(case.name or "modes", style="bold")]
     for name, found in modes.items():
         doubts = (Text(f"Doubt: {doubt}.", style="yellow") for doubt in found.doubts)
@@ -26,12 +28,16 @@ def modes_summary(case: Case, modes: Mapping[str, BodyModes]) -> RenderableType:
 
 def _terminal_table(found: BodyModes) -> TerminalTable:
     headers, rows = mode_table(found)
-    columns = [numbers(heading, unit, cells) for (heading, unit), cells in zip(headers, zip(*rows, strict=True), strict=True)]
+    columns = [
+        numbers(heading, unit, cells)
+        for (heading, unit), cells in zip(headers, zip(*rows, strict=True), strict=True)
+    ]
     return TerminalTable(with_gap(columns, ROWS) if rows_left_out(found) else columns)
 
 
 def elastic_rows(case: Case) -> list[tuple[str, str]]:
-    """Return the facts on the elastic bodies of a case that `check` prints: mesh, modes, damping and supports.
+    """Return the facts on the elastic bodies of a case that `check` prints: mesh, modes, damping
+    and supports.
 
     Raises
     ------
@@ -42,14 +48,24 @@ def elastic_rows(case: Case) -> list[tuple[str, str]]:
     meshes = mesh_facts(case)
     for name, body in elastic_bodies(case).items():
         mesh, reduction = meshes[name], body.recipe.reduction
-        kept = f"{reduction.modes} modes" if reduction.modes else f"modes up to {reduction.max_frequency:g} Hz"
+        kept = (
+            f"{reduction.modes} modes"
+            if reduction.modes
+            else f"modes up to {reduction.max_frequency:g} Hz"
+        )
         stored = "computed already" if mesh["modes_computed"] else "not computed yet"
         rows += [
             (
                 f"elastic {name}",
-                f"{mesh['elements']}, {mesh['nodes']} nodes, {mesh['degrees_of_freedom']} degrees of freedom before supports",
+                f"{mesh['elements']}, {mesh['nodes']} nodes, {mesh['degrees_of_freedom']} "
+                "degrees of freedom before supports",
             ),
-            ("  modes", f"{kept}, {reduction.method}{', with an attachment mode' if reduction.attachment else ''}; {stored}"),
+            (
+                "  modes",
+                f"{kept}, "
+                f"{reduction.method}{', with an attachment mode' if reduction.attachment else ''}; "
+                f"{stored}",
+            ),
             ("  damping", body.damping.description),
             ("  held by", supports_text(body)),
         ]

@@ -1,1 +1,3 @@
-"""Reproduction of the paper: printed values, values computed here, and a verdict on each difference."""
+"""Reproduction of the paper: printed values, values computed here, and a verdict on each
+difference.
+"""

@@ -15,14 +15,17 @@ def conclusions(runs: Runs) -> ReportSection:
     """Return the section that tests each conclusion of the paper."""
     cells = [*_variable_damping(runs), _damping_function(runs)]
     cells += [_elastic_sphere(runs, treatment) for treatment in TREATMENTS]
-    cells += [_elastic_plate_as_printed(), *(_elastic_plate(runs, treatment) for treatment in TREATMENTS)]
+    cells += [
+        _elastic_plate_as_printed(),
+        *(_elastic_plate(runs, treatment) for treatment in TREATMENTS),
+    ]
     cells += [_energy_of_the_plate(runs, treatment) for treatment in TREATMENTS]
     cells += [_consumed(runs, treatment) for treatment in TREATMENTS]
     return ReportSection(
         "Section 6: the conclusions",
         (
-            "Each conclusion is tested as far as it can be computed. The three treatments are those of section 5.1. Conclusion (5) is "
-            "advice on what to measure.",
+            "Each conclusion is tested as far as it can be computed. The three treatments "
+            "are those of section 5.1. Conclusion (5) is advice on what to measure.",
         ),
         tables=(TextTable(("Conclusion", "By", "Does it hold?", "Numbers"), tuple(cells)),),
     )
@@ -31,17 +34,37 @@ def conclusions(runs: Runs) -> ReportSection:
 def _variable_damping(runs: Runs) -> list[tuple[str, ...]]:
     cells: list[tuple[str, ...]] = []
     for quantity, (_, column, _) in QUANTITIES.items():
-        constant, variable = (float(np.abs(runs.below_theory(damping, column)).max()) for damping in DAMPINGS)
-        words = f"(1) With variable damping the largest error of the {quantity} is smaller than with constant damping"
-        cells.append((words, "IMPACT", holds_text(variable < constant), f"{variable:.3f} % instead of {constant:.3f} %"))
+        constant, variable = (
+            float(np.abs(runs.below_theory(damping, column)).max()) for damping in DAMPINGS
+        )
+        words = (
+            f"(1) With variable damping the largest error of the {quantity} is smaller than "
+            "with constant damping"
+        )
+        cells.append(
+            (
+                words,
+                "IMPACT",
+                holds_text(variable < constant),
+                f"{variable:.3f} % instead of {constant:.3f} %",
+            )
+        )
     return cells
 
 
 def _damping_function(runs: Runs) -> tuple[str, ...]:
     values, speeds = runs.calibration.values, runs.calibration.observations.speeds
     rises = bool(np.all(np.diff(values) * np.diff(speeds) > 0))
-    numbers = f"{values.min():.2f} N s/m at {speeds.min():.2f} m/s to {values.max():.2f} N s/m at {speeds.max():.2f} m/s"
-    return "(2) The damping that reproduces the theory rises with the approach speed", "calibration", holds_text(rises), numbers
+    numbers = (
+        f"{values.min():.2f} N s/m at {speeds.min():.2f} m/s to {values.max():.2f} N s/m at "
+        f"{speeds.max():.2f} m/s"
+    )
+    return (
+        "(2) The damping that reproduces the theory rises with the approach speed",
+        "calibration",
+        holds_text(rises),
+        numbers,
+    )
 
 
 def _elastic_sphere(runs: Runs, treatment: str) -> tuple[str, ...]:
@@ -50,45 +73,81 @@ def _elastic_sphere(runs: Runs, treatment: str) -> tuple[str, ...]:
         for response in (runs.treated(2, treatment), runs.response("type1-variable"))
     )
     words = "(3) An elastic sphere is hit with less force, and rebounds lower, than a rigid one"
-    numbers = f"{elastic[0]:.0f} instead of {rigid[0]:.0f} N, {elastic[1]:.3f} instead of {rigid[1]:.3f} m"
+    numbers = (
+        f"{elastic[0]:.0f} instead of {rigid[0]:.0f} N, {elastic[1]:.3f} instead of "
+        f"{rigid[1]:.3f} m"
+    )
     return words, treatment, holds_text(elastic[0] < rigid[0] and elastic[1] < rigid[1]), numbers
 
 
-_ELASTIC_PLATE = "(4) On an elastic plate the sphere rebounds lower, and is hit with less force, than on a rigid one"
+_ELASTIC_PLATE = (
+    "(4) On an elastic plate the sphere rebounds lower, and is hit with less force, "
+    "than on a rigid one"
+)
 
 
 def _elastic_plate(runs: Runs, treatment: str) -> tuple[str, ...]:
     columns = ("rebound_height_m", "max_force_N")
-    return _lower(treatment, *([float(runs.treated(kind, treatment).impacts[name][0]) for name in columns] for kind in (2, 3)))
+    return _lower(
+        treatment,
+        *(
+            [float(runs.treated(kind, treatment).impacts[name][0]) for name in columns]
+            for kind in (2, 3)
+        ),
+    )
 
 
 def _elastic_plate_as_printed() -> tuple[str, ...]:
     names = ("rebound_height", "max_force")
-    return _lower("the printed numbers", *([printed(f"type{kind}.{name}").value for name in names] for kind in (2, 3)))
+    return _lower(
+        "the printed numbers",
+        *([printed(f"type{kind}.{name}").value for name in names] for kind in (2, 3)),
+    )
 
 
 def _lower(by: str, rigid: list[float], elastic: list[float]) -> tuple[str, ...]:
-    """Return the test of conclusion (4), from rebound height [m] and force [N] on a rigid and on an elastic plate."""
-    numbers = f"{elastic[0]:.3f} instead of {rigid[0]:.3f} m, {elastic[1]:.0f} instead of {rigid[1]:.0f} N"
+    """Return the test of conclusion (4), from rebound height [m] and force [N] on a rigid
+    and on an elastic plate.
+    """
+    numbers = (
+        f"{elastic[0]:.3f} instead of {rigid[0]:.3f} m, {elastic[1]:.0f} instead of "
+        f"{rigid[1]:.0f} N"
+    )
     return _ELASTIC_PLATE, by, holds_text(elastic[0] < rigid[0] and elastic[1] < rigid[1]), numbers
 
 
 def _energy_of_the_plate(runs: Runs, treatment: str) -> tuple[str, ...]:
-    """Return the test of the plate's share of the energy released, with its two largest energies added as in the paper."""
+    """Return the test of the plate's share of the energy released, with its two largest
+    energies added as in the paper.
+    """
     response, least = runs.treated(3, treatment), printed("plate.energy_part")
     history, both = history_of(response), plate_energy_part(response)
-    at_once = 100.0 * float((history["plate_kinetic_J"] + history["plate_strain_J"]).max()) / energy_released(response)
-    words = f"(6) The energy of the plate can't be neglected: more than {least.text} % of the energy released"
-    numbers = f"{both:.1f} % if the largest kinetic and strain energy are added, at most {at_once:.1f} % at one time"
+    at_once = (
+        100.0
+        * float((history["plate_kinetic_J"] + history["plate_strain_J"]).max())
+        / energy_released(response)
+    )
+    words = (
+        f"(6) The energy of the plate can't be neglected: more than {least.text} % of the "
+        "energy released"
+    )
+    numbers = (
+        f"{both:.1f} % if the largest kinetic and strain energy are added, at most "
+        f"{at_once:.1f} % at one time"
+    )
     return words, treatment, holds_text(both > least.value), numbers
 
 
 def _consumed(runs: Runs, treatment: str) -> tuple[str, ...]:
-    """Return the test of the share of energy dissipated, in contact and bodies, by the first separation and by the second touch."""
+    """Return the test of the share of energy dissipated, in contact and bodies, by the
+    first separation and by the second touch.
+    """
     response = runs.treated(3, treatment)
     impacts, put_in = response.impacts, float(response.energy["input_J"])
     history = response.at([impacts["time_s"][0] + impacts["duration_s"][0], impacts["time_s"][1]])
-    dissipated = sum(history[name] for name in ("contact_dissipated_J", "sphere_damping_J", "plate_damping_J"))
+    dissipated = sum(
+        history[name] for name in ("contact_dissipated_J", "sphere_damping_J", "plate_damping_J")
+    )
     first, second = (100.0 * np.asarray(dissipated) / put_in).tolist()
     words = "(6) Most of the energy is consumed in the impact of elastic bodies"
     return (

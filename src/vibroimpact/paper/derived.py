@@ -1,4 +1,6 @@
-"""Quantities that follow from printed values alone: the damping function, the mass of the meshed sphere and its fall after touch."""
+"""Quantities that follow from printed values alone: the damping function, the mass of the
+meshed sphere and its fall after touch.
+"""
 
 from __future__ import annotations
 
@@ -25,11 +27,14 @@ def printed_function(speeds: Floats) -> Floats:
     >>> printed_function(np.array([8.82666])).round(3).tolist()
     [179.781]
     """
-    return function_at(speeds, np.array([printed(f"damping_function.{power + 1}").value for power in POWERS]))
+    return function_at(
+        speeds, np.array([printed(f"damping_function.{power + 1}").value for power in POWERS])
+    )
 
 
 def parabola(speeds: Floats) -> Floats:
-    """Return the least-squares parabola through the printed dampings: its coefficients, lowest power first [SI].
+    """Return the least-squares parabola through the printed dampings: its coefficients, lowest
+    power first [SI].
 
     Parameters
     ----------
@@ -40,12 +45,15 @@ def parabola(speeds: Floats) -> Floats:
 
 
 def function_at(speeds: Floats, coefficients: Floats) -> Floats:
-    """Return the polynomial with coefficients along the last axis [SI] at approach speeds along the last axis [m/s], in N s/m."""
+    """Return the polynomial with coefficients along the last axis [SI] at approach speeds
+    along the last axis [m/s], in N s/m.
+    """
     return np.asarray(speeds[..., None] ** POWERS @ coefficients[..., None])[..., 0]
 
 
 def mesh_mass(kind: int, gravity: float) -> tuple[float, float]:
-    """Return the range of the mass of the meshed sphere [kg], from the printed largest force and acceleration.
+    """Return the range of the mass of the meshed sphere [kg], from the printed largest force and
+    acceleration.
 
     Force and acceleration peak together, m = F/(a + g); the range covers the rounding of both.
 
@@ -69,6 +77,11 @@ def mesh_mass(kind: int, gravity: float) -> tuple[float, float]:
 
 
 def fall_beyond_touch(kind: int, gravity: float) -> float:
-    """Return the fall of the sphere's centre after first touch [m] that the printed energies of Type 2 or 3 imply."""
-    released, touch = printed(f"type{kind}.potential_energy"), printed(f"type{kind}.energy_at_touch")
+    """Return the fall of the sphere's centre after first touch [m] that the printed
+    energies of Type 2 or 3 imply.
+    """
+    released, touch = (
+        printed(f"type{kind}.potential_energy"),
+        printed(f"type{kind}.energy_at_touch"),
+    )
     return (released.value - touch.value) / (mesh_mass(kind, gravity)[0] * gravity)

@@ -1,16 +1,19 @@
 r"""The implicit Euler method for one impact, with steps that do not resolve the contact.
 
-A demonstration of numerical dissipation, not a method to compute impacts. For the modal oscillators of `LinearSystem`, a step h gives,
-with primes for values at its end,
+A demonstration of numerical dissipation, not a method to compute impacts. For the modal oscillators
+of `LinearSystem`, a step h gives, with primes for values at its end,
 
 .. math:: v' = v + h (g - F'/m),\qquad s' = s + h v'
 
-.. math:: \dot q_i' = \frac{\dot q_i - h \omega_i^2 q_i - h \chi_i F'}{1 + 2 \zeta_i \omega_i h + \omega_i^2 h^2},\qquad
+.. math::
+
+    \dot q_i' = \frac{\dot q_i - h \omega_i^2 q_i - h \chi_i F'}{1 + 2 \zeta_i \omega_i h +
+    \omega_i^2 h^2},\qquad
           q_i' = q_i + h \dot q_i'
 
-so that the indentation at the end of the step is linear in the force, and one scalar equation for F' remains. The method is stable for
-any step because it dissipates energy: in each step the kinetic energy of the changes of the velocities, and the strain energy of the
-changes of the elongations.
+so that the indentation at the end of the step is linear in the force, and one scalar equation for
+F' remains. The method is stable for any step because it dissipates energy: in each step the kinetic
+energy of the changes of the velocities, and the strain energy of the changes of the elongations.
 """
 
 from __future__ import annotations
@@ -39,19 +42,31 @@ PEAKS = (
     "plate_acceleration_m_s2",
     "beyond_touch_m",
 )
-"""Quantities recorded at their largest magnitude: plate motions of its centre of mass, `beyond_touch_m` the sphere's fall after touch."""
+"""Quantities recorded at their largest magnitude: plate motions of its centre of mass,
+`beyond_touch_m` the sphere's fall after touch.
+"""
 
-ENERGY_SHARES = ("kinetic_J", "potential_J", "vibration_J", "contact_dissipated_J", "modal_damping_J", "integrator_J")
-"""Shares of the energy at separation: motion and height of the sphere, vibration of all modes, losses by damping and by the method."""
+ENERGY_SHARES = (
+    "kinetic_J",
+    "potential_J",
+    "vibration_J",
+    "contact_dissipated_J",
+    "modal_damping_J",
+    "integrator_J",
+)
+"""Shares of the energy at separation: motion and height of the sphere, vibration of all
+modes, losses by damping and by the method.
+"""
 
 _MAX_STEPS = 20_000
 
 
 def unresolved_impact(problem: Problem, step: float, phases: Floats) -> dict[str, Floats]:
-    """Return the first impact of a drop by the implicit Euler method with a fixed step, for several phases of the touch in a step.
+    """Return the first impact of a drop by the implicit Euler method with a fixed step, for several
+    phases of the touch in a step.
 
-    The force is clipped at zero, as in Adams. The run ends at separation; with an elastic plate, not before half a period of its lowest
-    mode.
+    The force is clipped at zero, as in Adams. The run ends at separation; with an elastic plate,
+    not before half a period of its lowest mode.
 
     Parameters
     ----------
@@ -65,7 +80,8 @@ def unresolved_impact(problem: Problem, step: float, phases: Floats) -> dict[str
     Returns
     -------
     dict of str to array
-        The `PEAKS`, separation_speed_m_s and rebound_height_m, and the `ENERGY_SHARES`; each of shape (P,).
+        The `PEAKS`, separation_speed_m_s and rebound_height_m, and the `ENERGY_SHARES`; each of
+        shape (P,).
 
     Raises
     ------
@@ -74,23 +90,37 @@ def unresolved_impact(problem: Problem, step: float, phases: Floats) -> dict[str
     ComputationError
         If the sphere does not leave the plate within 20,000 steps.
     """
-    (method, plate), (_, on_sphere, on_plate) = (_implicit_euler(problem, step), problem.plate.modes), slices_of(problem)
+    (method, plate), (_, on_sphere, on_plate) = (
+        (_implicit_euler(problem, step), problem.plate.modes),
+        slices_of(problem),
+    )
     centre_weights = plate.participation[:, 2] / plate.mass if plate is not None else np.zeros(0)
     least_duration = np.pi / float(plate.angular_frequencies.min()) if plate is not None else 0.0
     # all phases advance in one batch; the slices pick the modes of each body among the oscillators
     state, losses = method.start(phases), np.zeros((3, len(phases)))
     peaks = {name: np.zeros(len(phases)) for name in PEAKS}
-    at_separation = {name: np.full(len(phases), np.nan) for name in ("separation_speed_m_s", *ENERGY_SHARES)}
+    at_separation = {
+        name: np.full(len(phases), np.nan) for name in ("separation_speed_m_s", *ENERGY_SHARES)
+    }
     separated = np.zeros(len(phases), dtype=bool)
     for number in range(1, _MAX_STEPS + 1):
         before, (state, force) = state, method.advance(state)
         losses = losses + method.losses(before, state, force)
         kinetic, strain = method.system.energies(state)
-        body_energies = (strain[:, on_sphere].sum(axis=1), kinetic[:, on_plate].sum(axis=1), strain[:, on_plate].sum(axis=1))
+        body_energies = (
+            strain[:, on_sphere].sum(axis=1),
+            kinetic[:, on_plate].sum(axis=1),
+            strain[:, on_plate].sum(axis=1),
+        )
         acceleration = (state.velocity - before.velocity) / step
         depth, sinking = centre_of(state, method.mass)
-        centre_motion = (part[:, on_plate] @ centre_weights for part in (state.displacement, state.velocity, acceleration))
-        for name, value in zip(PEAKS, (force, *body_energies, *centre_motion, np.maximum(depth, 0.0)), strict=True):
+        centre_motion = (
+            part[:, on_plate] @ centre_weights
+            for part in (state.displacement, state.velocity, acceleration)
+        )
+        for name, value in zip(
+            PEAKS, (force, *body_energies, *centre_motion, np.maximum(depth, 0.0)), strict=True
+        ):
             peaks[name] = np.maximum(peaks[name], np.abs(value))
         receding = (method.approach(state) < 0.0) & (sinking < 0.0)
         sphere_energies = 0.5 * method.mass * sinking**2, -method.mass * method.gravity * depth
@@ -99,16 +129,24 @@ def unresolved_impact(problem: Problem, step: float, phases: Floats) -> dict[str
             at_separation[name] = np.where(receding & ~separated, value, at_separation[name])
         separated = receding  # a sphere that comes back is recorded anew at its next separation
         if separated.all() and number * step >= least_duration:
-            return {**peaks, **at_separation, "rebound_height_m": method.rebound_height(problem, at_separation["separation_speed_m_s"])}
+            return {
+                **peaks,
+                **at_separation,
+                "rebound_height_m": method.rebound_height(
+                    problem, at_separation["separation_speed_m_s"]
+                ),
+            }
     raise ComputationError(
-        f"within {_MAX_STEPS} steps of {step:g} s the sphere does not leave the plate, or half a period of its lowest mode does not pass; "
-        "take a longer step"
+        f"within {_MAX_STEPS} steps of {step:g} s the sphere does not leave the plate, or "
+        "half a period of its lowest mode does not pass; take a longer step"
     )
 
 
 @dataclass(frozen=True)
 class _ImplicitEuler:
-    """The coefficients of the implicit Euler method that are constant over the steps of an impact [SI]."""
+    """The coefficients of the implicit Euler method that are constant over the steps of
+    an impact [SI].
+    """
 
     system: LinearSystem
     law: CompliantLaw
@@ -120,7 +158,14 @@ class _ImplicitEuler:
     @cached_property
     def velocity_factor(self) -> Floats:
         """Factor of each oscillator velocity over a step, 1/(1 + 2 zeta omega h + omega^2 h^2)."""
-        return np.asarray(1.0 / (1.0 + self.step * self.system.damping + (self.step * self.system.angular_frequency) ** 2))
+        return np.asarray(
+            1.0
+            / (
+                1.0
+                + self.step * self.system.damping
+                + (self.step * self.system.angular_frequency) ** 2
+            )
+        )
 
     @cached_property
     def step_compliance(self) -> float:
@@ -128,9 +173,14 @@ class _ImplicitEuler:
         return float(self.step**2 * (self.system.shape**2 * self.velocity_factor).sum())
 
     def start(self, phases: Floats) -> State:
-        """Return the states at the start of the step in which the surfaces meet: free flight without vibration."""
+        """Return the states at the start of the step in which the surfaces meet: free
+        flight without vibration.
+        """
         before = (1.0 - phases) * self.step
-        approach, speed = -before * (self.touch_speed - 0.5 * self.gravity * before), self.touch_speed - self.gravity * before
+        approach, speed = (
+            -before * (self.touch_speed - 0.5 * self.gravity * before),
+            self.touch_speed - self.gravity * before,
+        )
         displacement, velocity = (np.zeros((len(phases), self.system.number)) for _ in range(2))
         displacement[:, 0], velocity[:, 0] = self.mass**0.5 * approach, self.mass**0.5 * speed
         return State(displacement, velocity, np.zeros((len(phases), 0)))
@@ -142,35 +192,57 @@ class _ImplicitEuler:
     def advance(self, state: State) -> tuple[State, Floats]:
         """Return the states and the contact forces at the end of a step."""
         system, step = self.system, self.step
-        velocity = self.velocity_factor * (state.velocity + step * (system.load - system.angular_frequency**2 * state.displacement))
+        velocity = self.velocity_factor * (
+            state.velocity + step * (system.load - system.angular_frequency**2 * state.displacement)
+        )
         force = self._force(self.approach(self._moved(state, velocity)), self.approach(state))
-        return self._moved(state, velocity - step * force[:, None] * (self.velocity_factor * system.shape)), force
+        return self._moved(
+            state, velocity - step * force[:, None] * (self.velocity_factor * system.shape)
+        ), force
 
     def _moved(self, state: State, velocity: Floats) -> State:
         """Return the state at the end of a step, from the velocities there."""
         return State(state.displacement + self.step * velocity, velocity, state.local)
 
     def _force(self, free_end: Floats, start: Floats) -> Floats:
-        """Return the forces at the end of a step, from the force-free indentations there and the indentations at its start."""
+        """Return the forces at the end of a step, from the force-free indentations there
+        and the indentations at its start.
+        """
 
         def excess(force: Floats) -> Floats:
             end = free_end - self.step_compliance * force
-            static, dissipative = self.law.forces(np.maximum(end, 0.0), (end - start) / self.step, self.touch_speed)
-            return np.asarray(force - np.where(end > 0.0, np.maximum(static + dissipative, 0.0), 0.0))
+            static, dissipative = self.law.forces(
+                np.maximum(end, 0.0), (end - start) / self.step, self.touch_speed
+            )
+            return np.asarray(
+                force - np.where(end > 0.0, np.maximum(static + dissipative, 0.0), 0.0)
+            )
 
         touching = free_end > 0.0
         if not touching.any():
             return np.zeros_like(free_end)
-        return np.where(touching, find_root(excess, np.zeros_like(free_end), np.where(touching, free_end / self.step_compliance, 1.0)), 0.0)
+        return np.where(
+            touching,
+            find_root(
+                excess,
+                np.zeros_like(free_end),
+                np.where(touching, free_end / self.step_compliance, 1.0),
+            ),
+            0.0,
+        )
 
     def losses(self, before: State, after: State, force: Floats) -> Floats:
-        """Return the energy dissipated in a step by contact damping, by modal damping and by the method [J], (3, P)."""
+        """Return the energy dissipated in a step by contact damping, by modal damping and
+        by the method [J], (3, P).
+        """
         system, law = self.system, self.law
         start, end = self.approach(before), self.approach(after)
         further, (deep, deeper) = end - start, (np.maximum(start, 0.0), np.maximum(end, 0.0))
         static, _ = law.forces(deeper, further / self.step, self.touch_speed)
         in_motion = 0.5 * ((after.velocity - before.velocity) ** 2).sum(axis=1)
-        in_springs = 0.5 * ((system.angular_frequency * (after.displacement - before.displacement)) ** 2).sum(axis=1)
+        in_springs = 0.5 * (
+            (system.angular_frequency * (after.displacement - before.displacement)) ** 2
+        ).sum(axis=1)
         in_contact = static * further - (law.elastic_energy(deeper) - law.elastic_energy(deep))
         in_modes = self.step * (system.damping * after.velocity**2).sum(axis=1)
         return np.array([(force - static) * further, in_modes, in_motion + in_springs + in_contact])
@@ -182,10 +254,21 @@ class _ImplicitEuler:
 
 
 def _implicit_euler(problem: Problem, step: float) -> _ImplicitEuler:
-    """Return the method for a problem; InputError unless it is one drop of the superposed model under a compliant law without memory."""
+    """Return the method for a problem; InputError unless it is one drop of the superposed
+    model under a compliant law without memory.
+    """
     law = problem.law_of(0)
-    more = problem.local_element or problem.quasi_static or (problem.sphere_inside and problem.sphere.modes is not None)
+    more = (
+        problem.local_element
+        or problem.quasi_static
+        or (problem.sphere_inside and problem.sphere.modes is not None)
+    )
     if problem.shape != () or more or not isinstance(law, CompliantLaw) or law.memories():
-        raise InputError("the implicit Euler method is for one drop of the superposed model, under a compliant law without memory")
+        raise InputError(
+            "the implicit Euler method is for one drop of the superposed model, under a "
+            "compliant law without memory"
+        )
     mass, gravity = float(problem.sphere.mass), float(problem.gravity)
-    return _ImplicitEuler(system_of(problem, mass, gravity), law, mass, gravity, first_approach_speed(problem), step)
+    return _ImplicitEuler(
+        system_of(problem, mass, gravity), law, mass, gravity, first_approach_speed(problem), step
+    )

@@ -1,4 +1,6 @@
-"""The sections on the inputs: Table 1, contact parameters (section 3.1), meshes (section 4), and the corrections of the paper."""
+"""The sections on the inputs: Table 1, contact parameters (section 3.1), meshes (section
+4), and the corrections of the paper.
+"""
 
 from __future__ import annotations
 
@@ -15,19 +17,31 @@ from vibroimpact.paper.runs import Runs, with_law
 
 
 def table1(runs: Runs) -> ReportSection:
-    """Return the section that compares Table 1 with the shipped case of Type 3, which has all of its inputs."""
+    """Return the section that compares Table 1 with the shipped case of Type 3, which has
+    all of its inputs.
+    """
     case = resolved_case(load_case("paper:type3"))
     sphere, plate, drop = case["sphere"], case["plate"], case["drop"]
     bodies = (("sphere", sphere["material"]), ("plate", plate["material"]))
-    values: dict[str, Any] = {f"{body}.{name}": material[name] for body, material in bodies for name in _MATERIAL}
+    values: dict[str, Any] = {
+        f"{body}.{name}": material[name] for body, material in bodies for name in _MATERIAL
+    }
     values["sphere.radius"] = 1e3 * sphere["radius"]
-    values |= {f"plate.size.{number}": 1e3 * length for number, length in enumerate(plate["size"], start=1)}
-    values |= {f"plate.spacing.{number}": 1e3 * length for number, length in enumerate(plate["supports"][0]["spacing"], start=1)}
+    values |= {
+        f"plate.size.{number}": 1e3 * length for number, length in enumerate(plate["size"], start=1)
+    }
+    values |= {
+        f"plate.spacing.{number}": 1e3 * length
+        for number, length in enumerate(plate["supports"][0]["spacing"], start=1)
+    }
     values |= {"gravity": drop["gravity"], "drop.height": drop["height"]}
     return ReportSection(
         "Table 1: the inputs",
         ("The inputs of the shipped case of Type 3, compared with the printed ones.",),
-        tuple(ComparedValue(printed(name), value, by="the shipped case") for name, value in values.items()),
+        tuple(
+            ComparedValue(printed(name), value, by="the shipped case")
+            for name, value in values.items()
+        ),
     )
 
 
@@ -35,20 +49,29 @@ _MATERIAL = ("density", "youngs_modulus", "poissons_ratio")
 
 
 def section_3_1(runs: Runs) -> ReportSection:
-    """Return the section that compares the contact parameters with Hertz's theory and the shipped cases."""
+    """Return the section that compares the contact parameters with Hertz's theory and the
+    shipped cases.
+    """
     problem, thin = runs.problem("type1-variable"), printed("full_damping_penetration")
     law = problem.laws[0]
     assert isinstance(law, AdamsImpact)
-    rebound = simulate(with_law(problem, full_damping_penetration=thin.value)).impacts["rebound_height_m"][0]
+    rebound = simulate(with_law(problem, full_damping_penetration=thin.value)).impacts[
+        "rebound_height_m"
+    ][0]
     return ReportSection(
         "Section 3.1: the contact",
         (
-            "IMPACT, the contact of Adams, is Hertz's spring and a dashpot whose damping increases with the indentation up to the "
-            "full-damping penetration. The stiffness follows from the corrected equations (3) and (4); the full-damping penetration is "
-            "not the one printed.",
+            "IMPACT, the contact of Adams, is Hertz's spring and a dashpot whose damping "
+            "increases with the indentation up to the "
+            "full-damping penetration. The stiffness follows from the corrected equations "
+            "(3) and (4); the full-damping penetration is not the one printed.",
         ),
         (
-            ComparedValue(printed("stiffness"), float(contact_pair(load_case("paper:type1-variable")).hertz_stiffness), by="Hertz"),
+            ComparedValue(
+                printed("stiffness"),
+                float(contact_pair(load_case("paper:type1-variable")).hertz_stiffness),
+                by="Hertz",
+            ),
             ComparedValue(printed("exponent"), float(law.exponent), by="Hertz"),
             ComparedValue(
                 thin,
@@ -72,13 +95,19 @@ def section_4(runs: Runs) -> ReportSection:
     return ReportSection(
         "Section 4: the meshes",
         (
-            f"The meshes of the paper are not available; it gives the sphere {printed('mesh.sphere.nodes').text} and "
-            f"{printed('mesh.sphere.elements').text} grids, which are taken for nodes and elements. Here the plate has plate elements of "
-            "order four, and the sphere curved bricks of second order; the errors of their frequencies are estimated in each run, and "
-            "stated where they exceed 0.5 %. The superposed treatment depends on the mesh in any case, as the section on inferences shows.",
+            "The meshes of the paper are not available; it gives the sphere "
+            f"{printed('mesh.sphere.nodes').text} and "
+            f"{printed('mesh.sphere.elements').text} grids, which are taken for nodes and "
+            "elements. Here the plate has plate elements of "
+            "order four, and the sphere curved bricks of second order; the errors of their "
+            "frequencies are estimated in each run, and "
+            "stated where they exceed 0.5 %. The superposed treatment depends on the mesh "
+            "in any case, as the section on inferences shows.",
         ),
         tuple(
-            ComparedValue(printed(name), float(count), by="the shipped case", otherwise="a mesh of our own")
+            ComparedValue(
+                printed(name), float(count), by="the shipped case", otherwise="a mesh of our own"
+            )
             for name, count in counts.items()
         ),
     )

@@ -1,4 +1,6 @@
-"""Quantities evaluated from a response, and their comparison with a printed value under each treatment."""
+"""Quantities evaluated from a response, and their comparison with a printed value under
+each treatment.
+"""
 
 from __future__ import annotations
 
@@ -26,7 +28,9 @@ def history_column(name: str) -> Timeline:
 
 
 def falling_potential(response: Response) -> tuple[Floats, Floats]:
-    """Return times [s] and the potential energy of the sphere [J], zero at the start of each fall; NaN between falls."""
+    """Return times [s] and the potential energy of the sphere [J], zero at the start of
+    each fall; NaN between falls.
+    """
     history, impacts, problem = history_of(response), response.impacts, response.problem
     gravity = float(problem.gravity)
     tops = impacts["time_s"] + impacts["duration_s"] + impacts["separation_speed_m_s"] / gravity
@@ -40,10 +44,12 @@ def falling_potential(response: Response) -> tuple[Floats, Floats]:
 
 @lru_cache(maxsize=16)
 def sphere_strain(response: Response) -> tuple[Floats, Floats]:
-    """Return times [s] and the strain energy of the sphere [J]: of its modes, or of the local element in their place.
+    """Return times [s] and the strain energy of the sphere [J]: of its modes, or of the local
+    element in their place.
 
-    Spring and dashpot of the local element act in parallel and carry the contact force, k x + c dx/dt = F. F is interpolated linearly
-    between the points of the history, and x is the exact solution for that.
+    Spring and dashpot of the local element act in parallel and carry the contact force, k x + c
+    dx/dt = F. F is interpolated linearly between the points of the history, and x is the exact
+    solution for that.
     """
     element, history = response.problem.local_element, history_of(response)
     time, force = history["time_s"], history["force_N"]
@@ -59,19 +65,27 @@ def sphere_strain(response: Response) -> tuple[Floats, Floats]:
             continue
         lag = (force[index] - force[index - 1]) / step / rate
         begin = (force[index - 1] - lag) / stiffness
-        elongation[index] = (force[index] - lag) / stiffness + (elongation[index - 1] - begin) * np.exp(-rate * step)
+        elongation[index] = (force[index] - lag) / stiffness + (
+            elongation[index - 1] - begin
+        ) * np.exp(-rate * step)
     return time, 0.5 * stiffness * elongation**2
 
 
 def sphere_rotation(response: Response) -> tuple[Floats, Floats]:
-    """Return times [s] and the rotational energy of the sphere [J], rounded to 1e-15 J to remove rounding noise."""
+    """Return times [s] and the rotational energy of the sphere [J], rounded to 1e-15 J to
+    remove rounding noise.
+    """
     history = history_of(response)
     return history["time_s"], np.round(history["sphere_rotational_J"], 15)
 
 
 def energy_at_separation(response: Response) -> float:
     """Return the kinetic energy of the sphere's centre at the first separation [J]."""
-    return 0.5 * float(response.problem.sphere.mass) * float(response.impacts["separation_speed_m_s"][0]) ** 2
+    return (
+        0.5
+        * float(response.problem.sphere.mass)
+        * float(response.impacts["separation_speed_m_s"][0]) ** 2
+    )
 
 
 def largest_of(timeline: Timeline) -> Measure:
@@ -90,21 +104,31 @@ def after_each_impact(timeline: Timeline) -> Callable[[Response], Floats]:
     def peaks(response: Response) -> Floats:
         (time, values), touches = timeline(response), response.impacts["time_s"]
         which = np.searchsorted(touches, time, side="right")
-        return np.array([np.nanmax(np.abs(values[which == impact])) for impact in range(1, len(touches) + 1)])
+        return np.array(
+            [np.nanmax(np.abs(values[which == impact])) for impact in range(1, len(touches) + 1)]
+        )
 
     return peaks
 
 
 def energy_released(response: Response) -> float:
-    """Return the potential energy of the sphere that is released from the start to its lowest point [J]."""
+    """Return the potential energy of the sphere that is released from the start to its
+    lowest point [J].
+    """
     potential = history_of(response)["potential_J"]
     return float(potential[0] - potential.min())
 
 
 def plate_energy_part(response: Response) -> float:
-    """Return the sum of the plate's largest kinetic and largest strain energy over the energy released [%], as in the paper."""
+    """Return the sum of the plate's largest kinetic and largest strain energy over the
+    energy released [%], as in the paper.
+    """
     history = history_of(response)
-    return 100.0 * float(history["plate_kinetic_J"].max() + history["plate_strain_J"].max()) / energy_released(response)
+    return (
+        100.0
+        * float(history["plate_kinetic_J"].max() + history["plate_strain_J"].max())
+        / energy_released(response)
+    )
 
 
 MESH_DIGITS = 5
@@ -115,12 +139,18 @@ FITTED = ("type2.max_force", "type2.rebound_height")
 
 
 def kind_of(treatment: str) -> Kind | None:
-    """Return the kind of the values computed under a treatment, where the printed value alone does not decide it."""
+    """Return the kind of the values computed under a treatment, where the printed value
+    alone does not decide it.
+    """
     return Kind.FITTED_MODEL if treatment == "identified" else None
 
 
 def values_by_treatment(
-    runs: Runs, kind: int, value: PrintedValue, measure: Measure, unresolved: tuple[float, float] | None = None
+    runs: Runs,
+    kind: int,
+    value: PrintedValue,
+    measure: Measure,
+    unresolved: tuple[float, float] | None = None,
 ) -> list[ComparedValue]:
     """Return a printed value of Type 2 or 3 with the value computed under each treatment.
 
@@ -142,17 +172,23 @@ def values_by_treatment(
         "no setting of this treatment that was tried keeps what is printed",
         "superposed": "the resolved superposed model gives another value, and "
         "no setting of this treatment that was tried keeps what is printed",
-        "identified": "a prediction from Type 2" if kind == 3 else "fitted to force and rebound alone",
+        "identified": "a prediction from Type 2"
+        if kind == 3
+        else "fitted to force and rebound alone",
     }
     if unresolved is not None:
         low, high = unresolved
         explanation = Explanation("", low, high)
-        few = "agrees with this range within its few digits" if explanation.holds(value) else "does not lie in this range"
+        few = (
+            "agrees with this range within its few digits"
+            if explanation.holds(value)
+            else "does not lie in this range"
+        )
         inside = "lies in this range" if explanation.contains(value) else few
         steps = "in steps fitted to Type 2" if kind == 2 else "in steps found from Type 2"
         words["superposed"] += (
-            f". A hypothesis: unresolved, on a coarse mesh and {steps}, it gives {low:.4g} to {high:.4g} {value.unit}, and the printed "
-            f"value {inside}"
+            f". A hypothesis: unresolved, on a coarse mesh and {steps}, it gives {low:.4g} "
+            f"to {high:.4g} {value.unit}, and the printed value {inside}"
         )
     return [
         ComparedValue(

@@ -1,4 +1,6 @@
-"""Values printed in the paper, with place, unit and significant digits, and corrections of its misprints (`printed.toml`)."""
+"""Values printed in the paper, with place, unit and significant digits, and corrections
+of its misprints (`printed.toml`).
+"""
 
 from __future__ import annotations
 
@@ -12,7 +14,10 @@ from typing import Any, Literal
 
 from vibroimpact.errors import InputError, did_you_mean
 
-PAPER = '"Study on the Vibroimpact Response of the Particle Elastic Impact on the Metal Plate" (Shock and Vibration)'
+PAPER = (
+    '"Study on the Vibroimpact Response of the Particle Elastic Impact on the Metal Plate" '
+    "(Shock and Vibration)"
+)
 """Title and journal of the paper; its authors, year and DOI were not at hand."""
 
 Relation = Literal["=", "<", ">"]
@@ -43,8 +48,8 @@ class PrintedValue:
     digits : int, optional
         Number of significant digits, where the text does not show it, as with 200.
     role : {"result", "inferred", "input"}
-        What the number is here: a result of the paper; one from which the restitution or the full-damping penetration was inferred, or
-        that penetration itself; or an input of the paper.
+        What the number is here: a result of the paper; one from which the restitution or the
+        full-damping penetration was inferred, or that penetration itself; or an input of the paper.
 
     Examples
     --------
@@ -72,7 +77,11 @@ class PrintedValue:
     def half(self) -> float:
         """Half a unit of the last significant digit: the largest rounding error."""
         number = Decimal(self.text)
-        exponent = int(number.as_tuple().exponent) if self.digits is None else number.adjusted() - self.digits + 1
+        exponent = (
+            int(number.as_tuple().exponent)
+            if self.digits is None
+            else number.adjusted() - self.digits + 1
+        )
         return float(Decimal("0.5").scaleb(exponent))
 
 
@@ -100,18 +109,29 @@ class Correction:
 
 @cache
 def _library() -> Mapping[str, Any]:
-    return tomllib.loads((files("vibroimpact") / "paper" / "printed.toml").read_text(encoding="utf-8"))
+    return tomllib.loads(
+        (files("vibroimpact") / "paper" / "printed.toml").read_text(encoding="utf-8")
+    )
 
 
 @cache
 def printed_values() -> Mapping[str, PrintedValue]:
-    """Return all values of `printed.toml` by name; the items of a list are named `NAME.1`, `NAME.2`, ..."""
+    """Return all values of `printed.toml` by name; the items of a list are named
+    `NAME.1`, `NAME.2`, ...
+    """
     found: dict[str, PrintedValue] = {}
     for entry in _library()["value"]:
         texts = entry["text"]
         for number, text in enumerate([texts] if isinstance(texts, str) else texts, start=1):
             which = "" if isinstance(texts, str) else f".{number}"
-            value = PrintedValue(**{**entry, "name": f"{entry['name']}{which}", "what": entry["what"].format(number), "text": text})
+            value = PrintedValue(
+                **{
+                    **entry,
+                    "name": f"{entry['name']}{which}",
+                    "what": entry["what"].format(number),
+                    "text": text,
+                }
+            )
             if value.name in found:
                 raise ValueError(f"{value.name} is held twice")
             found[value.name] = value

@@ -1,4 +1,6 @@
-"""The restitution and full-damping penetration of the paper, estimated from its printed numbers, and the section on them."""
+"""The restitution and full-damping penetration of the paper, estimated from its printed
+numbers, and the section on them.
+"""
 
 from __future__ import annotations
 
@@ -13,7 +15,14 @@ from scipy.optimize import OptimizeResult, least_squares
 
 from vibroimpact.arrays import Floats
 from vibroimpact.paper.derived import parabola
-from vibroimpact.paper.evidence import PENETRATIONS, RESTITUTIONS, Evidence, ImpactSplines, evidence_of, impact_splines
+from vibroimpact.paper.evidence import (
+    PENETRATIONS,
+    RESTITUTIONS,
+    Evidence,
+    ImpactSplines,
+    evidence_of,
+    impact_splines,
+)
 from vibroimpact.paper.printed import printed
 from vibroimpact.paper.report_section import ReportSection, TextTable
 from vibroimpact.paper.runs import Runs
@@ -48,16 +57,17 @@ class RecoveredParameters:
     worst : float
         Largest residual of the joint estimate [standard deviations].
     alone : mapping of str to two estimates
-        Restitution and penetration [m] from each piece of evidence alone, with the other parameter at its joint estimate; None where
-        the evidence does not depend on the parameter.
+        Restitution and penetration [m] from each piece of evidence alone, with the other parameter
+        at its joint estimate; None where the evidence does not depend on the parameter.
     single : bool
-        Whether the first rebound rises with the penetration, and each rebound of the theory with the restitution, over the search
-        ranges, so that the solution is unique.
+        Whether the first rebound rises with the penetration, and each rebound of the theory with
+        the restitution, over the search ranges, so that the solution is unique.
     as_printed : tuple of three floats
-        With the printed penetration: first rebound height [m], fourth height error and fifth compression error [%].
+        With the printed penetration: first rebound height [m], fourth height error and fifth
+        compression error [%].
     parabolas : tuple of two arrays
-        Coefficients of the least-squares parabola through the printed dampings at the approach speeds of the simulation and of the
-        theory, lowest power first [SI].
+        Coefficients of the least-squares parabola through the printed dampings at the approach
+        speeds of the simulation and of the theory, lowest power first [SI].
     round_values : tuple of two floats
         Joint estimates rounded to two digits (restitution) and one digit (penetration [m]).
     """
@@ -94,7 +104,10 @@ def recover_parameters(runs: Runs) -> RecoveredParameters:
         restitution=Estimate(float(restitution), float(deviations[0])),
         penetration=penetration,
         worst=float(np.abs(fit.fun).max()),
-        alone={one.name: (_single_estimate(one, fit.x, 0), _single_estimate(one, fit.x, 1)) for one in evidence},
+        alone={
+            one.name: (_single_estimate(one, fit.x, 0), _single_estimate(one, fit.x, 1))
+            for one in evidence
+        },
         single=_is_unique(splines),
         as_printed=(
             float(splines.variable["rebound_height_m"](given)[0]),
@@ -110,24 +123,35 @@ def recover_parameters(runs: Runs) -> RecoveredParameters:
 
 
 def off_joint(found: RecoveredParameters, evidence: Evidence) -> float:
-    """Return the distance of the joint estimate from a piece of evidence, in half-widths of its band: at most 1 inside the band."""
+    """Return the distance of the joint estimate from a piece of evidence, in half-widths
+    of its band: at most 1 inside the band.
+    """
     pairs = zip(found.alone[evidence.name], (found.restitution, found.penetration), strict=True)
-    return max(alone.apart(joint.value) for alone, joint in pairs if alone is not None) / evidence.half_width
+    return (
+        max(alone.apart(joint.value) for alone, joint in pairs if alone is not None)
+        / evidence.half_width
+    )
 
 
 def penetration_bands(found: RecoveredParameters, penetration: float) -> tuple[bool, ...]:
-    """Return whether a penetration [m] lies in the band of each piece of evidence that depends on the penetration alone."""
+    """Return whether a penetration [m] lies in the band of each piece of evidence that
+    depends on the penetration alone.
+    """
     return tuple(
         penetration_alone.apart(penetration) <= one.half_width
-        for one, (restitution_alone, penetration_alone) in zip(found.evidence, found.alone.values(), strict=True)
+        for one, (restitution_alone, penetration_alone) in zip(
+            found.evidence, found.alone.values(), strict=True
+        )
         if restitution_alone is None and penetration_alone is not None
     )
 
 
 def implied_restitution(evidence: Evidence, restitutions: Floats, penetrations: Floats) -> Floats:
-    """Return the restitution that a piece of evidence implies at each penetration; NaN where it lies outside the search range.
+    """Return the restitution that a piece of evidence implies at each penetration; NaN where it
+    lies outside the search range.
 
-    Minimises the sum of squared residuals over the grid of restitutions, refined by a parabola through the lowest three points.
+    Minimises the sum of squared residuals over the grid of restitutions, refined by a parabola
+    through the lowest three points.
 
     Parameters
     ----------
@@ -138,20 +162,27 @@ def implied_restitution(evidence: Evidence, restitutions: Floats, penetrations: 
     penetrations : array
         Full-damping penetrations [m].
     """
-    cost = np.sum(evidence.standardised(restitutions[None, :], np.log10(penetrations)[:, None]) ** 2, axis=-1)
-    cost = np.broadcast_to(cost, (len(penetrations), len(restitutions)))  # evidence may be independent of the penetration
+    cost = np.sum(
+        evidence.standardised(restitutions[None, :], np.log10(penetrations)[:, None]) ** 2, axis=-1
+    )
+    # evidence may be independent of the penetration
+    cost = np.broadcast_to(cost, (len(penetrations), len(restitutions)))
     lowest = np.argmin(cost, axis=1)
     inside = np.clip(lowest, 1, len(restitutions) - 2)
-    before, here, after = (cost[np.arange(len(penetrations)), inside + shift] for shift in (-1, 0, 1))
+    before, here, after = (
+        cost[np.arange(len(penetrations)), inside + shift] for shift in (-1, 0, 1)
+    )
     vertex = 0.5 * (before - after) / (before - 2.0 * here + after)
     found = restitutions[inside] + vertex * (restitutions[1] - restitutions[0])
     return np.where(lowest == inside, found, np.nan)
 
 
 def _joint_fit(evidence: tuple[Evidence, ...]) -> tuple[tuple[Evidence, ...], OptimizeResult]:
-    """Return the evidence with estimated scatter, and the joint fit of restitution and logarithm of the penetration.
+    """Return the evidence with estimated scatter, and the joint fit of restitution and logarithm of
+    the penetration.
 
-    Weights and solution depend on each other, so both are iterated to a fixed point from the fit to the rounded values.
+    Weights and solution depend on each other, so both are iterated to a fixed point from the fit to
+    the rounded values.
     """
     ranges = np.array([RESTITUTIONS, np.log10(PENETRATIONS)])
     rounded = tuple(one for one in evidence if one.freedom is None)
@@ -164,7 +195,9 @@ def _joint_fit(evidence: tuple[Evidence, ...]) -> tuple[tuple[Evidence, ...], Op
     return evidence, fit
 
 
-def _fit(residuals: Callable[[Floats], Floats], start: Floats, bounds: tuple[Any, ...] = _UNBOUNDED) -> OptimizeResult:
+def _fit(
+    residuals: Callable[[Floats], Floats], start: Floats, bounds: tuple[Any, ...] = _UNBOUNDED
+) -> OptimizeResult:
     """Return the least-squares solution, with tolerances near machine precision."""
     return least_squares(residuals, start, x_scale=0.01, xtol=1e-14, ftol=1e-14, bounds=bounds)
 
@@ -182,16 +215,24 @@ def _with_scatter(one: Evidence, at: Floats) -> Evidence:
 
 
 def _single_estimate(one: Evidence, at: Floats, which: int) -> Estimate | None:
-    """Return the estimate of one parameter from one piece of evidence, with the other parameter fixed."""
+    """Return the estimate of one parameter from one piece of evidence, with the other
+    parameter fixed.
+    """
 
     def residuals(x: Floats) -> Floats:
-        return one.standardised(*(x[0] if number == which else value for number, value in enumerate(at)))
+        return one.standardised(
+            *(x[0] if number == which else value for number, value in enumerate(at))
+        )
 
     fit = _fit(residuals, at[which : which + 1])
     steepness = float(np.linalg.norm(fit.jac))
     if steepness == 0.0:
         return None
-    return _in_metres(fit.x[0], 1.0 / steepness) if which else Estimate(float(fit.x[0]), 1.0 / steepness)
+    return (
+        _in_metres(fit.x[0], 1.0 / steepness)
+        if which
+        else Estimate(float(fit.x[0]), 1.0 / steepness)
+    )
 
 
 def _in_metres(logarithm: float, deviation: float) -> Estimate:
@@ -201,9 +242,14 @@ def _in_metres(logarithm: float, deviation: float) -> Estimate:
 
 
 def _is_unique(splines: ImpactSplines) -> bool:
-    """Return whether the first rebound rises with the penetration, and all of the theory with the restitution, over the search ranges."""
+    """Return whether the first rebound rises with the penetration, and all of the theory
+    with the restitution, over the search ranges.
+    """
     simulation, theory = (one["rebound_height_m"] for one in (splines.variable, splines.theory))
-    return bool(np.all(np.diff(simulation(simulation.x)[:, 0]) > 0.0) and np.all(np.diff(theory(theory.x), axis=0) > 0.0))
+    return bool(
+        np.all(np.diff(simulation(simulation.x)[:, 0]) > 0.0)
+        and np.all(np.diff(theory(theory.x), axis=0) > 0.0)
+    )
 
 
 def recovery_section(runs: Runs) -> ReportSection:
@@ -218,22 +264,30 @@ def recovery_section(runs: Runs) -> ReportSection:
     return ReportSection(
         title="The restitution and the full-damping penetration, from the paper's own numbers",
         paragraphs=(
-            "The restitution e_h of the theory is not printed, and the full-damping penetration d_max is printed as "
-            f"{printed('full_damping_penetration').text} m. Both follow from the other printed numbers. The table gives what each piece of "
-            "evidence implies with the other value held at the joint estimate: as far as rounding allows, or with the standard deviation "
-            "that its own residuals show.",
-            "The damping function is the least-squares parabola through the printed dampings at the approach speeds of the simulation "
-            "with variable damping, as stated in section 3.2, and not at those of the theory, as the second table shows. It determines "
-            "d_max by itself; at the speeds of the theory it only confirms that the rebounds match, and is not used. The errors of "
-            "Table 2 are not used either: they are consistent with peaks read from samples, and missed peaks bias them.",
+            "The restitution e_h of the theory is not printed, and the full-damping "
+            "penetration d_max is printed as "
+            f"{printed('full_damping_penetration').text} m. Both follow from the other "
+            "printed numbers. The table gives what each piece of "
+            "evidence implies with the other value held at the joint estimate: as far as "
+            "rounding allows, or with the standard deviation that its own residuals show.",
+            "The damping function is the least-squares parabola through the printed "
+            "dampings at the approach speeds of the simulation "
+            "with variable damping, as stated in section 3.2, and not at those of the "
+            "theory, as the second table shows. It determines "
+            "d_max by itself; at the speeds of the theory it only confirms that the "
+            "rebounds match, and is not used. The errors of "
+            "Table 2 are not used either: they are consistent with peaks read from samples, "
+            "and missed peaks bias them.",
         ),
         tables=(_implied_table(found), _coefficients_table(found)),
         conclusion=(
             _joint_words(found),
             _printed_words(found),
             _round_value_words(found, runs),
-            "Established: with Lankarani and Nikravesh's law as the theory, and with the printed dampings in IMPACT clipped at zero, the "
-            "printed numbers used here agree with these two values. A hypothesis: that the authors used the round ones.",
+            "Established: with Lankarani and Nikravesh's law as the theory, and with the "
+            "printed dampings in IMPACT clipped at zero, the "
+            "printed numbers used here agree with these two values. A hypothesis: that the "
+            "authors used the round ones.",
         ),
     )
 
@@ -254,29 +308,55 @@ def _implied_table(found: RecoveredParameters) -> TextTable:
             )
         )
     cells.append(
-        ("all used evidence, jointly", _estimate_text(found.restitution), _estimate_text(found.penetration, 1e3), "standard deviations", "")
+        (
+            "all used evidence, jointly",
+            _estimate_text(found.restitution),
+            _estimate_text(found.penetration, 1e3),
+            "standard deviations",
+            "",
+        )
     )
-    return TextTable(("evidence", "e_h [-]", "d_max [mm]", "uncertainty from", "used"), tuple(cells), "What each number implies")
+    return TextTable(
+        ("evidence", "e_h [-]", "d_max [mm]", "uncertainty from", "used"),
+        tuple(cells),
+        "What each number implies",
+    )
 
 
 def _coefficients_table(found: RecoveredParameters) -> TextTable:
-    """Return the table of the parabola through the printed dampings: as printed, and at the speeds of simulation and theory."""
+    """Return the table of the parabola through the printed dampings: as printed, and at
+    the speeds of simulation and theory.
+    """
     cells = tuple(
-        (str(power), *(fixed(value, 5) for value in (printed(f"damping_function.{power + 1}").value, *both)))
+        (
+            str(power),
+            *(fixed(value, 5) for value in (printed(f"damping_function.{power + 1}").value, *both)),
+        )
         for power, both in enumerate(zip(*found.parabolas, strict=True))
     )
-    headers = ("power of v", "printed", "at the simulation's speeds, at the joint estimate", "at the theory's speeds")
-    return TextTable(headers, cells, "Coefficients of the parabola through the printed dampings [SI]")
+    headers = (
+        "power of v",
+        "printed",
+        "at the simulation's speeds, at the joint estimate",
+        "at the theory's speeds",
+    )
+    return TextTable(
+        headers, cells, "Coefficients of the parabola through the printed dampings [SI]"
+    )
 
 
 def _joint_words(found: RecoveredParameters) -> str:
     single = (
-        f"There is no second solution between e_h = {RESTITUTIONS[0]:g} and {RESTITUTIONS[1]:g}, d_max = {1e6 * PENETRATIONS[0]:g} "
-        f"and {1e6 * PENETRATIONS[1]:g} µm: the first rebound rises with d_max, and the rebounds of the theory rise with e_h, all the way."
+        f"There is no second solution between e_h = {RESTITUTIONS[0]:g} and "
+        f"{RESTITUTIONS[1]:g}, d_max = {1e6 * PENETRATIONS[0]:g} "
+        f"and {1e6 * PENETRATIONS[1]:g} µm: the first rebound rises with d_max, and the "
+        "rebounds of the theory rise with e_h, all the way."
     )
     return (
-        f"Jointly e_h = {_estimate_text(found.restitution)} and d_max = {_estimate_text(found.penetration, 1e3)} mm; the largest "
-        f"residual is {found.worst:.1f} standard deviations. {single if found.single else 'A second solution is not excluded.'}"
+        f"Jointly e_h = {_estimate_text(found.restitution)} and d_max = "
+        f"{_estimate_text(found.penetration, 1e3)} mm; the largest "
+        f"residual is {found.worst:.1f} standard deviations. "
+        f"{single if found.single else 'A second solution is not excluded.'}"
     )
 
 
@@ -285,15 +365,22 @@ def _printed_words(found: RecoveredParameters) -> str:
     met = penetration_bands(found, given.value)
     height, fourth, fifth = found.as_printed
     words = (
-        f"The printed d_max, {given.text} m, is met by {sum(met) or 'none'} of the {len(met)} pieces of evidence that depend on it alone. "
-        f"With it the first rebound would be {fixed(height, 4)} m (printed {printed('type1.rebound_height').text} m), "
-        f"with constant damping the fourth {fixed(fourth, 1)} % below the theory's (printed {printed('constant.height_error.4').text} %) "
-        f"and the fifth compression {fixed(fifth, 1)} % below it (printed {printed('constant.compression_error.5').text} %)."
+        f"The printed d_max, {given.text} m, is met by {sum(met) or 'none'} of the "
+        f"{len(met)} pieces of evidence that depend on it alone. "
+        f"With it the first rebound would be {fixed(height, 4)} m (printed "
+        f"{printed('type1.rebound_height').text} m), "
+        f"with constant damping the fourth {fixed(fourth, 1)} % below the theory's "
+        f"(printed {printed('constant.height_error.4').text} %) "
+        f"and the fifth compression {fixed(fifth, 1)} % below it (printed "
+        f"{printed('constant.compression_error.5').text} %)."
     )
     if any(met):
         return words
     own = fixed(1e3 * found.penetration.value, 4)
-    return f"{words} The paper's other numbers are those of {own} mm, so that it seems to be a misprint."
+    return (
+        f"{words} The paper's other numbers are those of {own} mm, so that it seems "
+        "to be a misprint."
+    )
 
 
 def _round_value_words(found: RecoveredParameters, runs: Runs) -> str:
@@ -304,18 +391,26 @@ def _round_value_words(found: RecoveredParameters, runs: Runs) -> str:
         "constant.height_error.4": runs.below_theory("constant", "rebound_height_m")[3],
         "constant.compression_error.5": runs.below_theory("constant", "max_indentation_m")[4],
     }
-    worst = max(abs(float(value) - printed(name).value) / printed(name).half for name, value in rounded.items())
+    worst = max(
+        abs(float(value) - printed(name).value) / printed(name).half
+        for name, value in rounded.items()
+    )
     off = (found.restitution.value - restitution) / found.restitution.deviation
     return (
-        f"At the round values, e_h = {restitution:g} and d_max = {1e3 * penetration:g} mm, the {len(rounded)} numbers with an uncertainty "
-        f"from rounding are off by at most {fixed(worst, 2)} times half a unit of their last digit: "
+        f"At the round values, e_h = {restitution:g} and d_max = {1e3 * penetration:g} mm, "
+        f"the {len(rounded)} numbers with an uncertainty "
+        f"from rounding are off by at most {fixed(worst, 2)} times half a "
+        "unit of their last digit: "
         f"{'all come' if worst <= 1.0 else 'not all come'} out as printed. The "
-        f"round e_h lies {fixed(abs(off), 1)} standard deviations {'below' if off > 0.0 else 'above'} the joint estimate."
+        f"round e_h lies {fixed(abs(off), 1)} standard deviations "
+        f"{'below' if off > 0.0 else 'above'} the joint estimate."
     )
 
 
 def _estimate_text(estimate: Estimate | None, unit: float = 1.0, reach: float = 1.0) -> str:
-    """Return an estimate with its uncertainty, rounded to match it; `unit` is the number of display units in one SI unit."""
+    """Return an estimate with its uncertainty, rounded to match it; `unit` is the number
+    of display units in one SI unit.
+    """
     if estimate is None:
         return MISSING
     value, half = unit * estimate.value, unit * reach * estimate.deviation

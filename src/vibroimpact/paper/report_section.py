@@ -1,4 +1,6 @@
-"""The elements of a section of the reproduction: compared values with computed verdicts, tables and paragraphs."""
+"""The elements of a section of the reproduction: compared values with computed verdicts,
+tables and paragraphs.
+"""
 
 from __future__ import annotations
 
@@ -10,13 +12,19 @@ from vibroimpact.paper.printed import PrintedValue
 
 
 class Kind(Enum):
-    """What a comparison of a printed with a computed value can show, by what the computed value is made of."""
+    """What a comparison of a printed with a computed value can show, by what the computed
+    value is made of.
+    """
 
     RESULT = "result"
-    """Computed from the inputs, and from what was assumed or inferred from other printed numbers; the printed value was not used."""
+    """Computed from the inputs, and from what was assumed or inferred from other printed
+    numbers; the printed value was not used.
+    """
 
     INFERRED = "inferred"
-    """A printed value from which the restitution or the full-damping penetration was inferred, or that penetration itself."""
+    """A printed value from which the restitution or the full-damping penetration was
+    inferred, or that penetration itself.
+    """
 
     FITTED_MODEL = "fitted model"
     """Computed by a model with parameters that were fitted to printed results of Type 2."""
@@ -85,7 +93,8 @@ class ComparedValue:
     digits : int
         Most significant digits shown of the computed value; fewer for values that depend on a mesh.
     made_by : Kind, optional
-        `Kind.FITTED_MODEL` or `Kind.ARITHMETIC`, where the computed value is made so; by default the role of the printed value decides.
+        `Kind.FITTED_MODEL` or `Kind.ARITHMETIC`, where the computed value is made so; by default
+        the role of the printed value decides.
 
     Examples
     --------
@@ -124,7 +133,10 @@ class ComparedValue:
         """The first explanation that holds; None if none does, or the values agree."""
         if self._agrees:
             return None
-        return next((explanation for explanation in self.explanations if explanation.holds(self.printed)), None)
+        return next(
+            (explanation for explanation in self.explanations if explanation.holds(self.printed)),
+            None,
+        )
 
     @property
     def reason(self) -> str:

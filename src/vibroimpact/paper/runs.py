@@ -16,7 +16,9 @@ from vibroimpact.dynamics.simulate import simulate
 from vibroimpact.results.fine_history import fine_history
 
 TREATMENTS = ("consistent", "superposed", "identified")
-"""Treatments of the local compliance of elastic bodies; Types 2 and 3 are shipped as a case for each."""
+"""Treatments of the local compliance of elastic bodies; Types 2 and 3 are shipped as a
+case for each.
+"""
 
 DAMPINGS = ("constant", "variable")
 """Simulations of Type 1: the same damping for all impacts, or a damping for each."""
@@ -58,7 +60,9 @@ class Runs:
 
     def treated(self, kind: int, treatment: str) -> Response:
         """Return the response of Type 2 or 3 (`kind`) under one of the `TREATMENTS`."""
-        return self.response(f"type{kind}" if treatment == "consistent" else f"type{kind}-{treatment}")
+        return self.response(
+            f"type{kind}" if treatment == "consistent" else f"type{kind}-{treatment}"
+        )
 
     @cached_property
     def calibration(self) -> Calibration:
@@ -68,17 +72,25 @@ class Runs:
         return found
 
     def below_theory(self, damping: str, column: str) -> Floats:
-        """Return the shortfall of a column of the impact table against the theory [%], for a simulation of `DAMPINGS`."""
-        simulation, theory = (self.response(f"type1-{name}").impacts[column] for name in (damping, "theory"))
+        """Return the shortfall of a column of the impact table against the theory [%],
+        for a simulation of `DAMPINGS`.
+        """
+        simulation, theory = (
+            self.response(f"type1-{name}").impacts[column] for name in (damping, "theory")
+        )
         return 100.0 * (1.0 - simulation / theory)
 
 
 @lru_cache(maxsize=16)
 def history_of(response: Response) -> dict[str, Floats]:
-    """Return the history of a response, sampled finely enough for each contact and for the later peaks of the plate."""
+    """Return the history of a response, sampled finely enough for each contact and for
+    the later peaks of the plate.
+    """
     return fine_history(response)
 
 
 def with_law(problem: Problem, **parameters: Array) -> Problem:
-    """Return a problem with other parameters of its contact laws, each a number or an array over drops."""
+    """Return a problem with other parameters of its contact laws, each a number or an
+    array over drops.
+    """
     return replace(problem, laws=tuple(replace(law, **parameters) for law in problem.laws))

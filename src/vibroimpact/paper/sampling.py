@@ -1,4 +1,6 @@
-"""The scatter of Table 2 as a sampling error: ranges of peaks read off samples, the spacing they imply, and the section on it."""
+"""The scatter of Table 2 as a sampling error: ranges of peaks read off samples, the
+spacing they imply, and the section on it.
+"""
 
 from __future__ import annotations
 
@@ -20,12 +22,26 @@ QUANTITIES = {
     "compression": ("indentation_m", "max_indentation_m", "time_of_max_indentation_s"),
     "force": ("force_N", "max_force_N", "time_of_max_force_s"),
 }
-"""Quantities of Table 2: columns of the history, of the largest value and of its time in the impact table."""
+"""Quantities of Table 2: columns of the history, of the largest value and of its time in
+the impact table.
+"""
 
-_ERRORS = tuple((quantity, damping, impact) for quantity in QUANTITIES for damping in DAMPINGS for impact in IMPACTS)
+_ERRORS = tuple(
+    (quantity, damping, impact)
+    for quantity in QUANTITIES
+    for damping in DAMPINGS
+    for impact in IMPACTS
+)
 
-CONTACTS = tuple((damping, impact) for damping in DAMPINGS for impact in IMPACTS if (damping, impact) != ("variable", 1))
-"""Contacts of Table 2 by damping and impact; the first contact is the same with either damping, and listed once."""
+CONTACTS = tuple(
+    (damping, impact)
+    for damping in DAMPINGS
+    for impact in IMPACTS
+    if (damping, impact) != ("variable", 1)
+)
+"""Contacts of Table 2 by damping and impact; the first contact is the same with either
+damping, and listed once.
+"""
 
 _POINTS = 1001
 _LEVELS = 1001
@@ -60,36 +76,49 @@ class ContactPulse:
         return float(self.values[self.top])
 
     def instants(self, level: float) -> tuple[float, float]:
-        """Return the times at which the pulse passes a level, rising and falling [s]; NaN for a level above the peak."""
+        """Return the times at which the pulse passes a level, rising and falling [s]; NaN
+        for a level above the peak.
+        """
         if level > self.value:
             return math.nan, math.nan
         before, after = _crossings(self.times, self.values, self.top, np.array([level]))
         return float(before[0]), float(after[0])
 
     def lowest(self, step: float) -> float:
-        """Return the smallest possible maximum of samples spaced by `step` [s], over all phases of the samples."""
+        """Return the smallest possible maximum of samples spaced by `step` [s], over all
+        phases of the samples.
+        """
         return float(np.interp(step, self.widths, self.levels))
 
 
 @lru_cache(maxsize=1)
 def contact_pulses(runs: Runs) -> Mapping[tuple[str, str, int], ContactPulse]:
-    """Return the pulses of the theory and the simulations, by run, quantity and impact number, counted from 1."""
+    """Return the pulses of the theory and the simulations, by run, quantity and impact
+    number, counted from 1.
+    """
     found = {}
     for name in ("theory", *DAMPINGS):
         response = runs.response(f"type1-{name}")
         for impact in IMPACTS:
-            touch, duration = (float(response.impacts[column][impact - 1]) for column in ("time_s", "duration_s"))
+            touch, duration = (
+                float(response.impacts[column][impact - 1]) for column in ("time_s", "duration_s")
+            )
             times = np.linspace(0.0, duration, _POINTS)
             # slightly inside, so that both end points belong to the contact
             history = response.at(touch + np.clip(times, 1e-9 * duration, (1.0 - 1e-9) * duration))
             for quantity, (column, largest, when) in QUANTITIES.items():
                 at = float(response.impacts[when][impact - 1]) - touch
-                found[name, quantity, impact] = _contact_pulse(times, history[column], at, float(response.impacts[largest][impact - 1]))
+                found[name, quantity, impact] = _contact_pulse(
+                    times, history[column], at, float(response.impacts[largest][impact - 1])
+                )
     return found
 
 
-def error_range(runs: Runs, step: float, quantity: str, damping: str, impact: int) -> tuple[float, float]:
-    """Return the range of the error of sampled peaks [%], over all phases of the samples of theory and simulation.
+def error_range(
+    runs: Runs, step: float, quantity: str, damping: str, impact: int
+) -> tuple[float, float]:
+    """Return the range of the error of sampled peaks [%], over all phases of the samples of theory
+    and simulation.
 
     Parameters
     ----------
@@ -110,30 +139,50 @@ def error_range(runs: Runs, step: float, quantity: str, damping: str, impact: in
     >>> round(least, 3), round(largest, 3)
     (5.178, 5.178)
     """
-    theory, simulation = contact_pulses(runs)["theory", quantity, impact], contact_pulses(runs)[damping, quantity, impact]
+    theory, simulation = (
+        contact_pulses(runs)["theory", quantity, impact],
+        contact_pulses(runs)[damping, quantity, impact],
+    )
     lowest = theory.lowest(step)
     least = 100.0 * (1.0 - simulation.value / lowest) if lowest > 0.0 else -math.inf
     return least, 100.0 * (1.0 - simulation.lowest(step) / theory.value)
 
 
 def grid_error(runs: Runs, step: float, quantity: str, damping: str, impact: int) -> float:
-    """Return the error of peaks sampled at multiples of `step` [s] from the start of each run [%]; NaN without samples in a contact."""
-    theory, simulation = (grid_samples(runs, name, step, quantity, impact)[1] for name in ("theory", damping))
-    return 100.0 * (1.0 - float(simulation.max()) / float(theory.max())) if len(theory) and len(simulation) else math.nan
+    """Return the error of peaks sampled at multiples of `step` [s] from the start of each
+    run [%]; NaN without samples in a contact.
+    """
+    theory, simulation = (
+        grid_samples(runs, name, step, quantity, impact)[1] for name in ("theory", damping)
+    )
+    return (
+        100.0 * (1.0 - float(simulation.max()) / float(theory.max()))
+        if len(theory) and len(simulation)
+        else math.nan
+    )
 
 
-def grid_samples(runs: Runs, name: str, step: float, quantity: str, impact: int) -> tuple[Floats, Floats]:
-    """Return the samples of a contact at multiples of `step` [s] from the start of a run: times since first touch [s], and values."""
+def grid_samples(
+    runs: Runs, name: str, step: float, quantity: str, impact: int
+) -> tuple[Floats, Floats]:
+    """Return the samples of a contact at multiples of `step` [s] from the start of a run:
+    times since first touch [s], and values.
+    """
     touch = float(runs.response(f"type1-{name}").impacts["time_s"][impact - 1])
     peak = contact_pulses(runs)[name, quantity, impact]
-    times = np.arange(math.ceil(touch / step), math.floor((touch + peak.times[-1]) / step) + 1) * step - touch
+    times = (
+        np.arange(math.ceil(touch / step), math.floor((touch + peak.times[-1]) / step) + 1) * step
+        - touch
+    )
     return times, np.interp(times, peak.times, peak.values)
 
 
 def unsampled_gaps(runs: Runs, without: tuple[str, int] | None = None) -> Floats:
-    """Return the time that each contact spends above the compression implied by its printed error [s]: no sample lies in it.
+    """Return the time that each contact spends above the compression implied by its printed error
+    [s]: no sample lies in it.
 
-    The peak of the theory is taken as exact. The first contact is the same with either damping, and counts once.
+    The peak of the theory is taken as exact. The first contact is the same with either damping, and
+    counts once.
 
     Parameters
     ----------
@@ -145,11 +194,13 @@ def unsampled_gaps(runs: Runs, without: tuple[str, int] | None = None) -> Floats
     left_out = ("constant", 1) if without == ("variable", 1) else without
     contacts = [contact for contact in CONTACTS if contact != left_out]
     instants = np.array([implied_instants(runs, "compression", *contact) for contact in contacts])
-    return np.asarray(np.nan_to_num(instants[:, 1] - instants[:, 0]))  # NaN, a level above the peak: no time above it
+    # NaN, a level above the peak: no time above it
+    return np.asarray(np.nan_to_num(instants[:, 1] - instants[:, 0]))
 
 
 def spacing_bound(runs: Runs, without: tuple[str, int] | None = None) -> float:
-    """Return the upper 95 % confidence bound of the sample spacing in contact [s], from the printed compressions.
+    """Return the upper 95 % confidence bound of the sample spacing in contact [s], from the printed
+    compressions.
 
     At a random phase the gap around the peak is uniformly distributed between zero and the spacing.
 
@@ -158,7 +209,8 @@ def spacing_bound(runs: Runs, without: tuple[str, int] | None = None) -> float:
     runs : Runs
         The simulations.
     without : tuple of str and int, optional
-        Contact to leave out, by damping and impact, so that its error can be tested against the bound.
+        Contact to leave out, by damping and impact, so that its error can be tested against the
+        bound.
     """
     gaps = unsampled_gaps(runs, without)
     return float(gaps.max() * _TAIL ** (-1.0 / len(gaps)))
@@ -185,8 +237,12 @@ def sampling_section(runs: Runs) -> ReportSection:
             _errors_table(runs),
             TextTable(
                 ("contact", "by the compression [µs]", "by the force [µs]", "apart at least [µs]"),
-                tuple((f"{damping} damping, impact {impact}", *one.cells) for (damping, impact), one in instants.items()),
-                "When after first touch the printed errors were read, with the exact peaks of the theory",
+                tuple(
+                    (f"{damping} damping, impact {impact}", *one.cells)
+                    for (damping, impact), one in instants.items()
+                ),
+                "When after first touch the printed errors were read, with "
+                "the exact peaks of the theory",
             ),
         ),
         conclusion=_conclusion(runs, tuple(instants.values())),
@@ -194,19 +250,26 @@ def sampling_section(runs: Runs) -> ReportSection:
 
 
 class ImpliedInstants(NamedTuple):
-    """Least distance of the instants implied by both errors of a contact [s], NaN if one implies none; and the cells of its row."""
+    """Least distance of the instants implied by both errors of a contact [s], NaN if one
+    implies none; and the cells of its row.
+    """
 
     distance: float
     cells: tuple[str, ...]
 
 
 def _instants(runs: Runs) -> dict[tuple[str, int], ImpliedInstants]:
-    """Return the instants at which each contact was sampled; an error that implies more than the peak has none."""
+    """Return the instants at which each contact was sampled; an error that implies more
+    than the peak has none.
+    """
     found = {}
     for contact in CONTACTS:
         both = [implied_instants(runs, quantity, *contact) for quantity in QUANTITIES]
         distance = min(abs(one - other) for one in both[0] for other in both[1])
-        told = [MISSING if math.isnan(early) else f"{1e6 * early:.1f} or {1e6 * late:.1f}" for early, late in both]
+        told = [
+            MISSING if math.isnan(early) else f"{1e6 * early:.1f} or {1e6 * late:.1f}"
+            for early, late in both
+        ]
         found[contact] = ImpliedInstants(distance, (*told, fixed(1e6 * distance, 1)))
     return found
 
@@ -216,13 +279,19 @@ def _introduction(runs: Runs) -> tuple[str, ...]:
     durations = runs.response("type1-theory").impacts["duration_s"]
     chance = float(gaps.max() / step) ** len(gaps)
     return (
-        f"By the printed numbers the simulation had one output every {1e3 * step:.2f} ms, and a contact lasts "
-        f"{1e3 * durations.min():.2f} to {1e3 * durations.max():.2f} ms. A peak read from samples is too low, as the samples miss the "
-        "exact one. The first table compares the errors of exact peaks with those that can be read from samples of the theory and of the "
+        f"By the printed numbers the simulation had one output every {1e3 * step:.2f} ms, "
+        "and a contact lasts "
+        f"{1e3 * durations.min():.2f} to {1e3 * durations.max():.2f} ms. A peak read from "
+        "samples is too low, as the samples miss the "
+        "exact one. The first table compares the errors of exact peaks with those that can "
+        "be read from samples of the theory and of the "
         "simulation, and with those printed [%].",
-        f"Outputs every {1e3 * step:.2f} ms do not give the printed errors. If they were read off samples, these left no more "
-        f"than {1e6 * gaps.max():.0f} µs free round the deepest point, in {len(gaps)} contacts; at a random phase the chance of "
-        f"that is {digits(chance, 1)}. With equal steps at a random phase the likeliest step in contact is {1e6 * gaps.max():.0f} µs, and "
+        f"Outputs every {1e3 * step:.2f} ms do not give the printed errors. If they were "
+        "read off samples, these left no more "
+        f"than {1e6 * gaps.max():.0f} µs free round the deepest point, in {len(gaps)} "
+        "contacts; at a random phase the chance of "
+        f"that is {digits(chance, 1)}. With equal steps at a random phase the likeliest "
+        f"step in contact is {1e6 * gaps.max():.0f} µs, and "
         f"at 95 % it is at most {1e6 * spacing:.0f} µs.",
     )
 
@@ -254,33 +323,55 @@ def _errors_table(runs: Runs) -> TextTable:
 
 
 def _conclusion(runs: Runs, instants: tuple[ImpliedInstants, ...]) -> tuple[str, ...]:
-    step, spacing, theory = output_step(), spacing_bound(runs), contact_pulses(runs)["theory", "force", 1]
-    inside = sum(Explanation("", *error_range(runs, spacing, *which)).holds(table2_error(*which)) for which in _ERRORS)
-    implied = printed("type1.max_force").value / (1.0 - 0.01 * printed("table2.force.constant.1").value)
+    step, spacing, theory = (
+        output_step(),
+        spacing_bound(runs),
+        contact_pulses(runs)["theory", "force", 1],
+    )
+    inside = sum(
+        Explanation("", *error_range(runs, spacing, *which)).holds(table2_error(*which))
+        for which in _ERRORS
+    )
+    implied = printed("type1.max_force").value / (
+        1.0 - 0.01 * printed("table2.force.constant.1").value
+    )
     distances = [one.distance for one in instants if not math.isnan(one.distance)]
     return (
-        f"{inside} of {len(_ERRORS)} printed errors lie within the range of samples {1e6 * spacing:.0f} µs apart, which was found from the "
-        "compressions; in the verdicts of Table 2 each compression is compared with the spacing implied by the other contacts. The "
+        f"{inside} of {len(_ERRORS)} printed errors lie within the range of samples "
+        f"{1e6 * spacing:.0f} µs apart, which was found from the "
+        "compressions; in the verdicts of Table 2 each compression is compared with the "
+        "spacing implied by the other contacts. The "
         "ranges are wide: they show that sampling can be the cause, not that it is the only one.",
-        f"If so, the theory would have been sampled too, but more finely: the largest force printed, {printed('type1.max_force').text} N, "
-        f"and its printed error imply a peak of {implied:.3f} N, {100.0 * (1.0 - implied / theory.value):.3f} % below the exact "
-        f"{theory.value:.3f} N. Where a printed force error is less than the exact one, the peak of the theory would have been "
-        "missed.",
-        f"Compression and force are largest at different times. In {len(distances)} of {len(instants)} contacts both printed errors are "
-        f"those of an instant, and the nearest two lie {1e6 * min(distances):.1f} to {1e6 * max(distances):.1f} µs apart; with so few "
-        "contacts, and two instants to choose from for each error, that is no evidence that both were read at one time.",
-        "Established: the printed errors of Table 2 are not those of exact peaks, as the errors in the text are; most are too large, "
-        f"as missed peaks make them; and an output every {1e3 * step:.2f} ms alone would scatter them far more. A hypothesis: that the "
-        "solver's own steps, or further outputs at the contact, were plotted, so that there was a sample near each peak.",
+        "If so, the theory would have been sampled too, but more finely: the largest "
+        f"force printed, {printed('type1.max_force').text} N, "
+        f"and its printed error imply a peak of {implied:.3f} N, "
+        f"{100.0 * (1.0 - implied / theory.value):.3f} % below the exact "
+        f"{theory.value:.3f} N. Where a printed force error is less than the exact one, "
+        "the peak of the theory would have been missed.",
+        f"Compression and force are largest at different times. In {len(distances)} of "
+        f"{len(instants)} contacts both printed errors are "
+        f"those of an instant, and the nearest two lie {1e6 * min(distances):.1f} to "
+        f"{1e6 * max(distances):.1f} µs apart; with so few "
+        "contacts, and two instants to choose from for each error, that is no evidence that "
+        "both were read at one time.",
+        "Established: the printed errors of Table 2 are not those of exact peaks, as the "
+        "errors in the text are; most are too large, "
+        f"as missed peaks make them; and an output every {1e3 * step:.2f} ms alone would "
+        "scatter them far more. A hypothesis: that the "
+        "solver's own steps, or further outputs at the contact, were plotted, so that there "
+        "was a sample near each peak.",
     )
 
 
 def implied_instants(runs: Runs, quantity: str, damping: str, impact: int) -> tuple[float, float]:
-    """Return the times after first touch at which the simulation passes the value of a printed error, rising and falling [s].
+    """Return the times after first touch at which the simulation passes the value of a printed
+    error, rising and falling [s].
 
     NaN if the error implies more than the peak.
     """
-    return contact_pulses(runs)[damping, quantity, impact].instants(_implied_peak(runs, quantity, damping, impact))
+    return contact_pulses(runs)[damping, quantity, impact].instants(
+        _implied_peak(runs, quantity, damping, impact)
+    )
 
 
 def table2_error(quantity: str, damping: str, impact: int) -> PrintedValue:
@@ -289,7 +380,9 @@ def table2_error(quantity: str, damping: str, impact: int) -> PrintedValue:
 
 
 def _implied_peak(runs: Runs, quantity: str, damping: str, impact: int) -> float:
-    """Return the sampled peak of the simulation that a printed error implies, for an exact peak of the theory."""
+    """Return the sampled peak of the simulation that a printed error implies, for an
+    exact peak of the theory.
+    """
     error = table2_error(quantity, damping, impact).value
     return contact_pulses(runs)["theory", quantity, impact].value * (1.0 - 0.01 * error)
 
@@ -298,7 +391,8 @@ def _contact_pulse(times: Floats, values: Floats, at: float, largest: float) -> 
     """Return a pulse with its located peak inserted among the samples."""
     top = int(np.searchsorted(times, at))
     times, values = np.insert(times, top, at), np.insert(values, top, largest)
-    # levels are quadratically denser towards the peak, where the width grows as the root of the distance from it
+    # levels are quadratically denser towards the peak, where the width grows as the root of the
+    # distance from it
     levels = largest * (1.0 - np.linspace(0.0, 1.0, _LEVELS) ** 2)
     before, after = _crossings(times, values, top, levels)
     return ContactPulse(times, values, top, np.maximum.accumulate(after - before), levels)
@@ -307,7 +401,8 @@ def _contact_pulse(times: Floats, values: Floats, at: float, largest: float) -> 
 def _crossings(times: Floats, values: Floats, top: int, levels: Floats) -> tuple[Floats, Floats]:
     """Return the times at which levels are first reached and last left.
 
-    Running maxima make both flanks monotonic: the force of IMPACT may rise again slightly before separation, as its damping fades out.
+    Running maxima make both flanks monotonic: the force of IMPACT may rise again slightly before
+    separation, as its damping fades out.
     """
     up, down = np.maximum.accumulate(values[: top + 1]), np.maximum.accumulate(values[top:][::-1])
     return np.interp(levels, up, times[: top + 1]), np.interp(levels, down, times[top:][::-1])

@@ -1,4 +1,6 @@
-"""The first impact of the superposed model over the step length, on two meshes of the sphere, and the step closest to the paper."""
+"""The first impact of the superposed model over the step length, on two meshes of the
+sphere, and the step closest to the paper.
+"""
 
 from __future__ import annotations
 
@@ -19,7 +21,9 @@ from vibroimpact.paper.runs import Runs
 Mesh = Literal["coarse", "fine"]
 
 MESHES: tuple[Mesh, ...] = ("coarse", "fine")
-"""Meshes of the sphere: a coarse one with all modes that are computed for it, and that of the shipped case with its modes."""
+"""Meshes of the sphere: a coarse one with all modes that are computed for it, and that of
+the shipped case with its modes.
+"""
 
 COMPARED = ("max_force_N", "separation_speed_m_s", "sphere_strain_J")
 """Quantities of the first impact that the misfit compares with the printed numbers."""
@@ -31,7 +35,9 @@ STEPS: Floats = np.geomspace(5e-6, 2.5e-4, 15)
 """Steps of a sweep [s], from the shortest affordable one to the paper's output step."""
 
 MODES = (60, 120, 214)
-"""Numbers of modes of the coarse mesh, of four second-order bricks across; the last is the largest that is computed for it."""
+"""Numbers of modes of the coarse mesh, of four second-order bricks across; the last is
+the largest that is computed for it.
+"""
 
 _ELEMENTS_ACROSS = 4
 _REFINED_STEPS = 25  # steps of the refined sweep between the neighbours of the best step
@@ -57,7 +63,9 @@ class StepSweep:
         return np.asarray(np.median(self.found[name], axis=1))
 
     def misfit(self, target: dict[str, float]) -> Floats:
-        """Return the root mean square of the relative differences between the medians and target values, (S,)."""
+        """Return the root mean square of the relative differences between the medians and
+        target values, (S,).
+        """
         off = [self.median(name) / value - 1.0 for name, value in target.items()]
         return np.asarray(np.sqrt(np.mean(np.square(off), axis=0)))
 
@@ -69,9 +77,14 @@ def superposed(runs: Runs, kind: int, mesh: Mesh) -> Problem:
 
 @cache
 def coarse(kind: int, modes: int) -> Problem:
-    """Return the superposed problem of Type 2 or 3 with a number of modes of the coarse mesh of the sphere."""
+    """Return the superposed problem of Type 2 or 3 with a number of modes of the coarse
+    mesh of the sphere.
+    """
     table = load_table(f"paper:type{kind}-superposed")
-    table["sphere"] |= {"modes": modes, "mesh": {"elements_across": _ELEMENTS_ACROSS, "kind": "hex20"}}
+    table["sphere"] |= {
+        "modes": modes,
+        "mesh": {"elements_across": _ELEMENTS_ACROSS, "kind": "hex20"},
+    }
     return read_case(table).to_problem()
 
 
@@ -79,21 +92,33 @@ def coarse(kind: int, modes: int) -> Problem:
 def sweep_steps(problem: Problem, steps: tuple[float, ...] = tuple(STEPS.tolist())) -> StepSweep:
     """Return the unresolved first impact of a problem over step lengths [s]."""
     found = [unresolved_impact(problem, step, PHASES) for step in steps]
-    return StepSweep(np.array(steps), {name: np.array([one[name] for one in found]) for name in found[0]})
+    return StepSweep(
+        np.array(steps), {name: np.array([one[name] for one in found]) for name in found[0]}
+    )
 
 
 @cache
 def resolved_impact(problem: Problem) -> dict[str, float]:
-    """Return the results of `unresolved_impact` for the resolved first impact, and its impact table with duration_s, the contact time."""
+    """Return the results of `unresolved_impact` for the resolved first impact, and its
+    impact table with duration_s, the contact time.
+    """
     response = simulate(replace(problem, impacts=1, duration=None))
     impact = {name: float(values[0]) for name, values in response.impacts.items()}
     plate = problem.plate.modes
     least_duration = 0.5 / float(plate.frequencies.min()) if plate is not None else 0.0
-    contact, after = np.linspace(0.0, impact["duration_s"], 401), np.linspace(impact["duration_s"], least_duration, 401)
-    history = response.at(impact["time_s"] + np.concatenate([contact, after if least_duration > contact[-1] else []]))
+    contact, after = (
+        np.linspace(0.0, impact["duration_s"], 401),
+        np.linspace(impact["duration_s"], least_duration, 401),
+    )
+    history = response.at(
+        impact["time_s"] + np.concatenate([contact, after if least_duration > contact[-1] else []])
+    )
     end = {name: float(values[len(contact) - 1]) for name, values in history.items()}
     shares = {name: end[name] for name in ENERGY_SHARES if name in end}
-    shares["vibration_J"] = sum(end[f"{body}_J"] for body in ("sphere_vibration", "sphere_strain", "plate_kinetic", "plate_strain"))
+    shares["vibration_J"] = sum(
+        end[f"{body}_J"]
+        for body in ("sphere_vibration", "sphere_strain", "plate_kinetic", "plate_strain")
+    )
     shares["modal_damping_J"] = end["sphere_damping_J"] + end["plate_damping_J"]
     peaks = {name: float(np.abs(history[name]).max()) for name in PEAKS if name in history}
     peaks["beyond_touch_m"] = float(problem.sphere.contact_offset - history["position_m"].min())
@@ -101,16 +126,24 @@ def resolved_impact(problem: Problem) -> dict[str, float]:
 
 
 def paper_impact(runs: Runs, kind: int) -> dict[str, float]:
-    """Return the printed `COMPARED` quantities of the first impact of Type 2 or 3; the speed follows from the rebound height."""
+    """Return the printed `COMPARED` quantities of the first impact of Type 2 or 3; the
+    speed follows from the rebound height.
+    """
     problem = runs.problem(f"type{kind}-superposed")
     rise = printed(f"type{kind}.rebound_height").value - float(problem.sphere.contact_offset)
     speed = float(np.sqrt(2.0 * float(problem.gravity) * rise))
-    values = (printed(f"type{kind}.max_force").value, speed, printed(f"type{kind}.strain_energy").value)
+    values = (
+        printed(f"type{kind}.max_force").value,
+        speed,
+        printed(f"type{kind}.strain_energy").value,
+    )
     return dict(zip(COMPARED, values, strict=True))
 
 
 def closest(problem: Problem, target: dict[str, float]) -> StepSweep:
-    """Return the sweep of the one step with the least misfit to target values of the `COMPARED` quantities."""
+    """Return the sweep of the one step with the least misfit to target values of the
+    `COMPARED` quantities.
+    """
     best = int(np.argmin(sweep_steps(problem).misfit(target)))
     neighbours = STEPS[max(best - 1, 0)], STEPS[min(best + 1, len(STEPS) - 1)]
     refined = sweep_steps(problem, tuple(np.geomspace(*neighbours, _REFINED_STEPS).tolist()))

@@ -1,4 +1,6 @@
-"""The section on inferences about Types 2 and 3: whether the printed values are those of an unresolved run."""
+"""The section on inferences about Types 2 and 3: whether the printed values are those of
+an unresolved run.
+"""
 
 from __future__ import annotations
 
@@ -9,7 +11,14 @@ from vibroimpact.paper.derived import fall_beyond_touch, mesh_mass
 from vibroimpact.paper.implicit_euler import ENERGY_SHARES, unresolved_impact
 from vibroimpact.paper.measures import MESH_DIGITS
 from vibroimpact.paper.printed import printed
-from vibroimpact.paper.report_section import ComparedValue, Explanation, Kind, ReportSection, TextTable, Verdict
+from vibroimpact.paper.report_section import (
+    ComparedValue,
+    Explanation,
+    Kind,
+    ReportSection,
+    TextTable,
+    Verdict,
+)
 from vibroimpact.paper.runs import Runs
 from vibroimpact.paper.sampling import output_step
 from vibroimpact.paper.step_sweep import (
@@ -26,7 +35,11 @@ from vibroimpact.paper.step_sweep import (
     sweep_steps,
 )
 
-SPHERE_COLUMNS = {"max_force": "max_force_N", "rebound_height": "rebound_height_m", "strain_energy": "sphere_strain_J"}
+SPHERE_COLUMNS = {
+    "max_force": "max_force_N",
+    "rebound_height": "rebound_height_m",
+    "strain_energy": "sphere_strain_J",
+}
 """Printed quantities of the sphere in the first impact, and their names in a run."""
 
 PLATE_COLUMNS = {
@@ -38,13 +51,23 @@ PLATE_COLUMNS = {
 }
 """Printed quantities of the plate, and their names in a run."""
 
-_COLUMNS = {f"type{kind}.{name}": column for kind in (2, 3) for name, column in SPHERE_COLUMNS.items()} | PLATE_COLUMNS
+_COLUMNS = {
+    f"type{kind}.{name}": column for kind in (2, 3) for name, column in SPHERE_COLUMNS.items()
+} | PLATE_COLUMNS
 
-_SHARE_HEADINGS = ("motion", "height", "vibration", "lost in the contact", "lost in the modes", "lost by the method")
+_SHARE_HEADINGS = (
+    "motion",
+    "height",
+    "vibration",
+    "lost in the contact",
+    "lost in the modes",
+    "lost by the method",
+)
 
 
 def unresolved_range(runs: Runs, kind: int, quantity: str) -> tuple[float, float]:
-    """Return the range of a quantity in unresolved runs with the step fitted to Type 2, over the phases of the touch in a step.
+    """Return the range of a quantity in unresolved runs with the step fitted to Type 2, over the
+    phases of the touch in a step.
 
     The sphere has the coarse mesh, with all modes that are computed for it.
 
@@ -62,28 +85,45 @@ def unresolved_range(runs: Runs, kind: int, quantity: str) -> tuple[float, float
 
 
 def unresolved_section(runs: Runs) -> ReportSection:
-    """Return the section that compares unresolved runs of the superposed model with the printed Types 2 and 3."""
+    """Return the section that compares unresolved runs of the superposed model with the
+    printed Types 2 and 3.
+    """
     rows = _compared_values(runs)
     return ReportSection(
         "Types 2 and 3: what an unresolved run gives",
         (_resolved_words(runs), _method_words(runs), _reading_words(runs)),
         rows,
         (_mesh_table(runs), _modes_table(runs), _energy_table(runs), _plate_table(runs)),
-        (_fit_words(runs), _prediction_words(runs, rows), _counter_evidence(runs), _outcome(runs, rows)),
+        (
+            _fit_words(runs),
+            _prediction_words(runs, rows),
+            _counter_evidence(runs),
+            _outcome(runs, rows),
+        ),
     )
 
 
 def _compared_values(runs: Runs) -> tuple[ComparedValue, ...]:
-    """Return the values of Type 2, to which the step was fitted, and of Type 3, predicted with the same step."""
+    """Return the values of Type 2, to which the step was fitted, and of Type 3, predicted
+    with the same step.
+    """
     rows = []
     for kind in (2, 3):
         step, found = _fitted_step(runs, kind)
-        for name in [f"type{kind}.{name}" for name in SPHERE_COLUMNS] + (list(PLATE_COLUMNS) if kind == 3 else []):
+        for name in [f"type{kind}.{name}" for name in SPHERE_COLUMNS] + (
+            list(PLATE_COLUMNS) if kind == 3 else []
+        ):
             values = found[_COLUMNS[name]]
-            gives = f"an unresolved run gives {values.min():.4g} to {values.max():.4g} {printed(name).unit}"
+            gives = (
+                f"an unresolved run gives {values.min():.4g} to {values.max():.4g} "
+                f"{printed(name).unit}"
+            )
             reason = f"a hypothesis: {gives}, depending on where in a step the surfaces meet"
             explanation = Explanation(reason, float(values.min()), float(values.max()))
-            by = f"implicit Euler, {_microseconds(step)} µs{', fitted' if kind == 2 else ', step from Type 2'}"
+            by = (
+                f"implicit Euler, {_microseconds(step)} "
+                f"µs{', fitted' if kind == 2 else ', step from Type 2'}"
+            )
             rows.append(
                 ComparedValue(
                     printed(name),
@@ -108,54 +148,76 @@ def _resolved_words(runs: Runs) -> str:
         nodes.append(len(problem.models["sphere"].mesh.nodes))
         compliance.append(1e9 * float(problem.facts["sphere_modal_compliance_m_N"]))
     return (
-        "Established: the result of the resolved model. A multibody program with flexible bodies has law and modes in series, "
-        f"the superposed treatment. The first impact of Type 2 then comes to {told[0]} with {modes[0]} modes of a fine mesh of "
-        f"{nodes[0]} nodes, and to {told[1]} with {modes[1]} of the {3 * nodes[1] - 6} modes of a coarse mesh of {nodes[1]} nodes, as "
-        f"many as the program computes of it (the paper has {printed('mesh.sphere.nodes').text} nodes). It depends on the modes and the "
-        f"mesh, since at a node the compliance of these modes is {compliance[0]:.3g} and {compliance[1]:.3g} nm/N, and that of a solid "
-        f"under a point load is infinite. The paper prints {_compared_text(paper_impact(runs, 2))}, the speed from the height of the "
-        f"rebound. According to the program's own check the coarse mesh is too coarse: {superposed(runs, 2, 'coarse').facts['doubts']}. "
-        f"The printed forces and accelerations imply that the paper's own mesh has lost {_lost_mass(runs)} of its mass, so that it "
-        "would be another one."
+        "Established: the result of the resolved model. A multibody program with flexible "
+        "bodies has law and modes in series, "
+        f"the superposed treatment. The first impact of Type 2 then comes to {told[0]} "
+        f"with {modes[0]} modes of a fine mesh of "
+        f"{nodes[0]} nodes, and to {told[1]} with {modes[1]} of the {3 * nodes[1] - 6} "
+        f"modes of a coarse mesh of {nodes[1]} nodes, as "
+        "many as the program computes of it (the paper has "
+        f"{printed('mesh.sphere.nodes').text} nodes). It depends on the modes and the "
+        f"mesh, since at a node the compliance of these modes is {compliance[0]:.3g} and "
+        f"{compliance[1]:.3g} nm/N, and that of a solid "
+        "under a point load is infinite. The paper prints "
+        f"{_compared_text(paper_impact(runs, 2))}, the speed from the height of the "
+        "rebound. According to the program's own check the coarse mesh is too coarse: "
+        f"{superposed(runs, 2, 'coarse').facts['doubts']}. "
+        "The printed forces and accelerations imply that the paper's own mesh has lost "
+        f"{_lost_mass(runs)} of its mass, so that it would be another one."
     )
 
 
 def _lost_mass(runs: Runs) -> str:
     problem = runs.problem("type1-variable")
-    return _percent_text(1.0 - mesh_mass(3, float(problem.gravity))[0] / float(problem.sphere.mass), 2)
+    return _percent_text(
+        1.0 - mesh_mass(3, float(problem.gravity))[0] / float(problem.sphere.mass), 2
+    )
 
 
 def _method_words(runs: Runs) -> str:
     step, shares = _mean_shares(runs, 2)
     whole = sum(shares.values())
     duration = resolved_impact(superposed(runs, 2, "coarse"))["duration_s"]
-    lost = {name: f"{shares[name]:.3f} J ({100.0 * shares[name] / whole:.1f} %)" for name in ENERGY_SHARES}
+    lost = {
+        name: f"{shares[name]:.3f} J ({100.0 * shares[name] / whole:.1f} %)"
+        for name in ENERGY_SHARES
+    }
     return (
-        "Established: an implicit method of first order, in fixed steps that are comparable with the contact, dissipates energy "
-        f"numerically. In steps of {_microseconds(step)} µs, {duration / step:.1f} to the resolved contact, the method dissipates "
-        f"{lost['integrator_J']} of the {whole:.3f} J of Type 2, the damping of the contact {lost['contact_dissipated_J']} and that of "
-        f"the modes {lost['modal_damping_J']}; the sphere keeps {lost['kinetic_J']}. These are means over {len(PHASES)} places of the "
+        "Established: an implicit method of first order, in fixed steps that are comparable "
+        "with the contact, dissipates energy "
+        f"numerically. In steps of {_microseconds(step)} µs, {duration / step:.1f} to the "
+        "resolved contact, the method dissipates "
+        f"{lost['integrator_J']} of the {whole:.3f} J of Type 2, the damping of the "
+        f"contact {lost['contact_dissipated_J']} and that of "
+        f"the modes {lost['modal_damping_J']}; the sphere keeps {lost['kinetic_J']}. These "
+        f"are means over {len(PHASES)} places of the "
         "touch in a step, on the coarse mesh."
     )
 
 
 def _reading_words(runs: Runs) -> str:
     return (
-        f"A hypothesis: that the paper's Types 2 and 3 are such runs. The paper states its output steps, {1e3 * output_step():g} ms, but "
-        "neither the steps of its solver nor their error control. The step is therefore fitted to the printed numbers of Type "
-        "2, and its results for Type 3 are the test. Below, unresolved is the median, of each number by itself, over the places "
-        "of the touch."
+        "A hypothesis: that the paper's Types 2 and 3 are such runs. The paper states its "
+        f"output steps, {1e3 * output_step():g} ms, but "
+        "neither the steps of its solver nor their error control. The step is therefore "
+        "fitted to the printed numbers of Type "
+        "2, and its results for Type 3 are the test. Below, unresolved is the median, of "
+        "each number by itself, over the places of the touch."
     )
 
 
 def _fit_words(runs: Runs) -> str:
     wanted = paper_impact(runs, 2)
-    (step, off), (own_step, own_off) = (_best_cells(closest(superposed(runs, 2, mesh), wanted), wanted) for mesh in MESHES)
+    (step, off), (own_step, own_off) = (
+        _best_cells(closest(superposed(runs, 2, mesh), wanted), wanted) for mesh in MESHES
+    )
     return (
-        f"On the coarse mesh a step of {step} µs comes closest to the three numbers of Type 2: they are off by {off} % (root mean square). "
-        f"On the fine mesh the best step, {own_step} µs, leaves them off by {own_off} %. With fewer modes of the coarse mesh they are off "
-        "by more, as the table shows; with more it was not tried. So three settings were chosen for three numbers: the step, the mesh and "
-        "the number of modes."
+        f"On the coarse mesh a step of {step} µs comes closest to the three numbers of "
+        f"Type 2: they are off by {off} % (root mean square). "
+        f"On the fine mesh the best step, {own_step} µs, leaves them off by {own_off} %. "
+        "With fewer modes of the coarse mesh they are off "
+        "by more, as the table shows; with more it was not tried. So three settings were "
+        "chosen for three numbers: the step, the mesh and the number of modes."
     )
 
 
@@ -168,23 +230,54 @@ def _modes_table(runs: Runs) -> TextTable:
     wanted, cells = paper_impact(runs, 2), []
     for modes in MODES:
         found = closest(coarse(2, modes), wanted)
-        cells.append((str(modes), *_compared_cells(resolved_impact(coarse(2, modes))), *_best_cells(found, wanted)))
-    headers = ("modes", "force, resolved [N]", "speed [m/s]", "strain energy [J]", "best step [µs]", "misfit [%]")
+        cells.append(
+            (
+                str(modes),
+                *_compared_cells(resolved_impact(coarse(2, modes))),
+                *_best_cells(found, wanted),
+            )
+        )
+    headers = (
+        "modes",
+        "force, resolved [N]",
+        "speed [m/s]",
+        "strain energy [J]",
+        "best step [µs]",
+        "misfit [%]",
+    )
     return TextTable(headers, tuple(cells), "Type 2 on the coarse mesh, by the number of its modes")
 
 
 def _prediction_words(runs: Runs, rows: tuple[ComparedValue, ...]) -> str:
     predicted = [row for row in rows if not row.fitted]
-    met, missed = [row for row in predicted if _is_met(row)], [row for row in predicted if not _is_met(row)]
+    met, missed = (
+        [row for row in predicted if _is_met(row)],
+        [row for row in predicted if not _is_met(row)],
+    )
     whole = resolved_impact(superposed(runs, 3, "coarse"))
-    vague = [row for row in met if abs(whole[_COLUMNS[row.printed.name]] - row.printed.value) <= row.printed.half]
+    vague = [
+        row
+        for row in met
+        if abs(whole[_COLUMNS[row.printed.name]] - row.printed.value) <= row.printed.half
+    ]
     loose = [row for row in met if not row.explanations[0].contains(row.printed)]
     return (
-        f"The same step gives Type 3, where nothing is fitted. Of the {len(predicted)} numbers compared here, {len(met)} agree, within "
-        f"their digits, with the median or the range over the places of the touch: {_differences_text(met)}. Not in agreement: "
-        f"{_differences_text(missed)}."
-        + (f" Some agree with the resolved run as well, so that they are weak evidence: {_names_text(vague)}." if vague else "")
-        + (f" Some lie outside their range, and agree only within their few digits: {_names_text(loose)}." if loose else "")
+        f"The same step gives Type 3, where nothing is fitted. Of the {len(predicted)} "
+        f"numbers compared here, {len(met)} agree, within "
+        "their digits, with the median or the range over the places of the touch: "
+        f"{_differences_text(met)}. Not in agreement: {_differences_text(missed)}."
+        + (
+            " Some agree with the resolved run as well, so that they are weak evidence: "
+            f"{_names_text(vague)}."
+            if vague
+            else ""
+        )
+        + (
+            " Some lie outside their range, and agree only within their few digits: "
+            f"{_names_text(loose)}."
+            if loose
+            else ""
+        )
     )
 
 
@@ -193,40 +286,74 @@ def _counter_evidence(runs: Runs) -> str:
     two, three = (_fitted_step(runs, kind)[1] for kind in (2, 3))
     ratio = three["max_force_N"] / two["max_force_N"] - 1.0
     as_printed = printed("type3.max_force").value / printed("type2.max_force").value - 1.0
-    deep = [1e3 * fall_beyond_touch(kind, float(runs.problem("type1-variable").gravity)) for kind in (2, 3)]
-    ranges = [f"{1e3 * found['beyond_touch_m'].min():.2f} to {1e3 * found['beyond_touch_m'].max():.2f} mm" for found in (two, three)]
+    deep = [
+        1e3 * fall_beyond_touch(kind, float(runs.problem("type1-variable").gravity))
+        for kind in (2, 3)
+    ]
+    ranges = [
+        f"{1e3 * found['beyond_touch_m'].min():.2f} to {1e3 * found['beyond_touch_m'].max():.2f} mm"
+        for found in (two, three)
+    ]
     at_end = unresolved_impact(superposed(runs, 3, "coarse"), _fitted_step(runs, 3)[0], np.ones(1))
-    off = [_more_text(float(at_end[column][0]) / printed(f"type3.{name}").value - 1.0) for name, column in SPHERE_COLUMNS.items()]
+    off = [
+        _more_text(float(at_end[column][0]) / printed(f"type3.{name}").value - 1.0)
+        for name, column in SPHERE_COLUMNS.items()
+    ]
     return (
-        "Evidence against the hypothesis: with the touch at the same place in a step, the largest force of Type 3 is between "
-        f"{_more_text(float(ratio.min()))} and {_more_text(float(ratio.max()))} than that of Type 2; as printed, it is "
-        f"{_more_text(as_printed)}. The energies printed at first touch are those of the fall to touch with the mass of the mesh, to some "
-        f"1e-5 J, in both types: of a touch at the end of a step, unless they were calculated by hand. With the touch there, Type 3 has "
+        "Evidence against the hypothesis: with the touch at the same place in a step, the "
+        "largest force of Type 3 is between "
+        f"{_more_text(float(ratio.min()))} and {_more_text(float(ratio.max()))} than that "
+        "of Type 2; as printed, it is "
+        f"{_more_text(as_printed)}. The energies printed at first touch are those of the "
+        "fall to touch with the mass of the mesh, to some "
+        "1e-5 J, in both types: of a touch at the end of a step, unless they were "
+        "calculated by hand. With the touch there, Type 3 has "
         f"{off[0]} force, {off[1]} rebound height and {off[2]} strain energy "
-        f"than printed. And the printed energies imply a fall of {deep[0]:.2f} and {deep[1]:.2f} mm beyond touch in Types 2 and 3, where "
-        f"unresolved runs give {ranges[0]} and {ranges[1]}, and the three treatments, which are resolved, more."
+        f"than printed. And the printed energies imply a fall of {deep[0]:.2f} and "
+        f"{deep[1]:.2f} mm beyond touch in Types 2 and 3, where "
+        f"unresolved runs give {ranges[0]} and {ranges[1]}, and the three treatments, "
+        "which are resolved, more."
     )
 
 
 def _outcome(runs: Runs, rows: tuple[ComparedValue, ...]) -> str:
-    faster = resolved_impact(superposed(runs, 2, "coarse"))["separation_speed_m_s"] / paper_impact(runs, 2)["separation_speed_m_s"]
+    faster = (
+        resolved_impact(superposed(runs, 2, "coarse"))["separation_speed_m_s"]
+        / paper_impact(runs, 2)["separation_speed_m_s"]
+    )
     parts = []
     for body, is_plate in (("sphere", False), ("plate", True)):
-        mine = [row for row in rows if not row.fitted and (row.printed.name in PLATE_COLUMNS) == is_plate]
+        mine = [
+            row
+            for row in rows
+            if not row.fitted and (row.printed.name in PLATE_COLUMNS) == is_plate
+        ]
         parts.append(f"{sum(map(_is_met, mine))} of the {len(mine)} numbers of the {body}")
-    found, wanted = _fitted_step(runs, 3)[1], {column: printed(f"type3.{name}").value for name, column in SPHERE_COLUMNS.items()}
-    together = np.sqrt(np.mean([(found[column] / value - 1.0) ** 2 for column, value in wanted.items()], axis=0))
+    found, wanted = (
+        _fitted_step(runs, 3)[1],
+        {column: printed(f"type3.{name}").value for name, column in SPHERE_COLUMNS.items()},
+    )
+    together = np.sqrt(
+        np.mean([(found[column] / value - 1.0) ** 2 for column, value in wanted.items()], axis=0)
+    )
     identified = runs.treated(3, "identified").impacts
     beside = [
-        _more_text(float(identified[SPHERE_COLUMNS[name]][0]) / printed(f"type3.{name}").value - 1.0)
+        _more_text(
+            float(identified[SPHERE_COLUMNS[name]][0]) / printed(f"type3.{name}").value - 1.0
+        )
         for name in ("max_force", "rebound_height")
     ]
     return (
-        f"So {' and '.join(parts)} in Type 3 agree with the hypothesis, each by itself; at the best place of the touch the three of the "
-        f"sphere are jointly off by {_percent_text(float(together.min()))} (root mean square). The test is not sharp: the identified "
-        f"treatment, fitted to force and rebound of Type 2, comes near those of Type 3 as well (force {beside[0]}, rebound height "
-        f"{beside[1]}). This shows that an unresolved run of a model whose resolved rebound is {faster:.1f} times as fast can agree "
-        "approximately with the printed numbers. It is not a proof: other settings may agree as well."
+        f"So {' and '.join(parts)} in Type 3 agree with the hypothesis, each by itself; at "
+        "the best place of the touch the three of the "
+        f"sphere are jointly off by {_percent_text(float(together.min()))} (root mean "
+        "square). The test is not sharp: the identified "
+        "treatment, fitted to force and rebound of Type 2, comes near those of Type 3 as "
+        f"well (force {beside[0]}, rebound height "
+        f"{beside[1]}). This shows that an unresolved run of a model whose resolved "
+        f"rebound is {faster:.1f} times as fast can agree "
+        "approximately with the printed numbers. It is not a proof: "
+        "other settings may agree as well."
     )
 
 
@@ -236,8 +363,19 @@ def _mesh_table(runs: Runs) -> TextTable:
         wanted = paper_impact(runs, kind)
         cells.append((f"{kind}", "printed", "", *_compared_cells(wanted), ""))
         for mesh in MESHES:
-            problem, step = superposed(runs, kind, mesh), float(closest(superposed(runs, 2, mesh), paper_impact(runs, 2)).steps[0])
-            cells.append((f"{kind}", f"{mesh} mesh, resolved", "", *_compared_cells(resolved_impact(problem)), ""))
+            problem, step = (
+                superposed(runs, kind, mesh),
+                float(closest(superposed(runs, 2, mesh), paper_impact(runs, 2)).steps[0]),
+            )
+            cells.append(
+                (
+                    f"{kind}",
+                    f"{mesh} mesh, resolved",
+                    "",
+                    *_compared_cells(resolved_impact(problem)),
+                    "",
+                )
+            )
             found = sweep_steps(problem, (step,))
             medians = {name: float(found.median(name)[0]) for name in COMPARED}
             cells.append(
@@ -249,17 +387,41 @@ def _mesh_table(runs: Runs) -> TextTable:
                     f"{100.0 * found.misfit(wanted)[0]:.1f}",
                 )
             )
-    headers = ("Type", "run", "step [µs]", "largest force [N]", "rebound speed [m/s]", "strain energy of the sphere [J]", "misfit [%]")
-    return TextTable(headers, tuple(cells), "The first impact, resolved and in the steps that come closest to Type 2")
+    headers = (
+        "Type",
+        "run",
+        "step [µs]",
+        "largest force [N]",
+        "rebound speed [m/s]",
+        "strain energy of the sphere [J]",
+        "misfit [%]",
+    )
+    return TextTable(
+        headers,
+        tuple(cells),
+        "The first impact, resolved and in the steps that come closest to Type 2",
+    )
 
 
 def _energy_table(runs: Runs) -> TextTable:
     cells = []
     for kind in (2, 3):
-        whole, (_, shares) = resolved_impact(superposed(runs, kind, "coarse")), _mean_shares(runs, kind)
+        whole, (_, shares) = (
+            resolved_impact(superposed(runs, kind, "coarse")),
+            _mean_shares(runs, kind),
+        )
         for name, found in (("resolved", whole), ("unresolved", shares)):
-            cells.append((f"{kind}", name, *(f"{round(found[share], 4) + 0.0:.4f}" for share in ENERGY_SHARES)))
-    title = "Where the energy of the touch is at separation [J] (coarse mesh; unresolved: means over the places of the touch)"
+            cells.append(
+                (
+                    f"{kind}",
+                    name,
+                    *(f"{round(found[share], 4) + 0.0:.4f}" for share in ENERGY_SHARES),
+                )
+            )
+    title = (
+        "Where the energy of the touch is at separation [J] (coarse mesh; unresolved: means "
+        "over the places of the touch)"
+    )
     return TextTable(("Type", "run", *_SHARE_HEADINGS), tuple(cells), title)
 
 
@@ -269,20 +431,37 @@ def _plate_table(runs: Runs) -> TextTable:
     for name, column in PLATE_COLUMNS.items():
         values, value = found[column], printed(name)
         spread = f"{values.min():.4g} to {values.max():.4g}"
-        cells.append((f"{value.what} [{value.unit}]", value.text, f"{np.median(values):.4g}", spread, f"{whole[column]:.4g}"))
+        cells.append(
+            (
+                f"{value.what} [{value.unit}]",
+                value.text,
+                f"{np.median(values):.4g}",
+                spread,
+                f"{whole[column]:.4g}",
+            )
+        )
     return TextTable(
-        ("quantity", "printed", "unresolved", "range", "resolved"), tuple(cells), "The plate of Type 3 (coarse mesh of the sphere)"
+        ("quantity", "printed", "unresolved", "range", "resolved"),
+        tuple(cells),
+        "The plate of Type 3 (coarse mesh of the sphere)",
     )
 
 
 def _fitted_step(runs: Runs, kind: int) -> tuple[float, dict[str, Floats]]:
-    """Return the step fitted to Type 2 on the coarse mesh [s], and the results for Type 2 or 3 with it, over the phases."""
+    """Return the step fitted to Type 2 on the coarse mesh [s], and the results for Type 2
+    or 3 with it, over the phases.
+    """
     step = float(closest(superposed(runs, 2, "coarse"), paper_impact(runs, 2)).steps[0])
-    return step, {name: values[0] for name, values in sweep_steps(superposed(runs, kind, "coarse"), (step,)).found.items()}
+    return step, {
+        name: values[0]
+        for name, values in sweep_steps(superposed(runs, kind, "coarse"), (step,)).found.items()
+    }
 
 
 def _mean_shares(runs: Runs, kind: int) -> tuple[float, dict[str, float]]:
-    """Return the fitted step [s] and the energy shares at separation [J]: means over the phases, since medians do not add up."""
+    """Return the fitted step [s] and the energy shares at separation [J]: means over the
+    phases, since medians do not add up.
+    """
     step, found = _fitted_step(runs, kind)
     return step, {name: float(found[name].mean()) for name in ENERGY_SHARES}
 

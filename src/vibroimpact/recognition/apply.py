@@ -68,8 +68,11 @@ class Recognised:
     places: Indices | None = None
 
 
-def apply_recogniser(model: Recogniser | str | PathLike[str], dataset: str | PathLike[str] | LabelledSignals) -> Recognised:
-    """Return the classes of signals predicted by a saved classifier, and the fraction of each class.
+def apply_recogniser(
+    model: Recogniser | str | PathLike[str], dataset: str | PathLike[str] | LabelledSignals
+) -> Recognised:
+    """Return the classes of signals predicted by a saved classifier, and the fraction of each
+    class.
 
     Parameters
     ----------
@@ -86,7 +89,8 @@ def apply_recogniser(model: Recogniser | str | PathLike[str], dataset: str | Pat
     Raises
     ------
     InputError
-        If either can't be read, or the signals are not of the sensors and rates that the model was trained on.
+        If either can't be read, or the signals are not of the sensors and rates that the model was
+        trained on.
 
     Examples
     --------
@@ -104,7 +108,10 @@ def apply_recogniser(model: Recogniser | str | PathLike[str], dataset: str | Pat
     guessed, names = found.argmax(axis=1), recogniser.class_names
     doubts = doubts_of_version(recogniser) + baseline_doubts(signals)
     if signals.check_sum and signals.check_sum == recogniser.card["data"]["sha256"]:
-        doubts.append("the model was trained on signals of this data set, so it may recognise them better than others")
+        doubts.append(
+            "the model was trained on signals of this data set, so it may recognise them "
+            "better than others"
+        )
     return Recognised(
         signals.name,
         recogniser.card["classifier"],
@@ -119,7 +126,9 @@ def apply_recogniser(model: Recogniser | str | PathLike[str], dataset: str | Pat
 
 
 def _accuracy(signals: LabelledSignals, guessed: list[str], names: tuple[str, ...]) -> float | None:
-    """Return the balanced accuracy; None if the classes are not known, or one is not a class of the model."""
+    """Return the balanced accuracy; None if the classes are not known, or one is not a
+    class of the model.
+    """
     if signals.classes is None or not set(signals.of_present_classes().class_names) <= set(names):
         return None
     truth = np.array([signals.class_names[one] for one in signals.classes])
@@ -137,7 +146,12 @@ def recognised_document(found: Recognised) -> dict[str, Any]:
             "signals": len(found.probabilities),
             "balanced_accuracy": found.accuracy,
             "classes": {
-                name: {"counted": counted, "fraction": one.value, "fraction_low": one.low, "fraction_high": one.high}
+                name: {
+                    "counted": counted,
+                    "fraction": one.value,
+                    "fraction_low": one.low,
+                    "fraction_high": one.high,
+                }
                 for (name, one), counted in zip(found.fractions.items(), found.counted, strict=True)
             },
         },
@@ -145,8 +159,11 @@ def recognised_document(found: Recognised) -> dict[str, Any]:
     }
 
 
-def save_recognised(found: Recognised, directory: str | PathLike[str], *, force: bool = False) -> Path:
-    """Write `predictions.csv`, a row a signal with the probability of each class, and `summary.json`, atomically.
+def save_recognised(
+    found: Recognised, directory: str | PathLike[str], *, force: bool = False
+) -> Path:
+    """Write `predictions.csv`, a row a signal with the probability of each class, and
+    `summary.json`, atomically.
 
     Signals are numbered as they are in the file, from 0.
 
@@ -169,7 +186,9 @@ def save_recognised(found: Recognised, directory: str | PathLike[str], *, force:
     >>> from tempfile import TemporaryDirectory
     >>> import vibroimpact as vi
     >>> with TemporaryDirectory() as folder:
-    ...     place = vi.save_recognised(vi.apply_recogniser("recognised", "falls"), f"{folder}/counted")
+    ...     place = vi.save_recognised(
+    ...         vi.apply_recogniser("recognised", "falls"), f"{folder}/counted"
+    ...     )
     ...     sorted(file.name for file in place.iterdir())
     ['predictions.csv', 'summary.json']
     """

@@ -1,4 +1,6 @@
-"""Classifiers beside a bound on their error: one that is better has seen more than the bound counts, or what it may not, a leak."""
+"""Classifiers beside a bound on their error: one that is better has seen more than the
+bound counts, or what it may not, a leak.
+"""
 
 from __future__ import annotations
 
@@ -31,8 +33,15 @@ def below_bound(error: Score, bayes_error: float) -> bool:
     return error.end(SURE / 100.0) < bayes_error
 
 
-def bound_doubts(scores: Mapping[str, Scores], bayes_error: float | None, probe: str, best: str, sees: str | None = None) -> list[str]:
-    """Return a sentence for each possible leak: what is better than the bound, and a probe that is better than all features.
+def bound_doubts(
+    scores: Mapping[str, Scores],
+    bayes_error: float | None,
+    probe: str,
+    best: str,
+    sees: str | None = None,
+) -> list[str]:
+    """Return a sentence for each possible leak: what is better than the bound, and a probe that is
+    better than all features.
 
     Parameters
     ----------
@@ -52,25 +61,28 @@ def bound_doubts(scores: Mapping[str, Scores], bayes_error: float | None, probe:
         bound, beyond = (
             (
                 "that the data set states",
-                "if the bound counts all that an impact tells, it has used information that does not come from the impact, or this is "
-                "chance",
+                "if the bound counts all that an impact tells, it has used information that "
+                "does not come from the impact, or this is chance",
             )
             if sees is None
             else (
                 f"of classifiers that see only {sees}",
-                "it has used something else, such as the position of the impact or the shape of the pulse, or information that does not "
+                "it has used something else, such as the position of the impact or the "
+                "shape of the pulse, or information that does not "
                 "come from the impact, or this is chance",
             )
         )
         found = [
-            f"possible leak: {name} errs in {one.error.value:.1%}, below the Bayes error of {bayes_error:.1%} {bound}; {beyond}"
+            f"possible leak: {name} errs in {one.error.value:.1%}, below the Bayes error "
+            f"of {bayes_error:.1%} {bound}; {beyond}"
             for name, one in scores.items()
             if below_bound(one.error, bayes_error)
         ]
     apart = scores[probe].balanced_accuracy.draws - scores[best].balanced_accuracy.draws
     if np.nanpercentile(apart, 100.0 - SURE) > 0.0:
         found.append(
-            f"leak: {probe} alone classify better (balanced accuracy {scores[probe].balanced_accuracy.value:.3f}) than all "
+            f"leak: {probe} alone classify better (balanced accuracy "
+            f"{scores[probe].balanced_accuracy.value:.3f}) than all "
             f"features ({scores[best].balanced_accuracy.value:.3f}); check how the signals were cut"
         )
     return found

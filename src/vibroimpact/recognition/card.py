@@ -13,7 +13,9 @@ from vibroimpact.recognition.labelled_signals import GROUPS
 from vibroimpact.shown import shown
 
 FORMAT = "vibroimpact model 1"
-CARD_FILE = FileKind("a card is a table in JSON of some kilobytes", 20_000_000, "larger cards are not read")
+CARD_FILE = FileKind(
+    "a card is a table in JSON of some kilobytes", 20_000_000, "larger cards are not read"
+)
 """Requirements on a card."""
 
 MOST_CLASSES, MOST_FEATURES = 100, 20_000
@@ -35,7 +37,8 @@ def check_card(card: Mapping[str, Any], graph: str) -> None:
     Raises
     ------
     InputError
-        If something is missing, or not of the type and size that it must be; the message does not name the file.
+        If something is missing, or not of the type and size that it must be; the message does not
+        name the file.
     """
     _check_format(card)
     for key, (fits, what) in _KINDS.items():
@@ -59,23 +62,36 @@ def _check_format(card: Mapping[str, Any]) -> None:
         raise InputError("the card has no format; train the model anew")
     if form != FORMAT:
         by = f" by vibroimpact {shown(card['version']).strip(chr(34))}" if "version" in card else ""
-        raise InputError(f'the model was saved in the format {shown(form)}{by}; this version reads "{FORMAT}": train it anew')
+        raise InputError(
+            f"the model was saved in the format {shown(form)}{by}; this version reads "
+            f'"{FORMAT}": train it anew'
+        )
 
 
 def _check_rates(name: str, rates: Any) -> None:
-    """Check how often impacts of a class, and of others, are taken for that class: one number a draw."""
+    """Check how often impacts of a class, and of others, are taken for that class: one
+    number a draw.
+    """
     lengths = set()
     for key in ("true_rate", "false_rate"):
         values = rates.get(key) if isinstance(rates, dict) else None
-        if not (isinstance(values, list) and 1 <= len(values) <= _MOST_DRAWS and all(map(_is_part, values))):
+        if not (
+            isinstance(values, list)
+            and 1 <= len(values) <= _MOST_DRAWS
+            and all(map(_is_part, values))
+        ):
             raise _wrong(f"confusion.{name}.{key}", values, "a list of numbers from 0 to 1")
         lengths.add(len(values))
     if len(lengths) > 1:
-        raise InputError(f"confusion.{name} of the card has lists of different lengths; train the model anew")
+        raise InputError(
+            f"confusion.{name} of the card has lists of different lengths; train the model anew"
+        )
 
 
 def _wrong(key: str, value: Any, what: str) -> InputError:
-    return InputError(f"{shown(key).strip(chr(34))} of the card is {shown(value)}; it must be {what}")
+    return InputError(
+        f"{shown(key).strip(chr(34))} of the card is {shown(value)}; it must be {what}"
+    )
 
 
 def _is_number(value: Any) -> bool:
@@ -97,7 +113,11 @@ def _is_count(value: Any) -> bool:
 def _are_names(least: int, most: int) -> Callable[[Any], bool]:
     def fits(value: Any) -> bool:
         is_list = isinstance(value, list) and least <= len(value) <= most
-        return is_list and all(_is_text(name) and name for name in value) and len(set(value)) == len(value)
+        return (
+            is_list
+            and all(_is_text(name) and name for name in value)
+            and len(set(value)) == len(value)
+        )
 
     return fits
 
@@ -116,7 +136,10 @@ _KINDS: dict[str, tuple[Callable[[Any], bool], str]] = {
         "a table with a table for each sensor",
     ),
     "group": (lambda value: value in GROUPS, f"one of {', '.join(GROUPS)}"),
-    "data": (lambda value: _is_table(value) and _is_text(value.get("sha256")), "a table with the text sha256"),
+    "data": (
+        lambda value: _is_table(value) and _is_text(value.get("sha256")),
+        "a table with the text sha256",
+    ),
     "confusion": (_is_table, "a table with a table for each class"),
     CHECK_SUMS: (_is_table, "a table with the check sum of each file"),
 }

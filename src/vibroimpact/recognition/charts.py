@@ -31,7 +31,8 @@ def recognition_charts(found: Recognition) -> list[Chart]:
     Returns
     -------
     list of Chart
-        `scores`, `confusion`, `unseen` where ranges could be left out, `robustness`, `reliability`, `importance` and `fraction`.
+        `scores`, `confusion`, `unseen` where ranges could be left out, `robustness`, `reliability`,
+        `importance` and `fraction`.
 
     Examples
     --------
@@ -42,7 +43,11 @@ def recognition_charts(found: Recognition) -> list[Chart]:
     makers = {"scores": _scores_chart, "confusion": _confusion_chart}
     if found.unseen:
         makers["unseen"] = _unseen_chart
-    makers |= {"robustness": _robustness_chart, "reliability": _reliability_chart, "importance": _importance_chart}
+    makers |= {
+        "robustness": _robustness_chart,
+        "reliability": _reliability_chart,
+        "importance": _importance_chart,
+    }
     if found.streams:
         makers["fraction"] = _fraction_chart
     return made_charts({name: partial(make, found) for name, make in makers.items()})
@@ -60,23 +65,45 @@ def _scores_chart(found: Recognition) -> Chart:
     ]
     if found.bayes_error is not None:
         marks.append(Level(found.bayes_error, "Bayes error", "mark line", upright=True))
-    panel = Panel(Axis("Classification error", range=(0.0, np.nan)), Axis(names=_short(names)), tuple(marks))
+    panel = Panel(
+        Axis("Classification error", range=(0.0, np.nan)), Axis(names=_short(names)), tuple(marks)
+    )
     bound = ""
     if found.bayes_error is not None:
-        counted = f"for {found.bayes_error_sees} alone" if found.bayes_error_sees else "that the data set states"
-        bound = f" Line: the Bayes error {counted}; a lower error means further information, a leak, or chance."
+        counted = (
+            f"for {found.bayes_error_sees} alone"
+            if found.bayes_error_sees
+            else "that the data set states"
+        )
+        bound = (
+            f" Line: the Bayes error {counted}; a lower error means further information, a "
+            "leak, or chance."
+        )
     caption = (
-        f"Error on test signals: with all signals of a {found.group} in either the training or the test data, and with signals split at "
-        f"random. The difference is the optimistic bias of the random split. Thin lines: 95 % intervals, which count {found.group}s, not "
-        "signals."
-        f"{bound}"
+        f"Error on test signals: with all signals of a {found.group} in either the "
+        "training or the test data, and with signals split at "
+        "random. The difference is the optimistic bias of the random split. Thin lines: "
+        f"95 % intervals, which count {found.group}s, not signals.{bound}"
     )
-    return Chart("scores", "Classification errors and optimism", ((panel,),), caption, 0.9 + 0.36 * len(names))
+    return Chart(
+        "scores",
+        "Classification errors and optimism",
+        ((panel,),),
+        caption,
+        0.9 + 0.36 * len(names),
+    )
 
 
-def _lying(places: np.ndarray, scores: list[Score], words: str, role: str, names: list[str]) -> Bars:
-    values, low, high = (np.array(one) for one in zip(*((one.value, one.low, one.high) for one in scores), strict=True))
-    return Bars(places, values, words, role, 0.34, lying=True, low=low, high=high, texts=tuple(names))
+def _lying(
+    places: np.ndarray, scores: list[Score], words: str, role: str, names: list[str]
+) -> Bars:
+    values, low, high = (
+        np.array(one)
+        for one in zip(*((one.value, one.low, one.high) for one in scores), strict=True)
+    )
+    return Bars(
+        places, values, words, role, 0.34, lying=True, low=low, high=high, texts=tuple(names)
+    )
 
 
 def _confusion_chart(found: Recognition) -> Chart:
@@ -85,11 +112,16 @@ def _confusion_chart(found: Recognition) -> Chart:
     names = tuple(shortened(visible(name), _LETTERS) for name in found.class_names)
     places = np.arange(float(len(names)))
     texts = tuple(
-        f"{truth} classified as {guess}: {parts[row, column]:.1%}" for row, truth in enumerate(names) for column, guess in enumerate(names)
+        f"{truth} classified as {guess}: {parts[row, column]:.1%}"
+        for row, truth in enumerate(names)
+        for column, guess in enumerate(names)
     )
     cells = Map(places, places, parts, Axis("Fraction of the class", range=(0.0, 1.0)), texts=texts)
     panel = Panel(Axis("Predicted class", names=names), Axis("True class", names=names), (cells,))
-    caption = f"Predicted classes of the best classifier ({found.best}) for {found.group}s not used in training; mean over the seeds."
+    caption = (
+        f"Predicted classes of the best classifier ({found.best}) for {found.group}s not used "
+        "in training; mean over the seeds."
+    )
     return Chart("confusion", "Confusion matrix", ((panel,),), caption, _HEIGHT)
 
 
@@ -104,12 +136,20 @@ def _unseen_chart(found: Recognition) -> Chart:
     )
     panel = Panel(Axis("Balanced accuracy", range=(0.0, 1.0)), Axis(names=_short(names)), marks)
     caption = (
-        "Signals in each range of a sampled key, in SI units, classified after training on all ranges, and after training on the "
-        "others alone; "
-        f"both are grouped by {found.group}. Not left out are ranges of the sphere's material and of the contact, and "
-        f"those without which a class could not be trained or tested. Best classifier: {found.best}."
+        "Signals in each range of a sampled key, in SI units, classified after training on "
+        "all ranges, and after training on the others alone; "
+        f"both are grouped by {found.group}. Not left out are ranges of the sphere's "
+        "material and of the contact, and "
+        "those without which a class could not be trained or "
+        f"tested. Best classifier: {found.best}."
     )
-    return Chart("unseen", "Accuracy on ranges left out of training", ((panel,),), caption, 0.9 + 0.36 * len(names))
+    return Chart(
+        "unseen",
+        "Accuracy on ranges left out of training",
+        ((panel,),),
+        caption,
+        0.9 + 0.36 * len(names),
+    )
 
 
 def _robustness_chart(found: Recognition) -> Chart:
@@ -121,28 +161,56 @@ def _robustness_chart(found: Recognition) -> Chart:
             ("trained without noise", [one.trained_without for one in found.noise]),
         )
     ):
-        values, low, high = (np.array(one)[::-1] for one in zip(*((one.value, one.low, one.high) for one in scores), strict=True))
-        marks += [Line(levels, values, words, series(number), marked=True), Points(levels, values, role=series(number), low=low, high=high)]
-    marks.append(Level(found.scores[found.best].balanced_accuracy.value, "signals without noise", "reference"))
+        values, low, high = (
+            np.array(one)[::-1]
+            for one in zip(*((one.value, one.low, one.high) for one in scores), strict=True)
+        )
+        marks += [
+            Line(levels, values, words, series(number), marked=True),
+            Points(levels, values, role=series(number), low=low, high=high),
+        ]
+    marks.append(
+        Level(
+            found.scores[found.best].balanced_accuracy.value, "signals without noise", "reference"
+        )
+    )
     marks.append(Level(1.0 / len(found.class_names), "chance", "dotted"))
-    panel = Panel(Axis("Signal-to-noise ratio", "dB"), Axis("Balanced accuracy", range=(0.0, 1.0)), tuple(marks))
+    panel = Panel(
+        Axis("Signal-to-noise ratio", "dB"),
+        Axis("Balanced accuracy", range=(0.0, 1.0)),
+        tuple(marks),
+    )
     caption = (
-        "White noise of the same power is added to all signals of a sensor before their features are computed; the ratio refers to the "
+        "White noise of the same power is added to all signals of a sensor before their "
+        "features are computed; the ratio refers to the "
         f"median of their mean squares. Best classifier: {found.best}."
     )
     return Chart("robustness", "Recognition in noise", ((panel,),), caption, _HEIGHT)
 
 
 def _reliability_chart(found: Recognition) -> Chart:
-    marks: list[Mark] = [Line(np.array([0.0, 1.0]), np.array([0.0, 1.0]), "calibrated", "reference")]
+    marks: list[Mark] = [
+        Line(np.array([0.0, 1.0]), np.array([0.0, 1.0]), "calibrated", "reference")
+    ]
     for number, name in enumerate(dict.fromkeys(one.class_name for one in found.reliability)):
         rows = [one for one in found.reliability if one.class_name == name]
-        part, told, low, high = (np.array([getattr(one, key) for one in rows]) for key in ("part", "probability", "low", "high"))
+        part, told, low, high = (
+            np.array([getattr(one, key) for one in rows])
+            for key in ("part", "probability", "low", "high")
+        )
         texts = tuple(f"{one.signals} signals" for one in rows)
-        marks += [Line(told, part, name, series(number)), Points(told, part, role=series(number), low=low, high=high, texts=texts)]
-    panel = Panel(Axis("Predicted probability", range=(0.0, 1.0)), Axis("Observed frequency", range=(0.0, 1.0)), tuple(marks))
+        marks += [
+            Line(told, part, name, series(number)),
+            Points(told, part, role=series(number), low=low, high=high, texts=texts),
+        ]
+    panel = Panel(
+        Axis("Predicted probability", range=(0.0, 1.0)),
+        Axis("Observed frequency", range=(0.0, 1.0)),
+        tuple(marks),
+    )
     caption = (
-        "Observed frequency of a class over its predicted probability (reliability diagram); mean absolute difference "
+        "Observed frequency of a class over its predicted probability (reliability "
+        "diagram); mean absolute difference "
         f"{found.calibration_error:.3f}. Best classifier: {found.best}."
     )
     return Chart("reliability", "Calibration of the probabilities", ((panel,),), caption, _HEIGHT)
@@ -154,30 +222,47 @@ def _importance_chart(found: Recognition) -> Chart:
     loss, spread = (np.array([getattr(one, key) for one in rows]) for key in ("loss", "spread"))
     places = np.arange(float(len(rows)))
     bars = Bars(places, loss, lying=True, low=loss - spread, high=loss + spread, texts=tuple(names))
-    panel = Panel(Axis("Loss of balanced accuracy"), Axis(names=_short(names)), (bars, Level(0.0, role="main", upright=True)))
-    caption = (
-        f"Permutation importance: loss of balanced accuracy on {found.group}s not used in training when a feature is exchanged between "
-        "their signals; thin lines: standard deviation over the folds. Correlated features share their importance. Best classifier: "
-        f"{found.best}."
+    panel = Panel(
+        Axis("Loss of balanced accuracy"),
+        Axis(names=_short(names)),
+        (bars, Level(0.0, role="main", upright=True)),
     )
-    return Chart("importance", "Importance of features", ((panel,),), caption, 0.9 + 0.26 * len(names))
+    caption = (
+        f"Permutation importance: loss of balanced accuracy on {found.group}s not used in "
+        "training when a feature is exchanged between "
+        "their signals; thin lines: standard deviation over the folds. Correlated features "
+        f"share their importance. Best classifier: {found.best}."
+    )
+    return Chart(
+        "importance", "Importance of features", ((panel,),), caption, 0.9 + 0.26 * len(names)
+    )
 
 
 def _fraction_chart(found: Recognition) -> Chart:
     panels = []
-    across, up = Axis("True fraction", range=(-0.02, 1.02)), Axis("Estimated fraction", range=(0.0, 1.0))
+    across, up = (
+        Axis("True fraction", range=(-0.02, 1.02)),
+        Axis("Estimated fraction", range=(0.0, 1.0)),
+    )
     for impacts in dict.fromkeys(one.impacts for one in found.streams):
         marks: list[Mark] = [Line(np.array([0.0, 1.0]), np.array([0.0, 1.0]), "true", "reference")]
         for number, name in enumerate(dict.fromkeys(one.class_name for one in found.streams)):
-            rows = [one for one in found.streams if (one.class_name, one.impacts) == (name, impacts)]
+            rows = [
+                one for one in found.streams if (one.class_name, one.impacts) == (name, impacts)
+            ]
             true, counted, value, low, high = (
-                np.array([getattr(one, key) for one in rows]) for key in ("fraction", "counted", "adjusted", "low", "high")
+                np.array([getattr(one, key) for one in rows])
+                for key in ("fraction", "counted", "adjusted", "low", "high")
             )
             marks.append(Line(true, counted, f"{name}, counted", f"thin {series(number)}"))
-            marks += [Line(true, value, f"{name}, corrected", series(number)), Points(true, value, role=series(number), low=low, high=high)]
+            marks += [
+                Line(true, value, f"{name}, corrected", series(number)),
+                Points(true, value, role=series(number), low=low, high=high),
+            ]
         panels.append(Panel(across, up, tuple(marks), f"{impacts} impacts"))
     caption = (
-        f"The fraction of a class in streams of {found.group}s that were not used to estimate the confusion matrix: as counted, and "
+        f"The fraction of a class in streams of {found.group}s that were not used to "
+        "estimate the confusion matrix: as counted, and "
         "corrected by it, with mean 95 % intervals."
     )
     return Chart("fraction", "Fraction in a stream of impacts", (tuple(panels),), caption, _HEIGHT)

@@ -1,6 +1,8 @@
-"""What is compared: baselines of a single quantity, four classifiers of all features, and a probe of what should tell little.
+"""What is compared: baselines of a single quantity, four classifiers of all features, and a probe
+of what should tell little.
 
-Each is a scikit-learn pipeline in which gaps are filled and features scaled, so that both are learned from the training part alone.
+Each is a scikit-learn pipeline in which gaps are filled and features scaled, so that both are
+learned from the training part alone.
 """
 
 from __future__ import annotations
@@ -17,7 +19,9 @@ from vibroimpact.recognition.scores import balanced_accuracy
 from vibroimpact.recognition.signal_features import CONTACT_TIME, EDGES, FEATURES, PEAK, TRUE_TIME
 
 BASELINE, CLASSIFIER, TRUTH, PROBE = "baseline", "classifier", "truth", "probe"
-"""Kinds: of one measured quantity, of all features, of what only the simulation knows, of what should tell little."""
+"""Kinds: of one measured quantity, of all features, of what only the simulation knows, of
+what should tell little.
+"""
 
 Parameters = Mapping[str, Any]
 _TREES = 60
@@ -36,7 +40,8 @@ class Classifier:
     table : str
         The table that it reads.
     make : callable
-        Returns an estimator for parameters, a seed, and the parts on which its probabilities are calibrated (none: not calibrated).
+        Returns an estimator for parameters, a seed, and the parts on which its probabilities are
+        calibrated (none: not calibrated).
     grid : tuple of mapping
         Parameters of which the inner cross-validation chooses.
     """
@@ -54,17 +59,40 @@ def all_classifiers() -> tuple[Classifier, ...]:
         Classifier("majority", BASELINE, FEATURES, _majority),
         Classifier("peak alone", BASELINE, PEAK, _thresholds),
         Classifier("contact time alone", BASELINE, CONTACT_TIME, _thresholds),
-        Classifier("logistic regression", CLASSIFIER, FEATURES, _logistic_regression, ({"C": 0.03}, {"C": 1.0})),
-        Classifier("random forest", CLASSIFIER, FEATURES, _random_forest, ({"min_samples_leaf": 3},)),
-        Classifier("gradient boosting", CLASSIFIER, FEATURES, _gradient_boosting, ({"max_depth": 2}, {"max_depth": 4})),
-        Classifier("support vector machine", CLASSIFIER, FEATURES, _support_vector_machine, ({"C": 0.5}, {"C": 5.0})),
+        Classifier(
+            "logistic regression",
+            CLASSIFIER,
+            FEATURES,
+            _logistic_regression,
+            ({"C": 0.03}, {"C": 1.0}),
+        ),
+        Classifier(
+            "random forest", CLASSIFIER, FEATURES, _random_forest, ({"min_samples_leaf": 3},)
+        ),
+        Classifier(
+            "gradient boosting",
+            CLASSIFIER,
+            FEATURES,
+            _gradient_boosting,
+            ({"max_depth": 2}, {"max_depth": 4}),
+        ),
+        Classifier(
+            "support vector machine",
+            CLASSIFIER,
+            FEATURES,
+            _support_vector_machine,
+            ({"C": 0.5}, {"C": 5.0}),
+        ),
         Classifier("true contact time", TRUTH, TRUE_TIME, _thresholds),
         Classifier("length, first and last sample", PROBE, EDGES, _small_forest),
     )
 
 
-def fit_tuned(classifier: Classifier, values: Floats, classes: Indices, groups: Indices | None, seed: int) -> tuple[Any, Parameters]:
-    """Fit a classifier, with the parameters that are best in a cross-validation within the training part.
+def fit_tuned(
+    classifier: Classifier, values: Floats, classes: Indices, groups: Indices | None, seed: int
+) -> tuple[Any, Parameters]:
+    """Fit a classifier, with the parameters that are best in a cross-validation within the training
+    part.
 
     Parameters
     ----------
@@ -88,7 +116,10 @@ def fit_tuned(classifier: Classifier, values: Floats, classes: Indices, groups: 
     chosen = classifier.grid[0]
     if len(classifier.grid) > 1:
         chosen = max(
-            classifier.grid, key=lambda one: np.mean([_hits(classifier.make(one, seed, ()), values, classes, part) for part in splits])
+            classifier.grid,
+            key=lambda one: np.mean(
+                [_hits(classifier.make(one, seed, ()), values, classes, part) for part in splits]
+            ),
         )
     return classifier.make(chosen, seed, splits).fit(values, classes), chosen
 
@@ -132,7 +163,8 @@ def _majority(parameters: Parameters, seed: int, calibration: Sequence[Split]) -
 def _thresholds(parameters: Parameters, seed: int, calibration: Sequence[Split]) -> Any:
     from sklearn.tree import DecisionTreeClassifier
 
-    return _filled(DecisionTreeClassifier(max_depth=2, min_samples_leaf=0.02, random_state=seed))  # three thresholds, at most
+    # three thresholds, at most
+    return _filled(DecisionTreeClassifier(max_depth=2, min_samples_leaf=0.02, random_state=seed))
 
 
 def _logistic_regression(parameters: Parameters, seed: int, calibration: Sequence[Split]) -> Any:
@@ -151,7 +183,11 @@ def _random_forest(parameters: Parameters, seed: int, calibration: Sequence[Spli
 def _gradient_boosting(parameters: Parameters, seed: int, calibration: Sequence[Split]) -> Any:
     from sklearn.ensemble import GradientBoostingClassifier
 
-    return _filled(GradientBoostingClassifier(n_estimators=_TREES, subsample=0.7, max_features="sqrt", random_state=seed, **parameters))
+    return _filled(
+        GradientBoostingClassifier(
+            n_estimators=_TREES, subsample=0.7, max_features="sqrt", random_state=seed, **parameters
+        )
+    )
 
 
 def _support_vector_machine(parameters: Parameters, seed: int, calibration: Sequence[Split]) -> Any:
@@ -163,7 +199,9 @@ def _support_vector_machine(parameters: Parameters, seed: int, calibration: Sequ
     if not calibration:
         return _filled(StandardScaler(), machine)
     # on parts with groups kept apart, which those of its own would not be
-    calibrated = CalibratedClassifierCV(machine, cv=[(one.train, one.test) for one in calibration], ensemble=False)
+    calibrated = CalibratedClassifierCV(
+        machine, cv=[(one.train, one.test) for one in calibration], ensemble=False
+    )
     return _filled(StandardScaler(), calibrated)
 
 

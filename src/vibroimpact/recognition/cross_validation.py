@@ -1,4 +1,6 @@
-"""Nested cross-validation: parameters are chosen within each training part, and no model sees the group of a signal that it classifies."""
+"""Nested cross-validation: parameters are chosen within each training part, and no model
+sees the group of a signal that it classifies.
+"""
 
 from __future__ import annotations
 
@@ -71,12 +73,16 @@ def cross_validate(
     def one(classifier: Classifier, seed: int, split: Split) -> tuple[Floats, Parameters]:
         values = tables[classifier.table]
         inner = None if groups is None else groups[split.train]
-        fitted, chosen = fit_tuned(classifier, values[split.train], classes[split.train], inner, seed)
+        fitted, chosen = fit_tuned(
+            classifier, values[split.train], classes[split.train], inner, seed
+        )
         return probabilities(fitted, values[split.test], count), chosen
 
     compared = [classifier for classifier in classifiers if classifier.table in tables]
     drawn = [(seed, split) for seed, parts in zip(seeds, splits, strict=True) for split in parts]
-    jobs = [partial(one, classifier, seed, split) for classifier in compared for seed, split in drawn]
+    jobs = [
+        partial(one, classifier, seed, split) for classifier in compared for seed, split in drawn
+    ]
     done = iter(run_jobs(what, jobs, workers, progress))
     found: dict[str, Validated] = {}
     for classifier in compared:
@@ -127,9 +133,13 @@ class Chosen:
     def refit(self, values: Floats, train: Indices, parameters: Parameters) -> Any:
         """Return the classifier fitted to some of the signals, with given parameters."""
         splits = inner_splits(self.classes[train], self.groups[train], self.seed)
-        return self.classifier.make(parameters, self.seed, splits).fit(values[train], self.classes[train])
+        return self.classifier.make(parameters, self.seed, splits).fit(
+            values[train], self.classes[train]
+        )
 
     def guess(self, fitted: Any, values: Floats) -> Indices:
         """Return the class that a fitted classifier takes each row of a table for."""
-        found: Indices = probabilities(fitted, values, self.validated.held_out.shape[2]).argmax(axis=1)
+        found: Indices = probabilities(fitted, values, self.validated.held_out.shape[2]).argmax(
+            axis=1
+        )
         return found

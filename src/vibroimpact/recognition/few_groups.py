@@ -1,4 +1,6 @@
-"""What few groups can't tell, and how many could: said in sentences, where figures would have false digits."""
+"""What few groups can't tell, and how many could: said in sentences, where figures would
+have false digits.
+"""
 
 from __future__ import annotations
 
@@ -10,7 +12,9 @@ from vibroimpact.recognition.bound import SURE
 from vibroimpact.recognition.scores import Score, widening_by_few, widening_by_training
 
 FINE = 0.05
-"""Half the width of an interval from which on a score has no decimals, and the groups for it are stated."""
+"""Half the width of an interval from which on a score has no decimals, and the groups for
+it are stated.
+"""
 _TWO = 1.96
 """Half the width of an interval of 95 % in standard deviations."""
 
@@ -21,7 +25,10 @@ def coarse(error: Score) -> bool:
     Examples
     --------
     >>> import numpy as np
-    >>> coarse(Score(0.2, np.zeros(1), np.zeros(1), 20.0)), coarse(Score(0.2, np.zeros(1), np.zeros(1), 2000.0))
+    >>> (
+    ...     coarse(Score(0.2, np.zeros(1), np.zeros(1), 20.0)),
+    ...     coarse(Score(0.2, np.zeros(1), np.zeros(1), 2000.0)),
+    ... )
     (True, False)
     """
     return error.high - error.low > 2.0 * FINE
@@ -52,7 +59,8 @@ def groups_for_error(error: Score, groups: int) -> int:
 
 
 def largest_error_of_none(groups: int, folds: int) -> float:
-    """Return the largest error rate of a classifier that makes no error in some groups, with the confidence of a possible leak.
+    """Return the largest error rate of a classifier that makes no error in some groups, with the
+    confidence of a possible leak.
 
     Examples
     --------
@@ -78,7 +86,9 @@ def groups_for_bound(bayes_error: float, folds: int) -> int:
 
 
 def _some(groups: float) -> int:
-    """Return a number rounded up: of two digits to one that ends in 5 or 0, of more to two digits."""
+    """Return a number rounded up: of two digits to one that ends in 5 or 0, of more to
+    two digits.
+    """
     digits = int(log10(max(groups, 1.0)))
     step = 5 if digits < 2 else int(10 ** (digits - 1))
     return step * ceil(groups / step)

@@ -12,17 +12,35 @@ from vibroimpact.recognition.charts import recognition_charts
 from vibroimpact.recognition.classifiers import CLASSIFIER
 from vibroimpact.recognition.recognise import Recognition
 from vibroimpact.recognition.recogniser import FOLDER, save_recogniser
-from vibroimpact.recognition.tables import SCORE_HEADERS, TABLES, Row, confusion_cells, score_cells, sentences, summary_of_recognition
+from vibroimpact.recognition.tables import (
+    SCORE_HEADERS,
+    TABLES,
+    Row,
+    confusion_cells,
+    score_cells,
+    sentences,
+    summary_of_recognition,
+)
 from vibroimpact.report.page import render_page
 from vibroimpact.results.csv_files import write_csv
 from vibroimpact.results.folder import new_folder, write_summary
 
-_COLUMNS = {"unseen.csv": ["key", "range", "signals"], "fraction.csv": ["class", "fraction", "impacts"]}
+_COLUMNS = {
+    "unseen.csv": ["key", "range", "signals"],
+    "fraction.csv": ["class", "fraction", "impacts"],
+}
 """First columns of tables that may have no rows."""
 
 
-def save_recognition(found: Recognition, directory: str | PathLike[str], *, force: bool = False, figures: Sequence[str] = ()) -> Path:
-    """Write a recognition atomically: CSV files, `summary.json`, `report.html`, and the model in the folder `model`.
+def save_recognition(
+    found: Recognition,
+    directory: str | PathLike[str],
+    *,
+    force: bool = False,
+    figures: Sequence[str] = (),
+) -> Path:
+    """Write a recognition atomically: CSV files, `summary.json`, `report.html`, and the model in
+    the folder `model`.
 
     Parameters
     ----------
@@ -33,7 +51,8 @@ def save_recognition(found: Recognition, directory: str | PathLike[str], *, forc
     force : bool, default False
         Replace an existing result folder.
     figures : sequence of str
-        Formats in which the charts are also written as files, into a folder `figures`: of "png", "svg" and "pdf".
+        Formats in which the charts are also written as files, into a folder `figures`: of "png",
+        "svg" and "pdf".
 
     Returns
     -------
@@ -65,12 +84,18 @@ def save_recognition(found: Recognition, directory: str | PathLike[str], *, forc
             __package__,
             charts,
             name=found.name[:1].upper() + found.name[1:],
-            counts=[f"{count:,} {name}" for name, count in zip(found.class_names, found.counts, strict=True)],
+            counts=[
+                f"{count:,} {name}"
+                for name, count in zip(found.class_names, found.counts, strict=True)
+            ],
             found=found,
             sentences=list(sentences(found)),
             confusion=confusion_cells(found),
             headers=SCORE_HEADERS,
-            rows=[(f"{row[0]} ({kinds[row[0]]})" if kinds[row[0]] != CLASSIFIER else row[0], *row[1:]) for row in score_cells(found)],
+            rows=[
+                (f"{row[0]} ({kinds[row[0]]})" if kinds[row[0]] != CLASSIFIER else row[0], *row[1:])
+                for row in score_cells(found)
+            ],
             version=__version__,
         )
         (folder / "report.html").write_text(page, encoding="utf-8")

@@ -1,4 +1,6 @@
-"""Splits of signals into parts to train on and to test on: groups kept apart, or at random as a naive user would."""
+"""Splits of signals into parts to train on and to test on: groups kept apart, or at
+random as a naive user would.
+"""
 
 from __future__ import annotations
 
@@ -15,7 +17,9 @@ FEW = 10
 _INNER = 3
 """Parts of the cross-validation within a training part."""
 _UNEVEN = 0.02
-"""Difference of the share of a class in a training part from that of all from which groups are dealt by class instead."""
+"""Difference of the share of a class in a training part from that of all from which
+groups are dealt by class instead.
+"""
 
 
 class Split(NamedTuple):
@@ -37,13 +41,18 @@ def fewest_groups(classes: Indices, groups: Indices) -> int:
 
 
 def default_folds(classes: Indices, groups: Indices) -> int:
-    """Return the number of parts for some groups: five, or of few groups as many as a class has, so that one of each class is left out.
+    """Return the number of parts for some groups: five, or of few groups as many as a class has, so
+    that one of each class is left out.
 
-    To leave out a single group would train on more of the other classes, and so guess those more often.
+    To leave out a single group would train on more of the other classes, and so guess those more
+    often.
 
     Examples
     --------
-    >>> default_folds(np.array([0, 1] * 4), np.arange(8)), default_folds(np.array([0, 1] * 40), np.arange(80))
+    >>> (
+    ...     default_folds(np.array([0, 1] * 4), np.arange(8)),
+    ...     default_folds(np.array([0, 1] * 40), np.arange(80)),
+    ... )
     (4, 5)
     """
     fewest = fewest_groups(classes, groups)
@@ -75,27 +84,43 @@ def split_signals(classes: Indices, groups: Indices | None, folds: int, seed: in
 
     blank = np.zeros(len(classes))
     if groups is None:
-        return [Split(*one) for one in StratifiedKFold(folds, shuffle=True, random_state=seed).split(blank, classes)]
-    drawn = [Split(*one) for one in StratifiedGroupKFold(folds, shuffle=True, random_state=seed).split(blank, classes, groups)]
+        return [
+            Split(*one)
+            for one in StratifiedKFold(folds, shuffle=True, random_state=seed).split(blank, classes)
+        ]
+    drawn = [
+        Split(*one)
+        for one in StratifiedGroupKFold(folds, shuffle=True, random_state=seed).split(
+            blank, classes, groups
+        )
+    ]
     if _unevenness(drawn, classes) <= _UNEVEN:
         return drawn
-    return min(drawn, _dealt(classes, groups, folds, seed), key=lambda one: _unevenness(one, classes))
+    return min(
+        drawn, _dealt(classes, groups, folds, seed), key=lambda one: _unevenness(one, classes)
+    )
 
 
 def _unevenness(splits: list[Split], classes: Indices) -> float:
-    """Return the largest difference of the share of a class in a training part from that of all; 1 if a part lacks a class."""
+    """Return the largest difference of the share of a class in a training part from that
+    of all; 1 if a part lacks a class.
+    """
     whole = np.bincount(classes) / len(classes)
     apart = 0.0
     for split in splits:
         counts = np.bincount(classes[split.train], minlength=len(whole))
-        if not counts[whole > 0.0].all() or not np.bincount(classes[split.test], minlength=len(whole))[whole > 0.0].all():
+        if (
+            not counts[whole > 0.0].all()
+            or not np.bincount(classes[split.test], minlength=len(whole))[whole > 0.0].all()
+        ):
             return 1.0
         apart = max(apart, float(np.abs(counts / counts.sum() - whole).max()))
     return apart
 
 
 def _dealt(classes: Indices, groups: Indices, folds: int, seed: int) -> list[Split]:
-    """Return parts that are dealt whole groups class by class, the largest first: surplus groups of all classes are in the same parts.
+    """Return parts that are dealt whole groups class by class, the largest first: surplus groups of
+    all classes are in the same parts.
 
     A group of several classes is dealt with the first of them.
     """
@@ -110,9 +135,11 @@ def _dealt(classes: Indices, groups: Indices, folds: int, seed: int) -> list[Spl
 
 
 def inner_splits(classes: Indices, groups: Indices | None, seed: int) -> list[Split]:
-    """Return the parts of a cross-validation within a training part: three, or as many as a class has groups there.
+    """Return the parts of a cross-validation within a training part: three, or as many as a class
+    has groups there.
 
-    Where a class has one group only, signals are split at random: that chooses parameters less well, and tests nothing.
+    Where a class has one group only, signals are split at random: that chooses parameters less
+    well, and tests nothing.
 
     Parameters
     ----------

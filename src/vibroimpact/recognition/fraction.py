@@ -1,8 +1,10 @@
-"""The fraction of a class in a stream of impacts, with its error: what is counted is corrected by what the classifier confuses.
+"""The fraction of a class in a stream of impacts, with its error: what is counted is corrected by
+what the classifier confuses.
 
-A classifier that recognises a part t of a class and takes a part f of the others for it counts q = f + (t - f) p where the fraction is p,
-so that p = (q - f) / (t - f): the adjusted count of Forman (2008), Data Mining and Knowledge Discovery 17:164,
-doi 10.1007/s10618-008-0097-y. Its interval has the error of the count and that of t and f, which are known from finitely many rocks.
+A classifier that recognises a part t of a class and takes a part f of the others for it counts q =
+f + (t - f) p where the fraction is p, so that p = (q - f) / (t - f): the adjusted count of Forman
+(2008), Data Mining and Knowledge Discovery 17:164, doi 10.1007/s10618-008-0097-y. Its interval has
+the error of the count and that of t and f, which are known from finitely many rocks.
 """
 
 from __future__ import annotations
@@ -22,7 +24,9 @@ _INTERVAL = (2.5, 97.5)
 
 @dataclass(frozen=True, eq=False)
 class Rates:
-    """The parts of a class and of the others that are taken for the class, of groups drawn with replacement: arrays, shape (draws,)."""
+    """The parts of a class and of the others that are taken for the class, of groups
+    drawn with replacement: arrays, shape (draws,).
+    """
 
     true: Floats
     false: Floats
@@ -39,7 +43,8 @@ class Estimate:
 
 @dataclass(frozen=True, eq=False)
 class Streams:
-    """How well the fraction of a class is estimated in streams of rocks other than those that the confusion was learned from.
+    """How well the fraction of a class is estimated in streams of rocks other than those that the
+    confusion was learned from.
 
     Parameters
     ----------
@@ -70,7 +75,13 @@ class Streams:
     covered: float
 
 
-def draw_rates(taken: Bools, of_class: Bools, groups: Indices, generator: np.random.Generator, draws: int = _DRAWS) -> Rates:
+def draw_rates(
+    taken: Bools,
+    of_class: Bools,
+    groups: Indices,
+    generator: np.random.Generator,
+    draws: int = _DRAWS,
+) -> Rates:
     """Return how often signals are taken for a class, of groups drawn with replacement.
 
     Parameters
@@ -88,14 +99,17 @@ def draw_rates(taken: Bools, of_class: Bools, groups: Indices, generator: np.ran
     weights = generator.multinomial(len(names), np.full(len(names), 1.0 / len(names)), draws)
 
     def rate(own: Bools) -> Floats:
-        # half a signal taken and half a signal not: Jeffreys' prior, so that none taken of few is not read as never
+        # half a signal taken and half a signal not: Jeffreys' prior, so that none taken of few is
+        # not read as never
         hits = weights @ np.bincount(place, own & taken, len(names))
         return np.asarray((hits + 0.5) / (weights @ np.bincount(place, own, len(names)) + 1.0))
 
     return Rates(rate(of_class), rate(~of_class))
 
 
-def estimate_fraction(counted: int, impacts: int, rates: Rates, generator: np.random.Generator) -> Estimate:
+def estimate_fraction(
+    counted: int, impacts: int, rates: Rates, generator: np.random.Generator
+) -> Estimate:
     """Return the fraction of a class in a stream of impacts.
 
     Parameters
@@ -118,20 +132,27 @@ def estimate_fraction(counted: int, impacts: int, rates: Rates, generator: np.ra
     """
     counts = generator.beta(counted + 0.5, impacts - counted + 0.5, len(rates.true))
     low, high = np.percentile(_adjusted(counts, rates.true, rates.false), _INTERVAL)
-    value = _adjusted(np.array([counted / impacts]), np.array([rates.true.mean()]), np.array([rates.false.mean()]))[0]
+    value = _adjusted(
+        np.array([counted / impacts]), np.array([rates.true.mean()]), np.array([rates.false.mean()])
+    )[0]
     return Estimate(float(value), float(low), float(high))
 
 
 def _adjusted(counted: Floats, true: Floats, false: Floats) -> Floats:
-    """Return corrected fractions, within 0 and 1; a classifier that confuses everything gives either end, and so an interval of all."""
+    """Return corrected fractions, within 0 and 1; a classifier that confuses everything
+    gives either end, and so an interval of all.
+    """
     apart = true - false
     with np.errstate(divide="ignore", invalid="ignore"):
         found = (counted - false) / apart
     return np.asarray(np.clip(np.nan_to_num(found, nan=0.5, posinf=1.0, neginf=0.0), 0.0, 1.0))
 
 
-def try_streams(guessed: Indices, classes: Indices, class_names: tuple[str, ...], groups: Indices, seed: int) -> list[Streams]:
-    """Return how well fractions are estimated: confusion from one half of the groups, streams drawn from the other half, many times.
+def try_streams(
+    guessed: Indices, classes: Indices, class_names: tuple[str, ...], groups: Indices, seed: int
+) -> list[Streams]:
+    """Return how well fractions are estimated: confusion from one half of the groups, streams drawn
+    from the other half, many times.
 
     Parameters
     ----------
@@ -150,20 +171,36 @@ def try_streams(guessed: Indices, classes: Indices, class_names: tuple[str, ...]
     present = list(np.unique(classes))
     for one in present if len(present) > 2 else present[1:]:
         taken, own = guessed == one, classes == one
-        tried: dict[tuple[float, int], list[tuple[float, Estimate]]] = {(part, length): [] for length in LENGTHS for part in FRACTIONS}
+        tried: dict[tuple[float, int], list[tuple[float, Estimate]]] = {
+            (part, length): [] for length in LENGTHS for part in FRACTIONS
+        }
         for _ in range(_STREAMS):
             learned = np.isin(groups, generator.permutation(names)[: len(names) // 2])
             pools = [np.flatnonzero(~learned & mask) for mask in (own, ~own)]
             if not (all(map(len, pools)) and (learned & own).any() and (learned & ~own).any()):
                 continue  # by chance one half has all groups of a class
-            # the streams are of as few groups as the confusion is learned from: both have that error
-            both = [draw_rates(taken[learned], own[learned], groups[learned], generator, 200) for _ in range(2)]
-            rates = Rates(_with_error_of([one.true for one in both]), _with_error_of([one.false for one in both]))
+            # the streams are of as few groups as the confusion is learned from: both have that
+            # error
+            both = [
+                draw_rates(taken[learned], own[learned], groups[learned], generator, 200)
+                for _ in range(2)
+            ]
+            rates = Rates(
+                _with_error_of([one.true for one in both]),
+                _with_error_of([one.false for one in both]),
+            )
             for (part, length), rows in tried.items():
                 of_class = int(generator.binomial(length, part))
-                stream = np.concatenate([generator.choice(pools[0], of_class), generator.choice(pools[1], length - of_class)])
+                stream = np.concatenate(
+                    [
+                        generator.choice(pools[0], of_class),
+                        generator.choice(pools[1], length - of_class),
+                    ]
+                )
                 counted = int(taken[stream].sum())
-                rows.append((counted / length, estimate_fraction(counted, length, rates, generator)))
+                rows.append(
+                    (counted / length, estimate_fraction(counted, length, rates, generator))
+                )
         for (part, length), rows in tried.items():
             if rows:
                 found.append(_summed(class_names[one], part, length, rows))
@@ -175,9 +212,24 @@ def _with_error_of(draws: list[Floats]) -> Floats:
     return np.asarray(np.clip(draws[0] + sum(one - one.mean() for one in draws[1:]), 0.0, 1.0))
 
 
-def _summed(name: str, fraction: float, impacts: int, rows: list[tuple[float, Estimate]]) -> Streams:
-    values, low, high = (np.array(column) for column in zip(*((one.value, one.low, one.high) for _, one in rows), strict=True))
+def _summed(
+    name: str, fraction: float, impacts: int, rows: list[tuple[float, Estimate]]
+) -> Streams:
+    values, low, high = (
+        np.array(column)
+        for column in zip(*((one.value, one.low, one.high) for _, one in rows), strict=True)
+    )
     counted = float(np.mean([count for count, _ in rows]))
     covered = float(((low <= fraction) & (fraction <= high)).mean())
     error = float(np.sqrt(np.mean(np.square(values - fraction))))
-    return Streams(name, fraction, impacts, counted, float(values.mean()), error, float(low.mean()), float(high.mean()), covered)
+    return Streams(
+        name,
+        fraction,
+        impacts,
+        counted,
+        float(values.mean()),
+        error,
+        float(low.mean()),
+        float(high.mean()),
+        covered,
+    )

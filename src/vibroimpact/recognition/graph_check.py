@@ -1,6 +1,8 @@
-"""Checks the graph of a saved model before it runs: only what scikit-learn's classifiers become, of known shapes, without loops.
+"""Checks the graph of a saved model before it runs: only what scikit-learn's classifiers become, of
+known shapes, without loops.
 
-Each result of the graph is followed with its shape, so that its memory is known before; trees are followed from root to leaf.
+Each result of the graph is followed with its shape, so that its memory is known before; trees are
+followed from root to leaf.
 """
 
 from __future__ import annotations
@@ -26,7 +28,9 @@ _MOST_COLUMNS = 40_000
 
 _MOST_NODES = 20_000
 _FLOAT, _NUMBERS = 1, (1, 6, 7, 9, 11)
-"""Types of ONNX: single precision; and those of constants (also whole numbers, truth values and double precision)."""
+"""Types of ONNX: single precision; and those of constants (also whole numbers, truth
+values and double precision).
+"""
 
 _DOMAINS = ("", "ai.onnx.ml")
 _ML = "ai.onnx.ml"
@@ -55,9 +59,15 @@ def check_graph(data: bytes, features: int, classes: int) -> None:
     model = _parsed(data)
     graph = model.graph
     if model.functions or model.training_info or graph.sparse_initializer:
-        raise InputError("the graph holds functions, training or sparse tensors, as no model of this program does; train it anew")
+        raise InputError(
+            "the graph holds functions, training or sparse tensors, as no model of this "
+            "program does; train it anew"
+        )
     if len(graph.node) > _MOST_NODES:
-        raise InputError(f"the graph has {len(graph.node)} nodes; {_MOST_NODES} are the most; train the model anew")
+        raise InputError(
+            f"the graph has {len(graph.node)} nodes; {_MOST_NODES} are the "
+            "most; train the model anew"
+        )
     constants = _constants(graph.initializer)
     known: dict[str, Shape] = {name: values.shape for name, values in constants.items()}
     known[_input_name(graph, features)] = (ROWS, features)
@@ -71,7 +81,8 @@ def check_graph(data: bytes, features: int, classes: int) -> None:
             columns += -(-prod(shape) // ROWS)
         if columns > _MOST_COLUMNS:
             raise InputError(
-                f"the results of the graph have more than {_MOST_COLUMNS} numbers a signal; no model of this program has so many"
+                f"the results of the graph have more than {_MOST_COLUMNS} numbers a "
+                "signal; no model of this program has so many"
             )
     _check_outputs(graph, known, classes)
 
@@ -93,34 +104,57 @@ def _constants(initializers: Sequence[Any]) -> dict[str, NDArray[Any]]:
     for tensor in initializers:
         name = shown(tensor.name)
         if tensor.data_location == TensorProto.EXTERNAL or tensor.external_data:
-            raise InputError(f"the constant {name} of the graph lies in another file; train the model anew")
+            raise InputError(
+                f"the constant {name} of the graph lies in another file; train the model anew"
+            )
         if tensor.name in found:
             raise InputError(f"the graph gives {name} twice; train the model anew")
         if tensor.data_type not in _NUMBERS or len(tensor.dims) > 1:
-            raise InputError(f"the constant {name} of the graph is not a number or a list of numbers; train the model anew")
+            raise InputError(
+                f"the constant {name} of the graph is not a number or a list of numbers; "
+                "train the model anew"
+            )
         try:
             found[tensor.name] = numpy_helper.to_array(tensor)
         except Exception:  # of many types, by what is damaged
-            raise InputError(f"the constant {name} of the graph does not have as many values as it states; train the model anew") from None
+            raise InputError(
+                f"the constant {name} of the graph does not have as many values as it "
+                "states; train the model anew"
+            ) from None
     return found
 
 
 def _input_name(graph: Any, features: int) -> str:
     if len(graph.input) != 1:
-        raise InputError(f"the graph takes {len(graph.input)} arrays; a model takes the features alone: train it anew")
+        raise InputError(
+            f"the graph takes {len(graph.input)} arrays; a model takes "
+            "the features alone: train it anew"
+        )
     (given,) = graph.input
     kind = given.type.tensor_type
     dimensions = [dimension.dim_value for dimension in kind.shape.dim]
-    if kind.elem_type != _FLOAT or len(dimensions) != 2 or dimensions[0] or dimensions[1] != features:
-        raise InputError(f"the graph does not take the {features} features of the card, in single precision; train the model anew")
+    if (
+        kind.elem_type != _FLOAT
+        or len(dimensions) != 2
+        or dimensions[0]
+        or dimensions[1] != features
+    ):
+        raise InputError(
+            f"the graph does not take the {features} features of the card, in single "
+            "precision; train the model anew"
+        )
     return str(given.name)
 
 
 def _check_outputs(graph: Any, known: Mapping[str, Shape], classes: int) -> None:
     names = [output.name for output in graph.output]
-    if len(names) != 2 or [known.get(name) for name in names] not in ([(ROWS,), (ROWS, classes)], [(ROWS, 1), (ROWS, classes)]):
+    if len(names) != 2 or [known.get(name) for name in names] not in (
+        [(ROWS,), (ROWS, classes)],
+        [(ROWS, 1), (ROWS, classes)],
+    ):
         raise InputError(
-            f"the graph does not give a class and the probabilities of the {classes} classes of the card; train the model anew"
+            f"the graph does not give a class and the probabilities of the {classes} "
+            "classes of the card; train the model anew"
         )
 
 
@@ -130,9 +164,15 @@ def _attributes(node: Any) -> Attributes:
     for attribute in node.attribute:
         field = _KINDS.get(attribute.type)
         if attribute.name in found:
-            raise InputError(f"{_name(node)} of the graph has two attributes {shown(attribute.name)}; train the model anew")
+            raise InputError(
+                f"{_name(node)} of the graph has two attributes {shown(attribute.name)}; "
+                "train the model anew"
+            )
         if field is None or attribute.ref_attr_name:
-            words = f"{_name(node)} of the graph has an attribute {shown(attribute.name)} that is no number or text"
+            words = (
+                f"{_name(node)} of the graph has an attribute {shown(attribute.name)} that is "
+                "no number or text"
+            )
             raise InputError(f"{words}; train the model anew")
         value = getattr(attribute, field)
         if field == "floats":
@@ -145,12 +185,21 @@ def _attributes(node: Any) -> Attributes:
     return found
 
 
-def _shapes_of(node: Any, known: Mapping[str, Shape], constants: Mapping[str, NDArray[Any]], features: int, classes: int) -> list[Shape]:
+def _shapes_of(
+    node: Any,
+    known: Mapping[str, Shape],
+    constants: Mapping[str, NDArray[Any]],
+    features: int,
+    classes: int,
+) -> list[Shape]:
     """Return the shapes of the results of a node, after a check that it is one of a classifier."""
     name, attributes = _name(node), _attributes(node)
     missing = [given for given in node.input if given not in known]
     if missing:
-        raise InputError(f"{name} of the graph takes {shown(missing[0])}, which nothing before it gives; train the model anew")
+        raise InputError(
+            f"{name} of the graph takes {shown(missing[0])}, which nothing before it "
+            "gives; train the model anew"
+        )
     inputs = [known[given] for given in node.input]
     try:
         if node.domain == _ML and node.op_type in CLASSIFIERS and inputs == [(ROWS, features)]:
@@ -158,12 +207,18 @@ def _shapes_of(node: Any, known: Mapping[str, Shape], constants: Mapping[str, ND
         if (node.domain, node.op_type) in _OPERATORS:
             allowed, shape_of = _OPERATORS[node.domain, node.op_type]
             if attributes.keys() <= allowed:
-                return [shape_of(inputs, attributes, [constants.get(given) for given in node.input])]
+                return [
+                    shape_of(inputs, attributes, [constants.get(given) for given in node.input])
+                ]
     except InputError as error:
         raise InputError(f"{name} of the graph {error}; train the model anew") from None
     except (ValueError, IndexError, KeyError, TypeError):
-        raise InputError(f"{name} of the graph does not fit its inputs; train the model anew") from None
-    raise InputError(f"the graph uses {name} as no classifier of this program does; train the model anew")
+        raise InputError(
+            f"{name} of the graph does not fit its inputs; train the model anew"
+        ) from None
+    raise InputError(
+        f"the graph uses {name} as no classifier of this program does; train the model anew"
+    )
 
 
 def _name(node: Any) -> str:
@@ -213,14 +268,19 @@ def _extracted(inputs: Sequence[Shape], attributes: Attributes, constants: Const
 def _joined(inputs: Sequence[Shape], attributes: Attributes, constants: Constants) -> Shape:
     axis = int(attributes["axis"])
     first = inputs[0]
-    if len({(*shape[:axis], *shape[axis + 1 :]) for shape in inputs}) != 1 or not 0 <= axis < len(first):
+    if len({(*shape[:axis], *shape[axis + 1 :]) for shape in inputs}) != 1 or not 0 <= axis < len(
+        first
+    ):
         raise InputError("joins what does not fit")
     return (*first[:axis], sum(shape[axis] for shape in inputs), *first[axis + 1 :])
 
 
 def _reduced(inputs: Sequence[Shape], attributes: Attributes, constants: Constants) -> Shape:
     """Return the shape of what takes one number of each row."""
-    axes = [int(attributes["axis"])] if "axis" in attributes else np.atleast_1d(constants[1]).tolist()  # type: ignore[arg-type]
+    if "axis" in attributes:
+        axes = [int(attributes["axis"])]
+    else:
+        axes = np.atleast_1d(constants[1]).tolist()  # type: ignore[arg-type]
     if axes not in ([1], [-1]) or attributes.get("keepdims", 1) != 1 or len(inputs[0]) != 2:
         raise InputError("does not work along the rows")
     return (inputs[0][0], 1)
@@ -233,7 +293,9 @@ def _flattened(inputs: Sequence[Shape], attributes: Attributes, constants: Const
     return (prod(inputs[0]),)
 
 
-_OPERATORS: dict[tuple[str, str], tuple[set[str], Callable[[Sequence[Shape], Attributes, Constants], Shape]]] = {
+_OPERATORS: dict[
+    tuple[str, str], tuple[set[str], Callable[[Sequence[Shape], Attributes, Constants], Shape]]
+] = {
     (_ML, "Imputer"): ({"imputed_value_floats", "replaced_value_float"}, _filled),
     (_ML, "Scaler"): ({"offset", "scale"}, _scaled),
     (_ML, "Normalizer"): ({"norm"}, _normalised),

@@ -1,4 +1,6 @@
-"""The operators of ONNX that are classifiers: that their lists agree with each other, and refer to what there is."""
+"""The operators of ONNX that are classifiers: that their lists agree with each other, and
+refer to what there is.
+"""
 
 from __future__ import annotations
 
@@ -22,7 +24,9 @@ _LEAF, _BRANCH = b"LEAF", b"BRANCH_LEQ"
 _TRANSFORMS = (b"NONE", b"LOGISTIC", b"SOFTMAX")
 
 
-def with_length(attributes: Attributes, key: str, *lengths: int, otherwise: int | None = None) -> NDArray[Any]:
+def with_length(
+    attributes: Attributes, key: str, *lengths: int, otherwise: int | None = None
+) -> NDArray[Any]:
     """Return a list of finite numbers of one of some lengths, or an empty one if it may be missing.
 
     Raises
@@ -36,7 +40,10 @@ def with_length(attributes: Attributes, key: str, *lengths: int, otherwise: int 
     if not isinstance(values, np.ndarray):
         raise InputError(f"has no list {key}")
     if len(values) not in lengths:
-        raise InputError(f"has a list {key} of {len(values)} numbers, where {' or '.join(map(str, sorted(set(lengths))))} belong")
+        raise InputError(
+            f"has a list {key} of {len(values)} numbers, where "
+            f"{' or '.join(map(str, sorted(set(lengths))))} belong"
+        )
     if not np.isfinite(values).all():
         raise InputError(f"has a list {key} with numbers that are not finite")
     return values
@@ -51,7 +58,10 @@ def one_of(attributes: Attributes, key: str, allowed: Collection[Any]) -> None:
 def _only(attributes: Attributes, *keys: str) -> None:
     unknown = sorted(attributes.keys() - set(keys))
     if unknown:
-        raise InputError(f"has the attribute {shown(unknown[0])}, which it does not have in a model of this program")
+        raise InputError(
+            f"has the attribute {shown(unknown[0])}, which it does not have in "
+            "a model of this program"
+        )
 
 
 def _check_labels(attributes: Attributes, key: str, classes: int) -> None:
@@ -60,7 +70,14 @@ def _check_labels(attributes: Attributes, key: str, classes: int) -> None:
 
 
 def _linear(attributes: Attributes, rows: int, features: int, classes: int) -> Shapes:
-    _only(attributes, "classlabels_ints", "coefficients", "intercepts", "multi_class", "post_transform")
+    _only(
+        attributes,
+        "classlabels_ints",
+        "coefficients",
+        "intercepts",
+        "multi_class",
+        "post_transform",
+    )
     _check_labels(attributes, "classlabels_ints", classes)
     with_length(attributes, "coefficients", classes * features)
     with_length(attributes, "intercepts", classes)
@@ -70,8 +87,18 @@ def _linear(attributes: Attributes, rows: int, features: int, classes: int) -> S
 
 
 def _machine(attributes: Attributes, rows: int, features: int, classes: int) -> Shapes:
-    """Check a support vector machine; it gives a number for each pair of classes, and of two classes one for each."""
-    keys = ("coefficients", "kernel_params", "kernel_type", "post_transform", "rho", "support_vectors", "vectors_per_class")
+    """Check a support vector machine; it gives a number for each pair of classes, and of
+    two classes one for each.
+    """
+    keys = (
+        "coefficients",
+        "kernel_params",
+        "kernel_type",
+        "post_transform",
+        "rho",
+        "support_vectors",
+        "vectors_per_class",
+    )
     _only(attributes, "classlabels_ints", *keys)
     _check_labels(attributes, "classlabels_ints", classes)
     counts = with_length(attributes, "vectors_per_class", classes)
@@ -88,9 +115,26 @@ def _machine(attributes: Attributes, rows: int, features: int, classes: int) -> 
 
 
 def _trees(attributes: Attributes, rows: int, features: int, classes: int) -> Shapes:
-    nodes = ("falsenodeids", "featureids", "hitrates", "missing_value_tracks_true", "modes", "nodeids", "treeids", "truenodeids", "values")
+    nodes = (
+        "falsenodeids",
+        "featureids",
+        "hitrates",
+        "missing_value_tracks_true",
+        "modes",
+        "nodeids",
+        "treeids",
+        "truenodeids",
+        "values",
+    )
     leaves = ("class_ids", "class_nodeids", "class_treeids", "class_weights")
-    _only(attributes, *(f"nodes_{name}" for name in nodes), *leaves, "classlabels_int64s", "base_values", "post_transform")
+    _only(
+        attributes,
+        *(f"nodes_{name}" for name in nodes),
+        *leaves,
+        "classlabels_int64s",
+        "base_values",
+        "post_transform",
+    )
     _check_labels(attributes, "classlabels_int64s", classes)
     one_of(attributes, "post_transform", _TRANSFORMS)
     with_length(attributes, "base_values", 1, classes, otherwise=0)
@@ -105,14 +149,24 @@ def _trees(attributes: Attributes, rows: int, features: int, classes: int) -> Sh
     tracks = attributes.get("nodes_missing_value_tracks_true")
     if tracks is not None and not np.isin(tracks, (0, 1)).all():
         raise InputError("has branches that take missing values to neither side")
-    _check_range("nodes_featureids", with_length(attributes, "nodes_featureids", count)[~is_leaf], features)
-    places = _Places(with_length(attributes, "nodes_treeids", count), with_length(attributes, "nodes_nodeids", count))
+    _check_range(
+        "nodes_featureids", with_length(attributes, "nodes_featureids", count)[~is_leaf], features
+    )
+    places = _Places(
+        with_length(attributes, "nodes_treeids", count),
+        with_length(attributes, "nodes_nodeids", count),
+    )
     _check_range("nodes_treeids", places.trees, count)
     _check_range("nodes_nodeids", places.nodes, count)
-    ends = [with_length(attributes, f"nodes_{side}nodeids", count)[~is_leaf] for side in ("true", "false")]
+    ends = [
+        with_length(attributes, f"nodes_{side}nodeids", count)[~is_leaf]
+        for side in ("true", "false")
+    ]
     _check_branches(is_leaf, [places.find(places.trees[~is_leaf], end) for end in ends])
     weights = len(attributes.get("class_ids", ()))
-    trees, ids = (with_length(attributes, f"class_{name}", weights) for name in ("treeids", "nodeids"))
+    trees, ids = (
+        with_length(attributes, f"class_{name}", weights) for name in ("treeids", "nodeids")
+    )
     if not weights or not is_leaf[places.find(trees, ids)].all():
         raise InputError("has weights of nodes that are no leaves")
     with_length(attributes, "class_weights", weights)
@@ -142,7 +196,9 @@ class _Places:
             raise InputError("has two nodes of the same number in a tree")
 
     def _key(self, trees: Indices, nodes: Indices) -> Indices:
-        return np.asarray(np.clip(trees, -1, 2**31) * 2**31 + np.clip(nodes, -1, 2**31 - 1), dtype=np.int64)
+        return np.asarray(
+            np.clip(trees, -1, 2**31) * 2**31 + np.clip(nodes, -1, 2**31 - 1), dtype=np.int64
+        )
 
     def find(self, trees: Indices, nodes: Indices) -> Indices:
         """Return the place of each of some nodes."""
@@ -154,7 +210,8 @@ class _Places:
 
 
 def _check_branches(is_leaf: NDArray[np.bool_], ends: list[Indices]) -> None:
-    """Check that branches lead to leaves: from the roots on each node is reached once, within some levels.
+    """Check that branches lead to leaves: from the roots on each node is reached once, within some
+    levels.
 
     Parameters
     ----------
@@ -185,4 +242,6 @@ CLASSIFIERS: dict[str, Callable[[Attributes, int, int, int], Shapes]] = {
     "SVMClassifier": _machine,
     "TreeEnsembleClassifier": _trees,
 }
-"""By the name of the operator, what checks it and returns the shapes of the classes and of their probabilities or scores."""
+"""By the name of the operator, what checks it and returns the shapes of the classes and
+of their probabilities or scores.
+"""

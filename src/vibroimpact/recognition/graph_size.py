@@ -1,4 +1,6 @@
-"""What a model's file would take in memory once it is parsed, estimated from its bytes: a table of two bytes becomes one of eighty."""
+"""What a model's file would take in memory once it is parsed, estimated from its bytes: a
+table of two bytes becomes one of eighty.
+"""
 
 from __future__ import annotations
 
@@ -14,31 +16,47 @@ _MOST_OTHER_BYTES = 4_000_000
 """Bytes beside lists of numbers and of short texts, which grow little."""
 
 _GRAPH, _NODE, _ATTRIBUTE = 7, 1, 5
-"""Numbers of the fields of the format: the graph of a model, a node of a graph, an attribute of a node."""
+"""Numbers of the fields of the format: the graph of a model, a node of a graph, an
+attribute of a node.
+"""
 
-_LISTS = re.compile(rb"(?:\x3d.{4}|\x40[\x80-\xff]{0,9}[\x00-\x7f]|\x4a\x0aBRANCH_LEQ|\x4a\x04LEAF)+", re.DOTALL)
-"""Elements of the lists of an attribute: real numbers, whole numbers, and the modes of the nodes of trees."""
+_LISTS = re.compile(
+    rb"(?:\x3d.{4}|\x40[\x80-\xff]{0,9}[\x00-\x7f]|\x4a\x0aBRANCH_LEQ|\x4a\x04LEAF)+", re.DOTALL
+)
+"""Elements of the lists of an attribute: real numbers, whole numbers, and the modes of
+the nodes of trees.
+"""
 
 
 def check_size(data: bytes) -> None:
-    """Raise InputError if the bytes of an ONNX model would grow beyond some hundred megabytes as they are parsed, or are cut short."""
+    """Raise InputError if the bytes of an ONNX model would grow beyond some hundred
+    megabytes as they are parsed, or are cut short.
+    """
     parts, lists = 0, 0
     for graph in _fields(data, 0, len(data), _GRAPH):
         for node in _fields(data, *graph, _NODE):
             for start, end in _fields(data, *node, _ATTRIBUTE):
-                lists += sum(match.end() - match.start() for match in _LISTS.finditer(data, start, end))
+                lists += sum(
+                    match.end() - match.start() for match in _LISTS.finditer(data, start, end)
+                )
                 parts += 1
             parts += 1
             if parts > _MOST_PARTS:
-                raise InputError(f"the graph has more than {_MOST_PARTS:,} nodes and attributes; no model of this program has so many")
+                raise InputError(
+                    f"the graph has more than {_MOST_PARTS:,} nodes and attributes; no "
+                    "model of this program has so many"
+                )
     if len(data) - lists > _MOST_OTHER_BYTES:
         raise InputError(
-            f"the graph has more than {_MOST_OTHER_BYTES // 1_000_000} MB beside its numbers; no model of this program has so much"
+            f"the graph has more than {_MOST_OTHER_BYTES // 1_000_000} MB beside its "
+            "numbers; no model of this program has so much"
         )
 
 
 def _fields(data: bytes, start: int, end: int, wanted: int) -> Iterator[tuple[int, int]]:
-    """Yield the places of the tables in the fields of one number, of the fields from `start` to `end`."""
+    """Yield the places of the tables in the fields of one number, of the fields from
+    `start` to `end`.
+    """
     place = start
     for _ in range(_MOST_PARTS):
         if place >= end:
@@ -58,7 +76,10 @@ def _fields(data: bytes, start: int, end: int, wanted: int) -> Iterator[tuple[in
             place += 8 if kind == 1 else 4
         else:
             raise _cut_short()
-    raise InputError(f"the graph has a table of {_MOST_PARTS:,} fields or more; no model of this program has so many")
+    raise InputError(
+        f"the graph has a table of {_MOST_PARTS:,} fields or more; no model of this "
+        "program has so many"
+    )
 
 
 def _whole_number(data: bytes, place: int) -> tuple[int, int]:

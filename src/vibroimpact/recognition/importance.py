@@ -1,4 +1,6 @@
-"""Importance of features: how much worse signals that were not trained on are recognised once a feature is exchanged between them."""
+"""Importance of features: how much worse signals that were not trained on are recognised
+once a feature is exchanged between them.
+"""
 
 from __future__ import annotations
 
@@ -19,17 +21,22 @@ _REPEATS = 3
 
 @dataclass(frozen=True, eq=False)
 class Importance:
-    """Loss of balanced accuracy when a feature is permuted: its mean over the parts of the cross-validation, and its spread."""
+    """Loss of balanced accuracy when a feature is permuted: its mean over the parts of
+    the cross-validation, and its spread.
+    """
 
     feature: str
     loss: float
     spread: float
 
 
-def permutation_importance(chosen: Chosen, values: Floats, names: tuple[str, ...], workers: int, progress: Progress) -> list[Importance]:
+def permutation_importance(
+    chosen: Chosen, values: Floats, names: tuple[str, ...], workers: int, progress: Progress
+) -> list[Importance]:
     """Return the importance of each feature on signals that were not trained on, the largest first.
 
-    Features that say the same share their importance: each may seem to matter little while the other is there.
+    Features that say the same share their importance: each may seem to matter little while the
+    other is there.
     """
 
     def one(split: Split, parameters: Parameters) -> Floats:
@@ -42,10 +49,15 @@ def permutation_importance(chosen: Chosen, values: Floats, names: tuple[str, ...
             for _ in range(_REPEATS):
                 exchanged = tested.copy()
                 exchanged[:, place] = generator.permutation(tested[:, place])
-                losses[place] += (whole - balanced_accuracy(fitted.predict(exchanged), truth)) / _REPEATS
+                losses[place] += (
+                    whole - balanced_accuracy(fitted.predict(exchanged), truth)
+                ) / _REPEATS
         return losses
 
     jobs = [partial(one, *part) for part in chosen.parts]
     losses = np.array(run_jobs("importance of features", jobs, workers, progress))
-    found = [Importance(name, float(part.mean()), float(part.std(ddof=1))) for name, part in zip(names, losses.T, strict=True)]
+    found = [
+        Importance(name, float(part.mean()), float(part.std(ddof=1)))
+        for name, part in zip(names, losses.T, strict=True)
+    ]
     return sorted(found, key=lambda row: -row.loss)

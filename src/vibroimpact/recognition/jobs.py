@@ -1,6 +1,7 @@
 """Runs independent computations in a few processes, with progress.
 
-In threads they would disturb each other: scikit-learn sets the filters of warnings, which all threads share.
+In threads they would disturb each other: scikit-learn sets the filters of warnings, which all
+threads share.
 """
 
 from __future__ import annotations
@@ -21,7 +22,9 @@ def silent(what: str, done: int, total: int) -> None:
     """Tell nothing."""
 
 
-def run_jobs(what: str, jobs: Sequence[Callable[[], Done]], workers: int, progress: Progress) -> list[Done]:
+def run_jobs(
+    what: str, jobs: Sequence[Callable[[], Done]], workers: int, progress: Progress
+) -> list[Done]:
     """Run functions and return their results in order.
 
     Parameters

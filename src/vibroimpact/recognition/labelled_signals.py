@@ -1,4 +1,6 @@
-"""The noun of recognition: signals with their classes, and which of them share a rock, a plate or a fall."""
+"""The noun of recognition: signals with their classes, and which of them share a rock, a
+plate or a fall.
+"""
 
 from __future__ import annotations
 
@@ -65,7 +67,8 @@ class LabelledSignals:
     check_sum : str, optional
         SHA-256 of the file.
     bayes_error_sees : str, optional
-        The quantities alone that a classifier sees for which this bound was computed; None if the data set states the bound.
+        The quantities alone that a classifier sees for which this bound was computed; None if the
+        data set states the bound.
     rows : array of int, shape (signals,), optional
         The place of each signal in the file, from 0; by default all are there, in this order.
 
@@ -111,7 +114,9 @@ class LabelledSignals:
         """
         return replace(
             self,
-            sensors={name: replace(one, values=one.values[kept]) for name, one in self.sensors.items()},
+            sensors={
+                name: replace(one, values=one.values[kept]) for name, one in self.sensors.items()
+            },
             classes=None if self.classes is None else self.classes[kept],
             groups={name: one[kept] for name, one in self.groups.items()},
             drawn={name: one[kept] for name, one in self.drawn.items()},
@@ -124,7 +129,9 @@ class LabelledSignals:
         if self.classes is None:
             return self
         present, classes = np.unique(self.classes, return_inverse=True)
-        return replace(self, classes=classes, class_names=tuple(self.class_names[one] for one in present))
+        return replace(
+            self, classes=classes, class_names=tuple(self.class_names[one] for one in present)
+        )
 
 
 def lengths(values: NDArray[np.float32]) -> Indices:

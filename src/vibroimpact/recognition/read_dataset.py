@@ -1,4 +1,6 @@
-"""Reads the signals of a data set with their classes and groups; of a large one, whole groups drawn at random."""
+"""Reads the signals of a data set with their classes and groups; of a large one, whole
+groups drawn at random.
+"""
 
 from __future__ import annotations
 
@@ -30,22 +32,28 @@ from vibroimpact.studies.study_folder import DATASET as STUDY
 from vibroimpact.studies.study_folder import is_study
 
 DATASET, FORMAT = "dataset.nc", "vibroimpact dataset 1"
-"""File and format of data sets that are no studies; a study is read as `dataset` and `sweep` write it."""
+"""File and format of data sets that are no studies; a study is read as `dataset` and
+`sweep` write it.
+"""
 
 _SIGNAL, _CLASS = "signal_", "class"
 _BLOCK = 4096  # signals read at once
 _MOST_CLASSES = 100
 
 
-def read_labelled_signals(dataset: str | PathLike[str], *, most: int | None = None, group: str = "rock", seed: int = 0) -> LabelledSignals:
+def read_labelled_signals(
+    dataset: str | PathLike[str], *, most: int | None = None, group: str = "rock", seed: int = 0
+) -> LabelledSignals:
     """Return the signals of a data set with their classes and groups.
 
     Parameters
     ----------
     dataset : path
-        Folder of `vibroimpact dataset`, with `study.nc`, or one with a file `dataset.nc` of the same variables; or such a file.
+        Folder of `vibroimpact dataset`, with `study.nc`, or one with a file `dataset.nc` of the
+        same variables; or such a file.
     most : int, optional
-        Largest number of signals; of more, whole groups are drawn at random. By default all are read.
+        Largest number of signals; of more, whole groups are drawn at random. By default all are
+        read.
     group : str, default "rock"
         What signals of a group share: "rock", "plate" or "fall".
     seed : int, default 0
@@ -102,7 +110,9 @@ def _read(file: h5py.File, path: Path, most: int | None, group: str, seed: int) 
     variables = members(file)
     signals = _signals(variables)
     count = len(next(iter(signals.values())))
-    columns = {name: read_array(data) for name, data in variables.items() if _is_column(name, data, count)}
+    columns = {
+        name: read_array(data) for name, data in variables.items() if _is_column(name, data, count)
+    }
     groups = {name: _whole_numbers(name, columns[name]) for name in GROUPS if name in columns}
     groups.setdefault("fall", np.arange(count))
     classes, names = _classes(file, columns)
@@ -110,13 +120,18 @@ def _read(file: h5py.File, path: Path, most: int | None, group: str, seed: int) 
     if most is not None and count > most and group in groups:
         kept = _drawn_groups(groups[group], most, seed)
     numbers = {
-        name: values.astype(float) for name, values in columns.items() if values.dtype.kind in "fiu" and name not in (*GROUPS, _CLASS)
+        name: values.astype(float)
+        for name, values in columns.items()
+        if values.dtype.kind in "fiu" and name not in (*GROUPS, _CLASS)
     }
     texts = {name: _texts(values) for name, values in columns.items() if values.dtype.kind in "OS"}
     values = {sensor: _rows(data, kept) for sensor, data in signals.items()}
     found = LabelledSignals(
         one_line(str(attribute(file, "title", path.parent.name))),
-        {sensor: SensorSignals(values[sensor], *_rate_and_unit(data, sensor)) for sensor, data in signals.items()},
+        {
+            sensor: SensorSignals(values[sensor], *_rate_and_unit(data, sensor))
+            for sensor, data in signals.items()
+        },
         None if classes is None else classes[kept],
         names,
         {name: one[kept] for name, one in groups.items()},
@@ -142,22 +157,31 @@ def _signals(variables: Mapping[str, h5py.Dataset | h5py.Group]) -> dict[str, h5
         if not name.startswith(_SIGNAL):
             continue
         if not isinstance(data, h5py.Dataset):
-            raise InputError(f"{name} is a group; it must be a variable of two dimensions (signal, time)")
+            raise InputError(
+                f"{name} is a group; it must be a variable of two dimensions (signal, time)"
+            )
         if data.ndim != 2:
             others_told = f"; {name} is of the shape {data.shape}"
             continue
         if data.dtype.kind not in "fiu":
-            raise InputError(f"{name} is of the type {data.dtype}; the samples of signals must be real numbers")
+            raise InputError(
+                f"{name} is of the type {data.dtype}; the samples of signals must be real numbers"
+            )
         if not data.size:
             raise InputError(f"{name} has no samples; its shape is {data.shape}")
         found[name.removeprefix(_SIGNAL)] = data
     if not found:
-        raise InputError(f"there are no signals; a variable signal_SENSOR (signal, time_SENSOR) holds those of a sensor{others_told}")
+        raise InputError(
+            "there are no signals; a variable signal_SENSOR (signal, time_SENSOR) holds "
+            f"those of a sensor{others_told}"
+        )
     first, *others = found
     for sensor in others:
         if len(found[sensor]) != len(found[first]):
             words = f"{len(found[first])} signals, and signal_{sensor} has {len(found[sensor])}"
-            raise InputError(f"signal_{first} has {words}; a row of each must be of the same impact")
+            raise InputError(
+                f"signal_{first} has {words}; a row of each must be of the same impact"
+            )
     return found
 
 
@@ -165,43 +189,79 @@ def _is_column(name: str, data: h5py.Dataset | h5py.Group, count: int) -> bool:
     """Return whether a variable has a value for each signal."""
     if not isinstance(data, h5py.Dataset):
         if name in (*GROUPS, _CLASS):
-            raise InputError(f"{name} is a group; it must be a variable with a value for each signal")
+            raise InputError(
+                f"{name} is a group; it must be a variable with a value for each signal"
+            )
         return False
     is_label = name in (*GROUPS, _CLASS)
     if is_label and data.shape != (count,):
-        raise InputError(f"{name} is of the shape {data.shape}; it must have a value for each of {count} signals")
-    return data.shape == (count,) and (is_label or attribute(data, "CLASS", "") != "DIMENSION_SCALE")
+        raise InputError(
+            f"{name} is of the shape {data.shape}; it must have a value for each of {count} signals"
+        )
+    return data.shape == (count,) and (
+        is_label or attribute(data, "CLASS", "") != "DIMENSION_SCALE"
+    )
 
 
 def _whole_numbers(name: str, values: NDArray[Any]) -> Indices:
     """Return labels, which must be whole numbers."""
     if values.dtype.kind not in "fiub":
-        raise InputError(f"{name} is of the type {values.dtype}; number each {name} with whole numbers")
-    wrong = np.flatnonzero(~np.isfinite(values) | (values != np.floor(values)) | (np.abs(values.astype(float)) > 2.0**53))
+        raise InputError(
+            f"{name} is of the type {values.dtype}; number each {name} with whole numbers"
+        )
+    wrong = np.flatnonzero(
+        ~np.isfinite(values)
+        | (values != np.floor(values))
+        | (np.abs(values.astype(float)) > 2.0**53)
+    )
     if len(wrong):
-        raise InputError(f"{name} of signal {wrong[0]} is {shown(values[wrong[0]].item())}; it must be a whole number")
+        raise InputError(
+            f"{name} of signal {wrong[0]} is {shown(values[wrong[0]].item())}; "
+            "it must be a whole number"
+        )
     return values.astype(np.intp)
 
 
 def _texts(values: NDArray[Any]) -> NDArray[Any]:
-    return np.array([value.decode("utf-8", "replace") if isinstance(value, bytes) else str(value) for value in values.tolist()])
+    return np.array(
+        [
+            value.decode("utf-8", "replace") if isinstance(value, bytes) else str(value)
+            for value in values.tolist()
+        ]
+    )
 
 
-def _classes(file: h5py.File, columns: Mapping[str, NDArray[Any]]) -> tuple[Indices | None, tuple[str, ...]]:
-    """Return the index of each signal's class, None if there are no classes, and the names of the classes."""
+def _classes(
+    file: h5py.File, columns: Mapping[str, NDArray[Any]]
+) -> tuple[Indices | None, tuple[str, ...]]:
+    """Return the index of each signal's class, None if there are no classes, and the
+    names of the classes.
+    """
     if _CLASS not in columns:
         return None, ()
     flags, meanings = (attribute(file[_CLASS], name) for name in ("flag_values", "flag_meanings"))
     if flags is None or meanings is None:
-        raise InputError("the variable class lacks flag_values or flag_meanings, which name the classes")
+        raise InputError(
+            "the variable class lacks flag_values or flag_meanings, which name the classes"
+        )
     flags = flags if isinstance(flags, list) else [flags]
-    if not all(type(flag) in (int, float) and isfinite(flag) and flag == int(flag) for flag in flags) or len(set(flags)) < len(flags):
-        raise InputError(f"flag_values of the variable class is {shown(flags)}; it must be a list of different whole numbers")
+    if not all(
+        type(flag) in (int, float) and isfinite(flag) and flag == int(flag) for flag in flags
+    ) or len(set(flags)) < len(flags):
+        raise InputError(
+            f"flag_values of the variable class is {shown(flags)}; it must be a list of "
+            "different whole numbers"
+        )
     names = tuple(meanings.split()) if isinstance(meanings, str) else ()
     if not names or len(set(names)) < len(names) or not all(map(str.isprintable, names)):
-        raise InputError(f"flag_meanings of the variable class is {shown(meanings)}; it must be different names, separated by blanks")
+        raise InputError(
+            f"flag_meanings of the variable class is {shown(meanings)}; it must be "
+            "different names, separated by blanks"
+        )
     if len(flags) != len(names):
-        raise InputError(f"the variable class has {len(flags)} flag_values and {len(names)} flag_meanings")
+        raise InputError(
+            f"the variable class has {len(flags)} flag_values and {len(names)} flag_meanings"
+        )
     if len(names) > _MOST_CLASSES:
         raise InputError(f"there are {len(names)} classes; {_MOST_CLASSES} are the most")
     numbers = _whole_numbers(_CLASS, columns[_CLASS]).tolist()
@@ -219,16 +279,23 @@ def _rate_and_unit(data: h5py.Dataset, sensor: str) -> tuple[float, str]:
     elif isinstance(rate, list) and len(rate) == 1:
         (rate,) = rate
     if rate is None:
-        raise InputError(f"signal_{sensor} has neither an attribute rate_Hz nor increasing times of its samples")
+        raise InputError(
+            f"signal_{sensor} has neither an attribute rate_Hz nor increasing times of its samples"
+        )
     if type(rate) not in (int, float) or not 0.0 < rate < np.inf:
-        raise InputError(f"rate_Hz of signal_{sensor} is {shown(rate)}; it must be a number greater than 0, in Hz")
+        raise InputError(
+            f"rate_Hz of signal_{sensor} is {shown(rate)}; it must be "
+            "a number greater than 0, in Hz"
+        )
     if not isinstance(unit, str):
         raise InputError(f"units of signal_{sensor} is {shown(unit)}; it must be a text")
     return float(rate), one_line(unit)
 
 
 def _rate_of_scale(data: h5py.Dataset) -> float | None:
-    """Return the sampling rate by the times that signals are over; None if there are none, or they do not go on."""
+    """Return the sampling rate by the times that signals are over; None if there are
+    none, or they do not go on.
+    """
     if not len(data.dims[1]) or data.shape[1] < 2:
         return None
     time: Floats = read_array(data.dims[1][0])
@@ -237,11 +304,14 @@ def _rate_of_scale(data: h5py.Dataset) -> float | None:
     span = float(time[-1]) - float(time[0])
     if not 0.0 < span < np.inf:
         return None
-    return float(f"{min((len(time) - 1) / span, np.finfo(float).max):.12g}")  # without the rounding of the times
+    # without the rounding of the times
+    return float(f"{min((len(time) - 1) / span, np.finfo(float).max):.12g}")
 
 
 def _drawn_groups(groups: Indices, most: int, seed: int) -> Indices:
-    """Return the signals of groups drawn at random: as many whole groups as have at most `most` signals, and one at least."""
+    """Return the signals of groups drawn at random: as many whole groups as have at most
+    `most` signals, and one at least.
+    """
     names, sizes = np.unique(groups, return_counts=True)
     order = np.random.default_rng(seed).permutation(len(names))
     count = max(1, int(np.searchsorted(np.cumsum(sizes[order]), most, side="right")))
@@ -250,13 +320,18 @@ def _drawn_groups(groups: Indices, most: int, seed: int) -> Indices:
 
 def _rows(data: h5py.Dataset, kept: Indices) -> NDArray[np.float32]:
     """Return some rows of signals; blocks are read whole, since HDF5 reads single rows slowly."""
-    read_array(data, slice(0, 0))  # which refuses a shape that the file does not hold, before memory is taken for it
+    # which refuses a shape that the file does not hold, before memory is taken for it
+    read_array(data, slice(0, 0))
     found = np.empty((len(kept), data.shape[1]), dtype=np.float32)
     for first in range(0, len(data), _BLOCK):
         start, end = np.searchsorted(kept, (first, first + _BLOCK))
         if end > start:
-            with np.errstate(over="ignore"):  # beyond single precision a sample is infinite, which is a feature's reason to have no value
-                found[start:end] = read_array(data, slice(first, first + _BLOCK))[kept[start:end] - first]
+            # beyond single precision a sample is infinite, which is a feature's reason to have no
+            # value
+            with np.errstate(over="ignore"):
+                found[start:end] = read_array(data, slice(first, first + _BLOCK))[
+                    kept[start:end] - first
+                ]
     return found
 
 
@@ -266,7 +341,9 @@ def _is_computed(path: Path) -> bool:
 
 
 def _bayes_error(path: Path) -> float | None:
-    """Return a lower bound on the error: as the summary states it, or of a computed population; None if it is not known."""
+    """Return a lower bound on the error: as the summary states it, or of a computed
+    population; None if it is not known.
+    """
     summary = path.parent / SUMMARY
     if not summary.is_file():
         return None
@@ -279,5 +356,7 @@ def _bayes_error(path: Path) -> float | None:
     if value is None:
         return None
     if not isinstance(value, int | float) or isinstance(value, bool) or not 0.0 <= value < 1.0:
-        raise InputError(f"{summary}: bayes_error is {shown(value)}; it must be a number from 0 to below 1")
+        raise InputError(
+            f"{summary}: bayes_error is {shown(value)}; it must be a number from 0 to below 1"
+        )
     return float(value)

@@ -1,4 +1,6 @@
-"""Recognition of what fell on a plate: trained, validated so that it can't fool itself, and set beside its bound."""
+"""Recognition of what fell on a plate: trained, validated so that it can't fool itself,
+and set beside its bound.
+"""
 
 from __future__ import annotations
 
@@ -15,7 +17,13 @@ from vibroimpact.arrays import Floats, Indices
 from vibroimpact.errors import InputError
 from vibroimpact.recognition.bound import bound_doubts
 from vibroimpact.recognition.card import FORMAT
-from vibroimpact.recognition.classifiers import CLASSIFIER, PROBE, Classifier, all_classifiers, fit_tuned
+from vibroimpact.recognition.classifiers import (
+    CLASSIFIER,
+    PROBE,
+    Classifier,
+    all_classifiers,
+    fit_tuned,
+)
 from vibroimpact.recognition.cross_validation import Chosen, Validated, cross_validate
 from vibroimpact.recognition.extra import needs_extra
 from vibroimpact.recognition.folds import default_folds
@@ -31,7 +39,12 @@ from vibroimpact.recognition.recorder_leaks import recorder_leaks
 from vibroimpact.recognition.reliability import Reliable, reliability
 from vibroimpact.recognition.robustness import Noisy, score_in_noise
 from vibroimpact.recognition.scores import Bootstrap, Score, Scores, score
-from vibroimpact.recognition.signal_features import FEATURES, baseline_doubts, features_of, tables_of
+from vibroimpact.recognition.signal_features import (
+    FEATURES,
+    baseline_doubts,
+    features_of,
+    tables_of,
+)
 from vibroimpact.recognition.unseen_bins import Unseen, score_unseen
 
 MOST_SIGNALS, SEEDS = 4000, 5
@@ -67,9 +80,11 @@ class Recognition:
     best : str
         The classifier of all features with the largest balanced accuracy, groups kept apart.
     confusion : mapping of str to array, shape (classes, classes)
-        Number of signals of each true class (row) taken for each class (column), mean over the seeds.
+        Number of signals of each true class (row) taken for each class (column), mean over the
+        seeds.
     reliability, unseen, noise, importance, streams
-        Of the best: calibration curve, ranges left out in training, noise, importance of features, and fraction in streams of impacts.
+        Of the best: calibration curve, ranges left out in training, noise, importance of features,
+        and fraction in streams of impacts.
     calibration_error : float
         Mean difference of probability and part in the calibration curve, weighted by the signals.
     bayes_error : float, optional
@@ -79,7 +94,8 @@ class Recognition:
     recogniser : Recogniser
         The best, trained on all signals, as it is saved.
     bayes_error_sees : str, optional
-        The quantities alone that a classifier sees for which this bound was computed; None if the data set states the bound.
+        The quantities alone that a classifier sees for which this bound was computed; None if the
+        data set states the bound.
 
     Examples
     --------
@@ -125,11 +141,14 @@ def recognise(
     workers: int = 2,
     progress: Progress = silent,
 ) -> Recognition:
-    """Return scores of classifiers of a data set, each trained and tested on separate groups of signals.
+    """Return scores of classifiers of a data set, each trained and tested on separate groups of
+    signals.
 
-    Baselines (majority, peak alone, contact time alone), logistic regression, random forest, gradient boosting and a support vector
-    machine are compared by nested cross-validation in which no group is both trained on and tested on; beside it stands the score of a
-    split at random. The best is tried on ranges of the drawn keys that it was not trained on, in noise, and on streams of impacts.
+    Baselines (majority, peak alone, contact time alone), logistic regression, random forest,
+    gradient boosting and a support vector machine are compared by nested cross-validation in which
+    no group is both trained on and tested on; beside it stands the score of a split at random. The
+    best is tried on ranges of the drawn keys that it was not trained on, in noise, and on streams
+    of impacts.
 
     Parameters
     ----------
@@ -138,7 +157,8 @@ def recognise(
     group : str, default "rock"
         What signals of a group share: "rock", "plate" or "fall".
     folds : int, optional
-        Number of parts of the cross-validation; by default 5, or as many as a class has groups, if that is fewer than 10.
+        Number of parts of the cross-validation; by default 5, or as many as a class has groups, if
+        that is fewer than 10.
     seeds : int, default 5
         Number of seeds; every score is a mean over them.
     seed : int, default 0
@@ -158,7 +178,8 @@ def recognise(
     Raises
     ------
     InputError
-        If the data set can't be read, or classifiers can't be trained on it and tested honestly; the extra `ml` is missing.
+        If the data set can't be read, or classifiers can't be trained on it and tested honestly;
+        the extra `ml` is missing.
     ComputationError
         If the trained model can't be saved as ONNX without changing what it says.
 
@@ -177,9 +198,14 @@ def recognise(
     with needs_extra():
         import skl2onnx as skl2onnx
         import sklearn as sklearn
-    silent_onnxruntime()  # before hours of training, and before the worker processes, which inherit that it is silent
+    # before hours of training, and before the worker processes, which inherit that it is silent
+    silent_onnxruntime()
     check_settings(folds, seeds, most)
-    signals = dataset if isinstance(dataset, LabelledSignals) else read_labelled_signals(dataset, most=most, group=group, seed=seed)
+    signals = (
+        dataset
+        if isinstance(dataset, LabelledSignals)
+        else read_labelled_signals(dataset, most=most, group=group, seed=seed)
+    )
     signals = signals.of_present_classes()
     doubts = check_signals(signals, group, folds) + baseline_doubts(signals)
     assert signals.classes is not None  # checked
@@ -192,14 +218,29 @@ def recognise(
     progress("features", 1, 1)
     tables = tables_of(signals, features)
     numbers, compared = tuple(range(seed, seed + seeds)), all_classifiers()
-    validate = partial(cross_validate, compared, tables, classes, folds=folds, seeds=numbers, workers=workers, progress=progress)
+    validate = partial(
+        cross_validate,
+        compared,
+        tables,
+        classes,
+        folds=folds,
+        seeds=numbers,
+        workers=workers,
+        progress=progress,
+    )
     apart = validate(groups, what=f"cross-validation by {group}")
     at_random = validate(None, what="cross-validation at random")
     bootstrap = Bootstrap(groups, classes, seed, folds)
     scores = {name: score(one.held_out, classes, bootstrap) for name, one in apart.items()}
     random = {name: score(one.held_out, classes, bootstrap) for name, one in at_random.items()}
-    optimism = {name: _difference(random[name].balanced_accuracy, scores[name].balanced_accuracy) for name in scores}
-    best = max((one for one in compared if one.kind == CLASSIFIER), key=lambda one: scores[one.name].balanced_accuracy.value)
+    optimism = {
+        name: _difference(random[name].balanced_accuracy, scores[name].balanced_accuracy)
+        for name in scores
+    }
+    best = max(
+        (one for one in compared if one.kind == CLASSIFIER),
+        key=lambda one: scores[one.name].balanced_accuracy.value,
+    )
     (probe,) = (one.name for one in compared if one.kind == PROBE)
     count, chosen = len(np.unique(groups)), Chosen(best, classes, groups, apart[best.name], seed)
     doubts += bound_doubts(scores, signals.bayes_error, probe, best.name, signals.bayes_error_sees)
@@ -224,7 +265,12 @@ def recognise(
         score_in_noise(chosen, features.values, signals, bootstrap, workers, progress),
         permutation_importance(chosen, features.values, features.names, workers, progress),
         try_streams(chosen.guessed, classes, signals.class_names, groups, seed),
-        float(np.average([abs(one.probability - one.part) for one in curve], weights=[one.signals for one in curve])),
+        float(
+            np.average(
+                [abs(one.probability - one.part) for one in curve],
+                weights=[one.signals for one in curve],
+            )
+        ),
         signals.bayes_error,
         tuple(doubts),
         _trained(chosen, signals, features.names, features.units, tables[FEATURES], group),
@@ -251,15 +297,26 @@ def _confusion(validated: Validated, classes: Indices, count: int) -> Floats:
 
 
 def _trained(
-    chosen: Chosen, signals: LabelledSignals, names: tuple[str, ...], units: tuple[str, ...], values: Floats, group: str
+    chosen: Chosen,
+    signals: LabelledSignals,
+    names: tuple[str, ...],
+    units: tuple[str, ...],
+    values: Floats,
+    group: str,
 ) -> Recogniser:
     """Return the chosen classifier trained on all signals, with its card."""
     classes, groups, seed = chosen.classes, chosen.groups, chosen.seed
     fitted, parameters = fit_tuned(chosen.classifier, values, classes, groups, seed)
     confusion = {}
     for number, name in enumerate(signals.class_names):
-        rates = draw_rates(chosen.guessed == number, classes == number, groups, np.random.default_rng(seed))  # the same draws for all
-        confusion[name] = {"true_rate": rates.true.round(6).tolist(), "false_rate": rates.false.round(6).tolist()}
+        # the same draws for all
+        rates = draw_rates(
+            chosen.guessed == number, classes == number, groups, np.random.default_rng(seed)
+        )
+        confusion[name] = {
+            "true_rate": rates.true.round(6).tolist(),
+            "false_rate": rates.false.round(6).tolist(),
+        }
     card = {
         "format": FORMAT,
         "version": __version__,
@@ -269,9 +326,17 @@ def _trained(
         "classes": list(signals.class_names),
         "features": list(names),
         "units": list(units),
-        "sensors": {name: {"rate_Hz": one.rate, "unit": one.unit, "samples": one.values.shape[1]} for name, one in signals.sensors.items()},
+        "sensors": {
+            name: {"rate_Hz": one.rate, "unit": one.unit, "samples": one.values.shape[1]}
+            for name, one in signals.sensors.items()
+        },
         "group": group,
-        "data": {"name": signals.name, "signals": len(signals), "groups": len(np.unique(groups)), "sha256": signals.check_sum},
+        "data": {
+            "name": signals.name,
+            "signals": len(signals),
+            "groups": len(np.unique(groups)),
+            "sha256": signals.check_sum,
+        },
         "seed": seed,
         "confusion": confusion,
     }

@@ -1,4 +1,6 @@
-"""A trained classifier that is saved without code that runs on loading: an ONNX graph, and a card in JSON that says what it is of."""
+"""A trained classifier that is saved without code that runs on loading: an ONNX graph,
+and a card in JSON that says what it is of.
+"""
 
 from __future__ import annotations
 
@@ -16,7 +18,14 @@ import numpy as np
 from vibroimpact._version import __version__
 from vibroimpact.arrays import Floats
 from vibroimpact.errors import ComputationError, InputError
-from vibroimpact.files.check_sums import CHANGED, CHECK_SUMS, DamageError, file_digest, read_sealed, sealed
+from vibroimpact.files.check_sums import (
+    CHANGED,
+    CHECK_SUMS,
+    DamageError,
+    file_digest,
+    read_sealed,
+    sealed,
+)
 from vibroimpact.files.reading import FileKind, read_bytes, with_path
 from vibroimpact.recognition.card import CARD_FILE, check_card
 from vibroimpact.recognition.extra import needs_extra
@@ -28,9 +37,13 @@ from vibroimpact.recognition.signal_features import by_name, features_of
 from vibroimpact.shown import shortened, shown, visible
 
 FOLDER, CARD, GRAPH = "model", "card.json", "model.onnx"
-_GRAPH_FILE = FileKind("a graph is a file in ONNX", 100_000_000, "larger graphs are not read; train on fewer signals")
+_GRAPH_FILE = FileKind(
+    "a graph is a file in ONNX", 100_000_000, "larger graphs are not read; train on fewer signals"
+)
 _DIFFERENT = 0.005
-"""Largest part of the training signals that the saved graph may take for another class, by rounding to single precision at a threshold."""
+"""Largest part of the training signals that the saved graph may take for another class,
+by rounding to single precision at a threshold.
+"""
 _TOLERANCE = 1e-3
 """Largest deviation of the sum of probabilities from 1: they are of single precision."""
 
@@ -44,7 +57,8 @@ class Recogniser:
     Parameters
     ----------
     card : mapping
-        What it is: classifier, classes, features, sensors, versions, the data that it was trained on, and what it confuses.
+        What it is: classifier, classes, features, sensors, versions, the data that it was trained
+        on, and what it confuses.
     graph : bytes
         Its ONNX graph: features in, probabilities out.
 
@@ -79,18 +93,33 @@ class Recogniser:
         """
         for sensor, trained in self.card["sensors"].items():
             if sensor not in signals.sensors:
-                raise InputError(f"the model was trained on the sensor {shown(sensor)}, which these signals do not have")
+                raise InputError(
+                    f"the model was trained on the sensor {shown(sensor)}, which these "
+                    "signals do not have"
+                )
             one = signals.sensors[sensor]
-            if not np.isclose(one.rate, trained["rate_Hz"], rtol=1e-6) or one.unit != trained["unit"]:
-                words = f"at {trained['rate_Hz']:.10g} Hz in {trained['unit']}, and these signals are at {one.rate:.10g} Hz in {one.unit}"
+            if (
+                not np.isclose(one.rate, trained["rate_Hz"], rtol=1e-6)
+                or one.unit != trained["unit"]
+            ):
+                words = (
+                    f"at {trained['rate_Hz']:.10g} Hz in {trained['unit']}, and these signals "
+                    f"are at {one.rate:.10g} Hz in {one.unit}"
+                )
                 raise InputError(f"{sensor}: the model was trained {words}")
             if (length := one.values.shape[1]) != trained["samples"]:
-                raise InputError(f"{sensor}: the model was trained on {trained['samples']} samples a signal, and these have {length}")
+                raise InputError(
+                    f"{sensor}: the model was trained on {trained['samples']} samples a "
+                    f"signal, and these have {length}"
+                )
         features = features_of(signals)
-        return run_graph(self.graph, by_name(features, tuple(self.card["features"])), len(self.class_names))
+        return run_graph(
+            self.graph, by_name(features, tuple(self.card["features"])), len(self.class_names)
+        )
 
     def fractions(self, guessed: Any, seed: int = 0) -> dict[str, Estimate]:
-        """Return the fraction of each class in a stream of impacts, corrected by what the model confuses.
+        """Return the fraction of each class in a stream of impacts, corrected by what the model
+        confuses.
 
         Parameters
         ----------
@@ -104,12 +133,15 @@ class Recogniser:
         for number, name in enumerate(self.class_names):
             rates = self.card["confusion"][name]
             drawn = Rates(np.array(rates["true_rate"]), np.array(rates["false_rate"]))
-            found[name] = estimate_fraction(int((guessed == number).sum()), len(guessed), drawn, generator)
+            found[name] = estimate_fraction(
+                int((guessed == number).sum()), len(guessed), drawn, generator
+            )
         return found
 
 
 def graph_of(estimator: Any, values: Floats, classes: int) -> bytes:
-    """Return the ONNX graph of a fitted pipeline, after comparison with it on the signals that it was trained on.
+    """Return the ONNX graph of a fitted pipeline, after comparison with it on the signals that it
+    was trained on.
 
     Parameters
     ----------
@@ -128,19 +160,26 @@ def graph_of(estimator: Any, values: Floats, classes: int) -> bytes:
     with needs_extra():
         from skl2onnx import to_onnx
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # of attributes that scikit-learn will drop and the conversion asks for
+        # of attributes that scikit-learn will drop and the conversion asks for
+        warnings.simplefilter("ignore")
         logging.getLogger("skl2onnx").setLevel(logging.ERROR)
-        graph: bytes = to_onnx(estimator, values[:1].astype(np.float32), options={"zipmap": False}).SerializeToString()
+        graph: bytes = to_onnx(
+            estimator, values[:1].astype(np.float32), options={"zipmap": False}
+        ).SerializeToString()
     found, expected = run_graph(graph, values, classes), estimator.predict_proba(values)
     different = float(np.mean(found.argmax(axis=1) != expected.argmax(axis=1)))
     if found.shape != (len(values), classes) or different > _DIFFERENT:
-        words = f"the saved model takes {different:.1%} of the signals for another class than the trained one"
+        words = (
+            f"the saved model takes {different:.1%} of the signals for another "
+            "class than the trained one"
+        )
         raise ComputationError(f"{words}; the conversion to ONNX failed")
     return graph
 
 
 def run_graph(graph: bytes, values: Floats, classes: int) -> Floats:
-    """Return the probabilities that an ONNX graph gives for features, after a check of the graph and of what it gives.
+    """Return the probabilities that an ONNX graph gives for features, after a check of the graph
+    and of what it gives.
 
     Parameters
     ----------
@@ -166,21 +205,31 @@ def run_graph(graph: bytes, values: Floats, classes: int) -> Floats:
         session = onnxruntime.InferenceSession(graph, options, providers=["CPUExecutionProvider"])
         (given,) = session.get_inputs()
         for first in range(0, len(values), ROWS):
-            _, probabilities = session.run(None, {given.name: values[first : first + ROWS].astype(np.float32)})
+            _, probabilities = session.run(
+                None, {given.name: values[first : first + ROWS].astype(np.float32)}
+            )
             found[first : first + ROWS] = probabilities
     except Exception as error:  # onnxruntime has a class of its own for each kind of fault
-        raise InputError(f"the graph can't be run: {shortened(visible(str(error)), _LONGEST_REASON)}; train the model anew") from None
+        raise InputError(
+            f"the graph can't be run: {shortened(visible(str(error)), _LONGEST_REASON)}; "
+            "train the model anew"
+        ) from None
     return _probabilities(found)
 
 
 def _probabilities(values: Floats) -> Floats:
     """Return probabilities, after a check that they are."""
     with np.errstate(invalid="ignore"):
-        right = (values >= -_TOLERANCE).all(axis=1) & (np.abs(values.sum(axis=1) - 1.0) <= _TOLERANCE)
+        right = (values >= -_TOLERANCE).all(axis=1) & (
+            np.abs(values.sum(axis=1) - 1.0) <= _TOLERANCE
+        )
     if not right.all():  # a comparison with NaN is not right either
         first = int(np.flatnonzero(~right)[0])
         what = shown([float(f"{value:.4g}") for value in values[first]])
-        raise InputError(f"the model gives {what} for a signal; probabilities are from 0 to 1, and add up to 1: train it anew")
+        raise InputError(
+            f"the model gives {what} for a signal; probabilities are from 0 to 1, and add "
+            "up to 1: train it anew"
+        )
     return np.clip(values, 0.0, 1.0)
 
 

@@ -1,4 +1,6 @@
-"""Calibration of probabilities: how often signals that are given a probability of a class are of it."""
+"""Calibration of probabilities: how often signals that are given a probability of a class
+are of it.
+"""
 
 from __future__ import annotations
 
@@ -14,7 +16,9 @@ _BINS = 10
 
 @dataclass(frozen=True, eq=False)
 class Reliable:
-    """Signals given similar probabilities of a class: their number, the mean probability, and the part of the class with its interval."""
+    """Signals given similar probabilities of a class: their number, the mean probability,
+    and the part of the class with its interval.
+    """
 
     class_name: str
     signals: int
@@ -24,8 +28,11 @@ class Reliable:
     high: float
 
 
-def reliability(held_out: Floats, classes: Indices, class_names: tuple[str, ...], bootstrap: Bootstrap) -> list[Reliable]:
-    """Return the calibration curve of each class, or of two classes that of the second, whose curve is the first's turned about.
+def reliability(
+    held_out: Floats, classes: Indices, class_names: tuple[str, ...], bootstrap: Bootstrap
+) -> list[Reliable]:
+    """Return the calibration curve of each class, or of two classes that of the second, whose curve
+    is the first's turned about.
 
     Parameters
     ----------
@@ -44,6 +51,17 @@ def reliability(held_out: Floats, classes: Indices, class_names: tuple[str, ...]
         place = np.minimum((held_out[:, number] * _BINS).astype(int), _BINS - 1)
         for one in np.unique(place):
             inside = place == one
-            part = bootstrap.within(inside).mean((classes == number).astype(float)[np.newaxis, inside])
-            found.append(Reliable(name, int(inside.sum()), float(held_out[inside, number].mean()), part.value, part.low, part.high))
+            part = bootstrap.within(inside).mean(
+                (classes == number).astype(float)[np.newaxis, inside]
+            )
+            found.append(
+                Reliable(
+                    name,
+                    int(inside.sum()),
+                    float(held_out[inside, number].mean()),
+                    part.value,
+                    part.low,
+                    part.high,
+                )
+            )
     return found

@@ -38,19 +38,30 @@ class Noisy:
 
 
 def score_in_noise(
-    chosen: Chosen, values: Floats, signals: LabelledSignals, bootstrap: Bootstrap, workers: int, progress: Progress
+    chosen: Chosen,
+    values: Floats,
+    signals: LabelledSignals,
+    bootstrap: Bootstrap,
+    workers: int,
+    progress: Progress,
 ) -> list[Noisy]:
-    """Return the scores of a classifier in noise, which is added to the signals before their features are taken."""
+    """Return the scores of a classifier in noise, which is added to the signals before
+    their features are taken.
+    """
 
     def features_in(level: float) -> Floats:
         noisy = with_noise(signals, level, chosen.seed)
         return tables_of(noisy, features_of(noisy))[chosen.classifier.table]
 
-    def one(train: Floats, tests: tuple[Floats, ...], split: Split, parameters: Parameters) -> list[Indices]:
+    def one(
+        train: Floats, tests: tuple[Floats, ...], split: Split, parameters: Parameters
+    ) -> list[Indices]:
         fitted = chosen.refit(train, split.train, parameters)
         return [chosen.guess(fitted, test[split.test]) for test in tests]
 
-    tables = run_jobs("features in noise", [partial(features_in, level) for level in LEVELS], 1, progress)
+    tables = run_jobs(
+        "features in noise", [partial(features_in, level) for level in LEVELS], 1, progress
+    )
     trained_on = [(values, tuple(tables)), *((table, (table,)) for table in tables)]
     jobs = [partial(one, *both, *part) for both in trained_on for part in chosen.parts]
     done = iter(run_jobs("recognition in noise", jobs, workers, progress))

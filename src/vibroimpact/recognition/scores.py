@@ -1,10 +1,13 @@
-"""Scores of held-out probabilities, with intervals that count groups: signals of one rock are one piece of evidence, not many.
+"""Scores of held-out probabilities, with intervals that count groups: signals of one rock are one
+piece of evidence, not many.
 
-Shares have the interval of Korn and Graubard (1998), Survey Methodology 24:193: that of Clopper and Pearson for as many independent trials
-as have the variance that the groups show, fewer by Student's t for few groups. Other scores, and differences, have draws of groups.
+Shares have the interval of Korn and Graubard (1998), Survey Methodology 24:193: that of Clopper and
+Pearson for as many independent trials as have the variance that the groups show, fewer by Student's
+t for few groups. Other scores, and differences, have draws of groups.
 
-Both are widened by the term of Nadeau and Bengio (2003), Machine Learning 52:239, doi 10.1023/A:1024068626366, for training sets: the
-variance is multiplied by 1 + t, t being the ratio of what is tested on to what is trained on in each part of the cross-validation.
+Both are widened by the term of Nadeau and Bengio (2003), Machine Learning 52:239, doi
+10.1023/A:1024068626366, for training sets: the variance is multiplied by 1 + t, t being the ratio
+of what is tested on to what is trained on in each part of the cross-validation.
 """
 
 from __future__ import annotations
@@ -27,7 +30,8 @@ _SAME = 1e-12  # rounding of a difference of shares
 
 @dataclass(frozen=True, eq=False)
 class Score:
-    """A score with its interval of 95 %, for classifiers trained on other such groups, and tested on other such groups.
+    """A score with its interval of 95 %, for classifiers trained on other such groups, and tested
+    on other such groups.
 
     Parameters
     ----------
@@ -38,7 +42,8 @@ class Score:
     seeds : array
         The score under each seed.
     trials : float, optional
-        Of a share: the number of independent trials that tell as much. None for what is no share; its interval is that of the draws.
+        Of a share: the number of independent trials that tell as much. None for what is no share;
+        its interval is that of the draws.
 
     Examples
     --------
@@ -63,7 +68,9 @@ class Score:
         return self.end(0.5 + 0.5 * _INTERVAL)
 
     def end(self, part: float) -> float:
-        """Return an end of the interval: the upper of `2 part - 1` if `part` is more than a half, else the lower of `1 - 2 part`."""
+        """Return an end of the interval: the upper of `2 part - 1` if `part` is more than
+        a half, else the lower of `1 - 2 part`.
+        """
         if self.trials is None:
             return float(np.nanquantile(self.draws, part))
         if np.isinf(self.trials):
@@ -78,7 +85,8 @@ class Score:
 
 
 class Bootstrap:
-    """The groups as what is independent: their number and spread, and draws of them, the same for all scores, for intervals of differences.
+    """The groups as what is independent: their number and spread, and draws of them, the same for
+    all scores, for intervals of differences.
 
     Parameters
     ----------
@@ -89,22 +97,35 @@ class Bootstrap:
     seed : int
         Seed of the draws.
     folds : int, optional
-        Number of parts of the cross-validation that the scores are of; None for one classifier that is only tested.
+        Number of parts of the cross-validation that the scores are of; None for one classifier that
+        is only tested.
     """
 
-    def __init__(self, groups: Indices, classes: Indices, seed: int = 0, folds: int | None = None) -> None:
+    def __init__(
+        self, groups: Indices, classes: Indices, seed: int = 0, folds: int | None = None
+    ) -> None:
         names, self.place = np.unique(groups, return_inverse=True)
         self.classes = classes
         self.of_training = widening_by_training(folds)
-        self.weights = np.random.default_rng(seed).multinomial(len(names), np.full(len(names), 1.0 / len(names)), DRAWS).astype(float)
+        self.weights = (
+            np.random.default_rng(seed)
+            .multinomial(len(names), np.full(len(names), 1.0 / len(names)), DRAWS)
+            .astype(float)
+        )
         self.present = np.unique(classes)
 
     def mean(self, values: Floats, *, share: bool = True) -> Score:
-        """Return the mean of one value a signal, given for each seed: shape (seeds, signals); it is a share if the values are 0 and 1."""
+        """Return the mean of one value a signal, given for each seed: shape (seeds,
+        signals); it is a share if the values are 0 and 1.
+        """
         with np.errstate(invalid="ignore"):  # a draw may have none of the signals
-            draws = (self._sums(values.mean(axis=0)) @ self.weights.T) / (self._sums(np.ones(values.shape[1])) @ self.weights.T)
+            draws = (self._sums(values.mean(axis=0)) @ self.weights.T) / (
+                self._sums(np.ones(values.shape[1])) @ self.weights.T
+            )
         held = self._trials(values.mean(axis=0), [np.ones(values.shape[1], dtype=bool)])
-        return self._scored(float(values.mean()), draws, values.mean(axis=1), held if share else None)
+        return self._scored(
+            float(values.mean()), draws, values.mean(axis=1), held if share else None
+        )
 
     def balanced(self, values: Floats) -> Score:
         """Return the mean over the classes of the mean of one value a signal in each class."""
@@ -113,7 +134,10 @@ class Bootstrap:
             own = self.classes == one
             by_seed.append(values[:, own].mean(axis=1))
             with np.errstate(invalid="ignore"):  # a draw may have no group of a class
-                by_draw.append((self._sums(values.mean(axis=0) * own) @ self.weights.T) / (self._sums(own.astype(float)) @ self.weights.T))
+                by_draw.append(
+                    (self._sums(values.mean(axis=0) * own) @ self.weights.T)
+                    / (self._sums(own.astype(float)) @ self.weights.T)
+                )
         seeds = np.mean(by_seed, axis=0)
         held = self._trials(values.mean(axis=0), [self.classes == one for one in self.present])
         return self._scored(float(seeds.mean()), np.mean(by_draw, axis=0), seeds, held)
@@ -126,7 +150,9 @@ class Bootstrap:
         return found
 
     def _scored(self, value: float, draws: Floats, seeds: Floats, trials: float | None) -> Score:
-        """Return a score whose draws are widened as its interval is: draws of few groups are too narrow, and know one training set."""
+        """Return a score whose draws are widened as its interval is: draws of few groups
+        are too narrow, and know one training set.
+        """
         groups = len(np.unique(self.place))
         if groups < 2:
             return Score(value, draws, seeds, trials)
@@ -134,10 +160,12 @@ class Bootstrap:
         return Score(value, value + wider * (draws - value), seeds, trials)
 
     def _trials(self, values: Floats, parts: list[Bools]) -> float:
-        """Return the number of independent trials with the variance of the mean over some parts of the mean in each.
+        """Return the number of independent trials with the variance of the mean over some parts of
+        the mean in each.
 
-        It is none where a part has one group, whose spread isn't known. It has no limit where each part is all right or all wrong, but not
-        all parts alike: everything is taken for one class, and the mean is that for any groups.
+        It is none where a part has one group, whose spread isn't known. It has no limit where each
+        part is all right or all wrong, but not all parts alike: everything is taken for one class,
+        and the mean is that for any groups.
         """
         means, freedom, least = [], 0, 0.0
         apart = np.zeros(self.weights.shape[1])
@@ -153,22 +181,27 @@ class Bootstrap:
             apart += np.sqrt(groups / (groups - 1.0)) * own_apart
             there |= sizes > 0.0
             freedom += groups - 1
-            # the signals of a group tell no more than independent ones; and no more than the group where the groups do not differ
+            # the signals of a group tell no more than independent ones; and no more than the group
+            # where the groups do not differ
             least += 1.0 / (len(parts) ** 2 * (sizes.sum() if own_apart.any() else groups))
         mean = float(np.mean(means))
         variance = float(apart @ apart)
         if not variance and 0.0 < mean < 1.0 and set(means) == {0.0, 1.0}:
             return np.inf
-        # of groups that have signals in several parts, as plates that all classes fall on, each counts once
+        # of groups that have signals in several parts, as plates that all classes fall on, each
+        # counts once
         wider = self.of_training * widening_by_few(min(freedom, int(there.sum()) - 1)) ** 2
         return 1.0 / (max(least, variance / (mean * (1.0 - mean)) if variance else 0.0) * wider)
 
     def _sums(self, values: Floats) -> Floats:
-        return np.asarray(np.bincount(self.place, values, minlength=self.weights.shape[1]), dtype=float)
+        return np.asarray(
+            np.bincount(self.place, values, minlength=self.weights.shape[1]), dtype=float
+        )
 
 
 def widening_by_training(folds: int | None) -> float:
-    """Return the variance of a score of a cross-validation over that of one classifier tested on as many groups.
+    """Return the variance of a score of a cross-validation over that of one classifier tested on as
+    many groups.
 
     Examples
     --------
@@ -179,7 +212,8 @@ def widening_by_training(folds: int | None) -> float:
 
 
 def widening_by_few(freedom: int) -> float:
-    """Return by how much wider an interval is whose variance is known with some degrees of freedom only, after Student.
+    """Return by how much wider an interval is whose variance is known with some degrees of freedom
+    only, after Student.
 
     Examples
     --------
@@ -212,8 +246,8 @@ class Scores:
     balanced_accuracy : Score
         Mean over the classes of the part of their signals that is recognised.
     brier, log_loss : Score
-        Brier's score, half the squared distance of the probabilities from the truth, and the negative logarithm of the probability of the
-        true class.
+        Brier's score, half the squared distance of the probabilities from the truth, and the
+        negative logarithm of the probability of the true class.
     """
 
     error: Score

@@ -1,4 +1,6 @@
-"""Features of labelled signals as the tables that classifiers read, and noise added to signals before."""
+"""Features of labelled signals as the tables that classifiers read, and noise added to
+signals before.
+"""
 
 from __future__ import annotations
 
@@ -15,7 +17,13 @@ from vibroimpact.shown import shown
 from vibroimpact.signals.baseline import is_large
 from vibroimpact.signals.feature_table import feature_table
 
-FEATURES, PEAK, CONTACT_TIME, TRUE_TIME, EDGES = "features", "peak", "contact time", "true contact time", "edges"
+FEATURES, PEAK, CONTACT_TIME, TRUE_TIME, EDGES = (
+    "features",
+    "peak",
+    "contact time",
+    "true contact time",
+    "edges",
+)
 """Names of the tables."""
 
 _PEAK, _CUT_OFF = "peak", "cut_off_10_dB"
@@ -41,11 +49,15 @@ class Features:
 
     def columns(self, feature: str) -> Floats:
         """Return the columns of one feature, one a sensor."""
-        return self.values[:, [place for place, name in enumerate(self.names) if name.rpartition(".")[2] == feature]]
+        return self.values[
+            :,
+            [place for place, name in enumerate(self.names) if name.rpartition(".")[2] == feature],
+        ]
 
 
 def features_of(signals: LabelledSignals) -> Features:
-    """Return the features of all sensors; after the end of a signal that is shorter than others stand zeros.
+    """Return the features of all sensors; after the end of a signal that is shorter than others
+    stand zeros.
 
     Raises
     ------
@@ -64,12 +76,16 @@ def features_of(signals: LabelledSignals) -> Features:
         values = np.hstack(parts).astype(np.float32).astype(float)
     values[~np.isfinite(values)] = np.nan
     if np.isnan(values).all():
-        raise InputError(f"{signals.name}: no signal has a feature; are they all constant or not finite?")
+        raise InputError(
+            f"{signals.name}: no signal has a feature; are they all constant or not finite?"
+        )
     return Features(tuple(names), tuple(units), values)
 
 
 def baseline_doubts(signals: LabelledSignals) -> list[str]:
-    """Return doubts about sensors whose signals have large baselines: `features_of` removes them."""
+    """Return doubts about sensors whose signals have large baselines: `features_of`
+    removes them.
+    """
     doubts = []
     for sensor, one in signals.sensors.items():
         found = feature_table(_continued(one), one.rate, [_PEAK])
@@ -77,19 +93,26 @@ def baseline_doubts(signals: LabelledSignals) -> list[str]:
         large = is_large(baselines, found[_PEAK])
         if large.any():
             unit = "" if one.unit in ("", "1") else f" {one.unit}"
-            offset, drift = float(np.abs(found.offset[large]).max()), float(found.drift[large].max())
+            offset, drift = (
+                float(np.abs(found.offset[large]).max()),
+                float(found.drift[large].max()),
+            )
             drifting = f" and drifts of up to {drift:.4g}{unit}" if is_large(drift, offset) else ""
-            words = f"from {large.sum():,} of {len(large):,} signals of {shown(sensor)} baselines with offsets of up to {offset:.4g}{unit}"
+            words = (
+                f"from {large.sum():,} of {len(large):,} signals of {shown(sensor)} baselines "
+                f"with offsets of up to {offset:.4g}{unit}"
+            )
             words += f"{drifting} were removed, more than a tenth of their peaks"
             doubts.append(f"{words}: check that it rests at zero, and alike in all classes")
     return doubts
 
 
 def tables_of(signals: LabelledSignals, features: Features) -> dict[str, Floats]:
-    """Return what the classifiers read, by name: all features, single ones for baselines, and what should tell little.
+    """Return what the classifiers read, by name: all features, single ones for baselines, and what
+    should tell little.
 
-    The table `EDGES` has the length, the first and the last sample of each signal; `TRUE_TIME`, the contact time of the simulation, is
-    there only if the data set has it.
+    The table `EDGES` has the length, the first and the last sample of each signal; `TRUE_TIME`, the
+    contact time of the simulation, is there only if the data set has it.
     """
     tables = {FEATURES: features.values, EDGES: _edges(signals)}
     tables[PEAK] = features.columns(_PEAK)
@@ -101,7 +124,8 @@ def tables_of(signals: LabelledSignals, features: Features) -> dict[str, Floats]
 
 
 def with_noise(signals: LabelledSignals, level: float, seed: int) -> LabelledSignals:
-    """Return signals with white noise added, of one strength at each sensor, as that of an amplifier is.
+    """Return signals with white noise added, of one strength at each sensor, as that of an
+    amplifier is.
 
     Parameters
     ----------
@@ -113,17 +137,24 @@ def with_noise(signals: LabelledSignals, level: float, seed: int) -> LabelledSig
         Seed of the noise.
     """
     generator = np.random.default_rng(seed)
-    return replace(signals, sensors={name: _noisy(one, level, generator) for name, one in signals.sensors.items()})
+    return replace(
+        signals,
+        sensors={name: _noisy(one, level, generator) for name, one in signals.sensors.items()},
+    )
 
 
 def _noisy(one: SensorSignals, level: float, generator: np.random.Generator) -> SensorSignals:
     power = float(np.median(np.nanmean(np.square(one.values, dtype=float), axis=1)))
     noise = generator.standard_normal(one.values.shape, dtype=np.float32)
-    return replace(one, values=one.values + np.float32(np.sqrt(power * 10.0 ** (-0.1 * level))) * noise)
+    return replace(
+        one, values=one.values + np.float32(np.sqrt(power * 10.0 ** (-0.1 * level))) * noise
+    )
 
 
 def _continued(one: SensorSignals) -> Floats:
-    """Return signals with zeros in place of the NaN after their ends; other NaN stay, and are a feature's reason to have no value."""
+    """Return signals with zeros in place of the NaN after their ends; other NaN stay, and
+    are a feature's reason to have no value.
+    """
     values = one.values.astype(float)
     ended = np.arange(values.shape[1]) >= lengths(one.values)[:, np.newaxis]
     values[ended & np.isnan(values)] = 0.0
@@ -136,7 +167,11 @@ def _edges(signals: LabelledSignals) -> Floats:
     for one in signals.sensors.values():
         found = lengths(one.values)
         rows = np.arange(len(found))
-        columns += [found.astype(float), one.values[:, 0].astype(float), one.values[rows, np.maximum(found - 1, 0)].astype(float)]
+        columns += [
+            found.astype(float),
+            one.values[:, 0].astype(float),
+            one.values[rows, np.maximum(found - 1, 0)].astype(float),
+        ]
     return np.stack(columns, axis=1)
 
 
@@ -151,5 +186,8 @@ def by_name(features: Features, names: tuple[str, ...]) -> Floats:
     place: Mapping[str, int] = {name: number for number, name in enumerate(features.names)}
     missing = [name for name in names if name not in place]
     if missing:
-        raise InputError(f"the model needs the feature {missing[0]}, which this version does not compute or the signals do not have")
+        raise InputError(
+            f"the model needs the feature {missing[0]}, which this version does not "
+            "compute or the signals do not have"
+        )
     return features.values[:, [place[name] for name in names]]

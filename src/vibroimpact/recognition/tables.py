@@ -9,7 +9,12 @@ import numpy as np
 
 from vibroimpact._version import __version__
 from vibroimpact.recognition.bound import SURE
-from vibroimpact.recognition.few_groups import coarse, groups_for_bound, groups_for_error, largest_error_of_none
+from vibroimpact.recognition.few_groups import (
+    coarse,
+    groups_for_bound,
+    groups_for_error,
+    largest_error_of_none,
+)
 from vibroimpact.recognition.recognise import Recognition
 from vibroimpact.recognition.scores import Score, Scores
 
@@ -32,7 +37,9 @@ def score_rows(found: Recognition) -> list[Row]:
 
 
 def optimism_rows(found: Recognition) -> list[Row]:
-    """Return what a split at random promises beyond what groups kept apart hold, as `optimism.csv` has it."""
+    """Return what a split at random promises beyond what groups kept apart hold, as
+    `optimism.csv` has it.
+    """
     return [
         {
             "classifier": name,
@@ -73,7 +80,9 @@ def robustness_rows(found: Recognition) -> list[Row]:
 
 
 def unseen_rows(found: Recognition) -> list[Row]:
-    """Return the balanced accuracy in ranges that are left out in training, as `unseen.csv` has it."""
+    """Return the balanced accuracy in ranges that are left out in training, as
+    `unseen.csv` has it.
+    """
     return [
         {
             "key": one.key,
@@ -88,8 +97,18 @@ def unseen_rows(found: Recognition) -> list[Row]:
 
 def importance_rows(found: Recognition) -> list[Row]:
     """Return the importance of each feature, as `importance.csv` has it."""
-    units = dict(zip(found.recogniser.card["features"], found.recogniser.card["units"], strict=True))
-    return [{"feature": one.feature, "unit": units[one.feature], "loss": one.loss, "loss_spread": one.spread} for one in found.importance]
+    units = dict(
+        zip(found.recogniser.card["features"], found.recogniser.card["units"], strict=True)
+    )
+    return [
+        {
+            "feature": one.feature,
+            "unit": units[one.feature],
+            "loss": one.loss,
+            "loss_spread": one.spread,
+        }
+        for one in found.importance
+    ]
 
 
 def reliability_rows(found: Recognition) -> list[Row]:
@@ -158,8 +177,13 @@ def summary_of_recognition(found: Recognition) -> dict[str, Any]:
         },
         "scores": grouped,
         "optimism": optimism_rows(found),
-        "balanced_accuracy_by_seed": {name: one.balanced_accuracy.seeds.tolist() for name, one in found.scores.items()},
-        "model": {key: found.recogniser.card[key] for key in ("classifier", "parameters", "packages", "data")},
+        "balanced_accuracy_by_seed": {
+            name: one.balanced_accuracy.seeds.tolist() for name, one in found.scores.items()
+        },
+        "model": {
+            key: found.recogniser.card[key]
+            for key in ("classifier", "parameters", "packages", "data")
+        },
         "doubts": list(found.doubts),
     }
 
@@ -177,7 +201,9 @@ SCORE_HEADERS: list[str | tuple[str, str]] = [
 
 
 def score_cells(found: Recognition) -> list[tuple[str, ...]]:
-    """Return the table of scores with the optimism, a row a classifier, as pages and terminals show it."""
+    """Return the table of scores with the optimism, a row a classifier, as pages and
+    terminals show it.
+    """
     digits = _digits(found)
     return [
         (
@@ -198,7 +224,10 @@ def confusion_cells(found: Recognition) -> tuple[list[str | tuple[str, str]], li
     """Return headers and rows of the table of what the best classifier takes for what."""
     counts = found.confusion[found.best]
     parts = counts / counts.sum(axis=1, keepdims=True)
-    rows = [[name, *(_percent(one, _digits(found)) for one in row)] for name, row in zip(found.class_names, parts, strict=True)]
+    rows = [
+        [name, *(_percent(one, _digits(found)) for one in row)]
+        for name, row in zip(found.class_names, parts, strict=True)
+    ]
     return ["True class", *((f"Classified as {name}", "%") for name in found.class_names)], rows
 
 
@@ -206,34 +235,51 @@ def sentences(found: Recognition) -> Iterator[str]:
     """Yield what the scores say, in sentences."""
     best, digits = found.scores[found.best], _digits(found)
     yield (
-        f"The best classifier, {found.best}, has a balanced accuracy of {_percent(best.balanced_accuracy.value, digits)} % "
-        f"({_percents(best.balanced_accuracy, digits)} %) on {found.group}s not used in training; a random split gives "
+        f"The best classifier, {found.best}, has a balanced accuracy of "
+        f"{_percent(best.balanced_accuracy.value, digits)} % "
+        f"({_percents(best.balanced_accuracy, digits)} %) on {found.group}s not used in "
+        "training; a random split gives "
         f"{_percent(found.random[found.best].balanced_accuracy.value, digits)} %."
     )
     yield from _few(found)
     if found.bayes_error is not None:
-        least = f"{_percent(found.bayes_error)} %" if found.bayes_error >= _LEAST_SHOWN else "less than 0.05 %, which excludes nothing"
+        least = (
+            f"{_percent(found.bayes_error)} %"
+            if found.bayes_error >= _LEAST_SHOWN
+            else "less than 0.05 %, which excludes nothing"
+        )
         bound = (
             f"The lower bound on the error that the data set states is {least}."
             if found.bayes_error_sees is None
-            else f"The lower bound on the error of a classifier that sees only {found.bayes_error_sees}, measured up to 50 kHz and 80 dB "
-            f"above the noise with a sensitivity known to 0.1 %, is {least}. A classifier that sees more can be better. For a "
+            else "The lower bound on the error of a classifier that sees only "
+            f"{found.bayes_error_sees}, measured up to 50 kHz and 80 dB "
+            f"above the noise with a sensitivity known to 0.1 %, is {least}. A classifier "
+            "that sees more can be better. For a "
             "band, a noise and a scatter of a sensor vibroimpact bound computes such bounds."
         )
-        yield f"{bound} The error of the best classifier is {_percent(best.error.value, digits)} % ({_percents(best.error, digits)} %)."
+        yield (
+            f"{bound} The error of the best classifier is {_percent(best.error.value, digits)} "
+            f"% ({_percents(best.error, digits)} %)."
+        )
         most = largest_error_of_none(found.groups, found.folds)
         if _LEAST_SHOWN <= found.bayes_error <= most:
             yield (
-                f"With {found.groups} {found.group}s no classifier can be shown to be better than this bound: one without any error may "
-                f"err in up to {_percent(most, digits)} % of further signals (confidence {SURE:g} %). At least some "
+                f"With {found.groups} {found.group}s no classifier can be shown to be "
+                "better than this bound: one without any error may "
+                f"err in up to {_percent(most, digits)} % of further signals (confidence "
+                f"{SURE:g} %). At least some "
                 f"{groups_for_bound(found.bayes_error, found.folds):,} {found.group}s are needed."
             )
-    hardest = [one for one in found.streams if one.impacts == max(row.impacts for row in found.streams)]
+    hardest = [
+        one for one in found.streams if one.impacts == max(row.impacts for row in found.streams)
+    ]
     if hardest:
         worst = max(hardest, key=lambda row: row.error)
         yield (
-            f"The fraction of {worst.class_name} in a stream of {worst.impacts} impacts has an error of {_percent(worst.error, digits)} "
-            f"percentage points (root mean square, at the fraction with the largest error, {worst.fraction:g})."
+            f"The fraction of {worst.class_name} in a stream of {worst.impacts} impacts "
+            f"has an error of {_percent(worst.error, digits)} "
+            "percentage points (root mean square, at the fraction with the largest error, "
+            f"{worst.fraction:g})."
         )
 
 
@@ -243,13 +289,18 @@ def _few(found: Recognition) -> Iterator[str]:
     if not coarse(best.error):
         return
     yield (
-        f"With {found.groups} {found.group}s errors between {_percent(best.error.low, 0)} and {_percent(best.error.high, 0)} % can't be "
-        f"told apart; for +-5 % some {groups_for_error(best.error, found.groups):,} {found.group}s are needed. More signals of the same "
+        f"With {found.groups} {found.group}s errors between {_percent(best.error.low, 0)} "
+        f"and {_percent(best.error.high, 0)} % can't be "
+        f"told apart; for +-5 % some {groups_for_error(best.error, found.groups):,} "
+        f"{found.group}s are needed. More signals of the same "
         f"{found.group}s do not replace them."
     )
     chance = 1.0 / len(found.class_names)
     if best.balanced_accuracy.low <= chance:
-        yield f"Whether the best classifier is better than guessing, {_percent(chance, 0)} %, can't be told."
+        yield (
+            f"Whether the best classifier is better than guessing, {_percent(chance, 0)} %, "
+            "can't be told."
+        )
 
 
 def _digits(found: Recognition) -> int:
@@ -261,7 +312,10 @@ def _scores(one: Scores) -> Row:
     row: Row = {}
     for name in ("error", "balanced_accuracy", "brier", "log_loss"):
         row |= _interval(name, getattr(one, name))
-    return {**row, "balanced_accuracy_spread_over_seeds": float(np.std(one.balanced_accuracy.seeds))}
+    return {
+        **row,
+        "balanced_accuracy_spread_over_seeds": float(np.std(one.balanced_accuracy.seeds)),
+    }
 
 
 def _interval(name: str, one: Score) -> Row:

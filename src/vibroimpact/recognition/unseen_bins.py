@@ -1,4 +1,6 @@
-"""Trained on and tested on: what is recognised of a size, height, plate, place or noise that was never trained on."""
+"""Trained on and tested on: what is recognised of a size, height, plate, place or noise
+that was never trained on.
+"""
 
 from __future__ import annotations
 
@@ -35,7 +37,8 @@ class Unseen:
     signals : int
         Number of its signals.
     seen, unseen : Score
-        Balanced accuracy on them of classifiers trained on all ranges, and on the other ranges alone; in both cases on other groups.
+        Balanced accuracy on them of classifiers trained on all ranges, and on the other ranges
+        alone; in both cases on other groups.
     """
 
     key: str
@@ -50,7 +53,9 @@ def bins_of(signals: LabelledSignals) -> list[tuple[str, str, Bools]]:
 
     Numbers have three ranges of equally many signals, and few values or names one for each.
     """
-    keys: dict[str, NDArray[Any]] = {"plate": signals.groups["plate"]} if "plate" in signals.groups else {}
+    keys: dict[str, NDArray[Any]] = (
+        {"plate": signals.groups["plate"]} if "plate" in signals.groups else {}
+    )
     keys |= {key: one for key, one in signals.drawn.items() if not key.startswith(_OF_THE_CLASS)}
     found: list[tuple[str, str, Bools]] = []
     for key in [key for key, values in keys.items() if len(np.unique(values)) > 1][:_MOST_KEYS]:
@@ -62,21 +67,37 @@ def bins_of(signals: LabelledSignals) -> list[tuple[str, str, Bools]]:
             continue
         edges = np.quantile(values, np.linspace(0.0, 1.0, _BINS + 1))
         place = np.clip(np.searchsorted(edges, values, side="right") - 1, 0, _BINS - 1)
-        found += [(key, f"{edges[one]:.3g} to {edges[one + 1]:.3g}", place == one) for one in range(_BINS) if (place == one).any()]
+        found += [
+            (key, f"{edges[one]:.3g} to {edges[one + 1]:.3g}", place == one)
+            for one in range(_BINS)
+            if (place == one).any()
+        ]
     return found
 
 
 def _names(part: NDArray[Any]) -> str:
     shown = [f"{one:.3g}" if isinstance(one, float) else str(one) for one in part.tolist()]
-    return shown[0] if len(shown) == 1 else f"{shown[0]} to {shown[-1]}" if len(shown) > 3 else ", ".join(shown)
+    return (
+        shown[0]
+        if len(shown) == 1
+        else f"{shown[0]} to {shown[-1]}"
+        if len(shown) > 3
+        else ", ".join(shown)
+    )
 
 
 def score_unseen(
-    chosen: Chosen, values: Floats, signals: LabelledSignals, bootstrap: Bootstrap, workers: int, progress: Progress
+    chosen: Chosen,
+    values: Floats,
+    signals: LabelledSignals,
+    bootstrap: Bootstrap,
+    workers: int,
+    progress: Progress,
 ) -> list[Unseen]:
     """Leave out each range of each drawn key in training, and test on it; groups stay apart.
 
-    A range without signals of every class is left out, as is one without which a class could not be trained.
+    A range without signals of every class is left out, as is one without which a class could not be
+    trained.
     """
     right = (chosen.guessed == chosen.classes).astype(float)[np.newaxis]
     bins = [one for one in bins_of(signals) if _usable(one[2], chosen)]
@@ -85,7 +106,9 @@ def score_unseen(
         test = split.test[inside[split.test]]
         if not len(test):
             return test
-        return chosen.guess(chosen.refit(values, split.train[~inside[split.train]], parameters), values[test])
+        return chosen.guess(
+            chosen.refit(values, split.train[~inside[split.train]], parameters), values[test]
+        )
 
     jobs = [partial(one, inside, *part) for _, _, inside in bins for part in chosen.parts]
     done = iter(run_jobs("ranges left out in training", jobs, workers, progress))
@@ -96,14 +119,28 @@ def score_unseen(
             guessed[split.test[inside[split.test]]] = next(done)
         within = bootstrap.within(inside)
         unseen = (guessed == chosen.classes).astype(float)[np.newaxis]
-        found.append(Unseen(key, words, int(inside.sum()), within.balanced(right[:, inside]), within.balanced(unseen[:, inside])))
+        found.append(
+            Unseen(
+                key,
+                words,
+                int(inside.sum()),
+                within.balanced(right[:, inside]),
+                within.balanced(unseen[:, inside]),
+            )
+        )
     return found
 
 
 def _usable(inside: Bools, chosen: Chosen) -> bool:
-    """Return whether a range has all classes, and each training part without it has several groups of every class."""
+    """Return whether a range has all classes, and each training part without it has
+    several groups of every class.
+    """
     classes, names = chosen.classes, np.unique(chosen.classes)
     if len(np.unique(classes[inside])) < len(names):
         return False
     outside = [split.train[~inside[split.train]] for split, _ in chosen.parts]
-    return all(len(np.unique(chosen.groups[part][classes[part] == one])) >= 2 for part in outside for one in names)
+    return all(
+        len(np.unique(chosen.groups[part][classes[part] == one])) >= 2
+        for part in outside
+        for one in names
+    )

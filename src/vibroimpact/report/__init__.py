@@ -1,1 +1,3 @@
-"""The common kit of all reports: figure style and layout, page templates, terminal tables and progress bars."""
+"""The common kit of all reports: figure style and layout, page templates, terminal tables
+and progress bars.
+"""

@@ -1,4 +1,6 @@
-"""The console of the command line: it transliterates text to the encoding of the terminal, and escapes control characters."""
+"""The console of the command line: it transliterates text to the encoding of the
+terminal, and escapes control characters.
+"""
 
 from __future__ import annotations
 
@@ -13,7 +15,8 @@ from vibroimpact.shown import visible
 
 
 class TerminalConsole(Console):
-    r"""A console that transliterates text to the encoding of the terminal, and shows control characters as escapes.
+    r"""A console that transliterates text to the encoding of the terminal, and shows control
+    characters as escapes.
 
     Examples
     --------
@@ -24,12 +27,20 @@ class TerminalConsole(Console):
     a\x1b[2Jb
     """
 
-    def render(self, renderable: RenderableType, options: ConsoleOptions | None = None) -> Iterator[Segment]:
+    def render(
+        self, renderable: RenderableType, options: ConsoleOptions | None = None
+    ) -> Iterator[Segment]:
         """Yield the segments of a renderable."""
         if isinstance(renderable, Text):
-            words = encodable(renderable.plain, self.encoding)  # before wrapping, since the width may change
+            # before wrapping, since the width may change
+            words = encodable(renderable.plain, self.encoding)
             if words != renderable.plain:
-                renderable = Text(words, renderable.style, justify=renderable.justify, overflow=renderable.overflow)
+                renderable = Text(
+                    words,
+                    renderable.style,
+                    justify=renderable.justify,
+                    overflow=renderable.overflow,
+                )
         for segment in super().render(renderable, options):
             if segment.control or segment.text.isprintable() or segment.text == "\n":
                 yield segment

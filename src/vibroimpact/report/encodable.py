@@ -57,8 +57,8 @@ _GREEK = re.compile(r"GREEK (SMALL|CAPITAL) LETTER (\w+)$")
 def encodable(words: str, encoding: str) -> str:
     """Return a text with characters that an encoding lacks replaced by readable ones.
 
-    Powers and powers of ten are written as in a program, Greek letters by name, accents are dropped; any other character becomes its
-    code point as an escape.
+    Powers and powers of ten are written as in a program, Greek letters by name, accents are
+    dropped; any other character becomes its code point as an escape.
 
     Parameters
     ----------
@@ -82,9 +82,21 @@ def encodable(words: str, encoding: str) -> str:
         return encodable(words, "ascii")
     else:
         return words
-    words = _TIMES_TEN.sub(lambda found: found[0] if _can_encode(encoding, found[0]) else f"e{found[1].translate(_PLAIN_RAISED)}", words)
-    words = _RAISED.sub(lambda found: found[0] if _can_encode(encoding, found[0]) else f"^{found[0].translate(_PLAIN_RAISED)}", words)
-    return "".join(letter if _can_encode(encoding, letter) else _replacement(letter) for letter in words)
+    words = _TIMES_TEN.sub(
+        lambda found: (
+            found[0] if _can_encode(encoding, found[0]) else f"e{found[1].translate(_PLAIN_RAISED)}"
+        ),
+        words,
+    )
+    words = _RAISED.sub(
+        lambda found: (
+            found[0] if _can_encode(encoding, found[0]) else f"^{found[0].translate(_PLAIN_RAISED)}"
+        ),
+        words,
+    )
+    return "".join(
+        letter if _can_encode(encoding, letter) else _replacement(letter) for letter in words
+    )
 
 
 def _can_encode(encoding: str, words: str) -> bool:
@@ -101,7 +113,9 @@ def _replacement(letter: str) -> str:
         return _REPLACEMENTS[letter]
     if greek := _GREEK.match(unicodedata.name(letter, "")):
         return greek[2].lower() if greek[1] == "SMALL" else greek[2].capitalize()
-    bare = "".join(part for part in unicodedata.normalize("NFKD", letter) if not unicodedata.combining(part))
+    bare = "".join(
+        part for part in unicodedata.normalize("NFKD", letter) if not unicodedata.combining(part)
+    )
     if bare and _can_encode("ascii", bare):
         return bare
     return letter.encode("ascii", "backslashreplace").decode("ascii")

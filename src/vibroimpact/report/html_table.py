@@ -9,7 +9,9 @@ from markupsafe import Markup
 from vibroimpact.shown import visible
 
 
-def html_table(headers: Sequence[str | tuple[str, str]], rows: Iterable[Sequence[str] | str]) -> Markup:
+def html_table(
+    headers: Sequence[str | tuple[str, str]], rows: Iterable[Sequence[str] | str]
+) -> Markup:
     """Return a table as HTML; texts are escaped.
 
     Parameters
@@ -25,7 +27,12 @@ def html_table(headers: Sequence[str | tuple[str, str]], rows: Iterable[Sequence
     <table><thead><tr><th>Key</th><th>Force<br>[N]</th></tr></thead><tbody><tr><td>a</td><td>1</td></tr></tbody></table>
     """
     head = _joined(_header(header) for header in headers)
-    lines = (Markup('<td colspan="{}">{}</td>').format(len(headers), visible(row)) if isinstance(row, str) else _cells(row) for row in rows)
+    lines = (
+        Markup('<td colspan="{}">{}</td>').format(len(headers), visible(row))
+        if isinstance(row, str)
+        else _cells(row)
+        for row in rows
+    )
     body = _joined(Markup("<tr>{}</tr>").format(line) for line in lines)
     return Markup("<table><thead><tr>{}</tr></thead><tbody>{}</tbody></table>").format(head, body)
 

@@ -15,4 +15,6 @@ def markdown_table(headings: Sequence[str], rows: Iterable[Sequence[str]]) -> st
     | --- | --- |
     | `hertz` | at zero |
     """
-    return "\n".join(f"| {' | '.join(line)} |" for line in (headings, ["---"] * len(headings), *rows))
+    return "\n".join(
+        f"| {' | '.join(line)} |" for line in (headings, ["---"] * len(headings), *rows)
+    )

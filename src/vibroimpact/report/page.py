@@ -1,4 +1,6 @@
-"""HTML pages of all reports: template, charts with their data and scripts, and replacement of report files on disk."""
+"""HTML pages of all reports: template, charts with their data and scripts, and
+replacement of report files on disk.
+"""
 
 from __future__ import annotations
 
@@ -29,7 +31,9 @@ _QUICK = 1
 """Level of compression of the scripts and data of a page: it takes a tenth of a second."""
 
 
-def render_page(package: str, charts: Sequence[Chart], scene: dict[str, Any] | None = None, **values: Any) -> str:
+def render_page(
+    package: str, charts: Sequence[Chart], scene: dict[str, Any] | None = None, **values: Any
+) -> str:
     """Return a report as one self-contained page whose charts can be explored, without network.
 
     Parameters
@@ -39,18 +43,27 @@ def render_page(package: str, charts: Sequence[Chart], scene: dict[str, Any] | N
     charts : sequence of Chart
         The charts.
     """
-    return render_drawn_page(package, [drawn(chart, plotly_chart) for chart in charts], scene, **values)
+    return render_drawn_page(
+        package, [drawn(chart, plotly_chart) for chart in charts], scene, **values
+    )
 
 
-def render_drawn_page(package: str, charts: Sequence[dict[str, Any]], scene: dict[str, Any] | None = None, **values: Any) -> str:
+def render_drawn_page(
+    package: str,
+    charts: Sequence[dict[str, Any]],
+    scene: dict[str, Any] | None = None,
+    **values: Any,
+) -> str:
     """Return a report as one self-contained page, of charts as `plotly_chart` returns them.
 
-    The content policy of the page allows its own scripts alone, by their checksums. Charts and plotly itself lie compressed in it.
+    The content policy of the page allows its own scripts alone, by their checksums. Charts and
+    plotly itself lie compressed in it.
 
     Parameters
     ----------
     package : str
-        Package that holds the template `page.html.j2`, which extends the `base.html.j2` of this one.
+        Package that holds the template `page.html.j2`, which extends the `base.html.j2` of this
+        one.
     charts : sequence of dict
         The charts; the template places them by `figure(charts.NAME)`.
     scene : dict, optional
@@ -73,7 +86,9 @@ def render_drawn_page(package: str, charts: Sequence[dict[str, Any]], scene: dic
         views=max((chart["views"] for chart in charts), key=len, default=()),
         theme=Markup(_script(_CHARTS, "scripts/theme.css")),
         scripts=[Markup(script) for script in scripts],
-        hashes=" ".join(f"'sha256-{digest}'" for digest in (*map(_digest, scripts), _plotly_digest())),
+        hashes=" ".join(
+            f"'sha256-{digest}'" for digest in (*map(_digest, scripts), _plotly_digest())
+        ),
         plotly=_plotly_compressed(),
         data=b64encode(zlib.compress(data, _QUICK)).decode(),
         **values,
@@ -87,18 +102,26 @@ def _keys_of(chart: dict[str, Any]) -> list[str]:
 
 @cache
 def template(package: str) -> Template:
-    """Return the page template `page.html.j2` of a package, which extends the `base.html.j2` of this one.
+    """Return the page template `page.html.j2` of a package, which extends the `base.html.j2` of
+    this one.
 
     Values are escaped, and an undefined variable is an error.
     """
     of = {"page.html.j2": package, "base.html.j2": __package__, "parts.html.j2": __package__}
     loader = FunctionLoader(lambda file: files(of[file]).joinpath(file).read_text(encoding="utf-8"))
-    environment = Environment(loader=loader, autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
+    environment = Environment(
+        loader=loader,
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
     return environment.get_template("page.html.j2")
 
 
 def palette() -> dict[str, dict[str, str | list[str]]]:
-    """Return the colour of every role on light and on dark ground, and as `diverging` those of a surface that moves up and down.
+    """Return the colour of every role on light and on dark ground, and as `diverging` those of a
+    surface that moves up and down.
 
     Examples
     --------
@@ -108,7 +131,10 @@ def palette() -> dict[str, dict[str, str | list[str]]]:
     looks = {"ground": GROUND, "ink": INK, "soft": SOFT, "grid": GRID, **LOOKS}
     scales = {"light": DIVERGING, "dark": DIVERGING_ON_DARK}
     return {
-        theme: {**{role: asdict(look)[theme] for role, look in looks.items()}, "diverging": [colour for _, colour in stops]}
+        theme: {
+            **{role: asdict(look)[theme] for role, look in looks.items()},
+            "diverging": [colour for _, colour in stops],
+        }
         for theme, stops in scales.items()
     }
 
@@ -119,11 +145,15 @@ def _script(package: str, file: str) -> str:
 
 @cache
 def plotly_script() -> str:
-    """Return the text of plotly's script, from the installed package, which is not imported for it."""
+    """Return the text of plotly's script, from the installed package, which is not
+    imported for it.
+    """
     found = find_spec("plotly")
     assert found is not None  # a dependency of this package
     assert found.submodule_search_locations is not None
-    return (Path(found.submodule_search_locations[0]) / "package_data" / "plotly.min.js").read_text(encoding="utf-8")
+    return (Path(found.submodule_search_locations[0]) / "package_data" / "plotly.min.js").read_text(
+        encoding="utf-8"
+    )
 
 
 @cache
@@ -140,7 +170,9 @@ def _digest(script: str) -> str:
     return b64encode(sha256(script.encode()).digest()).decode()
 
 
-def replace_report_files(folder: Path, write: Callable[[Path], None], stale: tuple[str, ...] = ()) -> None:
+def replace_report_files(
+    folder: Path, write: Callable[[Path], None], stale: tuple[str, ...] = ()
+) -> None:
     """Replace the files of a report in an existing folder atomically.
 
     Parameters
@@ -160,4 +192,6 @@ def replace_report_files(folder: Path, write: Callable[[Path], None], stale: tup
     try:
         write_into(folder, write, stale)
     except OSError as error:
-        raise InputError(f"{folder}: the report can't be written: {error.strerror or error}") from None
+        raise InputError(
+            f"{folder}: the report can't be written: {error.strerror or error}"
+        ) from None

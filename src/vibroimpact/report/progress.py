@@ -1,4 +1,6 @@
-"""Progress bars: one for a fraction done, shown after a delay of a second, and one for a count of items."""
+"""Progress bars: one for a fraction done, shown after a delay of a second, and one for a
+count of items.
+"""
 
 from __future__ import annotations
 
@@ -7,7 +9,15 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 from rich.console import Console
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, ProgressColumn, Task, TextColumn, TimeRemainingColumn
+from rich.progress import (
+    BarColumn,
+    MofNCompleteColumn,
+    Progress,
+    ProgressColumn,
+    Task,
+    TextColumn,
+    TimeRemainingColumn,
+)
 from rich.text import Text
 
 _DELAY = 1.0  # seconds
@@ -15,7 +25,9 @@ _DELAY = 1.0  # seconds
 
 @contextmanager
 def patient_progress(what: str, console: Console) -> Iterator[Callable[[float], None]]:
-    """Yield a callback for the fraction done, in [0, 1]; the bar appears after one second, and only on a terminal."""
+    """Yield a callback for the fraction done, in [0, 1]; the bar appears after one
+    second, and only on a terminal.
+    """
     bar = Progress(
         TextColumn("{task.description}"),
         BarColumn(),
@@ -44,7 +56,9 @@ def patient_progress(what: str, console: Console) -> Iterator[Callable[[float], 
 
 @contextmanager
 def counting_progress(what: str, console: Console) -> Iterator[Callable[[int, int | None], None]]:
-    """Yield a callback for the items done and their total, None if it is not known; the bar shows the rate, and only on a terminal."""
+    """Yield a callback for the items done and their total, None if it is not known; the
+    bar shows the rate, and only on a terminal.
+    """
     columns = (
         TextColumn("{task.description}"),
         BarColumn(),
@@ -52,7 +66,13 @@ def counting_progress(what: str, console: Console) -> Iterator[Callable[[int, in
         _Rate(),
         TimeRemainingColumn(),
     )
-    bar = Progress(*columns, console=console, transient=True, disable=not console.is_terminal, speed_estimate_period=60.0)
+    bar = Progress(
+        *columns,
+        console=console,
+        transient=True,
+        disable=not console.is_terminal,
+        speed_estimate_period=60.0,
+    )
     task = None
 
     def update(done: int, total: int | None) -> None:
@@ -69,4 +89,10 @@ class _Rate(ProgressColumn):
     """Column with the items per second."""
 
     def render(self, task: Task) -> Text:
-        return Text("" if task.speed is None else f"{task.speed:,.3g}/s" if task.speed < 100 else f"{task.speed:,.0f}/s")
+        return Text(
+            ""
+            if task.speed is None
+            else f"{task.speed:,.3g}/s"
+            if task.speed < 100
+            else f"{task.speed:,.0f}/s"
+        )

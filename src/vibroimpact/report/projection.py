@@ -1,4 +1,6 @@
-"""Parallel projection of a plate and the objects on it, viewed obliquely from above, and the light on them."""
+"""Parallel projection of a plate and the objects on it, viewed obliquely from above, and
+the light on them.
+"""
 
 from __future__ import annotations
 
@@ -9,7 +11,9 @@ from vibroimpact.arrays import Floats
 TURN, TILT = np.radians(-32.0), np.radians(24.0)
 """Viewing direction: azimuth around the vertical, and elevation above the plane [rad]."""
 
-VIEWER: Floats = np.array([-np.sin(TURN) * np.cos(TILT), -np.cos(TURN) * np.cos(TILT), np.sin(TILT)])
+VIEWER: Floats = np.array(
+    [-np.sin(TURN) * np.cos(TILT), -np.cos(TURN) * np.cos(TILT), np.sin(TILT)]
+)
 """Unit vector towards the viewer."""
 
 _LIGHT: Floats = np.array([-0.35, -0.45, 0.82])
@@ -28,7 +32,9 @@ def projected(points: Floats) -> Floats:
 
 
 def depth(x: Floats, y: Floats) -> Floats:
-    """Return the distance of points of the plane along the horizontal viewing direction, larger farther from the viewer."""
+    """Return the distance of points of the plane along the horizontal viewing direction,
+    larger farther from the viewer.
+    """
     return np.asarray(x * np.sin(TURN) + y * np.cos(TURN))
 
 

@@ -18,7 +18,9 @@ _BETWEEN = 2
 """Spaces between two columns."""
 
 _WIDEST_PHRASE, _LEAST_LINE = 30, 24
-"""Widest text that may be wrapped to single words, and least line width of wider text; with less, the text goes below its row."""
+"""Widest text that may be wrapped to single words, and least line width of wider text;
+with less, the text goes below its row.
+"""
 
 _NUMBER = re.compile(r"[-\u2212+]?\d+(\.\d*)?")
 _NO_BREAK = "\u00a0"  # no-break space
@@ -35,7 +37,8 @@ class TerminalColumn:
     cells : sequence of str
         One cell per row.
     text : bool
-        Text, left-aligned and wrapped; otherwise numbers, aligned at the decimal point and never wrapped.
+        Text, left-aligned and wrapped; otherwise numbers, aligned at the decimal point and never
+        wrapped.
     """
 
     heading: str
@@ -45,15 +48,20 @@ class TerminalColumn:
 
 def numbers(heading: str, unit: str, cells: Sequence[str]) -> TerminalColumn:
     """Return a column of numbers with the unit in brackets below the heading."""
-    return TerminalColumn("\n".join(part for part in (heading, f"[{unit.replace(' ', _NO_BREAK)}]" if unit else "") if part), cells)
+    return TerminalColumn(
+        "\n".join(
+            part for part in (heading, f"[{unit.replace(' ', _NO_BREAK)}]" if unit else "") if part
+        ),
+        cells,
+    )
 
 
 @dataclass(frozen=True)
 class TerminalTable:
     """A table that fits the width of a terminal.
 
-    A table that is too wide is reduced in steps: text columns are wrapped, then moved below their row, and finally the number columns
-    are split into further blocks of rows.
+    A table that is too wide is reduced in steps: text columns are wrapped, then moved below their
+    row, and finally the number columns are split into further blocks of rows.
 
     Parameters
     ----------
@@ -73,16 +81,25 @@ class TerminalTable:
         """Yield the lines, transliterated to the encoding of the terminal."""
 
         def shown(words: str) -> str:  # no-break spaces are kept until the lines are wrapped
-            return _NO_BREAK.join(encodable(part, options.encoding) for part in words.split(_NO_BREAK))
+            return _NO_BREAK.join(
+                encodable(part, options.encoding) for part in words.split(_NO_BREAK)
+            )
 
-        columns = [TerminalColumn(shown(one.heading), [shown(cell) for cell in one.cells], one.text) for one in self.columns]
+        columns = [
+            TerminalColumn(shown(one.heading), [shown(cell) for cell in one.cells], one.text)
+            for one in self.columns
+        ]
         for line, style in self._lines(columns, options.max_width):
             yield Text(line.replace(_NO_BREAK, " "), style=style)
 
     @property
     def width(self) -> int:
         """Natural width: all columns side by side, no text wrapped."""
-        return self.indent + sum(_natural_width(one) for one in self.columns) + _BETWEEN * (len(self.columns) - 1)
+        return (
+            self.indent
+            + sum(_natural_width(one) for one in self.columns)
+            + _BETWEEN * (len(self.columns) - 1)
+        )
 
     def __rich_measure__(self, console: Console, options: ConsoleOptions) -> Measurement:
         """Return the minimum and maximum width."""
@@ -94,24 +111,35 @@ class TerminalTable:
         for number, block in enumerate(blocks):
             if number:
                 yield "", ""
-            for line, style in _block(block, below if number == len(blocks) - 1 else [], width - self.indent, set(self.bold)):
+            for line, style in _block(
+                block,
+                below if number == len(blocks) - 1 else [],
+                width - self.indent,
+                set(self.bold),
+            ):
                 yield f"{' ' * self.indent}{line}".rstrip(), style
 
 
 def with_gap(columns: Sequence[TerminalColumn], row: int) -> list[TerminalColumn]:
     """Return columns with an ellipsis row inserted before a row, to mark omitted rows."""
     return [
-        TerminalColumn(one.heading, [*one.cells[:row], "" if place else "...", *one.cells[row:]], one.text)
+        TerminalColumn(
+            one.heading, [*one.cells[:row], "" if place else "...", *one.cells[row:]], one.text
+        )
         for place, one in enumerate(columns)
     ]
 
 
 def facts(rows: Iterable[tuple[str, ...]], indent: int = 0) -> TerminalTable:
     """Return a table of facts, such as names and values, without headings."""
-    return TerminalTable([TerminalColumn("", cells, text=True) for cells in zip(*rows, strict=True)], indent=indent)
+    return TerminalTable(
+        [TerminalColumn("", cells, text=True) for cells in zip(*rows, strict=True)], indent=indent
+    )
 
 
-def _arrange(columns: list[TerminalColumn], width: int) -> tuple[list[list[tuple[TerminalColumn, int]]], list[TerminalColumn]]:
+def _arrange(
+    columns: list[TerminalColumn], width: int
+) -> tuple[list[list[tuple[TerminalColumn, int]]], list[TerminalColumn]]:
     """Return blocks of columns with their widths, and the text columns that go below the rows."""
     key, rest = columns[0], list(columns[1:])
     below: list[TerminalColumn] = []
@@ -128,23 +156,36 @@ def _arrange(columns: list[TerminalColumn], width: int) -> tuple[list[list[tuple
     first = (key, max(min(_natural_width(key), width // 3), min(_least_width(key), width // 2)))
     blocks: list[list[tuple[TerminalColumn, int]]] = [[first]]
     for one in rest:
-        if len(blocks[-1]) > 1 and sum(taken + _BETWEEN for _, taken in blocks[-1]) + _natural_width(one) > width:
+        if (
+            len(blocks[-1]) > 1
+            and sum(taken + _BETWEEN for _, taken in blocks[-1]) + _natural_width(one) > width
+        ):
             blocks.append([first])
         blocks[-1].append((one, _natural_width(one)))
     return blocks, below
 
 
 def _fitting_widths(columns: list[TerminalColumn], width: int) -> list[int] | None:
-    """Return column widths that fit side by side with the least wrapping; None if there are none."""
+    """Return column widths that fit side by side with the least wrapping; None if there
+    are none.
+    """
     widths, least = [_natural_width(one) for one in columns], [_least_width(one) for one in columns]
     for number, one in enumerate(columns):
         if one.text:
             least[number] = min(least[number], width // 2)  # longer words are broken
         if number and one.text:
-            least[number] = least[number] if widths[number] <= _WIDEST_PHRASE else max(least[number], _LEAST_LINE)
+            least[number] = (
+                least[number]
+                if widths[number] <= _WIDEST_PHRASE
+                else max(least[number], _LEAST_LINE)
+            )
     room = width - _BETWEEN * (len(columns) - 1)
     while sum(widths) > room:
-        widest = max((number for number in range(len(columns)) if widths[number] > least[number]), key=lambda at: widths[at], default=None)
+        widest = max(
+            (number for number in range(len(columns)) if widths[number] > least[number]),
+            key=lambda at: widths[at],
+            default=None,
+        )
         if widest is None:
             return None
         widths[widest] -= 1
@@ -152,15 +193,25 @@ def _fitting_widths(columns: list[TerminalColumn], width: int) -> list[int] | No
 
 
 def _natural_width(column: TerminalColumn) -> int:
-    """Return the natural width of a column: unwrapped cells, and a heading that is wrapped above numbers but not above text."""
+    """Return the natural width of a column: unwrapped cells, and a heading that is
+    wrapped above numbers but not above text.
+    """
     cells = max((cell_len(cell) for cell in _aligned(column)), default=0)
-    heading = max(map(cell_len, column.heading.split("\n"))) if column.text else _longest_word(column.heading)
+    heading = (
+        max(map(cell_len, column.heading.split("\n")))
+        if column.text
+        else _longest_word(column.heading)
+    )
     return max(cells, heading)
 
 
 def _least_width(column: TerminalColumn) -> int:
     """Return the least width of a column: its longest word, or the natural width for numbers."""
-    return max(map(_longest_word, [column.heading, *column.cells]), default=0) if column.text else _natural_width(column)
+    return (
+        max(map(_longest_word, [column.heading, *column.cells]), default=0)
+        if column.text
+        else _natural_width(column)
+    )
 
 
 def _longest_word(words: str) -> int:
@@ -168,31 +219,48 @@ def _longest_word(words: str) -> int:
 
 
 def _aligned(column: TerminalColumn) -> list[str]:
-    """Return the cells of numbers padded on the right, so that right alignment aligns their decimal points."""
+    """Return the cells of numbers padded on the right, so that right alignment aligns
+    their decimal points.
+    """
     if column.text:
         return list(column.cells)
     found = [_NUMBER.match(cell) for cell in column.cells]
-    behind = [len(cell) - (len(match[0].split(".")[0]) if match else len(cell)) for cell, match in zip(column.cells, found, strict=True)]
+    behind = [
+        len(cell) - (len(match[0].split(".")[0]) if match else len(cell))
+        for cell, match in zip(column.cells, found, strict=True)
+    ]
     most = max((after for after, match in zip(behind, found, strict=True) if match), default=0)
-    return [cell + " " * (most - after if match else 0) for cell, after, match in zip(column.cells, behind, found, strict=True)]
+    return [
+        cell + " " * (most - after if match else 0)
+        for cell, after, match in zip(column.cells, behind, found, strict=True)
+    ]
 
 
-def _block(block: list[tuple[TerminalColumn, int]], below: list[TerminalColumn], width: int, bold: set[int]) -> Iterable[tuple[str, str]]:
+def _block(
+    block: list[tuple[TerminalColumn, int]], below: list[TerminalColumn], width: int, bold: set[int]
+) -> Iterable[tuple[str, str]]:
     """Yield the lines of a block: headings, and rows with the text below each."""
     if any(one.heading for one, _ in block):
         wrapped = [_wrapped(one.heading, taken) for one, taken in block]
         high = max(map(len, wrapped))
         for line in range(high):
-            cells = [lines[line - high + len(lines)] if line >= high - len(lines) else "" for lines in wrapped]
+            cells = [
+                lines[line - high + len(lines)] if line >= high - len(lines) else ""
+                for lines in wrapped
+            ]
             yield _row(block, cells), "bold"
     aligned = [_aligned(one) for one, _ in block]
     for number in range(len(block[0][0].cells)):
         cells_of = [
-            _wrapped(cells[number], taken) if one.text else [cells[number]] for cells, (one, taken) in zip(aligned, block, strict=True)
+            _wrapped(cells[number], taken) if one.text else [cells[number]]
+            for cells, (one, taken) in zip(aligned, block, strict=True)
         ]
         style = "bold" if number in bold else ""
         for line in range(max(map(len, cells_of))):
-            yield _row(block, [lines[line] if line < len(lines) else "" for lines in cells_of]), style
+            yield (
+                _row(block, [lines[line] if line < len(lines) else "" for lines in cells_of]),
+                style,
+            )
         for one in below:
             if one.cells[number]:
                 said = f"{one.heading}: {one.cells[number]}" if one.heading else one.cells[number]
@@ -210,5 +278,9 @@ def _row(block: list[tuple[TerminalColumn, int]], cells: list[str]) -> str:
 
 def _wrapped(words: str, width: int) -> list[str]:
     """Return a text wrapped to lines of a width; words longer than a line are broken."""
-    lines = [line for part in words.split("\n") for line in textwrap.wrap(part, max(width, 1), break_on_hyphens=False)]
+    lines = [
+        line
+        for part in words.split("\n")
+        for line in textwrap.wrap(part, max(width, 1), break_on_hyphens=False)
+    ]
     return lines or [""]

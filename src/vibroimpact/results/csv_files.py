@@ -17,7 +17,9 @@ from vibroimpact.dynamics.sensors.recording import Signal
 from vibroimpact.files.plain_names import one_line, plain_names
 
 MOST_CSV_SAMPLES = 250_000
-"""Largest number of samples of a signal written as CSV; a longer signal is stored in `result.nc` only."""
+"""Largest number of samples of a signal written as CSV; a longer signal is stored in
+`result.nc` only.
+"""
 
 
 def impact_rows(impacts: dict[str, Any]) -> list[dict[str, float | int | None]]:
@@ -44,7 +46,11 @@ def _rows(impacts: dict[str, Any]) -> Iterator[dict[str, float | int | None]]:
         row: dict[str, float | int | None] = {}
         for name in columns:
             value = float(impacts[name][index])
-            row[name] = (int(value) if columns[name].values == "count" else value) if math.isfinite(value) else None
+            row[name] = (
+                (int(value) if columns[name].values == "count" else value)
+                if math.isfinite(value)
+                else None
+            )
         yield row
 
 
@@ -53,7 +59,9 @@ def write_csv(rows: Iterable[dict[str, Any]], columns: list[str], path: Path) ->
     with path.open("w", newline="", encoding="utf-8") as file:
         writer = csv.DictWriter(file, columns, lineterminator="\n")
         writer.writeheader()
-        writer.writerows({name: "" if value is None else value for name, value in row.items()} for row in rows)
+        writer.writerows(
+            {name: "" if value is None else value for name, value in row.items()} for row in rows
+        )
 
 
 def write_columns(columns: Mapping[str, Floats], path: Path) -> None:
@@ -76,11 +84,16 @@ def signal_columns(signal: Signal) -> dict[str, TableColumn]:
     sensor = signal.sensor
     name = f"{sensor.quantity}_{sensor.unit.replace('/', '_')}"
     meaning = f"{sensor.quantity} measured by the sensor {one_line(sensor.name)}"
-    return {"time_s": TableColumn(signal.time, "s", "time since the start"), name: TableColumn(signal.value, sensor.unit, meaning)}
+    return {
+        "time_s": TableColumn(signal.time, "s", "time since the start"),
+        name: TableColumn(signal.value, sensor.unit, meaning),
+    }
 
 
 def signal_csv(signal: Signal) -> str:
-    """Return a signal as the text of a CSV file: times with 12 significant digits, values in full precision."""
+    """Return a signal as the text of a CSV file: times with 12 significant digits, values
+    in full precision.
+    """
     (time_name, time), (name, column) = signal_columns(signal).items()
     rows = np.stack([time.values, column.values], axis=1)
     # all rows in one operation: a signal has 100,000 samples and more
@@ -88,7 +101,9 @@ def signal_csv(signal: Signal) -> str:
 
 
 def write_signal_files(signals: Mapping[str, Signal], directory: Path) -> None:
-    """Write `NAME.csv` for each signal of at most 250,000 samples, its unit in the header; create the folder only if needed."""
+    """Write `NAME.csv` for each signal of at most 250,000 samples, its unit in the
+    header; create the folder only if needed.
+    """
     for name, plain in plain_names(list(signals)).items():
         signal = signals[name]
         if len(signal.value) > MOST_CSV_SAMPLES:

@@ -37,7 +37,8 @@ class Deflection:
     x, y : array, shape (columns,) and (rows,)
         Grid coordinates in the plate's own coordinate system [m].
     height : array, shape (frames, rows, columns)
-        Displacement of the upper side, positive upwards [m], in single precision; NaN at grid points outside the plate.
+        Displacement of the upper side, positive upwards [m], in single precision; NaN at grid
+        points outside the plate.
     sphere_position : array, shape (frames,)
         Height of the sphere's centre above the plate's upper surface at rest [m].
     contact_deflection : array, shape (frames,)
@@ -56,26 +57,34 @@ class Deflection:
 
 
 def frame_times_of(response: Response, frames: int = _FRAMES) -> Floats:
-    """Return the frame times of a run [s], from just before the first touch on; empty without an impact or without modes.
+    """Return the frame times of a run [s], from just before the first touch on; empty without an
+    impact or without modes.
 
-    The period that spaces the last frames is that of the lowest mode of the plate, or of the sphere if the plate has no modes.
+    The period that spaces the last frames is that of the lowest mode of the plate, or of the sphere
+    if the plate has no modes.
     """
     problem, impacts = response.problem, response.impacts
     modes = problem.plate.modes or problem.sphere.modes
     if modes is None or not len(impacts["impact"]):
         return np.zeros(0)
     touch, duration = (float(impacts[name][0]) for name in ("time_s", "duration_s"))
-    return frame_times(touch, duration, 1.0 / float(modes.frequencies[0]), float(response.end_time[0]), frames)
+    return frame_times(
+        touch, duration, 1.0 / float(modes.frequencies[0]), float(response.end_time[0]), frames
+    )
 
 
 def deflection_of(response: Response, frames: int = _FRAMES) -> Deflection | None:
-    """Return the plate's deflection at the frame times of a run; None if the plate has no modal model with a mesh, or no impact occurs."""
+    """Return the plate's deflection at the frame times of a run; None if the plate has no
+    modal model with a mesh, or no impact occurs.
+    """
     model, time = response.problem.models.get("plate"), frame_times_of(response, frames)
     if model is None or not len(time):
         return None
 
     def shapes_on_grid() -> tuple[SurfaceGrid, Floats]:
-        """Interpolate once per mode: the deflection at any time is then a product with the modal coordinates."""
+        """Interpolate once per mode: the deflection at any time is then a product with
+        the modal coordinates.
+        """
         grid = surface_grid(model.mesh)
         vertical = model.shapes.reshape(len(model.shapes), len(model.mesh.nodes), -1)[:, :, 2]
         return grid, grid.interpolate(vertical).reshape(len(vertical), -1)
@@ -97,18 +106,25 @@ def deflection_of(response: Response, frames: int = _FRAMES) -> Deflection | Non
 
 
 def contact_point_of(response: Response, model: ModalModel) -> tuple[float, float]:
-    """Return x and y of the contact point in the coordinates of the plate's mesh [m]; the middle of the plate if the case gives none."""
+    """Return x and y of the contact point in the coordinates of the plate's mesh [m]; the
+    middle of the plate if the case gives none.
+    """
     from vibroimpact.structures.surface import place_of  # here, as it imports scipy.sparse
 
     source = response.problem.source or {}
     mesh = source.get("plate", {}).get("mesh")
-    spot = (mesh.get("contact") if isinstance(mesh, dict) else None) or source.get("drop", {}).get("position") or (0.0, 0.0)
+    spot = (
+        (mesh.get("contact") if isinstance(mesh, dict) else None)
+        or source.get("drop", {}).get("position")
+        or (0.0, 0.0)
+    )
     x, y = place_of(model.mesh, spot if isinstance(spot, str) else (spot[0], spot[1]), "upper")
     return x, y
 
 
 def frame_times(touch: float, duration: float, period: float, end: float, count: int) -> Floats:
-    """Return frame times [s]: equally spaced through the first visit, then with steps that grow geometrically up to a limit.
+    """Return frame times [s]: equally spaced through the first visit, then with steps that grow
+    geometrically up to a limit.
 
     Parameters
     ----------
@@ -126,8 +142,11 @@ def frame_times(touch: float, duration: float, period: float, end: float, count:
     >>> frame_times(1.0, 1e-3, 0.1, 2.0, 96)[[0, 2, 22, -1]].round(4).tolist()
     [0.9999, 1.0, 1.001, 1.1925]
     """
-    step = min(duration, 3.0 * period) / _IN_VISIT  # a sphere that stays has no release to bound the duration
+    # a sphere that stays has no release to bound the duration
+    step = min(duration, 3.0 * period) / _IN_VISIT
     in_visit = touch + step * np.arange(-2, _IN_VISIT + 3)
-    steps = np.minimum(step * _GROWTH ** np.arange(count - len(in_visit)), max(step, period / _PER_PERIOD))
+    steps = np.minimum(
+        step * _GROWTH ** np.arange(count - len(in_visit)), max(step, period / _PER_PERIOD)
+    )
     times = np.concatenate([in_visit, in_visit[-1] + np.cumsum(steps)])
     return np.asarray(times[(times >= 0.0) & (times <= end)])

@@ -1,4 +1,6 @@
-"""Result folders: atomic creation, writing of the data files, and reading with verification of checksums."""
+"""Result folders: atomic creation, writing of the data files, and reading with
+verification of checksums.
+"""
 
 from __future__ import annotations
 
@@ -26,7 +28,14 @@ from vibroimpact.dynamics.columns import (
 )
 from vibroimpact.errors import InputError
 from vibroimpact.files.atomic_write import atomic_folder
-from vibroimpact.files.check_sums import CHECK_SUMS, DamageError, check_file, file_digest, read_sealed, sealed
+from vibroimpact.files.check_sums import (
+    CHECK_SUMS,
+    DamageError,
+    check_file,
+    file_digest,
+    read_sealed,
+    sealed,
+)
 from vibroimpact.files.damaged_part import check_hdf5
 from vibroimpact.files.hdf5 import short_reason
 from vibroimpact.files.new_folders import made_folder
@@ -41,29 +50,46 @@ from vibroimpact.results.summary import check_case, check_types, summary_of
 SUMMARY, CASE, NETCDF = "summary.json", "case.toml", "result.nc"
 
 LONGEST_FOLDER_NAME = 200
-"""In bytes; most file systems allow 255. This leaves room for what is appended, such as the format in the name of an export."""
+"""In bytes; most file systems allow 255. This leaves room for what is appended, such as
+the format in the name of an export.
+"""
 
 _OTHER_FOLDERS = {
-    "laws": "this is a comparison of contact laws, not the result of a run; make it anew with compare",
-    "calibration": "this is a calibration, not the result of a run; run its case.toml, or make it anew with calibrate",
-    "bounces": "these are bounces in a record, not the result of a run; find them anew with calibrate",
-    "restitutions": "these are restitutions of a table, not the result of a run; fit them anew with calibrate",
-    "reproduction": "this is a reproduction of the paper, not the result of a run; make it anew with reproduce",
+    "laws": "this is a comparison of contact laws, not the result of a run; make it anew with "
+    "compare",
+    "calibration": "this is a calibration, not the result of a run; run its case.toml, or make it "
+    "anew with calibrate",
+    "bounces": "these are bounces in a record, not the result of a run; find them anew with "
+    "calibrate",
+    "restitutions": "these are restitutions of a table, not the result of a run; fit them anew "
+    "with calibrate",
+    "reproduction": "this is a reproduction of the paper, not the result of a run; make it anew "
+    "with reproduce",
     "study": "this is a study of many drops, not the result of a run; its results are in study.nc",
-    "majority_error": "this is a bound on the error of classifiers, not the result of a run; make it anew with bound",
-    "estimates": "this is an identified impact, not the result of a run; make it anew with identify",
-    "octaves_Hz": "this is a comparison of a test with its simulation, not the result of a run; make it anew with correlate",
-    "responses": "these are modes of measured frequency responses, not the result of a run; fit them anew with modes",
-    "modes": "these are modes of elastic bodies, not the result of a run; make them anew with modes",
-    "recognition": "this is a recognition of signals, not the result of a run; make it anew with recognise",
-    "recognised": "these are recognised signals, not the result of a run; make them anew with recognise --model",
+    "majority_error": "this is a bound on the error of classifiers, not the result of a run; make "
+    "it anew with bound",
+    "estimates": "this is an identified impact, not the result of a run; make it anew with "
+    "identify",
+    "octaves_Hz": "this is a comparison of a test with its simulation, not the result of a run; "
+    "make it anew with correlate",
+    "responses": "these are modes of measured frequency responses, not the result of a run; fit "
+    "them anew with modes",
+    "modes": "these are modes of elastic bodies, not the result of a run; make them anew with "
+    "modes",
+    "recognition": "this is a recognition of signals, not the result of a run; make it anew with "
+    "recognise",
+    "recognised": "these are recognised signals, not the result of a run; make them anew with "
+    "recognise --model",
 }
-"""Messages for folders that are not results of a run, by the key that identifies them in `summary.json`; the first that it has."""
+"""Messages for folders that are not results of a run, by the key that identifies them in
+`summary.json`; the first that it has.
+"""
 
 
 @contextmanager
 def new_folder(directory: str | PathLike[str], *, force: bool = False) -> Iterator[Path]:
-    """Context manager of an atomic folder write: yield a temporary folder that becomes `directory` when the block succeeds.
+    """Context manager of an atomic folder write: yield a temporary folder that becomes `directory`
+    when the block succeeds.
 
     Parameters
     ----------
@@ -82,25 +108,32 @@ def new_folder(directory: str | PathLike[str], *, force: bool = False) -> Iterat
     with ExitStack() as stack:
         try:
             stack.enter_context(made_folder(target.parent))
-            working = stack.enter_context(atomic_folder(target, partial(check_free, target, force=force)))
+            working = stack.enter_context(
+                atomic_folder(target, partial(check_free, target, force=force))
+            )
         except OSError as error:
             raise InputError(f"{target}: the folder can't be made: {error.strerror}") from None
         yield working
 
 
 def check_free(directory: str | PathLike[str], *, force: bool = False) -> None:
-    """Check that a result folder may be written to `directory`, after recovering from an interrupted write to it.
+    """Check that a result folder may be written to `directory`, after recovering from an
+    interrupted write to it.
 
     Raises
     ------
     InputError
-        If the path is not valid, exists and may not be replaced, or lies where nothing can be written.
+        If the path is not valid, exists and may not be replaced, or lies where nothing can be
+        written.
     """
     target = Path(directory)
     if "\0" in str(target):
         raise InputError(f"{target}: a path can't have the character NUL")
     if len(os.fsencode(target.name)) > LONGEST_FOLDER_NAME:
-        raise InputError(f"{target}: the name of a folder may have {LONGEST_FOLDER_NAME} bytes at most; letters beyond ASCII take several")
+        raise InputError(
+            f"{target}: the name of a folder may have {LONGEST_FOLDER_NAME} bytes at most; "
+            "letters beyond ASCII take several"
+        )
     if target.absolute() == Path(target.absolute().anchor):
         raise InputError(f"{target}: this is the root of the file system; name a folder inside it")
     recover(target)
@@ -108,7 +141,9 @@ def check_free(directory: str | PathLike[str], *, force: bool = False) -> None:
         raise InputError(f"{target}: this is the current folder; name one inside it")
     above = next(folder for folder in target.absolute().parents if folder.exists())
     if not os.access(above, os.W_OK):
-        raise InputError(f"{target}: {above} can't be written to; name another place for the result")
+        raise InputError(
+            f"{target}: {above} can't be written to; name another place for the result"
+        )
     if not os.path.lexists(target):
         return
     if not target.is_dir():
@@ -117,26 +152,40 @@ def check_free(directory: str | PathLike[str], *, force: bool = False) -> None:
     if (force and is_result) or not any(target.iterdir()):
         return
     if not is_result:
-        raise InputError(f"{target}: the folder is there and is not a result folder, so --force does not replace it; name another one")
-    raise InputError(f"{target}: the folder is there already; name another one, or replace it with --force")
+        raise InputError(
+            f"{target}: the folder is there and is not a result folder, so --force does "
+            "not replace it; name another one"
+        )
+    raise InputError(
+        f"{target}: the folder is there already; name another one, or replace it with --force"
+    )
 
 
 def write_summary(summary: Mapping[str, Any], folder: Path) -> None:
-    """Write `summary.json` of a folder other than that of a run or a study, whose summaries have checksums."""
-    (folder / SUMMARY).write_text(json.dumps(summary, indent=2, allow_nan=False) + "\n", encoding="utf-8")
+    """Write `summary.json` of a folder other than that of a run or a study, whose
+    summaries have checksums.
+    """
+    (folder / SUMMARY).write_text(
+        json.dumps(summary, indent=2, allow_nan=False) + "\n", encoding="utf-8"
+    )
 
 
 def write_result(result: Result, directory: Path) -> None:
     """Write the data files of a result into an existing folder.
 
-    These are `case.toml`, `impacts.csv`, `result.nc`, `summary.json` with the checksums of the first and third, and `sensors/*.csv` for
-    signals that are not too long.
+    These are `case.toml`, `impacts.csv`, `result.nc`, `summary.json` with the checksums of the
+    first and third, and `sensors/*.csv` for signals that are not too long.
     """
-    if result.case:  # a problem defined in Python has no case; its provenance holds its representation
+    # a problem defined in Python has no case; its provenance holds its representation
+    if result.case:
         (directory / CASE).write_text(tomli_w.dumps(result.case), encoding="utf-8")
     write_impacts(result.impacts, directory / "impacts.csv")
     write_groups(result, directory / NETCDF)
-    check_sums = {name: file_digest(directory / name) for name in (CASE, NETCDF) if (directory / name).is_file()}
+    check_sums = {
+        name: file_digest(directory / name)
+        for name in (CASE, NETCDF)
+        if (directory / name).is_file()
+    }
     (directory / SUMMARY).write_bytes(sealed({**summary_of(result), CHECK_SUMS: check_sums}))
     write_signal_files(result.signals, directory / "sensors")
 
@@ -168,7 +217,9 @@ def read_result(directory: str | PathLike[str]) -> Result:
     >>> from tempfile import TemporaryDirectory
     >>> import vibroimpact as vi
     >>> with TemporaryDirectory() as folder:
-    ...     place = vi.save_result(vi.simulate(vi.load_case("paper:type1-theory")), f"{folder}/theory")
+    ...     place = vi.save_result(
+    ...         vi.simulate(vi.load_case("paper:type1-theory")), f"{folder}/theory"
+    ...     )
     ...     vi.read_result(place).impacts["rebound_height_m"].round(4).tolist()
     [2.4111, 1.4572, 0.8846, 0.5409, 0.3346]
     """
@@ -198,22 +249,33 @@ def read_result(directory: str | PathLike[str]) -> Result:
     except DamageError as error:
         raise InputError(f"{folder / name}: {error}; {_remedy(folder, name)}") from None
     except Exception as error:  # damaged files raise many types of exceptions
-        raise InputError(f"{folder / name}: the file is missing or damaged: {_cause(error)}; {_remedy(folder, name)}") from None
+        raise InputError(
+            f"{folder / name}: the file is missing or damaged: {_cause(error)}; "
+            f"{_remedy(folder, name)}"
+        ) from None
 
 
-def _result_from(case: ResolvedCase, summary: Mapping[str, Any], groups: Mapping[str, Mapping[str, Any]]) -> Result:
-    """Return a result from the case, the summary and the groups of the NetCDF file, after checking its columns."""
+def _result_from(
+    case: ResolvedCase, summary: Mapping[str, Any], groups: Mapping[str, Mapping[str, Any]]
+) -> Result:
+    """Return a result from the case, the summary and the groups of the NetCDF file, after
+    checking its columns.
+    """
     found = groups["impacts"]
     missing = set(FIRST_IMPACT_COLUMNS) - set(found)
     if missing:
         raise KeyError(f"no {', '.join(sorted(missing))}")
     impacts = {key: np.atleast_1d(found[key]) for key in impact_columns(found)}
-    for key in IMPACT_COLUMNS.keys() - found.keys():  # of a folder that was written before there was this column
+    # of a folder that was written before there was this column
+    for key in IMPACT_COLUMNS.keys() - found.keys():
         impacts[key] = np.full(impacts["impact"].shape, np.nan)
     history = {key: groups["history"][key] for key in history_columns(groups["history"])}
     _check_history(history)
     for group, columns in (("impacts", impacts), ("history", history)):
-        if len({column.shape for column in columns.values()}) != 1 or next(iter(columns.values())).ndim != 1:
+        if (
+            len({column.shape for column in columns.values()}) != 1
+            or next(iter(columns.values())).ndim != 1
+        ):
             raise ValueError(f"the columns of {group} differ in length")
     return Result(
         case,
@@ -223,7 +285,10 @@ def _result_from(case: ResolvedCase, summary: Mapping[str, Any], groups: Mapping
         summary["status"],
         dict(summary["provenance"]),
         dict(summary.get("deformation", {})),
-        {body: math.nan if value is None else float(value) for body, value in summary.get("truncation", {}).items()},
+        {
+            body: math.nan if value is None else float(value)
+            for body, value in summary.get("truncation", {}).items()
+        },
         {body: dict(summary[body]) for body in ("sphere", "plate") if body in summary},
         groups["sensors"],
         groups["deflection"]["deflection"],
@@ -231,8 +296,12 @@ def _result_from(case: ResolvedCase, summary: Mapping[str, Any], groups: Mapping
 
 
 def _check_history(history: Mapping[str, Any]) -> None:
-    """Raise KeyError if a history lacks a column that every one has, or one of those that it has where a body vibrates."""
-    needed = set(HISTORY_COLUMNS) | (set(VIBRATION_HISTORY_COLUMNS) if history.keys() & set(VIBRATION_HISTORY_COLUMNS) else set())
+    """Raise KeyError if a history lacks a column that every one has, or one of those that
+    it has where a body vibrates.
+    """
+    needed = set(HISTORY_COLUMNS) | (
+        set(VIBRATION_HISTORY_COLUMNS) if history.keys() & set(VIBRATION_HISTORY_COLUMNS) else set()
+    )
     missing = sorted(needed - history.keys())
     if missing:
         raise KeyError(f"no {', '.join(missing)}")
@@ -241,13 +310,21 @@ def _check_history(history: Mapping[str, Any]) -> None:
 def _cause(error: Exception) -> str:
     """Return the cause of a failed read in words."""
     if isinstance(error, KeyError):
-        return f"it has no {error.args[0]}" if error.args and not str(error.args[0]).startswith("no ") else str(error.args[0])
+        return (
+            f"it has no {error.args[0]}"
+            if error.args and not str(error.args[0]).startswith("no ")
+            else str(error.args[0])
+        )
     return short_reason(error)
 
 
 def _remedy(folder: Path, name: str) -> str:
     """Return a sentence on how to restore a damaged file of a result."""
-    unknown = name == SUMMARY and not (folder / NETCDF).is_file()  # it may be the folder of another command
+    # it may be the folder of another command
+    unknown = name == SUMMARY and not (folder / NETCDF).is_file()
     if name == CASE or unknown or not (folder / CASE).is_file():
         return "make the result anew"
-    return f"make it anew with: vibroimpact run {shlex.quote(str(folder / CASE))} -o {shlex.quote(str(folder))} --force"
+    return (
+        f"make it anew with: vibroimpact run {shlex.quote(str(folder / CASE))} -o "
+        f"{shlex.quote(str(folder))} --force"
+    )

@@ -16,7 +16,14 @@ if TYPE_CHECKING:
 
 Peaks = Mapping[str, Any]
 
-MAXIMA = ("max_displacement_m", "max_velocity_m_s", "max_acceleration_m_s2", "max_kinetic_energy_J", "max_strain_energy_J", "max_bending_m")
+MAXIMA = (
+    "max_displacement_m",
+    "max_velocity_m_s",
+    "max_acceleration_m_s2",
+    "max_kinetic_energy_J",
+    "max_strain_energy_J",
+    "max_bending_m",
+)
 """Names of the peak values of a body, the last one of a plate only."""
 FREQUENCIES = ("frequencies_Hz", "frequency_errors")
 
@@ -24,9 +31,10 @@ FREQUENCIES = ("frequencies_Hz", "frequency_errors")
 def peaks_of(response: Response, history: Mapping[str, Floats]) -> Mapping[str, Peaks]:
     """Return peak values and frequencies of the bodies that have modes, by body name.
 
-    Displacement, velocity and acceleration are largest magnitudes of the vertical motion of the centre of mass; the sphere's
-    displacement is relative to its initial position, the plate's to its position at rest. The maxima are over the points of the
-    history; the sphere's acceleration also includes that of the impact table.
+    Displacement, velocity and acceleration are largest magnitudes of the vertical motion of the
+    centre of mass; the sphere's displacement is relative to its initial position, the plate's to
+    its position at rest. The maxima are over the points of the history; the sphere's acceleration
+    also includes that of the impact table.
 
     Parameters
     ----------
@@ -43,7 +51,9 @@ def peaks_of(response: Response, history: Mapping[str, Floats]) -> Mapping[str, 
         acceleration = max(impact, _largest(history["acceleration_m_s2"]))
         kinetic = history["kinetic_J"] + history["sphere_vibration_J"]
         motion = rise, history["velocity_m_s"], acceleration
-        found["sphere"] = _maxima(*motion, kinetic, history["sphere_strain_J"]) | frequencies_of(problem.sphere.modes)
+        found["sphere"] = _maxima(*motion, kinetic, history["sphere_strain_J"]) | frequencies_of(
+            problem.sphere.modes
+        )
     if problem.plate.modes is not None:
         found["plate"] = _maxima(
             history["plate_displacement_m"],
@@ -57,12 +67,26 @@ def peaks_of(response: Response, history: Mapping[str, Floats]) -> Mapping[str, 
     return found
 
 
-def _maxima(displacement: Floats, velocity: Floats, acceleration: float, kinetic: Floats, strain: Floats) -> dict[str, Any]:
-    return dict(zip(MAXIMA, (*map(_largest, (displacement, velocity)), acceleration, *map(_largest, (kinetic, strain))), strict=False))
+def _maxima(
+    displacement: Floats, velocity: Floats, acceleration: float, kinetic: Floats, strain: Floats
+) -> dict[str, Any]:
+    return dict(
+        zip(
+            MAXIMA,
+            (
+                *map(_largest, (displacement, velocity)),
+                acceleration,
+                *map(_largest, (kinetic, strain)),
+            ),
+            strict=False,
+        )
+    )
 
 
 def frequencies_of(modes: ModalBasis) -> dict[str, Any]:
-    """Return the frequencies of a body's modes [Hz] and their errors, as stored in `summary.json`."""
+    """Return the frequencies of a body's modes [Hz] and their errors, as stored in
+    `summary.json`.
+    """
     errors = known_errors(modes.frequency_errors, len(modes.frequencies))
     return dict(zip(FREQUENCIES, (modes.frequencies.tolist(), errors), strict=True))
 
@@ -82,7 +106,11 @@ def known_errors(errors: Floats | None, number: int) -> list[float | None]:
     >>> known_errors(np.array([0.001, np.nan]), 2)
     [0.001, None]
     """
-    return [None] * number if errors is None else [float(error) if np.isfinite(error) else None for error in errors]
+    return (
+        [None] * number
+        if errors is None
+        else [float(error) if np.isfinite(error) else None for error in errors]
+    )
 
 
 def _largest(values: Floats) -> float:

@@ -1,4 +1,6 @@
-"""The result of one drop as plain data: the content of a result folder and the input of its report."""
+"""The result of one drop as plain data: the content of a result folder and the input of
+its report.
+"""
 
 from __future__ import annotations
 
@@ -42,7 +44,8 @@ class Result:
     impacts : dict of str to array
         Impact table: columns of shape (impacts,).
     history : mapping of str to array
-        History on a time grid that resolves every contact, but for very long runs: columns of shape (times,).
+        History on a time grid that resolves every contact, but for very long runs: columns of shape
+        (times,).
     energy : dict of str to float
         Energy ledger at the end of the run: energies [J], and the relative closure.
     status : str
@@ -50,7 +53,8 @@ class Result:
     provenance : mapping
         Software versions, platform, time of creation and tolerance.
     deformation : mapping
-        Facts about how the deformation of the bodies is modelled: words, and numbers whose keys end in their units.
+        Facts about how the deformation of the bodies is modelled: words, and numbers whose keys end
+        in their units.
     truncation : mapping of str to float
         Estimated relative error of the largest force due to modal truncation, by body name.
     peaks : mapping
@@ -84,22 +88,32 @@ class Result:
 
     @property
     def vibrates(self) -> bool:
-        """Whether anything but the contact deforms, or anything but the sphere moves: the history then has further columns."""
+        """Whether anything but the contact deforms, or anything but the sphere moves: the
+        history then has further columns.
+        """
         return "plate_deflection_m" in self.history
 
     def frequencies(self, body: str) -> list[float]:
-        """Return the modal frequencies of "sphere" or "plate" [Hz], ascending; an empty list for a rigid body."""
+        """Return the modal frequencies of "sphere" or "plate" [Hz], ascending; an empty
+        list for a rigid body.
+        """
         found = self.peaks.get(body, {}).get("frequencies_Hz", [])
         return found if isinstance(found, list) else []
 
     @property
     def change_by_impact(self) -> Floats:
-        """Relative change of each impact [-] for a relative perturbation of the drop of 1e-9, or of the tolerance if larger."""
-        return change_by_impact(self.impacts, float(self.provenance.get("tolerance", RELATIVE_CHANGE)))
+        """Relative change of each impact [-] for a relative perturbation of the drop of
+        1e-9, or of the tolerance if larger.
+        """
+        return change_by_impact(
+            self.impacts, float(self.provenance.get("tolerance", RELATIVE_CHANGE))
+        )
 
     @property
     def doubts(self) -> list[str]:
-        """Doubts about the result: sentences naming assumptions and ranges of validity that the run exceeds."""
+        """Doubts about the result: sentences naming assumptions and ranges of validity
+        that the run exceeds.
+        """
         return self.doubts_but()
 
     def doubts_but(self, aside: Container[str] = ()) -> list[str]:
@@ -113,11 +127,16 @@ class Result:
         found = doubts(self.case, self._seen, aside)
         found += str(self.deformation.get("doubts", "")).splitlines()  # about the meshes
         highest = max(self.frequencies("plate"), default=math.nan)
-        return found + sensor_doubts(self.case, self.signals, highest, float(self._seen.duration), self._first_contact())
+        return found + sensor_doubts(
+            self.case, self.signals, highest, float(self._seen.duration), self._first_contact()
+        )
 
     def _first_contact(self) -> tuple[float, float] | None:
         """Return x and y of the first contact on the plate [m], of a sphere that moves along it."""
-        for columns in (("place_on_plate_x_m", "place_on_plate_y_m"), ("position_x_m", "position_y_m")):
+        for columns in (
+            ("place_on_plate_x_m", "place_on_plate_y_m"),
+            ("position_x_m", "position_y_m"),
+        ):
             if columns[0] in self.impacts and len(self.impacts[columns[0]]):
                 x, y = (float(self.impacts[column][0]) for column in columns)
                 return x, y
@@ -128,13 +147,32 @@ class Result:
         """The outcomes of the drop that the limits of the theory are checked against."""
         if not len(self.impacts["impact"]):
             return DropSummary()
-        force, depth = (float(self.impacts[name].max()) for name in ("max_force_N", "max_indentation_m"))
-        duration, speed = time_of_contact(self.impacts), float(self.impacts["approach_speed_m_s"][0])
+        force, depth = (
+            float(self.impacts[name].max()) for name in ("max_force_N", "max_indentation_m")
+        )
+        duration, speed = (
+            time_of_contact(self.impacts),
+            float(self.impacts["approach_speed_m_s"][0]),
+        )
         deflection = float(self.peaks.get("plate", {}).get("max_bending_m") or math.nan)
         modes = {body: (part, self.frequencies(body)[-1]) for body, part in self.truncation.items()}
-        theory, mesh = (error(self.deformation, self.impacts) for error in (plate_theory_error, plate_mesh_error))
+        theory, mesh = (
+            error(self.deformation, self.impacts)
+            for error in (plate_theory_error, plate_mesh_error)
+        )
         slowest = float(self.impacts["approach_speed_m_s"].min())
-        return DropSummary(force, depth, duration, speed, deflection, modes, self.change_by_impact, theory, mesh, slowest)
+        return DropSummary(
+            force,
+            depth,
+            duration,
+            speed,
+            deflection,
+            modes,
+            self.change_by_impact,
+            theory,
+            mesh,
+            slowest,
+        )
 
     @property
     def name(self) -> str:
@@ -154,7 +192,8 @@ class Result:
 
 
 def result_of(response: Response) -> Result:
-    """Return the result of a response to one drop: its tables, refined history, peaks, signals and deflection.
+    """Return the result of a response to one drop: its tables, refined history, peaks, signals and
+    deflection.
 
     Parameters
     ----------
@@ -176,7 +215,9 @@ def result_of(response: Response) -> Result:
     history = fine_history(response)
     signals = response.signals() if response.problem.sensors else {}
     return replace(
-        bare_result(response, history, peaks_of(response, history), signals, deflection_of(response)),
+        bare_result(
+            response, history, peaks_of(response, history), signals, deflection_of(response)
+        ),
         provenance={
             "version": __version__,
             "created": datetime.now(UTC).isoformat(timespec="seconds"),
@@ -196,7 +237,9 @@ def bare_result(
     signals: Mapping[str, Signal],
     deflection: Deflection | None,
 ) -> Result:
-    """Return the result of a response to one drop without provenance, from what may be as fine as one likes."""
+    """Return the result of a response to one drop without provenance, from what may be as
+    fine as one likes.
+    """
     return Result(
         case=response.problem.source or {},
         impacts=response.impacts,

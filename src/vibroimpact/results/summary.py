@@ -14,7 +14,9 @@ from vibroimpact.results.result import Result
 
 
 def summary_of(result: Result) -> dict[str, Any]:
-    """Return the summary of a result: impact table, final energy ledger, doubts, provenance, and peaks of elastic bodies."""
+    """Return the summary of a result: impact table, final energy ledger, doubts,
+    provenance, and peaks of elastic bodies.
+    """
     return {
         "name": result.name,
         "status": result.status,
@@ -28,10 +30,14 @@ def summary_of(result: Result) -> dict[str, Any]:
 
 
 def _of_vibration(result: Result) -> dict[str, Any]:
-    """Return the entries of a summary that exist only where bodies vibrate; None stands for a number that is not finite."""
+    """Return the entries of a summary that exist only where bodies vibrate; None stands
+    for a number that is not finite.
+    """
     if not result.vibrates:
         return {}
-    truncation = {name: value if math.isfinite(value) else None for name, value in result.truncation.items()}
+    truncation = {
+        name: value if math.isfinite(value) else None for name, value in result.truncation.items()
+    }
     sensors = {
         name: {
             "quantity": signal.sensor.quantity,
@@ -40,7 +46,9 @@ def _of_vibration(result: Result) -> dict[str, Any]:
             "samples": len(signal.value),
             "max_magnitude": signal.largest,
             "filter": signal.sensor.filter,
-            "relative_uncertainty": signal.uncertainty if math.isfinite(signal.uncertainty) else None,
+            "relative_uncertainty": signal.uncertainty
+            if math.isfinite(signal.uncertainty)
+            else None,
             "peak_before_range": signal.peak if math.isfinite(signal.peak) else None,
             "overload_time_s": signal.overload_time,
         }
@@ -67,18 +75,31 @@ def check_types(summary: Mapping[str, Any]) -> None:
         If the status is missing.
     """
     _check("status", isinstance(summary["status"], str))
-    for key, kinds in (("provenance", (str,)), ("deformation", (str, int, float)), ("truncation", (int, float, type(None)))):
+    for key, kinds in (
+        ("provenance", (str,)),
+        ("deformation", (str, int, float)),
+        ("truncation", (int, float, type(None))),
+    ):
         table = summary.get(key, {})
-        _check(key, isinstance(table, dict) and all(isinstance(value, kinds) for value in table.values()))
+        _check(
+            key,
+            isinstance(table, dict) and all(isinstance(value, kinds) for value in table.values()),
+        )
     for fact in (PLATE_THEORY_INERTIA, PLATE_MESH_COMPLIANCE):
         _check(fact, isinstance(summary.get("deformation", {}).get(fact, 0.0), (int, float)))
     for body in ("sphere", "plate"):
         peaks = summary.get(body, {})
         _check(body, isinstance(peaks, dict) and all(_is_peak(value) for value in peaks.values()))
         frequencies = peaks.get(FREQUENCIES[0], [])
-        _check(FREQUENCIES[0], isinstance(frequencies, list) and all(_is_positive(value) for value in frequencies))
+        _check(
+            FREQUENCIES[0],
+            isinstance(frequencies, list) and all(_is_positive(value) for value in frequencies),
+        )
         # peaks and truncation are those of a body that has modes
-        _check(FREQUENCIES[0], bool(frequencies) or not (peaks or body in summary.get("truncation", {})))
+        _check(
+            FREQUENCIES[0],
+            bool(frequencies) or not (peaks or body in summary.get("truncation", {})),
+        )
 
 
 def check_case(case: Mapping[str, Any]) -> None:
@@ -94,12 +115,17 @@ def check_case(case: Mapping[str, Any]) -> None:
     for section in ("sphere", "plate", "drop", "contact", "run"):
         _check(section, isinstance(case[section], dict))
     sensors = case.get("sensors", [])
-    _check("sensors", isinstance(sensors, list) and all(isinstance(sensor, dict) for sensor in sensors))
+    _check(
+        "sensors", isinstance(sensors, list) and all(isinstance(sensor, dict) for sensor in sensors)
+    )
     _check("name", isinstance(case.get("name", ""), str))
 
 
 def _is_peak(value: Any) -> bool:
-    return all(one is None or isinstance(one, (int, float)) for one in (value if isinstance(value, list) else [value]))
+    return all(
+        one is None or isinstance(one, (int, float))
+        for one in (value if isinstance(value, list) else [value])
+    )
 
 
 def _is_positive(value: Any) -> bool:

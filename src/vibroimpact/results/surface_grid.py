@@ -17,16 +17,20 @@ POINTS = 3000
 """Approximate number of grid points by default."""
 
 _FEWEST, _MOST = 11, 241  # points along one side
-_EDGE = 1e-6  # tolerance of barycentric coordinates and grid steps: a point on the edge of a triangle counts as inside it
-_FINE = 3  # subdivisions of a face per grid step: the triangles between the subdivision points are flat
+# tolerance of barycentric coordinates and grid steps: a point on the edge of a triangle counts as
+# inside it
+_EDGE = 1e-6
+# subdivisions of a face per grid step: the triangles between the subdivision points are flat
+_FINE = 3
 
 
 @dataclass(frozen=True)
 class SurfaceGrid:
     """Regular grid over the upper side of a mesh, with interpolation weights.
 
-    `x`, `y`: grid coordinates [m], (columns,) and (rows,). `weights`: interpolation matrix (rows * columns, nodes), grid points in
-    row-major order. `on_body`: mask of the grid points that lie on the body, (rows, columns).
+    `x`, `y`: grid coordinates [m], (columns,) and (rows,). `weights`: interpolation matrix (rows *
+    columns, nodes), grid points in row-major order. `on_body`: mask of the grid points that lie on
+    the body, (rows, columns).
     """
 
     x: Floats
@@ -35,7 +39,9 @@ class SurfaceGrid:
     on_body: Bools
 
     def interpolate(self, values: Floats) -> Floats:
-        """Return nodal values (..., nodes) interpolated to the grid points (..., rows, columns); NaN outside the body."""
+        """Return nodal values (..., nodes) interpolated to the grid points (..., rows,
+        columns); NaN outside the body.
+        """
         flat = values.reshape(-1, values.shape[-1])
         found = np.asarray((self.weights @ flat.T).T).reshape(-1, *self.on_body.shape)
         found[:, ~self.on_body] = np.nan
@@ -43,10 +49,12 @@ class SurfaceGrid:
 
 
 def surface_grid(mesh: Mesh, points: int = POINTS) -> SurfaceGrid:
-    """Return a regular grid over the upper side of a mesh, with a grid point at the middle of its bounding box.
+    """Return a regular grid over the upper side of a mesh, with a grid point at the middle of its
+    bounding box.
 
-    The faces of that side are subdivided into triangles smaller than the grid steps, and each grid point is interpolated in the uppermost
-    triangle that contains it. This avoids the inverse mapping to element coordinates, and the mesh may have any outline and holes.
+    The faces of that side are subdivided into triangles smaller than the grid steps, and each grid
+    point is interpolated in the uppermost triangle that contains it. This avoids the inverse
+    mapping to element coordinates, and the mesh may have any outline and holes.
 
     Parameters
     ----------
@@ -81,23 +89,33 @@ def surface_grid(mesh: Mesh, points: int = POINTS) -> SurfaceGrid:
     for column in range(reach[0]):
         for row in range(reach[1]):
             point = first + np.array([column, row])
-            here = np.flatnonzero((point <= np.minimum(last, (columns - 1, rows - 1))).all(axis=1) & (point >= 0).all(axis=1))
+            here = np.flatnonzero(
+                (point <= np.minimum(last, (columns - 1, rows - 1))).all(axis=1)
+                & (point >= 0).all(axis=1)
+            )
             share = _shares(corner[triangles[here]], point[here])
             inside = share.min(axis=1) >= -_EDGE
             here, share = here[inside], share[inside]
             height = np.einsum("tk,tk->t", share, at[triangles[here], 2])
-            order = np.argsort(height, kind="stable")  # of triangles at the same grid point the uppermost is assigned last
+            # of triangles at the same grid point the uppermost is assigned last
+            order = np.argsort(height, kind="stable")
             index, height = (point[here, 1] * columns + point[here, 0])[order], height[order]
             higher = height > found[index]
             index = index[higher]
-            found[index], nodes[index], weight[index] = height[higher], triangles[here[order][higher]], share[order][higher]
+            found[index], nodes[index], weight[index] = (
+                height[higher],
+                triangles[here[order][higher]],
+                share[order][higher],
+            )
     rows_of = np.repeat(np.arange(len(found)), 3)
     chosen = csr_array((weight.ravel(), (rows_of, nodes.ravel())), shape=(len(found), len(at)))
     return SurfaceGrid(x, y, csr_array(chosen @ motion), np.isfinite(found).reshape(rows, columns))
 
 
 def _shares(corner: Floats, point: Integers) -> Floats:
-    """Return the barycentric coordinates of points in triangles, (triangles, 3); -1 for triangles of zero area."""
+    """Return the barycentric coordinates of points in triangles, (triangles, 3); -1 for
+    triangles of zero area.
+    """
     a, b = corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]
     to = point - corner[:, 0]
     area = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
@@ -111,9 +129,11 @@ def _shares(corner: Floats, point: Integers) -> Floats:
 
 
 def _triangles(mesh: Mesh, step: Floats) -> tuple[Floats, csr_array, Integers]:
-    """Return subdivision points of the upper faces, their interpolation matrix from the nodes, and the triangles between them.
+    """Return subdivision points of the upper faces, their interpolation matrix from the nodes, and
+    the triangles between them.
 
-    The points have shape (points, 3) [m], the matrix (points, nodes), and the triangles, as point numbers, (triangles, 3).
+    The points have shape (points, 3) [m], the matrix (points, nodes), and the triangles, as point
+    numbers, (triangles, 3).
     """
     from scipy.sparse import csr_array, vstack
 
@@ -134,14 +154,22 @@ def _triangles(mesh: Mesh, step: Floats) -> tuple[Floats, csr_array, Integers]:
             values = np.tile(weights.ravel(), len(nodes))
             points.append(at)
             motions.append(csr_array((values, (rows, columns)), shape=(len(at), len(mesh.nodes))))
-            triangles.append((pattern[None] + len(local) * np.arange(len(nodes))[:, None, None]).reshape(-1, 3) + start)
+            triangles.append(
+                (pattern[None] + len(local) * np.arange(len(nodes))[:, None, None]).reshape(-1, 3)
+                + start
+            )
             start += len(at)
     return np.concatenate(points), csr_array(vstack(motions)), np.concatenate(triangles)
 
 
 def _lattice(corners: int, fine: int) -> tuple[Floats, Integers]:
-    """Return lattice points on a reference face, `fine` steps along each side, and the triangles between them as point numbers."""
-    a, b = (side.ravel() for side in np.meshgrid(np.arange(fine + 1), np.arange(fine + 1), indexing="ij"))
+    """Return lattice points on a reference face, `fine` steps along each side, and the
+    triangles between them as point numbers.
+    """
+    a, b = (
+        side.ravel()
+        for side in np.meshgrid(np.arange(fine + 1), np.arange(fine + 1), indexing="ij")
+    )
     if corners == 3:
         a, b = a[a + b <= fine], b[a + b <= fine]
     number = np.full((fine + 2, fine + 2), -1)

@@ -1,1 +1,3 @@
-"""One case run: its result folder, its report with figures and animation, and what the terminal prints."""
+"""One case run: its result folder, its report with figures and animation, and what the
+terminal prints.
+"""

@@ -1,4 +1,6 @@
-"""Animation of plate and sphere: the deflected plate in parallel projection, with exaggerated deflection."""
+"""Animation of plate and sphere: the deflected plate in parallel projection, with
+exaggerated deflection.
+"""
 
 from __future__ import annotations
 
@@ -37,8 +39,9 @@ _MAP, _SHADES = LinearSegmentedColormap.from_list("deflection", list(DIVERGING))
 def animate(result: Result) -> bytes:
     """Return an animation of plate and sphere around the first visit as GIF.
 
-    The plate's deflection is exaggerated by a factor stated in the picture; the sphere and its gap to the plate are to scale. Frames
-    are closer in time where the motion is fast, and each states its time.
+    The plate's deflection is exaggerated by a factor stated in the picture; the sphere and its gap
+    to the plate are to scale. Frames are closer in time where the motion is fast, and each states
+    its time.
 
     Parameters
     ----------
@@ -53,12 +56,22 @@ def animate(result: Result) -> bytes:
     palette = _palette()
     plain = [frame.quantize(palette=palette, dither=Image.Dither.NONE) for frame in frames]
     file = BytesIO()
-    plain[0].save(file, "gif", save_all=True, append_images=plain[1:], duration=_MILLISECONDS, loop=0, optimize=False)
+    plain[0].save(
+        file,
+        "gif",
+        save_all=True,
+        append_images=plain[1:],
+        duration=_MILLISECONDS,
+        loop=0,
+        optimize=False,
+    )
     return file.getvalue()
 
 
 def _palette() -> Image.Image:
-    """Return an image with the palette of all frames: the colours of the plate, the same darkened for mesh lines, and greys."""
+    """Return an image with the palette of all frames: the colours of the plate, the same
+    darkened for mesh lines, and greys.
+    """
     plate = 255.0 * _MAP(np.linspace(0.0, 1.0, _SHADES))[:, :3]
     greys = np.repeat(np.linspace(0.0, 255.0, _SHADES)[:, None], 3, axis=1)
     colours = np.concatenate([plate, 0.8 * plate, greys]).round().astype(np.uint8)
@@ -68,7 +81,9 @@ def _palette() -> Image.Image:
 
 
 class _AnimationScene:
-    """Drawing of the frames: the static background is rendered once, and the moving artists are drawn over copies of it."""
+    """Drawing of the frames: the static background is rendered once, and the moving
+    artists are drawn over copies of it.
+    """
 
     def __init__(self, result: Result, deflection: Deflection) -> None:
         self.deflection, self.factor = deflection, exaggeration(deflection)
@@ -77,7 +92,8 @@ class _AnimationScene:
         self.touch = float(result.impacts["time_s"][0])
         skip = max(1, round(max(len(deflection.x), len(deflection.y)) / _CELLS))
         self.columns, self.rows = (
-            np.unique(np.append(np.arange(0, len(side), skip), len(side) - 1)) for side in (deflection.x, deflection.y)
+            np.unique(np.append(np.arange(0, len(side), skip), len(side) - 1))
+            for side in (deflection.x, deflection.y)
         )
         self.x, self.y = np.meshgrid(deflection.x[self.columns], deflection.y[self.rows])
         self.canvas = FigureCanvasAgg(Figure(figsize=_SIZE, dpi=_DPI))
@@ -92,10 +108,27 @@ class _AnimationScene:
 
     def _artists(self, result: Result, figure: Figure) -> list[Artist]:
         most = self.factor * float(np.nanmax(np.abs(self.deflection.height)))
-        self.plate = PolyCollection([], cmap=_MAP, norm=Normalize(-most, most), edgecolors="#00000030", linewidths=0.3)
-        self.shadow = Ellipse((0.0, 0.0), 2.0 * self.radius, 2.0 * self.radius * np.sin(TILT), facecolor="#000000", alpha=0.25)
-        self.ball = Circle((0.0, 0.0), self.radius, facecolor="#8d8d8d", edgecolor=INK.light, linewidth=1.0)
-        self.shine = Ellipse((0.0, 0.0), 0.5 * self.radius, 0.35 * self.radius, angle=35.0, facecolor="white", alpha=0.7)
+        self.plate = PolyCollection(
+            [], cmap=_MAP, norm=Normalize(-most, most), edgecolors="#00000030", linewidths=0.3
+        )
+        self.shadow = Ellipse(
+            (0.0, 0.0),
+            2.0 * self.radius,
+            2.0 * self.radius * np.sin(TILT),
+            facecolor="#000000",
+            alpha=0.25,
+        )
+        self.ball = Circle(
+            (0.0, 0.0), self.radius, facecolor="#8d8d8d", edgecolor=INK.light, linewidth=1.0
+        )
+        self.shine = Ellipse(
+            (0.0, 0.0),
+            0.5 * self.radius,
+            0.35 * self.radius,
+            angle=35.0,
+            facecolor="white",
+            alpha=0.7,
+        )
         self.clock = figure.text(0.03, 0.93, "", fontsize=12, color=INK.light)
         words = f"plate's deflection magnified {self.factor:g} times; ball and gap to scale"
         figure.text(0.03, 0.045, words, fontsize=8, color=INK.light)
@@ -114,22 +147,38 @@ class _AnimationScene:
         across, up = project(self.x, self.y, np.zeros_like(self.x))
         swing = self.factor * float(np.nanmax(np.abs(deflection.height)))
         ball = project(*self.contact, np.array(highest))[1]
-        top = max(float(up.max()) + 0.5 * swing, min(float(ball), float(up.max()) + 0.5 * swing + 4.0 * self.radius))
-        _show_whole(self.axes, (float(across.min()), float(across.max())), (float(up.min()) - 0.3 * swing, top), _SIZE[0] / _SIZE[1])
+        top = max(
+            float(up.max()) + 0.5 * swing,
+            min(float(ball), float(up.max()) + 0.5 * swing + 4.0 * self.radius),
+        )
+        _show_whole(
+            self.axes,
+            (float(across.min()), float(across.max())),
+            (float(up.min()) - 0.3 * swing, top),
+            _SIZE[0] / _SIZE[1],
+        )
 
     def _ball_height(self, frame: int | slice) -> Floats:
-        """Return the drawn height of the sphere's centre [m]: at its true gap above the exaggerated plate."""
+        """Return the drawn height of the sphere's centre [m]: at its true gap above the
+        exaggerated plate.
+        """
         down = self.deflection.contact_deflection[frame]
         return np.asarray(self.deflection.sphere_position[frame] - down + self.factor * down)
 
     def frame(self, number: int) -> NDArray[np.uint8]:
         """Return a frame as an image, (height, width, 3)."""
         deflection = self.deflection
-        height = self.factor * deflection.height[number][np.ix_(self.rows, self.columns)].astype(float)
+        height = self.factor * deflection.height[number][np.ix_(self.rows, self.columns)].astype(
+            float
+        )
         across, up = project(self.x, self.y, height)
         corner = np.stack([across, up], axis=-1)
-        cells = np.stack([corner[:-1, :-1], corner[:-1, 1:], corner[1:, 1:], corner[1:, :-1]], axis=2).reshape(-1, 4, 2)
-        mean = 0.25 * (height[:-1, :-1] + height[:-1, 1:] + height[1:, 1:] + height[1:, :-1]).ravel()
+        cells = np.stack(
+            [corner[:-1, :-1], corner[:-1, 1:], corner[1:, 1:], corner[1:, :-1]], axis=2
+        ).reshape(-1, 4, 2)
+        mean = (
+            0.25 * (height[:-1, :-1] + height[:-1, 1:] + height[1:, 1:] + height[1:, :-1]).ravel()
+        )
         # painter's algorithm: the farthest cells are drawn first
         order = np.argsort(-depth(self.x, self.y)[:-1, :-1].ravel(), kind="stable")
         order = order[np.isfinite(mean[order])]
@@ -150,8 +199,12 @@ class _AnimationScene:
         return np.array(self.canvas.buffer_rgba())[..., :3]  # type: ignore[no-untyped-call]
 
 
-def _show_whole(axes: Axes, across: tuple[float, float], up: tuple[float, float], ratio: float) -> None:
-    """Set the limits of axes of an aspect ratio (width over height) so that a range fits in equal scales, with margins for labels."""
+def _show_whole(
+    axes: Axes, across: tuple[float, float], up: tuple[float, float], ratio: float
+) -> None:
+    """Set the limits of axes of an aspect ratio (width over height) so that a range fits
+    in equal scales, with margins for labels.
+    """
     width = (across[1] - across[0]) * 1.08
     height = (up[1] - up[0]) * 1.22
     width = max(width, height * ratio)

@@ -1,4 +1,6 @@
-"""What the sphere falls on, in words: a plate, one that is shaken or free, or a sphere in its place."""
+"""What the sphere falls on, in words: a plate, one that is shaken or free, or a sphere in
+its place.
+"""
 
 from __future__ import annotations
 

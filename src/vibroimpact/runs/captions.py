@@ -25,18 +25,20 @@ def caption(name: str, result: Result) -> str:
 
 
 def left_out(result: Result) -> str:
-    """Return a sentence stating which figures of contact do not exist and why; empty if all exist."""
+    """Return a sentence stating which figures of contact do not exist and why; empty if
+    all exist.
+    """
     if len(contacts_with_duration(result)):
         return ""
     if not len(result.impacts["time_s"]):
         below = body_below(result)
         return (
-            f"The sphere does not reach the {below} in this run, so that there are no charts of contact force, acceleration and "
-            "indentation."
+            f"The sphere does not reach the {below} in this run, so that there are no "
+            "charts of contact force, acceleration and indentation."
         )
     return (
-        "The contact law is instantaneous: the contact has no duration, force, acceleration or indentation, so that there are no charts "
-        "of them."
+        "The contact law is instantaneous: the contact has no duration, force, acceleration "
+        "or indentation, so that there are no charts of them."
     )
 
 
@@ -59,11 +61,17 @@ def _position(result: Result) -> str:
 def _force(result: Result) -> str:
     impacts, most = result.impacts, int(np.nanargmax(result.impacts["max_force_N"]))
     lead = float(impacts["time_of_max_indentation_s"][most] - impacts["time_of_max_force_s"][most])
-    words = f"The largest force, {impact_text(result, most, 'max_force_N', 'N')}, acts in impact {most + 1}"
+    words = (
+        f"The largest force, {impact_text(result, most, 'max_force_N', 'N')}, "
+        f"acts in impact {most + 1}"
+    )
     if lead > 0.001 * impacts["duration_s"][most]:
         causes = ["damping adds to the force during loading"] if _loses_in_contact(result) else []
         causes += ["the sphere vibrates"] if "sphere" in result.peaks else []
-        words += f", {text(lead, 's', 3)} before the largest indentation: {', and '.join(causes)}".removesuffix(": ")
+        words += (
+            f", {text(lead, 's', 3)} before the largest indentation: "
+            f"{', and '.join(causes)}".removesuffix(": ")
+        )
     return f"{words}. {_in_whole_run(result)}".strip()
 
 
@@ -76,26 +84,41 @@ def _velocity(result: Result) -> str:
     impacts = result.impacts
     if not len(impacts["time_s"]):
         return f"The sphere does not touch the {body_below(result)} in this run."
-    columns = {"approach_speed_m_s": "m/s", "separation_speed_m_s": "m/s", "restitution_achieved": ""}
-    approach, separation, restitution = (impact_text(result, 0, name, unit) for name, unit in columns.items())
+    columns = {
+        "approach_speed_m_s": "m/s",
+        "separation_speed_m_s": "m/s",
+        "restitution_achieved": "",
+    }
+    approach, separation, restitution = (
+        impact_text(result, 0, name, unit) for name, unit in columns.items()
+    )
     return (
         f"In impact 1 the sphere arrives at {approach} and leaves at {separation}"
         f"{', along the normal' if 'tangential_restitution' in impacts else ''}"
-        f"{f', relative to the {body_below(result)}' if _moves_below(result) else ''}: a restitution of {restitution}."
+        f"{f', relative to the {body_below(result)}' if _moves_below(result) else ''}: a "
+        f"restitution of {restitution}."
     )
 
 
 def _moves_below(result: Result) -> bool:
-    """Return whether what the sphere falls on is shaken or free, so that speeds are relative to it."""
+    """Return whether what the sphere falls on is shaken or free, so that speeds are
+    relative to it.
+    """
     return "plate_velocity_m_s" in result.impacts or is_free_below(result)
 
 
 def _acceleration(result: Result) -> str:
     most = int(np.nanargmax(result.impacts["max_acceleration_m_s2"]))
     value = float(result.impacts["max_acceleration_m_s2"][most]) / STANDARD_GRAVITY
-    times = certain(digits(value, 3), value, int(significant_figures("max_acceleration_m_s2", result.change_by_impact)[most]))
+    times = certain(
+        digits(value, 3),
+        value,
+        int(significant_figures("max_acceleration_m_s2", result.change_by_impact)[most]),
+    )
     return (
-        f"The largest magnitude, {impact_text(result, most, 'max_acceleration_m_s2', 'm/s2')} in impact {most + 1}, is {times} times "
+        "The largest magnitude, "
+        f"{impact_text(result, most, 'max_acceleration_m_s2', 'm/s2')} in impact {most + 1}, "
+        f"is {times} times "
         f"standard gravity. {_in_whole_run(result)}"
     ).strip()
 
@@ -104,16 +127,31 @@ def _loops(result: Result) -> str:
     found = contacts_with_duration(result)
     if result.impacts["separation_speed_m_s"][found[-1]] == 0.0:
         below = body_below(result)
-        return f"In impact {found[-1] + 1} the sphere does not leave the {below} again; its curve ends where that is certain."
+        return (
+            f"In impact {found[-1] + 1} the sphere does not leave the {below} again; its curve "
+            "ends where that is certain."
+        )
     if not _loses_in_contact(result) and "sphere" in result.peaks:
-        return "No energy is lost in contact: the area that a loop encloses is the energy that the sphere's vibration took up."
+        return (
+            "No energy is lost in contact: the area that a loop encloses is the energy that the "
+            "sphere's vibration took up."
+        )
     if not _loses_in_contact(result):
         return "Loading and unloading coincide: no energy is lost in contact."
-    first, last = (impact_text(result, impact, "energy_lost_J", "J") for impact in (found[0], found[-1]))
-    also = " and the energy that the sphere's vibration took up. Lost" if "sphere" in result.peaks else ""
+    first, last = (
+        impact_text(result, impact, "energy_lost_J", "J") for impact in (found[0], found[-1])
+    )
+    also = (
+        " and the energy that the sphere's vibration took up. Lost"
+        if "sphere" in result.peaks
+        else ""
+    )
     if result.deformation.get("treatment") == "identified":
         also = " and the energy stored in the local element at release. Lost"
-    words = f"The area that a loop encloses is the energy lost in that contact{also}: {first} in impact {found[0] + 1}"
+    words = (
+        f"The area that a loop encloses is the energy lost in that contact{also}: {first} in "
+        f"impact {found[0] + 1}"
+    )
     return f"{words}, {last} in impact {found[-1] + 1}." if len(found) > 1 else f"{words}."
 
 
@@ -123,24 +161,45 @@ def _energy(result: Result) -> str:
     words = f"Of {text(put_in, 'J')} put in, {lost} is lost in contact by the end."
     if "friction_J" in result.energy:
         rubbed = energy_text(result, "friction_J")
-        words = f"Of {text(put_in, 'J')} put in, {lost} is lost in contact along the normal by the end, and {rubbed} by friction."
+        words = (
+            f"Of {text(put_in, 'J')} put in, {lost} is lost in contact along the normal by the "
+            f"end, and {rubbed} by friction."
+        )
     words += _vibration(result)
     if result.energy.get("drive_J"):
-        words += f" The moving plate {'added' if result.energy['drive_J'] < 0.0 else 'removed'} {text(abs(result.energy['drive_J']), 'J')}."
+        words += (
+            f" The moving plate {'added' if result.energy['drive_J'] < 0.0 else 'removed'} "
+            f"{text(abs(result.energy['drive_J']), 'J')}."
+        )
     if np.min(result.history["potential_J"]) < -0.01 * put_in:
-        words += " Below the height of first touch the potential energy is negative; the other bands then begin below zero."
+        words += (
+            " Below the height of first touch the potential energy is negative; the other bands "
+            "then begin below zero."
+        )
     return (
-        words + f" The bands add up to the energy put in{' and the work of the plate' if 'drive_J' in result.energy else ''} at all times."
+        words + " The bands add up to the energy put "
+        f"in{' and the work of the plate' if 'drive_J' in result.energy else ''} at all times."
     )
 
 
 def _vibration(result: Result) -> str:
-    """Return sentences on what the damping of the bodies dissipated, and on the energy left in their motion; empty if none moves."""
+    """Return sentences on what the damping of the bodies dissipated, and on the energy
+    left in their motion; empty if none moves.
+    """
     least = _NOTHING_LEFT * result.energy["input_J"]
-    bodies = {"the vibration of the sphere": ["sphere_vibration_J", "sphere_strain_J"]} if "sphere" in result.peaks else {}
+    bodies = (
+        {"the vibration of the sphere": ["sphere_vibration_J", "sphere_strain_J"]}
+        if "sphere" in result.peaks
+        else {}
+    )
     of_plate = ["plate_kinetic_J", "plate_strain_J"]
-    if "plate" in result.peaks or sum(abs(result.energy.get(name, 0.0)) for name in of_plate) > least:  # it may be free, and rigid
-        kind = "vibration" if "surface_m" in result.history else "motion"  # without that of the supports
+    # it may be free, and rigid
+    if (
+        "plate" in result.peaks
+        or sum(abs(result.energy.get(name, 0.0)) for name in of_plate) > least
+    ):
+        # without that of the supports
+        kind = "vibration" if "surface_m" in result.history else "motion"
         bodies[f"the {kind} of the {body_below(result)}"] = of_plate
     if not bodies:
         return ""
@@ -148,63 +207,102 @@ def _vibration(result: Result) -> str:
     names = [name for entries in bodies.values() for name in entries if name in result.energy]
     still = sum(abs(result.energy[name]) for name in names)
     left = energy_text(result, *names) if still > least else f"less than {text(least, 'J', 1)}"
-    damped = f"The damping of the bodies dissipated {energy_text(result, 'sphere_damping_J', 'plate_damping_J')}, and "
+    damped = (
+        "The damping of the bodies dissipated "
+        f"{energy_text(result, 'sphere_damping_J', 'plate_damping_J')}, and "
+    )
     remains = f"{left} remains in {where}."
     return f" {damped}{remains}" if result.peaks else f" At the end {remains}"
 
 
 def _in_whole_run(result: Result) -> str:
-    """Return a sentence stating that contacts are too short to be resolved in the whole run; empty if they take over 2 % of it."""
+    """Return a sentence stating that contacts are too short to be resolved in the whole
+    run; empty if they take over 2 % of it.
+    """
     found, span = contacts_with_duration(result), result.history["time_s"][-1]
     part = float(np.sum(result.impacts["duration_s"][found])) / span
     if part > 0.02:
         return ""
-    return f"Contacts take {digits(100.0 * part, 2)} % of the run, and appear as thin lines in the whole run."
+    return (
+        f"Contacts take {digits(100.0 * part, 2)} % of the run, and appear as "
+        "thin lines in the whole run."
+    )
 
 
 def sphere_energy_caption(result: Result) -> str:
     """Return the caption of the figure of the sphere's energies."""
     history, put_in = result.history, result.energy["input_J"]
-    words = f"The largest kinetic energy of the sphere's centre is {text(float(history['kinetic_J'].max()), 'J')}."
+    words = (
+        "The largest kinetic energy of the sphere's centre is "
+        f"{text(float(history['kinetic_J'].max()), 'J')}."
+    )
     if "sphere" not in result.peaks:
         return f"{words} The sphere has no modes in this run."
-    strain, left = float(history["sphere_strain_J"].max()), _after_first(result, "sphere_strain_J", "sphere_vibration_J")
+    strain, left = (
+        float(history["sphere_strain_J"].max()),
+        _after_first(result, "sphere_strain_J", "sphere_vibration_J"),
+    )
     words += (
-        f" The strain energy of its modes is at most {_part(strain, put_in)}; its energy of vibration at the first release is "
-        f"{_part(left, put_in)}."
+        f" The strain energy of its modes is at most {_part(strain, put_in)}; its energy "
+        f"of vibration at the first release is {_part(left, put_in)}."
     )
     turning = float(history["sphere_rotational_J"].max())
-    return f"{words} The energy of its rotation is at most {text(max(turning, 1e-15 * put_in), 'J', 2)}."
+    return (
+        f"{words} The energy of its rotation is at most "
+        f"{text(max(turning, 1e-15 * put_in), 'J', 2)}."
+    )
 
 
 def plate_motion_caption(result: Result) -> str:
     """Return the caption of the figure of the plate's motion."""
     peaks = result.peaks["plate"]
-    names = (("max_displacement_m", "m"), ("max_velocity_m_s", "m/s"), ("max_acceleration_m_s2", "m/s2"))
+    names = (
+        ("max_displacement_m", "m"),
+        ("max_velocity_m_s", "m/s"),
+        ("max_acceleration_m_s2", "m/s2"),
+    )
     most = [text(float(np.max(peaks[name])), unit) for name, unit in names]
     there = text(float(np.abs(result.history["plate_deflection_m"]).max()), "m")
-    words = f"The plate's centre of mass moves by up to {most[0]}, with up to {most[1]} and {most[2]}; the contact point by up to {there}."
+    words = (
+        f"The plate's centre of mass moves by up to {most[0]}, with up to {most[1]} and "
+        f"{most[2]}; the contact point by up to {there}."
+    )
     lowest = result.frequencies("plate")[0]
     periods = lowest * float(result.impacts["duration_s"][0])
-    return f"{words} The first impact lasts {digits(periods, 2)} periods of the lowest mode, of {digits(lowest)}\u00a0Hz."
+    return (
+        f"{words} The first impact lasts {digits(periods, 2)} periods of the lowest mode, of "
+        f"{digits(lowest)}\u00a0Hz."
+    )
 
 
 def plate_energy_caption(result: Result) -> str:
     """Return the caption of the figure of the plate's energies."""
     peaks, put_in = result.peaks["plate"], result.energy["input_J"]
-    kinetic, strain = (_part(float(np.max(peaks[name])), put_in) for name in ("max_kinetic_energy_J", "max_strain_energy_J"))
+    kinetic, strain = (
+        _part(float(np.max(peaks[name])), put_in)
+        for name in ("max_kinetic_energy_J", "max_strain_energy_J")
+    )
     change = text(float(np.abs(result.history["plate_potential_J"]).max()), "J")
-    words = f"At most {kinetic} of the energy put in is kinetic energy of the plate, and {strain} strain energy."
+    words = (
+        f"At most {kinetic} of the energy put in is kinetic energy of the plate, and {strain} "
+        "strain energy."
+    )
     if not result.history["plate_potential_J"].any():  # without gravity
         return words
-    return f"{words} Its potential energy changes by up to {change}, which the strain energy due to its own weight balances."
+    return (
+        f"{words} Its potential energy changes by up to {change}, which the strain energy due "
+        "to its own weight balances."
+    )
 
 
 def deflection_caption(result: Result) -> str:
     """Return the caption of the maps of the plate's deflection."""
     assert result.deflection is not None  # as the figure exists
     largest = float(np.nanmax(np.abs(result.deflection.height)))
-    return f"Displacement of the upper side, up to {text(largest, 'm')}, on a common scale; solid contours up, dashed down, thick zero."
+    return (
+        f"Displacement of the upper side, up to {text(largest, 'm')}, on a common scale; solid "
+        "contours up, dashed down, thick zero."
+    )
 
 
 def scene_caption(result: Result) -> str:
@@ -212,7 +310,8 @@ def scene_caption(result: Result) -> str:
     assert result.deflection is not None  # as the scene exists
     factor = exaggeration(result.deflection)
     return (
-        f"The first impact in slow motion. The plate's deflection is magnified {factor:g} times; the ball and its gap to the plate "
+        f"The first impact in slow motion. The plate's deflection is magnified {factor:g} "
+        "times; the ball and its gap to the plate "
         "are to scale. Time is slowed down most around the contact."
     )
 
@@ -229,19 +328,26 @@ def sensor_caption(result: Result, name: str) -> str:
     signal = result.signals[name]
     sensor, part = signal.sensor, first_response(result, name)
     words = (
-        f"Largest magnitude {text(signal.largest, sensor.unit)}, of {len(signal.value)} samples at {digits(sensor.rate)}"
+        f"Largest magnitude {text(signal.largest, sensor.unit)}, of {len(signal.value)} "
+        f"samples at {digits(sensor.rate)}"
         f"\u00a0Hz, {_FILTERS[sensor.filter]}."
     )
     if signal.overload_time > 0.0:
         words += " Its accelerometer is overloaded: values beyond its range are clipped"
-        words += "." if sensor.filter == "none" else " before the filter, which may overshoot the range."
+        words += (
+            "." if sensor.filter == "none" else " before the filter, which may overshoot the range."
+        )
     values = signal.value[part]
     if len(values) < 4 or not np.any(values):
         return words
     found = amplitude_spectrum(values, sensor.rate)
-    top, ticks = 1 + int(found.amplitude[1:].argmax()), "; ticks mark the plate's modes" if result.frequencies("plate") else ""
+    top, ticks = (
+        1 + int(found.amplitude[1:].argmax()),
+        "; ticks mark the plate's modes" if result.frequencies("plate") else "",
+    )
     return (
-        f"{words} The spectrum is one-sided, of {text(found.span, 's', 3)} from the first touch on, with the falling half of a Hann "
+        f"{words} The spectrum is one-sided, of {text(found.span, 's', 3)} from the first "
+        "touch on, with the falling half of a Hann "
         f"window, scaled to the amplitude of a steady sinusoid. Its maximum lies at "
         f"{digits(float(found.frequency[top]), 3)}\u00a0Hz{ticks}."
     )
@@ -250,7 +356,12 @@ def sensor_caption(result: Result, name: str) -> str:
 def sensors_left_out(result: Result) -> str:
     """Return a sentence stating that only some sensors are drawn; empty if all are."""
     more = len(result.signals) - MOST
-    return f"Of the {len(result.signals)} sensors the first {MOST} are drawn; the signals of all are in result.nc." if more > 0 else ""
+    return (
+        f"Of the {len(result.signals)} sensors the first {MOST} are drawn; the signals of "
+        "all are in result.nc."
+        if more > 0
+        else ""
+    )
 
 
 def _after_first(result: Result, *names: str) -> float:
@@ -266,12 +377,21 @@ def _part(value: float, whole: float) -> str:
 
 def _along_plate(result: Result) -> str:
     friction = result.case.get("contact", {}).get("friction")
-    drag = [what for what, entry in (("air", "air_J"), ("the liquid", "liquid_J")) if entry in result.energy]
-    words = f"Along the plate the drag of {drag[0]} slows the sphere between impacts" if drag else ""
+    drag = [
+        what
+        for what, entry in (("air", "air_J"), ("the liquid", "liquid_J"))
+        if entry in result.energy
+    ]
+    words = (
+        f"Along the plate the drag of {drag[0]} slows the sphere between impacts" if drag else ""
+    )
     words = words or "Along the plate the sphere moves freely between impacts"
     if friction is None:
         return f"{words}; there is no friction."
-    words += f"; in contact, friction ({friction['law']}, coefficient {float(friction['coefficient']):g}) acts on it."
+    words += (
+        f"; in contact, friction ({friction['law']}, coefficient "
+        f"{float(friction['coefficient']):g}) acts on it."
+    )
     ratio = result.impacts["tangential_restitution"]
     if len(ratio) and np.isfinite(ratio[0]):
         words += f" The tangential restitution of impact 1 is {fixed(float(ratio[0]), 4)}."
@@ -285,11 +405,18 @@ def _path(result: Result) -> str:
         words += ", and +x downhill"
     number = len(impacts["time_s"])
     if number > 1:
-        first, last = (np.array([impacts[f"position_{axis}_m"][place] for axis in "xy"]) for place in (0, -1))
-        words += f". From impact 1 to impact {number} it moves {text(float(np.hypot(*(last - first))), 'm')}"
+        first, last = (
+            np.array([impacts[f"position_{axis}_m"][place] for axis in "xy"]) for place in (0, -1)
+        )
+        words += (
+            f". From impact 1 to impact {number} it moves "
+            f"{text(float(np.hypot(*(last - first))), 'm')}"
+        )
     elif not number:
         words += ". It has not touched the plate"
-    length = float(np.hypot(np.diff(history["position_x_m"]), np.diff(history["position_y_m"])).sum())
+    length = float(
+        np.hypot(np.diff(history["position_x_m"]), np.diff(history["position_y_m"])).sum()
+    )
     return f"{words}; the length of its path over the plate is {text(length, 'm')}."
 
 

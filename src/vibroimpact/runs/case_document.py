@@ -15,9 +15,11 @@ from vibroimpact.cases.rigid import contact_laws_of, elastic_names, mass_of_sphe
 
 
 def case_document(case: Case, aside: Container[str] = ()) -> dict[str, Any]:
-    """Return a case as its results would hold it, with its expected first contact, its cost and its doubts.
+    """Return a case as its results would hold it, with its expected first contact, its cost and its
+    doubts.
 
-    The restitution is that of rigid bodies without gravity, indentation and force are those of rigid bodies without losses.
+    The restitution is that of rigid bodies without gravity, indentation and force are those of
+    rigid bodies without losses.
 
     Parameters
     ----------
@@ -26,7 +28,12 @@ def case_document(case: Case, aside: Container[str] = ()) -> dict[str, Any]:
     aside : container of str
         Keys of the case whose implausible values are reported elsewhere, and not doubted here.
     """
-    law, pair, speed, expected = contact_laws_of(case)[0], contact_pair(case), touch_speed(case), expected_of(case)
+    law, pair, speed, expected = (
+        contact_laws_of(case)[0],
+        contact_pair(case),
+        touch_speed(case),
+        expected_of(case),
+    )
     resolved = resolved_case(case)
     restitution = first_restitution(case)
     return {

@@ -39,14 +39,19 @@ from vibroimpact.materials import RIGID, Material
 from vibroimpact.report.terminal_table import facts
 from vibroimpact.runs.text import doubt_lines
 
-_LIKE_SOLID = 0.1  # relative difference of the mean density of a sphere from that of its material, up to which it may be solid
+# relative difference of the mean density of a sphere from that of its material, up to which it may
+# be solid
+_LIKE_SOLID = 0.1
 
 
 def _plate_text(case: Case) -> str:
     """Return a description of the plate, or of the sphere in its place."""
     plate = case.plate
     if plate.radius is not None:
-        return f"in its place a sphere, radius {plate.radius:g} m, {'free' if plate.supports == 'free' else 'rigid, held fixed'}"
+        return (
+            f"in its place a sphere, radius {plate.radius:g} m, "
+            f"{'free' if plate.supports == 'free' else 'rigid, held fixed'}"
+        )
     size = f", {' x '.join(f'{side:g}' for side in plate.size)} m" if plate.size else ""
     held = "held fixed" if plate.motion is None else "moved with its supports"
     return f"{f'rigid, {held}' if plate.model == 'rigid' else 'elastic'}{size}"
@@ -65,15 +70,27 @@ def case_explained(case: Case, aside: Container[str] = ()) -> RenderableType:
     laws, pair, speed = contact_laws_of(case), contact_pair(case), touch_speed(case)
     mass, radius, gravity = mass_of_sphere(case), case.sphere.radius, case.drop.gravity
     rows: list[tuple[str, str]] = [
-        ("sphere", f"radius {radius:g} m, mass {mass:.6g} kg, {case.sphere.model}, of {_material_text(case.sphere.material)}"),
+        (
+            "sphere",
+            f"radius {radius:g} m, mass {mass:.6g} kg, {case.sphere.model}, of "
+            f"{_material_text(case.sphere.material)}",
+        ),
         *_ball_rows(case),
         ("plate", f"{_plate_text(case)}, of {_material_text(case.plate.material)}"),
         *_motion_rows(case),
         *_elastic_rows(case),
         *_coupling_rows(case),
         ("effective modulus", f"{pair.effective_modulus:.6g} Pa"),
-        ("first approach speed", f"{speed:.6g} m/s{' along the normal' if is_oblique(case) else ''}, gravity {gravity:g} m/s2"),
-        *([] if case.drop.air is None else [("air", fluid_words(case.drop.air.model_dump(exclude_none=True)))]),
+        (
+            "first approach speed",
+            f"{speed:.6g} m/s{' along the normal' if is_oblique(case) else ''}, gravity "
+            f"{gravity:g} m/s2",
+        ),
+        *(
+            []
+            if case.drop.air is None
+            else [("air", fluid_words(case.drop.air.model_dump(exclude_none=True)))]
+        ),
         ("contact law", f"{case.contact.law}: {laws[0].equation}"),
     ]
     functions = by_speed_of(case)
@@ -83,31 +100,62 @@ def case_explained(case: Case, aside: Container[str] = ()) -> RenderableType:
         if values[0] is None or (item.metadata["memory"] and not any(values)):
             continue
         if item.name in functions:
-            rows.append((f"  {item.name}", f"{unit_of(item, 1)}: {functions[item.name].words}".removeprefix(": ")))
+            rows.append(
+                (
+                    f"  {item.name}",
+                    f"{unit_of(item, 1)}: {functions[item.name].words}".removeprefix(": "),
+                )
+            )
             continue
         shown = (
-            ", ".join(f"{value:.9g}" for value in values) if len(set(values)) > 1 else f"{values[0]:.9g}" if values[0] is not None else "-"
+            ", ".join(f"{value:.9g}" for value in values)
+            if len(set(values)) > 1
+            else f"{values[0]:.9g}"
+            if values[0] is not None
+            else "-"
         )
         rows.append((f"  {item.name}", f"{shown} {unit_of(item, getattr(laws[0], 'exponent', 1))}"))
     if (table := case.contact.local.liquid) is not None:
-        stokes = table.liquid().stokes_number(speed, case.sphere.radius, sphere_density(case.sphere))
-        left = f"at the first touch the Stokes number is {stokes:.4g}, and {restitution_kept(stokes):.5g} of the restitution remains"
+        stokes = table.liquid().stokes_number(
+            speed, case.sphere.radius, sphere_density(case.sphere)
+        )
+        left = (
+            f"at the first touch the Stokes number is {stokes:.4g}, and "
+            f"{restitution_kept(stokes):.5g} of the restitution remains"
+        )
         rows.append(("liquid", f"{fluid_words(table.model_dump())}: {left}"))
     if (friction := friction_law_of(case)) is not None:
         rows.append(("friction law", f"{friction.name}: {friction.equation}"))
-        rows += [(f"  {item.name}", f"{getattr(friction, item.name):.9g} {item.metadata['unit']}".rstrip()) for item in fields(friction)]
+        rows += [
+            (
+                f"  {item.name}",
+                f"{getattr(friction, item.name):.9g} {item.metadata['unit']}".rstrip(),
+            )
+            for item in fields(friction)
+        ]
     rows += [("stops", " or ".join(_ends_of_a_run(case))), ("tolerance", f"{case.run.tolerance:g}")]
     if case.calibrate is not None:
         named = case.calibrate.parameter
-        tuned = ", ".join(named) if isinstance(named, tuple) else named or "loss parameter of the law"
+        tuned = (
+            ", ".join(named) if isinstance(named, tuple) else named or "loss parameter of the law"
+        )
         rows.append(("to calibrate", f"{tuned}; a run ignores [calibrate]"))
     if isinstance(laws[0], CompliantLaw) and laws[0].lasting:
-        where = "on the same spot: the dents of earlier ones remain" if case.drop.same_spot else "on fresh surfaces"
-        rows.append(("each impact", f"{where} (drop.same_spot = {str(case.drop.same_spot).lower()})"))
-    # restitution and expected contact are those of rigid bodies, and labelled so where the bodies deform
+        where = (
+            "on the same spot: the dents of earlier ones remain"
+            if case.drop.same_spot
+            else "on fresh surfaces"
+        )
+        rows.append(
+            ("each impact", f"{where} (drop.same_spot = {str(case.drop.same_spot).lower()})")
+        )
+    # restitution and expected contact are those of rigid bodies, and labelled so where the bodies
+    # deform
     rigid = not deforms(case) or is_free_sphere(case)
     label = "restitution" if rigid else "restitution if rigid"
-    rows += [("" if number else label, line) for number, line in enumerate(_restitution_lines(case))]
+    rows += [
+        ("" if number else label, line) for number, line in enumerate(_restitution_lines(case))
+    ]
     expected = expected_of(case)
     if not math.isnan(expected.force):
         numbers = f"indentation {expected.depth:.4g} m, force {expected.force:.4g} N"
@@ -123,26 +171,49 @@ def _ends_of_a_run(case: Case) -> list[str]:
     ends = ["at rest"] if case.drop.gravity else ["when it flies off for good"]
     ends += [f"after {number} impact{'' if number == 1 else 's'}"] if number else []
     ends += [f"at {duration:g} s"] if duration else []
-    return [*ends, *(["when it falls off the edge of the plate"] if is_oblique(case) and case.plate.size else [])]
+    return [
+        *ends,
+        *(
+            ["when it falls off the edge of the plate"]
+            if is_oblique(case) and case.plate.size
+            else []
+        ),
+    ]
 
 
 def _ball_rows(case: Case) -> list[tuple[str, str]]:
-    """Return rows on a sphere whose mass or moment of inertia is given: its mean density, and how it turns."""
+    """Return rows on a sphere whose mass or moment of inertia is given: its mean density,
+    and how it turns.
+    """
     sphere, ball, lines = case.sphere, ball_of(case.sphere), []
     if sphere.mass is not None:
         ratio = sphere_density(sphere) / sphere.material.density
-        lines.append(f"of a mean density of {sphere_density(sphere):.4g} kg/m3, {ratio:.3g} times its material's" + _inside(ratio))
+        lines.append(
+            f"of a mean density of {sphere_density(sphere):.4g} kg/m3, {ratio:.3g} times "
+            "its material's" + _inside(ratio)
+        )
     if sphere.inertia is not None or (sphere.mass is not None and is_oblique(case)):
         problem = rigid_problem(case)
-        turns = f"moment of inertia {problem.sphere_inertia:.4g} kg m2, {problem.inertia_ratio:.4g} times mass and squared radius"
-        lines.append(turns if ball.inertia is not None else f'{turns}, as of a solid ball; of a shell: sphere.inertia = "hollow"')
+        turns = (
+            f"moment of inertia {problem.sphere_inertia:.4g} kg m2, "
+            f"{problem.inertia_ratio:.4g} times mass and squared radius"
+        )
+        lines.append(
+            turns
+            if ball.inertia is not None
+            else f'{turns}, as of a solid ball; of a shell: sphere.inertia = "hollow"'
+        )
     return [("", line) for line in lines]
 
 
 def _inside(ratio: float) -> str:
-    """Return what a ball may be whose mean density is so many times that of its material, and what that means for the contact."""
+    """Return what a ball may be whose mean density is so many times that of its material,
+    and what that means for the contact.
+    """
     if ratio < 1.0 - _LIKE_SOLID:
-        return ", so hollow or light inside; a stiffness from Hertz's theory is that of a solid ball"
+        return (
+            ", so hollow or light inside; a stiffness from Hertz's theory is that of a solid ball"
+        )
     return ", so heavy inside" if ratio > 1.0 + _LIKE_SOLID else ""
 
 
@@ -155,9 +226,20 @@ def _motion_rows(case: Case) -> list[tuple[str, str]]:
     if motion.file is not None:
         lasts = "repeated" if motion.repeat else f"for {motion_length(case):.6g} s"
         return [("motion of supports", f"as in {motion.file}, {lasts}, {along}")]
-    strength = float(motion.amplitude or 0.0) * (2.0 * math.pi * float(motion.frequency or 0.0)) ** 2
-    words = f"amplitude {motion.amplitude:g} m, frequency {motion.frequency:g} Hz, phase {motion.phase:g} rad, {along}"
-    return [("motion of supports", f"{words}: up to {strength:.4g} m/s2, {strength / STANDARD_GRAVITY:.4g} times standard gravity")]
+    strength = (
+        float(motion.amplitude or 0.0) * (2.0 * math.pi * float(motion.frequency or 0.0)) ** 2
+    )
+    words = (
+        f"amplitude {motion.amplitude:g} m, frequency {motion.frequency:g} Hz, phase "
+        f"{motion.phase:g} rad, {along}"
+    )
+    return [
+        (
+            "motion of supports",
+            f"{words}: up to {strength:.4g} m/s2, {strength / STANDARD_GRAVITY:.4g} times "
+            "standard gravity",
+        )
+    ]
 
 
 def _elastic_rows(case: Case) -> list[tuple[str, str]]:
@@ -179,14 +261,26 @@ def _coupling_rows(case: Case) -> list[tuple[str, str]]:
     if local.finite_sphere:
         words.append("Hertz's half space corrected to a sphere of finite size")
     if local.local_stiffness is not None:
-        words.append(f"local element of {local.local_stiffness:.6g} N/m and {local.local_damping:.6g} N s/m")
+        words.append(
+            f"local element of {local.local_stiffness:.6g} N/m and {local.local_damping:.6g} N s/m"
+        )
     if local.measured is not None:
         where = "on a rigid plate" if local.measured.plate == "rigid" else "on this plate"
-        words.append(f"local element found from a largest force of {local.measured.max_force:.6g} N {where}")
+        words.append(
+            f"local element found from a largest force of {local.measured.max_force:.6g} N {where}"
+        )
     rows = [("local compliance", "; ".join(words))] if words else []
     for sensor in case.sensors:
-        place = sensor.position if isinstance(sensor.position, str) else f"({sensor.position[0]:g}, {sensor.position[1]:g}) m"
-        where = f"of the support at {place}" if sensor.instrument == "force" else f"at {place}, {sensor.face} face"
+        place = (
+            sensor.position
+            if isinstance(sensor.position, str)
+            else f"({sensor.position[0]:g}, {sensor.position[1]:g}) m"
+        )
+        where = (
+            f"of the support at {place}"
+            if sensor.instrument == "force"
+            else f"at {place}, {sensor.face} face"
+        )
         words = [
             f"{sensor.quantity} {where}",
             *_instrument(sensor),
@@ -202,7 +296,9 @@ def _instrument(sensor: SensorSection) -> list[str]:
     """Return a description of a sensor's instrument; empty without one."""
     if sensor.instrument is None:
         return []
-    words = "; ".join(_accelerometer(sensor.accelerometer) if sensor.accelerometer else _properties(sensor))
+    words = "; ".join(
+        _accelerometer(sensor.accelerometer) if sensor.accelerometer else _properties(sensor)
+    )
     return [f"by {INSTRUMENTS[sensor.instrument]} ({words or 'ideal'})"]
 
 
@@ -210,7 +306,11 @@ def _accelerometer(meter: AccelerometerTable) -> list[str]:
     """Return the properties of an accelerometer in words."""
     given = [
         ("resonance", meter.resonance, f"Hz with a damping ratio of {meter.damping_ratio:g}"),
-        ("range", meter.range, f"m/s2, {(meter.range or 0.0) / STANDARD_GRAVITY:.4g} times standard gravity"),
+        (
+            "range",
+            meter.range,
+            f"m/s2, {(meter.range or 0.0) / STANDARD_GRAVITY:.4g} times standard gravity",
+        ),
         ("noise", meter.noise or None, "m/s2"),
         ("resolution", meter.resolution, "m/s2"),
         ("sensitivity", meter.sensitivity, "V s2/m"),
@@ -221,8 +321,18 @@ def _accelerometer(meter: AccelerometerTable) -> list[str]:
 def _properties(sensor: SensorSection) -> list[str]:
     """Return the properties of another instrument in words."""
     table = getattr(sensor, str(sensor.instrument).replace("-", "_"))
-    given = [(name, getattr(table, name), quantity_of(info)) for name, info in type(table).model_fields.items()] if table else []
-    words = [(name.replace("_", " "), value, "" if quantity is None else quantity.unit.replace("^", "")) for name, value, quantity in given]
+    given = (
+        [
+            (name, getattr(table, name), quantity_of(info))
+            for name, info in type(table).model_fields.items()
+        ]
+        if table
+        else []
+    )
+    words = [
+        (name.replace("_", " "), value, "" if quantity is None else quantity.unit.replace("^", ""))
+        for name, value, quantity in given
+    ]
     return [f"{name} {value:g} {unit}".rstrip() for name, value, unit in words if value is not None]
 
 
@@ -230,10 +340,18 @@ def _electronics(sensor: SensorSection) -> list[str]:
     """Return descriptions of a sensor's amplifier and converter."""
     words, unit = [], sensor.sensor().unit
     if (amplifier := sensor.amplifier) is not None:
-        heard = f"hum of {amplifier.hum:g} {unit} at {amplifier.mains:g} Hz" if amplifier.hum else "no hum"
-        words.append(f"amplifier (gain {amplifier.gain:g}; noise {amplifier.noise:g} {unit}; {heard})")
+        heard = (
+            f"hum of {amplifier.hum:g} {unit} at {amplifier.mains:g} Hz"
+            if amplifier.hum
+            else "no hum"
+        )
+        words.append(
+            f"amplifier (gain {amplifier.gain:g}; noise {amplifier.noise:g} {unit}; {heard})"
+        )
     if (converter := sensor.converter) is not None:
-        words.append(f"converter (range {converter.range:g} {unit}; {converter.bits or 'unlimited'} bits)")
+        words.append(
+            f"converter (range {converter.range:g} {unit}; {converter.bits or 'unlimited'} bits)"
+        )
     return words
 
 
@@ -246,7 +364,9 @@ def _filter(sensor: SensorSection) -> str:
 
 
 def _restitution_lines(case: Case) -> list[str]:
-    """Return sentences on the restitution that the law achieves, and on the parameter that would achieve the one asked."""
+    """Return sentences on the restitution that the law achieves, and on the parameter
+    that would achieve the one asked.
+    """
     asked, achieved, to_ask, refusal = first_restitution(case)
     if math.isnan(to_ask) and not refusal:
         return [f"{achieved:.5g} achieved at the first touch, without gravity"]
@@ -259,5 +379,6 @@ def _material_text(material: Material) -> str:
     return (
         name
         if material is RIGID
-        else f"{name} (E {material.youngs_modulus:.4g} Pa, nu {material.poissons_ratio:g}, {material.density:g} kg/m3)"
+        else f"{name} (E {material.youngs_modulus:.4g} Pa, nu {material.poissons_ratio:g}, "
+        f"{material.density:g} kg/m3)"
     )

@@ -1,4 +1,6 @@
-"""Data drawn by the charts of a run: selected contacts, time windows of the history, and the points of long runs that are kept."""
+"""Data drawn by the charts of a run: selected contacts, time windows of the history, and
+the points of long runs that are kept.
+"""
 
 from __future__ import annotations
 
@@ -14,23 +16,31 @@ from vibroimpact.dynamics.sensors.recording import Signal
 from vibroimpact.results.result import Result
 
 MARGIN = 0.15
-"""Time shown before first touch and after release of an enlarged contact, relative to its duration."""
+"""Time shown before first touch and after release of an enlarged contact, relative to its
+duration.
+"""
 
 MOST_VIEWS = 200
 """Largest number of contacts that can be shown enlarged."""
 
 MOST_POINTS = 100_000
-"""Points of a history drawn, and samples of a signal; of longer ones those that show the whole, and the first contacts in full."""
+"""Points of a history drawn, and samples of a signal; of longer ones those that show the
+whole, and the first contacts in full.
+"""
 
 
 def contacts_with_duration(result: Result) -> Indices:
-    """Return the indices of the impacts with a finite contact duration, counted from 0; empty for an instantaneous law."""
+    """Return the indices of the impacts with a finite contact duration, counted from 0;
+    empty for an instantaneous law.
+    """
     found: Indices = np.flatnonzero(result.impacts["duration_s"] > 0.0)
     return found
 
 
 def enlarged_contacts(result: Result) -> Indices:
-    """Return the indices of the contacts that are shown enlarged, counted from 0: the first ones shorter than half of the run."""
+    """Return the indices of the contacts that are shown enlarged, counted from 0: the
+    first ones shorter than half of the run.
+    """
     span = result.history["time_s"][-1] - result.history["time_s"][0]
     found = contacts_with_duration(result)
     short: Indices = found[result.impacts["duration_s"][found] < 0.5 * span]
@@ -52,7 +62,8 @@ def views_of_contacts(
     result : Result
         The result.
     span : callable, optional
-        Time shown after the first touch of an impact, counted from 0 [s]; by default its contact with a margin.
+        Time shown after the first touch of an impact, counted from 0 [s]; by default its contact
+        with a margin.
     headline : callable, optional
         What an impact, counted from 0, shows.
     level, level_label : float and str, optional
@@ -60,10 +71,28 @@ def views_of_contacts(
     """
     found = []
     for impact in enlarged_contacts(result).tolist():
-        touch, duration = float(result.impacts["time_s"][impact]), float(result.impacts["duration_s"][impact])
-        before, after = (MARGIN * duration, (1.0 + MARGIN) * duration) if span is None else (0.06 * span(impact), span(impact))
+        touch, duration = (
+            float(result.impacts["time_s"][impact]),
+            float(result.impacts["duration_s"][impact]),
+        )
+        before, after = (
+            (MARGIN * duration, (1.0 + MARGIN) * duration)
+            if span is None
+            else (0.06 * span(impact), span(impact))
+        )
         name, since = f"Impact {impact + 1}", f"Time since first touch of impact {impact + 1}"
-        found.append(View(name, touch - before, touch + after, touch, since, headline(impact), level, level_label))
+        found.append(
+            View(
+                name,
+                touch - before,
+                touch + after,
+                touch,
+                since,
+                headline(impact),
+                level,
+                level_label,
+            )
+        )
     return tuple(found)
 
 
@@ -82,15 +111,18 @@ def spans_of_contact(result: Result) -> Spans:
     inside = (result.history["indentation_m"] > 0.0) | (result.history["force_N"] != 0.0)
     edges = np.diff(np.concatenate([[False], inside, [False]]).astype(int))
     time = result.history["time_s"]
-    return Spans(time[np.flatnonzero(edges == 1)], time[np.flatnonzero(edges == -1) - 1], "in contact")
+    return Spans(
+        time[np.flatnonzero(edges == 1)], time[np.flatnonzero(edges == -1) - 1], "in contact"
+    )
 
 
 def contact_history(result: Result, impact: int) -> dict[str, Floats]:
-    """Return time, force and indentation of a contact from first touch to release, as drawn over indentation.
+    """Return time, force and indentation of a contact from first touch to release, as drawn over
+    indentation.
 
-    At each end the history has a point in flight as well, which shows the jump of the force but has zero indentation. It is left out
-    where contact begins or ends at another indentation: in a permanent dent, or with an adhesive neck. The rest of a sphere that stays
-    is left out too.
+    At each end the history has a point in flight as well, which shows the jump of the force but has
+    zero indentation. It is left out where contact begins or ends at another indentation: in a
+    permanent dent, or with an adhesive neck. The rest of a sphere that stays is left out too.
     """
     touch = result.impacts["time_s"][impact]
     drawn = {name: result.history[name] for name in ("time_s", "force_N", "indentation_m")}
@@ -98,20 +130,28 @@ def contact_history(result: Result, impact: int) -> dict[str, Floats]:
     away = np.abs(part["indentation_m"]) > 1e-9 * np.max(np.abs(part["indentation_m"]))
     first, last = int(away[1] and not away[0]), len(away) - int(away[-2] and not away[-1])
     if result.impacts["separation_speed_m_s"][impact] == 0.0:
-        # the sphere stays: the last point is its state of rest, which is not the end of the computed motion
+        # the sphere stays: the last point is its state of rest, which is not the end of the
+        # computed motion
         last = int(np.searchsorted(part["time_s"], part["time_s"][-1])) + 1
     return {name: values[first:last] for name, values in part.items()}
 
 
 def history_window(history: Mapping[str, Floats], start: float, end: float) -> dict[str, Floats]:
-    """Return the history between two times [s], interpolated linearly at each of them that lies within the run."""
+    """Return the history between two times [s], interpolated linearly at each of them
+    that lies within the run.
+    """
     time = history["time_s"]
-    first, last = np.searchsorted(time, start, side="left"), np.searchsorted(time, end, side="right")
+    first, last = (
+        np.searchsorted(time, start, side="left"),
+        np.searchsorted(time, end, side="right"),
+    )
     before = [start] if first < len(time) and time[0] < start < time[first] else []
     after = [end] if last > 0 and time[last - 1] < end < time[-1] else []
 
     def cut(values: Floats) -> Floats:
-        return np.concatenate([np.interp(before, time, values), values[first:last], np.interp(after, time, values)])
+        return np.concatenate(
+            [np.interp(before, time, values), values[first:last], np.interp(after, time, values)]
+        )
 
     return {name: cut(values) for name, values in history.items()}
 
@@ -125,21 +165,36 @@ def touch_height(result: Result) -> float:
 
 
 def gravity_of(result: Result) -> float:
-    """Return the gravitational acceleration [m/s2]: that of the first point of the history, as every run begins in free flight."""
+    """Return the gravitational acceleration [m/s2]: that of the first point of the
+    history, as every run begins in free flight.
+    """
     return -float(result.history["acceleration_m_s2"][0])
 
 
 def drawn_history(result: Result) -> Mapping[str, Floats]:
-    """Return the history that is drawn: all of it, or of a very long one the points that show the whole, and the first contacts in full."""
+    """Return the history that is drawn: all of it, or of a very long one the points that
+    show the whole, and the first contacts in full.
+    """
     history = result.history
     count = len(history["time_s"])
     if count <= MOST_POINTS:
         return history
-    kept = [_visible(history["time_s"], history[name]) for name in ("position_m", "velocity_m_s", "force_N", "acceleration_m_s2")]
+    kept = [
+        _visible(history["time_s"], history[name])
+        for name in ("position_m", "velocity_m_s", "force_N", "acceleration_m_s2")
+    ]
     touches = result.impacts["time_s"]
-    first = np.searchsorted(history["time_s"], touches[:MOST_VIEWS] - MARGIN * result.impacts["duration_s"][:MOST_VIEWS])
-    last = np.searchsorted(history["time_s"], touches[:MOST_VIEWS] + (1.0 + MARGIN) * result.impacts["duration_s"][:MOST_VIEWS])
-    inside = np.concatenate([np.arange(low, high) for low, high in zip(first, last, strict=True)] or [np.empty(0, dtype=np.intp)])
+    first = np.searchsorted(
+        history["time_s"], touches[:MOST_VIEWS] - MARGIN * result.impacts["duration_s"][:MOST_VIEWS]
+    )
+    last = np.searchsorted(
+        history["time_s"],
+        touches[:MOST_VIEWS] + (1.0 + MARGIN) * result.impacts["duration_s"][:MOST_VIEWS],
+    )
+    inside = np.concatenate(
+        [np.arange(low, high) for low, high in zip(first, last, strict=True)]
+        or [np.empty(0, dtype=np.intp)]
+    )
     chosen = np.unique(np.concatenate([*kept, inside[: MOST_POINTS // 2], [0, count - 1]]))
     return {name: values[chosen] for name, values in history.items()}
 
@@ -150,7 +205,8 @@ def _visible(x: Floats, y: Floats) -> Indices:
 
 
 def drawn_signal(signal: Signal, first: int, last: int) -> tuple[Floats, Floats]:
-    """Return times [s] and values of a signal that are drawn: all samples, or of a long signal those that show it, and a range in full.
+    """Return times [s] and values of a signal that are drawn: all samples, or of a long signal
+    those that show it, and a range in full.
 
     Parameters
     ----------
@@ -162,6 +218,11 @@ def drawn_signal(signal: Signal, first: int, last: int) -> tuple[Floats, Floats]
     count = len(signal.value)
     if count <= 2 * MOST_POINTS:
         return signal.time, signal.value
-    shown = visible_points(count, lambda low, high: (signal.times(low, high), signal.value[low:high]))
-    kept = np.union1d(np.empty(0, dtype=np.intp) if shown is None else shown, np.arange(first, min(last, first + MOST_POINTS)))
+    shown = visible_points(
+        count, lambda low, high: (signal.times(low, high), signal.value[low:high])
+    )
+    kept = np.union1d(
+        np.empty(0, dtype=np.intp) if shown is None else shown,
+        np.arange(first, min(last, first + MOST_POINTS)),
+    )
     return kept / signal.sensor.rate, signal.value[kept]

@@ -17,11 +17,16 @@ from vibroimpact.runs.history_charts import ACCELERATION, FORCE, POSITION, VELOC
 from vibroimpact.runs.oblique_chart import moves_along, oblique_chart
 from vibroimpact.runs.path_chart import moves_over, path_chart
 from vibroimpact.runs.sensor_charts import drawn_sensors, sensor_chart
-from vibroimpact.runs.vibration_charts import plate_energy_chart, plate_motion_chart, sphere_energy_chart
+from vibroimpact.runs.vibration_charts import (
+    plate_energy_chart,
+    plate_motion_chart,
+    sphere_energy_chart,
+)
 
 
 def chart_makers(result: Result) -> dict[str, Callable[[], Chart]]:
-    """Return what makes each chart of a result, by the name of the chart, in the order of the report.
+    """Return what makes each chart of a result, by the name of the chart, in the order of the
+    report.
 
     Parameters
     ----------
@@ -31,15 +36,21 @@ def chart_makers(result: Result) -> dict[str, Callable[[], Chart]]:
     Returns
     -------
     dict of str to callable
-        `position`, `force`, `velocity`, `acceleration`, `force_indentation`, `along_plate` and `path` where there is such a motion, and
-        `energy`; where bodies vibrate also `sphere_energy`, `plate_motion`, `plate_energy` and `deflection`; and one per sensor. Force,
-        acceleration and force over indentation exist only for contacts of finite duration, not with an instantaneous law.
+        `position`, `force`, `velocity`, `acceleration`, `force_indentation`, `along_plate` and
+        `path` where there is such a motion, and `energy`; where bodies vibrate also
+        `sphere_energy`, `plate_motion`, `plate_energy` and `deflection`; and one per sensor. Force,
+        acceleration and force over indentation exist only for contacts of finite duration, not with
+        an instantaneous law.
     """
     history = drawn_history(result)
     in_contact = bool(len(contacts_with_duration(result)))
-    over_time = {"position": POSITION} | ({"force": FORCE} if in_contact else {}) | {"velocity": VELOCITY}
+    over_time = (
+        {"position": POSITION} | ({"force": FORCE} if in_contact else {}) | {"velocity": VELOCITY}
+    )
     over_time |= {"acceleration": ACCELERATION} if in_contact else {}
-    makers: dict[str, Callable[..., Chart]] = {name: partial(history_chart, result, history, what) for name, what in over_time.items()}
+    makers: dict[str, Callable[..., Chart]] = {
+        name: partial(history_chart, result, history, what) for name, what in over_time.items()
+    }
     if in_contact:
         makers["force_indentation"] = partial(loops_chart, result)
     if moves_along(history):
@@ -54,8 +65,15 @@ def chart_makers(result: Result) -> dict[str, Callable[[], Chart]]:
                 "plate_motion": partial(plate_motion_chart, result, history),
                 "plate_energy": partial(plate_energy_chart, result, history),
             }
-            makers |= {"deflection": partial(deflection_chart, result)} if result.deflection is not None else {}
-    makers |= {name: partial(sensor_chart, result, name, sensor) for name, sensor in drawn_sensors(result).items()}
+            makers |= (
+                {"deflection": partial(deflection_chart, result)}
+                if result.deflection is not None
+                else {}
+            )
+    makers |= {
+        name: partial(sensor_chart, result, name, sensor)
+        for name, sensor in drawn_sensors(result).items()
+    }
     return {name: partial(_with_caption, make, name, result) for name, make in makers.items()}
 
 

@@ -1,4 +1,6 @@
-"""Text on how the deformation of the bodies is modelled: a sentence, and a table of compliances and estimated errors."""
+"""Text on how the deformation of the bodies is modelled: a sentence, and a table of
+compliances and estimated errors.
+"""
 
 from __future__ import annotations
 
@@ -11,16 +13,20 @@ from vibroimpact.units.display import digits, fixed, text
 
 _SENTENCES = {
     "consistent": (
-        "Consistent: the contact law contains the local and the quasi-static deformation of the sphere, and modes of the sphere add "
-        "only the dynamic part; the static compliance that the modes of the plate lack is in series with the law. No compliance is "
-        "counted twice."
+        "Consistent: the contact law contains the local and the quasi-static deformation of "
+        "the sphere, and modes of the sphere add "
+        "only the dynamic part; the static compliance that the modes of the plate lack is "
+        "in series with the law. No compliance is counted twice."
     ),
     "superposed": (
-        "Superposed: the contact law and the modes of the bodies are in series, as in a multibody program with flexible bodies. Where a "
-        "body has a solid mesh, as an elastic sphere does, the local indentation that its modes contain is counted twice."
+        "Superposed: the contact law and the modes of the bodies are in series, as in a "
+        "multibody program with flexible bodies. Where a "
+        "body has a solid mesh, as an elastic sphere does, the local indentation that its "
+        "modes contain is counted twice."
     ),
     "identified": (
-        "Identified: a spring and a dashpot in parallel, in series with the contact law, represent the deformation of the sphere; they "
+        "Identified: a spring and a dashpot in parallel, in series with the contact law, "
+        "represent the deformation of the sphere; they "
         "were fitted to a measured impact or given, and are not material properties."
     ),
 }
@@ -32,14 +38,24 @@ def treatment_sentence(result: Result) -> str:
 
 
 def counted_twice(result: Result) -> float:
-    """Return the ratio of the sphere's modal compliance to the secant compliance of the contact law in impact 1.
+    """Return the ratio of the sphere's modal compliance to the secant compliance of the contact law
+    in impact 1.
 
-    It is the part of local indentation counted twice with superposed compliances; NaN for other treatments or without an impact.
+    It is the part of local indentation counted twice with superposed compliances; NaN for other
+    treatments or without an impact.
     """
     modal = result.deformation.get("sphere_modal_compliance_m_N")
-    if result.deformation.get("treatment") != "superposed" or modal is None or not len(result.impacts["impact"]):
+    if (
+        result.deformation.get("treatment") != "superposed"
+        or modal is None
+        or not len(result.impacts["impact"])
+    ):
         return math.nan
-    return float(modal) * float(result.impacts["max_force_N"][0]) / float(result.impacts["max_indentation_m"][0])
+    return (
+        float(modal)
+        * float(result.impacts["max_force_N"][0])
+        / float(result.impacts["max_indentation_m"][0])
+    )
 
 
 def deformation_rows(result: Result) -> list[tuple[str, str]]:
@@ -48,44 +64,82 @@ def deformation_rows(result: Result) -> list[tuple[str, str]]:
     for name, words in (
         (
             "plate_static_compliance_m_N",
-            "Static compliance of the plate at the contact point, without rigid-body motion and local indentation",
+            "Static compliance of the plate at the contact point, without rigid-body motion "
+            "and local indentation",
         ),
         (
             "plate_modal_compliance_m_N",
-            "Part of it in the modes kept" if "plate_static_compliance_m_N" in facts else "Compliance of the plate's modes",
+            "Part of it in the modes kept"
+            if "plate_static_compliance_m_N" in facts
+            else "Compliance of the plate's modes",
         ),
         ("sphere_modal_compliance_m_N", "Quasi-static compliance of the sphere's modes"),
-        ("series_compliance_m_N", "Compliance in series with the law, so that each part is counted once; negative if subtracted"),
+        (
+            "series_compliance_m_N",
+            "Compliance in series with the law, so that each part is "
+            "counted once; negative if subtracted",
+        ),
     ):
         if name in facts:
             rows.append((words, f"{digits(float(facts[name]) / 1e-9)}\u00a0nm/N"))
     if not math.isnan(twice := counted_twice(result)):
-        rows.append(("Counted twice, relative to the law's own indentation over force in impact 1", f"{fixed(100.0 * twice, 1)}\u00a0%"))
+        rows.append(
+            (
+                "Counted twice, relative to the law's own indentation over force in impact 1",
+                f"{fixed(100.0 * twice, 1)}\u00a0%",
+            )
+        )
     if "finite_sphere_factor" in facts:
         factor = digits(float(facts["finite_sphere_factor"]))
-        rows.append(("Correction of the approach for a sphere instead of a half-space, c F/(E R)", f"c\u00a0=\u00a0{factor}"))
+        rows.append(
+            (
+                "Correction of the approach for a sphere instead of a half-space, c F/(E R)",
+                f"c\u00a0=\u00a0{factor}",
+            )
+        )
     if "contact_patch_m" in facts:
-        rows.append(("Radius of the contact patch over which the sphere's modes are averaged", text(float(facts["contact_patch_m"]), "m")))
+        rows.append(
+            (
+                "Radius of the contact patch over which the sphere's modes are averaged",
+                text(float(facts["contact_patch_m"]), "m"),
+            )
+        )
     rows += _local_element(result)
     for body, part in result.truncation.items():
         if math.isfinite(part):
             rows.append(
-                (f"Estimated error of the largest force due to the modes of the {body} left out", f"{digits(100.0 * part, 2)}\u00a0%")
+                (
+                    f"Estimated error of the largest force due to the modes of the {body} left out",
+                    f"{digits(100.0 * part, 2)}\u00a0%",
+                )
             )
-    for words, error in (("the mesh of the plate", plate_mesh_error), ("the limits of plate elements", plate_theory_error)):
+    for words, error in (
+        ("the mesh of the plate", plate_mesh_error),
+        ("the limits of plate elements", plate_theory_error),
+    ):
         if math.isfinite(part := error(facts, result.impacts)):
-            rows.append((f"Estimated error of the largest force due to {words}", f"{digits(100.0 * part, 2)}\u00a0%"))
+            rows.append(
+                (
+                    f"Estimated error of the largest force due to {words}",
+                    f"{digits(100.0 * part, 2)}\u00a0%",
+                )
+            )
     return rows
 
 
 def _local_element(result: Result) -> list[tuple[str, str]]:
-    """Return rows of stiffness and damping of the local element, identified or given in the case; empty without one."""
+    """Return rows of stiffness and damping of the local element, identified or given in
+    the case; empty without one.
+    """
     contact, facts = result.case.get("contact", {}), result.deformation
     stiffness = facts.get("local_stiffness_N_m", contact.get("local_stiffness"))
     damping = facts.get("local_damping_N_s_m", contact.get("local_damping"))
     if stiffness is None or damping is None:
         return []
-    known = [facts.get(f"local_{name}_deviation_{unit}") for name, unit in (("stiffness", "N_m"), ("damping", "N_s_m"))]
+    known = [
+        facts.get(f"local_{name}_deviation_{unit}")
+        for name, unit in (("stiffness", "N_m"), ("damping", "N_s_m"))
+    ]
     told = ["" if deviation is None else f" ± {digits(float(deviation), 2)}" for deviation in known]
     return [
         ("Stiffness of the local element", f"{digits(float(stiffness))}{told[0]}\u00a0N/m"),

@@ -63,15 +63,23 @@ def ledger_chart(result: Result, history: Mapping[str, Floats], caption: str) ->
                 label = "damping of the contact"  # as opposed to that of the bodies
             layers.append(Layer(label, bands[name], role))
     sinks = np.min(bands["potential_J"]) < -0.01 * put_in
-    title = "Energy" + (" (bands are stacked on the potential energy where it is negative)" if sinks else "")
+    title = "Energy" + (
+        " (bands are stacked on the potential energy where it is negative)" if sinks else ""
+    )
     # contacts are shaded where they are enlarged alone, since the bands cover the ground
     stack = Stack(history["time_s"], tuple(layers), _drawn_points(result, history))
-    brought = -history["drive_J"] if "drive_J" in history else np.zeros(1)  # by a plate that is shaken
-    marks: tuple[Stack | Level | Spans, ...] = (stack, Level(put_in, "put in at the start" if brought.any() else "total put in", "total"))
+    # by a plate that is shaken
+    brought = -history["drive_J"] if "drive_J" in history else np.zeros(1)
+    marks: tuple[Stack | Level | Spans, ...] = (
+        stack,
+        Level(put_in, "put in at the start" if brought.any() else "total put in", "total"),
+    )
     time = time_axis(result, views_of_contacts(result))
     low = float(min(np.min(bands["potential_J"]), 0.0))
     panel = Panel(
-        time, Axis("Energy", "J", range=(low, 1.06 * (put_in + max(float(brought.max()), 0.0)))), (spans_of_contact(result), *marks)
+        time,
+        Axis("Energy", "J", range=(low, 1.06 * (put_in + max(float(brought.max()), 0.0)))),
+        (spans_of_contact(result), *marks),
     )
     return Chart("energy", title, ((panel,),), caption, height=3.9)
 
@@ -83,27 +91,41 @@ def bands_of(history: Mapping[str, Floats]) -> dict[str, Floats]:
     """
     bands = {name: values for name, values in history.items() if name in _ROLES or name == "time_s"}
     if "plate_strain_J" in history:
-        bands |= {name: history[kinetic] + history[strain] for name, (_, kinetic, strain) in _MOTIONS.items()}
+        bands |= {
+            name: history[kinetic] + history[strain]
+            for name, (_, kinetic, strain) in _MOTIONS.items()
+        }
     return bands
 
 
 def _drawn_points(result: Result, history: Mapping[str, Floats]) -> Indices:
-    """Return the indices of the points of the history to draw: evenly spaced ones, and those at touch and release of the first contacts."""
+    """Return the indices of the points of the history to draw: evenly spaced ones, and
+    those at touch and release of the first contacts.
+    """
     time, touch = history["time_s"], result.impacts["time_s"][:45]
     release = touch + result.impacts["duration_s"][:45]
     count = min(max(4 * len(touch), _COLUMNS), 2 * _COLUMNS)
     spread = np.searchsorted(time, np.linspace(time[0], time[-1], count))
-    # energies change faster in contact than in flight: a contact long enough to be visible gets more points
+    # energies change faster in contact than in flight: a contact long enough to be visible gets
+    # more points
     close = np.searchsorted(time, np.linspace(time[0], time[-1], 4 * _COLUMNS))
     close = close[history["indentation_m"][close.clip(max=len(time) - 1)] > 0.0]
-    beside = [np.searchsorted(time, touch), np.searchsorted(time, release, side="right") - 1, [len(time) - 1]]
+    beside = [
+        np.searchsorted(time, touch),
+        np.searchsorted(time, release, side="right") - 1,
+        [len(time) - 1],
+    ]
     kept = np.unique(np.concatenate([spread, close, *beside]).clip(0, len(time) - 1))
-    # energy stored in a local element at release is lost at once: keep the first point from release on without it
+    # energy stored in a local element at release is lost at once: keep the first point from release
+    # on without it
     calm = np.flatnonzero(history["contact_elastic_J"] <= 1e-4 * result.energy["input_J"])
     after = np.searchsorted(calm, np.searchsorted(time, release, side="right") - 1)
     kept = np.union1d(kept, calm[after[after < len(calm)]])
-    # a contact too short to be visible would show as a hairline wherever a point happens to lie inside it
+    # a contact too short to be visible would show as a hairline wherever a point happens to lie
+    # inside it
     impact = np.searchsorted(result.impacts["time_s"], time[kept], side="right") - 1
-    brief = np.append(result.impacts["duration_s"], 0.0)[impact] < 3.0 * (time[-1] - time[0]) / _COLUMNS
+    brief = (
+        np.append(result.impacts["duration_s"], 0.0)[impact] < 3.0 * (time[-1] - time[0]) / _COLUMNS
+    )
     inside = history["contact_elastic_J"][kept] > 1e-4 * result.energy["input_J"]
     return np.asarray(kept[~(brief & inside)])

@@ -18,9 +18,13 @@ ANIMATION = "plate.gif"
 
 
 def write_figures(
-    result: Result, directory: Path, formats: Sequence[str] = ("png",), progress: Callable[[float], None] = lambda done: None
+    result: Result,
+    directory: Path,
+    formats: Sequence[str] = ("png",),
+    progress: Callable[[float], None] = lambda done: None,
 ) -> None:
-    """Write the charts of a run into an existing directory, and `plate.gif`, its plate in motion, if the plate deforms.
+    """Write the charts of a run into an existing directory, and `plate.gif`, its plate in motion,
+    if the plate deforms.
 
     Parameters
     ----------

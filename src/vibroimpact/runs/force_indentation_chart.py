@@ -21,7 +21,9 @@ _MOST_OTHERS = 60
 
 
 def loops_chart(result: Result, caption: str) -> Chart:
-    """Return the chart of contact force over indentation, with the first contacts named by impact and approach speed."""
+    """Return the chart of contact force over indentation, with the first contacts named
+    by impact and approach speed.
+    """
     found = contacts_with_duration(result)
     named = found if len(found) <= SERIES else found[:_NAMED]
     marks: list[Line | Points] = _other_loops(result, found[len(named) :])
@@ -30,7 +32,14 @@ def loops_chart(result: Result, caption: str) -> Chart:
         marks.append(Line(*_loop(result, impact), name, series(number)))
     when = result.impacts["time_of_max_force_s"][named]
     texts = tuple(f"impact {impact + 1}" for impact in named)
-    marks.append(Points(_indentation_at(result, named, when), result.impacts["max_force_N"][named], "largest force", texts=texts))
+    marks.append(
+        Points(
+            _indentation_at(result, named, when),
+            result.impacts["max_force_N"][named],
+            "largest force",
+            texts=texts,
+        )
+    )
     panel = Panel(Axis("Indentation", "m"), Axis("Contact force", "N"), tuple(marks))
     return Chart("force_indentation", "Contact force over indentation", ((panel,),), caption)
 
@@ -46,12 +55,23 @@ def _other_loops(result: Result, others: Indices) -> list[Line | Points]:
         return []
     drawn = others[np.unique(np.linspace(0, len(others) - 1, _MOST_OTHERS).round().astype(int))]
     gap = np.full((1, 2), np.nan)
-    x, y = np.concatenate([part for impact in drawn for part in (np.column_stack(_loop(result, impact)), gap)]).T
-    which = f"impacts {others[0] + 1} to {others[-1] + 1}" + (f" ({len(drawn)} of them)" if len(drawn) < len(others) else "")
+    x, y = np.concatenate(
+        [part for impact in drawn for part in (np.column_stack(_loop(result, impact)), gap)]
+    ).T
+    which = f"impacts {others[0] + 1} to {others[-1] + 1}" + (
+        f" ({len(drawn)} of them)" if len(drawn) < len(others) else ""
+    )
     return [Line(np.ascontiguousarray(x), np.ascontiguousarray(y), which, "muted")]
 
 
 def _indentation_at(result: Result, shown: Indices, when: Floats) -> Floats:
-    """Return the indentation of each contact at a given time during it [m], interpolated linearly."""
+    """Return the indentation of each contact at a given time during it [m], interpolated
+    linearly.
+    """
     parts = [contact_history(result, impact) for impact in shown]
-    return np.array([np.interp(time, part["time_s"], part["indentation_m"]) for time, part in zip(when, parts, strict=True)])
+    return np.array(
+        [
+            np.interp(time, part["time_s"], part["indentation_m"])
+            for time, part in zip(when, parts, strict=True)
+        ]
+    )

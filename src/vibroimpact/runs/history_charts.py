@@ -1,4 +1,6 @@
-"""Charts of position, force, velocity and acceleration of the sphere over time, with each contact as a view."""
+"""Charts of position, force, velocity and acceleration of the sphere over time, with each
+contact as a view.
+"""
 
 from __future__ import annotations
 
@@ -14,11 +16,19 @@ from vibroimpact.charts.marks import Line, Mark, Points
 from vibroimpact.dynamics.columns import HISTORY_COLUMNS
 from vibroimpact.results.result import Result
 from vibroimpact.runs.below import level_below
-from vibroimpact.runs.chart_data import gravity_of, spans_of_contact, time_axis, touch_height, views_of_contacts
+from vibroimpact.runs.chart_data import (
+    gravity_of,
+    spans_of_contact,
+    time_axis,
+    touch_height,
+    views_of_contacts,
+)
 from vibroimpact.runs.tables import impact_text
 
 Marks = Callable[[Result], tuple[Floats, Floats]]
-"""Function returning times [s] and values to mark. They come from the impact table, whose extremes are located, not sampled."""
+"""Function returning times [s] and values to mark. They come from the impact table, whose
+extremes are located, not sampled.
+"""
 
 
 class PlottedQuantity(NamedTuple):
@@ -33,7 +43,8 @@ class PlottedQuantity(NamedTuple):
     marks : tuple of (str, callable)
         Points that are marked, of two kinds at most, by what they are.
     headline : callable
-        What the view of a contact tells, from the result and the index of the impact, counted from 0.
+        What the view of a contact tells, from the result and the index of the impact, counted from
+        0.
     from_touch : bool
         Whether the views show the difference from the value at first touch.
     """
@@ -46,7 +57,9 @@ class PlottedQuantity(NamedTuple):
     from_touch: bool = False
 
 
-def history_chart(result: Result, history: Mapping[str, Floats], quantity: PlottedQuantity, caption: str) -> Chart:
+def history_chart(
+    result: Result, history: Mapping[str, Floats], quantity: PlottedQuantity, caption: str
+) -> Chart:
     """Return the chart of a quantity over time.
 
     Parameters
@@ -61,19 +74,38 @@ def history_chart(result: Result, history: Mapping[str, Floats], quantity: Plott
         The caption.
     """
     level, label = (touch_height(result), "From first touch") if quantity.from_touch else (0.0, "")
-    views = views_of_contacts(result, headline=lambda impact: quantity.headline(result, impact), level=level, level_label=label)
+    views = views_of_contacts(
+        result,
+        headline=lambda impact: quantity.headline(result, impact),
+        level=level,
+        level_label=label,
+    )
     time = time_axis(result, views)
-    marks: list[Mark] = [spans_of_contact(result), Line(history["time_s"], history[quantity.column])]
+    marks: list[Mark] = [
+        spans_of_contact(result),
+        Line(history["time_s"], history[quantity.column]),
+    ]
     if quantity is POSITION and "surface_m" in history and len(result.impacts["time_s"]):
         above = touch_height(result) - _at(result, "surface_m", result.impacts["time_s"][:1])[0]
-        marks.append(Line(history["time_s"], history["surface_m"] + above, "where it touches the moving plate", "reference"))
+        marks.append(
+            Line(
+                history["time_s"],
+                history["surface_m"] + above,
+                "where it touches the moving plate",
+                "reference",
+            )
+        )
     for (name, found), role in zip(quantity.marks, ("mark", "other mark"), strict=False):
         times, values = found(result)
         if len(times):
             marks.append(Points(times, values, name, role, _names(result, times)))
     value = Axis(quantity.label, HISTORY_COLUMNS[quantity.column].unit)
-    title = f"{quantity.title} above {level_below(result)}" if quantity is POSITION else quantity.title
-    return Chart(quantity.column.split("_")[0], title, ((Panel(time, value, tuple(marks)),),), caption)
+    title = (
+        f"{quantity.title} above {level_below(result)}" if quantity is POSITION else quantity.title
+    )
+    return Chart(
+        quantity.column.split("_")[0], title, ((Panel(time, value, tuple(marks)),),), caption
+    )
 
 
 def _names(result: Result, times: Floats) -> tuple[str, ...]:
@@ -83,19 +115,26 @@ def _names(result: Result, times: Floats) -> tuple[str, ...]:
 
 
 def _at(result: Result, column: str, times: Floats) -> Floats:
-    """Return a column of the history of a shaken plate at times [s]; zeros where the plate is at rest."""
+    """Return a column of the history of a shaken plate at times [s]; zeros where the
+    plate is at rest.
+    """
     if column not in result.history:
         return np.zeros_like(times)
     return np.asarray(np.interp(times, result.history["time_s"], result.history[column]))
 
 
 def tops_of_rebounds(result: Result) -> tuple[Floats, Floats]:
-    """Return times [s] and heights of the sphere's centre [m] at the apex of each rebound within the run."""
+    """Return times [s] and heights of the sphere's centre [m] at the apex of each rebound
+    within the run.
+    """
     impacts, down = result.impacts, gravity_of(result)
     if down <= 0.0:
         return np.empty(0), np.empty(0)
     release = impacts["time_s"] + impacts["duration_s"]
-    top = release + (impacts["separation_speed_m_s"] + _at(result, "surface_velocity_m_s", release)) / down
+    top = (
+        release
+        + (impacts["separation_speed_m_s"] + _at(result, "surface_velocity_m_s", release)) / down
+    )
     # a rebound during which the run ends or comes to rest does not reach its apex in the history
     reached = np.interp(top, result.history["time_s"], result.history["position_m"], right=np.nan)
     height = impacts["rebound_height_m"]
@@ -118,9 +157,12 @@ def _force_peaks(result: Result) -> tuple[Floats, Floats]:
 
 
 def _acceleration_peaks(result: Result) -> tuple[Floats, Floats]:
-    # a contact of less than gravitational acceleration has its largest magnitude in flight, not at the largest force
+    # a contact of less than gravitational acceleration has its largest magnitude in flight, not at
+    # the largest force
     found = result.impacts["max_acceleration_m_s2"] > gravity_of(result)
-    return result.impacts["time_of_max_force_s"][found], result.impacts["max_acceleration_m_s2"][found]
+    return result.impacts["time_of_max_force_s"][found], result.impacts["max_acceleration_m_s2"][
+        found
+    ]
 
 
 def _touch_and_release(result: Result) -> tuple[Floats, Floats]:
@@ -137,7 +179,9 @@ POSITION = PlottedQuantity(
     title="Height of the sphere's centre",
     label="Height of centre",
     marks=(("top of a rebound", tops_of_rebounds), ("largest indentation", _largest_indentations)),
-    headline=lambda result, impact: f"largest indentation {impact_text(result, impact, 'max_indentation_m', 'm')}",
+    headline=lambda result, impact: (
+        f"largest indentation {impact_text(result, impact, 'max_indentation_m', 'm')}"
+    ),
     from_touch=True,
 )
 
@@ -146,7 +190,9 @@ FORCE = PlottedQuantity(
     title="Contact force on the sphere",
     label="Force",
     marks=(("largest force of a contact", _force_peaks),),
-    headline=lambda result, impact: f"largest force {impact_text(result, impact, 'max_force_N', 'N')}",
+    headline=lambda result, impact: (
+        f"largest force {impact_text(result, impact, 'max_force_N', 'N')}"
+    ),
 )
 
 VELOCITY = PlottedQuantity(
@@ -154,7 +200,9 @@ VELOCITY = PlottedQuantity(
     title="Velocity of the sphere, upwards",
     label="Velocity",
     marks=(("first touch and release", _touch_and_release),),
-    headline=lambda result, impact: f"restitution {impact_text(result, impact, 'restitution_achieved', '')}",
+    headline=lambda result, impact: (
+        f"restitution {impact_text(result, impact, 'restitution_achieved', '')}"
+    ),
 )
 
 ACCELERATION = PlottedQuantity(
@@ -162,5 +210,7 @@ ACCELERATION = PlottedQuantity(
     title="Acceleration of the sphere, upwards",
     label="Acceleration",
     marks=(("largest acceleration of a contact", _acceleration_peaks),),
-    headline=lambda result, impact: f"largest acceleration {impact_text(result, impact, 'max_acceleration_m_s2', 'm/s2')}",
+    headline=lambda result, impact: (
+        f"largest acceleration {impact_text(result, impact, 'max_acceleration_m_s2', 'm/s2')}"
+    ),
 )

@@ -32,8 +32,9 @@ def plot_result(result: Result, name: str = "position") -> go.Figure:
     result : Result
         Result of one drop.
     name : str, default "position"
-        Name of the chart: "setup", "position", "force", "velocity", "acceleration", "force_indentation" or "energy"; where bodies vibrate
-        also "sphere_energy", "plate_motion", "plate_energy", "deflection", and "sensor NAME" for each sensor.
+        Name of the chart: "setup", "position", "force", "velocity", "acceleration",
+        "force_indentation" or "energy"; where bodies vibrate also "sphere_energy", "plate_motion",
+        "plate_energy", "deflection", and "sensor NAME" for each sensor.
 
     Returns
     -------
@@ -53,19 +54,29 @@ def plot_result(result: Result, name: str = "position") -> go.Figure:
     >>> figure.layout.title.text, figure.layout.yaxis.title.text
     ('Contact force on the sphere', 'Force [kN]')
     """
-    sensors = {f"{_SENSOR}{sensor}": sensor for sensor in result.signals} if len(result.impacts["time_s"]) else {}
+    sensors = (
+        {f"{_SENSOR}{sensor}": sensor for sensor in result.signals}
+        if len(result.impacts["time_s"])
+        else {}
+    )
     if name in sensors:
         sensor = sensors[name]
         return plotly_figure(sensor_chart(result, name, sensor, sensor_caption(result, sensor)))
-    charts = {chart.name: chart for chart in (*made_charts({"setup": lambda: setup_chart(result)}), *run_charts(result))}
+    charts = {
+        chart.name: chart
+        for chart in (*made_charts({"setup": lambda: setup_chart(result)}), *run_charts(result))
+    }
     if name not in charts:
         known = [*(chart for chart in charts if not chart.startswith("sensor_")), *sensors]
-        raise InputError(f"there is no chart {shown(name)} of this run; there are {choices(known, str(name))}")
+        raise InputError(
+            f"there is no chart {shown(name)} of this run; there are {choices(known, str(name))}"
+        )
     return plotly_figure(charts[name])
 
 
 def result_html(result: Result) -> str:
-    """Return a short summary of a result as a piece of HTML without scripts: name, status, impact table and doubts.
+    """Return a short summary of a result as a piece of HTML without scripts: name, status, impact
+    table and doubts.
 
     Parameters
     ----------
@@ -79,7 +90,12 @@ def result_html(result: Result) -> str:
     >>> html.count("<tr>"), "<script" in html
     (6, False)
     """
-    parts = [Markup("<p><strong>{}</strong><br>{}</p>").format(visible(result.name), visible(result.status)), _impacts(result)]
+    parts = [
+        Markup("<p><strong>{}</strong><br>{}</p>").format(
+            visible(result.name), visible(result.status)
+        ),
+        _impacts(result),
+    ]
     parts += [Markup("<p>Doubt: {}.</p>").format(visible(doubt)) for doubt in result.doubts]
     return str(Markup("\n").join(parts))
 

@@ -1,4 +1,6 @@
-"""HTML report of a run: set-up, tables, charts, plate in motion, case and provenance on one page."""
+"""HTML report of a run: set-up, tables, charts, plate in motion, case and provenance on
+one page.
+"""
 
 from __future__ import annotations
 
@@ -45,7 +47,9 @@ def run_page(result: Result) -> str:
     unit, ledger = ledger_table(result)
     # the plate in motion takes the place of the maps of its deflection
     charts = [chart for chart in run_charts(result) if chart.name != "deflection"]
-    scene, lost = made_scene(lambda: scene_of(result)) if result.deflection is not None else (None, [])
+    scene, lost = (
+        made_scene(lambda: scene_of(result)) if result.deflection is not None else (None, [])
+    )
     charts += lost
     return render_page(
         __package__,

@@ -23,15 +23,19 @@ _FRAMES = 40
 _MOST_BYTES = 40e6
 """Limit of the size of all files together, which reduces the number of frames of fine meshes."""
 _BLOCK = 1024
-"""Number of degrees of freedom whose mode shapes are multiplied at all times together: they lie in the processor's cache."""
+"""Number of degrees of freedom whose mode shapes are multiplied at all times together:
+they lie in the processor's cache.
+"""
 
 
 def write_paraview(response: Response, directory: Path) -> None:
-    """Write `plate.pvd` and `sphere.pvd` with their data files into the folder `paraview` of a directory.
+    """Write `plate.pvd` and `sphere.pvd` with their data files into the folder `paraview` of a
+    directory.
 
-    Both use the coordinates of the plate. `displacement_m` is relative to the configuration in which the plate is at rest and the
-    sphere just touches it; `deformation_m`, of the sphere only, is the modal displacement without the motion of its centre. No folder
-    is written if no body has a modal model, there is no impact, or two frames would already exceed 40 MB.
+    Both use the coordinates of the plate. `displacement_m` is relative to the configuration in
+    which the plate is at rest and the sphere just touches it; `deformation_m`, of the sphere only,
+    is the modal displacement without the motion of its centre. No folder is written if no body has
+    a modal model, there is no impact, or two frames would already exceed 40 MB.
 
     Parameters
     ----------
@@ -43,12 +47,15 @@ def write_paraview(response: Response, directory: Path) -> None:
     models = response.problem.models
     if not models:
         return
-    from vibroimpact.meshes.vtu_series import series_size, write_vtu_series  # not needed by a case with rigid bodies
+    # not needed by a case with rigid bodies
+    from vibroimpact.meshes.vtu_series import series_size, write_vtu_series
 
     times = frame_times_of(response)
     if not len(times):
         return
-    size = sum(series_size(model.mesh, 2 if name == "sphere" else 1) for name, model in models.items())
+    size = sum(
+        series_size(model.mesh, 2 if name == "sphere" else 1) for name, model in models.items()
+    )
     count = min(_FRAMES, len(times), int(_MOST_BYTES / size))
     if count < 2:
         return
@@ -57,7 +64,12 @@ def write_paraview(response: Response, directory: Path) -> None:
     folder.mkdir()
     if "plate" in models:
         plate = models["plate"]
-        write_vtu_series(plate.mesh, folder / "plate.pvd", times, ({"displacement_m": moved} for moved in _moved(plate, modal["plate"])))
+        write_vtu_series(
+            plate.mesh,
+            folder / "plate.pvd",
+            times,
+            ({"displacement_m": moved} for moved in _moved(plate, modal["plate"])),
+        )
     if "sphere" in models:
         sphere, offset = models["sphere"], float(response.problem.sphere.contact_offset)
         fall = response.at(times)["position_m"] - offset
@@ -83,7 +95,9 @@ def _moved(model: ModalModel, modal: Floats) -> Iterator[Floats]:
 
 
 def _at_first_touch(response: Response, offset: float) -> Mesh:
-    """Return the mesh of the sphere at the position where it just touches the plate, in the coordinates of the plate."""
+    """Return the mesh of the sphere at the position where it just touches the plate, in
+    the coordinates of the plate.
+    """
     sphere, plate = response.problem.models["sphere"], response.problem.models.get("plate")
     above = np.zeros(3)
     if plate is not None:

@@ -13,7 +13,8 @@ from vibroimpact.runs.paraview import write_paraview
 
 
 def save_result(response: Response, directory: str | PathLike[str], *, force: bool = False) -> Path:
-    """Write the result folder of one drop: data and report. The write is atomic: the folder appears complete or not at all.
+    """Write the result folder of one drop: data and report. The write is atomic: the folder appears
+    complete or not at all.
 
     Parameters
     ----------
@@ -39,7 +40,9 @@ def save_result(response: Response, directory: str | PathLike[str], *, force: bo
     >>> import tempfile
     >>> import vibroimpact as vi
     >>> with tempfile.TemporaryDirectory() as place:
-    ...     folder = vi.save_result(vi.simulate(vi.load_case("paper:type1-theory")), f"{place}/theory")
+    ...     folder = vi.save_result(
+    ...         vi.simulate(vi.load_case("paper:type1-theory")), f"{place}/theory"
+    ...     )
     ...     len(vi.read_result(folder).impacts["impact"])
     5
     """
@@ -49,9 +52,11 @@ def save_result(response: Response, directory: str | PathLike[str], *, force: bo
 
 
 def write_data(response: Response, folder: Path) -> Result:
-    """Write the data and ParaView files of one drop into a folder, and return the result that they hold.
+    """Write the data and ParaView files of one drop into a folder, and return the result that they
+    hold.
 
-    Report and figures need the result only: a caller that is done with the response can release its memory before they are made.
+    Report and figures need the result only: a caller that is done with the response can release its
+    memory before they are made.
     """
     result = result_of(response)
     write_result(result, folder)

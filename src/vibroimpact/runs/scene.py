@@ -21,13 +21,17 @@ _FRAMES = 240
 
 
 def exaggeration(deflection: Deflection) -> float:
-    """Return the factor by which the deflection is exaggerated: 1, 2 or 5 times a power of ten; 1 if there is no deflection."""
+    """Return the factor by which the deflection is exaggerated: 1, 2 or 5 times a power
+    of ten; 1 if there is no deflection.
+    """
     largest = float(np.nanmax(np.abs(deflection.height)))
     if largest == 0.0:
         return 1.0
     wanted = HEIGHT * float(max(np.ptp(deflection.x), np.ptp(deflection.y))) / largest
     power = 10.0 ** np.floor(np.log10(wanted))
-    return float(max((step * power for step in (1.0, 2.0, 5.0) if step * power <= wanted), default=power))
+    return float(
+        max((step * power for step in (1.0, 2.0, 5.0) if step * power <= wanted), default=power)
+    )
 
 
 def scene_of(result: Result) -> dict[str, Any]:
@@ -41,10 +45,11 @@ def scene_of(result: Result) -> dict[str, Any]:
     Returns
     -------
     dict
-        `x`, `y`: lines of the grid; `height`: deflections, (frames, rows, columns); `time`: of the frames, since first touch;
-        `sphere` and `contact_height`: height of the sphere's centre and of the contact point in each frame; `contact`: its place;
-        `radius`; `exaggeration` of the deflection, `gap_scale` of the gap between them; `supports`: their outlines; `sensors`: their
-        names and places.
+        `x`, `y`: lines of the grid; `height`: deflections, (frames, rows, columns); `time`: of the
+        frames, since first touch; `sphere` and `contact_height`: height of the sphere's centre and
+        of the contact point in each frame; `contact`: its place; `radius`; `exaggeration` of the
+        deflection, `gap_scale` of the gap between them; `supports`: their outlines; `sensors`:
+        their names and places.
     """
     deflection = result.deflection
     assert deflection is not None  # checked by the caller
@@ -65,7 +70,8 @@ def scene_of(result: Result) -> dict[str, Any]:
 
 
 def rigid_scene(result: Result) -> dict[str, Any]:
-    """Return what a page draws of a ball that bounces on a plate that does not bend, over the whole run; the same as `scene_of` otherwise.
+    """Return what a page draws of a ball that bounces on a plate that does not bend, over the whole
+    run; the same as `scene_of` otherwise.
 
     Parameters
     ----------
@@ -74,7 +80,9 @@ def rigid_scene(result: Result) -> dict[str, Any]:
     """
     size = [float(side) for side in result.case.get("plate", {}).get("size", ())]
     radius = touch_height(result)
-    radius = radius if np.isfinite(radius) else float(result.case.get("sphere", {}).get("radius", 0.025))
+    radius = (
+        radius if np.isfinite(radius) else float(result.case.get("sphere", {}).get("radius", 0.025))
+    )
     half = (0.5 * size[0], 0.5 * size[1]) if size else (8.0 * radius, 8.0 * radius)
     position = result.case.get("drop", {}).get("position", (0.0, 0.0))
     history = result.history
@@ -82,7 +90,9 @@ def rigid_scene(result: Result) -> dict[str, Any]:
     # the lowest points lie between the frames: of a bounce at least its first touch is seen
     time = np.union1d(time, result.impacts["time_s"][:_FRAMES])
     height = np.interp(time, history["time_s"], history["position_m"])
-    surface = np.interp(time, history["time_s"], history.get("surface_m", np.zeros_like(history["time_s"])))
+    surface = np.interp(
+        time, history["time_s"], history.get("surface_m", np.zeros_like(history["time_s"]))
+    )
     reach = 1.1 * max(half)
     first = float(result.impacts["time_s"][0]) if len(result.impacts["time_s"]) else 0.0
     return {
@@ -93,7 +103,16 @@ def rigid_scene(result: Result) -> dict[str, Any]:
         "sphere": height,
         "contact_height": surface,
         "contact": [float(position[0]), float(position[1])],
-        **({"path": [np.interp(time, history["time_s"], history[f"position_{axis}_m"]) for axis in "xy"]} if moves_along(history) else {}),
+        **(
+            {
+                "path": [
+                    np.interp(time, history["time_s"], history[f"position_{axis}_m"])
+                    for axis in "xy"
+                ]
+            }
+            if moves_along(history)
+            else {}
+        ),
         "radius": radius,
         "exaggeration": 1.0,
         "gap_scale": min(1.0, reach / max(float(height.max()) - radius, 1e-300)),

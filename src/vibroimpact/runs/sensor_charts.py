@@ -1,4 +1,6 @@
-"""Chart of a sensor: its signal over the run, and the amplitude spectrum of the response to the first impact."""
+"""Chart of a sensor: its signal over the run, and the amplitude spectrum of the response
+to the first impact.
+"""
 
 from __future__ import annotations
 
@@ -29,13 +31,20 @@ _DECADES = 4.5
 
 
 def drawn_sensors(result: Result) -> dict[str, str]:
-    """Return the names of the sensors that are drawn, by the name of the chart; none without an impact."""
+    """Return the names of the sensors that are drawn, by the name of the chart; none
+    without an impact.
+    """
     plain = plain_names(list(result.signals))
-    return {f"sensor_{plain[name]}": name for name in list(result.signals)[:MOST] if len(result.impacts["time_s"])}
+    return {
+        f"sensor_{plain[name]}": name
+        for name in list(result.signals)[:MOST]
+        if len(result.impacts["time_s"])
+    }
 
 
 def sensor_chart(result: Result, chart: str, name: str, caption: str) -> Chart:
-    """Return the chart of a sensor's signal, and of its amplitude spectrum from the first touch to the next.
+    """Return the chart of a sensor's signal, and of its amplitude spectrum from the first touch to
+    the next.
 
     Parameters
     ----------
@@ -53,7 +62,12 @@ def sensor_chart(result: Result, chart: str, name: str, caption: str) -> Chart:
     level = Axis(sensor.quantity.capitalize(), sensor.unit)
     range_words, levels = _range(result, name)
     line = Line(*drawn_signal(signal, first.start, first.stop))
-    upper = Panel(plate_time(result), level, (spans_of_contact(result), line, *levels), f"{sensor.quantity.capitalize()}{range_words}")
+    upper = Panel(
+        plate_time(result),
+        level,
+        (spans_of_contact(result), line, *levels),
+        f"{sensor.quantity.capitalize()}{range_words}",
+    )
     rows: list[tuple[Panel, ...]] = [(upper,)]
     if first.stop - first.start > 1:  # a slow sensor may have no sample between two touches
         rows.append((_spectrum(result, name),))
@@ -61,20 +75,33 @@ def sensor_chart(result: Result, chart: str, name: str, caption: str) -> Chart:
 
 
 def _range(result: Result, name: str) -> tuple[str, tuple[Level, ...]]:
-    """Return the part of the title that states the range of a sensor, and lines at its ends if the signal comes near."""
+    """Return the part of the title that states the range of a sensor, and lines at its
+    ends if the signal comes near.
+    """
     signal = result.signals[name]
-    end = min((end for one in result.case.get("sensors", ()) if one["name"] == name for end in _ends(one)), default=None)
+    end = min(
+        (
+            end
+            for one in result.case.get("sensors", ())
+            if one["name"] == name
+            for end in _ends(one)
+        ),
+        default=None,
+    )
     if end is None:
         return "", ()
     scale = multiple(signal.sensor.unit, signal.largest)
     words = f" (range ±{digits(end / scale.size, 3)} {scale.unit}"
-    if largest(signal.value) < _NEAR * end:  # drawn to the range, the signal would be too small to read
+    # drawn to the range, the signal would be too small to read
+    if largest(signal.value) < _NEAR * end:
         return f"{words}, beyond the axes)", ()
     return f"{words})", (Level(-end, "range", "mark line"), Level(end, "range", "mark line"))
 
 
 def _ends(sensor: ResolvedSensor) -> Iterator[float]:
-    """Yield the largest readings that a sensor's accelerometer and its converter permit, in the unit of its samples."""
+    """Yield the largest readings that a sensor's accelerometer and its converter permit,
+    in the unit of its samples.
+    """
     meter, gain = sensor.get("accelerometer", {}), sensor.get("amplifier", {}).get("gain", 1.0)
     if "range" in meter:
         yield meter["range"] * meter.get("sensitivity", 1.0) * gain
@@ -90,6 +117,18 @@ def _spectrum(result: Result, name: str) -> Panel:
     modes = modes[modes < 0.5 * signal.sensor.rate]
     shown = min(0.5 * signal.sensor.rate, 1.25 * float(modes.max(initial=0.0)) or np.inf)
     frequency = Axis("Frequency", "Hz", range=(0.0, shown if np.isfinite(shown) else np.nan))
-    amplitude = Axis("Amplitude", signal.sensor.unit, log=True, range=(most * 10.0**-_DECADES, 3.0 * most) if most > 0.0 else None)
-    line = Line(found.frequency[1:], np.maximum(found.amplitude[1:], 1e-12 * most + 1e-300), role="detail")
-    return Panel(frequency, amplitude, (line, Rug(modes, "modes")), "Amplitude spectrum after the first touch")
+    amplitude = Axis(
+        "Amplitude",
+        signal.sensor.unit,
+        log=True,
+        range=(most * 10.0**-_DECADES, 3.0 * most) if most > 0.0 else None,
+    )
+    line = Line(
+        found.frequency[1:], np.maximum(found.amplitude[1:], 1e-12 * most + 1e-300), role="detail"
+    )
+    return Panel(
+        frequency,
+        amplitude,
+        (line, Rug(modes, "modes")),
+        "Amplitude spectrum after the first touch",
+    )

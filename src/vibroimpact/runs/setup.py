@@ -20,7 +20,13 @@ from vibroimpact.results.result import Result
 from vibroimpact.runs.below import body_below, level_below
 from vibroimpact.runs.chart_data import touch_height
 from vibroimpact.runs.deflection_chart import sensor_marks
-from vibroimpact.runs.supports import Extent, plate_extent, support_outlines, support_words, supports_from_the_side
+from vibroimpact.runs.supports import (
+    Extent,
+    plate_extent,
+    support_outlines,
+    support_words,
+    supports_from_the_side,
+)
 from vibroimpact.shown import shortened, visible
 from vibroimpact.units.display import digits, multiple
 
@@ -32,7 +38,8 @@ _USUAL_RADIUS = 0.025
 
 
 def setup_chart(result: Result) -> Chart:
-    """Return a dimensioned sketch of the set-up: from the side, and from above where the plate has a size.
+    """Return a dimensioned sketch of the set-up: from the side, and from above where the plate has
+    a size.
 
     Parameters
     ----------
@@ -41,7 +48,13 @@ def setup_chart(result: Result) -> Chart:
     """
     extent = plate_extent(result)
     panels = [_from_the_side(result, extent)] + ([_from_above(result, extent)] if extent else [])
-    return Chart("setup", "Set-up", (tuple(panels),), f"To scale but for {_listed(_not_to_scale(result, extent))}.", height=2.9)
+    return Chart(
+        "setup",
+        "Set-up",
+        (tuple(panels),),
+        f"To scale but for {_listed(_not_to_scale(result, extent))}.",
+        height=2.9,
+    )
 
 
 def _listed(things: Sequence[str]) -> str:
@@ -57,19 +70,25 @@ def _not_to_scale(result: Result, extent: Extent | None) -> list[str]:
     of_sphere = [] if _knows_radius(result) else ["the sphere, whose radius is not given"]
     if extent is None:
         return ["the height of the drop", *of_sphere, "the plate, whose size is not given"]
-    thickness = [] if np.isfinite(extent.thickness) else ["the thickness of the plate, which is not given"]
+    thickness = (
+        [] if np.isfinite(extent.thickness) else ["the thickness of the plate, which is not given"]
+    )
     return ["the height of the drop", *of_sphere, "the depth of the supports", *thickness]
 
 
 def drawn_radius(result: Result) -> float:
-    """Return the radius of the sphere as it is drawn [m]; of a body made in Python the height of its centre at first touch."""
+    """Return the radius of the sphere as it is drawn [m]; of a body made in Python the
+    height of its centre at first touch.
+    """
     given = result.case.get("sphere", {}).get("radius")
     radius = float(given) if given is not None else touch_height(result)
     return radius if np.isfinite(radius) and radius > 0.0 else _USUAL_RADIUS
 
 
 def _knows_radius(result: Result) -> bool:
-    """Return whether the drawn radius of the sphere is its own; one made in Python that touches nothing is drawn with a usual one."""
+    """Return whether the drawn radius of the sphere is its own; one made in Python that
+    touches nothing is drawn with a usual one.
+    """
     return result.case.get("sphere", {}).get("radius") is not None or touch_height(result) > 0.0
 
 
@@ -88,12 +107,19 @@ def _from_the_side(result: Result, extent: Extent | None) -> Panel:
     else:
         at = _contact_point(result)[0]
         around = extent or Extent((at - 5.0 * radius, at + 5.0 * radius), (0.0, 0.0), 1.2 * radius)
-        marks, half = _plate(result, around, dimensioned=extent is not None), 0.5 * (around.x[1] - around.x[0])
+        marks, half = (
+            _plate(result, around, dimensioned=extent is not None),
+            0.5 * (around.x[1] - around.x[0]),
+        )
     high = max(3.4 * radius, 0.42 * half)
     marks += [
         Line(np.array([at, at]), np.array([0.0, high - radius]), role="dotted"),
         Outline(at + radius * np.cos(_TURN), high + radius * np.sin(_TURN), role="ball"),
-        *([Label(at - radius, high, f"radius {as_given(radius, 'm')}", "right")] if _knows_radius(result) else []),
+        *(
+            [Label(at - radius, high, f"radius {as_given(radius, 'm')}", "right")]
+            if _knows_radius(result)
+            else []
+        ),
     ]
     beside = at + 1.8 * radius + 0.02 * half
     marks += dimension((beside, 0.0), (beside, high), _drop_words(result), "left")
@@ -105,7 +131,10 @@ def _sphere_below(result: Result, radius: float) -> list[Mark]:
     marks: list[Mark] = [Outline(radius * np.cos(_TURN), radius * np.sin(_TURN) - radius)]
     marks.append(Label(radius, -radius, f"radius {as_given(radius, 'm')}", "left"))
     if result.case["plate"].get("supports") != "free":
-        ground, deep = np.array([-0.6, 0.6, 0.6, -0.6]) * radius, np.array([2.0, 2.0, 2.25, 2.25]) * radius
+        ground, deep = (
+            np.array([-0.6, 0.6, 0.6, -0.6]) * radius,
+            np.array([2.0, 2.0, 2.25, 2.25]) * radius,
+        )
         marks.insert(0, Outline(ground, -deep, role="support"))
     return marks
 
@@ -113,13 +142,22 @@ def _sphere_below(result: Result, radius: float) -> list[Mark]:
 def _plate(result: Result, extent: Extent, *, dimensioned: bool) -> list[Mark]:
     known = bool(np.isfinite(extent.thickness))
     (left, right), thickness = extent.x, extent.thickness if known else _THIN * extent.longer
-    marks: list[Mark] = [Outline(np.array([left, right, right, left]), np.array([0.0, 0.0, -thickness, -thickness]))]
+    marks: list[Mark] = [
+        Outline(np.array([left, right, right, left]), np.array([0.0, 0.0, -thickness, -thickness]))
+    ]
     marks += supports_from_the_side(result, extent, thickness)
     if dimensioned:
         outlines = [mark for mark in marks if isinstance(mark, Outline)]
-        low, beside = min(float(one.y.min()) for one in outlines) - 0.04 * (right - left), max(float(one.x.max()) for one in outlines)
+        low, beside = (
+            min(float(one.y.min()) for one in outlines) - 0.04 * (right - left),
+            max(float(one.x.max()) for one in outlines),
+        )
         marks += dimension((left, low), (right, low), as_given(right - left, "m"), "below")
-        marks += [Label(beside, -0.5 * thickness, f"{as_given(thickness, 'm')} thick", "left")] if known else []
+        marks += (
+            [Label(beside, -0.5 * thickness, f"{as_given(thickness, 'm')} thick", "left")]
+            if known
+            else []
+        )
     return marks
 
 
@@ -129,25 +167,47 @@ _APPROACH = ("approach_speed_m_s", "approach_velocity_x_m_s", "approach_velocity
 def _drop_words(result: Result) -> str:
     start = float(result.history["position_m"][0])
     if start <= touch_height(result):  # a run that begins at first touch
-        parts = [float(result.impacts[name][0]) if name in result.impacts else 0.0 for name in _APPROACH]
+        parts = [
+            float(result.impacts[name][0]) if name in result.impacts else 0.0 for name in _APPROACH
+        ]
         down, speed = parts[0], float(np.linalg.norm(parts))
-        angle = f" at {np.degrees(np.arccos(down / speed)):.4g}° from the normal" if down < speed else ""
+        angle = (
+            f" at {np.degrees(np.arccos(down / speed)):.4g}° from the normal"
+            if down < speed
+            else ""
+        )
         return f"arrives at {as_given(speed, 'm/s')}{angle}"
     return f"{as_given(start, 'm')} above {level_below(result)}"
 
 
 def _from_above(result: Result, extent: Extent) -> Panel:
-    (left, right), (front, back), radius, (x, y) = extent.x, extent.y, drawn_radius(result), _contact_point(result)
-    marks: list[Mark] = [Outline(np.array([left, right, right, left]), np.array([front, front, back, back]))]
-    marks += [Outline(*outline, name="support", role="held") for outline in support_outlines(result)]
+    (left, right), (front, back), radius, (x, y) = (
+        extent.x,
+        extent.y,
+        drawn_radius(result),
+        _contact_point(result),
+    )
+    marks: list[Mark] = [
+        Outline(np.array([left, right, right, left]), np.array([front, front, back, back]))
+    ]
+    marks += [
+        Outline(*outline, name="support", role="held") for outline in support_outlines(result)
+    ]
     marks.append(Outline(x + radius * np.cos(_TURN), y + radius * np.sin(_TURN), role="ball"))
-    low, beside = min(front, y - radius) - 0.07 * (back - front), max(right, x + radius) + 0.05 * (right - left)
+    low, beside = (
+        min(front, y - radius) - 0.07 * (back - front),
+        max(right, x + radius) + 0.05 * (right - left),
+    )
     marks += dimension((left, low), (right, low), as_given(right - left, "m"), "below")
     marks += dimension((beside, front), (beside, back), as_given(back - front, "m"), "left")
-    return Panel(Axis("x", "m"), Axis("y", "m"), (*marks, *sensor_marks(result)), "From above", picture=True)
+    return Panel(
+        Axis("x", "m"), Axis("y", "m"), (*marks, *sensor_marks(result)), "From above", picture=True
+    )
 
 
-def dimension(start: tuple[float, float], end: tuple[float, float], words: str, anchor: str) -> list[Mark]:
+def dimension(
+    start: tuple[float, float], end: tuple[float, float], words: str, anchor: str
+) -> list[Mark]:
     """Return an arrow in both directions with words at its middle."""
     middle = 0.5 * (start[0] + end[0]), 0.5 * (start[1] + end[1])
     return [Arrow(start, end, both=True), Label(*middle, words, anchor)]
@@ -179,7 +239,13 @@ def setup_rows(result: Result) -> list[tuple[str, str]]:
         ("Sphere", _body_words(case["sphere"])),
         (body_below(result).capitalize(), f"{_body_words(case['plate'])}, {support_words(result)}"),
     ]
-    rows.append(("Drop", f"{_drop_words(result)}, gravity {as_given(float(case['drop'].get('gravity', 0.0)), 'm/s2')}"))
+    rows.append(
+        (
+            "Drop",
+            f"{_drop_words(result)}, gravity "
+            f"{as_given(float(case['drop'].get('gravity', 0.0)), 'm/s2')}",
+        )
+    )
     plate: Mapping[str, Any] = case["plate"]
     if (inclination := plate.get("inclination")) is not None:
         rows.append(("Inclination", f"{np.degrees(float(inclination)):.4g}° about y"))
@@ -187,14 +253,28 @@ def setup_rows(result: Result) -> list[tuple[str, str]]:
         rows.append(("Motion of the supports", _motion_words(motion)))
     if (air := case["drop"].get("air")) is not None:
         rows.append(("Air", fluid_words(air)))
-    rows.append(("Contact law", _law_words({key: value for key, value in case["contact"].items() if key not in ("friction", "liquid")})))
+    rows.append(
+        (
+            "Contact law",
+            _law_words(
+                {
+                    key: value
+                    for key, value in case["contact"].items()
+                    if key not in ("friction", "liquid")
+                }
+            ),
+        )
+    )
     if (liquid := case["contact"].get("liquid")) is not None:
         rows.append(("Liquid", fluid_words(liquid)))
     if (friction := case["contact"].get("friction")) is not None:
         rows.append(("Friction", _law_words(friction)))
     for one in case.get("sensors", ()):
         by = f" by {INSTRUMENTS[one['instrument']]}" if "instrument" in one else ""
-        words = f"{one['quantity']}{by} at {_place(one['position'])}, {as_given(float(one['rate']), 'Hz')}"
+        words = (
+            f"{one['quantity']}{by} at {_place(one['position'])}, "
+            f"{as_given(float(one['rate']), 'Hz')}"
+        )
         rows.append((f"Sensor {shortened(visible(one['name']), 60)}", words))
     return rows
 
@@ -202,12 +282,25 @@ def setup_rows(result: Result) -> list[tuple[str, str]]:
 def _motion_words(motion: Mapping[str, Any]) -> str:
     """Return the motion of the plate's supports in words."""
     if (file := motion.get("file")) is not None:
-        words = [f"as in {shortened(visible(Path(file).name), 60)}", *(["repeated"] if motion.get("repeat") else [])]
+        words = [
+            f"as in {shortened(visible(Path(file).name), 60)}",
+            *(["repeated"] if motion.get("repeat") else []),
+        ]
     else:
-        words = [f"amplitude {as_given(float(motion['amplitude']), 'm')}, frequency {as_given(float(motion['frequency']), 'Hz')}"]
+        words = [
+            f"amplitude {as_given(float(motion['amplitude']), 'm')}, frequency "
+            f"{as_given(float(motion['frequency']), 'Hz')}"
+        ]
         words += [f"phase {np.degrees(float(motion['phase'])):.4g}°"] if motion.get("phase") else []
     along = [float(part) for part in motion["direction"]]
-    return ", ".join([*words, "along the normal" if not any(along[:2]) else f"along ({', '.join(f'{part:.4g}' for part in along)})"])
+    return ", ".join(
+        [
+            *words,
+            "along the normal"
+            if not any(along[:2])
+            else f"along ({', '.join(f'{part:.4g}' for part in along)})",
+        ]
+    )
 
 
 def _body_words(body: Mapping[str, Any]) -> str:
@@ -217,13 +310,20 @@ def _body_words(body: Mapping[str, Any]) -> str:
     if body.get("mass") is not None:
         words.append(f"mass {as_given(float(body['mass']), 'kg')}")
     if (inertia := body.get("inertia")) is not None:
-        words.append(inertia if isinstance(inertia, str) else f"moment of inertia {as_given(float(inertia), 'kg m^2')}")
+        words.append(
+            inertia
+            if isinstance(inertia, str)
+            else f"moment of inertia {as_given(float(inertia), 'kg m^2')}"
+        )
     if body.get("size"):
         words.append(" \u00d7 ".join(as_given(float(side), "m") for side in body["size"]))
     material = body.get("material")
     if isinstance(material, Mapping):
         name = f"{shortened(visible(material['name']), 60)}: " if material.get("name") else ""
-        stiff = f"E {as_given(float(material['youngs_modulus']), 'Pa')}, \u03bd {as_given(float(material['poissons_ratio']), '')}"
+        stiff = (
+            f"E {as_given(float(material['youngs_modulus']), 'Pa')}, \u03bd "
+            f"{as_given(float(material['poissons_ratio']), '')}"
+        )
         words.append(f"{name}{stiff}, {as_given(float(material['density']), 'kg/m^3')}")
     elif material is not None:
         words.append(f"material {material}")
@@ -233,7 +333,9 @@ def _body_words(body: Mapping[str, Any]) -> str:
 
 
 def _law_words(contact: Mapping[str, Any]) -> str:
-    """Return a law with its parameters in their units; of a law that is not installed here they are not known."""
+    """Return a law with its parameters in their units; of a law that is not installed
+    here they are not known.
+    """
     name, law = str(contact["law"]), {**contact_laws(), **friction_laws()}.get(contact["law"])
     if law is None:
         return shortened(visible(name), 60)
@@ -246,7 +348,10 @@ def _law_words(contact: Mapping[str, Any]) -> str:
         if isinstance(value, Mapping):
             found.append(f"{key.replace('_', ' ')} {of_table(value).words}")
             continue
-        numbers = [as_given(float(one), unit) for one in (value if isinstance(value, Sequence) else [value])]
+        numbers = [
+            as_given(float(one), unit)
+            for one in (value if isinstance(value, Sequence) else [value])
+        ]
         found.append(f"{key.replace('_', ' ')} {', '.join(numbers)}")
     return f"{name}: {', '.join(found)}" if found else name
 
@@ -255,4 +360,5 @@ def _place(position: Any) -> str:
     if isinstance(position, str):
         return shortened(visible(position), 60)
     best = multiple("m", position)
-    return f"({', '.join(as_given(float(part) / best.size, '') for part in position)})\u00a0{best.unit}"
+    coordinates = ", ".join(as_given(float(coordinate) / best.size, "") for coordinate in position)
+    return f"({coordinates})\u00a0{best.unit}"

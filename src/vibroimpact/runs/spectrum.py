@@ -14,7 +14,9 @@ _LONGEST = 2**17
 
 
 class AmplitudeSpectrum(NamedTuple):
-    """One-sided amplitude spectrum: frequencies [Hz], amplitudes in the unit of the signal, and length of the record [s]."""
+    """One-sided amplitude spectrum: frequencies [Hz], amplitudes in the unit of the
+    signal, and length of the record [s].
+    """
 
     frequency: Floats
     amplitude: Floats
@@ -24,8 +26,9 @@ class AmplitudeSpectrum(NamedTuple):
 def amplitude_spectrum(values: Floats, rate: float) -> AmplitudeSpectrum:
     """Return the amplitude spectrum of a decaying response that starts abruptly.
 
-    The window is the falling half of a Hann window, which keeps the onset and tapers the end. The spectrum is scaled so that a steady
-    tone has its amplitude; a transient has a lower one the longer the record is.
+    The window is the falling half of a Hann window, which keeps the onset and tapers the end. The
+    spectrum is scaled so that a steady tone has its amplitude; a transient has a lower one the
+    longer the record is.
 
     Parameters
     ----------
@@ -49,11 +52,15 @@ def amplitude_spectrum(values: Floats, rate: float) -> AmplitudeSpectrum:
     window = 0.5 + 0.5 * np.cos(np.pi * np.arange(len(values)) / len(values))
     amplitude = np.abs(np.fft.rfft(window * values)) / window.sum()
     amplitude[1:] *= 2.0
-    return AmplitudeSpectrum(np.arange(len(amplitude)) * rate / len(values), amplitude, len(values) / rate)
+    return AmplitudeSpectrum(
+        np.arange(len(amplitude)) * rate / len(values), amplitude, len(values) / rate
+    )
 
 
 def first_response(result: Result, name: str) -> slice:
-    """Return the slice of a sensor's samples from the first touch to the next, or to the end; at most 131072 samples."""
+    """Return the slice of a sensor's samples from the first touch to the next, or to the
+    end; at most 131072 samples.
+    """
     touches, signal = result.impacts["time_s"], result.signals[name]
     first = signal.first_at(float(touches[0])) if len(touches) else 0
     last = signal.first_at(float(touches[1])) if len(touches) > 1 else len(signal.value)

@@ -19,12 +19,16 @@ from vibroimpact.shown import shortened, visible
 
 _EDGES = ("x-min", "x-max", "y-min", "y-max")
 _DEPTH = 0.07
-"""Drawn depth of a support, relative to the length of the plate; columns may be this many times deeper."""
+"""Drawn depth of a support, relative to the length of the plate; columns may be this many
+times deeper.
+"""
 _MOST_DEEP = 4.0
 
 
 class Extent(NamedTuple):
-    """Extent of a plate [m]: the smallest and the largest x and y, and the thickness, NaN where it is not known."""
+    """Extent of a plate [m]: the smallest and the largest x and y, and the thickness, NaN
+    where it is not known.
+    """
 
     x: tuple[float, float]
     y: tuple[float, float]
@@ -37,14 +41,22 @@ class Extent(NamedTuple):
 
 
 def plate_extent(result: Result) -> Extent | None:
-    """Return the extent of the plate: of its case, or of its mesh if that was brought; None if it has none."""
+    """Return the extent of the plate: of its case, or of its mesh if that was brought;
+    None if it has none.
+    """
     plate, deflection = result.case.get("plate", {}), result.deflection
     size = [float(side) for side in plate.get("size", ())]
     thickness = size[2] if size else math.nan
     if deflection is not None and ("file" in plate.get("mesh", {}) or not size):
-        (left, right), (front, back) = ((float(side[0]), float(side[-1])) for side in (deflection.x, deflection.y))
+        (left, right), (front, back) = (
+            (float(side[0]), float(side[-1])) for side in (deflection.x, deflection.y)
+        )
         return Extent((left, right), (front, back), thickness)
-    return Extent((-0.5 * size[0], 0.5 * size[0]), (-0.5 * size[1], 0.5 * size[1]), thickness) if size else None
+    return (
+        Extent((-0.5 * size[0], 0.5 * size[0]), (-0.5 * size[1], 0.5 * size[1]), thickness)
+        if size
+        else None
+    )
 
 
 def single_supports(case: ResolvedCase) -> list[Mapping[str, Any]]:
@@ -60,20 +72,28 @@ def single_supports(case: ResolvedCase) -> list[Mapping[str, Any]]:
     """
     given = case.get("plate", {}).get("supports", ())
     if isinstance(given, str):
-        return [] if given == "free" else [{"type": "edge", "edge": edge, "condition": given} for edge in _EDGES]
+        return (
+            []
+            if given == "free"
+            else [{"type": "edge", "edge": edge, "condition": given} for edge in _EDGES]
+        )
     found: list[Mapping[str, Any]] = []
     for one in given:
         if "spacing" in one:  # four of them, at the corners of a rectangle
             across, up = (0.5 * float(side) for side in one["spacing"])
             kind = {"patches": "patch", "bars": "bar"}[one["type"]]
-            found += [{**one, "type": kind, "position": (x * across, y * up)} for x, y in product((-1.0, 1.0), repeat=2)]
+            found += [
+                {**one, "type": kind, "position": (x * across, y * up)}
+                for x, y in product((-1.0, 1.0), repeat=2)
+            ]
         else:
             found.append(one)
     return found
 
 
 def support_outlines(result: Result, *, edges: bool = True) -> list[tuple[Floats, Floats]]:
-    """Return the outlines of the supports seen from above as x and y [m]; edges are narrow strips, sets of nodes are left out.
+    """Return the outlines of the supports seen from above as x and y [m]; edges are narrow strips,
+    sets of nodes are left out.
 
     Parameters
     ----------
@@ -85,7 +105,11 @@ def support_outlines(result: Result, *, edges: bool = True) -> list[tuple[Floats
     extent = plate_extent(result)
     if extent is None:
         return []
-    found = [_outline(one, extent) for one in single_supports(result.case) if edges or one["type"] != "edge"]
+    found = [
+        _outline(one, extent)
+        for one in single_supports(result.case)
+        if edges or one["type"] != "edge"
+    ]
     return [outline for outline in found if outline is not None]
 
 
@@ -103,7 +127,8 @@ def _outline(one: Mapping[str, Any], extent: Extent) -> tuple[Floats, Floats] | 
 
 
 def supports_from_the_side(result: Result, extent: Extent, thickness: float) -> list[Mark]:
-    """Return the supports as they are seen along y: what is fixed is hatched. A rigid plate lies on what is fixed.
+    """Return the supports as they are seen along y: what is fixed is hatched. A rigid plate lies on
+    what is fixed.
 
     Parameters
     ----------
@@ -126,11 +151,25 @@ def supports_from_the_side(result: Result, extent: Extent, thickness: float) -> 
         key = one["type"], one.get("condition"), round(low, 9), round(high, 9)
         found.setdefault(key, _from_the_side(one, (low, high), thickness, (deep, wide)))
     # the widest, which may be the support of a whole edge, lie behind the others
-    return [mark for _, marks in sorted(found.items(), key=lambda item: item[0][2] - item[0][3]) for mark in marks]
+    return [
+        mark
+        for _, marks in sorted(found.items(), key=lambda item: item[0][2] - item[0][3])
+        for mark in marks
+    ]
 
 
-def _from_the_side(one: Mapping[str, Any], across: tuple[float, float], thickness: float, sizes: tuple[float, float]) -> list[Mark]:
-    (low, high), (deep, wide), below, middle = across, sizes, -thickness, 0.5 * (across[0] + across[1])
+def _from_the_side(
+    one: Mapping[str, Any],
+    across: tuple[float, float],
+    thickness: float,
+    sizes: tuple[float, float],
+) -> list[Mark]:
+    (low, high), (deep, wide), below, middle = (
+        across,
+        sizes,
+        -thickness,
+        0.5 * (across[0] + across[1]),
+    )
     if one["type"] == "edge" and high - low > 2.0 * wide:  # along the plate, in front and behind
         return [_block(low, high, below, below - 0.5 * deep, "held")]
     if one["type"] == "edge" and one["condition"] == "clamped":
@@ -146,12 +185,17 @@ def _from_the_side(one: Mapping[str, Any], across: tuple[float, float], thicknes
         return [Line(middle + 0.25 * deep * turns, heights), ground]
     if one["type"] == "bar":
         foot = below - min(float(one["length"]), _MOST_DEEP * deep)
-        return [_block(low, high, below, foot, "body"), _block(low - 0.3 * deep, high + 0.3 * deep, foot, foot - 0.3 * deep)]
+        return [
+            _block(low, high, below, foot, "body"),
+            _block(low - 0.3 * deep, high + 0.3 * deep, foot, foot - 0.3 * deep),
+        ]
     return [_block(low, high, below, below - deep)]
 
 
 def _block(left: float, right: float, top: float, bottom: float, role: str = "support") -> Outline:
-    return Outline(np.array([left, right, right, left]), np.array([top, top, bottom, bottom]), role=role)
+    return Outline(
+        np.array([left, right, right, left]), np.array([top, top, bottom, bottom]), role=role
+    )
 
 
 def support_words(result: Result) -> str:
@@ -179,7 +223,11 @@ def support_words(result: Result) -> str:
     for condition in dict.fromkeys(one["condition"] for one in singles if one["type"] == "edge"):
         edges = [one["edge"] for one in singles if one.get("condition") == condition]
         words.append(f"{condition.replace('-', ' ')} at {', '.join(edges)}")
-    words += [f"held at its set {shortened(visible(one['name']), 40)}" for one in singles if one["type"] == "set"]
+    words += [
+        f"held at its set {shortened(visible(one['name']), 40)}"
+        for one in singles
+        if one["type"] == "set"
+    ]
     return "; ".join(words)
 
 

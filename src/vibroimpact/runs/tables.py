@@ -1,4 +1,6 @@
-"""Impact table and energy ledger as text, with units and the number of significant figures that are certain."""
+"""Impact table and energy ledger as text, with units and the number of significant
+figures that are certain.
+"""
 
 from __future__ import annotations
 
@@ -20,7 +22,15 @@ from vibroimpact.dynamics.columns import (
     VIBRATION_LEDGER,
 )
 from vibroimpact.results.result import Result
-from vibroimpact.units.display import ALL_FIGURES, certain, certain_figures, column_texts, digits, fixed, multiple
+from vibroimpact.units.display import (
+    ALL_FIGURES,
+    certain,
+    certain_figures,
+    column_texts,
+    digits,
+    fixed,
+    multiple,
+)
 
 _MOST_ROWS, _FIRST, _LAST = 50, 45, 3
 """A table of more rows shows only its first 45 and last three."""
@@ -30,7 +40,9 @@ _DIGITS = 5
 
 _EXACT = ("impact", "contacts", "restitution_asked", "sensitivity")
 _ARRIVAL = ("time_s", "approach_speed_m_s")
-"""Columns unaffected by a perturbation of the drop, and those as certain as the outcome of the previous impact."""
+"""Columns unaffected by a perturbation of the drop, and those as certain as the outcome
+of the previous impact.
+"""
 
 _SHOWN_COLUMNS = (
     "impact",
@@ -54,18 +66,23 @@ _SHOWN_COLUMNS = (
     "contacts",
     "sensitivity",
 )
-"""Columns shown of the impact table. Restitution asked is shown only where a law asks for one, that of contacts only if a visit has
-several, caused by vibration of the plate or the sphere, and that of sensitivity only if it reduces the number of certain figures."""
+"""Columns shown of the impact table. Restitution asked is shown only where a law asks for one, that
+of contacts only if a visit has several, caused by vibration of the plate or the sphere, and that of
+sensitivity only if it reduces the number of certain figures."""
 
 _ROUNDING = 1e-12
 """Part of the energy put in up to which an energy is a rounding error."""
 
-_SLOW = 0.1  # relative to the approach speed: lowest separation speed used in estimating the certainty of energies
+# relative to the approach speed: lowest separation speed used in estimating the certainty of
+# energies
+_SLOW = 0.1
 SUM, PUT_IN = "Sum", "Put in at the start"
 
 
 class ImpactTable(NamedTuple):
-    """Impact table as text: headers with units, the rows of `head` and `tail`, and the number of rows left out between them."""
+    """Impact table as text: headers with units, the rows of `head` and `tail`, and the
+    number of rows left out between them.
+    """
 
     headers: list[tuple[str, str]]
     head: list[list[str]]
@@ -74,7 +91,9 @@ class ImpactTable(NamedTuple):
 
 
 class LedgerRow(NamedTuple):
-    """Row of the ledger as text: name of the entry, title, energy, and percentage of the energy put in."""
+    """Row of the ledger as text: name of the entry, title, energy, and percentage of the
+    energy put in.
+    """
 
     name: str
     title: str
@@ -83,11 +102,16 @@ class LedgerRow(NamedTuple):
 
 
 def impact_table(result: Result) -> ImpactTable:
-    """Return the impact table of the report, in suitable multiples of SI units; a long one without its middle rows."""
+    """Return the impact table of the report, in suitable multiples of SI units; a long
+    one without its middle rows.
+    """
     change = result.change_by_impact
     shown = shown_columns(result)
     columns = [formatted_column(name, result.impacts[name], change) for name in shown]
-    headers = [(ALL_IMPACT_COLUMNS[name].label, unit) for name, (unit, _) in zip(shown, columns, strict=True)]
+    headers = [
+        (ALL_IMPACT_COLUMNS[name].label, unit)
+        for name, (unit, _) in zip(shown, columns, strict=True)
+    ]
     rows = [list(row) for row in zip(*(cells for _, cells in columns), strict=True)]
     if len(rows) <= _MOST_ROWS:
         return ImpactTable(headers, rows, 0, [])
@@ -95,16 +119,25 @@ def impact_table(result: Result) -> ImpactTable:
 
 
 def shown_columns(result: Result) -> list[str]:
-    """Return the names of the columns of the impact table that are shown for a result: those that have a value.
+    """Return the names of the columns of the impact table that are shown for a result: those that
+    have a value.
 
-    An instantaneous law has neither a duration nor an indentation, and a contact that slides throughout no microslip.
+    An instantaneous law has neither a duration nor an indentation, and a contact that slides
+    throughout no microslip.
     """
     impacts = result.impacts
-    told = {"contacts": several_contacts(impacts), "sensitivity": loses_digits(result.change_by_impact)}
+    told = {
+        "contacts": several_contacts(impacts),
+        "sensitivity": loses_digits(result.change_by_impact),
+    }
     told |= {name: bool(np.any(impacts[name])) for name in ("duration_s", "max_indentation_m")}
     microslip = np.abs(impacts.get("microslip_lost_J", np.nan))
     told["microslip_lost_J"] = bool(np.any(microslip > _ROUNDING * result.energy["input_J"]))
-    return [name for name in _SHOWN_COLUMNS if told.get(name, True) and np.isfinite(impacts.get(name, np.nan)).any()]
+    return [
+        name
+        for name in _SHOWN_COLUMNS
+        if told.get(name, True) and np.isfinite(impacts.get(name, np.nan)).any()
+    ]
 
 
 def several_contacts(impacts: Mapping[str, Floats]) -> bool:
@@ -113,12 +146,18 @@ def several_contacts(impacts: Mapping[str, Floats]) -> bool:
 
 
 def ledger_table(result: Result) -> tuple[str, list[LedgerRow]]:
-    """Return the final ledger as text: its unit, and a row for each entry, their sum and the energy put in, in certain figures.
+    """Return the final ledger as text: its unit, and a row for each entry, their sum and the energy
+    put in, in certain figures.
 
-    Entries that are zero but for rounding are left out. The two parts of friction stand for it, where the result has them.
+    Entries that are zero but for rounding are left out. The two parts of friction stand for it,
+    where the result has them.
     """
     put_in, scale = result.energy["input_J"], multiple("J", result.energy["input_J"])
-    parts = {"friction_J": tuple(FRICTION_PARTS)} if result.energy.keys() >= FRICTION_PARTS.keys() else {}
+    parts = (
+        {"friction_J": tuple(FRICTION_PARTS)}
+        if result.energy.keys() >= FRICTION_PARTS.keys()
+        else {}
+    )
     entries = (*LEDGER, *VIBRATION_LEDGER, *SHAKEN_LEDGER, *OBLIQUE_LEDGER, *FLUID_LEDGER)
     values = {
         name: result.energy[name]
@@ -134,38 +173,55 @@ def ledger_table(result: Result) -> tuple[str, list[LedgerRow]]:
 
     rows = []
     for name, value in values.items():
-        energy, part = shown(name, value / scale.size, put_in / scale.size), shown(name, 100.0 * value / put_in, 100.0)
+        energy, part = (
+            shown(name, value / scale.size, put_in / scale.size),
+            shown(name, 100.0 * value / put_in, 100.0),
+        )
         title = LEDGER_COLUMNS[name].label if name in LEDGER_COLUMNS else name
         rows.append(LedgerRow(name, title, energy, part))
     return scale.unit, rows
 
 
 def energy_text(result: Result, *entries: str) -> str:
-    """Return the sum of entries of the ledger as text, with unit and percentage of the energy put in, in certain figures."""
+    """Return the sum of entries of the ledger as text, with unit and percentage of the
+    energy put in, in certain figures.
+    """
     value, put_in = sum(result.energy[entry] for entry in entries), result.energy["input_J"]
     if abs(value) <= _ROUNDING * put_in:
         return "nothing"
     figures = min(_certain_figures_of_energy(entry, result) for entry in entries)
     scale, part = multiple("J", value), 100.0 * value / put_in
     percent = certain(fixed(part, 1), part, figures)
-    return f"{certain(digits(value / scale.size), value / scale.size, figures)}\u00a0{scale.unit} ({percent} %)"
+    return (
+        f"{certain(digits(value / scale.size), value / scale.size, figures)}\u00a0{scale.unit} "
+        f"({percent} %)"
+    )
 
 
 def _certain_figures_of_energy(entry: str, result: Result) -> int:
     """Return the number of certain significant figures of an entry of the ledger.
 
-    The relative change of an energy is twice that of the speed. For lost energy it is the mean over the impacts, weighted by the energy
-    lost in each. For energy in motion or stored it is that of the last impact, or more where the entry is smaller than the energy with
-    which the sphere left: this changes as a whole, whatever share of it the entry is.
+    The relative change of an energy is twice that of the speed. For lost energy it is the mean over
+    the impacts, weighted by the energy lost in each. For energy in motion or stored it is that of
+    the last impact, or more where the entry is smaller than the energy with which the sphere left:
+    this changes as a whole, whatever share of it the entry is.
     """
-    impacts, change = result.impacts, np.minimum(np.nan_to_num(result.change_by_impact, nan=1.0), 1.0)
+    impacts, change = (
+        result.impacts,
+        np.minimum(np.nan_to_num(result.change_by_impact, nan=1.0), 1.0),
+    )
     if not len(change) or not change[-1] > 0.0:
         return ALL_FIGURES
     lost = np.abs(impacts["energy_lost_J"])
     if LEDGER_COLUMNS[entry].is_loss and lost.sum() > 0.0:
         return int(certain_figures(2.0 * change @ lost / lost.sum()))
     first, closing, separation = (
-        float(impacts[name][place]) for name, place in (("approach_speed_m_s", 0), ("approach_speed_m_s", -1), ("separation_speed_m_s", -1))
+        float(impacts[name][place])
+        for name, place in (
+            ("approach_speed_m_s", 0),
+            ("approach_speed_m_s", -1),
+            ("separation_speed_m_s", -1),
+        )
     )
     # the change of a slow separation speed is relative to a tenth of the approach speed
     energy = result.energy["input_J"] * separation * max(separation, _SLOW * closing) / first**2
@@ -174,7 +230,9 @@ def _certain_figures_of_energy(entry: str, result: Result) -> int:
 
 
 def _to_same_decimals(value: float, whole: float, significant: int) -> str:
-    """Return a part of a sum as text with the decimals of the total; a very small part has its own significant digits."""
+    """Return a part of a sum as text with the decimals of the total; a very small part
+    has its own significant digits.
+    """
     if abs(value) < _ROUNDING * whole:
         return "0"
     decimals = max(0, significant - 1 - math.floor(math.log10(whole)))
@@ -184,30 +242,44 @@ def _to_same_decimals(value: float, whole: float, significant: int) -> str:
 
 
 def significant_figures(name: str, change: Floats) -> Indices:
-    """Return the number of certain significant figures of a column of the impact table, for each impact.
+    """Return the number of certain significant figures of a column of the impact table, for each
+    impact.
 
     Parameters
     ----------
     name : str
         Name of the column.
     change : array, shape (impacts,)
-        Relative change of each impact [-] for an unavoidable perturbation of the drop, as `Result.change_by_impact`.
+        Relative change of each impact [-] for an unavoidable perturbation of the drop, as
+        `Result.change_by_impact`.
 
     Examples
     --------
-    >>> significant_figures("max_force_N", np.array([0.0, 0.003])).tolist(), significant_figures("time_s", np.array([0.0, 0.003])).tolist()
+    >>> (
+    ...     significant_figures("max_force_N", np.array([0.0, 0.003])).tolist(),
+    ...     significant_figures("time_s", np.array([0.0, 0.003])).tolist(),
+    ... )
     ([17, 3], [17, 17])
     """
     if name in _EXACT:
         return np.full(len(change), ALL_FIGURES)
-    return certain_figures(np.concatenate([change[:1], change[:-1]]) if name in _ARRIVAL else change)
+    return certain_figures(
+        np.concatenate([change[:1], change[:-1]]) if name in _ARRIVAL else change
+    )
 
 
 def impact_text(result: Result, impact: int, name: str, unit: str) -> str:
     """Return an entry of the impact table as text with its unit, in certain figures."""
-    value, figures = float(result.impacts[name][impact]), int(significant_figures(name, result.change_by_impact)[impact])
+    value, figures = (
+        float(result.impacts[name][impact]),
+        int(significant_figures(name, result.change_by_impact)[impact]),
+    )
     best = multiple(unit, value)
-    return f"{certain(digits(value / best.size), value / best.size, figures)}\u00a0{best.unit}".rstrip("\u00a0")
+    return (
+        f"{certain(digits(value / best.size), value / best.size, figures)}\u00a0{best.unit}".rstrip(
+            "\u00a0"
+        )
+    )
 
 
 def loses_digits(change: Floats) -> bool:
@@ -215,7 +287,9 @@ def loses_digits(change: Floats) -> bool:
     return bool(certain_figures(change).min(initial=_FIGURES_SHOWN) < _FIGURES_SHOWN)
 
 
-def formatted_column(name: str, values: Floats, change: Floats | None = None) -> tuple[str, list[str]]:
+def formatted_column(
+    name: str, values: Floats, change: Floats | None = None
+) -> tuple[str, list[str]]:
     """Return the unit and the cells of a column of the impact table as text, in certain figures.
 
     Parameters
@@ -225,7 +299,8 @@ def formatted_column(name: str, values: Floats, change: Floats | None = None) ->
     values : array, shape (rows,)
         Values in SI units.
     change : array, shape (rows,), optional
-        Relative change of each row's impact [-], as `Result.change_by_impact`; by default 0, which leaves all figures.
+        Relative change of each row's impact [-], as `Result.change_by_impact`; by default 0, which
+        leaves all figures.
     """
     kind = ALL_IMPACT_COLUMNS[name].values
     if kind == "count":
@@ -233,8 +308,13 @@ def formatted_column(name: str, values: Floats, change: Floats | None = None) ->
     if kind == "factor":
         return "", [digits(value, 2) for value in values]
     unit, values, cells = _cells(name, values)
-    figures = significant_figures(name, np.zeros(len(values)) if change is None else change).tolist()
-    return unit, [certain(cell, value, number) for cell, value, number in zip(cells, values, figures, strict=True)]
+    figures = significant_figures(
+        name, np.zeros(len(values)) if change is None else change
+    ).tolist()
+    return unit, [
+        certain(cell, value, number)
+        for cell, value, number in zip(cells, values, figures, strict=True)
+    ]
 
 
 def _cells(name: str, values: Floats) -> tuple[str, Floats, list[str]]:
@@ -245,6 +325,7 @@ def _cells(name: str, values: Floats) -> tuple[str, Floats, list[str]]:
     scale = multiple(column.unit, values)
     values = values / scale.size
     if column.values == "time":
-        # times are compared with each other: their absolute resolution is a microsecond, also late in a run
+        # times are compared with each other: their absolute resolution is a microsecond, also late
+        # in a run
         return scale.unit, values, [fixed(value, 6 if scale.unit == "s" else 3) for value in values]
     return scale.unit, values, column_texts(values, _DIGITS)

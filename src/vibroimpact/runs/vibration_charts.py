@@ -1,4 +1,6 @@
-"""Charts of vibrating bodies over time: energies of the sphere, motion and energies of the plate, one row per quantity."""
+"""Charts of vibrating bodies over time: energies of the sphere, motion and energies of
+the plate, one row per quantity.
+"""
 
 from __future__ import annotations
 
@@ -17,7 +19,9 @@ from vibroimpact.runs.chart_data import spans_of_contact, time_axis, views_of_co
 
 
 class Row(NamedTuple):
-    """Row of a chart: the columns of the history whose sum is drawn, their SI unit and the title."""
+    """Row of a chart: the columns of the history whose sum is drawn, their SI unit and
+    the title.
+    """
 
     columns: tuple[str, ...]
     unit: str
@@ -30,7 +34,11 @@ _SPHERE = (
 )
 _SPHERE_MODES = (
     Row(("sphere_strain_J",), "J", "Strain energy of its modes"),
-    Row(("sphere_strain_J", "sphere_vibration_J"), "J", "Energy of its vibration: strain and kinetic"),
+    Row(
+        ("sphere_strain_J", "sphere_vibration_J"),
+        "J",
+        "Energy of its vibration: strain and kinetic",
+    ),
     Row(("sphere_rotational_J",), "J", "Energy of rotation"),
 )
 _PLATE_MOTION = (
@@ -46,49 +54,99 @@ _PLATE_ENERGY = (
     Row(("plate_potential_J",), "J", "Change of the potential energy"),
 )
 _VISIT = 1.6
-"""Time shown after first touch in the chart of the sphere, relative to the duration of the visit."""
+"""Time shown after first touch in the chart of the sphere, relative to the duration of
+the visit.
+"""
 
 
 def sphere_energy_chart(result: Result, history: Mapping[str, Floats], caption: str) -> Chart:
-    """Return the chart of the sphere's energies: kinetic and potential, and those of its modes and rotation that are not negligible."""
+    """Return the chart of the sphere's energies: kinetic and potential, and those of its
+    modes and rotation that are not negligible.
+    """
     modes = _SPHERE_MODES if "sphere" in result.peaks else ()
     rows = _SPHERE + tuple(row for row in modes if exceeds_rounding(result, row.columns[0]))
-    time = time_axis(result, views_of_contacts(result, lambda impact: _VISIT * float(result.impacts["duration_s"][impact])))
+    time = time_axis(
+        result,
+        views_of_contacts(
+            result, lambda impact: _VISIT * float(result.impacts["duration_s"][impact])
+        ),
+    )
     return _chart(result, history, ("sphere_energy", "Energy of the sphere", caption), rows, time)
 
 
 def plate_motion_chart(result: Result, history: Mapping[str, Floats], caption: str) -> Chart:
-    """Return the chart of the plate's motion: that of its centre of mass, and the displacement at the contact point."""
-    return _chart(result, history, ("plate_motion", "Motion of the plate, upwards", caption), _PLATE_MOTION, plate_time(result))
+    """Return the chart of the plate's motion: that of its centre of mass, and the
+    displacement at the contact point.
+    """
+    return _chart(
+        result,
+        history,
+        ("plate_motion", "Motion of the plate, upwards", caption),
+        _PLATE_MOTION,
+        plate_time(result),
+    )
 
 
 def plate_energy_chart(result: Result, history: Mapping[str, Floats], caption: str) -> Chart:
-    """Return the chart of the plate's energies: kinetic, strain, their sum, and the change of its potential energy."""
-    return _chart(result, history, ("plate_energy", "Energy of the plate", caption), _PLATE_ENERGY, plate_time(result))
+    """Return the chart of the plate's energies: kinetic, strain, their sum, and the
+    change of its potential energy.
+    """
+    return _chart(
+        result,
+        history,
+        ("plate_energy", "Energy of the plate", caption),
+        _PLATE_ENERGY,
+        plate_time(result),
+    )
 
 
 def plate_time(result: Result) -> Axis:
-    """Return the axis of time of what the plate does, with the vibration after each impact as a view."""
+    """Return the axis of time of what the plate does, with the vibration after each
+    impact as a view.
+    """
     return time_axis(result, views_of_contacts(result, lambda impact: plate_span(result, impact)))
 
 
-def _chart(result: Result, history: Mapping[str, Floats], words: tuple[str, str, str], rows: Sequence[Row], time: Axis) -> Chart:
+def _chart(
+    result: Result,
+    history: Mapping[str, Floats],
+    words: tuple[str, str, str],
+    rows: Sequence[Row],
+    time: Axis,
+) -> Chart:
     name, title, caption = words
     panels = []
     for row in rows:
-        values = history[row.columns[0]] if len(row.columns) == 1 else np.sum([history[column] for column in row.columns], axis=0)
-        panels.append((Panel(time, Axis("", row.unit), (spans_of_contact(result), Line(history["time_s"], values)), row.title),))
+        values = (
+            history[row.columns[0]]
+            if len(row.columns) == 1
+            else np.sum([history[column] for column in row.columns], axis=0)
+        )
+        panels.append(
+            (
+                Panel(
+                    time,
+                    Axis("", row.unit),
+                    (spans_of_contact(result), Line(history["time_s"], values)),
+                    row.title,
+                ),
+            )
+        )
     return Chart(name, title, tuple(panels), caption)
 
 
 def plate_span(result: Result, impact: int = 0) -> float:
     """Return the time after the first touch of an impact for which the plate is shown [s].
 
-    It is 1.5 periods of the lowest mode, where the plate has one, but ends at the next impact or the end of the run, and is at least 1.2
-    contact durations.
+    It is 1.5 periods of the lowest mode, where the plate has one, but ends at the next impact or
+    the end of the run, and is at least 1.2 contact durations.
     """
     touches, duration = result.impacts["time_s"], float(result.impacts["duration_s"][impact])
-    until = float(touches[impact + 1]) if len(touches) > impact + 1 else float(result.history["time_s"][-1])
+    until = (
+        float(touches[impact + 1])
+        if len(touches) > impact + 1
+        else float(result.history["time_s"][-1])
+    )
     spans = [resolved_span(1.0 / lowest) for lowest in result.frequencies("plate")[:1]]
     return max(min([*spans, until - float(touches[impact])]), 1.2 * duration)
 

@@ -1,9 +1,11 @@
 """The baseline of a record: the level at which it rests, which an amplifier shifts and lets drift.
 
-A record is baseline and vibration. Where it rests, only the baseline is left: blocks of samples are compared by their scatter, and a
-constant, a line or an exponential on a constant is fitted to the levels of those that are quiet. It is removed only if it stands out from
-what noise and slow vibration do to these levels, so that a record without offset stays as it is, to the last digit. Where a record begins
-at rest, the level there decides: what comes only with the impacts, such as the motion of a free plate, is signal.
+A record is baseline and vibration. Where it rests, only the baseline is left: blocks of samples are
+compared by their scatter, and a constant, a line or an exponential on a constant is fitted to the
+levels of those that are quiet. It is removed only if it stands out from what noise and slow
+vibration do to these levels, so that a record without offset stays as it is, to the last digit.
+Where a record begins at rest, the level there decides: what comes only with the impacts, such as
+the motion of a free plate, is signal.
 """
 
 from __future__ import annotations
@@ -23,17 +25,27 @@ _LEAST = 128
 _BLOCKS, _IN_BLOCK = 128, 8
 """Largest number of blocks, and least number of samples of one."""
 _QUIET_PART, _AS_QUIET, _QUIET_SHARE = 0.2, 3.0, 2e-3
-"""Part of the blocks that is quiet in any case, the scatter over theirs up to which others are too, and over that of the loudest."""
+"""Part of the blocks that is quiet in any case, the scatter over theirs up to which
+others are too, and over that of the loudest.
+"""
 _PASSES = 3
 """How often a baseline is sought in what the one before left."""
 _STERN = 3.0
-"""Weight of a further parameter, over that of Schwarz' criterion: levels of slow vibrations are no independent numbers."""
+"""Weight of a further parameter, over that of Schwarz' criterion: levels of slow
+vibrations are no independent numbers.
+"""
 _REST = 0.15
-"""Part of the blocks that must be quiet with their neighbours; with fewer a record is nowhere at rest, and all its blocks count."""
+"""Part of the blocks that must be quiet with their neighbours; with fewer a record is
+nowhere at rest, and all its blocks count.
+"""
 _STEEP = 6.0
-"""Median rise within quiet blocks, beside that of all, over the deviation of a level, above which a vibration is slower than blocks."""
+"""Median rise within quiet blocks, beside that of all, over the deviation of a level,
+above which a vibration is slower than blocks.
+"""
 _CURVED, _NEAR = 3.0, 0.01
-"""Variance by the likeness of neighbours from which on what a drift leaves is a curve, and what of it is small beside the drift."""
+"""Variance by the likeness of neighbours from which on what a drift leaves is a curve,
+and what of it is small beside the drift.
+"""
 _SURE = 4.0
 """Baseline over its standard deviation from which on it is removed."""
 _NOTHING = 1e-6
@@ -43,15 +55,21 @@ _WIDE, _FOR_DRIFT = 0.8, 16
 _AT_REST = 3
 """Quiet blocks before the first loud one that make a rest before the first touch."""
 _ALIKE = 1e-3
-"""Distance of a fit from the level at rest, over the largest magnitude, up to which they agree in any case."""
+"""Distance of a fit from the level at rest, over the largest magnitude, up to which they
+agree in any case.
+"""
 _BESIDE = 0.05
 """Largest magnitude of what is left, over the drift, below which the drift is the signal."""
 _LARGE = 0.1
-"""Baseline over the largest magnitude of what is left from which on it is doubted: a threshold of a tenth would have met it."""
+"""Baseline over the largest magnitude of what is left from which on it is doubted: a
+threshold of a tenth would have met it.
+"""
 
 
 class _Levels(NamedTuple):
-    """Levels of the blocks of a signal: centres as parts of the record, levels, which are quiet, and the deviation of a level."""
+    """Levels of the blocks of a signal: centres as parts of the record, levels, which are
+    quiet, and the deviation of a level.
+    """
 
     place: Floats
     level: Floats
@@ -60,7 +78,9 @@ class _Levels(NamedTuple):
 
 
 class _Fit(NamedTuple):
-    """A baseline: constant, slope over the record, and the amplitude of an exponential of a time constant, as a part of the record."""
+    """A baseline: constant, slope over the record, and the amplitude of an exponential of
+    a time constant, as a part of the record.
+    """
 
     constant: float
     slope: float = 0.0
@@ -68,7 +88,11 @@ class _Fit(NamedTuple):
     time_constant: float = 1.0
 
     def at(self, place: Floats) -> Floats:
-        return self.constant + self.slope * place + self.amplitude * np.exp(-place / self.time_constant)
+        return (
+            self.constant
+            + self.slope * place
+            + self.amplitude * np.exp(-place / self.time_constant)
+        )
 
 
 def baseline_of(value: Floats) -> Floats:
@@ -82,7 +106,9 @@ def baseline_of(value: Floats) -> Floats:
     Examples
     --------
     >>> time = np.arange(4000) / 10e3
-    >>> burst = np.where(time >= 0.1, np.exp(-(time - 0.1).clip(0.0) / 5e-3) * np.sin(6e3 * (time - 0.1)), 0.0)
+    >>> burst = np.where(
+    ...     time >= 0.1, np.exp(-(time - 0.1).clip(0.0) / 5e-3) * np.sin(6e3 * (time - 0.1)), 0.0
+    ... )
     >>> baseline_of(burst)[:2].tolist(), baseline_of(burst + 0.25)[:2].round(6).tolist()
     ([0.0, 0.0], [0.25, 0.25])
     """
@@ -110,7 +136,8 @@ def baseline_of(value: Floats) -> Floats:
 
 
 def without_baseline(record: Record) -> Record:
-    """Return a record without its baseline, with what was removed, and with a doubt if that is large; as it is, if that was done before.
+    """Return a record without its baseline, with what was removed, and with a doubt if that is
+    large; as it is, if that was done before.
 
     Parameters
     ----------
@@ -120,7 +147,9 @@ def without_baseline(record: Record) -> Record:
     Examples
     --------
     >>> time = np.arange(4000) / 10e3
-    >>> burst = np.where(time >= 0.1, np.exp(-(time - 0.1).clip(0.0) / 5e-3) * np.sin(6e3 * (time - 0.1)), 0.0)
+    >>> burst = np.where(
+    ...     time >= 0.1, np.exp(-(time - 0.1).clip(0.0) / 5e-3) * np.sin(6e3 * (time - 0.1)), 0.0
+    ... )
     >>> clean = without_baseline(Record("geophone", burst - 0.25, 10e3, "V"))
     >>> round(clean.removed.offset, 6), round(clean.removed.drift, 6), clean.doubts[0][:30]
     (-0.25, 0.0, 'an offset of -0.25 V was remov')
@@ -136,17 +165,29 @@ def without_baseline(record: Record) -> Record:
     doubts = record.doubts
     if is_large(largest, peak):
         unit = "" if record.unit in ("", "1") else f" {record.unit}"
-        drift = f" that drifts by {removed.drift:.4g}{unit}" if removed.drift > _LARGE * largest else ""
-        part = (
-            f"{'up to ' if drift else ''}{largest / peak:.2g} times the largest magnitude of what is left" if peak else "all that there is"
+        drift = (
+            f" that drifts by {removed.drift:.4g}{unit}" if removed.drift > _LARGE * largest else ""
         )
-        words = f"an offset of {removed.offset:.4g}{unit}{drift} was removed from {shown(record.name)}, {part}"
-        doubts += (f"{words}: check that the channel rests at zero, and that it is not what you measure",)
+        part = (
+            f"{'up to ' if drift else ''}{largest / peak:.2g} times the largest magnitude "
+            "of what is left"
+            if peak
+            else "all that there is"
+        )
+        words = (
+            f"an offset of {removed.offset:.4g}{unit}{drift} was removed from "
+            f"{shown(record.name)}, {part}"
+        )
+        doubts += (
+            f"{words}: check that the channel rests at zero, and that it is not what you measure",
+        )
     return replace(record, value=value, removed=removed, recorded=record.value, doubts=doubts)
 
 
 def is_large(baseline: Floats | float, peak: Floats | float) -> Any:
-    """Return whether a baseline is large beside the largest magnitude of what is left, so that it is doubted."""
+    """Return whether a baseline is large beside the largest magnitude of what is left, so
+    that it is doubted.
+    """
     return baseline > _LARGE * peak
 
 
@@ -161,12 +202,17 @@ def removed_of(baseline: Floats) -> Removed:
 
 
 def _levels(value: Floats) -> _Levels:
-    """Return the levels of the blocks of a signal: means of the middle half of their samples, which bursts do not move."""
+    """Return the levels of the blocks of a signal: means of the middle half of their
+    samples, which bursts do not move.
+    """
     count = min(_BLOCKS, len(value) // _IN_BLOCK)
     size = len(value) // count
     blocks = value[: count * size].reshape(count, size)
-    # a drift within a block is no scatter; the halves tell it, without bursts that are shorter than a part of them
-    halves = np.stack([_middle(part)[0] for part in (blocks[:, : size // 2], blocks[:, size - size // 2 :])])
+    # a drift within a block is no scatter; the halves tell it, without bursts that are shorter than
+    # a part of them
+    halves = np.stack(
+        [_middle(part)[0] for part in (blocks[:, : size // 2], blocks[:, size - size // 2 :])]
+    )
     rise = (halves[1] - halves[0]) * size / (size - size // 2)
     level, scatter = _middle(blocks - rise[:, None] * ((np.arange(size) + 0.5) / size - 0.5))
     quiet_scatter = float(np.quantile(scatter, _QUIET_PART, method="lower"))
@@ -178,10 +224,14 @@ def _levels(value: Floats) -> _Levels:
     # quiet blocks that stand alone are where a vibration turns, and no rest
     quiet = apart if np.count_nonzero(apart) >= _REST * count else np.ones(count, dtype=bool)
     place = (np.arange(count) + 0.5) * size / len(value)
-    # of white noise the middle half spans 1.35 standard deviations, and its mean has 1.09 times the deviation of the mean of all
+    # of white noise the middle half spans 1.35 standard deviations, and its mean has 1.09 times the
+    # deviation of the mean of all
     deviation = 0.81 * float(np.median(scatter[quiet])) / np.sqrt(size)
-    if float(np.median(np.abs(rise[quiet] - np.median(rise[quiet])))) > _STEEP * deviation + _QUIET_SHARE * float(scatter.max()):
-        # what rises here and falls there is a slow vibration where it crosses its middle, and no rest
+    if float(
+        np.median(np.abs(rise[quiet] - np.median(rise[quiet])))
+    ) > _STEEP * deviation + _QUIET_SHARE * float(scatter.max()):
+        # what rises here and falls there is a slow vibration where it crosses its middle, and no
+        # rest
         quiet[:] = True
     return _Levels(place, level, quiet, deviation)
 
@@ -211,7 +261,9 @@ def _fitted(found: _Levels, span: float) -> _Fit | None:
     return before if _stands_out(before, 1, begin, rest, found.deviation, least) else None
 
 
-def _stands_out(fit: _Fit, parameters: int, place: Floats, level: Floats, deviation: float, least: float) -> bool:
+def _stands_out(
+    fit: _Fit, parameters: int, place: Floats, level: Floats, deviation: float, least: float
+) -> bool:
     """Return whether a baseline is more than noise and slow vibrations make of levels."""
     baseline = fit.at(place)
     left = level - baseline
@@ -221,12 +273,17 @@ def _stands_out(fit: _Fit, parameters: int, place: Floats, level: Floats, deviat
 
 
 def _best(place: Floats, level: Floats, deviation: float) -> tuple[_Fit, int]:
-    """Return the constant, line or exponential that tells levels best, by Schwarz' criterion, and the number of its parameters."""
+    """Return the constant, line or exponential that tells levels best, by Schwarz'
+    criterion, and the number of its parameters.
+    """
     constant = _Fit(float(level.mean()))
     if len(place) < _FOR_DRIFT or place[-1] - place[0] < _WIDE:
         return constant, 1
     slope, middle = np.polyfit(place - place.mean(), level, 1)
-    drifts = ((_Fit(float(middle - slope * place.mean()), float(slope)), 2), (_exponential(place, level), 3))
+    drifts = (
+        (_Fit(float(middle - slope * place.mean()), float(slope)), 2),
+        (_exponential(place, level), 3),
+    )
     candidates = ((constant, 1), *(one for one in drifts if _is_drift(one[0].at(place), level)))
 
     def surprise(candidate: tuple[_Fit, int]) -> float:
@@ -239,13 +296,19 @@ def _best(place: Floats, level: Floats, deviation: float) -> tuple[_Fit, int]:
 
 
 def _is_drift(baseline: Floats, level: Floats) -> bool:
-    """Return whether a drift leaves of levels what is no curve: a part of a slow vibration is only similar to it."""
+    """Return whether a drift leaves of levels what is no curve: a part of a slow
+    vibration is only similar to it.
+    """
     left = level - baseline
-    return _alike(left) < _CURVED or float(np.sqrt(left @ left / len(left))) < _NEAR * float(np.ptp(baseline))
+    return _alike(left) < _CURVED or float(np.sqrt(left @ left / len(left))) < _NEAR * float(
+        np.ptp(baseline)
+    )
 
 
 def _exponential(place: Floats, level: Floats) -> _Fit:
-    """Return the exponential on a constant that is nearest to levels: by its time constant on a grid that is refined."""
+    """Return the exponential on a constant that is nearest to levels: by its time
+    constant on a grid that is refined.
+    """
     constants = _time_constants()
     for _ in range(4):
         rows = np.exp(-place[None] / constants[:, None])
@@ -253,7 +316,12 @@ def _exponential(place: Floats, level: Floats) -> _Fit:
         about = level - level.mean()
         amplitude = rows @ about / np.einsum("ij,ij->i", rows, rows)
         best = int(np.argmax(amplitude**2 * np.einsum("ij,ij->i", rows, rows)))
-        found = _Fit(float(level.mean() - amplitude[best] * middle[best, 0]), 0.0, float(amplitude[best]), float(constants[best]))
+        found = _Fit(
+            float(level.mean() - amplitude[best] * middle[best, 0]),
+            0.0,
+            float(amplitude[best]),
+            float(constants[best]),
+        )
         below, above = constants[max(best - 1, 0)], constants[min(best + 1, len(constants) - 1)]
         constants = np.geomspace(below, above, 9)
     return found
@@ -265,7 +333,9 @@ def _time_constants() -> Floats:
 
 
 def _alike(left: Floats) -> float:
-    """Return by how much the likeness of neighbours makes a mean less sure: the variance over that of unlike ones."""
+    """Return by how much the likeness of neighbours makes a mean less sure: the variance
+    over that of unlike ones.
+    """
     power = float(left @ left)
     if not power:
         return 1.0

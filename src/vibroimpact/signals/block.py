@@ -1,4 +1,6 @@
-"""A block of signals of equal length with what several features ask of them: spectrum, envelope, packets, each computed once."""
+"""A block of signals of equal length with what several features ask of them: spectrum,
+envelope, packets, each computed once.
+"""
 
 from __future__ import annotations
 
@@ -59,7 +61,9 @@ class Block:
 
     @cached_property
     def transform(self) -> Complex:
-        """Fourier transform at the frequencies from zero to half the rate, (n, samples // 2 + 1)."""
+        """Fourier transform at the frequencies from zero to half the rate, (n, samples //
+        2 + 1).
+        """
         return np.asarray(fft.rfft(self.value))
 
     @cached_property
@@ -69,7 +73,9 @@ class Block:
 
     @cached_property
     def power(self) -> Floats:
-        """Energy at the frequencies of the transform: the sum over them is that of the squares of the samples (Parseval)."""
+        """Energy at the frequencies of the transform: the sum over them is that of the
+        squares of the samples (Parseval).
+        """
         power = (self.transform.real**2 + self.transform.imag**2) / self.samples
         power[:, 1 : (self.samples + 1) // 2] *= 2.0
         return np.asarray(power)

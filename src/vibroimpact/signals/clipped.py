@@ -8,17 +8,23 @@ from vibroimpact.arrays import Bools
 from vibroimpact.signals.record import Record
 
 _STEPS = 3.0
-"""Steps of a converter by which a peak rises above its neighbours where it is cut, and not round."""
+"""Steps of a converter by which a peak rises above its neighbours where it is cut, and
+not round.
+"""
 _ALL = 3
 """Number of samples at an extreme that are no chance, wherever they are."""
 _AT_REST = 1e-6
-"""Part of the largest magnitude up to which a signal rests: the level of a force between impacts is no end of a converter's range."""
+"""Part of the largest magnitude up to which a signal rests: the level of a force between
+impacts is no end of a converter's range.
+"""
 
 
 def clipped_samples(record: Record) -> Bools:
-    """Return which samples of a record are clipped: at its largest or its lowest value, twice in a row or three times in all.
+    """Return which samples of a record are clipped: at its largest or its lowest value, twice in a
+    row or three times in all.
 
-    A converter of few bits repeats the extreme of a round peak too; there the next value is only a step or two lower.
+    A converter of few bits repeats the extreme of a round peak too; there the next value is only a
+    step or two lower.
 
     Parameters
     ----------

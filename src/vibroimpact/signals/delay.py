@@ -28,7 +28,8 @@ class Delay(NamedTuple):
     correlation : array, shape (S,)
         Correlation coefficient of each pair at this delay and polarity.
     gain : array, shape (S,)
-        The multiple of the earlier signal that is nearest to the later one at this delay, of either sign.
+        The multiple of the earlier signal that is nearest to the later one at this delay, of either
+        sign.
     """
 
     time: float
@@ -38,7 +39,8 @@ class Delay(NamedTuple):
 
 
 def band_limited(value: Floats, rate: float, band: tuple[float, float]) -> Floats:
-    """Return signals (..., samples) without what lies outside a band of frequencies [Hz], without delay; zero before and after.
+    """Return signals (..., samples) without what lies outside a band of frequencies [Hz], without
+    delay; zero before and after.
 
     Examples
     --------
@@ -53,15 +55,19 @@ def band_limited(value: Floats, rate: float, band: tuple[float, float]) -> Float
     return np.asarray(fft.irfft(gain * fft.rfft(value, length), length)[..., : value.shape[-1]])
 
 
-def delay_between(later: Floats, earlier: Floats, rate: float, band: tuple[float, float], most: float) -> Delay:
-    r"""Return the one delay of signals after others at which they correlate best, whatever their signs.
+def delay_between(
+    later: Floats, earlier: Floats, rate: float, band: tuple[float, float], most: float
+) -> Delay:
+    r"""Return the one delay of signals after others at which they correlate best, whatever their
+    signs.
 
-    That is where the sum over the pairs of the magnitudes of their normalised cross-correlations is largest, each of band-limited signals:
+    That is where the sum over the pairs of the magnitudes of their normalised cross-correlations is
+    largest, each of band-limited signals:
 
     .. math:: c(\tau) = \int X(f)\,Y^*(f)\,e^{2 \pi i f \tau}\,df
 
-    which is known between the samples too, so that its top is found there by Newton's method (Knapp and Carter 1976, IEEE Trans. Acoust.
-    Speech Signal Process. 24:320: the cross-correlator).
+    which is known between the samples too, so that its top is found there by Newton's method (Knapp
+    and Carter 1976, IEEE Trans. Acoust. Speech Signal Process. 24:320: the cross-correlator).
 
     Parameters
     ----------
@@ -77,7 +83,8 @@ def delay_between(later: Floats, earlier: Floats, rate: float, band: tuple[float
     Examples
     --------
     >>> time = np.arange(400) / 10e3
-    >>> def burst(at): return np.exp(-(((time - at) / 1e-3) ** 2)) * np.sin(4e3 * np.pi * (time - at))
+    >>> def burst(at):
+    ...     return np.exp(-(((time - at) / 1e-3) ** 2)) * np.sin(4e3 * np.pi * (time - at))
     >>> found = delay_between(-burst(0.02034)[None], burst(0.02)[None], 10e3, (500.0, 4000.0), 2e-3)
     >>> round(1e3 * found.time, 4), found.polarity.tolist(), found.correlation.round(4).tolist()
     (0.34, [-1.0], [1.0])

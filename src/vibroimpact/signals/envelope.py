@@ -11,8 +11,8 @@ from vibroimpact.arrays import Floats
 def hilbert_envelope(value: Floats) -> Floats:
     """Return the magnitude of the analytic signals of real signals, along the last axis.
 
-    Before and after the samples the signals are taken as zero: a signal that begins at its first sample does not leak into its end, as it
-    would if the record were taken as a period.
+    Before and after the samples the signals are taken as zero: a signal that begins at its first
+    sample does not leak into its end, as it would if the record were taken as a period.
 
     Parameters
     ----------
@@ -26,7 +26,8 @@ def hilbert_envelope(value: Floats) -> Floats:
 
     References
     ----------
-    Marple, S. L. (1999). Computing the discrete-time "analytic" signal via FFT. IEEE Trans. Signal Process. 47, 2600-2603.
+    Marple, S. L. (1999). Computing the discrete-time "analytic" signal via FFT. IEEE Trans. Signal
+    Process. 47, 2600-2603.
 
     Examples
     --------
@@ -37,7 +38,8 @@ def hilbert_envelope(value: Floats) -> Floats:
     samples = value.shape[-1]
     length = fft.next_fast_len(2 * samples, real=True)
     length += length % 2
-    # the analytic signal has no negative frequencies: its imaginary part is the transform of the spectrum turned by a quarter
+    # the analytic signal has no negative frequencies: its imaginary part is the transform of the
+    # spectrum turned by a quarter
     spectrum = fft.rfft(value, length)
     spectrum *= -1j
     spectrum[..., 0] = spectrum[..., -1] = 0.0

@@ -1,4 +1,6 @@
-"""What a feature is: a number with a name, a unit, an equation and a source; and a family of them, which share their computation."""
+"""What a feature is: a number with a name, a unit, an equation and a source; and a family
+of them, which share their computation.
+"""
 
 from __future__ import annotations
 
@@ -21,13 +23,15 @@ class Feature:
     meaning : str
         What it is, in a few words.
     equation : str
-        Its equation in plain characters: x are the samples, a the envelope, P the energy of the spectrum by frequency f.
+        Its equation in plain characters: x are the samples, a the envelope, P the energy of the
+        spectrum by frequency f.
     source : str
         Author, year and place of the definition.
     unit : str, default "1"
         The unit, apart from that of the signal: "s", "Hz".
     degree : int, default 0
-        The power of the signal's scale, and of its unit, that it grows with: 1 for amplitudes, 2 for energies, 0 for shapes.
+        The power of the signal's scale, and of its unit, that it grows with: 1 for amplitudes, 2
+        for energies, 0 for shapes.
     offset_free : bool, default False
         Whether it stays the same when a constant is added to the signal.
     least : int, default 1
@@ -57,7 +61,13 @@ class Feature:
         """
         if not self.degree or signal in ("", "1"):
             return self.unit
-        power = signal if self.degree == 1 else f"({signal})^{self.degree}" if set("/ ^") & set(signal) else f"{signal}^{self.degree}"
+        power = (
+            signal
+            if self.degree == 1
+            else f"({signal})^{self.degree}"
+            if set("/ ^") & set(signal)
+            else f"{signal}^{self.degree}"
+        )
         return power if self.unit == "1" else f"{power} {self.unit}"
 
 
@@ -70,8 +80,9 @@ class Family:
     features : tuple of Feature
         The features.
     of : callable
-        Takes a `Block` of n signals, whose largest magnitudes are 1/2 to 1, and returns the values (n, features); NaN where there is none.
-        Signals shorter than the least `least` of the features never reach it.
+        Takes a `Block` of n signals, whose largest magnitudes are 1/2 to 1, and returns the values
+        (n, features); NaN where there is none. Signals shorter than the least `least` of the
+        features never reach it.
     """
 
     features: tuple[Feature, ...]

@@ -1,4 +1,6 @@
-"""The table of features: a row a signal, a column a feature, and a reason wherever there is no number."""
+"""The table of features: a row a signal, a column a feature, and a reason wherever there
+is no number.
+"""
 
 from __future__ import annotations
 
@@ -39,13 +41,16 @@ class FeatureTable:
     reasons : array of int, shape (signals, features)
         Why there is none, as members of `Reason`; 0 where there is one.
     offset, drift : array, shape (signals,)
-        Mean and span of the baseline that was removed, in the unit of the signals; 0 where none stands out.
+        Mean and span of the baseline that was removed, in the unit of the signals; 0 where none
+        stands out.
 
     Examples
     --------
     >>> import numpy as np
     >>> import vibroimpact as vi
-    >>> table = vi.feature_table(np.sin(np.arange(200) / 3.0)[None], 1e3, ["rms", "decay_time"], unit="V")
+    >>> table = vi.feature_table(
+    ...     np.sin(np.arange(200) / 3.0)[None], 1e3, ["rms", "decay_time"], unit="V"
+    ... )
     >>> table.names, table.units, table["rms"].round(2).tolist()
     (('rms', 'decay_time'), ('V', 's'), [0.7])
     """
@@ -59,11 +64,19 @@ class FeatureTable:
 
     def __getitem__(self, name: str) -> Floats:
         """Return the values of a feature, (signals,)."""
-        return self.values[:, find_named("feature", name, {one: place for place, one in enumerate(self.names)})]
+        return self.values[
+            :, find_named("feature", name, {one: place for place, one in enumerate(self.names)})
+        ]
 
     def lacking(self, signal: int) -> dict[str, str]:
-        """Return why a signal has no value of some features, in words by the name of the feature."""
-        return {name: Reason(code).text for name, code in zip(self.names, self.reasons[signal], strict=True) if code}
+        """Return why a signal has no value of some features, in words by the name of the
+        feature.
+        """
+        return {
+            name: Reason(code).text
+            for name, code in zip(self.names, self.reasons[signal], strict=True)
+            if code
+        }
 
 
 def feature_table(
@@ -89,8 +102,8 @@ def feature_table(
     unit : str, default "1"
         Unit of the signals, for those of the features.
     threshold : float, optional
-        Threshold of the envelope, in the unit of the signals, for onset, times and packets; by default a tenth of the largest value of the
-        envelope of each signal.
+        Threshold of the envelope, in the unit of the signals, for onset, times and packets; by
+        default a tenth of the largest value of the envelope of each signal.
     dead_time : float, default 5e-3
         How long the envelope is below the threshold before a packet is over [s].
     progress : callable, optional
@@ -104,7 +117,8 @@ def feature_table(
     Raises
     ------
     InputError
-        If the signals are not a table of real numbers, or the rate, a name or a setting is not allowed.
+        If the signals are not a table of real numbers, or the rate, a name or a setting is not
+        allowed.
 
     Examples
     --------
@@ -116,10 +130,16 @@ def feature_table(
     """
     signals, frequency = real_numbers(values), checked_rate(rate)
     if signals.ndim != 2:
-        raise InputError(f"the signals are an array of {signals.ndim} dimensions; give a table of shape (signals, samples)")
+        raise InputError(
+            f"the signals are an array of {signals.ndim} dimensions; give a table of shape "
+            "(signals, samples)"
+        )
     check_settings(threshold, dead_time)
     wanted = {name: find_feature(name) for name in (features() if names is None else names)}
-    found, reasons = np.empty((len(signals), len(wanted))), np.zeros((len(signals), len(wanted)), dtype=np.int8)
+    found, reasons = (
+        np.empty((len(signals), len(wanted))),
+        np.zeros((len(signals), len(wanted)), dtype=np.int8),
+    )
     removed = np.zeros((len(signals), 2))
     step = _step(signals.shape[1])
     for first in range(0, len(signals), step):
@@ -127,7 +147,9 @@ def feature_table(
         recorded = signals[part].astype(np.float64)
         baseline = np.stack([baseline_of(one) for one in recorded])
         removed[part] = [removed_of(one) for one in baseline]
-        found[part], reasons[part] = features_at_rest(recorded - baseline, recorded, frequency, wanted, threshold, dead_time)
+        found[part], reasons[part] = features_at_rest(
+            recorded - baseline, recorded, frequency, wanted, threshold, dead_time
+        )
         if progress is not None:
             progress(min(first + step, len(signals)), len(signals))
     units = tuple(one.unit_for(unit) for one in wanted.values())
@@ -135,9 +157,15 @@ def feature_table(
 
 
 def features_at_rest(
-    signals: Floats, recorded: Floats, rate: float, wanted: Mapping[str, Feature], threshold: float | None, dead_time: float
+    signals: Floats,
+    recorded: Floats,
+    rate: float,
+    wanted: Mapping[str, Feature],
+    threshold: float | None,
+    dead_time: float,
 ) -> tuple[Floats, NDArray[np.int8]]:
-    """Return values and reasons, each of the shape (signals, features), of signals that rest at zero; a few at once.
+    """Return values and reasons, each of the shape (signals, features), of signals that rest at
+    zero; a few at once.
 
     Parameters
     ----------
@@ -148,11 +176,16 @@ def features_at_rest(
     wanted : mapping of str to Feature
         The features that are wanted, by name.
     """
-    values, reasons = np.empty((len(signals), len(wanted))), np.zeros((len(signals), len(wanted)), dtype=np.int8)
+    values, reasons = (
+        np.empty((len(signals), len(wanted))),
+        np.zeros((len(signals), len(wanted)), dtype=np.int8),
+    )
     step = _step(signals.shape[1])
     for first in range(0, len(signals), step):
         part = slice(first, first + step)
-        values[part], reasons[part] = _features_of(signals[part], recorded[part], rate, wanted, threshold, dead_time)
+        values[part], reasons[part] = _features_of(
+            signals[part], recorded[part], rate, wanted, threshold, dead_time
+        )
     return values, reasons
 
 
@@ -162,11 +195,21 @@ def _step(samples: int) -> int:
 
 
 def _features_of(
-    signals: Floats, recorded: Floats, rate: float, wanted: Mapping[str, Feature], threshold: float | None, dead_time: float
+    signals: Floats,
+    recorded: Floats,
+    rate: float,
+    wanted: Mapping[str, Feature],
+    threshold: float | None,
+    dead_time: float,
 ) -> tuple[Floats, NDArray[np.int8]]:
-    """Return values and reasons of a block of signals (n, samples), each of the shape (n, features)."""
+    """Return values and reasons of a block of signals (n, samples), each of the shape (n,
+    features).
+    """
     count, samples = signals.shape
-    values, reasons = np.full((count, len(wanted)), np.nan), np.zeros((count, len(wanted)), dtype=np.int8)
+    values, reasons = (
+        np.full((count, len(wanted)), np.nan),
+        np.zeros((count, len(wanted)), dtype=np.int8),
+    )
     if not samples:
         reasons[:] = Reason.EMPTY
         return values, reasons
@@ -175,36 +218,64 @@ def _features_of(
     if not finite.any():
         return values, reasons
     # a number without a value is NaN, and no warning
-    chosen = [family for family in families() if any(feature.name in wanted for feature in family.features)]
+    chosen = [
+        family
+        for family in families()
+        if any(feature.name in wanted for feature in family.features)
+    ]
     with np.errstate(all="ignore"):
         block, exponent = _scaled(signals[finite], recorded[finite], rate, threshold, dead_time)
         constant = np.ptp(block.value, axis=1) == 0.0
         place = {name: column for column, name in enumerate(wanted)}
         for family in chosen:
-            here = [(column, feature) for column, feature in enumerate(family.features) if feature.name in wanted]
+            here = [
+                (column, feature)
+                for column, feature in enumerate(family.features)
+                if feature.name in wanted
+            ]
             long = samples >= min(feature.least for _, feature in here)
-            computed = family.of(block) if long else np.full((len(block.value), len(family.features)), np.nan)
+            computed = (
+                family.of(block)
+                if long
+                else np.full((len(block.value), len(family.features)), np.nan)
+            )
             for column, feature in here:
-                number = computed[:, column] if samples >= feature.least else np.full(len(block.value), np.nan)
+                number = (
+                    computed[:, column]
+                    if samples >= feature.least
+                    else np.full(len(block.value), np.nan)
+                )
                 values[finite, place[feature.name]], reasons[finite, place[feature.name]] = _told(
                     feature, number, exponent, constant, samples
                 )
     return values, reasons
 
 
-def _scaled(signals: Floats, recorded: Floats, rate: float, threshold: float | None, dead_time: float) -> tuple[Block, Integers]:
-    """Return signals with largest magnitudes of 1/2 to 1, and the powers of two that they were divided by; such a division is exact."""
+def _scaled(
+    signals: Floats, recorded: Floats, rate: float, threshold: float | None, dead_time: float
+) -> tuple[Block, Integers]:
+    """Return signals with largest magnitudes of 1/2 to 1, and the powers of two that they
+    were divided by; such a division is exact.
+    """
     exponent = np.frexp(np.abs(signals).max(axis=1))[1].astype(np.int64)
     # in two steps, since the power of two itself may be out of range
     half = exponent // 2
     value = np.ldexp(np.ldexp(signals, -half[:, None]), (half - exponent)[:, None])
     # a threshold that is nothing beside a signal is still above zero
-    given = None if threshold is None else np.maximum(np.ldexp(np.ldexp(threshold, -half), half - exponent), np.finfo(float).tiny)
+    given = (
+        None
+        if threshold is None
+        else np.maximum(np.ldexp(np.ldexp(threshold, -half), half - exponent), np.finfo(float).tiny)
+    )
     return Block(value, rate, given, dead_time, recorded), exponent
 
 
-def _told(feature: Feature, number: Floats, exponent: Integers, constant: Bools, samples: int) -> tuple[Floats, NDArray[np.int8]]:
-    """Return the values of a feature at the scale of the signals, and a reason where there is none."""
+def _told(
+    feature: Feature, number: Floats, exponent: Integers, constant: Bools, samples: int
+) -> tuple[Floats, NDArray[np.int8]]:
+    """Return the values of a feature at the scale of the signals, and a reason where
+    there is none.
+    """
     power = feature.degree * exponent
     half = power // 2
     value = np.ldexp(np.ldexp(number, half), power - half)

@@ -9,12 +9,14 @@ from vibroimpact.errors import InputError
 
 
 def frac(measured: object, simulated: object) -> Floats:
-    r"""Return the frequency response assurance criterion of two frequency responses, or of two spectra.
+    r"""Return the frequency response assurance criterion of two frequency responses, or of two
+    spectra.
 
     .. math:: \mathrm{FRAC} = \frac{|\sum_k H_m^* H_s|^2}{\sum_k |H_m|^2 \sum_k |H_s|^2}
 
-    It is 1 if one is a multiple of the other at all frequencies, and 0 if they have nothing in common. It does not tell a wrong size, and
-    shifted resonances lower it much: of two light resonances whose frequencies are a half-power bandwidth apart it is 0.5.
+    It is 1 if one is a multiple of the other at all frequencies, and 0 if they have nothing in
+    common. It does not tell a wrong size, and shifted resonances lower it much: of two light
+    resonances whose frequencies are a half-power bandwidth apart it is 0.5.
 
     Parameters
     ----------
@@ -33,9 +35,10 @@ def frac(measured: object, simulated: object) -> Floats:
 
     References
     ----------
-    Heylen, W. and Lammens, S. (1996). FRAC: a consistent way of comparing frequency response functions. Proceedings of the Conference on
-    Identification in Engineering Systems, Swansea, 48-57.
-    Allemang, R. J. (2003). The modal assurance criterion: twenty years of use and abuse. Sound and Vibration 37(8), 14-21.
+    Heylen, W. and Lammens, S. (1996). FRAC: a consistent way of comparing frequency response
+    functions. Proceedings of the Conference on Identification in Engineering Systems, Swansea,
+    48-57. Allemang, R. J. (2003). The modal assurance criterion: twenty years of use and abuse.
+    Sound and Vibration 37(8), 14-21.
 
     Examples
     --------
@@ -46,11 +49,14 @@ def frac(measured: object, simulated: object) -> Floats:
     one, other = np.asarray(measured), np.asarray(simulated)
     if one.shape != other.shape or one.ndim == 0:
         raise InputError(
-            f"responses of the shapes {one.shape} and {other.shape} can't be compared; give arrays of one shape, at the same frequencies"
+            f"responses of the shapes {one.shape} and {other.shape} can't be compared; "
+            "give arrays of one shape, at the same frequencies"
         )
     # sizes do not count: scaled, so that no square overflows or vanishes
     sizes = [np.max(np.abs(each), axis=-1, keepdims=True, initial=0.0) for each in (one, other)]
     with np.errstate(invalid="ignore", divide="ignore"):
         one, other = one / sizes[0], other / sizes[1]
         common = np.abs(np.sum(one.conj() * other, axis=-1)) ** 2
-        return np.asarray(common / (np.sum(np.abs(one) ** 2, axis=-1) * np.sum(np.abs(other) ** 2, axis=-1)))
+        return np.asarray(
+            common / (np.sum(np.abs(one) ** 2, axis=-1) * np.sum(np.abs(other) ** 2, axis=-1))
+        )

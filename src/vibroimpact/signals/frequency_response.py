@@ -11,7 +11,9 @@ from vibroimpact.errors import InputError
 from vibroimpact.shown import shown
 
 RESPONSE_UNITS = ("m/s2/N", "m/s/N", "m/N", "V/N", "1/N")
-"""Units of frequency responses, in SI: of accelerations, velocities, displacements, voltages and strains; "" if it is not known."""
+"""Units of frequency responses, in SI: of accelerations, velocities, displacements,
+voltages and strains; "" if it is not known.
+"""
 
 _DIRECTIONS = (-3, -2, -1, 0, 1, 2, 3)
 
@@ -23,7 +25,8 @@ class DegreeOfFreedom:
     Parameters
     ----------
     names : tuple of str
-        The names by which it may be called, such as that of its entity or its node; the first is shown.
+        The names by which it may be called, such as that of its entity or its node; the first is
+        shown.
     direction : int, default 0
         1, 2 or 3 along x, y or z (upwards), negative against the axis; 0 if it is not stated.
 
@@ -46,7 +49,8 @@ class DegreeOfFreedom:
             raise InputError("a place needs a name or more; give one")
         if self.direction not in _DIRECTIONS:
             raise InputError(
-                f"there is no direction {self.direction}; give 1, 2 or 3 for x, y or z, negative against the axis, or 0 if it is not known"
+                f"there is no direction {self.direction}; give 1, 2 or 3 for x, y or z, "
+                "negative against the axis, or 0 if it is not known"
             )
 
     @property
@@ -79,15 +83,17 @@ class FrequencyResponse:
     Raises
     ------
     InputError
-        If shapes differ, there are fewer than two frequencies, they do not rise or are not above 0, a value is not finite, a coherence is
-        not from 0 to 1, or there is no such unit.
+        If shapes differ, there are fewer than two frequencies, they do not rise or are not above 0,
+        a value is not finite, a coherence is not from 0 to 1, or there is no such unit.
 
     Examples
     --------
     >>> import vibroimpact as vi
     >>> frequency = np.array([90.0, 100.0, 110.0])
     >>> value = 1.0 / (100.0**2 - frequency**2 + 2j * 0.01 * 100.0 * frequency)
-    >>> response = vi.FrequencyResponse(vi.DegreeOfFreedom(("a1",)), vi.DegreeOfFreedom(("hammer",)), frequency, value, "m/N")
+    >>> response = vi.FrequencyResponse(
+    ...     vi.DegreeOfFreedom(("a1",)), vi.DegreeOfFreedom(("hammer",)), frequency, value, "m/N"
+    ... )
     >>> response.name, int(np.argmax(np.abs(response.value)))
     ('a1', 1)
     """
@@ -102,25 +108,46 @@ class FrequencyResponse:
     doubts: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
-        frequency, value = np.asarray(self.frequency, dtype=float), np.asarray(self.value, dtype=complex)
+        frequency, value = (
+            np.asarray(self.frequency, dtype=float),
+            np.asarray(self.value, dtype=complex),
+        )
         name = shown(self.name)
         if frequency.ndim != 1 or frequency.shape != value.shape or len(frequency) < 2:
             raise InputError(
-                f"the frequency response {name} has frequencies of the shape {frequency.shape} and values of the shape {value.shape}; "
+                f"the frequency response {name} has frequencies of the shape "
+                f"{frequency.shape} and values of the shape {value.shape}; "
                 "give two rows of the same length, of two numbers or more"
             )
-        if not (frequency > 0.0).all() or not (np.diff(frequency) > 0.0).all() or not np.isfinite(frequency).all():
-            raise InputError(f"the frequencies of the response {name} do not rise from above 0; sort them, each once, and leave 0 Hz out")
+        if (
+            not (frequency > 0.0).all()
+            or not (np.diff(frequency) > 0.0).all()
+            or not np.isfinite(frequency).all()
+        ):
+            raise InputError(
+                f"the frequencies of the response {name} do not rise from above 0; sort "
+                "them, each once, and leave 0 Hz out"
+            )
         if not np.isfinite(value).all():
-            raise InputError(f"the frequency response {name} has values that are not finite; leave those frequencies out")
+            raise InputError(
+                f"the frequency response {name} has values that are not finite; leave "
+                "those frequencies out"
+            )
         if self.unit not in ("", *RESPONSE_UNITS):
             raise InputError(
-                f'{shown(self.unit)} is no unit of a frequency response; there are {", ".join(RESPONSE_UNITS)}, and "" for one not known'
+                f"{shown(self.unit)} is no unit of a frequency response; there are "
+                f'{", ".join(RESPONSE_UNITS)}, and "" for one not known'
             )
         if self.coherence is not None:
             coherence = np.asarray(self.coherence, dtype=float)
-            if coherence.shape != frequency.shape or not ((coherence >= 0.0) & (coherence <= 1.0)).all():
-                raise InputError(f"the coherence of the response {name} must have one number from 0 to 1 for each frequency")
+            if (
+                coherence.shape != frequency.shape
+                or not ((coherence >= 0.0) & (coherence <= 1.0)).all()
+            ):
+                raise InputError(
+                    f"the coherence of the response {name} must have one number from 0 to "
+                    "1 for each frequency"
+                )
             object.__setattr__(self, "coherence", coherence)
         object.__setattr__(self, "frequency", frequency)
         object.__setattr__(self, "value", value)

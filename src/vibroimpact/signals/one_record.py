@@ -16,7 +16,9 @@ _TOLD = 10
 """Channels that a message names at most."""
 
 
-def one_record(path: str | PathLike[str], channel: str | None = None, columns: str | None = None) -> Record:
+def one_record(
+    path: str | PathLike[str], channel: str | None = None, columns: str | None = None
+) -> Record:
     """Return the record of a channel of a file, or of a folder; of its only one without a name.
 
     Parameters
@@ -31,7 +33,8 @@ def one_record(path: str | PathLike[str], channel: str | None = None, columns: s
     Raises
     ------
     InputError
-        If the file can't be read, there is no such channel, or there are several records without a name or of that name.
+        If the file can't be read, there is no such channel, or there are several records without a
+        name or of that name.
 
     Examples
     --------
@@ -52,28 +55,50 @@ def one_record(path: str | PathLike[str], channel: str | None = None, columns: s
             break
     if not found:
         every = list(dict.fromkeys(names))
-        there = f"it has {_listed(every)}.{did_you_mean(channel or '', every)}" if every else "it has no record"
-        raise with_path(path, InputError(f"there is no channel {shown(channel)}; {there}" if channel is not None else there))
+        there = (
+            f"it has {_listed(every)}.{did_you_mean(channel or '', every)}"
+            if every
+            else "it has no record"
+        )
+        raise with_path(
+            path,
+            InputError(
+                f"there is no channel {shown(channel)}; {there}" if channel is not None else there
+            ),
+        )
     if len(found) > 1:
-        alike = (record.name for record in islice(read_records(path, columns), _TOLD + 1) if channel is None or is_named(record, channel))
+        alike = (
+            record.name
+            for record in islice(read_records(path, columns), _TOLD + 1)
+            if channel is None or is_named(record, channel)
+        )
         every = list(dict.fromkeys(alike))
-        several = f"it has several channels, {_listed(every)}; name one by --channel (in a case the key channel)"
+        several = (
+            f"it has several channels, {_listed(every)}; name one by --channel (in "
+            "a case the key channel)"
+        )
         one = f"several signals have the name {shown(every[0])}; take a file with one of them"
         raise with_path(path, InputError(several if len(every) > 1 else one))
     return found[0]
 
 
 def is_named(record: Record, channel: str) -> bool:
-    """Return whether a record has a name, or that of a header's cell: a column "Recording (a.u.)" is the record "recording".
+    """Return whether a record has a name, or that of a header's cell: a column "Recording (a.u.)"
+    is the record "recording".
 
     Examples
     --------
     >>> import vibroimpact as vi
-    >>> [is_named(vi.Record("recording", [0.0, 1.0], 8e3, "1"), name) for name in ("recording", "Recording (a.u.)", "record")]
+    >>> [
+    ...     is_named(vi.Record("recording", [0.0, 1.0], 8e3, "1"), name)
+    ...     for name in ("recording", "Recording (a.u.)", "record")
+    ... ]
     [True, True, False]
     """
     return record.name in (channel, name_and_unit(channel)[0])
 
 
 def _listed(names: list[str]) -> str:
-    return ", ".join(shown(name) for name in names[:_TOLD]) + (" and more" if len(names) > _TOLD else "")
+    return ", ".join(shown(name) for name in names[:_TOLD]) + (
+        " and more" if len(names) > _TOLD else ""
+    )

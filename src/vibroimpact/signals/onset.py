@@ -14,10 +14,14 @@ from vibroimpact.signals.packets import find_packets
 from vibroimpact.signals.record import Record
 
 
-def from_onset(record: Record, duration: float, before: float = 0.0, threshold: float | None = None) -> Record:
-    """Return a window of a record around its first touch: where its magnitude first reaches a threshold, once its baseline is removed.
+def from_onset(
+    record: Record, duration: float, before: float = 0.0, threshold: float | None = None
+) -> Record:
+    """Return a window of a record around its first touch: where its magnitude first reaches a
+    threshold, once its baseline is removed.
 
-    Windows of equal duration and rate have equal numbers of samples. Before the record and after it, they are filled with zeros.
+    Windows of equal duration and rate have equal numbers of samples. Before the record and after
+    it, they are filled with zeros.
 
     Parameters
     ----------
@@ -28,12 +32,14 @@ def from_onset(record: Record, duration: float, before: float = 0.0, threshold: 
     before : float, default 0
         The part of it that lies before the onset [s].
     threshold : float, optional
-        Threshold of the envelope, in the unit of the record; by default a tenth of the largest value of the envelope.
+        Threshold of the envelope, in the unit of the record; by default a tenth of the largest
+        value of the envelope.
 
     Returns
     -------
     Record
-        The window. Of a record whose envelope stays below the threshold it is as if the onset was its first sample.
+        The window. Of a record whose envelope stays below the threshold it is as if the onset was
+        its first sample.
 
     Raises
     ------
@@ -48,10 +54,15 @@ def from_onset(record: Record, duration: float, before: float = 0.0, threshold: 
     ([0.0, 8.0, -5.0, 2.0], 0.0002)
     """
     if not 0.0 < duration < np.inf:
-        raise InputError(f"a window of {duration:g} s is not allowed; it must be greater than 0 and finite")
+        raise InputError(
+            f"a window of {duration:g} s is not allowed; it must be greater than 0 and finite"
+        )
     samples = round(duration * record.rate)
     if not 1 <= samples <= 2**31:
-        raise InputError(f"a window of {duration:g} s has {samples} samples at {record.rate:g} Hz; it needs 1 to 2^31")
+        raise InputError(
+            f"a window of {duration:g} s has {samples} samples at {record.rate:g} Hz; it "
+            "needs 1 to 2^31"
+        )
     if not 0.0 <= before <= duration:
         raise InputError(f"{before:g} s before the onset do not lie in a window of {duration:g} s")
     clean = without_baseline(record)
@@ -64,20 +75,25 @@ def from_onset(record: Record, duration: float, before: float = 0.0, threshold: 
         return np.pad(part, (lead, samples - lead - len(part)))
 
     recorded = None if clean.recorded is None else cut(clean.recorded)
-    return replace(clean, value=cut(clean.value), recorded=recorded, start=clean.start + first / clean.rate)
+    return replace(
+        clean, value=cut(clean.value), recorded=recorded, start=clean.start + first / clean.rate
+    )
 
 
 def onset_time(record: Record, threshold: float | None = None) -> float:
-    """Return the time at which the magnitude of a record, without its baseline, first reaches a threshold [s].
+    """Return the time at which the magnitude of a record, without its baseline, first reaches a
+    threshold [s].
 
-    That is within the first of its `Packets`: the envelope tells that there is one, the signal when it begins.
+    That is within the first of its `Packets`: the envelope tells that there is one, the signal when
+    it begins.
 
     Parameters
     ----------
     record : Record
         The record.
     threshold : float, optional
-        Threshold of the envelope, in the unit of the record; by default a tenth of the largest value of the envelope.
+        Threshold of the envelope, in the unit of the record; by default a tenth of the largest
+        value of the envelope.
 
     Raises
     ------
@@ -95,5 +111,7 @@ def onset_time(record: Record, threshold: float | None = None) -> float:
             what = "is zero throughout" if len(record.value) else "has no samples"
             raise InputError(f"{shown(record.name)} {what}; it has no onset")
         unit = "" if record.unit in ("", "1") else f" {record.unit}"
-        raise InputError(f"the envelope of {shown(record.name)} stays below {threshold:g}{unit}; it has no onset")
+        raise InputError(
+            f"the envelope of {shown(record.name)} stays below {threshold:g}{unit}; it has no onset"
+        )
     return record.start + float(packets.onset[0]) / record.rate

@@ -1,10 +1,12 @@
-"""Packets: the parts of a record that stand above a threshold, as those who measure bedload with plate geophones count them.
+"""Packets: the parts of a record that stand above a threshold, as those who measure bedload with
+plate geophones count them.
 
-A packet begins at the first sample at which the envelope reaches the threshold, and ends with the last one before the envelope stays
-below for a dead time. An envelope rises before the signal does, by a part of its period; the onset is where the signal itself reaches the
-threshold, and its impulses are the upward crossings of the signal. Rickenmann and McArdell (2007, Earth Surf. Process. Landforms 32:1362)
-count impulses; Wyss and others (2016, Water Resour. Res. 52:7744) and Chen and others (2022, Earth Surf. Dynam. 10:279) take packets,
-by the Hilbert envelope.
+A packet begins at the first sample at which the envelope reaches the threshold, and ends with the
+last one before the envelope stays below for a dead time. An envelope rises before the signal does,
+by a part of its period; the onset is where the signal itself reaches the threshold, and its
+impulses are the upward crossings of the signal. Rickenmann and McArdell (2007, Earth Surf. Process.
+Landforms 32:1362) count impulses; Wyss and others (2016, Water Resour. Res. 52:7744) and Chen and
+others (2022, Earth Surf. Dynam. 10:279) take packets, by the Hilbert envelope.
 """
 
 from __future__ import annotations
@@ -37,11 +39,13 @@ class Packets(NamedTuple):
     first, last : array of int
         First and last sample at which the envelope reaches the threshold.
     onset : array of int
-        First sample at which the magnitude of the signal does; that of the envelope if the samples miss it.
+        First sample at which the magnitude of the signal does; that of the envelope if the samples
+        miss it.
     peak : array
         Largest magnitude of the signal within it, in the unit of the signal.
     impulses : array of int
-        Upward crossings of the threshold by the signal within it; a signal that begins above the threshold crosses it there.
+        Upward crossings of the threshold by the signal within it; a signal that begins above the
+        threshold crosses it there.
 
     Examples
     --------
@@ -60,7 +64,9 @@ class Packets(NamedTuple):
     impulses: Integers
 
 
-def find_packets(record: Record, threshold: float | None = None, dead_time: float = DEAD_TIME) -> Packets:
+def find_packets(
+    record: Record, threshold: float | None = None, dead_time: float = DEAD_TIME
+) -> Packets:
     """Return the packets of a record, of which the baseline is removed.
 
     Parameters
@@ -68,7 +74,8 @@ def find_packets(record: Record, threshold: float | None = None, dead_time: floa
     record : Record
         The record.
     threshold : float, optional
-        Threshold of the envelope, in the unit of the record; by default a tenth of the largest value of the envelope.
+        Threshold of the envelope, in the unit of the record; by default a tenth of the largest
+        value of the envelope.
     dead_time : float, default 5e-3
         How long the envelope is below the threshold before a packet is over [s].
 
@@ -80,7 +87,10 @@ def find_packets(record: Record, threshold: float | None = None, dead_time: floa
     Examples
     --------
     >>> time = np.arange(2000) / 10e3
-    >>> bursts = sum(peak * np.sin(2e3 * np.pi * time) * ((time >= at) & (time < at + 0.01)) for peak, at in [(1.0, 0.02), (0.5, 0.1)])
+    >>> bursts = sum(
+    ...     peak * np.sin(2e3 * np.pi * time) * ((time >= at) & (time < at + 0.01))
+    ...     for peak, at in [(1.0, 0.02), (0.5, 0.1)]
+    ... )
     >>> found = find_packets(Record("geophone", bursts, 10e3, "V"), threshold=0.2)
     >>> found.peak.round(2).tolist(), found.impulses.tolist()
     ([0.95, 0.48], [10, 10])
@@ -89,15 +99,20 @@ def find_packets(record: Record, threshold: float | None = None, dead_time: floa
         raise InputError("a sample is not a finite number; packets are sought among finite ones")
     check_settings(threshold, dead_time)
     if not len(record.value):
-        return packets_in(record.value[None], record.value[None], np.ones(1), record.rate, dead_time)
+        return packets_in(
+            record.value[None], record.value[None], np.ones(1), record.rate, dead_time
+        )
     value = without_baseline(record).value[None]
     envelope = hilbert_envelope(value)
     level = THRESHOLD * float(envelope.max()) if threshold is None else threshold
     return packets_in(value, envelope, np.array([level]), record.rate, dead_time)
 
 
-def packet_records(record: Record, threshold: float | None = None, dead_time: float = DEAD_TIME) -> list[Record]:
-    """Return the packets of a record, without its baseline, as records of their own, each from its first sample to its last.
+def packet_records(
+    record: Record, threshold: float | None = None, dead_time: float = DEAD_TIME
+) -> list[Record]:
+    """Return the packets of a record, without its baseline, as records of their own, each from its
+    first sample to its last.
 
     Parameters
     ----------
@@ -111,7 +126,9 @@ def packet_records(record: Record, threshold: float | None = None, dead_time: fl
 
     Examples
     --------
-    >>> taps = Record("geophone", [0.0, 9.0, -9.0] + 200 * [0.0] + [0.0, 4.0, -4.0], 10e3, "V", start=1.0)
+    >>> taps = Record(
+    ...     "geophone", [0.0, 9.0, -9.0] + 200 * [0.0] + [0.0, 4.0, -4.0], 10e3, "V", start=1.0
+    ... )
     >>> [round(one.start, 6) for one in packet_records(taps, threshold=2.0)]
     [1.0, 1.0203]
     """
@@ -131,13 +148,20 @@ def packet_records(record: Record, threshold: float | None = None, dead_time: fl
 def check_settings(threshold: float | None, dead_time: float) -> None:
     """Raise InputError unless a threshold is above 0 (or None), and a dead time 0 or more."""
     if threshold is not None and not 0.0 < threshold < np.inf:
-        raise InputError(f"the threshold is {threshold:g}; it must be finite and above 0, in the unit of the signal")
+        raise InputError(
+            f"the threshold is {threshold:g}; it must be finite and above 0, "
+            "in the unit of the signal"
+        )
     if not 0.0 <= dead_time < np.inf:
         raise InputError(f"the dead time is {dead_time:g} s; it must be finite, and 0 or more")
 
 
-def packets_in(value: Floats, envelope: Floats, threshold: Floats, rate: float, dead_time: float) -> Packets:
-    """Return the packets of signals (n, samples) with their envelopes, by a threshold of each (n,)."""
+def packets_in(
+    value: Floats, envelope: Floats, threshold: Floats, rate: float, dead_time: float
+) -> Packets:
+    """Return the packets of signals (n, samples) with their envelopes, by a threshold of
+    each (n,).
+    """
     level, samples, magnitude = threshold[:, None], value.shape[1], np.abs(value)
     # a threshold of zero, of a signal that is zero throughout, is reached by nothing
     row, column = np.nonzero((envelope >= level) & (level > 0.0))
@@ -155,5 +179,7 @@ def packets_in(value: Floats, envelope: Floats, threshold: Floats, rate: float, 
     reached = np.flatnonzero(magnitude >= level)
     after = np.append(reached, value.size)[np.searchsorted(reached, begin)]
     onset = np.where(after < end, after - begin, 0) + first
-    within = np.maximum.reduceat(np.append(magnitude, 0.0), edges)[::2] if len(edges) else np.empty(0)
+    within = (
+        np.maximum.reduceat(np.append(magnitude, 0.0), edges)[::2] if len(edges) else np.empty(0)
+    )
     return Packets(signal, first, last, onset, within, counted[end] - counted[begin])

@@ -36,19 +36,21 @@ _WHOLE = ("result.nc", "dataset.nc", "study.nc")
 def read_records(path: str | PathLike[str], columns: str | None = None) -> Iterator[Record]:
     """Yield the records of a file, or of a folder.
 
-    Read are tables with a column `time [s]` and a column with its unit for each channel (CSV, LabVIEW), WAV files (8 to 64 bits,
-    floating point), with the extra `audio` M4A, MP3, Ogg and FLAC files,
-    functions of time in universal files (dataset 58) and NetCDF-4 files with a dimension of time; of a folder the signals of its
-    `result.nc`, `dataset.nc` or `study.nc`, else of all files of these formats in it. Values are in SI; those of sound are parts
-    of full scale, unless an export of this program says what full scale is.
+    Read are tables with a column `time [s]` and a column with its unit for each channel (CSV,
+    LabVIEW), WAV files (8 to 64 bits, floating point), with the extra `audio` M4A, MP3, Ogg and
+    FLAC files, functions of time in universal files (dataset 58) and NetCDF-4 files with a
+    dimension of time; of a folder the signals of its `result.nc`, `dataset.nc` or `study.nc`, else
+    of all files of these formats in it. Values are in SI; those of sound are parts of full scale,
+    unless an export of this program says what full scale is.
 
     Parameters
     ----------
     path : path
         The file or the folder.
     columns : str, optional
-        The columns of a table in place of its header, in order: "time=s,-,force=N", with - for one that is left out; without a column of
-        times with the rate of the rows, "rate=10 kHz,force=N".
+        The columns of a table in place of its header, in order: "time=s,-,force=N", with - for one
+        that is left out; without a column of times with the rate of the rows, "rate=10
+        kHz,force=N".
 
     Yields
     ------
@@ -71,7 +73,10 @@ def read_records(path: str | PathLike[str], columns: str | None = None) -> Itera
     """
     files = record_files(path)
     if columns is not None and not any(_is_table(file) for file in files):
-        words = f"--columns (in a case the key columns) states the columns of tables ({', '.join(TABLES)})"
+        words = (
+            "--columns (in a case the key columns) states the columns of tables "
+            f"({', '.join(TABLES)})"
+        )
         what = "there is none in this folder" if Path(path).is_dir() else "this is none"
         raise with_path(path, InputError(f"{words}, and {what}; leave it out"))
     for file in files:
@@ -88,23 +93,39 @@ def _is_table(file: Path) -> bool:
 
 
 def record_files(path: str | PathLike[str]) -> list[Path]:
-    """Return the files that hold the records of a file or a folder: the file itself, or those of the folder.
+    """Return the files that hold the records of a file or a folder: the file itself, or those of
+    the folder.
 
     Raises
     ------
     InputError
-        If there is no such file or folder, none of a known format in it, or the format of the file is not known.
+        If there is no such file or folder, none of a known format in it, or the format of the file
+        is not known.
     """
     place = Path(path)
     if place.is_dir():
         for name in _WHOLE:
             if (place / name).is_file():
                 return [place / name]
-        found = sorted(one for one in place.iterdir() if one.suffix.lower() in _READERS and one.is_file())
+        found = sorted(
+            one for one in place.iterdir() if one.suffix.lower() in _READERS and one.is_file()
+        )
         if not found:
-            raise with_path(place, InputError(f"there is no file of records in this folder; known are {', '.join(_READERS)}"))
+            raise with_path(
+                place,
+                InputError(
+                    f"there is no file of records in this folder; known are {', '.join(_READERS)}"
+                ),
+            )
         return found
     if place.suffix.lower() not in _READERS and not is_universal(place):
-        what = "its format does not follow from its name" if place.exists() else "there is no such file"
-        raise with_path(place, InputError(f"{what}; records are read from files ending in {', '.join(_READERS)}"))
+        what = (
+            "its format does not follow from its name"
+            if place.exists()
+            else "there is no such file"
+        )
+        raise with_path(
+            place,
+            InputError(f"{what}; records are read from files ending in {', '.join(_READERS)}"),
+        )
     return [place]

@@ -41,7 +41,8 @@ _TEXTS = {
     Reason.NO_ONSET: "the envelope stays below the threshold",
     Reason.ONE_PACKET: "there are fewer than two packets",
     Reason.TWO_PACKETS: "there are fewer than three packets",
-    Reason.BROAD_BAND: "the spectrum does not fall to the cut-off level below half the sampling rate",
+    Reason.BROAD_BAND: "the spectrum does not fall to the cut-off level below half the sampling "
+    "rate",
     Reason.OUT_OF_RANGE: "the value is beyond the range of floating-point numbers",
     Reason.UNDEFINED: "the feature gave no number",
 }

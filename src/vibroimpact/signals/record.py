@@ -14,7 +14,9 @@ from vibroimpact.shown import shown
 
 
 class Removed(NamedTuple):
-    """The baseline that was removed from a record: its mean, and its span from the least to the largest, in the unit of the record."""
+    """The baseline that was removed from a record: its mean, and its span from the least
+    to the largest, in the unit of the record.
+    """
 
     offset: float
     drift: float
@@ -72,7 +74,9 @@ class Record:
     def __post_init__(self) -> None:
         value = real_numbers(self.value).astype(np.float64, copy=False)
         if value.ndim != 1:
-            raise InputError(f"the samples of {shown(self.name)} have {value.ndim} dimensions; a record has one")
+            raise InputError(
+                f"the samples of {shown(self.name)} have {value.ndim} dimensions; a record has one"
+            )
         object.__setattr__(self, "value", value)
         object.__setattr__(self, "rate", checked_rate(self.rate))
 

@@ -33,7 +33,8 @@ class RecordTable:
     Parameters
     ----------
     records : list of Record
-        The records, without their samples; `removed` of each has the mean and the span of the baseline that was removed.
+        The records, without their samples; `removed` of each has the mean and the span of the
+        baseline that was removed.
     names : tuple of str
         Names of the features.
     values : array, shape (records, features)
@@ -59,21 +60,28 @@ class RecordTable:
 
     def __getitem__(self, name: str) -> Floats:
         """Return the values of a feature, (records,)."""
-        return self.values[:, find_named("feature", name, {one: place for place, one in enumerate(self.names)})]
+        return self.values[
+            :, find_named("feature", name, {one: place for place, one in enumerate(self.names)})
+        ]
 
     @property
     def columns(self) -> tuple[str, ...]:
-        """Names of the features with their units at the end, where these are not those of the signals."""
+        """Names of the features with their units at the end, where these are not those of
+        the signals.
+        """
         return tuple(column_name(name) for name in self.names)
 
     def lacking(self, record: int) -> str:
-        """Return why a record has no value of some features, in words: "there are fewer than two packets: peak_ratio"."""
+        """Return why a record has no value of some features, in words: "there are fewer
+        than two packets: peak_ratio".
+        """
         by_reason: dict[int, list[str]] = {}
         for name, code in zip(self.names, self.reasons[record], strict=True):
             if code:
                 by_reason.setdefault(int(code), []).append(name)
         return "; ".join(
-            f"{Reason(code).text}: {'all' if len(names) == len(self.names) else ' '.join(names)}" for code, names in by_reason.items()
+            f"{Reason(code).text}: {'all' if len(names) == len(self.names) else ' '.join(names)}"
+            for code, names in by_reason.items()
         )
 
     @property
@@ -97,30 +105,67 @@ class RecordTable:
         return found
 
     def csv_text(self) -> Iterator[bytes]:
-        """Yield the table as CSV, many rows at a time: an empty cell where there is no value, and the reasons in the last one."""
-        header = ("file", "channel", "signal", "start_s", "rate_Hz", "unit", *self.columns, "offset", "drift", "lacking")
+        """Yield the table as CSV, many rows at a time: an empty cell where there is no
+        value, and the reasons in the last one.
+        """
+        header = (
+            "file",
+            "channel",
+            "signal",
+            "start_s",
+            "rate_Hz",
+            "unit",
+            *self.columns,
+            "offset",
+            "drift",
+            "lacking",
+        )
         yield (",".join(header) + "\n").encode()
         numbers = self.numbers
         for first in range(0, len(self.records), 1000):
             text = StringIO()
             writer = csv.writer(text, lineterminator="\n")
             for row, one in enumerate(self.records[first : first + 1000], first):
-                cells = ["" if math.isnan(value) else repr(value) for value in self.values[row].tolist()]
+                cells = [
+                    "" if math.isnan(value) else repr(value) for value in self.values[row].tolist()
+                ]
                 removed = [repr(value) for value in (self.offset[row], self.drift[row])]
-                writer.writerow((one.source, one.name, numbers[row], one.start, one.rate, one.unit, *cells, *removed, self.lacking(row)))
+                writer.writerow(
+                    (
+                        one.source,
+                        one.name,
+                        numbers[row],
+                        one.start,
+                        one.rate,
+                        one.unit,
+                        *cells,
+                        *removed,
+                        self.lacking(row),
+                    )
+                )
             yield text.getvalue().encode()
 
 
 def column_name(name: str) -> str:
-    """Return the header of a column: the name of the feature with its unit at the end, apart from that of the signal.
+    """Return the header of a column: the name of the feature with its unit at the end, apart from
+    that of the signal.
 
     Examples
     --------
-    >>> column_name("rise_time"), column_name("zero_crossing_rate"), column_name("peak"), column_name("energy")
+    >>> (
+    ...     column_name("rise_time"),
+    ...     column_name("zero_crossing_rate"),
+    ...     column_name("peak"),
+    ...     column_name("energy"),
+    ... )
     ('rise_time_s', 'zero_crossing_rate_1_s', 'peak', 'energy')
     """
     feature = find_feature(name)
-    return name if feature.degree or feature.unit == "1" else f"{name}_{feature.unit.replace('/', '_')}"
+    return (
+        name
+        if feature.degree or feature.unit == "1"
+        else f"{name}_{feature.unit.replace('/', '_')}"
+    )
 
 
 def record_table(
@@ -131,7 +176,8 @@ def record_table(
     dead_time: float = DEAD_TIME,
     progress: Callable[[int], None] | None = None,
 ) -> RecordTable:
-    """Return the features of records without their baselines, a row each; neighbours of one length and rate are computed together.
+    """Return the features of records without their baselines, a row each; neighbours of one length
+    and rate are computed together.
 
     Parameters
     ----------
@@ -149,7 +195,10 @@ def record_table(
 
     Examples
     --------
-    >>> table = record_table([Record("a", np.sin(np.arange(100)), 1e3, "V"), Record("b", [], 1e3, "N")], ["rms", "kurtosis"])
+    >>> table = record_table(
+    ...     [Record("a", np.sin(np.arange(100)), 1e3, "V"), Record("b", [], 1e3, "N")],
+    ...     ["rms", "kurtosis"],
+    ... )
     >>> table.values.round(2).tolist(), table.lacking(1)
     ([[0.71, 1.5], [nan, nan]], 'there are no samples: all')
     """
@@ -161,7 +210,9 @@ def record_table(
     for (length, rate), alike in groupby(clean, key=lambda one: (len(one.value), one.rate)):
         for some in _parts(alike, max(1, _AT_ONCE // max(1, length))):
             signals = np.array([one.value for one in some])
-            recorded = np.array([one.value if one.recorded is None else one.recorded for one in some])
+            recorded = np.array(
+                [one.value if one.recorded is None else one.recorded for one in some]
+            )
             found, why = features_at_rest(signals, recorded, rate, wanted, threshold, dead_time)
             values.append(found)
             reasons.append(why)

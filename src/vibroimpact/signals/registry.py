@@ -1,4 +1,6 @@
-"""The registry of features: those of this package, and those of other packages by their entry points."""
+"""The registry of features: those of this package, and those of other packages by their
+entry points.
+"""
 
 from __future__ import annotations
 
@@ -15,14 +17,20 @@ PACKAGE, GROUP = "vibroimpact.signals.features", "vibroimpact.feature_families"
 
 @cache
 def families() -> tuple[Family, ...]:
-    """Return all families of features: those of this package and those of the entry points "vibroimpact.feature_families".
+    """Return all families of features: those of this package and those of the entry points
+    "vibroimpact.feature_families".
 
     Raises
     ------
     InputError
         If two features have the same name, or an entry point can't be loaded or is not a family.
     """
-    own = [value for module in modules_in(PACKAGE) for value in vars(module).values() if isinstance(value, Family)]
+    own = [
+        value
+        for module in modules_in(PACKAGE)
+        for value in vars(module).values()
+        if isinstance(value, Family)
+    ]
     found = (*own, *(_loaded(point) for point in entry_points(group=GROUP)))
     names = [feature.name for family in found for feature in family.features]
     twice = next((name for name in names if names.count(name) > 1), None)
@@ -62,10 +70,15 @@ def _loaded(point: EntryPoint) -> Family:
     """Return the family of an entry point."""
     try:
         family = point.load()
-    except Exception as error:  # any error of another package is reported with the entry point's name
+    except Exception as error:
+        # any error of another package is reported with the entry point's name
         raise InputError(
-            f'the features "{point.name}" of the entry point {point.value} can\'t be loaded: {error}; mend or uninstall its package'
+            f'the features "{point.name}" of the entry point {point.value} can\'t be '
+            f"loaded: {error}; mend or uninstall its package"
         ) from error
     if not isinstance(family, Family):
-        raise InputError(f'the entry point "{point.name}", {point.value}, is not a Family of features; mend or uninstall its package')
+        raise InputError(
+            f'the entry point "{point.name}", {point.value}, is not a Family of features; '
+            "mend or uninstall its package"
+        )
     return family

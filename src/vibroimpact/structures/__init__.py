@@ -1,1 +1,3 @@
-"""Structures: meshes, elasticity, supports, modes, reduction and damping; independent of contact."""
+"""Structures: meshes, elasticity, supports, modes, reduction and damping; independent of
+contact.
+"""

@@ -1,4 +1,6 @@
-"""Vectorised assembly: shape functions at the quadrature points of all elements, and sums of element matrices over pairs of nodes."""
+"""Vectorised assembly: shape functions at the quadrature points of all elements, and sums
+of element matrices over pairs of nodes.
+"""
 
 from __future__ import annotations
 
@@ -15,7 +17,8 @@ _CHUNK = 4_000_000  # numbers in the largest array of a chunk of elements, to li
 
 
 def scaled_shapes(mesh: Mesh, block: ElementBlock) -> Iterator[tuple[Floats, Floats]]:
-    """Yield the shape functions and their gradients at the quadrature points times sqrt(dV), chunk by chunk of elements.
+    """Yield the shape functions and their gradients at the quadrature points times sqrt(dV), chunk
+    by chunk of elements.
 
     Yields
     ------
@@ -35,23 +38,31 @@ def scaled_shapes(mesh: Mesh, block: ElementBlock) -> Iterator[tuple[Floats, Flo
         yield values * root[:, :, None], np.ascontiguousarray(gradients.transpose(2, 0, 1, 3))
 
 
-def pair_assembly(mesh: Mesh) -> tuple[Callable[[Sequence[Floats]], Floats], Callable[[Floats], csr_array]]:
-    """Return functions that sum element matrices over pairs of nodes, and that make a sparse matrix of such sums.
+def pair_assembly(
+    mesh: Mesh,
+) -> tuple[Callable[[Sequence[Floats]], Floats], Callable[[Floats], csr_array]]:
+    """Return functions that sum element matrices over pairs of nodes, and that make a sparse matrix
+    of such sums.
 
     Returns
     -------
     summed : callable
-        From element matrices (elements, nodes, nodes), in chunks in the order of the mesh, to one number per pair of nodes.
+        From element matrices (elements, nodes, nodes), in chunks in the order of the mesh, to one
+        number per pair of nodes.
     matrix : callable
         From blocks, shape (pairs, n, n), to a sparse matrix with n degrees of freedom per node.
 
     Notes
     -----
-    Pairs are sorted once, so that each sum is one `np.add.reduceat` and all matrices of a mesh have the same pattern.
+    Pairs are sorted once, so that each sum is one `np.add.reduceat` and all matrices of a mesh have
+    the same pattern.
     """
     number = len(mesh.nodes)
-    wide = [block.connectivity.astype(np.int64) for block in mesh.blocks]  # the square of the number of nodes must fit
-    pairs = np.concatenate([(nodes[:, :, None] * number + nodes[:, None, :]).ravel() for nodes in wide])
+    # the square of the number of nodes must fit
+    wide = [block.connectivity.astype(np.int64) for block in mesh.blocks]
+    pairs = np.concatenate(
+        [(nodes[:, :, None] * number + nodes[:, None, :]).ravel() for nodes in wide]
+    )
     order = np.argsort(pairs, kind="stable")
     key = pairs[order]
     starts = np.flatnonzero(np.concatenate([[True], key[1:] != key[:-1]]))
@@ -59,7 +70,9 @@ def pair_assembly(mesh: Mesh) -> tuple[Callable[[Sequence[Floats]], Floats], Cal
     columns, pointer = found % number, np.searchsorted(found, np.arange(number + 1) * number)
 
     def summed(chunks: Sequence[Floats]) -> Floats:
-        return np.asarray(np.add.reduceat(np.concatenate([chunk.ravel() for chunk in chunks])[order], starts))
+        return np.asarray(
+            np.add.reduceat(np.concatenate([chunk.ravel() for chunk in chunks])[order], starts)
+        )
 
     def matrix(blocks: Floats) -> csr_array:
         size = number * blocks.shape[1]
@@ -69,14 +82,19 @@ def pair_assembly(mesh: Mesh) -> tuple[Callable[[Sequence[Floats]], Floats], Cal
 
 
 def node_adjacency(mesh: Mesh) -> csr_array:
-    """Return the adjacency of nodes that share an element, as the pattern of a sparse matrix (nodes, nodes)."""
+    """Return the adjacency of nodes that share an element, as the pattern of a sparse
+    matrix (nodes, nodes).
+    """
     summed, matrix = pair_assembly(mesh)
-    ones = [np.ones((*block.connectivity.shape, block.connectivity.shape[1])) for block in mesh.blocks]
+    ones = [
+        np.ones((*block.connectivity.shape, block.connectivity.shape[1])) for block in mesh.blocks
+    ]
     return matrix(summed(ones)[:, None, None])
 
 
 def isotropic(product: Floats, lame: float, mu: float) -> Floats:
-    """Return the stiffness blocks of pairs of nodes of an isotropic material, from the integrals of dN_a/dx_i dN_b/dx_j.
+    """Return the stiffness blocks of pairs of nodes of an isotropic material, from the integrals of
+    dN_a/dx_i dN_b/dx_j.
 
     Parameters
     ----------

@@ -1,4 +1,6 @@
-"""Modal damping: models of the damping ratio as a function of frequency or of the number of a mode."""
+"""Modal damping: models of the damping ratio as a function of frequency or of the number
+of a mode.
+"""
 
 from __future__ import annotations
 
@@ -46,7 +48,8 @@ class ConstantRatio:
 
 @dataclass(frozen=True)
 class RatioTable:
-    """Damping ratios tabulated over frequency, interpolated linearly, and constant beyond the ends of the table.
+    """Damping ratios tabulated over frequency, interpolated linearly, and constant beyond the ends
+    of the table.
 
     Parameters
     ----------
@@ -63,7 +66,8 @@ class RatioTable:
         if len(self.frequencies) != len(self.damping_ratios) or not self.frequencies:
             given, ratios = len(self.frequencies), len(self.damping_ratios)
             raise InputError(
-                f"{given} frequenc{'y' if given == 1 else 'ies'} and {ratios} ratio{'' if ratios == 1 else 's'} do not make a table; "
+                f"{given} frequenc{'y' if given == 1 else 'ies'} and {ratios} "
+                f"ratio{'' if ratios == 1 else 's'} do not make a table; "
                 "give one frequency or more, and one ratio for each"
             )
         if np.any(np.diff(self.frequencies) <= 0.0):
@@ -74,7 +78,10 @@ class RatioTable:
         """Short description for users."""
         if len(self.frequencies) == 1:
             return f"damping ratio {self.damping_ratios[0]:g} of every mode"
-        return f"a table of {len(self.frequencies)} ratios from {self.frequencies[0]:g} to {self.frequencies[-1]:g} Hz"
+        return (
+            f"a table of {len(self.frequencies)} ratios from {self.frequencies[0]:g} to "
+            f"{self.frequencies[-1]:g} Hz"
+        )
 
     def ratios(self, frequencies: Floats) -> Floats:
         """Return the interpolated damping ratio of each mode."""
@@ -83,24 +90,33 @@ class RatioTable:
 
 @dataclass(frozen=True)
 class RatioOfEach:
-    """A damping ratio [-] for each mode, from the lowest; the last one holds for all further modes."""
+    """A damping ratio [-] for each mode, from the lowest; the last one holds for all
+    further modes.
+    """
 
     damping_ratios: tuple[float, ...]
 
     @property
     def description(self) -> str:
         """Short description for users."""
-        shown = ", ".join(f"{ratio:g}" for ratio in self.damping_ratios[:4]) + (", ..." if len(self.damping_ratios) > 4 else "")
-        return f"damping ratios of the modes one by one: {shown}; the last holds for all further modes"
+        shown = ", ".join(f"{ratio:g}" for ratio in self.damping_ratios[:4]) + (
+            ", ..." if len(self.damping_ratios) > 4 else ""
+        )
+        return (
+            f"damping ratios of the modes one by one: {shown}; the last holds for all further modes"
+        )
 
     def ratios(self, frequencies: Floats) -> Floats:
         """Return the damping ratio of each mode, in their order."""
-        return np.array(self.damping_ratios)[np.minimum(np.arange(len(frequencies)), len(self.damping_ratios) - 1)]
+        return np.array(self.damping_ratios)[
+            np.minimum(np.arange(len(frequencies)), len(self.damping_ratios) - 1)
+        ]
 
 
 @dataclass(frozen=True)
 class Rayleigh:
-    r"""Rayleigh damping :math:`C = a M + b K`: ratio :math:`\zeta = a / (2 \omega) + b \omega / 2` (Lord Rayleigh, Theory of Sound, 1877).
+    r"""Rayleigh damping :math:`C = a M + b K`: ratio :math:`\zeta = a / (2 \omega) + b \omega / 2`
+    (Lord Rayleigh, Theory of Sound, 1877).
 
     Parameters
     ----------
@@ -114,12 +130,17 @@ class Rayleigh:
     @property
     def description(self) -> str:
         """Short description for users."""
-        return f"Rayleigh damping, {self.mass_coefficient:g} 1/s times mass plus {self.stiffness_coefficient:g} s times stiffness"
+        return (
+            f"Rayleigh damping, {self.mass_coefficient:g} 1/s times mass plus "
+            f"{self.stiffness_coefficient:g} s times stiffness"
+        )
 
     def ratios(self, frequencies: Floats) -> Floats:
         """Return the damping ratio of each mode."""
         angular = 2.0 * np.pi * np.asarray(frequencies)
-        return np.asarray(0.5 * (self.mass_coefficient / angular + self.stiffness_coefficient * angular))
+        return np.asarray(
+            0.5 * (self.mass_coefficient / angular + self.stiffness_coefficient * angular)
+        )
 
 
 @dataclass(frozen=True)
@@ -131,7 +152,10 @@ class LossFactor:
     @property
     def description(self) -> str:
         """Short description for users."""
-        return f"loss factor {self.loss_factor:g}, damping ratio {0.5 * self.loss_factor:g} of every mode"
+        return (
+            f"loss factor {self.loss_factor:g}, damping ratio {0.5 * self.loss_factor:g} of "
+            "every mode"
+        )
 
     def ratios(self, frequencies: Floats) -> Floats:
         """Return half the loss factor for each mode."""
@@ -140,7 +164,8 @@ class LossFactor:
 
 @dataclass(frozen=True)
 class AdamsDefault:
-    """The default of Adams/Flex for flexible bodies: 1 % below 100 Hz, 10 % to 1 kHz, critical above.
+    """The default of Adams/Flex for flexible bodies: 1 % below 100 Hz, 10 % to 1 kHz, critical
+    above.
 
     Examples
     --------

@@ -17,13 +17,14 @@ _AREA_RINGS, _AREA_ANGLES = 6, 24  # exact to degree 11 in r^2 and harmonics up 
 
 @functools.cache
 def pressure_rule(exponent: float) -> tuple[Floats, Floats]:
-    """Return the points of a rule on the unit disc, (points, 2), and its weights, of sum 1 and proportional to (1 - r^2)^exponent.
+    """Return the points of a rule on the unit disc, (points, 2), and its weights, of sum 1 and
+    proportional to (1 - r^2)^exponent.
 
     Notes
     -----
-    Gauss's rule for v = (1 - r^2)^(1/2), of which the weight is v^(2 exponent + 1), on six rings of twelve points each. The rings are
-    turned by half a step, so that no point lies on an axis of symmetry; the average of harmonics of order one to eleven in the angle
-    is zero.
+    Gauss's rule for v = (1 - r^2)^(1/2), of which the weight is v^(2 exponent + 1), on six rings of
+    twelve points each. The rings are turned by half a step, so that no point lies on an axis of
+    symmetry; the average of harmonics of order one to eleven in the angle is zero.
 
     Examples
     --------
@@ -41,7 +42,8 @@ def pressure_rule(exponent: float) -> tuple[Floats, Floats]:
 
 
 def disc_rule(radius: float) -> tuple[Floats, Floats]:
-    """Return the points of a uniform rule on a disc around the origin, (points, 2), and its weights, of sum 1; one point for radius 0.
+    """Return the points of a uniform rule on a disc around the origin, (points, 2), and its
+    weights, of sum 1; one point for radius 0.
 
     Examples
     --------
@@ -51,7 +53,8 @@ def disc_rule(radius: float) -> tuple[Floats, Floats]:
     """
     if radius == 0.0:
         return np.zeros((1, 2)), np.ones(1)
-    squared, weights = np.polynomial.legendre.leggauss(_AREA_RINGS)  # in r^2, which is proportional to the area
+    # in r^2, which is proportional to the area
+    squared, weights = np.polynomial.legendre.leggauss(_AREA_RINGS)
     angle = 2.0 * np.pi * (np.arange(_AREA_ANGLES) + 0.5) / _AREA_ANGLES
     radii = radius * np.sqrt(0.5 * (squared + 1.0))
     points = radii[:, None, None] * np.stack([np.cos(angle), np.sin(angle)], axis=-1)

@@ -19,9 +19,11 @@ def assemble_solid(mesh: Mesh, material: Material) -> tuple[csr_array, csr_array
     Parameters
     ----------
     mesh : Mesh
-        Mesh of tetrahedra, wedges, pyramids and bricks, with the materials of its elements if there are several.
+        Mesh of tetrahedra, wedges, pyramids and bricks, with the materials of its elements if there
+        are several.
     material : Material
-        Density, Young's modulus and Poisson's ratio of the elements that have no material of their own.
+        Density, Young's modulus and Poisson's ratio of the elements that have no material of their
+        own.
 
     Returns
     -------
@@ -30,9 +32,12 @@ def assemble_solid(mesh: Mesh, material: Material) -> tuple[csr_array, csr_array
 
     Notes
     -----
-    :math:`K = \int B^T C B\,dV` and :math:`M = \int \rho N^T N\,dV` (O. C. Zienkiewicz and R. L. Taylor, The Finite Element
-    Method), full Gauss quadrature, isoparametric. The kernel is one batched matrix product over the gradients of the scalar
-    shape functions: with :math:`G_{ij} = \int \partial_i N_a\,\partial_j N_b\,dV` an isotropic material has
+    :math:`K = \int B^T C B\,dV` and :math:`M = \int \rho N^T N\,dV` (O. C. Zienkiewicz and R. L.
+    Taylor, The Finite Element
+    Method), full Gauss quadrature, isoparametric. The kernel is one batched matrix product over the
+    gradients of the scalar
+    shape functions: with :math:`G_{ij} = \int \partial_i N_a\,\partial_j N_b\,dV` an isotropic
+    material has
     :math:`K_{ij} = \lambda G_{ij} + \mu G_{ji} + \mu\,\delta_{ij}\,\mathrm{tr}\,G`.
 
     Examples
@@ -51,16 +56,25 @@ def assemble_solid(mesh: Mesh, material: Material) -> tuple[csr_array, csr_array
     summed, matrix = pair_assembly(mesh)
 
     def stiffness_of(chunks: Sequence[Floats], lame: float, mu: float) -> Floats:
-        product = np.array([[summed([chunk[i, j] for chunk in chunks]) for j in range(3)] for i in range(3)])
+        product = np.array(
+            [[summed([chunk[i, j] for chunk in chunks]) for j in range(3)] for i in range(3)]
+        )
         return isotropic(product, lame, mu)
 
-    if mesh.materials:  # the stiffness is linear in both constants, so that each is a weight of the elements
+    # the stiffness is linear in both constants, so that each is a weight of the elements
+    if mesh.materials:
         lame, mu, density = (
-            _of_chunks(mesh.of_elements(material, value), masses) for value in (_lame, _shear_modulus, lambda one: one.density)
+            _of_chunks(mesh.of_elements(material, value), masses)
+            for value in (_lame, _shear_modulus, lambda one: one.density)
         )
-        weighted = [[chunk * of[:, None, None] for chunk, of in zip(products, each, strict=True)] for each in (lame, mu)]
+        weighted = [
+            [chunk * of[:, None, None] for chunk, of in zip(products, each, strict=True)]
+            for each in (lame, mu)
+        ]
         stiffness = stiffness_of(weighted[0], 1.0, 0.0) + stiffness_of(weighted[1], 0.0, 1.0)
-        scalar = summed([chunk * of[:, None, None] for chunk, of in zip(masses, density, strict=True)])
+        scalar = summed(
+            [chunk * of[:, None, None] for chunk, of in zip(masses, density, strict=True)]
+        )
     else:
         stiffness = stiffness_of(products, _lame(material), _shear_modulus(material))
         scalar = material.density * summed(masses)

@@ -1,7 +1,9 @@
-"""Factorisation of a sparse symmetric matrix in nested-dissection order, with an estimate of the memory of the factors beforehand.
+"""Factorisation of a sparse symmetric matrix in nested-dissection order, with an estimate of the
+memory of the factors beforehand.
 
-Compared with it, SuperLU's minimum-degree order has less fill for plate elements (0.35 to 1), but 1.2 to 1.7 times the fill and two to
-three times the time for whole plates of bricks, the largest systems here; and its fill is not known before the factorisation.
+Compared with it, SuperLU's minimum-degree order has less fill for plate elements (0.35 to 1), but
+1.2 to 1.7 times the fill and two to three times the time for whole plates of bricks, the largest
+systems here; and its fill is not known before the factorisation.
 """
 
 from __future__ import annotations
@@ -15,7 +17,8 @@ from vibroimpact.structures.free_memory import check_memory
 
 _LEAF = 40  # nodes of a part that is not dissected further; smaller parts do not reduce the fill
 _ROUNDING = 1e-15  # relative to the diagonal
-_MAX_ENTRIES = 71_000_000  # of the matrix; SuperLU reserves thirty times as many, and has 32-bit indices
+# of the matrix; SuperLU reserves thirty times as many, and has 32-bit indices
+_MAX_ENTRIES = 71_000_000
 BYTES_PER_ENTRY = 12.0
 """Memory per entry of a sparse matrix or of its factors: value and row index."""
 
@@ -45,14 +48,25 @@ class Factors:
         permuted = _without_rounding(matrix)[order][:, order].tocsc()
         if permuted.nnz > _MAX_ENTRIES:
             raise InputError(
-                f"the factors for {len(order)} degrees of freedom may have more entries than the solver can number; use larger elements"
+                f"the factors for {len(order)} degrees of freedom may have more entries "
+                "than the solver can number; use larger elements"
             )
         try:
-            self._factors = splu(permuted, permc_spec="NATURAL", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+            self._factors = splu(
+                permuted,
+                permc_spec="NATURAL",
+                diag_pivot_thresh=0.0,
+                options={"SymmetricMode": True},
+            )
         except RuntimeError:
-            raise ComputationError("the stiffness matrix is singular: part of the body can move without resistance") from None
+            raise ComputationError(
+                "the stiffness matrix is singular: part of the body can move without resistance"
+            ) from None
         except MemoryError:
-            raise ComputationError("there is not enough memory for the factors of the stiffness matrix; use larger elements") from None
+            raise ComputationError(
+                "there is not enough memory for the factors of the stiffness matrix; use "
+                "larger elements"
+            ) from None
 
     @property
     def entries(self) -> int:
@@ -65,7 +79,9 @@ class Factors:
         return BYTES_PER_ENTRY * self.entries
 
     def negative_pivots(self) -> int:
-        """Return the number of negative pivots, which is that of negative eigenvalues (Sylvester's law of inertia)."""
+        """Return the number of negative pivots, which is that of negative eigenvalues
+        (Sylvester's law of inertia).
+        """
         return int((self._factors.U.diagonal() < 0.0).sum())
 
     def solve(self, right: Floats) -> Floats:
@@ -76,7 +92,9 @@ class Factors:
 
 
 def _without_rounding(matrix: csr_array) -> csr_array:
-    """Return a matrix without entries that are zero up to rounding: a fifth of all in a regular mesh."""
+    """Return a matrix without entries that are zero up to rounding: a fifth of all in a
+    regular mesh.
+    """
     whole = matrix.tocoo()
     size = np.sqrt(np.abs(matrix.diagonal()))
     keep = np.abs(whole.data) >= _ROUNDING * size[whole.row] * size[whole.col]
@@ -95,9 +113,9 @@ def nested_dissection(nodes: Floats, adjacency: csr_array) -> list[Integers]:
 
     Notes
     -----
-    Nested dissection (A. George, SIAM J. Numer. Anal. 10:345, 1973): the nodes are cut in two by a plane across the
-    longest side of their bounding box. Nodes of one half that are adjacent to the other half are the separator and are eliminated
-    last; both halves are dissected in the same way.
+    Nested dissection (A. George, SIAM J. Numer. Anal. 10:345, 1973): the nodes are cut in two by a
+    plane across the longest side of their bounding box. Nodes of one half that are adjacent to the
+    other half are the separator and are eliminated last; both halves are dissected in the same way.
     """
     other = np.zeros(len(nodes), dtype=bool)
     parts: list[Integers] = []
@@ -107,7 +125,9 @@ def nested_dissection(nodes: Floats, adjacency: csr_array) -> list[Integers]:
         if separates or len(part) <= _LEAF:
             parts.append(part)
             continue
-        low, touching = _best_cut(nodes[part, np.ptp(nodes[part], axis=0).argmax()], part, adjacency, other)
+        low, touching = _best_cut(
+            nodes[part, np.ptp(nodes[part], axis=0).argmax()], part, adjacency, other
+        )
         first = part[low]
         if not len(first):
             parts.append(part)
@@ -116,8 +136,11 @@ def nested_dissection(nodes: Floats, adjacency: csr_array) -> list[Integers]:
     return [part for part in parts if len(part)]
 
 
-def _best_cut(at: Floats, part: Integers, adjacency: csr_array, other: Bools) -> tuple[Bools, Bools]:
-    """Return the nodes below the cut near the median with the smallest separator, and which of them are in the separator.
+def _best_cut(
+    at: Floats, part: Integers, adjacency: csr_array, other: Bools
+) -> tuple[Bools, Bools]:
+    """Return the nodes below the cut near the median with the smallest separator, and which of them
+    are in the separator.
 
     Both are masks: the first of the nodes of the part, the second of those below the cut.
     """
@@ -136,7 +159,8 @@ def _best_cut(at: Floats, part: Integers, adjacency: csr_array, other: Bools) ->
 
 
 def factor_entries(parts: list[Integers], adjacency: csr_array) -> int:
-    """Return an upper estimate of the number of entries of the factors for one degree of freedom per node.
+    """Return an upper estimate of the number of entries of the factors for one degree of freedom
+    per node.
 
     It follows from a symbolic factorisation in which each part is a dense block.
     """
@@ -147,10 +171,13 @@ def factor_entries(parts: list[Integers], adjacency: csr_array) -> int:
     ends = np.cumsum([len(part) for part in parts])
     for index, part in enumerate(parts):
         owner[part] = index
-    passed: list[list[Integers]] = [[] for _ in parts]  # columns that the elimination of descendants couples to a part
+    # columns that the elimination of descendants couples to a part
+    passed: list[list[Integers]] = [[] for _ in parts]
     entries = 0
     for index, part in enumerate(parts):
-        reached = np.unique(np.concatenate([place[_neighbours(adjacency, part)[0]], *passed[index]]))
+        reached = np.unique(
+            np.concatenate([place[_neighbours(adjacency, part)[0]], *passed[index]])
+        )
         passed[index] = []
         later = reached[reached >= ends[index]]
         entries += len(part) ** 2 + 2 * len(part) * len(later)
@@ -175,4 +202,8 @@ def check_factor_memory(dofs: int, entries: float) -> None:
     InputError
         With the estimate and the free memory.
     """
-    check_memory(BYTES_PER_ENTRY * entries, f"the factors of {dofs} degrees of freedom need", "use larger elements")
+    check_memory(
+        BYTES_PER_ENTRY * entries,
+        f"the factors of {dofs} degrees of freedom need",
+        "use larger elements",
+    )

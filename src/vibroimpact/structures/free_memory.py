@@ -11,8 +11,11 @@ from vibroimpact.errors import InputError
 _PART_OF_MEMORY = 0.8  # of the free memory, as the other arrays need some too
 
 
-def check_memory(need: float, what: str, remedy: str = "ask for fewer, or use larger elements") -> None:
-    """Raise if `need` [bytes] exceeds the free memory less a reserve; `what` and `remedy` are for the message.
+def check_memory(
+    need: float, what: str, remedy: str = "ask for fewer, or use larger elements"
+) -> None:
+    """Raise if `need` [bytes] exceeds the free memory less a reserve; `what` and `remedy` are for
+    the message.
 
     Raises
     ------
@@ -29,7 +32,9 @@ def check_memory(need: float, what: str, remedy: str = "ask for fewer, or use la
 
 
 def free_memory() -> float:
-    """Return the free memory [bytes]; where the system does not tell, its total memory, or infinity."""
+    """Return the free memory [bytes]; where the system does not tell, its total memory,
+    or infinity.
+    """
     found = _available()
     if found is not None:
         return found

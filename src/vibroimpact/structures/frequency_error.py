@@ -1,4 +1,6 @@
-"""Estimated errors of natural frequencies due to the mesh, plate theory, the model of supports and a reduction."""
+"""Estimated errors of natural frequencies due to the mesh, plate theory, the model of
+supports and a reduction.
+"""
 
 from __future__ import annotations
 
@@ -9,15 +11,31 @@ import numpy as np
 from vibroimpact.arrays import Floats
 from vibroimpact.materials import Material
 from vibroimpact.structures.modes import Eigenmodes
-from vibroimpact.structures.plate_waves import bending_error, stiff_shear_error, stretching_error, wave_numbers
+from vibroimpact.structures.plate_waves import (
+    bending_error,
+    stiff_shear_error,
+    stretching_error,
+    wave_numbers,
+)
 from vibroimpact.structures.supports.constraints import HeldStructure
 
-MESH, THEORY, SUPPORTS, REDUCTION = "the mesh", "the theory of plates", "the supports", "the reduction"
+MESH, THEORY, SUPPORTS, REDUCTION = (
+    "the mesh",
+    "the theory of plates",
+    "the supports",
+    "the reduction",
+)
 """Causes of errors of natural frequencies."""
 
-_BED = 0.1  # relative error of the stiffness of a bed, from plates on round patches of 1.25 to 2.5 thicknesses in radius
-_BED_IN_PLANE = 0.85  # the same for in-plane motions, which were 0.9 to 2.0 % (steel) and 3.0 to 3.2 % (acrylic) too stiff
-_EDGES = 2e-4  # in addition to the error with respect to Lamb waves: difference between plates with edges and refined bricks
+# relative error of the stiffness of a bed, from plates on round patches of 1.25 to 2.5 thicknesses
+# in radius
+_BED = 0.1
+# the same for in-plane motions, which were 0.9 to 2.0 % (steel) and 3.0 to 3.2 % (acrylic) too
+# stiff
+_BED_IN_PLANE = 0.85
+# in addition to the error with respect to Lamb waves: difference between plates with edges and
+# refined bricks
+_EDGES = 2e-4
 
 
 def mesh_errors(fine: Floats, coarse: Floats, gain: float) -> Floats:
@@ -47,9 +65,10 @@ def support_errors(held: HeldStructure, modes: Eigenmodes) -> Floats:
 
     Notes
     -----
-    To first order the relative change of the squared frequency is the fraction of the strain energy in the bed times the relative
-    change of the bed's stiffness; for a neglected compliance in series with a support, the squared reaction over the modal mass and
-    the squared frequency, times that compliance.
+    To first order the relative change of the squared frequency is the fraction of the strain energy
+    in the bed times the relative change of the bed's stiffness; for a neglected compliance in
+    series with a support, the squared reaction over the modal mass and the squared frequency, times
+    that compliance.
     """
     squared, shapes = modes.angular_frequencies**2, modes.shapes
     if not held.structure.thickness:
@@ -65,7 +84,9 @@ def support_errors(held: HeldStructure, modes: Eigenmodes) -> Floats:
     return np.asarray(0.5 * (in_beds + np.abs(compliances @ reactions**2) / squared))
 
 
-def plate_theory_errors(held: HeldStructure, modes: Eigenmodes, material: Material, thin: bool = False) -> Floats:
+def plate_theory_errors(
+    held: HeldStructure, modes: Eigenmodes, material: Material, thin: bool = False
+) -> Floats:
     """Return the relative errors of frequencies due to plate theory.
 
     Parameters
@@ -81,12 +102,24 @@ def plate_theory_errors(held: HeldStructure, modes: Eigenmodes, material: Materi
 
     Notes
     -----
-    The mean of `bending_error` at the wave number that plate theory has at the frequency of the mode, and of `stretching_error`,
-    weighted by the kinetic energies of bending and of in-plane motion; plus 0.02 % for the effect of edges, which plane waves do not have.
+    The mean of `bending_error` at the wave number that plate theory has at the frequency of the
+    mode, and of `stretching_error`, weighted by the kinetic energies of bending and of in-plane
+    motion; plus 0.02 % for the effect of edges, which plane waves do not have.
     """
-    thickness, ratio, omega, in_plane = held.structure.thickness, material.poissons_ratio, modes.angular_frequencies, _in_plane(held, modes)
-    bending = np.abs(bending_error(thickness * wave_numbers(omega, thickness, material, thin), ratio, thin))
-    return np.asarray(_EDGES + (1.0 - in_plane) * bending + in_plane * stretching_error(omega, thickness, material))
+    thickness, ratio, omega, in_plane = (
+        held.structure.thickness,
+        material.poissons_ratio,
+        modes.angular_frequencies,
+        _in_plane(held, modes),
+    )
+    bending = np.abs(
+        bending_error(thickness * wave_numbers(omega, thickness, material, thin), ratio, thin)
+    )
+    return np.asarray(
+        _EDGES
+        + (1.0 - in_plane) * bending
+        + in_plane * stretching_error(omega, thickness, material)
+    )
 
 
 def _in_plane(held: HeldStructure, modes: Eigenmodes) -> Floats:
@@ -99,18 +132,21 @@ def _in_plane(held: HeldStructure, modes: Eigenmodes) -> Floats:
 
 
 def one_layer_errors(angular_frequencies: Floats, material: Material, thickness: float) -> Floats:
-    """Return the relative errors of bending frequencies of one layer of second-order bricks, which are too high.
+    """Return the relative errors of bending frequencies of one layer of second-order bricks, which
+    are too high.
 
     Notes
     -----
-    The shear strain of such elements does not vary over the height as that of a plate, so that their shear stiffness lacks the
-    factor 5 / (6 - nu) of Mindlin's theory.
+    The shear strain of such elements does not vary over the height as that of a plate, so that
+    their shear stiffness lacks the factor 5 / (6 - nu) of Mindlin's theory.
     """
     waves = thickness * wave_numbers(angular_frequencies, thickness, material)
     return stiff_shear_error(waves, material.poissons_ratio)
 
 
 def main_cause(parts: Mapping[str, Floats]) -> str:
-    """Return the cause of the largest contribution to the error of the mode with the largest total error; "" without causes."""
+    """Return the cause of the largest contribution to the error of the mode with the
+    largest total error; "" without causes.
+    """
     worst = int(np.nanargmax(sum(parts.values()))) if parts else 0
     return max(parts, key=lambda name: float(parts[name][worst]), default="")

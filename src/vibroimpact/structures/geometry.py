@@ -1,4 +1,6 @@
-"""Geometry of a mesh: Jacobians of the isoparametric map, mass properties, and checks for inverted elements and loose parts."""
+"""Geometry of a mesh: Jacobians of the isoparametric map, mass properties, and checks for
+inverted elements and loose parts.
+"""
 
 from __future__ import annotations
 
@@ -13,7 +15,8 @@ from vibroimpact.structures.mesh import ElementBlock, Mesh
 from vibroimpact.structures.parts import part_of_nodes, used_nodes
 
 _MIRRORED_ALONG_X_Y = (4, 5)  # corners of tetrahedra and pyramids
-_INERTIA_DEGREE = 9  # exact for the product of two coordinates and the Jacobian of a second-order brick
+# exact for the product of two coordinates and the Jacobian of a second-order brick
+_INERTIA_DEGREE = 9
 
 
 @dataclass(frozen=True)
@@ -61,7 +64,12 @@ def mass_properties(mesh: Mesh, density: float | Floats, thickness: float = 1.0)
         points, weights = block.element.quadrature(max(_INERTIA_DEGREE, block.element.degree))
         values, slopes = block.element.basis(points)
         at = mesh.nodes[block.connectivity]
-        scale = ratio[:, None] * weights * np.abs(determinants(at, slopes)) * (thickness if block.element.dimension == 2 else 1.0)
+        scale = (
+            ratio[:, None]
+            * weights
+            * np.abs(determinants(at, slopes))
+            * (thickness if block.element.dimension == 2 else 1.0)
+        )
         positions = np.einsum("qk,eki->eqi", values, at, optimize=True)
         volume += scale.sum()
         first += np.einsum("eq,eqi->i", scale, positions)
@@ -74,7 +82,9 @@ def mass_properties(mesh: Mesh, density: float | Floats, thickness: float = 1.0)
 
 
 def determinants(at: Floats, slopes: Floats) -> Floats:
-    """Return the Jacobian determinants det dx/dxi, (elements, points), from nodes `at` (elements, nodes, 3) and reference gradients."""
+    """Return the Jacobian determinants det dx/dxi, (elements, points), from nodes `at`
+    (elements, nodes, 3) and reference gradients.
+    """
     dimension = slopes.shape[1]
     return np.asarray(np.linalg.det(jacobians(at[:, :, :dimension], slopes)))
 
@@ -86,7 +96,8 @@ def jacobians(at: Floats, slopes: Floats) -> Floats:
 
 
 def renumbered_by_volume(mesh: Mesh) -> Mesh:
-    """Return a mesh of solids in which elements of wholly negative volume are numbered the other way round, which other programs read.
+    """Return a mesh of solids in which elements of wholly negative volume are numbered the other
+    way round, which other programs read.
 
     Elements whose volume is negative in part are folded, and stay as they are.
 
@@ -99,12 +110,16 @@ def renumbered_by_volume(mesh: Mesh) -> Mesh:
     blocks = []
     for block in mesh.blocks:
         middle = block.element.reference[: block.element.corners].mean(axis=0, keepdims=True)
-        turned = np.flatnonzero(determinants(mesh.nodes[block.connectivity], block.element.basis(middle)[1])[:, 0] < 0.0)
+        turned = np.flatnonzero(
+            determinants(mesh.nodes[block.connectivity], block.element.basis(middle)[1])[:, 0] < 0.0
+        )
         if len(turned):
             other = _other_way_round(block.element)
             connectivity = block.connectivity.copy()
             connectivity[turned] = connectivity[turned][:, other]
-            right = _smallest_determinants(mesh, ElementBlock(block.kind, connectivity[turned])) > 0.0
+            right = (
+                _smallest_determinants(mesh, ElementBlock(block.kind, connectivity[turned])) > 0.0
+            )
             connectivity[turned[~right]] = block.connectivity[turned[~right]]
             block = ElementBlock(block.kind, connectivity)
         blocks.append(block)
@@ -112,7 +127,9 @@ def renumbered_by_volume(mesh: Mesh) -> Mesh:
 
 
 def _other_way_round(element: ElementKind) -> Integers:
-    """Return the numbering of a mirrored element: a tetrahedron or pyramid with x and y exchanged, a wedge or brick from top to bottom."""
+    """Return the numbering of a mirrored element: a tetrahedron or pyramid with x and y
+    exchanged, a wedge or brick from top to bottom.
+    """
     mirrored = element.reference.copy()
     if element.corners in _MIRRORED_ALONG_X_Y:
         mirrored[:, :2] = element.reference[:, 1::-1]
@@ -134,10 +151,13 @@ def check_mesh(mesh: Mesh) -> None:
     for block in mesh.blocks:
         bad = np.flatnonzero(_smallest_determinants(mesh, block) <= 0.0)
         if len(bad):
-            shown = ", ".join(str(first + index + 1) for index in bad[:5]) + (", ..." if len(bad) > 5 else "")
+            shown = ", ".join(str(first + index + 1) for index in bad[:5]) + (
+                ", ..." if len(bad) > 5 else ""
+            )
             kinds = ", kind by kind" if len(mesh.blocks) > 1 else ""
             raise InputError(
-                f"{len(bad)} of {len(block.connectivity)} {block.kind} elements are inverted or folded "
+                f"{len(bad)} of {len(block.connectivity)} {block.kind} elements are "
+                "inverted or folded "
                 "(their volume is not positive everywhere): "
                 f"number {shown}, counted from 1 in the order of the mesh{kinds}; "
                 "use smaller elements, or mesh the part again if the mesh was imported"
@@ -146,13 +166,18 @@ def check_mesh(mesh: Mesh) -> None:
     parts = len(np.unique(part_of_nodes(mesh)[used_nodes(mesh)]))
     if parts > 1:
         raise InputError(
-            f"the mesh consists of {parts} loose parts that share no node and are not joined; a body is one part: merge coincident nodes"
+            f"the mesh consists of {parts} loose parts that share no node and are not "
+            "joined; a body is one part: merge coincident nodes"
         )
 
 
 def _smallest_determinants(mesh: Mesh, block: ElementBlock) -> Floats:
-    """Return the smallest Jacobian determinant of each element, at the quadrature points and at the corners."""
-    points = np.concatenate([block.element.quadrature()[0], block.element.reference[: block.element.corners]])
+    """Return the smallest Jacobian determinant of each element, at the quadrature points
+    and at the corners.
+    """
+    points = np.concatenate(
+        [block.element.quadrature()[0], block.element.reference[: block.element.corners]]
+    )
     slopes = block.element.basis(points)[1]
     found = [
         determinants(mesh.nodes[part], slopes).min(axis=1)

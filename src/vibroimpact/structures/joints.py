@@ -1,4 +1,6 @@
-"""Joints of a mesh: displacements of nodes that follow those of others, from linear equations between displacements."""
+"""Joints of a mesh: displacements of nodes that follow those of others, from linear
+equations between displacements.
+"""
 
 from __future__ import annotations
 
@@ -16,7 +18,8 @@ AXES = 3
 """Displacements of a node."""
 
 _NONE = 1e-9  # of the largest coefficient of an equation: smaller ones are rounding
-_PIVOT = 0.1  # of the largest coefficient of an equation: a displacement with less does not follow the others
+# of the largest coefficient of an equation: a displacement with less does not follow the others
+_PIVOT = 0.1
 _MOST_DENSE = 50_000_000  # numbers in the equations of rigid parts that hang together
 _HUB = 100  # nodes: a node that moves more than these is eliminated last
 
@@ -58,20 +61,29 @@ class Joints:
 
     def rows(self) -> list[tuple[int, Terms]]:
         """Return each follower with the weights of the displacements that move it."""
-        starts, columns, values = (part.tolist() for part in (self.weights.indptr, self.weights.indices, self.weights.data))
+        starts, columns, values = (
+            part.tolist() for part in (self.weights.indptr, self.weights.indices, self.weights.data)
+        )
         return [
             (follower, dict(zip(columns[start:end], values[start:end], strict=True)))
-            for follower, start, end in zip(self.followers.tolist(), starts[:-1], starts[1:], strict=True)
+            for follower, start, end in zip(
+                self.followers.tolist(), starts[:-1], starts[1:], strict=True
+            )
         ]
 
     def of_nodes(self, chosen: Bools) -> Joints | None:
-        """Return the joints of chosen nodes, renumbered without the others; None if there are none. No joint may lead to others."""
+        """Return the joints of chosen nodes, renumbered without the others; None if there
+        are none. No joint may lead to others.
+        """
         places = AXES * (np.cumsum(chosen) - 1)[:, None] + np.arange(AXES)
         columns = np.repeat(chosen, AXES)
         mine = columns[self.followers]
         if not mine.any():
             return None
-        return Joints(places.ravel()[self.followers[mine]], csr_array(self.weights[mine][:, np.flatnonzero(columns)]))
+        return Joints(
+            places.ravel()[self.followers[mine]],
+            csr_array(self.weights[mine][:, np.flatnonzero(columns)]),
+        )
 
 
 def solved_joints(equations: Sequence[Terms], displacements: int) -> Joints | None:
@@ -82,7 +94,8 @@ def solved_joints(equations: Sequence[Terms], displacements: int) -> Joints | No
     equations : sequence of dict
         Coefficients by the number of the unknown.
     displacements : int
-        Number of displacements of nodes of the mesh: unknowns from this number on are others, such as rotations, that may take any value.
+        Number of displacements of nodes of the mesh: unknowns from this number on are others, such
+        as rotations, that may take any value.
 
     Raises
     ------
@@ -91,8 +104,9 @@ def solved_joints(equations: Sequence[Terms], displacements: int) -> Joints | No
 
     Notes
     -----
-    The other unknowns are eliminated: of the equations with them, those combinations remain that hold for some value of these.
-    Then each equation is solved for one displacement, if possible for one that occurs in no other.
+    The other unknowns are eliminated: of the equations with them, those combinations remain that
+    hold for some value of these. Then each equation is solved for one displacement, if possible for
+    one that occurs in no other.
     """
     waiting = [*_without_others(equations, displacements)]
     uses = Counter(unknown for row in waiting for unknown in row)
@@ -105,7 +119,11 @@ def solved_joints(equations: Sequence[Terms], displacements: int) -> Joints | No
         able = [unknown for unknown, value in found.items() if abs(value) >= _PIVOT * largest]
         follower = min(able, key=lambda unknown: (uses[unknown], -unknown))
         scale = found.pop(follower)
-        ties[follower] = {unknown: -value / scale for unknown, value in found.items() if abs(value) > _NONE * _PIVOT * largest}
+        ties[follower] = {
+            unknown: -value / scale
+            for unknown, value in found.items()
+            if abs(value) > _NONE * _PIVOT * largest
+        }
     return _resolved(ties, displacements) if ties else None
 
 
@@ -124,9 +142,20 @@ def _substituted(row: Terms, ties: dict[int, Terms]) -> Terms:
 def _resolved(ties: dict[int, Terms], displacements: int) -> Joints:
     """Return the joints of ties, of which earlier ones may lead to followers of later ones."""
     followers = np.array(sorted(ties), dtype=np.int64)
-    entries = [(row, unknown, value) for row, one in enumerate(followers.tolist()) for unknown, value in ties[one].items()]
-    rows, columns, values = (np.array(side) for side in zip(*entries, strict=True)) if entries else (np.zeros(0, int),) * 3
-    weights = csr_array(coo_array((values, (rows, columns)), shape=(len(followers), displacements)), dtype=np.float64)
+    entries = [
+        (row, unknown, value)
+        for row, one in enumerate(followers.tolist())
+        for unknown, value in ties[one].items()
+    ]
+    rows, columns, values = (
+        (np.array(side) for side in zip(*entries, strict=True))
+        if entries
+        else (np.zeros(0, int),) * 3
+    )
+    weights = csr_array(
+        coo_array((values, (rows, columns)), shape=(len(followers), displacements)),
+        dtype=np.float64,
+    )
     place = np.full(displacements, -1)
     place[followers] = np.arange(len(followers))
     while len(followed := np.flatnonzero(place[weights.indices] >= 0)):
@@ -134,15 +163,20 @@ def _resolved(ties: dict[int, Terms], displacements: int) -> Joints:
         direct = np.ones(len(entry.data), dtype=bool)
         direct[followed] = False
         through = coo_array(
-            (entry.data[followed], (entry.row[followed], place[entry.col[followed]])), shape=(len(followers), len(followers))
+            (entry.data[followed], (entry.row[followed], place[entry.col[followed]])),
+            shape=(len(followers), len(followers)),
         )
-        straight = coo_array((entry.data[direct], (entry.row[direct], entry.col[direct])), shape=weights.shape)
+        straight = coo_array(
+            (entry.data[direct], (entry.row[direct], entry.col[direct])), shape=weights.shape
+        )
         weights = csr_array(straight.tocsr() + through.tocsr() @ weights)
     return Joints(followers, weights)
 
 
 def _without_others(equations: Sequence[Terms], displacements: int) -> list[Terms]:
-    """Return the equations that remain once the unknowns that are no displacements are eliminated."""
+    """Return the equations that remain once the unknowns that are no displacements are
+    eliminated.
+    """
     from scipy.linalg import qr
 
     with_others = _that_bind(equations, displacements)
@@ -152,8 +186,10 @@ def _without_others(equations: Sequence[Terms], displacements: int) -> list[Term
         others = sorted({unknown for row in rows for unknown in row if unknown >= displacements})
         if len(rows) * len(others) > _MOST_DENSE:
             raise InputError(
-                f"{len(rows)} equations of rigid parts are linked through rotations or nodes off the mesh, which is too many; replace "
-                "chains of rigid parts by one that joins the nodes of the mesh directly, or leave parts out"
+                f"{len(rows)} equations of rigid parts are linked through rotations or "
+                "nodes off the mesh, which is too many; replace "
+                "chains of rigid parts by one that joins the nodes of the mesh directly, or "
+                "leave parts out"
             )
         place = {unknown: index for index, unknown in enumerate(others)}
         matrix = np.zeros((len(rows), len(others)))
@@ -167,9 +203,14 @@ def _without_others(equations: Sequence[Terms], displacements: int) -> list[Term
         rank = int((diagonal > _NONE * diagonal[0]).sum())
         solved, rest = order[:rank], order[rank:]
         shares = np.linalg.lstsq(matrix[solved].T, matrix[rest].T, rcond=None)[0].T
-        bases = [{unknown: value for unknown, value in rows[index].items() if unknown < displacements} for index in solved]
+        bases = [
+            {unknown: value for unknown, value in rows[index].items() if unknown < displacements}
+            for index in solved
+        ]
         for index, share in zip(rest.tolist(), shares.tolist(), strict=True):
-            left = {unknown: value for unknown, value in rows[index].items() if unknown < displacements}
+            left = {
+                unknown: value for unknown, value in rows[index].items() if unknown < displacements
+            }
             for factor, base in zip(share, bases, strict=True):
                 for unknown, value in base.items() if factor else ():
                     left[unknown] = left.get(unknown, 0.0) - factor * value
@@ -181,11 +222,15 @@ def _without_others(equations: Sequence[Terms], displacements: int) -> list[Term
 
 
 def _that_bind(equations: Sequence[Terms], displacements: int) -> list[int]:
-    """Return the numbers of the equations with unknowns from `displacements` on, but for those that hold for some value of one of these.
+    """Return the numbers of the equations with unknowns from `displacements` on, but for those that
+    hold for some value of one of these.
 
     Such an unknown is in no other equation, as the rotation of a node that follows a rigid part.
     """
-    others = {index: {unknown for unknown in row if unknown >= displacements} for index, row in enumerate(equations)}
+    others = {
+        index: {unknown for unknown in row if unknown >= displacements}
+        for index, row in enumerate(equations)
+    }
     uses: dict[int, set[int]] = {}
     for index, unknowns in others.items():
         for unknown in unknowns:
@@ -206,7 +251,12 @@ def _hanging_together(rows: Sequence[Terms], displacements: int) -> list[list[in
 
     if not rows:
         return []
-    pairs = [(row, unknown) for row, terms in enumerate(rows) for unknown in terms if unknown >= displacements]
+    pairs = [
+        (row, unknown)
+        for row, terms in enumerate(rows)
+        for unknown in terms
+        if unknown >= displacements
+    ]
     row, unknown = (np.array(side, dtype=np.int64) for side in zip(*pairs, strict=True))
     _, column = np.unique(unknown, return_inverse=True)
     size = len(rows) + int(column.max()) + 1
@@ -217,11 +267,18 @@ def _hanging_together(rows: Sequence[Terms], displacements: int) -> list[list[in
 
 
 def joined_adjacency(adjacency: csr_array, joints: Joints) -> csr_array:
-    """Return the pattern of nodes that are coupled once followers are expressed by the nodes that move them."""
+    """Return the pattern of nodes that are coupled once followers are expressed by the
+    nodes that move them.
+    """
     number = adjacency.shape[0]
     follower, mover = joints.pairs
-    moved = csr_array(coo_array((np.ones(len(follower)), (follower, mover)), shape=(number, number)))
-    whole = csr_array(moved + csr_array(coo_array((np.ones(number), (np.arange(number),) * 2), shape=(number, number))))
+    moved = csr_array(
+        coo_array((np.ones(len(follower)), (follower, mover)), shape=(number, number))
+    )
+    whole = csr_array(
+        moved
+        + csr_array(coo_array((np.ones(number), (np.arange(number),) * 2), shape=(number, number)))
+    )
     return csr_array(whole.T @ adjacency @ whole)
 
 

@@ -1,4 +1,6 @@
-"""Spreading of amounts over the points of a regular grid, as the transpose of Lagrange's interpolation of degree five."""
+"""Spreading of amounts over the points of a regular grid, as the transpose of Lagrange's
+interpolation of degree five.
+"""
 
 from __future__ import annotations
 
@@ -13,7 +15,8 @@ _CARDINAL = np.linalg.inv(np.vander(STENCIL.astype(float)))
 
 
 def lagrange_shares(places: Floats) -> tuple[Integers, Floats]:
-    """Return the points of `STENCIL` for places in steps of the grid, (n, 6), and the share of each in an amount there, (n, 6).
+    """Return the points of `STENCIL` for places in steps of the grid, (n, 6), and the share of each
+    in an amount there, (n, 6).
 
     Examples
     --------

@@ -1,7 +1,8 @@
 """Lowest modes of a system from its static solver: block Lanczos iteration without restarts.
 
-Solving for a block of right-hand sides costs a third of solving for each, as the factors are read once. A block also resolves
-multiple eigenvalues, of which a single vector finds one eigenvector only.
+Solving for a block of right-hand sides costs a third of solving for each, as the factors are read
+once. A block also resolves multiple eigenvalues, of which a single vector finds one eigenvector
+only.
 """
 
 from __future__ import annotations
@@ -16,7 +17,9 @@ from vibroimpact.errors import ComputationError
 
 _BLOCK = 10
 TOLERANCE = 1e-9
-"""Residual of a mode relative to its static response; the relative error of the eigenvalue is the square of it."""
+"""Residual of a mode relative to its static response; the relative error of the
+eigenvalue is the square of it.
+"""
 
 _EQUAL = 1e-6  # relative difference below which eigenvalues count as equal
 _GROWTH = 1.05  # of the space between two tests of convergence
@@ -26,7 +29,11 @@ _CHECK_BLOCKS = 4  # of the iteration that searches for missed modes
 
 
 def lowest_modes(
-    respond: Callable[[Floats], Floats], mass: csr_array, number: int, progress: Callable[[float], None], tolerance: float = TOLERANCE
+    respond: Callable[[Floats], Floats],
+    mass: csr_array,
+    number: int,
+    progress: Callable[[float], None],
+    tolerance: float = TOLERANCE,
 ) -> tuple[Floats, Floats]:
     r"""Return the lowest eigenvalues of K x = lambda M x, and their eigenvectors.
 
@@ -57,9 +64,10 @@ def lowest_modes(
 
     Notes
     -----
-    Block Lanczos of :math:`K^{-1} M` in the inner product of M, fully reorthogonalised (R. G. Grimes, J. G. Lewis and H. D.
-    Simon, SIAM J. Matrix Anal. Appl. 15:228, 1994). When all modes have converged, a short iteration from other random vectors,
-    orthogonal to those found, searches for missed modes, as eigenvalues may have a higher multiplicity than a block has columns.
+    Block Lanczos of :math:`K^{-1} M` in the inner product of M, fully reorthogonalised (R. G.
+    Grimes, J. G. Lewis and H. D. Simon, SIAM J. Matrix Anal. Appl. 15:228, 1994). When all modes
+    have converged, a short iteration from other random vectors, orthogonal to those found, searches
+    for missed modes, as eigenvalues may have a higher multiplicity than a block has columns.
     """
     values, vectors = np.zeros(0), np.zeros((mass.shape[0], 0))
     random = np.random.default_rng(1)
@@ -73,12 +81,17 @@ def lowest_modes(
                     break
                 enough = int(_GROWTH * krylov.size)
             if krylov.size > _MAX_SPACE * (wanted + _BLOCK):
-                raise ComputationError(f"the {number} lowest modes could not be found: the iteration does not converge")
+                raise ComputationError(
+                    f"the {number} lowest modes could not be found: the iteration does not converge"
+                )
             krylov.grow()
             progress(min(0.99, krylov.size / (2.5 * number + 6.0 * _BLOCK)))
         found, shapes = krylov.modes(wanted)
         order = np.argsort(np.concatenate([values, found]))[:number]
-        values, vectors = np.concatenate([values, found])[order], np.concatenate([vectors, shapes], axis=1)[:, order]
+        values, vectors = (
+            np.concatenate([values, found])[order],
+            np.concatenate([vectors, shapes], axis=1)[:, order],
+        )
         check = _Krylov(respond, mass, vectors, random)
         for _ in range(_CHECK_BLOCKS):
             check.grow()
@@ -91,7 +104,13 @@ def lowest_modes(
 class _Krylov:
     """A block Krylov space in the M-orthogonal complement of known modes."""
 
-    def __init__(self, respond: Callable[[Floats], Floats], mass: csr_array, known: Floats, random: np.random.Generator) -> None:
+    def __init__(
+        self,
+        respond: Callable[[Floats], Floats],
+        mass: csr_array,
+        known: Floats,
+        random: np.random.Generator,
+    ) -> None:
         self._respond, self._mass = respond, mass
         self._known, self._known_momenta = known, mass @ known
         # storage of the vectors and of their products with M, enlarged when full
@@ -121,7 +140,9 @@ class _Krylov:
         response, coefficients = self._orthogonalised(self._respond(self._momenta[:, columns]))
         size = self.size
         projected = np.zeros((size, size))
-        projected[: columns.start, : columns.start] = self._projected[: columns.start, : columns.start]
+        projected[: columns.start, : columns.start] = self._projected[
+            : columns.start, : columns.start
+        ]
         projected[:, columns] = coefficients
         projected[columns] = coefficients.T
         self._projected = projected
@@ -148,7 +169,9 @@ class _Krylov:
         return int(unconverged.argmax()) if unconverged.any() else int(size)
 
     def _orthogonalised(self, block: Floats) -> tuple[Floats, Floats]:
-        """Return a block orthogonalised against the space and the known modes, and its coefficients in the space."""
+        """Return a block orthogonalised against the space and the known modes, and its
+        coefficients in the space.
+        """
         total = np.zeros((self.size, block.shape[1]))
         for _ in range(2):  # twice, against rounding
             block = block - self._known @ (self._known_momenta.T @ block)

@@ -1,8 +1,8 @@
 """Structured meshes of solid elements from blocks, each a lattice of points in three directions.
 
-Three by three by three points make one brick of 27 nodes; elements of the other kinds use some of them. Neighbouring blocks must
-have the same points on their common face, and their directions must ascend alike along it, so that the tetrahedra of both sides
-divide it along the same diagonal.
+Three by three by three points make one brick of 27 nodes; elements of the other kinds use some of
+them. Neighbouring blocks must have the same points on their common face, and their directions must
+ascend alike along it, so that the tetrahedra of both sides divide it along the same diagonal.
 """
 
 from __future__ import annotations
@@ -22,7 +22,9 @@ _BRICK = np.rint(2.0 * ELEMENT_KINDS["hex27"].reference).astype(np.int64)
 
 
 def _tetrahedra(order: int) -> Integers:
-    """Return the six tetrahedra of a brick that share its diagonal, as indices into its 27 nodes."""
+    """Return the six tetrahedra of a brick that share its diagonal, as indices into its
+    27 nodes.
+    """
     index = {tuple(corner): number for number, corner in enumerate(_BRICK.tolist())}
     found = []
     for path in permutations(range(3)):
@@ -38,11 +40,21 @@ def _tetrahedra(order: int) -> Integers:
 
 
 def _wedges(order: int) -> Integers:
-    """Return the two wedges of a brick on either side of a diagonal plane, as indices into its 27 nodes."""
+    """Return the two wedges of a brick on either side of a diagonal plane, as indices
+    into its 27 nodes.
+    """
     index = {tuple(corner): number for number, corner in enumerate(_BRICK.tolist())}
     reference = ELEMENT_KINDS["wedge6" if order == 1 else "wedge15"].reference
-    halves = (np.array([[2, 0, 0], [2, 2, 0], [0, 0, 2]]), np.array([[2, 2, 0], [0, 2, 0], [0, 0, 2]]))
-    return np.array([[index[tuple(int(value) for value in point)] for point in np.rint(reference @ half)] for half in halves])
+    halves = (
+        np.array([[2, 0, 0], [2, 2, 0], [0, 0, 2]]),
+        np.array([[2, 2, 0], [0, 2, 0], [0, 0, 2]]),
+    )
+    return np.array(
+        [
+            [index[tuple(int(value) for value in point)] for point in np.rint(reference @ half)]
+            for half in halves
+        ]
+    )
 
 
 _TAKEN = {
@@ -55,7 +67,9 @@ _TAKEN = {
     "wedge15": _wedges(2),
 }
 SOLID_KINDS = ("hex8", "hex20", "hex27", "tet4", "tet10")
-"""Kinds of solid elements of which a case may ask for a mesh; a block can be meshed with wedges too."""
+"""Kinds of solid elements of which a case may ask for a mesh; a block can be meshed with
+wedges too.
+"""
 
 
 def mesh_of_blocks(blocks: Sequence[Floats], kind: str) -> Mesh:
@@ -95,13 +109,18 @@ def mesh_of_blocks(blocks: Sequence[Floats], kind: str) -> Mesh:
 
 def merged(points: Floats, connectivity: Integers) -> tuple[Floats, Integers]:
     """Return nodes and connectivity after merging coincident points and removing unused ones."""
-    from scipy.sparse.csgraph import connected_components  # imported late: modes that are stored do not need it
+    # imported late: modes that are stored do not need it
+    from scipy.sparse.csgraph import connected_components
     from scipy.spatial import cKDTree
 
     used, connectivity = np.unique(connectivity, return_inverse=True)
     points = points[used]
-    near = cKDTree(points).query_pairs(_SAME * float(np.ptp(points, axis=0).max()), output_type="ndarray")
-    graph = coo_array((np.ones(len(near)), (near[:, 0], near[:, 1])), shape=(len(points), len(points)))
+    near = cKDTree(points).query_pairs(
+        _SAME * float(np.ptp(points, axis=0).max()), output_type="ndarray"
+    )
+    graph = coo_array(
+        (np.ones(len(near)), (near[:, 0], near[:, 1])), shape=(len(points), len(points))
+    )
     same = connected_components(graph, directed=False)[1].astype(np.int64)
     _, first = np.unique(same, return_index=True)
     return points[first], same[connectivity]
@@ -124,7 +143,10 @@ def box_mesh(size: Sequence[float], counts: Sequence[int], kind: str = "hex20") 
     >>> box_mesh((0.52, 0.42, 0.008), (60, 48, 1)).nodes.shape
     (20703, 3)
     """
-    axes = [np.linspace(-0.5 * length, 0.5 * length, 2 * count + 1) for length, count in zip(size, counts, strict=True)]
+    axes = [
+        np.linspace(-0.5 * length, 0.5 * length, 2 * count + 1)
+        for length, count in zip(size, counts, strict=True)
+    ]
     return mesh_of_blocks([np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1)], kind)
 
 

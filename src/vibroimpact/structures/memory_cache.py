@@ -1,4 +1,6 @@
-"""Cache of recently used objects in the memory of a process, limited in size: many drops on one plate share its modes and factors."""
+"""Cache of recently used objects in the memory of a process, limited in size: many drops
+on one plate share its modes and factors.
+"""
 
 from __future__ import annotations
 

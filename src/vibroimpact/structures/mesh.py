@@ -16,7 +16,8 @@ from vibroimpact.shown import shown
 from vibroimpact.structures.element_kinds import ELEMENT_KINDS, ElementKind
 from vibroimpact.structures.stated_materials import StatedMaterials
 
-if TYPE_CHECKING:  # not imported at run time, as a case with rigid bodies does not need scipy.sparse
+# not imported at run time, as a case with rigid bodies does not need scipy.sparse
+if TYPE_CHECKING:
     from vibroimpact.structures.joints import Joints
 
 
@@ -60,7 +61,8 @@ class Mesh:
     materials : tuple of Material
         Materials of the elements; none if all elements are of the material of the body.
     element_materials : int array, shape (elements,)
-        Number of each element's material in `materials`, through all blocks in their order; -1 is the material of the body.
+        Number of each element's material in `materials`, through all blocks in their order; -1 is
+        the material of the body.
     stated : StatedMaterials, optional
         Materials as a mesh file states them, whether they are used or not.
     joints : Joints, optional
@@ -68,7 +70,8 @@ class Mesh:
     joined_by : mapping of str to int
         Items of a mesh file that made the joints, and how many of each.
     remarks : tuple of str
-        What a mesh file holds that is not in the mesh and what that does to the body, one sentence each, without a full stop.
+        What a mesh file holds that is not in the mesh and what that does to the body, one sentence
+        each, without a full stop.
 
     Examples
     --------
@@ -110,16 +113,24 @@ class Mesh:
         return np.asarray(np.ptp(self.nodes, axis=0))
 
     def of_elements(self, body: Material, value: Callable[[Material], float]) -> Floats:
-        """Return a property of the material of each element, (elements,); -1 in `element_materials` is the material of the body."""
+        """Return a property of the material of each element, (elements,); -1 in
+        `element_materials` is the material of the body.
+        """
         if not self.materials:
             return np.full(self.number_of_elements, value(body))
         return np.array([*map(value, self.materials), value(body)])[self.element_materials]
 
     @property
     def materials_text(self) -> str:
-        """How many elements have which material, in words; "" if all elements are of the material of the body."""
+        """How many elements have which material, in words; "" if all elements are of the
+        material of the body.
+        """
         counts = Counter(self.element_materials.tolist())
-        own = [f"{counts[index]} of {_material_text(one)}" for index, one in enumerate(self.materials) if counts[index]]
+        own = [
+            f"{counts[index]} of {_material_text(one)}"
+            for index, one in enumerate(self.materials)
+            if counts[index]
+        ]
         return ", ".join([*own, f"{counts[-1]} of the material of the case"] if counts[-1] else own)
 
     def nodes_of(self, name: str) -> Integers:
@@ -131,11 +142,19 @@ class Mesh:
             If there is no such set, or it is empty.
         """
         known = [*self.node_sets, *self.element_sets]
-        exact = name if name in known else next((other for other in known if other.lower() == name.lower()), None)
+        exact = (
+            name
+            if name in known
+            else next((other for other in known if other.lower() == name.lower()), None)
+        )
         if exact is None:
             have = f"there are {', '.join(known)}" if known else "it has no named sets"
             raise InputError(f'the mesh has no set "{name}"; {have}.{did_you_mean(name, known)}')
-        found = self.node_sets[exact] if exact in self.node_sets else self._nodes_of_elements(self.element_sets[exact])
+        found = (
+            self.node_sets[exact]
+            if exact in self.node_sets
+            else self._nodes_of_elements(self.element_sets[exact])
+        )
         if len(found) == 0:
             raise InputError(f'the set "{exact}" of the mesh is empty')
         return found
@@ -143,12 +162,16 @@ class Mesh:
     def _nodes_of_elements(self, elements: Integers) -> Integers:
         found, first = [], 0
         for block in self.blocks:
-            inside = elements[(elements >= first) & (elements < first + len(block.connectivity))] - first
+            inside = (
+                elements[(elements >= first) & (elements < first + len(block.connectivity))] - first
+            )
             found.append(block.connectivity[inside].ravel())
             first += len(block.connectivity)
         return np.unique(np.concatenate(found))
 
 
 def _material_text(one: Material) -> str:
-    numbers = f"{one.density:.4g} kg/m3, {1e-9 * one.youngs_modulus:.4g} GPa, {one.poissons_ratio:.3g}"
+    numbers = (
+        f"{one.density:.4g} kg/m3, {1e-9 * one.youngs_modulus:.4g} GPa, {one.poissons_ratio:.3g}"
+    )
     return f"{shown(one.name)[1:-1]} ({numbers})" if one.name else f"({numbers})"

@@ -21,7 +21,8 @@ _PLATE_AXES = np.array([[-1, 1, 1, -1, 1], [1, -1, 1, 1, -1], [1, 1, -1, -1, -1]
 
 @dataclass(frozen=True)
 class Mirror:
-    """Reflection of motions: degree of freedom i of the image is `sign[i]` times degree of freedom `source[i]`.
+    """Reflection of motions: degree of freedom i of the image is `sign[i]` times degree of freedom
+    `source[i]`.
 
     Parameters
     ----------
@@ -41,10 +42,12 @@ class Mirror:
 
 
 def mirror_planes(held: HeldStructure) -> list[Mirror]:
-    """Return the mirror planes of a held structure through the middle of its bounding box, normal to x, y or z.
+    """Return the mirror planes of a held structure through the middle of its bounding box, normal
+    to x, y or z.
 
-    Candidates follow from the nodes; stiffness and mass are then tested for the symmetry, which includes the supports. The middle
-    plane of plate elements is a mirror plane if bending and stretching are uncoupled.
+    Candidates follow from the nodes; stiffness and mass are then tested for the symmetry, which
+    includes the supports. The middle plane of plate elements is a mirror plane if bending and
+    stretching are uncoupled.
 
     Parameters
     ----------
@@ -56,12 +59,15 @@ def mirror_planes(held: HeldStructure) -> list[Mirror]:
 
 
 def _mirror(held: HeldStructure, axis: int) -> Mirror | None:
-    """Return the reflection along an axis, or None unless each free degree of freedom has a free image."""
+    """Return the reflection along an axis, or None unless each free degree of freedom has
+    a free image.
+    """
     from scipy.spatial import cKDTree  # imported late: modes that are stored do not need it
 
     mesh = held.structure.mesh
     per_node, size = mesh.dofs_per_node, held.structure.stiffness.shape[0]
-    if held.free.max(initial=-1) >= size:  # degrees of freedom of supporting bodies, which have no known images
+    # degrees of freedom of supporting bodies, which have no known images
+    if held.free.max(initial=-1) >= size:
         return None
     nodes = mesh.nodes.copy()
     nodes[:, axis] = nodes[:, axis].min() + nodes[:, axis].max() - nodes[:, axis]
@@ -103,8 +109,9 @@ def symmetry_bases(held: HeldStructure, mirrors: Sequence[Mirror]) -> list[csr_a
     Returns
     -------
     list of sparse array, shape (free, part)
-        A basis of orthonormal columns for each combination of parities that has motions, in the elimination order of the structure.
-        Together they span all free motions, and neither stiffness nor mass couples two of them.
+        A basis of orthonormal columns for each combination of parities that has motions, in the
+        elimination order of the structure. Together they span all free motions, and neither
+        stiffness nor mass couples two of them.
     """
     size = len(held.free)
     sources, signs = [np.arange(size)], [np.ones(size)]
@@ -120,8 +127,15 @@ def symmetry_bases(held: HeldStructure, mirrors: Sequence[Mirror]) -> list[csr_a
     for parities in product((1.0, -1.0), repeat=len(mirrors)):
         columns = np.arange(len(kept))
         rows = np.concatenate([source[kept] for source in sources])
-        values = np.concatenate([np.prod([parities[one] for one in count]) * sign[kept] for sign, count in zip(signs, counts, strict=True)])
-        basis = csr_array(coo_array((values, (rows, np.tile(columns, len(sources)))), shape=(size, len(kept))))
+        values = np.concatenate(
+            [
+                np.prod([parities[one] for one in count]) * sign[kept]
+                for sign, count in zip(signs, counts, strict=True)
+            ]
+        )
+        basis = csr_array(
+            coo_array((values, (rows, np.tile(columns, len(sources)))), shape=(size, len(kept)))
+        )
         norms = np.sqrt(np.asarray((basis.multiply(basis)).sum(axis=0)).ravel())
         there = np.flatnonzero(norms > 0.5)  # motions of nodes on a plane have one parity only
         if len(there):
@@ -129,7 +143,9 @@ def symmetry_bases(held: HeldStructure, mirrors: Sequence[Mirror]) -> list[csr_a
     return parts
 
 
-def _in_first_part(held: HeldStructure, mirrors: Sequence[Mirror]) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
+def _in_first_part(
+    held: HeldStructure, mirrors: Sequence[Mirror]
+) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
     """Return a mask of the free degrees of freedom on or above all mirror planes."""
     nodes = held.structure.mesh.nodes
     inside = np.ones(len(nodes), dtype=bool)

@@ -1,4 +1,6 @@
-"""Undamped elastic modes and static response of a held or free structure, by Lanczos iteration on its factorised stiffness."""
+"""Undamped elastic modes and static response of a held or free structure, by Lanczos
+iteration on its factorised stiffness.
+"""
 
 from __future__ import annotations
 
@@ -16,8 +18,11 @@ from vibroimpact.structures.lanczos import TOLERANCE, lowest_modes
 
 _DENSE = 400  # degrees of freedom up to which a dense eigenvalue solver is faster
 _SPACE = 3.0  # vectors of the iteration per mode, each stored with its product with the mass
-_MOST = 0.4  # of the degrees of freedom: higher modes of a mesh are meaningless, and Lanczos iteration has no advantage
-_CARRIED = 1e-3  # relative residual of a static solution below which the stiffness is far from singular
+# of the degrees of freedom: higher modes of a mesh are meaningless, and Lanczos iteration has no
+# advantage
+_MOST = 0.4
+# relative residual of a static solution below which the stiffness is far from singular
+_CARRIED = 1e-3
 _INVERSE_STEPS = 4
 _ROUNDING = 2e-15  # of the highest squared frequency: a lowest one below this is zero
 
@@ -59,9 +64,10 @@ class ElasticSystem:
 
     Notes
     -----
-    The stiffness of a free system is singular. Constrained at as many degrees of freedom as it has rigid motions, it is not, and
-    loads balanced by the inertia of the rigid acceleration cause no reactions there. Modes of a free body are therefore exactly
-    orthogonal to its rigid motions, and no shift has to be chosen.
+    The stiffness of a free system is singular. Constrained at as many degrees of freedom as it has
+    rigid motions, it is not, and loads balanced by the inertia of the rigid acceleration cause no
+    reactions there. Modes of a free body are therefore exactly orthogonal to its rigid motions, and
+    no shift has to be chosen.
 
     Examples
     --------
@@ -71,7 +77,13 @@ class ElasticSystem:
     [1.0, 3.0]
     """
 
-    def __init__(self, stiffness: csr_array, mass: csr_array, rigid: Floats | None = None, order: Integers | None = None) -> None:
+    def __init__(
+        self,
+        stiffness: csr_array,
+        mass: csr_array,
+        rigid: Floats | None = None,
+        order: Integers | None = None,
+    ) -> None:
         from scipy.linalg import qr  # imported late: modes that are stored do not need it
 
         number = stiffness.shape[0]
@@ -84,7 +96,11 @@ class ElasticSystem:
         self.rigid = motions
         """Rigid motions of unit modal mass."""
         self._momentum = mass @ motions
-        held = qr(motions.T, pivoting=True, mode="r")[1][: motions.shape[1]] if motions.shape[1] else np.zeros(0, dtype=int)
+        held = (
+            qr(motions.T, pivoting=True, mode="r")[1][: motions.shape[1]]
+            if motions.shape[1]
+            else np.zeros(0, dtype=int)
+        )
         self._free = np.setdiff1d(np.arange(number), held)
         place = np.full(number, -1)
         place[self._free] = np.arange(len(self._free))
@@ -102,15 +118,17 @@ class ElasticSystem:
     def static(self, load: Floats) -> Floats:
         """Return the static response to loads, shape (n,) or (n, loads).
 
-        In a free system the load is balanced by the inertia of the rigid acceleration (inertia relief), and the response has no
-        rigid component.
+        In a free system the load is balanced by the inertia of the rigid acceleration (inertia
+        relief), and the response has no rigid component.
         """
         balanced = load - self._momentum @ (self.rigid.T @ load)
         response = np.zeros_like(balanced)
         response[self._free] = self._factors.solve(balanced[self._free])
         return np.asarray(response - self.rigid @ (self._momentum.T @ response))
 
-    def modes(self, number: int, progress: Progress | None = None, tolerance: float = TOLERANCE) -> Eigenmodes:
+    def modes(
+        self, number: int, progress: Progress | None = None, tolerance: float = TOLERANCE
+    ) -> Eigenmodes:
         """Return the lowest elastic modes, without rigid motions.
 
         Parameters
@@ -133,21 +151,34 @@ class ElasticSystem:
         if not 1 <= number <= most:
             raise InputError(
                 f"{number} modes are not to be had from {size} degrees of freedom; "
-                + " or ".join(([f"ask for 1 to {most}"] if most > 0 else []) + (["use smaller elements"] if number > most else []))
+                + " or ".join(
+                    ([f"ask for 1 to {most}"] if most > 0 else [])
+                    + (["use smaller elements"] if number > most else [])
+                )
             )
         if size <= _DENSE:
             return self._dense(number)
-        check_memory(16.0 * size * _SPACE * number, f"{number} modes of {size} degrees of freedom need")
-        values, shapes = lowest_modes(self.static, self.mass, number, progress or (lambda part: None), tolerance)
+        check_memory(
+            16.0 * size * _SPACE * number, f"{number} modes of {size} degrees of freedom need"
+        )
+        values, shapes = lowest_modes(
+            self.static, self.mass, number, progress or (lambda part: None), tolerance
+        )
         return Eigenmodes(np.sqrt(values), shapes)
 
     def count_below(self, angular_frequency: float) -> int:
-        """Return the number of elastic modes below an angular frequency [rad/s], from the signs of the pivots."""
+        """Return the number of elastic modes below an angular frequency [rad/s], from the
+        signs of the pivots.
+        """
         shifted = self.stiffness - angular_frequency**2 * self.mass
-        return int(Factors(csr_array(shifted), self.order).negative_pivots()) - int(self.rigid.shape[1])
+        return int(Factors(csr_array(shifted), self.order).negative_pivots()) - int(
+            self.rigid.shape[1]
+        )
 
     def _refuse_mechanisms(self) -> None:
-        """Raise if a static solution has a large residual, and the lowest frequency, by inverse iteration, is zero up to rounding."""
+        """Raise if a static solution has a large residual, and the lowest frequency, by
+        inverse iteration, is zero up to rounding.
+        """
         shape = np.random.default_rng(0).standard_normal(self.stiffness.shape[0])
         load = self.mass @ shape
         left = self.stiffness @ self.static(load) - load + self._momentum @ (self.rigid.T @ load)
@@ -159,22 +190,31 @@ class ElasticSystem:
             shape /= np.sqrt(shape @ (self.mass @ shape))
         if not shape @ (self.stiffness @ shape) > _ROUNDING * highest:
             raise ComputationError(
-                "the stiffness matrix is singular: part of the body can move without resistance, as a hinge does, or all of it can on "
-                "springs that are next to none; look for such springs, for elements that share only an edge or a node, or for equations "
-                "between nodes that lie apart: replace these by *TIE, or by one RBE2 of all the nodes, which turn with the body"
+                "the stiffness matrix is singular: part of the body can move without "
+                "resistance, as a hinge does, or all of it can on "
+                "springs that are next to none; look for such springs, for elements that "
+                "share only an edge or a node, or for equations "
+                "between nodes that lie apart: replace these by *TIE, or by one RBE2 of all "
+                "the nodes, which turn with the body"
             )
 
     def _dense(self, number: int) -> Eigenmodes:
-        """Return the lowest modes by a dense solver; the mass may be singular, as that of a thin plate, or the stiffness, but not both."""
+        """Return the lowest modes by a dense solver; the mass may be singular, as that of
+        a thin plate, or the stiffness, but not both.
+        """
         inertia, axes = np.linalg.eigh(self.mass.toarray())
         root = axes * np.sqrt(np.maximum(inertia, 0.0))
         response = self.static(root)
         responses, turned = np.linalg.eigh(root.T @ response)
         lowest = slice(-1, -number - 1, -1)
-        return Eigenmodes(1.0 / np.sqrt(responses[lowest]), response @ (turned[:, lowest] / responses[lowest]))
+        return Eigenmodes(
+            1.0 / np.sqrt(responses[lowest]), response @ (turned[:, lowest] / responses[lowest])
+        )
 
 
 def max_modes(mass: csr_array, rigid: int) -> int:
-    """Return the largest number of elastic modes that may be computed of a system with a number of rigid motions."""
+    """Return the largest number of elastic modes that may be computed of a system with a
+    number of rigid motions.
+    """
     most = int(np.count_nonzero(mass.diagonal() > 0.0)) - rigid
     return most if mass.shape[0] <= _DENSE else int(_MOST * most)

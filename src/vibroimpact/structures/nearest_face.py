@@ -11,8 +11,10 @@ from vibroimpact.arrays import Floats, Integers
 from vibroimpact.structures.surface import Faces
 
 _STEPS = 30
-_CONVERGED = 1e-14  # last step in local coordinates: it is quadratic near a face that a point lies on
-_BULGE = 1.5  # of the distance of the furthest node from the middle of a face: how far a curved face reaches
+# last step in local coordinates: it is quadratic near a face that a point lies on
+_CONVERGED = 1e-14
+# of the distance of the furthest node from the middle of a face: how far a curved face reaches
+_BULGE = 1.5
 
 
 @dataclass(frozen=True)
@@ -35,7 +37,9 @@ class NearestPlace:
     weights: Floats
 
 
-def nearest_places(nodes: Floats, groups: Sequence[Faces], points: Floats, reach: float) -> list[NearestPlace | None]:
+def nearest_places(
+    nodes: Floats, groups: Sequence[Faces], points: Floats, reach: float
+) -> list[NearestPlace | None]:
     """Return the nearest place on faces to each point; None where no face is within `reach`.
 
     Parameters
@@ -68,7 +72,9 @@ def nearest_places(nodes: Floats, groups: Sequence[Faces], points: Floats, reach
         radius = _BULGE * np.linalg.norm(at - middle[:, None], axis=2).max(axis=1)
         near = tree.query_ball_point(middle, radius + reach)
         face = np.repeat(np.arange(len(near)), [len(one) for one in near])
-        point = np.concatenate([np.zeros(0, dtype=np.int64), *(np.array(one, dtype=np.int64) for one in near)])
+        point = np.concatenate(
+            [np.zeros(0, dtype=np.int64), *(np.array(one, dtype=np.int64) for one in near)]
+        )
         if not len(point):
             continue
         local = _projected(nodes, faces, face, points[point])
@@ -79,12 +85,16 @@ def nearest_places(nodes: Floats, groups: Sequence[Faces], points: Floats, reach
             which, before = int(point[index]), found[int(point[index])]
             if before is None or distance[index] < before.distance:
                 members = faces.connectivity[face[index], faces.has_node]
-                found[which] = NearestPlace(float(distance[index]), position[index], members, values[index, faces.has_node])
+                found[which] = NearestPlace(
+                    float(distance[index]), position[index], members, values[index, faces.has_node]
+                )
     return found
 
 
 def _projected(nodes: Floats, faces: Faces, face: Integers, points: Floats) -> Floats:
-    """Return the local coordinates of the place of each face nearest to its point, by Gauss and Newton's method within the face."""
+    """Return the local coordinates of the place of each face nearest to its point, by
+    Gauss and Newton's method within the face.
+    """
     at = nodes[faces.connectivity[face]]
     local = np.full((len(face), 2), 1.0 / 3.0)
     for _ in range(_STEPS):

@@ -17,16 +17,23 @@ _MOST_NAMED = 3
 
 def part_of_nodes(mesh: Mesh) -> Integers:
     """Return a number for each node, equal for nodes that elements or joints connect."""
-    from scipy.sparse.csgraph import connected_components  # imported late: modes that are stored do not need it
+    # imported late: modes that are stored do not need it
+    from scipy.sparse.csgraph import connected_components
 
     pairs = [
-        (np.repeat(block.connectivity[:, 0], block.connectivity.shape[1] - 1), block.connectivity[:, 1:].ravel()) for block in mesh.blocks
+        (
+            np.repeat(block.connectivity[:, 0], block.connectivity.shape[1] - 1),
+            block.connectivity[:, 1:].ravel(),
+        )
+        for block in mesh.blocks
     ]
     if mesh.joints is not None:
         pairs.append(mesh.joints.pairs)
     start, end = (np.concatenate(side) for side in zip(*pairs, strict=True))
     number = len(mesh.nodes)
-    found = connected_components(coo_array((np.ones(len(start)), (start, end)), shape=(number, number)), directed=False)[1]
+    found = connected_components(
+        coo_array((np.ones(len(start)), (start, end)), shape=(number, number)), directed=False
+    )[1]
     return np.asarray(found, dtype=np.int64)
 
 
@@ -48,7 +55,8 @@ def number_of_parts(mesh: Mesh) -> int:
 
 
 def part_at(mesh: Mesh, spot: Spot, side: Side) -> Mesh:
-    """Return the part of a mesh at a spot on one side, outermost there; with a remark on the parts that are left out.
+    """Return the part of a mesh at a spot on one side, outermost there; with a remark on the parts
+    that are left out.
 
     Parameters
     ----------
@@ -78,7 +86,8 @@ def part_at(mesh: Mesh, spot: Spot, side: Side) -> Mesh:
     others = [extent_text(mesh, labels == part) for part in parts if part != labels[touched]]
     more = f" and {len(others) - _MOST_NAMED} more" if len(others) > _MOST_NAMED else ""
     remark = (
-        f"the mesh file holds {len(parts)} parts that share no node and are not joined; the body is the one at the contact point, "
+        f"the mesh file holds {len(parts)} parts that share no node and are not joined; "
+        "the body is the one at the contact point, "
         f"{extent_text(mesh, chosen)}, and {', '.join(others[:_MOST_NAMED])}{more} are left out: "
         "to join parts, tie them in the file (*TIE, RBE2) or merge their coincident nodes"
     )
@@ -90,13 +99,20 @@ def extent_text(mesh: Mesh, chosen: Bools) -> str:
     """Return in words where chosen nodes are."""
     at = mesh.nodes[chosen]
     rounding = 1e-9 * np.abs(at).max(initial=0.0)
-    low, high = (np.where(np.abs(end) > rounding, end, 0.0) for end in (at.min(axis=0), at.max(axis=0)))
-    axes = (f"{name} {first:.4g} to {last:.4g}" for name, first, last in zip("xyz", low, high, strict=True))
+    low, high = (
+        np.where(np.abs(end) > rounding, end, 0.0) for end in (at.min(axis=0), at.max(axis=0))
+    )
+    axes = (
+        f"{name} {first:.4g} to {last:.4g}"
+        for name, first, last in zip("xyz", low, high, strict=True)
+    )
     return f"{', '.join(axes)} m"
 
 
 def _with_nodes(mesh: Mesh, chosen: Bools) -> Mesh:
-    """Return the elements of a mesh whose nodes are chosen, with the sets and materials that concern them."""
+    """Return the elements of a mesh whose nodes are chosen, with the sets and materials
+    that concern them.
+    """
     places = np.cumsum(chosen) - 1
     blocks, kept = [], []
     for block in mesh.blocks:
@@ -106,8 +122,16 @@ def _with_nodes(mesh: Mesh, chosen: Bools) -> Mesh:
             blocks.append(ElementBlock(block.kind, places[block.connectivity[inside]]))
     elements = np.concatenate(kept)
     numbers = np.cumsum(elements) - 1
-    node_sets = {name: places[nodes[chosen[nodes]]] for name, nodes in mesh.node_sets.items() if chosen[nodes].any()}
-    element_sets = {name: numbers[of[elements[of]]] for name, of in mesh.element_sets.items() if elements[of].any()}
+    node_sets = {
+        name: places[nodes[chosen[nodes]]]
+        for name, nodes in mesh.node_sets.items()
+        if chosen[nodes].any()
+    }
+    element_sets = {
+        name: numbers[of[elements[of]]]
+        for name, of in mesh.element_sets.items()
+        if elements[of].any()
+    }
     stated = mesh.stated
     if stated is not None:
         used, of_elements = np.unique(stated.of_elements[elements], return_inverse=True)

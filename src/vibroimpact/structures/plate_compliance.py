@@ -1,14 +1,22 @@
-r"""Correction of the point compliance of a plate from that of plate theory, or from the response of the opposite face.
+r"""Correction of the point compliance of a plate from that of plate theory, or from the response of
+the opposite face.
 
-A pressure of wave number k on the upper face of an elastic layer displaces that face by A + S, and the lower face by A - S, with
-:math:`A = \frac{2(1-\nu^2)}{E k}\frac{\cosh^2 x}{\sinh 2x - 2x}`, :math:`S = \frac{2(1-\nu^2)}{E k}\frac{\sinh^2 x}{\sinh 2x + 2x}`
-and x = k h / 2 (I. N. Sneddon, Fourier Transforms, 1951, section 46), and that of the half space by :math:`2(1-\nu^2)/(E k)`. The
-structural compliance is that of a point under a normal force less that of the half space, with the kernel
+A pressure of wave number k on the upper face of an elastic layer displaces that face by A + S, and
+the lower face by A - S, with
+:math:`A = \frac{2(1-\nu^2)}{E k}\frac{\cosh^2 x}{\sinh 2x - 2x}`, :math:`S = \frac{2(1-\nu^2)}{E
+k}\frac{\sinh^2 x}{\sinh 2x + 2x}`
+and x = k h / 2 (I. N. Sneddon, Fourier Transforms, 1951, section 46), and that of the half space by
+:math:`2(1-\nu^2)/(E k)`. The
+structural compliance is that of a point under a normal force less that of the half space, with the
+kernel
 :math:`A + S - 2(1-\nu^2)/(E k)`.
 
-Finite elements give the compliance with load and response averaged over a disc, each with the transform
-:math:`d(k) = 1 - k^2 \overline{r^2}/4 + \ldots`. The mean of r^2 is chosen so that both kernels agree in the terms :math:`k^{-4}` and
-:math:`k^{-2}`. The integral of their difference over :math:`k\,dk/2\pi` then depends on the layer near the point only, not on the edges
+Finite elements give the compliance with load and response averaged over a disc, each with the
+transform
+:math:`d(k) = 1 - k^2 \overline{r^2}/4 + \ldots`. The mean of r^2 is chosen so that both kernels
+agree in the terms :math:`k^{-4}` and
+:math:`k^{-2}`. The integral of their difference over :math:`k\,dk/2\pi` then depends on the layer
+near the point only, not on the edges
 of the plate or its supports.
 """
 
@@ -57,13 +65,18 @@ class Average:
 
 
 def through_thickness_average(radius: float) -> Average:
-    """Return the average of `through_thickness_term` over a disc of a radius [m]: the mean of r^2 is zero."""
+    """Return the average of `through_thickness_term` over a disc of a radius [m]: the
+    mean of r^2 is zero.
+    """
     return Average(radius, 3.0)
 
 
 @functools.lru_cache(maxsize=_PLATES)
-def through_thickness_term(thickness: float, youngs_modulus: float, poissons_ratio: float, average: Average) -> float:
-    r"""Return the structural compliance of a plate less the averaged response of its opposite face [m/N].
+def through_thickness_term(
+    thickness: float, youngs_modulus: float, poissons_ratio: float, average: Average
+) -> float:
+    r"""Return the structural compliance of a plate less the averaged response of its opposite face
+    [m/N].
 
     Parameters
     ----------
@@ -72,35 +85,56 @@ def through_thickness_term(thickness: float, youngs_modulus: float, poissons_rat
     youngs_modulus, poissons_ratio : float
         E [Pa] and nu [-].
     average : Average
-        Average of the force on one face, and of the displacement of the other: `through_thickness_average`.
+        Average of the force on one face, and of the displacement of the other:
+        `through_thickness_average`.
 
     Notes
     -----
-    The kernel that is subtracted is :math:`(A - S)\,d^2`. For points, of radius 0, A cancels and the term is
-    :math:`\frac{2(1-\nu^2)}{\pi E h} \int_0^\infty \left(\frac{2\sinh^2 x}{\sinh 2x + 2x} - 1\right) dx
+    The kernel that is subtracted is :math:`(A - S)\,d^2`. For points, of radius 0, A cancels and
+    the term is
+    :math:`\frac{2(1-\nu^2)}{\pi E h} \int_0^\infty \left(\frac{2\sinh^2 x}{\sinh 2x + 2x} -
+    1\right) dx
     = -1.1676\,\frac{2(1-\nu^2)}{\pi E h}`.
 
     Examples
     --------
-    >>> round(through_thickness_term(0.01, 210e9, 0.3, through_thickness_average(0.0)) * 210e9 * 0.01 * 3.14159265 / (2 * 0.91), 4)
+    >>> round(
+    ...     through_thickness_term(0.01, 210e9, 0.3, through_thickness_average(0.0))
+    ...     * 210e9
+    ...     * 0.01
+    ...     * 3.14159265
+    ...     / (2 * 0.91),
+    ...     4,
+    ... )
     -1.1676
     """
     modulus = youngs_modulus / (1.0 - poissons_ratio**2)  # in plane strain
 
     def kernel(k: Floats) -> Floats:
         bending, squeezing = layer_kernels(k * thickness)
-        return np.asarray(2.0 / (modulus * k) * (bending + squeezing - 1.0 - (bending - squeezing) * average.transform(k) ** 2))
+        return np.asarray(
+            2.0
+            / (modulus * k)
+            * (bending + squeezing - 1.0 - (bending - squeezing) * average.transform(k) ** 2)
+        )
 
     return _integral(kernel, thickness, average)
 
 
-def plate_theory_average(radius: float, thickness: float, poissons_ratio: float, shear_factor: float) -> Average:
-    """Return the average of `plate_theory_term` over a disc of a radius [m]: the mean of r^2 is `mean_square`."""
-    return Average(radius, 3.0 - 6.0 * mean_square(thickness, poissons_ratio, shear_factor) / radius**2)
+def plate_theory_average(
+    radius: float, thickness: float, poissons_ratio: float, shear_factor: float
+) -> Average:
+    """Return the average of `plate_theory_term` over a disc of a radius [m]: the mean of
+    r^2 is `mean_square`.
+    """
+    return Average(
+        radius, 3.0 - 6.0 * mean_square(thickness, poissons_ratio, shear_factor) / radius**2
+    )
 
 
 def mean_square(thickness: float, poissons_ratio: float, shear_factor: float) -> float:
-    r"""Return the mean of r^2 of the average with which plate theory agrees with the face of a layer for long waves [m^2].
+    r"""Return the mean of r^2 of the average with which plate theory agrees with the face of a
+    layer for long waves [m^2].
 
     Notes
     -----
@@ -110,7 +144,13 @@ def mean_square(thickness: float, poissons_ratio: float, shear_factor: float) ->
 
 
 @functools.lru_cache(maxsize=_PLATES)
-def plate_theory_term(thickness: float, youngs_modulus: float, poissons_ratio: float, shear_factor: float, average: Average) -> float:
+def plate_theory_term(
+    thickness: float,
+    youngs_modulus: float,
+    poissons_ratio: float,
+    shear_factor: float,
+    average: Average,
+) -> float:
     r"""Return the structural compliance of a plate less the averaged one of plate theory [m/N].
 
     Parameters
@@ -126,7 +166,8 @@ def plate_theory_term(thickness: float, youngs_modulus: float, poissons_ratio: f
 
     Notes
     -----
-    The kernel that is subtracted is :math:`\left(\frac{1}{D k^4} + \frac{1}{\kappa G h k^2}\right) d^2` (R. D. Mindlin, J. Appl.
+    The kernel that is subtracted is :math:`\left(\frac{1}{D k^4} + \frac{1}{\kappa G h k^2}\right)
+    d^2` (R. D. Mindlin, J. Appl.
     Mech. 18:31, 1951).
 
     Examples
@@ -141,13 +182,18 @@ def plate_theory_term(thickness: float, youngs_modulus: float, poissons_ratio: f
 
     def kernel(k: Floats) -> Floats:
         structural = 2.0 / (modulus * k) * (np.sum(layer_kernels(k * thickness), axis=0) - 1.0)
-        return np.asarray(structural - (1.0 / (rigidity * k**4) + 1.0 / (shear * k**2)) * average.transform(k) ** 2)
+        return np.asarray(
+            structural
+            - (1.0 / (rigidity * k**4) + 1.0 / (shear * k**2)) * average.transform(k) ** 2
+        )
 
     return _integral(kernel, thickness, average)
 
 
 def layer_kernels(y: Floats) -> tuple[Floats, Floats]:
-    """Return A and S over the kernel of the half space, at y = k h; for short waves each tends to 1/2."""
+    """Return A and S over the kernel of the half space, at y = k h; for short waves each
+    tends to 1/2.
+    """
     y = np.minimum(y, _DEEPEST)
     return (1.0 + np.cosh(y)) / (2.0 * _sinh_less(y)), (np.cosh(y) - 1.0) / (2.0 * (np.sinh(y) + y))
 
@@ -161,9 +207,13 @@ def _sinh_less(y: Floats) -> Floats:
 
 
 def _integral(kernel: Callable[[Floats], Floats], thickness: float, average: Average) -> float:
-    """Return the integral of a kernel over k dk / 2 pi from zero to the cutoff, by Gauss's rule on equal parts."""
+    """Return the integral of a kernel over k dk / 2 pi from zero to the cutoff, by
+    Gauss's rule on equal parts.
+    """
     largest = max(thickness, average.radius)
-    parts = math.ceil(largest * max(_DEEPEST / thickness, _FINEST / average.radius if average.radius else 0.0))
+    parts = math.ceil(
+        largest * max(_DEEPEST / thickness, _FINEST / average.radius if average.radius else 0.0)
+    )
     nodes, weights = np.polynomial.legendre.leggauss(_NODES)
     k = (np.arange(parts)[:, None] + 0.5 * (nodes + 1.0)).ravel() / largest
     return float(kernel(k) @ (k * np.tile(weights, parts)) / (4.0 * math.pi * largest))

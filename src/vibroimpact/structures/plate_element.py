@@ -1,4 +1,6 @@
-"""Plate element: Reissner-Mindlin bending and plane stress in its middle plane, on quadrilaterals of order four."""
+"""Plate element: Reissner-Mindlin bending and plane stress in its middle plane, on
+quadrilaterals of order four.
+"""
 
 from __future__ import annotations
 
@@ -14,12 +16,18 @@ _THIN_SHEAR = 1e4  # factor on the shear stiffness that stands for the thin plat
 
 
 def shear_factor(poissons_ratio: float) -> float:
-    """Return the shear correction factor of a plate [-]: 5 / (6 - nu), J. R. Hutchinson's (J. Appl. Mech. 51:581, 1984)."""
+    """Return the shear correction factor of a plate [-]: 5 / (6 - nu), J. R. Hutchinson's
+    (J. Appl. Mech. 51:581, 1984).
+    """
     return 5.0 / (6.0 - poissons_ratio)
 
 
 def assemble_plate(
-    mesh: Mesh, material: Material, thickness: float, theory: str = "thick", shear_correction: float | None = None
+    mesh: Mesh,
+    material: Material,
+    thickness: float,
+    theory: str = "thick",
+    shear_correction: float | None = None,
 ) -> tuple[csr_array, csr_array]:
     r"""Return the stiffness and the consistent mass matrix of a plate.
 
@@ -32,7 +40,8 @@ def assemble_plate(
     thickness : float
         Thickness h [m], > 0.
     theory : str, default "thick"
-        "thick" is Reissner and Mindlin's theory, with transverse shear and rotary inertia; "thin" is Kirchhoff's, without.
+        "thick" is Reissner and Mindlin's theory, with transverse shear and rotary inertia; "thin"
+        is Kirchhoff's, without.
     shear_correction : float, optional
         Shear correction factor s [-]; 5 / (6 - nu) by default.
 
@@ -40,7 +49,8 @@ def assemble_plate(
     -------
     stiffness, mass : sparse arrays, shape (5 nodes, 5 nodes)
         Degrees of freedom of a node: displacements u, v, w of the middle plane [m], then the slopes
-        :math:`\beta_x, \beta_y` [rad], so that a point at height z moves by :math:`u + z \beta_x` and :math:`v + z \beta_y`.
+        :math:`\beta_x, \beta_y` [rad], so that a point at height z moves by :math:`u + z \beta_x`
+        and :math:`v + z \beta_y`.
 
     Raises
     ------
@@ -49,12 +59,14 @@ def assemble_plate(
 
     Notes
     -----
-    Strain energy :math:`\tfrac12\int h\,\varepsilon^T C \varepsilon + \tfrac{h^3}{12} \kappa^T C \kappa
-    + s G h\,|\nabla w + \beta|^2\,dA` with C of plane stress (R. D. Mindlin, J. Appl. Mech. 18:31, 1951). The factor
-    s = 5 / (6 - nu) is J. R. Hutchinson's (J. Appl. Mech. 51:581, 1984): errors of frequencies with respect to
-    three-dimensional elasticity are twenty times smaller than with E. Reissner's 5/6 or Mindlin's pi^2/12. Integration is full, as
-    quadrilaterals of order four do not lock. The thin plate is the thick one with ten thousand times the shear stiffness and without
-    rotary inertia.
+    Strain energy :math:`\tfrac12\int h\,\varepsilon^T C \varepsilon + \tfrac{h^3}{12} \kappa^T C
+    \kappa
+    + s G h\,|\nabla w + \beta|^2\,dA` with C of plane stress (R. D. Mindlin, J. Appl. Mech. 18:31,
+    1951). The factor
+    s = 5 / (6 - nu) is J. R. Hutchinson's (J. Appl. Mech. 51:581, 1984): errors of frequencies with
+    respect to three-dimensional elasticity are twenty times smaller than with E. Reissner's 5/6 or
+    Mindlin's pi^2/12. Integration is full, as quadrilaterals of order four do not lock. The thin
+    plate is the thick one with ten thousand times the shear stiffness and without rotary inertia.
 
     Examples
     --------
@@ -77,7 +89,12 @@ def assemble_plate(
     summed, matrix = pair_assembly(mesh)
 
     unit = summed([values.transpose(0, 2, 1) @ values for values, _ in shapes])
-    product = np.array([[summed([g[i].transpose(0, 2, 1) @ g[j] for _, g in shapes]) for j in range(2)] for i in range(2)])
+    product = np.array(
+        [
+            [summed([g[i].transpose(0, 2, 1) @ g[j] for _, g in shapes]) for j in range(2)]
+            for i in range(2)
+        ]
+    )
     plane = isotropic(product, lame, mu)
     stiffness, mass = np.zeros((2, len(unit), 5, 5))
     stiffness[:, :2, :2] = thickness * plane
@@ -85,9 +102,15 @@ def assemble_plate(
     stiffness[:, 2, 2] = shear * np.trace(product)
     for axis in range(2):
         stiffness[:, 3 + axis, 3 + axis] += shear * unit
-        stiffness[:, 2, 3 + axis] = shear * summed([g[axis].transpose(0, 2, 1) @ values for values, g in shapes])
-        stiffness[:, 3 + axis, 2] = shear * summed([values.transpose(0, 2, 1) @ g[axis] for values, g in shapes])
-        mass[:, 3 + axis, 3 + axis] = material.density * second_moment * unit if theory == "thick" else 0.0
+        stiffness[:, 2, 3 + axis] = shear * summed(
+            [g[axis].transpose(0, 2, 1) @ values for values, g in shapes]
+        )
+        stiffness[:, 3 + axis, 2] = shear * summed(
+            [values.transpose(0, 2, 1) @ g[axis] for values, g in shapes]
+        )
+        mass[:, 3 + axis, 3 + axis] = (
+            material.density * second_moment * unit if theory == "thick" else 0.0
+        )
     for axis in range(3):
         mass[:, axis, axis] = material.density * thickness * unit
     return matrix(stiffness), matrix(mass)

@@ -10,7 +10,13 @@ from vibroimpact.errors import InputError
 from vibroimpact.structures.element_kinds import PLATE_ORDER
 from vibroimpact.structures.lattice import merged, mesh_of_blocks
 from vibroimpact.structures.mesh import ElementBlock, Mesh
-from vibroimpact.structures.rectangle import MOST_NODES, Disc, rectangle_blocks, split_at, with_midpoints
+from vibroimpact.structures.rectangle import (
+    MOST_NODES,
+    Disc,
+    rectangle_blocks,
+    split_at,
+    with_midpoints,
+)
 
 _NODES = 4  # of each element of a large mesh of the kind "hex20"
 
@@ -41,8 +47,9 @@ def solid_plate_mesh(
     discs, lines, rims
         Lines that edges of elements must follow: see `rectangle_blocks`.
     splits : int, default 0
-        Number of splits of the elements at rims and along the edges of the plate: the strain is singular at the rim of a held patch
-        and at the corners of a held face; along a free edge it varies within about half a thickness.
+        Number of splits of the elements at rims and along the edges of the plate: the strain is
+        singular at the rim of a held patch and at the corners of a held face; along a free edge it
+        varies within about half a thickness.
     lower_splits : int, optional
         Number of splits of the lowest layer; that of the rims by default.
 
@@ -54,9 +61,14 @@ def solid_plate_mesh(
     most = MOST_NODES // _NODES
     if (size[0] / element_size) * (size[1] / element_size) * layers > most:
         remedy = "make them larger, or take fewer layers" if layers > 1 else "make them larger"
-        raise InputError(f"elements of {element_size:g} m in {layers} layer{'s' if layers > 1 else ''} would be more than {most}; {remedy}")
+        raise InputError(
+            f"elements of {element_size:g} m in {layers} layer{'s' if layers > 1 else ''} "
+            f"would be more than {most}; {remedy}"
+        )
     below = splits if lower_splits is None else lower_splits
-    height = with_midpoints(split_at(np.linspace(-0.5 * size[2], 0.5 * size[2], layers + 1), below), 2)
+    height = with_midpoints(
+        split_at(np.linspace(-0.5 * size[2], 0.5 * size[2], layers + 1), below), 2
+    )
     margins = [0.5 * size[2] * 0.25**split for split in range(splits)]
     blocks = []
     for flat in rectangle_blocks(size[:2], element_size, 2, discs, lines, splits, margins, rims):
@@ -92,13 +104,22 @@ def plate_mesh(
     """
     steps = np.arange(PLATE_ORDER + 1)
     points, elements, start = [], [], 0
-    for block in rectangle_blocks(size, element_size, PLATE_ORDER, discs, lines, margins=margins, rims=rims):
+    for block in rectangle_blocks(
+        size, element_size, PLATE_ORDER, discs, lines, margins=margins, rims=rims
+    ):
         sides = (block[1, 0] - block[0, 0], block[0, 1] - block[0, 0])
-        flat = block if sides[0][0] * sides[1][1] > sides[0][1] * sides[1][0] else block.transpose(1, 0, 2)
+        flat = (
+            block
+            if sides[0][0] * sides[1][1] > sides[0][1] * sides[1][0]
+            else block.transpose(1, 0, 2)
+        )
         number = start + np.arange(flat[..., 0].size).reshape(flat.shape[:2])
-        offsets = (flat.shape[1] * steps[None, :] + steps[:, None]).ravel()  # the first coordinate runs fastest
+        # the first coordinate runs fastest
+        offsets = (flat.shape[1] * steps[None, :] + steps[:, None]).ravel()
         elements.append(number[:-1:PLATE_ORDER, :-1:PLATE_ORDER].reshape(-1, 1) + offsets)
-        points.append(np.concatenate([flat.reshape(-1, 2), np.zeros((flat[..., 0].size, 1))], axis=1))
+        points.append(
+            np.concatenate([flat.reshape(-1, 2), np.zeros((flat[..., 0].size, 1))], axis=1)
+        )
         start += flat[..., 0].size
     nodes, connectivity = merged(np.concatenate(points), np.concatenate(elements))
     return Mesh(nodes, (ElementBlock("quad25", connectivity),))

@@ -1,11 +1,16 @@
 r"""Waves in a plate: plate theory compared with three-dimensional elasticity of a layer.
 
-Bending strains a plate across its thickness (Poisson's ratio), so that its face moves less than plate theory states, of which the
-deflection is a mean over the thickness. The factor between them is the ratio of two shapes of unit modal mass at the same wave number:
-the lowest antisymmetric wave of a layer (H. Lamb, On waves in an elastic plate, Proc. R. Soc. A 93:114, 1917) at its face, and the
-deflection of R. D. Mindlin's plate (J. Appl. Mech. 18:31, 1951). For long waves, of wave number k, it is
+Bending strains a plate across its thickness (Poisson's ratio), so that its face moves less than
+plate theory states, of which the deflection is a mean over the thickness. The factor between them
+is the ratio of two shapes of unit modal mass at the same wave number: the lowest antisymmetric wave
+of a layer (H. Lamb, On waves in an elastic plate, Proc. R. Soc. A 93:114, 1917) at its face, and
+the deflection of R. D. Mindlin's plate (J. Appl. Mech. 18:31, 1951). For long waves, of wave number
+k, it is
 
-.. math:: d = 1 - \frac{k^2 \overline{r^2}}{4} + \ldots,\qquad \overline{r^2} = 2 h^2 \left(\frac{1}{6 (1 - \nu) \kappa} - \frac15\right)
+.. math::
+
+    d = 1 - \frac{k^2 \overline{r^2}}{4} + \ldots,\qquad
+    \overline{r^2} = 2 h^2 \left(\frac{1}{6 (1 - \nu) \kappa} - \frac15\right)
 """
 
 from __future__ import annotations
@@ -25,13 +30,17 @@ _LARGEST = 8.0  # wave number times thickness beyond which the factor is constan
 _DEGREE = 24  # of the polynomial that interpolates the factor within 3e-8
 _RATIOS = 64  # Poisson's ratios of which the factor is cached
 _HALVINGS = 60  # of the bisection
-_LEAST = 0.05  # wave number times thickness below which errors of plate theory go with its square, as rounding hides them
+# wave number times thickness below which errors of plate theory go with its square, as rounding
+# hides them
+_LEAST = 0.05
 _NODES = 24  # of Gauss's rule across the thickness
-_INERTIA = (0.02432, -0.03887, 0.05163)  # coefficients of powers of Poisson's ratio, within 0.2 %; without waves longer than 20 thicknesses
+# coefficients of powers of Poisson's ratio, within 0.2 %; without waves longer than 20 thicknesses
+_INERTIA = (0.02432, -0.03887, 0.05163)
 
 
 def bending_factor(wave: Floats, poissons_ratio: float) -> Floats:
-    """Return the displacement of the face of a plate in a bending wave over the deflection of plate theory [-].
+    """Return the displacement of the face of a plate in a bending wave over the deflection of plate
+    theory [-].
 
     Parameters
     ----------
@@ -49,7 +58,8 @@ def bending_factor(wave: Floats, poissons_ratio: float) -> Floats:
 
 
 def bending_error(wave: Floats, poissons_ratio: float, thin: bool = False) -> Floats:
-    """Return the relative error of plate theory in the frequency of a bending wave, with respect to the layer [-].
+    """Return the relative error of plate theory in the frequency of a bending wave, with respect to
+    the layer [-].
 
     Parameters
     ----------
@@ -69,12 +79,17 @@ def bending_error(wave: Floats, poissons_ratio: float, thin: bool = False) -> Fl
     """
     resolved = np.maximum(wave, _LEAST)
     exact = _lamb(resolved, poissons_ratio)[0]
-    theory = resolved**2 * math.sqrt(1.0 / (6.0 * (1.0 - poissons_ratio))) if thin else _mindlin(resolved, poissons_ratio)[0]
+    theory = (
+        resolved**2 * math.sqrt(1.0 / (6.0 * (1.0 - poissons_ratio)))
+        if thin
+        else _mindlin(resolved, poissons_ratio)[0]
+    )
     return np.asarray((theory / exact - 1.0) * (wave / resolved) ** 2)
 
 
 def stiff_shear_error(wave: Floats, poissons_ratio: float) -> Floats:
-    """Return the relative increase of the frequency of bending waves in Mindlin's theory without shear correction [-].
+    """Return the relative increase of the frequency of bending waves in Mindlin's theory without
+    shear correction [-].
 
     Parameters
     ----------
@@ -83,11 +98,14 @@ def stiff_shear_error(wave: Floats, poissons_ratio: float) -> Floats:
     poissons_ratio : float
         Poisson's ratio [-].
     """
-    return np.asarray(_mindlin(wave, poissons_ratio, 1.0)[0] / _mindlin(wave, poissons_ratio)[0] - 1.0)
+    return np.asarray(
+        _mindlin(wave, poissons_ratio, 1.0)[0] / _mindlin(wave, poissons_ratio)[0] - 1.0
+    )
 
 
 def stretching_error(angular_frequencies: Floats, thickness: float, material: Material) -> Floats:
-    r"""Return the relative error of plate theory in the frequencies of in-plane longitudinal waves [-].
+    r"""Return the relative error of plate theory in the frequencies of in-plane longitudinal waves
+    [-].
 
     It is :math:`(\nu k h)^2 / 24 (1-\nu)^2`, to the second order in the wave number k (Lamb 1917).
 
@@ -101,12 +119,17 @@ def stretching_error(angular_frequencies: Floats, thickness: float, material: Ma
         Material of the plate.
     """
     ratio = material.poissons_ratio
-    wave = thickness * angular_frequencies * math.sqrt(material.density * (1.0 - ratio**2) / material.youngs_modulus)
+    wave = (
+        thickness
+        * angular_frequencies
+        * math.sqrt(material.density * (1.0 - ratio**2) / material.youngs_modulus)
+    )
     return np.asarray((ratio * wave / (1.0 - ratio)) ** 2 / 24.0)
 
 
 def shear_wave_factor(square: Floats, poissons_ratio: float) -> Floats:
-    r"""Return the counterpart of `bending_factor` for shear waves, to the second order: :math:`1 / (1 + k^2 \overline{r^2} / 4)` [-].
+    r"""Return the counterpart of `bending_factor` for shear waves, to the second order: :math:`1 /
+    (1 + k^2 \overline{r^2} / 4)` [-].
 
     Parameters
     ----------
@@ -115,14 +138,19 @@ def shear_wave_factor(square: Floats, poissons_ratio: float) -> Floats:
     poissons_ratio : float
         Poisson's ratio [-].
     """
-    return np.asarray(1.0 / (1.0 + 0.25 * mean_square(1.0, poissons_ratio, shear_factor(poissons_ratio)) * square))
+    return np.asarray(
+        1.0 / (1.0 + 0.25 * mean_square(1.0, poissons_ratio, shear_factor(poissons_ratio)) * square)
+    )
 
 
 def inertia_beyond_bending(thickness: float, material: Material) -> float:
-    r"""Return the contribution of the waves of a layer other than bending to :math:`\sum \varphi^2 / \omega^4` at a point [m s^2/N].
+    r"""Return the contribution of the waves of a layer other than bending to :math:`\sum \varphi^2
+    / \omega^4` at a point [m s^2/N].
 
-    It is the response of the face to the second derivative of a force in excess of plate theory, :math:`c\,\rho h / G^2`. The factor
-    c, from :math:`\int \sum \varphi^2 \omega^{-4} k\,dk / 2\pi` over all other branches, is fitted by a parabola in Poisson's ratio.
+    It is the response of the face to the second derivative of a force in excess of plate theory,
+    :math:`c\,\rho h / G^2`. The factor
+    c, from :math:`\int \sum \varphi^2 \omega^{-4} k\,dk / 2\pi` over all other branches, is fitted
+    by a parabola in Poisson's ratio.
 
     Parameters
     ----------
@@ -139,21 +167,36 @@ def inertia_beyond_bending(thickness: float, material: Material) -> float:
     """
     ratio = material.poissons_ratio
     shear = 0.5 * material.youngs_modulus / (1.0 + ratio)
-    return float(np.polynomial.polynomial.polyval(ratio, _INERTIA)) * material.density * thickness / shear**2
+    return (
+        float(np.polynomial.polynomial.polyval(ratio, _INERTIA))
+        * material.density
+        * thickness
+        / shear**2
+    )
 
 
-def wave_numbers(angular_frequencies: Floats, thickness: float, material: Material, thin: bool = False) -> Floats:
-    """Return the wave numbers of bending waves [1/m] at angular frequencies [rad/s], by Mindlin's or Kirchhoff's (`thin`) theory."""
+def wave_numbers(
+    angular_frequencies: Floats, thickness: float, material: Material, thin: bool = False
+) -> Floats:
+    """Return the wave numbers of bending waves [1/m] at angular frequencies [rad/s], by
+    Mindlin's or Kirchhoff's (`thin`) theory.
+    """
     if thin:
-        rigidity = material.youngs_modulus * thickness**2 / (12.0 * (1.0 - material.poissons_ratio**2))
+        rigidity = (
+            material.youngs_modulus * thickness**2 / (12.0 * (1.0 - material.poissons_ratio**2))
+        )
         return np.asarray((material.density * angular_frequencies**2 / rigidity) ** 0.25)
     return np.asarray(np.sqrt(mindlin_squares(angular_frequencies, thickness, material)[0]))
 
 
-def mindlin_squares(omega: Floats, thickness: float, material: Material) -> tuple[Floats, Floats, Floats]:
-    r"""Return the squares of both wave numbers of Mindlin's plate, and :math:`\rho \omega^2 / \kappa G` [1/m^2].
+def mindlin_squares(
+    omega: Floats, thickness: float, material: Material
+) -> tuple[Floats, Floats, Floats]:
+    r"""Return the squares of both wave numbers of Mindlin's plate, and :math:`\rho \omega^2 /
+    \kappa G` [1/m^2].
 
-    That of the bending wave is positive. That of the shear wave is negative below :math:`\sqrt{12 \kappa G / (\rho h^2)}`, where it is
+    That of the bending wave is positive. That of the shear wave is negative below :math:`\sqrt{12
+    \kappa G / (\rho h^2)}`, where it is
     evanescent.
 
     Parameters
@@ -184,20 +227,26 @@ def _factor(poissons_ratio: float) -> Chebyshev:
 
 
 def _mindlin(y: Floats, ratio: float, factor: float | None = None) -> tuple[Floats, Floats]:
-    """Return the angular frequency of bending waves and their deflection for unit modal mass per area, for h = rho = G = 1 and y = k h."""
+    """Return the angular frequency of bending waves and their deflection for unit modal
+    mass per area, for h = rho = G = 1 and y = k h.
+    """
     shear = shear_factor(ratio) if factor is None else factor
     bend = y**2 / (6.0 * (1.0 - ratio))  # rigidity times k^2
     trace, product = shear * y**2 + 12.0 * (bend + shear), 12.0 * shear * y**2 * bend
     square = 2.0 * product / (trace + np.sqrt(trace**2 - 4.0 * product))
-    slope = y - square / (shear * y)  # over the deflection, from equilibrium of the transverse forces
+    # over the deflection, from equilibrium of the transverse forces
+    slope = y - square / (shear * y)
     return np.sqrt(square), 1.0 / np.sqrt(1.0 + slope**2 / 12.0)
 
 
 def _lamb(y: Floats, ratio: float) -> tuple[Floats, Floats]:
-    r"""Return the angular frequency and the face displacement of the lowest antisymmetric Lamb wave, normalised and in units as `_mindlin`.
+    r"""Return the angular frequency and the face displacement of the lowest antisymmetric Lamb
+    wave, normalised and in units as `_mindlin`.
 
-    Its speed is below that of Rayleigh waves, so that with :math:`\alpha^2 = y^2 - \omega^2 / c_L^2`, :math:`\beta^2 = y^2 - \omega^2`
-    the equation :math:`(y^2 + \beta^2)^2 \tanh(\alpha/2) = 4 y^2 \alpha \beta \tanh(\beta/2)` has one root, found by bisection.
+    Its speed is below that of Rayleigh waves, so that with :math:`\alpha^2 = y^2 - \omega^2 /
+    c_L^2`, :math:`\beta^2 = y^2 - \omega^2`
+    the equation :math:`(y^2 + \beta^2)^2 \tanh(\alpha/2) = 4 y^2 \alpha \beta \tanh(\beta/2)` has
+    one root, found by bisection.
     """
     y = np.asarray(y, dtype=float)
     slowness = 0.5 * (1.0 - 2.0 * ratio) / (1.0 - ratio)  # the square of c_T / c_L

@@ -1,4 +1,6 @@
-"""Recipe of the modes of a body: mesh, material, supports and reduction; and the computation of its modal model."""
+"""Recipe of the modes of a body: mesh, material, supports and reduction; and the
+computation of its modal model.
+"""
 
 from __future__ import annotations
 
@@ -45,7 +47,8 @@ Place = tuple[Spot, Side]
 """A spot, and the side of the body where it lies."""
 
 _COARSE_ACROSS, _COARSE_SOLID, _COARSE_PLATE, _COARSE_MARGIN = 0.67, 1.5, 1.5, 4.0 / 3.0
-_SOLID_GAIN, _PLATE_GAIN = 4.0, 3.0  # measured: docs/elastic-bodies.md compares estimated with true errors
+# measured: docs/elastic-bodies.md compares estimated with true errors
+_SOLID_GAIN, _PLATE_GAIN = 4.0, 3.0
 
 REMARKS = "remarks on the file"
 """Name of the fact with what is doubtful about a mesh file, one sentence a line."""
@@ -56,14 +59,20 @@ _RECENT = 64
 """Recipes whose keys are kept."""
 _MODELS = MemoryCache[ModalModel](capacity=500e6)
 _ROUGH = 1e-4
-"""Residual of the modes of the coarser mesh, of which only the frequencies are used; their relative error is 1e-8."""
+"""Residual of the modes of the coarser mesh, of which only the frequencies are used;
+their relative error is 1e-8.
+"""
 _MODES_PART = 0.6
-"""Part of the time that modes take, as told by `progress`; the rest is for their errors, from a coarser mesh."""
+"""Part of the time that modes take, as told by `progress`; the rest is for their errors,
+from a coarser mesh.
+"""
 
 
 @dataclass(frozen=True)
 class Shape:
-    """Base class of the shapes of bodies: how to mesh and assemble them; of solid elements unless overridden."""
+    """Base class of the shapes of bodies: how to mesh and assemble them; of solid
+    elements unless overridden.
+    """
 
     def mesh(self, supports: tuple[Support, ...] = ()) -> Mesh:
         """Return the mesh; meshes that are generated here follow the supports."""
@@ -74,7 +83,9 @@ class Shape:
         return solid_structure(mesh, material)
 
     def coarser(self) -> tuple[Shape, float] | None:
-        """Return a shape with a coarser mesh and the ratio of the errors of its frequencies to those of this one, or None."""
+        """Return a shape with a coarser mesh and the ratio of the errors of its
+        frequencies to those of this one, or None.
+        """
         return None
 
     def one_layer(self) -> float:
@@ -96,7 +107,9 @@ class SphereOfSolids(Shape):
         return sphere_mesh(self.radius, self.elements_across, self.kind, self.grading)
 
     def coarser(self) -> tuple[Shape, float] | None:
-        """Return the sphere with two thirds or half as many elements across; the error is a power of their size."""
+        """Return the sphere with two thirds or half as many elements across; the error is
+        a power of their size.
+        """
         across = max(4, 4 * int(_COARSE_ACROSS * self.elements_across / 4))
         if across >= self.elements_across:
             return None
@@ -119,20 +132,37 @@ class PlateOfSolids(Shape):
         """Return the mesh."""
         discs, lines = mesh_features(supports)
         return solid_plate_mesh(
-            self.size, self.element_size, self.layers, self.kind, discs, lines, self.splits, self.lower_splits, _rims(supports)
+            self.size,
+            self.element_size,
+            self.layers,
+            self.kind,
+            discs,
+            lines,
+            self.splits,
+            self.lower_splits,
+            _rims(supports),
         )
 
     def coarser(self) -> tuple[Shape, float] | None:
-        """Return the plate with larger elements, and one split of rims less: both have about four times the error."""
+        """Return the plate with larger elements, and one split of rims less: both have
+        about four times the error.
+        """
         below = self.splits if self.lower_splits is None else self.lower_splits
         return replace(
-            self, element_size=_COARSE_SOLID * self.element_size, splits=max(0, self.splits - 1), lower_splits=max(0, below - 1)
+            self,
+            element_size=_COARSE_SOLID * self.element_size,
+            splits=max(0, self.splits - 1),
+            lower_splits=max(0, below - 1),
         ), _SOLID_GAIN
 
     def one_layer(self) -> float:
         """Return the thickness if there is one second-order layer without splits, else 0."""
         below = self.splits if self.lower_splits is None else self.lower_splits
-        return self.size[2] if self.layers == 1 and not below and ELEMENT_KINDS[self.kind].order == 2 else 0.0
+        return (
+            self.size[2]
+            if self.layers == 1 and not below and ELEMENT_KINDS[self.kind].order == 2
+            else 0.0
+        )
 
 
 @dataclass(frozen=True)
@@ -147,7 +177,9 @@ class PlateOfPlates(Shape):
     def mesh(self, supports: tuple[Support, ...] = ()) -> Mesh:
         """Return the mesh."""
         margins = (self.margin,) if self.margin else ()
-        return plate_mesh(self.size[:2], self.element_size, *mesh_features(supports), margins, _rims(supports))
+        return plate_mesh(
+            self.size[:2], self.element_size, *mesh_features(supports), margins, _rims(supports)
+        )
 
     def structure(self, mesh: Mesh, material: Material) -> Structure:
         """Return the structure: the assembled plate elements."""
@@ -155,7 +187,11 @@ class PlateOfPlates(Shape):
 
     def coarser(self) -> tuple[Shape, float] | None:
         """Return the plate with larger elements and the ratio of the errors."""
-        return replace(self, element_size=_COARSE_PLATE * self.element_size, margin=_COARSE_MARGIN * self.margin), _PLATE_GAIN
+        return replace(
+            self,
+            element_size=_COARSE_PLATE * self.element_size,
+            margin=_COARSE_MARGIN * self.margin,
+        ), _PLATE_GAIN
 
 
 @dataclass(frozen=True)
@@ -220,11 +256,14 @@ def is_thin(recipe: Recipe) -> bool:
     return isinstance(recipe.shape, PlateOfPlates) and recipe.shape.theory == "thin"
 
 
-def modal_model_of(recipe: Recipe, progress: Progress | None = None, tell: Callable[[str], None] | None = None) -> ModalModel:
+def modal_model_of(
+    recipe: Recipe, progress: Progress | None = None, tell: Callable[[str], None] | None = None
+) -> ModalModel:
     """Return the modal model of a recipe, from the store if it is there.
 
-    A model read from the store is shared within the process, so that it is in memory once; it must not be changed. Modes of free
-    spheres, if given by number, are computed once per Poisson's ratio, and scaled.
+    A model read from the store is shared within the process, so that it is in memory once; it must
+    not be changed. Modes of free spheres, if given by number, are computed once per Poisson's
+    ratio, and scaled.
 
     Parameters
     ----------
@@ -249,7 +288,9 @@ def modal_model_of(recipe: Recipe, progress: Progress | None = None, tell: Calla
     here = _place(recipe)
     model = _MODELS.get(here)  # which knows its shapes at places that were asked for before
     if model is None:
-        model = _stored_model(similar, progress, tell).scaled(recipe.shape.radius, recipe.density, recipe.youngs_modulus)
+        model = _stored_model(similar, progress, tell).scaled(
+            recipe.shape.radius, recipe.density, recipe.youngs_modulus
+        )
         _MODELS.put(here, model, model.size)
     return model
 
@@ -271,16 +312,28 @@ def model_key(recipe: Recipe) -> str:
 
 
 def _normalised(recipe: Recipe) -> Recipe:
-    """Return the recipe whose modes are stored: for a free sphere that of unit radius, density and modulus, else the recipe itself."""
-    if not isinstance(recipe.shape, SphereOfSolids) or recipe.supports or recipe.reduction.modes is None:
+    """Return the recipe whose modes are stored: for a free sphere that of unit radius,
+    density and modulus, else the recipe itself.
+    """
+    if (
+        not isinstance(recipe.shape, SphereOfSolids)
+        or recipe.supports
+        or recipe.reduction.modes is None
+    ):
         return recipe
-    if any(spot is not None for spot, _ in (*recipe.reduction.interface, *recipe.reduction.attachment)):
+    if any(
+        spot is not None for spot, _ in (*recipe.reduction.interface, *recipe.reduction.attachment)
+    ):
         return recipe
     return replace(recipe, shape=replace(recipe.shape, radius=1.0), density=1.0, youngs_modulus=1.0)
 
 
-def _stored_model(recipe: Recipe, progress: Progress | None, say: Callable[[str], None]) -> ModalModel:
-    """Return a model from memory, else from the store, else computed; a model that cannot be stored stays in memory."""
+def _stored_model(
+    recipe: Recipe, progress: Progress | None, say: Callable[[str], None]
+) -> ModalModel:
+    """Return a model from memory, else from the store, else computed; a model that cannot
+    be stored stays in memory.
+    """
     key, here = recipe_key(recipe), _place(recipe)
     model = _MODELS.get(here)
     if model is not None:
@@ -311,16 +364,28 @@ def computed_model(recipe: Recipe, progress: Progress | None = None) -> ModalMod
     held = held_by(structure, recipe.supports)
     tell = progress or (lambda part: None)
     modes = _reduced_modes(held, recipe.reduction, lambda part: tell(_MODES_PART * part))
-    parts = _errors(recipe, held, modes, material, lambda part: tell(_MODES_PART + (1.0 - _MODES_PART) * part))
+    parts = _errors(
+        recipe, held, modes, material, lambda part: tell(_MODES_PART + (1.0 - _MODES_PART) * part)
+    )
     facts = {
         "nodes": f"{len(structure.mesh.nodes)}",
-        "elements": ", ".join(f"{len(block.connectivity)} {block.kind}" for block in structure.mesh.blocks),
+        "elements": ", ".join(
+            f"{len(block.connectivity)} {block.kind}" for block in structure.mesh.blocks
+        ),
         "degrees of freedom": f"{held.stiffness.shape[0]}",
         "materials": structure.mesh.materials_text,
-        "joined by": ", ".join(f"{name} ({count})" for name, count in structure.mesh.joined_by.items()),
-        "left out of the file": ", ".join(f"{name} ({count})" for name, count in structure.mesh.skipped.items()),
+        "joined by": ", ".join(
+            f"{name} ({count})" for name, count in structure.mesh.joined_by.items()
+        ),
+        "left out of the file": ", ".join(
+            f"{name} ({count})" for name, count in structure.mesh.skipped.items()
+        ),
         REMARKS: "\n".join(
-            [*structure.mesh.remarks, *joint_remarks(held, recipe.supports), *contradictions(structure.mesh.stated, material)]
+            [
+                *structure.mesh.remarks,
+                *joint_remarks(held, recipe.supports),
+                *contradictions(structure.mesh.stated, material),
+            ]
         ),
         MAIN_CAUSE: main_cause(parts),
         "processor time": f"{time.process_time() - begun:.2f} s",
@@ -332,8 +397,12 @@ def computed_model(recipe: Recipe, progress: Progress | None = None) -> ModalMod
     return modal_model(held, modes, {name: text for name, text in facts.items() if text}, errors)
 
 
-def _errors(recipe: Recipe, held: HeldStructure, modes: Eigenmodes, material: Material, progress: Progress) -> dict[str, Floats]:
-    """Return estimated relative errors of frequencies by cause, without those of added static modes; empty if unknown."""
+def _errors(
+    recipe: Recipe, held: HeldStructure, modes: Eigenmodes, material: Material, progress: Progress
+) -> dict[str, Floats]:
+    """Return estimated relative errors of frequencies by cause, without those of added
+    static modes; empty if unknown.
+    """
     coarser = recipe.shape.coarser()
     if coarser is None:
         return {}
@@ -343,7 +412,9 @@ def _errors(recipe: Recipe, held: HeldStructure, modes: Eigenmodes, material: Ma
     parts = {}
     if recipe.reduction.method == "craig-bampton":
         elastic = ElasticSystem(held.stiffness, held.mass, held.rigid, held.order)
-        closer = projected(held.stiffness, held.mass, elastic.static(held.mass @ modes.shapes), elastic.rigid)
+        closer = projected(
+            held.stiffness, held.mass, elastic.static(held.mass @ modes.shapes), elastic.rigid
+        )
         least = closer.angular_frequencies[:number]
         parts[REDUCTION] = np.asarray(kept.angular_frequencies / least - 1.0)
         kept = Eigenmodes(least, closer.shapes[:, :number])
@@ -356,28 +427,45 @@ def _errors(recipe: Recipe, held: HeldStructure, modes: Eigenmodes, material: Ma
     if held.structure.thickness:
         parts[SUPPORTS] = support_errors(held, kept)
         parts[THEORY] = plate_theory_errors(held, kept, material, is_thin(recipe))
-        if isinstance(recipe.shape, PlateOfPlates) and is_thin(recipe):  # shear at clamped edges adds to that of plane waves
+        # shear at clamped edges adds to that of plane waves
+        if isinstance(recipe.shape, PlateOfPlates) and is_thin(recipe):
             thick = replace(recipe, shape=replace(recipe.shape, theory="thick"))
-            sheared = held_by(thick.shape.structure(thick.shape.mesh(thick.supports), material), thick.supports)
-            apart = kept.angular_frequencies / elastic_system(sheared).modes(number, progress, _ROUGH).angular_frequencies - 1.0
+            sheared = held_by(
+                thick.shape.structure(thick.shape.mesh(thick.supports), material), thick.supports
+            )
+            apart = (
+                kept.angular_frequencies
+                / elastic_system(sheared).modes(number, progress, _ROUGH).angular_frequencies
+                - 1.0
+            )
             parts[THEORY] = np.maximum(parts[THEORY], np.abs(apart))
     if recipe.shape.one_layer():
-        parts[MESH] = parts[MESH] + one_layer_errors(kept.angular_frequencies, material, recipe.shape.one_layer())
+        parts[MESH] = parts[MESH] + one_layer_errors(
+            kept.angular_frequencies, material, recipe.shape.one_layer()
+        )
     return parts
 
 
 def _reduced_modes(held: HeldStructure, reduction: Reduction, progress: Progress) -> Eigenmodes:
-    """Return the modes of a held structure by truncation, with attachment modes, or by Craig-Bampton reduction."""
+    """Return the modes of a held structure by truncation, with attachment modes, or by
+    Craig-Bampton reduction.
+    """
     elastic = elastic_system(held)
     number = reduction.modes
     if number is None:
         number = elastic.count_below(2.0 * np.pi * (reduction.max_frequency or 0.0))
         if number < 1:
             lowest = elastic.modes(1).angular_frequencies[0] / (2.0 * np.pi)
-            raise InputError(f"there is no mode below {reduction.max_frequency:g} Hz; the lowest is at {lowest:.5g} Hz", "max_frequency")
+            raise InputError(
+                f"there is no mode below {reduction.max_frequency:g} Hz; the lowest is at "
+                f"{lowest:.5g} Hz",
+                "max_frequency",
+            )
     if reduction.method == "craig-bampton":
         interface = np.concatenate([_nearest(held, place) for place in reduction.interface])
-        basis = craig_bampton(held.stiffness, held.mass, interface, number, held.order, elastic.rigid, progress)
+        basis = craig_bampton(
+            held.stiffness, held.mass, interface, number, held.order, elastic.rigid, progress
+        )
         return projected(held.stiffness, held.mass, basis, elastic.rigid)
     modes = elastic.modes(number, progress)
     if not reduction.attachment:
@@ -388,7 +476,9 @@ def _reduced_modes(held: HeldStructure, reduction: Reduction, progress: Progress
 
 
 def _vertical(held: HeldStructure, place: Place) -> Floats:
-    """Return the load vector of a unit vertical force at a place, on the free degrees of freedom."""
+    """Return the load vector of a unit vertical force at a place, on the free degrees of
+    freedom.
+    """
     structure = held.structure
     at = place_of(structure.mesh, *place)
     motion, _ = surface_motion(structure.mesh, np.array([at]), place[1], structure.thickness)
@@ -398,19 +488,32 @@ def _vertical(held: HeldStructure, place: Place) -> Floats:
 def _nearest(held: HeldStructure, place: Place) -> Integers:
     """Return the free degrees of freedom of the node nearest to a place."""
     structure = held.structure
-    _, position = surface_motion(structure.mesh, np.array([place_of(structure.mesh, *place)]), place[1], structure.thickness)
+    _, position = surface_motion(
+        structure.mesh, np.array([place_of(structure.mesh, *place)]), place[1], structure.thickness
+    )
     height = 0.5 * structure.thickness if place[1] == "upper" else -0.5 * structure.thickness
     node = np.linalg.norm(structure.mesh.nodes - position + [0.0, 0.0, height], axis=1).argmin()
-    rows = held.expansion[structure.mesh.dofs_per_node * node + np.arange(structure.mesh.dofs_per_node)]
+    rows = held.expansion[
+        structure.mesh.dofs_per_node * node + np.arange(structure.mesh.dofs_per_node)
+    ]
     return np.unique(rows.indices)
 
 
-def mesh_features(supports: tuple[Support, ...]) -> tuple[list[Disc], tuple[list[float], list[float]]]:
-    """Return the discs, and the x and y of lines [m], of supports that edges of elements must follow."""
+def mesh_features(
+    supports: tuple[Support, ...],
+) -> tuple[list[Disc], tuple[list[float], list[float]]]:
+    """Return the discs, and the x and y of lines [m], of supports that edges of elements
+    must follow.
+    """
     discs = [disc for support in supports for disc in support.discs]
-    return discs, ([x for support in supports for x in support.lines[0]], [y for support in supports for y in support.lines[1]])
+    return discs, (
+        [x for support in supports for x in support.lines[0]],
+        [y for support in supports for y in support.lines[1]],
+    )
 
 
 def _rims(supports: tuple[Support, ...]) -> tuple[list[float], list[float]]:
     """Return the x and y [m] of straight rims of supports of the lower face."""
-    return [x for support in supports for x in support.rims[0]], [y for support in supports for y in support.rims[1]]
+    return [x for support in supports for x in support.rims[0]], [
+        y for support in supports for y in support.rims[1]
+    ]

@@ -1,4 +1,6 @@
-"""Model reduction: Craig-Bampton and residual attachment bases, and the modes of a system projected on a basis."""
+"""Model reduction: Craig-Bampton and residual attachment bases, and the modes of a system
+projected on a basis.
+"""
 
 from __future__ import annotations
 
@@ -13,7 +15,8 @@ from vibroimpact.structures.mirrored import MirroredSystem
 from vibroimpact.structures.modes import Eigenmodes, ElasticSystem, Progress
 
 _RIGID = 1e-6  # of the norm of a column: below, the elastic part of it is rounding
-_DEPENDENT = 1e-10  # of the largest eigenvalue of the Gram matrix: smaller ones are dependent columns
+# of the largest eigenvalue of the Gram matrix: smaller ones are dependent columns
+_DEPENDENT = 1e-10
 
 
 def craig_bampton(
@@ -45,7 +48,8 @@ def craig_bampton(
     Returns
     -------
     array, shape (n, interface + number)
-        :math:`[\Psi, \Phi]` with :math:`\Psi = [I; -K_{ii}^{-1} K_{ib}]`, one static shape for a unit displacement of each
+        :math:`[\Psi, \Phi]` with :math:`\Psi = [I; -K_{ii}^{-1} K_{ib}]`, one static shape for a
+        unit displacement of each
         interface degree of freedom, and :math:`\Phi` the lowest eigenvectors of the interior.
 
     Raises
@@ -55,7 +59,8 @@ def craig_bampton(
 
     Notes
     -----
-    R. R. Craig and M. C. C. Bampton, AIAA J. 6:1313, 1968. The static response to loads on the interface is exact.
+    R. R. Craig and M. C. C. Bampton, AIAA J. 6:1313, 1968. The static response to loads on the
+    interface is exact.
 
     Examples
     --------
@@ -66,14 +71,19 @@ def craig_bampton(
     size = stiffness.shape[0]
     boundary = np.unique(np.asarray(interface, dtype=np.int64))
     if not len(boundary):
-        raise InputError("Craig and Bampton's reduction needs at least one interface degree of freedom")
+        raise InputError(
+            "Craig and Bampton's reduction needs at least one interface degree of freedom"
+        )
     inside = np.setdiff1d(np.arange(size), boundary)
     place = np.full(size, -1)
     place[inside] = np.arange(len(inside))
     inner = place[np.arange(size) if order is None else order]
     left = _rigid_with_fixed(rigid, boundary)
     interior = ElasticSystem(
-        stiffness[inside][:, inside], mass[inside][:, inside], None if left is None else left[inside], inner[inner >= 0]
+        stiffness[inside][:, inside],
+        mass[inside][:, inside],
+        None if left is None else left[inside],
+        inner[inner >= 0],
     )
     basis = np.zeros((size, len(boundary) + number))
     basis[boundary, np.arange(len(boundary))] = 1.0
@@ -83,8 +93,11 @@ def craig_bampton(
     return basis
 
 
-def attachment_modes(elastic: ElasticSystem | MirroredSystem, modes: Eigenmodes, loads: Floats) -> Floats:
-    """Return the residual attachment modes: the static response to loads less that of truncated modes.
+def attachment_modes(
+    elastic: ElasticSystem | MirroredSystem, modes: Eigenmodes, loads: Floats
+) -> Floats:
+    """Return the residual attachment modes: the static response to loads less that of truncated
+    modes.
 
     Parameters
     ----------
@@ -97,13 +110,16 @@ def attachment_modes(elastic: ElasticSystem | MirroredSystem, modes: Eigenmodes,
 
     Notes
     -----
-    R. H. MacNeal, Comput. Struct. 1:581, 1971; for a free system the response is that with inertia relief.
+    R. H. MacNeal, Comput. Struct. 1:581, 1971; for a free system the response is that with inertia
+    relief.
     """
     kept = modes.shapes @ ((modes.shapes.T @ loads) / modes.angular_frequencies[:, None] ** 2)
     return np.asarray(elastic.static(loads) - kept)
 
 
-def projected(stiffness: csr_array, mass: csr_array, basis: Floats, rigid: Floats | None = None) -> Eigenmodes:
+def projected(
+    stiffness: csr_array, mass: csr_array, basis: Floats, rigid: Floats | None = None
+) -> Eigenmodes:
     """Return the modes of a system projected on a basis.
 
     Parameters
@@ -148,7 +164,9 @@ def _norms(basis: Floats, mass: csr_array) -> Floats:
 
 
 def _rigid_with_fixed(rigid: Floats | None, boundary: Integers) -> Floats | None:
-    """Return the rigid motions with a fixed interface, (n, r); None if no rigid motions are given."""
+    """Return the rigid motions with a fixed interface, (n, r); None if no rigid motions
+    are given.
+    """
     if rigid is None or not rigid.shape[1]:
         return None
     scaled = rigid / np.abs(rigid).max(axis=0)

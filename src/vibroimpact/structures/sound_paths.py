@@ -4,8 +4,9 @@ The sound pressure that a face in a rigid plane baffle sends to a point is
 
 .. math:: p(t) = \frac{\rho}{2 \pi} \int \frac{a_n(x, t - R / c)}{R}\,dS
 
-with the density and the speed of sound of the air, the acceleration of the face along its outward normal, and the distance R of its points
-(Lord Rayleigh, The Theory of Sound, vol. 2, 1878, section 278). The integral is taken by the delay R / c, on a grid of delays.
+with the density and the speed of sound of the air, the acceleration of the face along its outward
+normal, and the distance R of its points (Lord Rayleigh, The Theory of Sound, vol. 2, 1878, section
+278). The integral is taken by the delay R / c, on a grid of delays.
 """
 
 from __future__ import annotations
@@ -25,7 +26,9 @@ from vibroimpact.structures.surface import Faces, Side, Spot, facing, place_of
 _WAVE = 14.0
 """Steps of the grid of delays in the shortest period of the sound."""
 _NODES = 6
-"""Of Gauss's rule across a cell, which is no larger than the shortest wavelength and the distance to the point."""
+"""Of Gauss's rule across a cell, which is no larger than the shortest wavelength and the
+distance to the point.
+"""
 _MOST = 100_000
 """Largest number of quadrature points that are taken at once."""
 
@@ -66,7 +69,8 @@ class SoundPaths:
     step : float
         Step of the delays [s].
     weights : array, shape (modes, delays)
-        Sound pressure over the density of the air and the modal acceleration as long before [m kg^-1/2].
+        Sound pressure over the density of the air and the modal acceleration as long before [m
+        kg^-1/2].
     """
 
     first: int
@@ -110,21 +114,31 @@ def sound_paths(mesh: Mesh, listener: Listener, shapes: Floats) -> SoundPaths:
     face_nodes = np.unique(np.concatenate([faces.connectivity.ravel() for faces in groups]))
     height = sign * (sign * mesh.nodes[face_nodes, 2]).max() + sign * listener.distance
     point = np.array([*place_of(mesh, listener.spot, listener.side), height])
-    parts = [_of_cells(mesh, faces, cells, point, sign, listener) for faces, cells in _cells(mesh, groups, point, listener)]
-    first, last = min(first for first, _ in parts), max(first + part.shape[0] for first, part in parts)
+    parts = [
+        _of_cells(mesh, faces, cells, point, sign, listener)
+        for faces, cells in _cells(mesh, groups, point, listener)
+    ]
+    first, last = (
+        min(first for first, _ in parts),
+        max(first + part.shape[0] for first, part in parts),
+    )
     weights = np.zeros((len(shapes), last - first))
     for begin, part in parts:
         weights[:, begin - first : begin - first + part.shape[0]] += (part @ shapes.T).T
     return SoundPaths(first, listener.step, weights)
 
 
-def _cells(mesh: Mesh, groups: list[Faces], point: Floats, listener: Listener) -> Iterator[tuple[Faces, int]]:
+def _cells(
+    mesh: Mesh, groups: list[Faces], point: Floats, listener: Listener
+) -> Iterator[tuple[Faces, int]]:
     """Yield faces that are cut alike, with the number of cells along their sides."""
     wave = _WAVE * listener.step * listener.speed
     for faces in groups:
         corner = mesh.nodes[faces.connectivity]
         size = np.ptp(corner, axis=1).max(axis=1)
-        apart = np.maximum(np.linalg.norm(corner.mean(axis=1) - point, axis=1) - size, listener.distance)
+        apart = np.maximum(
+            np.linalg.norm(corner.mean(axis=1) - point, axis=1) - size, listener.distance
+        )
         cells = np.ceil(size / np.minimum(wave, apart)).astype(int)
         for number in np.unique(cells):
             found = faces.connectivity[cells == number]
@@ -133,8 +147,12 @@ def _cells(mesh: Mesh, groups: list[Faces], point: Floats, listener: Listener) -
                 yield Faces(faces.kind, faces.corners, found[begin : begin + at_once]), int(number)
 
 
-def _of_cells(mesh: Mesh, faces: Faces, cells: int, point: Floats, sign: float, listener: Listener) -> tuple[int, csr_array]:
-    """Return the integral over faces as linear functions of the degrees of freedom, (delays, dofs), and the first delay in steps."""
+def _of_cells(
+    mesh: Mesh, faces: Faces, cells: int, point: Floats, sign: float, listener: Listener
+) -> tuple[int, csr_array]:
+    """Return the integral over faces as linear functions of the degrees of freedom,
+    (delays, dofs), and the first delay in steps.
+    """
     local, weight = _rule(len(faces.corners), cells)
     values, along = faces.shape_functions(local)  # (q, k), (q, 2, k)
     corner = mesh.nodes[faces.connectivity]  # (f, k, 3)
@@ -151,12 +169,19 @@ def _of_cells(mesh: Mesh, faces: Faces, cells: int, point: Floats, sign: float, 
     columns = mesh.dofs_per_node * faces.connectivity[:, None, :, None] + axes
     points = np.broadcast_to(np.arange(apart.size).reshape(*apart.shape, 1, 1), seen.shape)
     shape = (apart.size, mesh.dofs_per_node * len(mesh.nodes))
-    motion = csr_array(coo_array((seen.ravel(), (points.ravel(), np.broadcast_to(columns, seen.shape).ravel())), shape=shape))
+    motion = csr_array(
+        coo_array(
+            (seen.ravel(), (points.ravel(), np.broadcast_to(columns, seen.shape).ravel())),
+            shape=shape,
+        )
+    )
     return first, csr_array(spread @ motion)
 
 
 def _rule(corners: int, cells: int) -> tuple[Floats, Floats]:
-    """Return points and weights of Gauss's rule on cells of the unit square or triangle, (q, 2) and (q,)."""
+    """Return points and weights of Gauss's rule on cells of the unit square or triangle,
+    (q, 2) and (q,).
+    """
     nodes, weights = legendre.leggauss(_NODES)
     places = (np.arange(cells)[:, None] + 0.5 * (nodes + 1.0)).ravel() / cells
     weights = np.tile(0.5 * weights / cells, cells)

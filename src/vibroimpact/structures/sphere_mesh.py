@@ -1,4 +1,6 @@
-"""Mesh of a solid sphere: a bulged cube at the centre, and six blocks from its faces to the surface."""
+"""Mesh of a solid sphere: a bulged cube at the centre, and six blocks from its faces to
+the surface.
+"""
 
 from __future__ import annotations
 
@@ -16,20 +18,24 @@ _CORE = 0.45  # half the side of the cube, in radii
 _BULGE = 0.5  # of the cube: 0 for a cube, 1 for a ball
 
 
-def sphere_mesh(radius: float, elements_across: int = 8, kind: str = "hex20", grading: float = 1.0) -> Mesh:
-    """Return a mesh of a solid sphere, centred at the origin, with curved second-order elements by default.
+def sphere_mesh(
+    radius: float, elements_across: int = 8, kind: str = "hex20", grading: float = 1.0
+) -> Mesh:
+    """Return a mesh of a solid sphere, centred at the origin, with curved second-order elements by
+    default.
 
     Parameters
     ----------
     radius : float
         Radius R [m], > 0.
     elements_across : int, default 8
-        Bricks from pole to pole, even, 4 to 100: half of them in the cube, the others between it and the surface.
+        Bricks from pole to pole, even, 4 to 100: half of them in the cube, the others between it
+        and the surface.
     kind : str, default "hex20"
         Kind of element: "hex8", "hex20", "hex27", "tet4" or "tet10".
     grading : float, default 1
-        Factor by which elements are smaller at the lower pole, where the contact is; >= 1. At the upper pole they are larger by the
-        same factor, so that a strong grading needs more elements.
+        Factor by which elements are smaller at the lower pole, where the contact is; >= 1. At the
+        upper pole they are larger by the same factor, so that a strong grading needs more elements.
 
     Raises
     ------
@@ -38,8 +44,8 @@ def sphere_mesh(radius: float, elements_across: int = 8, kind: str = "hex20", gr
 
     Notes
     -----
-    The grading is a conformal map of the ball onto itself (L. V. Ahlfors, Moebius Transformations in Several Dimensions,
-    1981): it changes the size of small elements, not their shape.
+    The grading is a conformal map of the ball onto itself (L. V. Ahlfors, Moebius Transformations
+    in Several Dimensions, 1981): it changes the size of small elements, not their shape.
 
     Examples
     --------
@@ -47,7 +53,10 @@ def sphere_mesh(radius: float, elements_across: int = 8, kind: str = "hex20", gr
     32
     """
     if not 4 <= elements_across <= MOST_ACROSS or elements_across % 2:
-        raise InputError(f"{elements_across} elements across a sphere is not allowed; it must be an even number from 4 to {MOST_ACROSS}")
+        raise InputError(
+            f"{elements_across} elements across a sphere is not allowed; it must be an "
+            f"even number from 4 to {MOST_ACROSS}"
+        )
     if not grading >= 1.0:
         raise InputError(f"a grading of {grading:g} is not allowed; it must be at least 1")
     layers = elements_across // 4

@@ -9,7 +9,8 @@ from dataclasses import dataclass
 from vibroimpact.arrays import Integers
 from vibroimpact.materials import Material
 
-_SAME_DENSITY, _SAME_MODULUS = 0.05, 0.1  # relative: larger differences from the material of the case are stated
+# relative: larger differences from the material of the case are stated
+_SAME_DENSITY, _SAME_MODULUS = 0.05, 0.1
 
 
 @dataclass(frozen=True)
@@ -35,14 +36,17 @@ class StatedMaterial:
 
 @dataclass(frozen=True)
 class StatedMaterials:
-    """Materials that a mesh file states, and the number of each element's material; -1 for an element without one."""
+    """Materials that a mesh file states, and the number of each element's material; -1
+    for an element without one.
+    """
 
     materials: tuple[StatedMaterial, ...]
     of_elements: Integers
 
 
 def contradictions(stated: StatedMaterials | None, material: Material) -> Iterator[str]:
-    """Yield what a mesh file states of its only material, in SI, and the material of the body contradicts; nothing if it states several.
+    """Yield what a mesh file states of its only material, in SI, and the material of the body
+    contradicts; nothing if it states several.
 
     Examples
     --------
@@ -61,11 +65,22 @@ def contradictions(stated: StatedMaterials | None, material: Material) -> Iterat
         return
     off = {
         "density": (said.density / material.density - 1.0, _SAME_DENSITY, said.density, "kg/m3"),
-        "Young's modulus": (said.youngs_modulus / material.youngs_modulus - 1.0, _SAME_MODULUS, said.youngs_modulus, "Pa"),
+        "Young's modulus": (
+            said.youngs_modulus / material.youngs_modulus - 1.0,
+            _SAME_MODULUS,
+            said.youngs_modulus,
+            "Pa",
+        ),
     }
-    differing = [f"a {what} of {value:.4g} {unit}" for what, (part, same, value, unit) in off.items() if abs(part) > same]
+    differing = [
+        f"a {what} of {value:.4g} {unit}"
+        for what, (part, same, value, unit) in off.items()
+        if abs(part) > same
+    ]
     if differing:
         yield (
-            f"the mesh file gives its material {said.name} {' and '.join(differing)}, and its elements are computed with the material of "
-            f"the case, of {material.density:.4g} kg/m3 and {material.youngs_modulus:.4g} Pa; give the material that the body is made of"
+            f"the mesh file gives its material {said.name} {' and '.join(differing)}, and "
+            "its elements are computed with the material of "
+            f"the case, of {material.density:.4g} kg/m3 and {material.youngs_modulus:.4g} "
+            "Pa; give the material that the body is made of"
         )

@@ -1,4 +1,6 @@
-"""Structural compliance of a plate at its contact point, from one static finite-element solution."""
+"""Structural compliance of a plate at its contact point, from one static finite-element
+solution.
+"""
 
 from __future__ import annotations
 
@@ -35,10 +37,16 @@ _RADIUS = 0.75  # of the disc, in thicknesses; elements of that size resolve it
 _FACTORISED = MemoryCache[tuple[HeldStructure, ElasticSystem]](capacity=500e6)
 
 
-def static_compliance(recipe: Recipe, place: tuple[float, float], side: Side = "upper", tell: Callable[[str], None] | None = None) -> float:
+def static_compliance(
+    recipe: Recipe,
+    place: tuple[float, float],
+    side: Side = "upper",
+    tell: Callable[[str], None] | None = None,
+) -> float:
     """Return the structural compliance of a plate at a place [m/N], from the store or computed.
 
-    It is the displacement of a point under a unit normal force, less that of the half space, which is part of the contact law.
+    It is the displacement of a point under a unit normal force, less that of the half space, which
+    is part of the contact law.
 
     Parameters
     ----------
@@ -60,15 +68,18 @@ def static_compliance(recipe: Recipe, place: tuple[float, float], side: Side = "
 
     Notes
     -----
-    For a plate with free rigid motions the rigid displacement is excluded: inertia balances the force (inertia relief).
+    For a plate with free rigid motions the rigid displacement is excluded: inertia balances the
+    force (inertia relief).
 
-    By Kirchhoff's theory (`theory = "thin"`) the deflection under a point force is finite, and is returned: the thin theory has neither
-    shear nor a half space.
+    By Kirchhoff's theory (`theory = "thin"`) the deflection under a point force is finite, and is
+    returned: the thin theory has neither shear nor a half space.
 
-    Otherwise the displacement under a point force is infinite, and finite elements do not resolve the field near it. The force is
-    therefore distributed over a disc of 0.75 thicknesses, or the part of it on the body near an edge, and the response is averaged in
-    the same way: that of plate elements, to which `plate_theory_term` is added, or that of the opposite face of solid elements, to which
-    `through_thickness_term` is added. These terms are exact for a plate that extends a few thicknesses around the place.
+    Otherwise the displacement under a point force is infinite, and finite elements do not resolve
+    the field near it. The force is therefore distributed over a disc of 0.75 thicknesses, or the
+    part of it on the body near an edge, and the response is averaged in the same way: that of plate
+    elements, to which `plate_theory_term` is added, or that of the opposite face of solid elements,
+    to which `through_thickness_term` is added. These terms are exact for a plate that extends a few
+    thicknesses around the place.
 
     Examples
     --------
@@ -80,10 +91,14 @@ def static_compliance(recipe: Recipe, place: tuple[float, float], side: Side = "
     >>> round(static_compliance(recipe, (0.0, 0.0)) * stiffness / 0.5**2, 4)  # 0.0116 is Navier's
     0.0116
     """
-    return stored_compliance(compliance_key(recipe, place, side), lambda: computed_compliance(recipe, place, side), tell)
+    return stored_compliance(
+        compliance_key(recipe, place, side), lambda: computed_compliance(recipe, place, side), tell
+    )
 
 
-def stored_compliance(key: str, compute: Callable[[], float], tell: Callable[[str], None] | None = None) -> float:
+def stored_compliance(
+    key: str, compute: Callable[[], float], tell: Callable[[str], None] | None = None
+) -> float:
     """Return a compliance by its key from the store, or computed and then stored [m/N].
 
     Parameters
@@ -112,8 +127,12 @@ def stored_compliance(key: str, compute: Callable[[], float], tell: Callable[[st
     return found
 
 
-def hold_compliances(recipe: Recipe, places: Sequence[tuple[float, float]], side: Side = "upper") -> None:
-    """Compute the compliances of a plate at places together, for calls of `static_compliance` that follow in this process."""
+def hold_compliances(
+    recipe: Recipe, places: Sequence[tuple[float, float]], side: Side = "upper"
+) -> None:
+    """Compute the compliances of a plate at places together, for calls of
+    `static_compliance` that follow in this process.
+    """
     for place, found in zip(places, computed_compliances(recipe, places, side), strict=True):
         hold_entry(compliance_key(recipe, place, side), _KIND, {_KIND: np.array(found)})
 
@@ -124,14 +143,22 @@ def compliance_key(recipe: Recipe, place: tuple[float, float], side: Side = "upp
 
 
 def computed_compliance(recipe: Recipe, place: tuple[float, float], side: Side = "upper") -> float:
-    """Return the structural compliance of a held plate, computed anew; parameters and errors are those of `static_compliance`."""
+    """Return the structural compliance of a held plate, computed anew; parameters and
+    errors are those of `static_compliance`.
+    """
     return float(computed_compliances(recipe, [place], side)[0])
 
 
-def computed_compliances(recipe: Recipe, places: Sequence[tuple[float, float]], side: Side = "upper") -> Floats:
-    """Return the structural compliances of a held plate at several places, solved together, (places,)."""
+def computed_compliances(
+    recipe: Recipe, places: Sequence[tuple[float, float]], side: Side = "upper"
+) -> Floats:
+    """Return the structural compliances of a held plate at several places, solved
+    together, (places,).
+    """
     if isinstance(recipe.shape, SphereOfSolids):
-        raise InputError("a structural compliance is that of a plate, which has two faces; a sphere has none")
+        raise InputError(
+            "a structural compliance is that of a plate, which has two faces; a sphere has none"
+        )
     held, elastic = _factorised(recipe)
     structure = held.structure
     averages, terms = [], []
@@ -139,8 +166,14 @@ def computed_compliances(recipe: Recipe, places: Sequence[tuple[float, float]], 
         material = _material_of_layer(structure.mesh, recipe, place, thickness)
         layer = thickness, material.youngs_modulus, material.poissons_ratio
         if structure.mesh.is_flat:
-            averages.append(plate_element_average(thickness, material.poissons_ratio, is_thin(recipe)))
-            terms.append(0.0 if is_thin(recipe) else plate_theory_term(*layer, shear_factor(material.poissons_ratio), averages[-1]))
+            averages.append(
+                plate_element_average(thickness, material.poissons_ratio, is_thin(recipe))
+            )
+            terms.append(
+                0.0
+                if is_thin(recipe)
+                else plate_theory_term(*layer, shear_factor(material.poissons_ratio), averages[-1])
+            )
         else:
             averages.append(through_thickness_average(_RADIUS * thickness))
             terms.append(through_thickness_term(*layer, averages[-1]))
@@ -148,16 +181,25 @@ def computed_compliances(recipe: Recipe, places: Sequence[tuple[float, float]], 
 
 
 def plate_element_average(thickness: float, poissons_ratio: float, thin: bool = False) -> Average:
-    """Return the average of force and displacement around a place of plate elements; by Kirchhoff's theory, `thin`, that of a point."""
+    """Return the average of force and displacement around a place of plate elements; by
+    Kirchhoff's theory, `thin`, that of a point.
+    """
     if thin:
         return Average(0.0, 0.0)
-    return plate_theory_average(_RADIUS * thickness, thickness, poissons_ratio, shear_factor(poissons_ratio))
+    return plate_theory_average(
+        _RADIUS * thickness, thickness, poissons_ratio, shear_factor(poissons_ratio)
+    )
 
 
 def averaged_compliances(
-    held: HeldStructure, elastic: ElasticSystem, places: Sequence[tuple[float, float]], averages: Sequence[Average], side: Side = "upper"
+    held: HeldStructure,
+    elastic: ElasticSystem,
+    places: Sequence[tuple[float, float]],
+    averages: Sequence[Average],
+    side: Side = "upper",
 ) -> Floats:
-    """Return the averaged displacements of the opposite face under unit forces averaged in the same way, (places,) [m/N].
+    """Return the averaged displacements of the opposite face under unit forces averaged in the same
+    way, (places,) [m/N].
 
     Parameters
     ----------
@@ -181,8 +223,11 @@ def averaged_compliances(
     return np.asarray(opposite.multiply(moved.T).sum(axis=1))
 
 
-def _material_of_layer(mesh: Mesh, recipe: Recipe, place: tuple[float, float], thickness: float) -> Material:
-    """Return the material of a body around a place, for the terms of a layer, which are exact for one of a single material.
+def _material_of_layer(
+    mesh: Mesh, recipe: Recipe, place: tuple[float, float], thickness: float
+) -> Material:
+    """Return the material of a body around a place, for the terms of a layer, which are exact for
+    one of a single material.
 
     Raises
     ------
@@ -191,12 +236,14 @@ def _material_of_layer(mesh: Mesh, recipe: Recipe, place: tuple[float, float], t
     """
     found = materials_around(mesh, _material(recipe), place, _RADIUS * thickness)
     if len(found) > 1:
-        kinds = "; ".join(f"{one.density:.4g} kg/m3, {one.youngs_modulus:.3g} Pa" for one in found[:3]) + (
-            "; ..." if len(found) > 3 else ""
-        )
+        kinds = "; ".join(
+            f"{one.density:.4g} kg/m3, {one.youngs_modulus:.3g} Pa" for one in found[:3]
+        ) + ("; ..." if len(found) > 3 else "")
         raise InputError(
-            f"around ({place[0]:g}, {place[1]:g}) m the body is of {len(found)} materials ({kinds}), and its static compliance under a "
-            'contact is known where it is of one; give contact.local_compliance = "superposed", which takes the modes as they are'
+            f"around ({place[0]:g}, {place[1]:g}) m the body is of {len(found)} materials "
+            f"({kinds}), and its static compliance under a "
+            "contact is known where it is of one; give contact.local_compliance = "
+            '"superposed", which takes the modes as they are'
         )
     return found[0]
 
@@ -212,7 +259,9 @@ def _thicknesses(structure: Structure, places: Sequence[tuple[float, float]]) ->
     top = surface_motion(structure.mesh, np.array(places))[1]
     if structure.mesh.is_flat:
         return len(places) * [structure.thickness]
-    thicknesses: list[float] = np.linalg.norm(top - surface_motion(structure.mesh, np.array(places), "lower")[1], axis=1).tolist()
+    thicknesses: list[float] = np.linalg.norm(
+        top - surface_motion(structure.mesh, np.array(places), "lower")[1], axis=1
+    ).tolist()
     return thicknesses
 
 
@@ -221,7 +270,9 @@ def _material(recipe: Recipe) -> Material:
 
 
 def _factorised(recipe: Recipe) -> tuple[HeldStructure, ElasticSystem]:
-    """Return a held body and its factorised system; the last one is cached, for drops on other places of one plate."""
+    """Return a held body and its factorised system; the last one is cached, for drops on
+    other places of one plate.
+    """
     key = plate_key(recipe)
     found = _FACTORISED.get(key)
     if found is None:
@@ -233,28 +284,47 @@ def _factorised(recipe: Recipe) -> tuple[HeldStructure, ElasticSystem]:
     return found
 
 
-def _faces(held: HeldStructure, places: Sequence[tuple[float, float]], averages: Sequence[Average]) -> list[csr_array]:
-    """Return the averaged vertical displacements of the upper and lower face around places, as rows of the free degrees of freedom."""
+def _faces(
+    held: HeldStructure, places: Sequence[tuple[float, float]], averages: Sequence[Average]
+) -> list[csr_array]:
+    """Return the averaged vertical displacements of the upper and lower face around
+    places, as rows of the free degrees of freedom.
+    """
     mesh = held.structure.mesh
     discs, weights = pressure_rule(UNIFORM)
-    points = np.concatenate([np.asarray(place) + average.radius * discs for place, average in zip(places, averages, strict=True)])
+    points = np.concatenate(
+        [
+            np.asarray(place) + average.radius * discs
+            for place, average in zip(places, averages, strict=True)
+        ]
+    )
     inside, motions = _on_body(mesh, points)
-    shares = np.where(inside, np.concatenate([weights * average.weights(discs) for average in averages]), 0.0).reshape(len(places), -1)
+    shares = np.where(
+        inside, np.concatenate([weights * average.weights(discs) for average in averages]), 0.0
+    ).reshape(len(places), -1)
     for place, found in zip(places, inside.reshape(shares.shape), strict=True):
         if not found.any():
-            raise InputError(f"the body is too narrow at ({place[0]:g}, {place[1]:g}) m to be taken for a plate")
+            raise InputError(
+                f"the body is too narrow at ({place[0]:g}, {place[1]:g}) m to be taken for a plate"
+            )
     shares /= shares.sum(axis=1, keepdims=True)
     rows = np.repeat(np.arange(len(places)), len(discs))
-    averaging = csr_array((shares.ravel(), (rows, np.arange(len(points)))), shape=(len(places), len(points)))[:, inside]
+    averaging = csr_array(
+        (shares.ravel(), (rows, np.arange(len(points)))), shape=(len(places), len(points))
+    )[:, inside]
     return [csr_array(averaging @ motion @ held.expansion) for motion in motions]
 
 
 def _on_body(mesh: Mesh, places: Floats) -> tuple[Bools, list[csr_array]]:
-    """Return a mask of the places on the body, and the vertical displacements of these on either face.
+    """Return a mask of the places on the body, and the vertical displacements of these on either
+    face.
 
-    All places within the bounding box are tried together first, which is fast; one by one only if that fails.
+    All places within the bounding box are tried together first, which is fast; one by one only if
+    that fails.
     """
-    in_box = ((places >= mesh.nodes[:, :2].min(axis=0)) & (places <= mesh.nodes[:, :2].max(axis=0))).all(axis=1)
+    in_box = (
+        (places >= mesh.nodes[:, :2].min(axis=0)) & (places <= mesh.nodes[:, :2].max(axis=0))
+    ).all(axis=1)
     if in_box.any() and (motions := _vertical_motions(mesh, places[in_box])):
         return in_box, motions
     inside = np.array([bool(_vertical_motions(mesh, place)) for place in places])
@@ -262,7 +332,9 @@ def _on_body(mesh: Mesh, places: Floats) -> tuple[Bools, list[csr_array]]:
 
 
 def _vertical_motions(mesh: Mesh, places: Floats) -> list[csr_array]:
-    """Return the vertical displacements of places on either face as rows of the degrees of freedom; [] if one is not on the body."""
+    """Return the vertical displacements of places on either face as rows of the degrees
+    of freedom; [] if one is not on the body.
+    """
     try:
         if mesh.is_flat:  # both faces of a plate element have the same deflection
             return 2 * [surface_motion(mesh, places)[0][2::3]]
@@ -272,9 +344,13 @@ def _vertical_motions(mesh: Mesh, places: Floats) -> list[csr_array]:
 
 
 def responses_to_spread_forces(
-    recipe: Recipe, places: Sequence[tuple[float, float]], side: Side, average: Callable[[tuple[float, float], float], Average]
+    recipe: Recipe,
+    places: Sequence[tuple[float, float]],
+    side: Side,
+    average: Callable[[tuple[float, float], float], Average],
 ) -> tuple[Structure, list[float], Floats]:
-    """Return structure, local thicknesses and displacements of a held plate under unit upward forces distributed around places.
+    """Return structure, local thicknesses and displacements of a held plate under unit upward
+    forces distributed around places.
 
     Parameters
     ----------
@@ -301,6 +377,14 @@ def responses_to_spread_forces(
     """
     held, elastic = _factorised(recipe)
     thicknesses = _thicknesses(held.structure, places)
-    loads = _faces(held, places, [average(place, thickness) for place, thickness in zip(places, thicknesses, strict=True)])
+    loads = _faces(
+        held,
+        places,
+        [average(place, thickness) for place, thickness in zip(places, thicknesses, strict=True)],
+    )
     load = loads[_FACES.index(side)]
-    return held.structure, thicknesses, np.asarray(held.expansion @ elastic.static(load.toarray().T))
+    return (
+        held.structure,
+        thicknesses,
+        np.asarray(held.expansion @ elastic.static(load.toarray().T)),
+    )

@@ -1,7 +1,7 @@
 """Store of modal models and static compliances on disk, each under a hash of its inputs.
 
-An entry is a CRC-32 followed by an npz archive. The checksum covers all of the archive, as NumPy does not verify those of zip
-members that it reads in part.
+An entry is a CRC-32 followed by an npz archive. The checksum covers all of the archive, as NumPy
+does not verify those of zip members that it reads in part.
 """
 
 from __future__ import annotations
@@ -34,13 +34,16 @@ from vibroimpact.structures.mesh import ElementBlock, Mesh
 from vibroimpact.structures.modal_model import ModalModel
 
 FORMAT = 6
-"""Part of every key: to be increased when the stored data, or their computation, change; earlier entries are then not found."""
+"""Part of every key: to be increased when the stored data, or their computation, change;
+earlier entries are then not found.
+"""
 
 PLACE = "VIBROIMPACT_STORE"
 """Environment variable with the folder of the store."""
 
 _LARGEST = 4_000_000_000  # bytes; the least recently used entries are removed first
-_SLACK = 0.01  # of _LARGEST: bytes written between two scans of the folder, which may hold thousands of entries
+# of _LARGEST: bytes written between two scans of the folder, which may hold thousands of entries
+_SLACK = 0.01
 _CHECKSUM, _PIECE = 4, 2**20  # bytes
 _MODES = "modes"
 KINDS = (_MODES, "compliance", "parts")
@@ -53,7 +56,9 @@ _HELD = MemoryCache[Mapping[str, Any]](capacity=1000 * _HELD_SIZE)
 
 
 def store_folder() -> Path:
-    """Return the folder of the store: that of the environment variable VIBROIMPACT_STORE, else one in the user's cache."""
+    """Return the folder of the store: that of the environment variable VIBROIMPACT_STORE,
+    else one in the user's cache.
+    """
     from platformdirs import user_cache_path
 
     given = os.environ.get(PLACE)
@@ -61,12 +66,16 @@ def store_folder() -> Path:
 
 
 def key_of(recipe: Any) -> str:
-    """Return the key of a recipe: a hash of its content, of the format of the store and of the version of the package.
+    """Return the key of a recipe: a hash of its content, of the format of the store and of the
+    version of the package.
 
     Examples
     --------
     >>> from vibroimpact.structures.supports.point import Point
-    >>> key_of(Point(0.0, 0.1)) == key_of(Point(0.0, 0.1)), key_of(Point(0.0, 0.1)) == key_of(Point(0.1, 0.0))
+    >>> (
+    ...     key_of(Point(0.0, 0.1)) == key_of(Point(0.0, 0.1)),
+    ...     key_of(Point(0.0, 0.1)) == key_of(Point(0.1, 0.0)),
+    ... )
     (True, False)
     """
     text = json.dumps([FORMAT, __version__, _content(recipe)], sort_keys=True)
@@ -74,18 +83,28 @@ def key_of(recipe: Any) -> str:
 
 
 def _content(value: Any) -> Any:
-    """Return a value in terms of JSON: a dataclass as its name and its compared fields, an array as a hash."""
+    """Return a value in terms of JSON: a dataclass as its name and its compared fields,
+    an array as a hash.
+    """
     if dataclasses.is_dataclass(value):
         return [
             type(value).__name__,
-            {item.name: _content(getattr(value, item.name)) for item in dataclasses.fields(value) if item.compare},
+            {
+                item.name: _content(getattr(value, item.name))
+                for item in dataclasses.fields(value)
+                if item.compare
+            },
         ]
     if isinstance(value, (list, tuple)):
         return [_content(item) for item in value]
     if isinstance(value, Mapping):
         return {str(key): _content(item) for key, item in value.items()}
     if isinstance(value, np.ndarray):
-        return [str(value.dtype), value.shape, hashlib.sha256(np.ascontiguousarray(value).tobytes()).hexdigest()]
+        return [
+            str(value.dtype),
+            value.shape,
+            hashlib.sha256(np.ascontiguousarray(value).tobytes()).hexdigest(),
+        ]
     if isinstance(value, (np.generic, float, int)) and not isinstance(value, bool):
         return (float(value) + 0.0).hex()  # 1 and 1.0 are equal, and so are 0.0 and -0.0
     return value
@@ -106,7 +125,9 @@ def save_model(key: str, model: ModalModel) -> str:
     return save_entry(key, _MODES, _parts(model))
 
 
-def load_entry(key: str, kind: str, read: Callable[[Mapping[str, Any]], Content]) -> tuple[Content | None, str]:
+def load_entry(
+    key: str, kind: str, read: Callable[[Mapping[str, Any]], Content]
+) -> tuple[Content | None, str]:
     """Return the content of an entry, or None; and a message on a failure to read it, or "".
 
     A damaged entry, recognised by its checksum, counts as absent.
@@ -132,14 +153,24 @@ def load_entry(key: str, kind: str, read: Callable[[Mapping[str, Any]], Content]
     except FileNotFoundError:
         return None, ""
     except OSError as error:
-        return None, f"the {kind} stored in {path} can't be read ({error.strerror}) and will be computed again"
+        return (
+            None,
+            f"the {kind} stored in {path} can't be read ({error.strerror}) "
+            "and will be computed again",
+        )
     except (ValueError, KeyError) as error:
-        return None, f"the {kind} stored in {path} can't be used: the file is damaged ({error}), and its content will be computed again"
+        return (
+            None,
+            f"the {kind} stored in {path} can't be used: the file is damaged ({error}), "
+            "and its content will be computed again",
+        )
     return content, ""
 
 
 def hold_entry(key: str, kind: str, parts: Mapping[str, Any]) -> None:
-    """Keep arrays by name in memory for this process: for what is used soon, and then hardly again."""
+    """Keep arrays by name in memory for this process: for what is used soon, and then
+    hardly again.
+    """
     _HELD.put(f"{key}.{kind}", parts, _HELD_SIZE)
 
 
@@ -149,19 +180,25 @@ def save_entry(key: str, kind: str, parts: Mapping[str, Any]) -> str:
 
 
 def _put(key: str, kind: str, pieces: Sequence[bytes]) -> str:
-    """Write an entry atomically, so that several processes may save and load at once; return a message on failure, or ""."""
+    """Write an entry atomically, so that several processes may save and load at once;
+    return a message on failure, or "".
+    """
     folder = store_folder()
     try:
         folder.mkdir(parents=True, exist_ok=True)
         write_file(_path(key, kind), pieces)
         _make_room(sum(map(len, pieces)))
     except OSError as error:
-        return f"the {kind} can't be kept in {folder} ({error.strerror}) and will be computed again next time"
+        return (
+            f"the {kind} can't be kept in {folder} ({error.strerror}) and will be computed "
+            "again next time"
+        )
     return ""
 
 
 def carry(keys: Iterable[str]) -> dict[str, bytes]:
-    """Return the entries under some keys as bytes, by file name, for a process without access to this disk.
+    """Return the entries under some keys as bytes, by file name, for a process without access to
+    this disk.
 
     Keys that are not in the store are left out; the receiving process computes their content.
 
@@ -194,7 +231,9 @@ def receive(entries: Mapping[str, bytes]) -> str:
         try:
             _unpacked(BytesIO(data))
         except ValueError as error:
-            raise InputError(f"the entry {name} was damaged on its way ({error}); send it again") from None
+            raise InputError(
+                f"the entry {name} was damaged on its way ({error}); send it again"
+            ) from None
         if not _path(key, kind).is_file() and (trouble := _put(key, kind, [data])):
             return trouble
     return ""
@@ -213,7 +252,8 @@ def _packed(parts: Mapping[str, Any]) -> list[bytes]:
 
 
 def _unpacked(file: BinaryIO) -> dict[str, Any]:
-    """Return the arrays of an entry, read-only, as what is made of them is shared within the process.
+    """Return the arrays of an entry, read-only, as what is made of them is shared within the
+    process.
 
     The file is read twice, in pieces: it may take as much memory as the arrays.
 
@@ -237,7 +277,9 @@ def _unpacked(file: BinaryIO) -> dict[str, Any]:
 
 def entries() -> list[Path]:
     """Return the files of the store, the least recently used first."""
-    found = [(path.stat().st_mtime, path) for kind in KINDS for path in store_folder().glob(f"*.{kind}")]
+    found = [
+        (path.stat().st_mtime, path) for kind in KINDS for path in store_folder().glob(f"*.{kind}")
+    ]
     return [path for _, path in sorted(found)]
 
 
@@ -264,7 +306,9 @@ _written = [math.inf]  # bytes since the last scan of the folder by this process
 
 
 def _make_room(size: int) -> None:
-    """Count the bytes written; from time to time remove the least recently used entries beyond the limit."""
+    """Count the bytes written; from time to time remove the least recently used entries
+    beyond the limit.
+    """
     _written[0] += size
     if _written[0] < _SLACK * _LARGEST:
         return
@@ -293,12 +337,22 @@ def _parts(model: ModalModel) -> dict[str, Any]:
         "facts": _text_array(dict(model.facts)),
     }
     if model.mesh.materials:
-        table = [[one.name, one.density, one.youngs_modulus, one.poissons_ratio] for one in model.mesh.materials]
-        parts |= {"materials": _text_array(table), "element_materials": model.mesh.element_materials}
+        table = [
+            [one.name, one.density, one.youngs_modulus, one.poissons_ratio]
+            for one in model.mesh.materials
+        ]
+        parts |= {
+            "materials": _text_array(table),
+            "element_materials": model.mesh.element_materials,
+        }
     joints = model.mesh.joints
     if joints is not None:
         entries = joints.weights.tocoo()
-        parts |= {"followers": joints.followers, "movers": np.stack([entries.row, entries.col]), "weights": entries.data}
+        parts |= {
+            "followers": joints.followers,
+            "movers": np.stack([entries.row, entries.col]),
+            "weights": entries.data,
+        }
     for index, block in enumerate(model.mesh.blocks):
         parts[f"block:{index}:{block.kind}"] = block.connectivity
     for name, nodes in model.mesh.node_sets.items():
@@ -317,9 +371,16 @@ def _model(entry: Mapping[str, Any]) -> ModalModel:
     """Return the model of the arrays of an entry."""
 
     def named(prefix: str) -> dict[str, Any]:
-        return {bytes.fromhex(key[len(prefix) :]).decode(): entry[key] for key in entry if key.startswith(prefix)}
+        return {
+            bytes.fromhex(key[len(prefix) :]).decode(): entry[key]
+            for key in entry
+            if key.startswith(prefix)
+        }
 
-    blocks = sorted((key.split(":") for key in entry if key.startswith("block:")), key=lambda parts: int(parts[1]))
+    blocks = sorted(
+        (key.split(":") for key in entry if key.startswith("block:")),
+        key=lambda parts: int(parts[1]),
+    )
     mesh = Mesh(
         entry["nodes"],
         tuple(ElementBlock(kind, entry[f"block:{index}:{kind}"]) for _, index, kind in blocks),
@@ -328,8 +389,12 @@ def _model(entry: Mapping[str, Any]) -> ModalModel:
     )
     if "materials" in entry:
         rows = parse_json(entry["materials"].tobytes())
-        materials = tuple(Material(density, modulus, ratio, name=name) for name, density, modulus, ratio in rows)
-        mesh = dataclasses.replace(mesh, materials=materials, element_materials=entry["element_materials"])
+        materials = tuple(
+            Material(density, modulus, ratio, name=name) for name, density, modulus, ratio in rows
+        )
+        mesh = dataclasses.replace(
+            mesh, materials=materials, element_materials=entry["element_materials"]
+        )
     if "followers" in entry:
         shape = (len(entry["followers"]), mesh.nodes.size)
         weights = csr_array(coo_array((entry["weights"], tuple(entry["movers"])), shape=shape))

@@ -29,17 +29,18 @@ class Structure:
     mesh : Mesh
         Mesh of the body.
     stiffness, mass : sparse arrays, shape (dofs, dofs)
-        Stiffness and mass; degrees of freedom are ordered by nodes: three displacements, followed in plates by two slopes.
+        Stiffness and mass; degrees of freedom are ordered by nodes: three displacements, followed
+        in plates by two slopes.
     properties : MassProperties
         Mass, centre of mass and inertia.
     thickness : float, default 0
         Thickness of plate elements [m].
     end_compliance : float, default 0
-        Rotation [rad] per moment per width [N] at a held end in excess of plate theory; negative, as the end is stiffer: see
-        `vibroimpact.structures.bed.end_compliance`.
+        Rotation [rad] per moment per width [N] at a held end in excess of plate theory; negative,
+        as the end is stiffer: see `vibroimpact.structures.bed.end_compliance`.
     bed : tuple of two floats, optional
-        Stiffness per area [N/m^3], along and across the plate, between plate elements and a support of their lower face; without it
-        supports hold the full height of the plate.
+        Stiffness per area [N/m^3], along and across the plate, between plate elements and a support
+        of their lower face; without it supports hold the full height of the plate.
     """
 
     mesh: Mesh
@@ -65,14 +66,23 @@ class Structure:
             adjacency = joined_adjacency(adjacency, joints)
             last = hubs(joints, len(self.mesh.nodes))
         first = np.flatnonzero(~last)
-        parts = [first[part] for part in nested_dissection(self.mesh.nodes[first], adjacency[first][:, first])]
+        parts = [
+            first[part]
+            for part in nested_dissection(self.mesh.nodes[first], adjacency[first][:, first])
+        ]
         if last.any():
             parts.append(np.flatnonzero(last))
-        check_factor_memory(self.stiffness.shape[0], self.mesh.dofs_per_node**2 * factor_entries(parts, adjacency))
-        return (self.mesh.dofs_per_node * np.concatenate(parts)[:, None] + np.arange(self.mesh.dofs_per_node)).ravel()
+        check_factor_memory(
+            self.stiffness.shape[0], self.mesh.dofs_per_node**2 * factor_entries(parts, adjacency)
+        )
+        return (
+            self.mesh.dofs_per_node * np.concatenate(parts)[:, None]
+            + np.arange(self.mesh.dofs_per_node)
+        ).ravel()
 
     def rigid_motions(self) -> Floats:
-        """Return the six rigid motions, (dofs, 6): unit translations, then unit rotations about the centre of mass.
+        """Return the six rigid motions, (dofs, 6): unit translations, then unit rotations about the
+        centre of mass.
 
         Examples
         --------
@@ -96,11 +106,15 @@ class Structure:
 def rotation_columns(x: Floats, y: Floats, z: Floats) -> Floats:
     """Return the displacements of points under unit rotations about x, y and z, (points, 3, 3)."""
     zero = np.zeros_like(x)
-    return np.stack([np.stack([zero, z, -y], -1), np.stack([-z, zero, x], -1), np.stack([y, -x, zero], -1)], axis=1)
+    return np.stack(
+        [np.stack([zero, z, -y], -1), np.stack([-z, zero, x], -1), np.stack([y, -x, zero], -1)],
+        axis=1,
+    )
 
 
 def solid_structure(mesh: Mesh, material: Material) -> Structure:
-    """Return the structure of a mesh of solid elements; `material` is that of the elements that have none of their own.
+    """Return the structure of a mesh of solid elements; `material` is that of the elements that
+    have none of their own.
 
     Raises
     ------
@@ -108,16 +122,23 @@ def solid_structure(mesh: Mesh, material: Material) -> Structure:
         If elements are inverted or the mesh has loose parts.
     """
     check_mesh(mesh)
-    density = mesh.of_elements(material, lambda one: one.density) if mesh.materials else material.density
+    density = (
+        mesh.of_elements(material, lambda one: one.density) if mesh.materials else material.density
+    )
     return Structure(mesh, *assemble_solid(mesh, material), mass_properties(mesh, density))
 
 
 def plate_structure(
-    mesh: Mesh, material: Material, thickness: float, theory: str = "thick", shear_correction: float | None = None
+    mesh: Mesh,
+    material: Material,
+    thickness: float,
+    theory: str = "thick",
+    shear_correction: float | None = None,
 ) -> Structure:
     """Return the structure of a mesh of plate elements; parameters are those of `assemble_plate`.
 
-    Supports of the lower face of a thick plate act through a bed (`bed_stiffness`); those of Kirchhoff's thin plate on its full height.
+    Supports of the lower face of a thick plate act through a bed (`bed_stiffness`); those of
+    Kirchhoff's thin plate on its full height.
 
     Raises
     ------

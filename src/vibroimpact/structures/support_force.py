@@ -1,7 +1,9 @@
 r"""Forces of supports on a plate, as linear functions of its motion.
 
-In a mode, the bare structure of stiffness K and mass M is in balance with the forces of its supports,
-:math:`r = (K - \omega^2 M)\,\varphi`, and under a static force elsewhere :math:`r = K u`: zero on all degrees of freedom but those that
+In a mode, the bare structure of stiffness K and mass M is in balance with the forces of its
+supports,
+:math:`r = (K - \omega^2 M)\,\varphi`, and under a static force elsewhere :math:`r = K u`: zero on
+all degrees of freedom but those that
 supports hold, tie or spring. The sum over the nodes of a support is the force of that support.
 """
 
@@ -37,7 +39,8 @@ class SupportForces:
     Parameters
     ----------
     stiffness, mass : array, shape (S, 3, dofs)
-        Forces per displacement [N/m] and acceleration [kg] of the degrees of freedom of the bare structure.
+        Forces per displacement [N/m] and acceleration [kg] of the degrees of freedom of the bare
+        structure.
     static : array, shape (S, 3)
         Forces under a unit upward force at the contact [-].
     """
@@ -49,11 +52,20 @@ class SupportForces:
     def of_modes(self, model: ModalModel) -> Floats:
         """Return the forces in each mode, (S, modes, 3) [N m^-1 kg^-1/2]."""
         square = model.angular_frequencies[:, None] ** 2
-        return np.array([model.shapes @ k.T - square * (model.shapes @ m.T) for k, m in zip(self.stiffness, self.mass, strict=True)])
+        return np.array(
+            [
+                model.shapes @ k.T - square * (model.shapes @ m.T)
+                for k, m in zip(self.stiffness, self.mass, strict=True)
+            ]
+        )
 
 
 def support_forces(
-    recipe: Recipe, place: tuple[float, float], side: Side, spots: Sequence[Spot], tell: Callable[[str], None] | None = None
+    recipe: Recipe,
+    place: tuple[float, float],
+    side: Side,
+    spots: Sequence[Spot],
+    tell: Callable[[str], None] | None = None,
 ) -> SupportForces:
     """Return the forces of the supports at places of a held plate, from the store or computed.
 
@@ -78,7 +90,9 @@ def support_forces(
         If the stiffness is singular.
     """
     key, say = support_force_key(recipe, place, side, spots), tell or (lambda text: None)
-    found, trouble = load_entry(key, _KIND, lambda parts: SupportForces(parts["stiffness"], parts["mass"], parts["static"]))
+    found, trouble = load_entry(
+        key, _KIND, lambda parts: SupportForces(parts["stiffness"], parts["mass"], parts["static"])
+    )
     if trouble:
         say(trouble)
     if found is None:
@@ -89,24 +103,36 @@ def support_forces(
     return found
 
 
-def support_force_key(recipe: Recipe, place: tuple[float, float], side: Side, spots: Sequence[Spot]) -> str:
+def support_force_key(
+    recipe: Recipe, place: tuple[float, float], side: Side, spots: Sequence[Spot]
+) -> str:
     """Return the key of the forces of supports in the store."""
     return key_of(["support forces", plate_key(recipe), place, side, list(spots)])
 
 
-def computed_support_forces(recipe: Recipe, place: tuple[float, float], side: Side, spots: Sequence[Spot]) -> SupportForces:
-    """Return the forces of supports, computed anew; parameters and errors are those of `support_forces`."""
-    structure, _, displacements = responses_to_spread_forces(recipe, [place], side, lambda _, thickness: spread_at_face(recipe, thickness))
+def computed_support_forces(
+    recipe: Recipe, place: tuple[float, float], side: Side, spots: Sequence[Spot]
+) -> SupportForces:
+    """Return the forces of supports, computed anew; parameters and errors are those of
+    `support_forces`.
+    """
+    structure, _, displacements = responses_to_spread_forces(
+        recipe, [place], side, lambda _, thickness: spread_at_face(recipe, thickness)
+    )
     watched = [support_at(structure, recipe.supports, spot) for spot in spots]
     _refuse_joints(structure, [recipe.supports[number] for number in watched])
     shares = _shares(structure, recipe.supports)
     rows = [shares[number] for number in watched]
-    stiffness, mass = (np.array([(row @ matrix).toarray() for row in rows]) for matrix in (structure.stiffness, structure.mass))
+    stiffness, mass = (
+        np.array([(row @ matrix).toarray() for row in rows])
+        for matrix in (structure.stiffness, structure.mass)
+    )
     return SupportForces(stiffness, mass, stiffness @ displacements[:, 0])
 
 
 def support_at(structure: Structure, supports: Sequence[Support], spot: Spot) -> int:
-    """Return the number of the support whose held nodes lie nearest to a place, within the size of an element.
+    """Return the number of the support whose held nodes lie nearest to a place, within the size of
+    an element.
 
     Raises
     ------
@@ -114,16 +140,26 @@ def support_at(structure: Structure, supports: Sequence[Support], spot: Spot) ->
         If there is none, or several are as near.
     """
     mesh, place = structure.mesh, np.array(place_of(structure.mesh, spot, "lower"))
-    apart = [float(np.linalg.norm(mesh.nodes[_nodes(structure, one), :2] - place, axis=1).min(initial=math.inf)) for one in supports]
+    apart = [
+        float(
+            np.linalg.norm(mesh.nodes[_nodes(structure, one), :2] - place, axis=1).min(
+                initial=math.inf
+            )
+        )
+        for one in supports
+    ]
     least, reach = min(apart, default=math.inf), _largest_element(mesh)
     words = "; ".join(one.description for one in supports) or "none"
     if least > reach:
-        raise InputError(f"there is no support at ({place[0]:g}, {place[1]:g}) m; there are: {words}")
+        raise InputError(
+            f"there is no support at ({place[0]:g}, {place[1]:g}) m; there are: {words}"
+        )
     near = [number for number, one in enumerate(apart) if one <= least + 1e-9 * reach]
     if len(near) > 1:
         both = " and ".join(supports[number].description for number in near)
         raise InputError(
-            f"({place[0]:g}, {place[1]:g}) m is as near to a node that is held by one as to that of another of {both}; "
+            f"({place[0]:g}, {place[1]:g}) m is as near to a node that is held by one as "
+            f"to that of another of {both}; "
             "give a place that is nearer to one of them by an element or more"
         )
     return near[0]
@@ -151,19 +187,31 @@ def _refuse_joints(structure: Structure, supports: Sequence[Support]) -> None:
     for one in supports:
         if np.isin(_nodes(structure, one), joints.nodes).any():
             raise InputError(
-                f"the force of {one.description} is not known: it holds nodes that the mesh file joins to others; "
+                f"the force of {one.description} is not known: it holds nodes that the "
+                "mesh file joins to others; "
                 "leave out its force sensor, or move the support"
             )
 
 
 def _shares(structure: Structure, supports: Sequence[Support]) -> list[csr_array]:
-    """Return sums of forces along x, y and z over the nodes of each support, (3, dofs); a node of several has an equal share in each."""
-    nodes, per_node = [_nodes(structure, support) for support in supports], structure.mesh.dofs_per_node
+    """Return sums of forces along x, y and z over the nodes of each support, (3, dofs); a
+    node of several has an equal share in each.
+    """
+    nodes, per_node = (
+        [_nodes(structure, support) for support in supports],
+        structure.mesh.dofs_per_node,
+    )
     owners = np.bincount(np.concatenate(nodes), minlength=len(structure.mesh.nodes))
     shape = (3, structure.stiffness.shape[0])
     return [
         csr_array(
-            (np.tile(1.0 / owners[mine], 3), (np.repeat([0, 1, 2], len(mine)), (per_node * mine + np.array([[0], [1], [2]])).ravel())),
+            (
+                np.tile(1.0 / owners[mine], 3),
+                (
+                    np.repeat([0, 1, 2], len(mine)),
+                    (per_node * mine + np.array([[0], [1], [2]])).ravel(),
+                ),
+            ),
             shape,
         )
         for mine in nodes
@@ -172,4 +220,6 @@ def _shares(structure: Structure, supports: Sequence[Support]) -> list[csr_array
 
 def _largest_element(mesh: Mesh) -> float:
     """Return the largest extent of an element along x or y [m]."""
-    return float(max(np.ptp(mesh.nodes[block.connectivity, :2], axis=1).max() for block in mesh.blocks))
+    return float(
+        max(np.ptp(mesh.nodes[block.connectivity, :2], axis=1).max() for block in mesh.blocks)
+    )

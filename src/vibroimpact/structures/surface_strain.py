@@ -1,4 +1,6 @@
-"""Strain of a face of a body in its plane, as a linear function of the degrees of freedom of its finite elements."""
+"""Strain of a face of a body in its plane, as a linear function of the degrees of freedom
+of its finite elements.
+"""
 
 from __future__ import annotations
 
@@ -9,10 +11,14 @@ from vibroimpact.structures.mesh import Mesh
 from vibroimpact.structures.surface import Side, face_gradients
 
 
-def surface_strain(mesh: Mesh, place: tuple[float, float], side: Side = "upper", thickness: float = 0.0) -> csr_array:
-    r"""Return the strains of a face at a place as linear functions of the degrees of freedom, (3, dofs).
+def surface_strain(
+    mesh: Mesh, place: tuple[float, float], side: Side = "upper", thickness: float = 0.0
+) -> csr_array:
+    r"""Return the strains of a face at a place as linear functions of the degrees of freedom, (3,
+    dofs).
 
-    The rows are :math:`\varepsilon_x, \varepsilon_y, \gamma_{xy}` [-]; on common edges of elements they are means over these.
+    The rows are :math:`\varepsilon_x, \varepsilon_y, \gamma_{xy}` [-]; on common edges of elements
+    they are means over these.
 
     Parameters
     ----------
@@ -35,14 +41,18 @@ def surface_strain(mesh: Mesh, place: tuple[float, float], side: Side = "upper",
     >>> from vibroimpact.structures.plate_mesh import plate_mesh
     >>> mesh = plate_mesh((0.5, 0.4), 0.1)
     >>> x, y = mesh.nodes[:, :2].T
-    >>> motion = np.stack([3 * x, x + 2 * y, 0 * x, x**2 * y, y**2], axis=1)  # at the height z it adds z times the slopes
+    >>> motion = np.stack(
+    ...     [3 * x, x + 2 * y, 0 * x, x**2 * y, y**2], axis=1
+    ... )  # at the height z it adds z times the slopes
     >>> (surface_strain(mesh, (0.1, 0.05), "lower", 0.2) @ motion.ravel()).round(9).tolist()
     [2.999, 1.99, 0.999]
     """
     nodes, gradients = face_gradients(mesh, place, side)  # (k,), (2, k)
     height = (0.5 if side == "upper" else -0.5) * thickness
     parts = [(0, 1.0), (3, height)] if mesh.is_flat else [(0, 1.0)]
-    terms = [(row, axis, along) for row, axis, along in ((0, 0, 0), (1, 1, 1), (2, 0, 1), (2, 1, 0))]
+    terms = [
+        (row, axis, along) for row, axis, along in ((0, 0, 0), (1, 1, 1), (2, 0, 1), (2, 1, 0))
+    ]
     rows, columns, values = [], [], []
     for first, factor in parts:
         for row, axis, along in terms:
@@ -50,4 +60,8 @@ def surface_strain(mesh: Mesh, place: tuple[float, float], side: Side = "upper",
             columns.append(mesh.dofs_per_node * nodes + first + axis)
             values.append(factor * gradients[along])
     shape = (3, mesh.dofs_per_node * len(mesh.nodes))
-    return csr_array(coo_array((np.concatenate(values), (np.concatenate(rows), np.concatenate(columns))), shape=shape))
+    return csr_array(
+        coo_array(
+            (np.concatenate(values), (np.concatenate(rows), np.concatenate(columns))), shape=shape
+        )
+    )

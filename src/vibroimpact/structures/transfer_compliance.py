@@ -1,14 +1,18 @@
-r"""Static transfer compliances of a plate between its contact point and its sensors, from one static solution.
+r"""Static transfer compliances of a plate between its contact point and its sensors, from one
+static solution.
 
-The force is distributed over a disc, as finite elements do not resolve the field near a point force; outside the disc the response is
-the same. The face of a layer moves less than plate theory states (see `plate_compliance`), for long waves of wave number k by the factor
+The force is distributed over a disc, as finite elements do not resolve the field near a point
+force; outside the disc the response is the same. The face of a layer moves less than plate theory
+states (see `plate_compliance`), for long waves of wave number k by the factor
 :math:`1 - k^2 \overline{r^2}/4`, once for the point of the force and once for the sensor, with
 
 .. math:: \overline{r^2} = 2 h^2 \left(\frac{1}{6 (1 - \nu) \kappa} - \frac15\right).
 
-The modal shapes that are used with the compliance may include that factor at neither point, at one or at both. Their number is `faces`;
-the mean of r^2 of the disc is as many times the above. The remaining difference between a layer and plate theory decays within two
-thicknesses, as :math:`e^{-4.2\,r/h}`, and is added. By the thin theory the disc has the size of an element, and the additional
+The modal shapes that are used with the compliance may include that factor at neither point, at one
+or at both. Their number is `faces`; the mean of r^2 of the disc is as many times the above. The
+remaining difference between a layer and plate theory decays within two
+thicknesses, as :math:`e^{-4.2\,r/h}`, and is added. By the thin theory the disc has the size of an
+element, and the additional
 displacement under a point force within it is added in closed form (`thin_near_term`).
 """
 
@@ -30,7 +34,8 @@ from vibroimpact.structures.surface import Side, surface_motion
 _KIND = "compliance"
 _RADIUS = 0.75  # of the disc, in thicknesses
 _NEAR = 4.0  # thicknesses beyond which a layer and plate theory agree
-_LEAST = 0.05  # thicknesses: least distance from the force on the loaded face; closer points are evaluated there
+# thicknesses: least distance from the force on the loaded face; closer points are evaluated there
+_LEAST = 0.05
 _NODES = 16  # of Gauss's rule on each part of the integral
 _FINEST = 300.0  # wave number times thickness, or radius, at which the integral ends
 
@@ -46,7 +51,8 @@ def transfer_compliances(
     faces: int = 0,
     tell: Callable[[str], None] | None = None,
 ) -> Floats:
-    """Return the static compliances between a place and points of a held plate [m/N], (points, 3), from the store or computed.
+    """Return the static compliances between a place and points of a held plate [m/N], (points, 3),
+    from the store or computed.
 
     Parameters
     ----------
@@ -59,15 +65,16 @@ def transfer_compliances(
     points : sequence of ((x, y), side)
         Points of the displacements.
     faces : int, default 0
-        For plate elements, the number of the two points (of the force and of the displacement) at which the compliance is that of the
-        face instead of plate theory: 0, 1 or 2.
+        For plate elements, the number of the two points (of the force and of the displacement) at
+        which the compliance is that of the face instead of plate theory: 0, 1 or 2.
     tell : callable, optional
         Called with a message on a failure of the store.
 
     Raises
     ------
     InputError
-        If a place is not on the body, the supports permit vertical rigid motion, or the mesh or a support is invalid.
+        If a place is not on the body, the supports permit vertical rigid motion, or the mesh or a
+        support is invalid.
     ComputationError
         If the stiffness is singular.
 
@@ -77,7 +84,10 @@ def transfer_compliances(
     >>> edges = tuple(Edge(edge, "simply-supported") for edge in EDGES)
     >>> recipe = Recipe(PlateOfPlates((0.5, 0.5, 0.01), 0.1), 7850.0, 210e9, 0.3, edges)
     >>> there, back = ((0.1, 0.0), "upper"), ((0.0, 0.0), "upper")
-    >>> one, other = (float(transfer_compliances(recipe, *a, [b], 2)[0, 2]) for a, b in ((there, back), (back, there)))
+    >>> one, other = (
+    ...     float(transfer_compliances(recipe, *a, [b], 2)[0, 2])
+    ...     for a, b in ((there, back), (back, there))
+    ... )
     >>> abs(one / other - 1.0) < 1e-4  # Maxwell-Betti reciprocity
     True
     """
@@ -93,26 +103,48 @@ def transfer_compliances(
     return found
 
 
-def hold_transfers(recipe: Recipe, places: Sequence[tuple[float, float]], side: Side, points: Sequence[Point], faces: int = 0) -> None:
-    """Compute the compliances between places and points together, for calls of `transfer_compliances` that follow in this process."""
-    for place, found in zip(places, computed_transfers(recipe, places, side, points, faces), strict=True):
+def hold_transfers(
+    recipe: Recipe,
+    places: Sequence[tuple[float, float]],
+    side: Side,
+    points: Sequence[Point],
+    faces: int = 0,
+) -> None:
+    """Compute the compliances between places and points together, for calls of
+    `transfer_compliances` that follow in this process.
+    """
+    for place, found in zip(
+        places, computed_transfers(recipe, places, side, points, faces), strict=True
+    ):
         hold_entry(transfer_key(recipe, place, side, points, faces), _KIND, {_KIND: found})
 
 
-def transfer_key(recipe: Recipe, place: tuple[float, float], side: Side, points: Sequence[Point], faces: int = 0) -> str:
+def transfer_key(
+    recipe: Recipe, place: tuple[float, float], side: Side, points: Sequence[Point], faces: int = 0
+) -> str:
     """Return the key of the compliances between a place and points in the store."""
     return key_of(["transfer compliance", plate_key(recipe), place, side, list(points), faces])
 
 
-def computed_transfer(recipe: Recipe, place: tuple[float, float], side: Side, points: Sequence[Point], faces: int = 0) -> Floats:
-    """Return the compliances between a place and points, computed anew; parameters and errors are those of `transfer_compliances`."""
+def computed_transfer(
+    recipe: Recipe, place: tuple[float, float], side: Side, points: Sequence[Point], faces: int = 0
+) -> Floats:
+    """Return the compliances between a place and points, computed anew; parameters and
+    errors are those of `transfer_compliances`.
+    """
     return np.asarray(computed_transfers(recipe, [place], side, points, faces)[0])
 
 
 def computed_transfers(
-    recipe: Recipe, places: Sequence[tuple[float, float]], side: Side, points: Sequence[Point], faces: int = 0
+    recipe: Recipe,
+    places: Sequence[tuple[float, float]],
+    side: Side,
+    points: Sequence[Point],
+    faces: int = 0,
 ) -> Floats:
-    """Return the compliances between several places, whose forces are solved together, and points, (places, points, 3)."""
+    """Return the compliances between several places, whose forces are solved together,
+    and points, (places, points, 3).
+    """
     shape, nu = recipe.shape, recipe.poissons_ratio
     flat = isinstance(shape, PlateOfPlates)
     thin = is_thin(recipe)
@@ -122,17 +154,29 @@ def computed_transfers(
         return _disc_of_an_element(shape, place) if isinstance(shape, PlateOfPlates) else 0.0
 
     def spread(place: tuple[float, float], thickness: float) -> Average:
-        return Average(within(place), 3.0) if thin else Average(_RADIUS * thickness, 3.0 - 6.0 * square / _RADIUS**2)
+        return (
+            Average(within(place), 3.0)
+            if thin
+            else Average(_RADIUS * thickness, 3.0 - 6.0 * square / _RADIUS**2)
+        )
 
     structure, thicknesses, displacements = responses_to_spread_forces(recipe, places, side, spread)
     found = np.empty((len(places), len(points), 3))
     for number, (point, face) in enumerate(points):
-        motion, _ = surface_motion(structure.mesh, np.array([point]), face, structure.thickness if flat else 0.0, "a sensor")
+        motion, _ = surface_motion(
+            structure.mesh,
+            np.array([point]),
+            face,
+            structure.thickness if flat else 0.0,
+            "a sensor",
+        )
         found[:, number] = (motion @ displacements).T
         for moved, place, thickness in zip(found[:, number], places, thicknesses, strict=True):
             apart = math.dist(point, place)
             if flat and not thin:
-                moved[2] += near_term(apart, face == side, thickness, recipe.youngs_modulus, nu, faces)
+                moved[2] += near_term(
+                    apart, face == side, thickness, recipe.youngs_modulus, nu, faces
+                )
             elif thin and within(place):
                 rigidity = recipe.youngs_modulus * thickness**3 / (12.0 * (1.0 - nu**2))
                 moved[2] += thin_near_term(apart, within(place), rigidity)
@@ -140,16 +184,19 @@ def computed_transfers(
 
 
 def _disc_of_an_element(shape: PlateOfPlates, place: tuple[float, float]) -> float:
-    """Return the radius [m] of a disc of the size of an element, or zero where it would extend beyond the plate."""
+    """Return the radius [m] of a disc of the size of an element, or zero where it would
+    extend beyond the plate.
+    """
     room = min(0.5 * side - abs(at) for side, at in zip(shape.size[:2], place, strict=True))
     return shape.element_size if room > shape.element_size else 0.0
 
 
 def thin_near_term(distance: float, radius: float, rigidity: float) -> float:
-    r"""Return the displacement of Kirchhoff's plate under a unit point force less that under one distributed over a disc [m/N].
+    r"""Return the displacement of Kirchhoff's plate under a unit point force less that under one
+    distributed over a disc [m/N].
 
-    It is the inverse Hankel transform of :math:`(1 - A(k)) / (D k^4)`, with A the transform of the weighted disc. As its mean
-    of r^2 is zero, the term is zero outside the disc.
+    It is the inverse Hankel transform of :math:`(1 - A(k)) / (D k^4)`, with A the transform of the
+    weighted disc. As its mean of r^2 is zero, the term is zero outside the disc.
 
     Parameters
     ----------
@@ -174,15 +221,24 @@ def thin_near_term(distance: float, radius: float, rigidity: float) -> float:
     return float(less @ weights) * radius**2 / (2.0 * math.pi * rigidity)
 
 
-def near_term(distance: float, same_face: bool, thickness: float, youngs_modulus: float, poissons_ratio: float, faces: int = 0) -> float:
-    r"""Return the displacement of a plate near a unit force less that of plate theory under the distributed force [m/N].
+def near_term(
+    distance: float,
+    same_face: bool,
+    thickness: float,
+    youngs_modulus: float,
+    poissons_ratio: float,
+    faces: int = 0,
+) -> float:
+    r"""Return the displacement of a plate near a unit force less that of plate theory under the
+    distributed force [m/N].
 
     Parameters
     ----------
     distance : float
         Distance along the plate [m].
     same_face : bool
-        Whether the point is on the loaded face. There the singular displacement :math:`(1 - \nu^2)/(\pi E r)` of the half space is
+        Whether the point is on the loaded face. There the singular displacement :math:`(1 -
+        \nu^2)/(\pi E r)` of the half space is
         included; within 0.05 thicknesses the value at that distance is returned.
     thickness, youngs_modulus, poissons_ratio : float
         h [m], E [Pa] and nu [-].
@@ -191,8 +247,9 @@ def near_term(distance: float, same_face: bool, thickness: float, youngs_modulus
 
     Notes
     -----
-    The inverse Hankel transform of the difference between the kernels of an elastic layer (I. N. Sneddon, Fourier Transforms, 1951,
-    section 46) and of R. D. Mindlin's theory (J. Appl. Mech. 18:31, 1951) times the transform of the disc, without the long-range terms.
+    The inverse Hankel transform of the difference between the kernels of an elastic layer (I. N.
+    Sneddon, Fourier Transforms, 1951, section 46) and of R. D. Mindlin's theory (J. Appl. Mech.
+    18:31, 1951) times the transform of the disc, without the long-range terms.
 
     Examples
     --------
@@ -213,7 +270,8 @@ def near_term(distance: float, same_face: bool, thickness: float, youngs_modulus
     layer = bending + squeezing - 1.0 if same_face else bending - squeezing
     square = _square(poissons_ratio)
     average = Average(_RADIUS * thickness, 3.0 - 6.0 * faces * square / _RADIUS**2)
-    longer = 0.25 * (2 - faces) * square * thickness**2 / rigidity  # excess of the modes of plate theory in long waves
+    # excess of the modes of plate theory in long waves
+    longer = 0.25 * (2 - faces) * square * thickness**2 / rigidity
     plate = (1.0 / (rigidity * k**4) + (1.0 / shear - longer) / k**2) * average.transform(k)
     kernel = (2.0 / (modulus * k) * layer - plate) * jv(0, k * apart)
     near = float(kernel @ (k * weights)) / thickness / (2.0 * math.pi)
@@ -226,7 +284,9 @@ def _square(poissons_ratio: float) -> float:
 
 
 def _gauss_rule(parts: int) -> tuple[Floats, Floats]:
-    """Return the nodes and weights of Gauss's rule on equal parts of the integral, up to the cutoff."""
+    """Return the nodes and weights of Gauss's rule on equal parts of the integral, up to
+    the cutoff.
+    """
     nodes, weights = np.polynomial.legendre.leggauss(_NODES)
     places = (np.arange(parts)[:, None] + 0.5 * (nodes + 1.0)).ravel() * (_FINEST / parts)
     return places, np.tile(weights, parts) * (0.5 * _FINEST / parts)

@@ -21,12 +21,18 @@ _RADIUS = 0.75  # of the disc of the force, in thicknesses
 
 
 def transfer_strains(
-    recipe: Recipe, place: tuple[float, float], side: Side, points: Sequence[Point], tell: Callable[[str], None] | None = None
+    recipe: Recipe,
+    place: tuple[float, float],
+    side: Side,
+    points: Sequence[Point],
+    tell: Callable[[str], None] | None = None,
 ) -> Floats:
-    r"""Return the static strains at points under a unit upward force at a place of a held plate [1/N], (points, 3).
+    r"""Return the static strains at points under a unit upward force at a place of a held plate
+    [1/N], (points, 3).
 
-    The force is spread over a disc whose effect away from it is that of a point force on the face of a layer, as in
-    `transfer_compliance`; within some thicknesses of the force the strain of a layer differs.
+    The force is spread over a disc whose effect away from it is that of a point force on the face
+    of a layer, as in `transfer_compliance`; within some thicknesses of the force the strain of a
+    layer differs.
 
     Parameters
     ----------
@@ -44,7 +50,8 @@ def transfer_strains(
     Raises
     ------
     InputError
-        If a place is not on the body, the supports permit vertical rigid motion, or the mesh or a support is invalid.
+        If a place is not on the body, the supports permit vertical rigid motion, or the mesh or a
+        support is invalid.
     ComputationError
         If the stiffness is singular.
     """
@@ -60,20 +67,37 @@ def transfer_strains(
     return found
 
 
-def strain_key(recipe: Recipe, place: tuple[float, float], side: Side, points: Sequence[Point]) -> str:
+def strain_key(
+    recipe: Recipe, place: tuple[float, float], side: Side, points: Sequence[Point]
+) -> str:
     """Return the key of the strains under a force in the store."""
     return key_of(["transfer strain", plate_key(recipe), place, side, list(points)])
 
 
-def computed_strains(recipe: Recipe, place: tuple[float, float], side: Side, points: Sequence[Point]) -> Floats:
-    """Return the strains under a force, computed anew; parameters and errors are those of `transfer_strains`."""
-    structure, _, displacements = responses_to_spread_forces(recipe, [place], side, lambda _, thickness: spread_at_face(recipe, thickness))
-    strains = [surface_strain(structure.mesh, point, face, structure.thickness) @ displacements[:, 0] for point, face in points]
+def computed_strains(
+    recipe: Recipe, place: tuple[float, float], side: Side, points: Sequence[Point]
+) -> Floats:
+    """Return the strains under a force, computed anew; parameters and errors are those of
+    `transfer_strains`.
+    """
+    structure, _, displacements = responses_to_spread_forces(
+        recipe, [place], side, lambda _, thickness: spread_at_face(recipe, thickness)
+    )
+    strains = [
+        surface_strain(structure.mesh, point, face, structure.thickness) @ displacements[:, 0]
+        for point, face in points
+    ]
     return np.array(strains)
 
 
 def spread_at_face(recipe: Recipe, thickness: float) -> Average:
-    """Return the distribution of a force whose static response is that of the modes of a plate at its face, not of plate theory."""
+    """Return the distribution of a force whose static response is that of the modes of a
+    plate at its face, not of plate theory.
+    """
     layered = isinstance(recipe.shape, PlateOfPlates) and not is_thin(recipe)
-    square = mean_square(1.0, recipe.poissons_ratio, shear_factor(recipe.poissons_ratio)) if layered else 0.0
+    square = (
+        mean_square(1.0, recipe.poissons_ratio, shear_factor(recipe.poissons_ratio))
+        if layered
+        else 0.0
+    )
     return Average(_RADIUS * thickness, 3.0 - 6.0 * square / _RADIUS**2)

@@ -1,1 +1,3 @@
-"""Parameter studies: many drops of one case, computed in resumable chunks, with dataset and report."""
+"""Parameter studies: many drops of one case, computed in resumable chunks, with dataset
+and report.
+"""

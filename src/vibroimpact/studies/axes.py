@@ -79,7 +79,8 @@ class Listed:
 
 @dataclass(frozen=True)
 class Spaced:
-    """Values from `start` to `end`, equally spaced on a linear or logarithmic scale; in sampling designs uniform on that scale.
+    """Values from `start` to `end`, equally spaced on a linear or logarithmic scale; in sampling
+    designs uniform on that scale.
 
     Parameters
     ----------
@@ -104,7 +105,11 @@ class Spaced:
 
     def levels(self) -> Values:
         """Return the levels, including both limits."""
-        return np.asarray((np.linspace if self.scale == "linear" else np.geomspace)(self.start, self.end, self.number))
+        return np.asarray(
+            (np.linspace if self.scale == "linear" else np.geomspace)(
+                self.start, self.end, self.number
+            )
+        )
 
     def quantiles(self, parts: Floats) -> Values:
         """Return the quantiles of the uniform or log-uniform distribution."""
@@ -126,12 +131,14 @@ class Normal:
     at_least, at_most : float
         Truncation limits.
     lognormal : bool
-        Whether the logarithm is normal, with :math:`\sigma^2 = \ln(1 + s^2/m^2)` and :math:`\mu = \ln m - \sigma^2/2`.
+        Whether the logarithm is normal, with :math:`\sigma^2 = \ln(1 + s^2/m^2)` and :math:`\mu =
+        \ln m - \sigma^2/2`.
 
     Raises
     ------
     InputError
-        If a lognormal mean is not positive, or the probability between the truncation limits is below 1e-9.
+        If a lognormal mean is not positive, or the probability between the truncation limits is
+        below 1e-9.
 
     Examples
     --------
@@ -151,15 +158,24 @@ class Normal:
 
     def __post_init__(self) -> None:
         if self.lognormal and self.mean <= 0.0:
-            raise InputError(f"{self.mean:g} is not allowed; the mean of a lognormal distribution must be greater than 0", "mean")
+            raise InputError(
+                f"{self.mean:g} is not allowed; the mean of a lognormal distribution must "
+                "be greater than 0",
+                "mean",
+            )
         low, high = self._bounds()
         if not high - low > 1e-9:
             ends = Range(at_least=self.at_least, at_most=self.at_most).words
             words = f"{100 * max(high - low, 0.0):.2g} % of the distribution is {ends}"
-            raise InputError(f"{words}; it must be truncated less", "at_least" if math.isfinite(self.at_least) else "at_most")
+            raise InputError(
+                f"{words}; it must be truncated less",
+                "at_least" if math.isfinite(self.at_least) else "at_most",
+            )
 
     def _normal_parameters(self) -> tuple[float, float]:
-        """Return mean and standard deviation of the normal variable: the quantity or its logarithm."""
+        """Return mean and standard deviation of the normal variable: the quantity or its
+        logarithm.
+        """
         if not self.lognormal:
             return self.mean, self.standard_deviation
         variance = math.log1p((self.standard_deviation / self.mean) ** 2)
@@ -188,6 +204,9 @@ class Normal:
         from scipy.special import ndtri
 
         (low, high), (middle, spread) = self._bounds(), self._normal_parameters()
-        inside = np.clip(low + parts * (high - low), 1e-300, 1.0 - 2.0**-53)  # avoid the infinite quantiles at 0 and 1
+        # avoid the infinite quantiles at 0 and 1
+        inside = np.clip(low + parts * (high - low), 1e-300, 1.0 - 2.0**-53)
         values = middle + spread * ndtri(inside)
-        return np.asarray(np.clip(np.exp(values) if self.lognormal else values, self.at_least, self.at_most))
+        return np.asarray(
+            np.clip(np.exp(values) if self.lognormal else values, self.at_least, self.at_most)
+        )

@@ -1,4 +1,6 @@
-"""The results of one chunk of drops, and the HDF5 file that stores them until the study is complete."""
+"""The results of one chunk of drops, and the HDF5 file that stores them until the study
+is complete.
+"""
 
 from __future__ import annotations
 
@@ -62,22 +64,35 @@ def write_chunk(folder: Path, chunk: Span, result: ChunkResult, study: str) -> s
         If it can't be written.
     """
     memory = BytesIO()
-    with h5py.File(memory, "w", libver=("v110", "v110")) as file:  # a format with checksums in its headers
-        file.attrs["study"], file.attrs["first"], file.attrs["size"] = study, chunk.first, chunk.size
+    # a format with checksums in its headers
+    with h5py.File(memory, "w", libver=("v110", "v110")) as file:
+        file.attrs["study"], file.attrs["first"], file.attrs["size"] = (
+            study,
+            chunk.first,
+            chunk.size,
+        )
         file.create_group("arrays")  # present even if all drops failed
         for name, values in result.arrays.items():
-            checked = {"fletcher32": True} if values.size else {}  # reveals damage on reading, even without a ledger
+            # reveals damage on reading, even without a ledger
+            checked = {"fletcher32": True} if values.size else {}
             file.create_dataset(f"arrays/{name}", data=values, **checked)
         reasons = [reason.encode() for reason in result.failures.values()]
-        for name, given in (("place", np.array(list(result.failures), dtype=np.int64)), ("reason", np.array(reasons, dtype=bytes))):
-            file.create_dataset(f"failures/{name}", data=given, **({"fletcher32": True} if reasons else {}))
+        for name, given in (
+            ("place", np.array(list(result.failures), dtype=np.int64)),
+            ("reason", np.array(reasons, dtype=bytes)),
+        ):
+            file.create_dataset(
+                f"failures/{name}", data=given, **({"fletcher32": True} if reasons else {})
+            )
     data, target = memory.getvalue(), chunk_path(folder, chunk.number)
     try:
         target.parent.mkdir(exist_ok=True)
         write_file(target, data, durable=True)
     except OSError as error:
         words = "see to the disk, then go on with --resume; the chunks that are done stay"
-        raise ComputationError(f"{target}: the chunk can't be written: {error.strerror}; {words}") from None
+        raise ComputationError(
+            f"{target}: the chunk can't be written: {error.strerror}; {words}"
+        ) from None
     return sha256(data).hexdigest()
 
 
@@ -95,7 +110,9 @@ def chunk_layout(folder: Path, number: int) -> dict[str, tuple[tuple[int, ...], 
         return {name: (values.shape, values.dtype) for name, values in file["arrays"].items()}
 
 
-def read_chunk(folder: Path, chunk: Span, study: str, names: Collection[str] | None = None) -> ChunkResult:
+def read_chunk(
+    folder: Path, chunk: Span, study: str, names: Collection[str] | None = None
+) -> ChunkResult:
     """Return the results of a chunk, read from its file.
 
     Parameters
@@ -119,7 +136,10 @@ def read_chunk(folder: Path, chunk: Span, study: str, names: Collection[str] | N
         if told != (study, chunk.first, chunk.size):
             raise ValueError("it is of another study, or has other drops")
         wanted = [name for name in file["arrays"] if names is None or name in names]
-        # by name and with [()], which raise errors for damage: items() would return None, and np.asarray an object array
+        # by name and with [()], which raise errors for damage: items() would return None, and
+        # np.asarray an object array
         arrays = {name: np.asarray(file["arrays"][name][()]) for name in wanted}
         reasons = [reason.decode() for reason in file["failures/reason"][()]]
-        return ChunkResult(arrays, dict(zip(file["failures/place"][()].tolist(), reasons, strict=True)))
+        return ChunkResult(
+            arrays, dict(zip(file["failures/place"][()].tolist(), reasons, strict=True))
+        )

@@ -1,4 +1,6 @@
-"""Compute the drops at some points of a study: rigid bodies in vectorized batches, deformable ones in small groups."""
+"""Compute the drops at some points of a study: rigid bodies in vectorized batches,
+deformable ones in small groups.
+"""
 
 from __future__ import annotations
 
@@ -23,13 +25,23 @@ from vibroimpact.dynamics.tabulate import tabulate
 from vibroimpact.errors import ComputationError, InputError, lines_of
 from vibroimpact.studies.axes import Values
 from vibroimpact.studies.chunk_file import ChunkResult
-from vibroimpact.studies.drop_variables import FIRST, LARGEST, OUTCOME, SENSOR_PEAK, SIGNAL, SIGNAL_START, TOTAL
+from vibroimpact.studies.drop_variables import (
+    FIRST,
+    LARGEST,
+    OUTCOME,
+    SENSOR_PEAK,
+    SIGNAL,
+    SIGNAL_START,
+    TOTAL,
+)
 from vibroimpact.studies.limit_columns import batch_conditions, drop_conditions, limit_columns
 from vibroimpact.studies.swept_keys import case_at, is_array_key, with_arrays
 from vibroimpact.studies.window import Window
 
 _TOGETHER = 32
-"""Drops with individual bodies that are computed together: enough for efficiency, few enough for their histories to fit in memory."""
+"""Drops with individual bodies that are computed together: enough for efficiency, few
+enough for their histories to fit in memory.
+"""
 
 
 class _Study(NamedTuple):
@@ -55,7 +67,11 @@ class _Part(NamedTuple):
 
 
 def compute_points(
-    table: Mapping[str, Any], keep: tuple[str, ...], first: int, points: Mapping[str, Values], window: Window | None = None
+    table: Mapping[str, Any],
+    keep: tuple[str, ...],
+    first: int,
+    points: Mapping[str, Values],
+    window: Window | None = None,
 ) -> ChunkResult:
     """Return the results of the drops at some points of a study.
 
@@ -75,20 +91,23 @@ def compute_points(
     Returns
     -------
     ChunkResult
-        Columns of the impact table (drops, impacts), peaks (drops,) and signals (drops, samples), and the reasons of failed drops,
-        which do not affect the others.
+        Columns of the impact table (drops, impacts), peaks (drops,) and signals (drops, samples),
+        and the reasons of failed drops, which do not affect the others.
 
     Examples
     --------
     >>> from vibroimpact.cases.reader import load_table
-    >>> found = compute_points(load_table("paper:type1-theory"), ("impacts",), 0, {"drop.height": np.array([2.0, 4.0])})
+    >>> found = compute_points(
+    ...     load_table("paper:type1-theory"), ("impacts",), 0, {"drop.height": np.array([2.0, 4.0])}
+    ... )
     >>> found.arrays["max_force_N"].shape
     (2, 5)
     """
     from threadpoolctl import threadpool_limits  # imported late: it inspects all loaded libraries
 
     study = _Study(table, keep, first, points, window)
-    with threadpool_limits(1):  # small matrix products gain nothing from threads, and results must not depend on their number
+    # small matrix products gain nothing from threads, and results must not depend on their number
+    with threadpool_limits(1):
         parts = [part for places in _alike(points) for part in _parts(study, places)]
     count = len(next(iter(points.values())))
     failures = {place: part.failures[place] for part in parts for place in part.failures}
@@ -119,14 +138,21 @@ def _parts(study: _Study, places: Indices) -> Iterator[_Part]:
             places = places[1:]
     else:
         return
-    arrays = {key: values[places] for key, values in study.points.items() if is_array_key(key, values)}
-    off_the_edge = any(key.startswith("plate.size.") for key in arrays) and is_oblique(with_arrays(case, arrays))
+    arrays = {
+        key: values[places] for key, values in study.points.items() if is_array_key(key, values)
+    }
+    off_the_edge = any(key.startswith("plate.size.") for key in arrays) and is_oblique(
+        with_arrays(case, arrays)
+    )
     if deforms(case) or off_the_edge or case.plate.motion is not None or not arrays:
         yield from _side_by_side(study, places)
         return
     height: Any = arrays.get("drop.height", case.drop.height)
-    if height is not None:  # drops that would start inside the plate are computed singly, and fail there
-        above = np.broadcast_to(height > arrays.get("sphere.radius", case.sphere.radius), places.shape)
+    # drops that would start inside the plate are computed singly, and fail there
+    if height is not None:
+        above = np.broadcast_to(
+            height > arrays.get("sphere.radius", case.sphere.radius), places.shape
+        )
         yield from (_alone(study, place) for place in places[~above])
         places, arrays = places[above], {key: values[above] for key, values in arrays.items()}
     try:
@@ -136,14 +162,19 @@ def _parts(study: _Study, places: Indices) -> Iterator[_Part]:
         yield from (_alone(study, place) for place in places)
         return
     columns, failures = _columns(table, study.keep), table.failures
-    if len(table) < places.size:  # the swept values, such as the thickness of a rigid plate, have no effect: one drop represents all
+    # the swept values, such as the thickness of a rigid plate, have no effect: one drop represents
+    # all
+    if len(table) < places.size:
         columns = {name: np.repeat(values, places.size, axis=0) for name, values in columns.items()}
         failures = {drop: reason for reason in failures.values() for drop in range(places.size)}
     columns |= limit_columns(batch_conditions(case, arrays, problem.laws[0], columns), places.size)
     failed = np.zeros(places.size, dtype=bool)
     failed[list(failures)] = True
-    columns = {name: values[~failed] for name, values in columns.items()}  # failed drops have no results
-    yield _Part(places[~failed], columns, {int(places[drop]): reason for drop, reason in failures.items()})
+    # failed drops have no results
+    columns = {name: values[~failed] for name, values in columns.items()}
+    yield _Part(
+        places[~failed], columns, {int(places[drop]): reason for drop, reason in failures.items()}
+    )
 
 
 def _alone(study: _Study, place: np.intp) -> _Part:
@@ -152,7 +183,9 @@ def _alone(study: _Study, place: np.intp) -> _Part:
 
 
 def _side_by_side(study: _Study, places: Indices) -> Iterator[_Part]:
-    """Compute drops with individual bodies in small groups; an error of one drop becomes its reason and does not affect the others."""
+    """Compute drops with individual bodies in small groups; an error of one drop becomes
+    its reason and does not affect the others.
+    """
     for begin in range(0, len(places), _TOGETHER):
         cases, problems = {}, {}
         for place in places[begin : begin + _TOGETHER].tolist():
@@ -161,7 +194,8 @@ def _side_by_side(study: _Study, places: Indices) -> Iterator[_Part]:
             except Exception as error:
                 yield _failed(place, error)
         if any(map(deforms, cases.values())):
-            from vibroimpact.cases.elastic.neighbours import solve_together  # imports the finite-element code
+            # imports the finite-element code
+            from vibroimpact.cases.elastic.neighbours import solve_together
 
             solve_together(cases.values())
         for place, case in cases.items():
@@ -171,9 +205,15 @@ def _side_by_side(study: _Study, places: Indices) -> Iterator[_Part]:
                 problems[place] = replace(problem, sensors=noisy, duration=_end(study, problem))
             except Exception as error:
                 yield _failed(place, error)
-        for place, response in zip(problems, simulate_together(list(problems.values())), strict=True):
+        for place, response in zip(
+            problems, simulate_together(list(problems.values())), strict=True
+        ):
             try:
-                yield _failed(place, response) if isinstance(response, Exception) else _part_of(study, place, response)
+                yield (
+                    _failed(place, response)
+                    if isinstance(response, Exception)
+                    else _part_of(study, place, response)
+                )
             except Exception as error:
                 yield _failed(place, error)
 
@@ -194,13 +234,17 @@ def _part_of(study: _Study, place: int, response: Response) -> _Part:
     """Return the kept results of one drop."""
     problem, signals = response.problem, {}
     if "signals" in study.keep:
-        duration = problem.duration or 0.0  # required by the study if signals are kept; a contact in progress at that time was completed
+        # required by the study if signals are kept; a contact in progress at that time was
+        # completed
+        duration = problem.duration or 0.0
         for name, signal in response.signals().items():
             rate = signal.sensor.rate
             asked = sample_count(duration, rate)
             value = signal.value[:asked]
             if study.window is not None:
-                begin, end = study.window.samples(response.impacts["time_s"], rate, len(value), ended=len(value) < asked)
+                begin, end = study.window.samples(
+                    response.impacts["time_s"], rate, len(value), ended=len(value) < asked
+                )
                 value, signals[f"{name}{SIGNAL_START}"] = value[begin:end], np.array([begin / rate])
             signals[f"{SIGNAL}{name}"] = value.astype(np.float32)[None]
             signals[f"{name}{SENSOR_PEAK}"] = np.array([np.abs(value).max()])
@@ -215,7 +259,10 @@ def _columns(response: Response, keep: tuple[str, ...]) -> dict[str, NDArray[Any
     """Return peaks, outcomes, and if kept the impact table of the drops of a response."""
     impacts = {name: np.atleast_2d(values) for name, values in response.impacts.items()}
     firsts = {peak: impacts[name] for peak, name in FIRST.items() if name in impacts}
-    first = {peak: values[:, 0] if values.size else np.full(len(response), np.nan) for peak, values in firsts.items()}
+    first = {
+        peak: values[:, 0] if values.size else np.full(len(response), np.nan)
+        for peak, values in firsts.items()
+    }
     peaks = {
         "number_of_impacts": np.isfinite(impacts["impact"]).sum(axis=1).astype(float),
         "end_time_s": response.end_time,
@@ -223,20 +270,36 @@ def _columns(response: Response, keep: tuple[str, ...]) -> dict[str, NDArray[Any
         "closure_relative": np.atleast_1d(response.energy["closure_relative"]),
         OUTCOME: np.array([outcome.code for outcome in response.outcomes], dtype=np.int8),
         **first,
-        **{peak: np.fmax.reduce(impacts[name], axis=1, initial=np.nan) for peak, name in LARGEST.items()},
+        **{
+            peak: np.fmax.reduce(impacts[name], axis=1, initial=np.nan)
+            for peak, name in LARGEST.items()
+        },
     }
-    kept = {name: values for name, values in impacts.items() if name != "impact"} if "impacts" in keep else {}
+    kept = (
+        {name: values for name, values in impacts.items() if name != "impact"}
+        if "impacts" in keep
+        else {}
+    )
     return {**peaks, **kept}
 
 
 def _gathered(parts: list[_Part], count: int) -> dict[str, NDArray[Any]]:
-    """Return the arrays of all drops of a chunk in order; missing values are NaN or 0, and the outcome of failed drops is FAILED."""
+    """Return the arrays of all drops of a chunk in order; missing values are NaN or 0,
+    and the outcome of failed drops is FAILED.
+    """
     found: dict[str, NDArray[Any]] = {OUTCOME: np.full(count, Outcome.FAILED.code, dtype=np.int8)}
     for part in parts:
         for name, values in part.arrays.items():
             if name not in found:
-                widest = np.max([other.arrays[name].shape[1:] for other in parts if name in other.arrays], axis=0)
-                found[name] = np.full((count, *widest.astype(int)), np.nan if values.dtype.kind == "f" else 0, dtype=values.dtype)
+                widest = np.max(
+                    [other.arrays[name].shape[1:] for other in parts if name in other.arrays],
+                    axis=0,
+                )
+                found[name] = np.full(
+                    (count, *widest.astype(int)),
+                    np.nan if values.dtype.kind == "f" else 0,
+                    dtype=values.dtype,
+                )
             place: Any = (part.places, *(slice(length) for length in values.shape[1:]))
             found[name][place] = values
     return found

@@ -1,4 +1,6 @@
-"""Compute a study in its folder, chunk by chunk, up to the dataset; resume one that was interrupted."""
+"""Compute a study in its folder, chunk by chunk, up to the dataset; resume one that was
+interrupted.
+"""
 
 from __future__ import annotations
 
@@ -26,7 +28,14 @@ from vibroimpact.studies.dask_workers import check_scheduler, dask_workers
 from vibroimpact.studies.drops_table import MOST_ROWS, write_drops
 from vibroimpact.studies.ledger import LEDGER, Ledger, Span, busy, is_held, make_ledger, open_ledger
 from vibroimpact.studies.run_chunks import Points, run_chunks
-from vibroimpact.studies.study_folder import DATASET, STUDY, clear_study, is_study, recover_study, study_toml
+from vibroimpact.studies.study_folder import (
+    DATASET,
+    STUDY,
+    clear_study,
+    is_study,
+    recover_study,
+    study_toml,
+)
 from vibroimpact.studies.sweep import LONG, Sweep
 from vibroimpact.studies.workers import Workers, processes, this_process
 from vibroimpact.studies.write_dataset import write_dataset
@@ -39,11 +48,16 @@ LEAST_MEMORY = 1e6
 
 _CHUNK = 8000  # drops with rigid bodies per chunk: a tenth of a second
 _ELASTIC_CHUNK = 32  # drops with elastic bodies per chunk: a second
-_PLATE_CHUNKS = 16  # of a population at least, before all falls on a plate are one chunk, so that one process computes its modes
-_PER_DROP, _COPIES = 4000.0, 4.0  # memory of a drop during computation [bytes], and copies of its results until they are written
+# of a population at least, before all falls on a plate are one chunk, so that one process computes
+# its modes
+_PLATE_CHUNKS = 16
+# memory of a drop during computation [bytes], and copies of its results until they are written
+_PER_DROP, _COPIES = 4000.0, 4.0
 
 _FEW_CHUNKS = 40  # the overhead of so many chunks is two seconds, whatever their size
-_USEFUL, _USEFUL_ELASTIC = 15_000, 3  # impacts with rigid bodies, or drops with elastic ones, in a chunk that limit its overhead to a third
+# impacts with rigid bodies, or drops with elastic ones, in a chunk that limit its overhead to a
+# third
+_USEFUL, _USEFUL_ELASTIC = 15_000, 3
 
 _MANY = 50_000  # drops above which assembling the dataset takes seconds
 
@@ -64,7 +78,8 @@ def compute_study(
     modes_progress: Callable[[float], None] | None = None,
     tell: Tell | None = None,
 ) -> Path:
-    """Compute a study in a folder: `study.nc`, `drops.csv`, and the ledger of its chunks; `run_sweep` also writes the report.
+    """Compute a study in a folder: `study.nc`, `drops.csv`, and the ledger of its chunks;
+    `run_sweep` also writes the report.
 
     Parameters
     ----------
@@ -86,7 +101,10 @@ def compute_study(
     if not isinstance(workers, int) or workers < 1:
         raise InputError(f"{workers!r} is not allowed; it must be a whole number from 1", "workers")
     if isinstance(memory, str) or not memory >= LEAST_MEMORY:
-        raise InputError(f"{memory!r} is not allowed; it must be a number of bytes, {LEAST_MEMORY:g} or more", "memory")
+        raise InputError(
+            f"{memory!r} is not allowed; it must be a number of bytes, {LEAST_MEMORY:g} or more",
+            "memory",
+        )
     if not resume:
         _check_memory(sweep, memory)
     folder = Path(directory)
@@ -104,7 +122,13 @@ def compute_study(
         if not (folder / DATASET).is_file():
             _invalidate_damaged(ledger, folder, tell)
             number = min(workers, len(ledger.chunks("waiting")))
-            _run(ledger, folder, sweep, _workers(folder, sweep, number, scheduler, modes_progress, tell), progress)
+            _run(
+                ledger,
+                folder,
+                sweep,
+                _workers(folder, sweep, number, scheduler, modes_progress, tell),
+                progress,
+            )
             if tell is not None and sweep.size >= _MANY:
                 tell("all drops are done; assembling the results")
             _assemble(folder, ledger, sweep)
@@ -117,7 +141,10 @@ def _create(folder: Path, sweep: Sweep, memory: float, *, force: bool) -> None:
     if is_held(folder):
         raise InputError(busy(folder))
     if is_study(folder) and not force:
-        remedy = "continue it with --resume if it is this one, replace it with --force, or name another folder"
+        remedy = (
+            "continue it with --resume if it is this one, replace it with "
+            "--force, or name another folder"
+        )
         raise InputError(f"{folder}: a study is there already; {remedy}")
     with new_folder(folder, force=force) as working:
         (working / STUDY).write_text(study_toml(sweep.whole_table), encoding="utf-8")
@@ -127,8 +154,14 @@ def _create(folder: Path, sweep: Sweep, memory: float, *, force: bool) -> None:
 
 
 def _summary(sweep: Sweep) -> dict[str, Any]:
-    """Return the content of `summary.json`, to which the checksum of the dataset is added when that is written."""
-    return {"name": sweep.name, "version": __version__, "study": {"design": sweep.section.design, "drops": sweep.size}}
+    """Return the content of `summary.json`, to which the checksum of the dataset is added
+    when that is written.
+    """
+    return {
+        "name": sweep.name,
+        "version": __version__,
+        "study": {"design": sweep.section.design, "drops": sweep.size},
+    }
 
 
 def _restore_ledger(folder: Path, sweep: Sweep, memory: float) -> None:
@@ -151,11 +184,18 @@ def _check_same(ledger: Ledger, folder: Path, sweep: Sweep) -> None:
     for key, name in (("version", "vibroimpact"), ("numpy", "NumPy")):
         if facts.get(key) != now[key]:
             words = f"this study was begun with {name} {facts.get(key)}, and this is {now[key]}"
-            raise InputError(f"{folder}: {words}; go on with that version, or begin anew with --force in place of --resume")
+            raise InputError(
+                f"{folder}: {words}; go on with that version, or begin anew with --force "
+                "in place of --resume"
+            )
     if facts.get("digest") != now["digest"]:
-        words = "the study has changed since it was begun here: its case, its points, its files or what is kept"
+        words = (
+            "the study has changed since it was begun here: its case, its points, "
+            "its files or what is kept"
+        )
         raise InputError(
-            f"{folder}: {words}; {STUDY} in it is what was begun; begin anew with --force in place of --resume, or in another folder"
+            f"{folder}: {words}; {STUDY} in it is what was begun; begin anew with --force "
+            "in place of --resume, or in another folder"
         )
 
 
@@ -168,7 +208,9 @@ def _invalidate_damaged(ledger: Ledger, folder: Path, tell: Tell | None) -> None
                 tell(f"chunk {number} on disk is damaged or missing; it is computed again")
 
 
-def _run(ledger: Ledger, folder: Path, sweep: Sweep, workers: Workers, progress: Progress | None) -> None:
+def _run(
+    ledger: Ledger, folder: Path, sweep: Sweep, workers: Workers, progress: Progress | None
+) -> None:
     """Compute the waiting chunks."""
     waiting = ledger.chunks("waiting")
     done = sweep.size - sum(chunk.size for chunk in waiting)
@@ -185,29 +227,59 @@ def _run(ledger: Ledger, folder: Path, sweep: Sweep, workers: Workers, progress:
     def points(chunk: Span) -> Points:
         return sweep.plan.points(chunk.first, chunk.size)
 
-    run_chunks(partial(compute_points, sweep.table, sweep.section.keep, window=sweep.window), points, waiting, workers, keep)
+    run_chunks(
+        partial(compute_points, sweep.table, sweep.section.keep, window=sweep.window),
+        points,
+        waiting,
+        workers,
+        keep,
+    )
 
 
 def _assemble(folder: Path, ledger: Ledger, sweep: Sweep) -> None:
-    """Write table and dataset from the chunks; the dataset comes last, as its presence marks a complete study."""
+    """Write table and dataset from the chunks; the dataset comes last, as its presence
+    marks a complete study.
+    """
     chunks, left = ledger.chunks("done"), ledger.chunks("waiting")
     if left:
-        raise ComputationError(f"{folder}: {len(left)} of the chunks {'is' if len(left) == 1 else 'are'} not done; go on with --resume")
+        raise ComputationError(
+            f"{folder}: {len(left)} of the chunks {'is' if len(left) == 1 else 'are'} not "
+            "done; go on with --resume"
+        )
     rates = {sensor.name: sensor.rate for sensor in sweep.case.sensors}
     try:
         if sweep.size <= MOST_ROWS:
             write_drops(folder, chunks, sweep.digest, sweep.plan, sweep.meanings)
-        write_dataset(folder, sweep.name, chunks, sweep.digest, sweep.plan, sweep.whole_table, sweep.meanings, rates, _summary(sweep))
+        write_dataset(
+            folder,
+            sweep.name,
+            chunks,
+            sweep.digest,
+            sweep.plan,
+            sweep.whole_table,
+            sweep.meanings,
+            rates,
+            _summary(sweep),
+        )
     except OSError as error:
         why = os.strerror(error.errno) if error.errno else str(error)
-        words = f"the results can't be put together: {why}; see to the disk, then go on with --resume"
+        words = (
+            f"the results can't be put together: {why}; see to the disk, then go on with --resume"
+        )
         raise ComputationError(f"{folder}: {words}") from None
 
 
 def _workers(
-    folder: Path, sweep: Sweep, number: int, scheduler: str | None, modes_progress: Callable[[float], None] | None, tell: Tell | None
+    folder: Path,
+    sweep: Sweep,
+    number: int,
+    scheduler: str | None,
+    modes_progress: Callable[[float], None] | None,
+    tell: Tell | None,
 ) -> Workers:
-    """Return a function that starts workers; each receives the modes of the first point once, wherever it runs."""
+    """Return a function that starts workers; each receives the modes of the first point
+    once, wherever it runs.
+    """
     from threadpoolctl import threadpool_limits  # imported late: it inspects all loaded libraries
 
     entries = {}
@@ -216,7 +288,11 @@ def _workers(
             entries = carried_modes(sweep.case, modes_progress, tell)
     if scheduler is not None:
         return partial(dask_workers, scheduler, number, partial(receive, entries))
-    return this_process if number <= 1 else partial(processes, number, partial(receive, entries), folder / FOLDER)
+    return (
+        this_process
+        if number <= 1
+        else partial(processes, number, partial(receive, entries), folder / FOLDER)
+    )
 
 
 def _facts(sweep: Sweep) -> dict[str, str]:
@@ -224,14 +300,19 @@ def _facts(sweep: Sweep) -> dict[str, str]:
 
 
 def least_memory(sweep: Sweep) -> float:
-    """Return the memory per chunk [bytes] below which the overhead of chunks lengthens a study by more than a third.
+    """Return the memory per chunk [bytes] below which the overhead of chunks lengthens a study by
+    more than a third.
 
     Parameters
     ----------
     sweep : Sweep
         The study.
     """
-    useful = _USEFUL_ELASTIC if sweep.deforms else math.ceil(_USEFUL / (impact_limit(sweep.case) or LONG))
+    useful = (
+        _USEFUL_ELASTIC
+        if sweep.deforms
+        else math.ceil(_USEFUL / (impact_limit(sweep.case) or LONG))
+    )
     return max(LEAST_MEMORY, min(useful, math.ceil(sweep.size / _FEW_CHUNKS)) * _bytes_each(sweep))
 
 
@@ -241,7 +322,8 @@ def _check_memory(sweep: Sweep, memory: float) -> None:
     if memory < least:
         size = chunk_size(sweep, memory)
         raise InputError(
-            f"{memory / 1e6:.10g} MB is too little for {sweep.size:,} drops: computed {size:,} at a time they take over a third longer; "
+            f"{memory / 1e6:.10g} MB is too little for {sweep.size:,} drops: computed "
+            f"{size:,} at a time they take over a third longer; "
             f"give {math.ceil(least / 1e6)} MB or more",
             "memory",
         )
@@ -253,7 +335,8 @@ def _bytes_each(sweep: Sweep) -> float:
 
 
 def chunk_size(sweep: Sweep, memory: float) -> int:
-    """Return the number of drops per chunk: fewer if memory is short, independent of the number of workers.
+    """Return the number of drops per chunk: fewer if memory is short, independent of the number of
+    workers.
 
     Parameters
     ----------

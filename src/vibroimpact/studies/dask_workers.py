@@ -29,10 +29,14 @@ def check_scheduler(address: str) -> None:
     Raises
     ------
     InputError
-        If Dask is not installed, no scheduler answers at the address, it has no workers, or they run another version of this package.
+        If Dask is not installed, no scheduler answers at the address, it has no workers, or they
+        run another version of this package.
     """
     if find_spec("distributed") is None:
-        raise InputError('a Dask scheduler needs Dask; install it with: pip install "vibroimpact[cluster]"', "--scheduler")
+        raise InputError(
+            'a Dask scheduler needs Dask; install it with: pip install "vibroimpact[cluster]"',
+            "--scheduler",
+        )
     if address != LOCAL:
         _client(address).close()
 
@@ -58,12 +62,23 @@ def dask_workers(address: str, number: int, setup: Setup) -> Iterator[WorkerPool
         def setup(self, worker: object) -> None:
             setup()
 
-    # the scheduler serves its health page even without a dashboard; choose a free port, as 8787 may be in use
+    # the scheduler serves its health page even without a dashboard; choose a free port, as 8787 may
+    # be in use
     questions = {"dashboard": False, "dashboard_address": "localhost:0"}
-    options = {"n_workers": number, "threads_per_worker": 1, "scheduler_kwargs": questions, "silence_logs": logging.CRITICAL}
-    with LocalCluster(**options) if address == LOCAL else nullcontext(address) as cluster, Client(cluster) as client:
+    options = {
+        "n_workers": number,
+        "threads_per_worker": 1,
+        "scheduler_kwargs": questions,
+        "silence_logs": logging.CRITICAL,
+    }
+    with (
+        LocalCluster(**options) if address == LOCAL else nullcontext(address) as cluster,
+        Client(cluster) as client,
+    ):
         client.register_plugin(Setting())
-        yield WorkerPool(client.get_executor(pure=False), lambda: 2 * max(1, sum(client.nthreads().values())))
+        yield WorkerPool(
+            client.get_executor(pure=False), lambda: 2 * max(1, sum(client.nthreads().values()))
+        )
 
 
 def _client(address: str) -> Any:
@@ -73,18 +88,28 @@ def _client(address: str) -> Any:
     try:
         client = Client(address, timeout=_PATIENCE)
     except (OSError, ValueError, TimeoutError) as error:
-        words = 'the address of a scheduler is such as tcp://10.0.0.5:8786, or "local" for one of this machine'
+        words = (
+            'the address of a scheduler is such as tcp://10.0.0.5:8786, or "local" for one of '
+            "this machine"
+        )
         why = next(iter(str(error).splitlines()), type(error).__name__)
-        raise InputError(f"{address}: no Dask scheduler answers there ({why}); {words}", "--scheduler") from None
+        raise InputError(
+            f"{address}: no Dask scheduler answers there ({why}); {words}", "--scheduler"
+        ) from None
     found = client.run(_version)
     if not found:
         client.close()
-        raise InputError(f"{address}: this scheduler has no workers; start some, such as: dask worker {address}", "--scheduler")
+        raise InputError(
+            f"{address}: this scheduler has no workers; start some, such as: dask worker {address}",
+            "--scheduler",
+        )
     for worker, version in found.items():
         if version != __version__:
             client.close()
             raise InputError(
-                f"the worker {worker} has vibroimpact {version}, and this is {__version__}; install the same version", "--scheduler"
+                f"the worker {worker} has vibroimpact {version}, and this is "
+                f"{__version__}; install the same version",
+                "--scheduler",
             )
     return client
 

@@ -54,7 +54,8 @@ class Design:
     is_drawn : bool
         Whether it takes a number of samples and a seed.
     size : callable
-        Takes what is asked of it, returns the number of points. Raises InputError if that does not suit the design.
+        Takes what is asked of it, returns the number of points. Raises InputError if that does not
+        suit the design.
     plan : callable
         Takes the same, returns the points.
     """
@@ -75,7 +76,12 @@ def designs() -> Mapping[str, Design]:
     >>> list(designs())
     ['grid', 'latin-hypercube', 'population', 'saltelli', 'sobol', 'zip']
     """
-    found = [value for module in modules_in("vibroimpact.studies.designs") for value in vars(module).values() if isinstance(value, Design)]
+    found = [
+        value
+        for module in modules_in("vibroimpact.studies.designs")
+        for value in vars(module).values()
+        if isinstance(value, Design)
+    ]
     return {one.name: one for one in sorted(found, key=lambda one: one.name)}
 
 
@@ -91,8 +97,12 @@ def find_design(name: str) -> Design:
 
 
 def drawn_plan(name: str, axes: Mapping[str, Axis], parts: Floats) -> Plan:
-    """Return the plan whose points are the quantiles of the axes at probabilities (points, axes)."""
-    columns = {key: axis.quantiles(parts[:, place]) for place, (key, axis) in enumerate(axes.items())}
+    """Return the plan whose points are the quantiles of the axes at probabilities
+    (points, axes).
+    """
+    columns = {
+        key: axis.quantiles(parts[:, place]) for place, (key, axis) in enumerate(axes.items())
+    }
     return Plan(name, scaled_columns(axes, columns), False)
 
 

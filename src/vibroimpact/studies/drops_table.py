@@ -24,8 +24,11 @@ MOST_ROWS = 1_000_000
 """Number of drops above which no table is written, as no program could display it."""
 
 
-def write_drops(folder: Path, chunks: Sequence[Span], study: str, plan: Plan, meanings: Meanings) -> None:
-    """Write one row per drop: number, values of the swept keys, peaks, outcome, exceeded limits and reason of failure.
+def write_drops(
+    folder: Path, chunks: Sequence[Span], study: str, plan: Plan, meanings: Meanings
+) -> None:
+    """Write one row per drop: number, values of the swept keys, peaks, outcome, exceeded limits and
+    reason of failure.
 
     Parameters
     ----------
@@ -38,9 +41,16 @@ def write_drops(folder: Path, chunks: Sequence[Span], study: str, plan: Plan, me
         If it can't be written, such as on a full disk.
     """
     kept = {name for chunk in chunks for name in chunk_layout(folder, chunk.number)}
-    peaks = [name for name in meanings if name in kept and (name in PEAKS or name.endswith(SENSOR_PEAK))]
-    keys = [key if meanings[key][0] == "1" else f"{key} [{meanings[key][0]}]" for key in plan.columns]
-    with atomic_file(folder / TABLE) as working, working.open("w", newline="", encoding="utf-8") as file:
+    peaks = [
+        name for name in meanings if name in kept and (name in PEAKS or name.endswith(SENSOR_PEAK))
+    ]
+    keys = [
+        key if meanings[key][0] == "1" else f"{key} [{meanings[key][0]}]" for key in plan.columns
+    ]
+    with (
+        atomic_file(folder / TABLE) as working,
+        working.open("w", newline="", encoding="utf-8") as file,
+    ):
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(["drop", *keys, *peaks, OUTCOME, DOUBTS, "reason"])
         for chunk in chunks:
@@ -48,16 +58,32 @@ def write_drops(folder: Path, chunks: Sequence[Span], study: str, plan: Plan, me
             writer.writerows(_rows(chunk, plan, result, peaks))
 
 
-def _rows(chunk: Span, plan: Plan, result: ChunkResult, peaks: Sequence[str]) -> Iterator[tuple[Any, ...]]:
+def _rows(
+    chunk: Span, plan: Plan, result: ChunkResult, peaks: Sequence[str]
+) -> Iterator[tuple[Any, ...]]:
     ended = result.arrays.get(OUTCOME, np.full(chunk.size, Outcome.FAILED.code))
     columns = [_cells(result.arrays.get(name, np.full(chunk.size, np.nan))) for name in peaks]
-    points = [[as_text(value) for value in values.tolist()] for values in plan.points(chunk.first, chunk.size).values()]
+    points = [
+        [as_text(value) for value in values.tolist()]
+        for values in plan.points(chunk.first, chunk.size).values()
+    ]
     numbers = range(chunk.first, chunk.first + chunk.size)
     reasons = [result.failures.get(place, "") for place in range(chunk.size)]
     beyond = result.arrays.get(DOUBTS, np.zeros(chunk.size, dtype=np.int32)).tolist()
-    doubts = {mask: " ".join(name for bit, name in enumerate(limits()) if mask >> bit & 1) for mask in set(beyond)}
+    doubts = {
+        mask: " ".join(name for bit, name in enumerate(limits()) if mask >> bit & 1)
+        for mask in set(beyond)
+    }
     outcomes = [OUTCOMES[code].value for code in ended]
-    yield from zip(numbers, *points, *columns, outcomes, [doubts[mask] for mask in beyond], reasons, strict=True)
+    yield from zip(
+        numbers,
+        *points,
+        *columns,
+        outcomes,
+        [doubts[mask] for mask in beyond],
+        reasons,
+        strict=True,
+    )
 
 
 def _cells(values: NDArray[Any]) -> list[Any]:

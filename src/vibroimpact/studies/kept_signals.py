@@ -23,14 +23,20 @@ def check_need_of_signals(section: SweepSection, keys: Collection[str]) -> None:
     if "signals" in section.keep:
         return
     if section.window is not None:
-        raise InputError('it is a part of the signals, which are not kept; give keep = ["signals"]', "window")
+        raise InputError(
+            'it is a part of the signals, which are not kept; give keep = ["signals"]', "window"
+        )
     of_sensor = next((key for key in keys if key.startswith("sensors.")), None)
     if of_sensor is not None:
-        raise InputError('it changes signals alone, which are not kept; give keep = ["signals"]', f'over."{of_sensor}"')
+        raise InputError(
+            'it changes signals alone, which are not kept; give keep = ["signals"]',
+            f'over."{of_sensor}"',
+        )
 
 
 def check_signals(case: Case, taken: Collection[str]) -> None:
-    """Check that the signals of a case can be kept, and that their names are not those of other variables.
+    """Check that the signals of a case can be kept, and that their names are not those of other
+    variables.
 
     Raises
     ------
@@ -40,20 +46,36 @@ def check_signals(case: Case, taken: Collection[str]) -> None:
     # names of sensors become names of variables of the dataset
     sensors = [sensor.name for sensor in case.sensors]
     variables = [
-        name for sensor in sensors for name in (f"{SIGNAL}{sensor}", f"{sensor}{SENSOR_PEAK}", f"{sensor}{SIGNAL_START}", f"time_{sensor}")
+        name
+        for sensor in sensors
+        for name in (
+            f"{SIGNAL}{sensor}",
+            f"{sensor}{SENSOR_PEAK}",
+            f"{sensor}{SIGNAL_START}",
+            f"time_{sensor}",
+        )
     ]
     for name in variables:
         if not name.isprintable() or "/" in name or variables.count(name) > 1 or name in taken:
-            words = f'"{name}" can\'t be the name of a variable of the dataset, or is that of another; call the sensor otherwise'
+            words = (
+                f'"{name}" can\'t be the name of a variable of the dataset, or is that of '
+                "another; call the sensor otherwise"
+            )
             raise InputError(words, "sensors")
     if not sensors:
-        raise InputError('"signals" needs [[sensors]], on a plate that is elastic or shaken', "sweep.keep")
+        raise InputError(
+            '"signals" needs [[sensors]], on a plate that is elastic or shaken', "sweep.keep"
+        )
     if case.run.duration is None:
-        raise InputError("it is missing; signals need it, so that those of all drops are of one length", "run.duration")
+        raise InputError(
+            "it is missing; signals need it, so that those of all drops are of one length",
+            "run.duration",
+        )
 
 
 def check_swept_sensors(table: Mapping[str, Any], keys: Collection[str], case: Case) -> None:
-    """Check that sensors, where they are swept, put out signals as those of the case by itself do, so that all fit into one array.
+    """Check that sensors, where they are swept, put out signals as those of the case by itself do,
+    so that all fit into one array.
 
     Parameters
     ----------
@@ -72,7 +94,13 @@ def check_swept_sensors(table: Mapping[str, Any], keys: Collection[str], case: C
     if not any(key.startswith("sensors.") for key in keys):
         return
     for own, swept in zip(sensors_of(table).values(), case.sensors, strict=True):
-        wanted, found = (f"{sensor.sensor().quantity} [{sensor.sensor().unit}] at {sensor.rate:.10g} Hz" for sensor in (own, swept))
+        wanted, found = (
+            f"{sensor.sensor().quantity} [{sensor.sensor().unit}] at {sensor.rate:.10g} Hz"
+            for sensor in (own, swept)
+        )
         if wanted != found:
-            words = f"it would give {found}, and {wanted} by the case; signals of a study have one quantity, unit and rate"
+            words = (
+                f"it would give {found}, and {wanted} by the case; signals of a study have one "
+                "quantity, unit and rate"
+            )
             raise InputError(words, f"sensors.{own.name}")

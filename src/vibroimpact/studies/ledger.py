@@ -1,6 +1,7 @@
 """The ledger of a study: its chunks and their state, in an SQLite database.
 
-The process that computes the study holds an exclusive lock on it, which the operating system releases even if the process is killed.
+The process that computes the study holds an exclusive lock on it, which the operating system
+releases even if the process is killed.
 """
 
 from __future__ import annotations
@@ -19,8 +20,9 @@ LEDGER = "ledger.sqlite"
 
 _SCHEMA = """
 CREATE TABLE study (key TEXT PRIMARY KEY, value TEXT NOT NULL);
-CREATE TABLE chunk (number INTEGER PRIMARY KEY, first INTEGER NOT NULL, count INTEGER NOT NULL, state TEXT NOT NULL DEFAULT 'waiting',
-                    failed INTEGER, sha256 TEXT, finished TEXT);
+CREATE TABLE chunk (number INTEGER PRIMARY KEY, first INTEGER NOT NULL, count INTEGER NOT NULL,
+                    state TEXT NOT NULL DEFAULT 'waiting', failed INTEGER, sha256 TEXT,
+                    finished TEXT);
 """
 
 
@@ -46,36 +48,60 @@ class Ledger:
 
     def chunks(self, state: str) -> list[Span]:
         """Return the chunks in state "waiting" or "done", in order."""
-        rows = self.connection.execute("SELECT number, first, count FROM chunk WHERE state = ? ORDER BY number", (state,))
+        rows = self.connection.execute(
+            "SELECT number, first, count FROM chunk WHERE state = ? ORDER BY number", (state,)
+        )
         return [Span(*row) for row in rows]
 
     def checksums(self) -> dict[int, str]:
         """Return the checksums of the completed chunks by number."""
-        return dict(self.connection.execute("SELECT number, sha256 FROM chunk WHERE state = 'done' ORDER BY number"))
+        return dict(
+            self.connection.execute(
+                "SELECT number, sha256 FROM chunk WHERE state = 'done' ORDER BY number"
+            )
+        )
 
     def done(self, chunk: Span, sha256: str, failed: int) -> None:
         """Record that a chunk is computed and written."""
         with _translated_faults(self.path), self.connection:
             self.connection.execute(
-                "UPDATE chunk SET state = 'done', sha256 = ?, failed = ?, finished = datetime('now') WHERE number = ?",
+                "UPDATE chunk SET state = 'done', sha256 = ?, failed = ?, finished = "
+                "datetime('now') WHERE number = ?",
                 (sha256, failed, chunk.number),
             )
 
     def undone(self, chunk: int) -> None:
         """Record that a chunk must be recomputed, as its file is damaged or missing."""
         with _translated_faults(self.path), self.connection:
-            self.connection.execute("UPDATE chunk SET state = 'waiting', sha256 = NULL, failed = NULL WHERE number = ?", (chunk,))
+            self.connection.execute(
+                "UPDATE chunk SET state = 'waiting', sha256 = NULL, failed = NULL WHERE number = ?",
+                (chunk,),
+            )
 
 
 def make_ledger(folder: Path, facts: Mapping[str, str], size: int, chunk: int) -> None:
-    """Create atomically the ledger of a study of `size` points in chunks of `chunk` points, all waiting."""
-    with _translated_faults(folder / LEDGER), atomic_file(folder / LEDGER) as working, closing(sqlite3.connect(working)) as connection:
-        connection.execute("PRAGMA journal_mode = MEMORY")  # the file appears atomically, without a journal beside it
+    """Create atomically the ledger of a study of `size` points in chunks of `chunk`
+    points, all waiting.
+    """
+    with (
+        _translated_faults(folder / LEDGER),
+        atomic_file(folder / LEDGER) as working,
+        closing(sqlite3.connect(working)) as connection,
+    ):
+        # the file appears atomically, without a journal beside it
+        connection.execute("PRAGMA journal_mode = MEMORY")
         with connection:
             connection.executescript(_SCHEMA)
-            connection.executemany("INSERT INTO study VALUES (?, ?)", {**facts, "size": str(size)}.items())
-            spans = ((number, first, min(chunk, size - first)) for number, first in enumerate(range(0, size, chunk)))
-            connection.executemany("INSERT INTO chunk (number, first, count) VALUES (?, ?, ?)", spans)
+            connection.executemany(
+                "INSERT INTO study VALUES (?, ?)", {**facts, "size": str(size)}.items()
+            )
+            spans = (
+                (number, first, min(chunk, size - first))
+                for number, first in enumerate(range(0, size, chunk))
+            )
+            connection.executemany(
+                "INSERT INTO chunk (number, first, count) VALUES (?, ?, ?)", spans
+            )
 
 
 def busy(folder: Path) -> str:
@@ -115,10 +141,12 @@ def open_ledger(folder: Path) -> Iterator[Ledger]:
         connection = sqlite3.connect(path, timeout=0.2)
     try:
         with _translated_faults(path):
-            # the journal of a killed process remains until the next write; changing the journal mode rolls it back and deletes it
+            # the journal of a killed process remains until the next write; changing the journal
+            # mode rolls it back and deletes it
             connection.execute("PRAGMA journal_mode = TRUNCATE")
             connection.execute("PRAGMA journal_mode = DELETE")
-            # the lock lasts from the first write to the end of the connection; the system releases it if the process is killed
+            # the lock lasts from the first write to the end of the connection; the system releases
+            # it if the process is killed
             connection.execute("PRAGMA locking_mode = EXCLUSIVE")
             connection.execute("BEGIN EXCLUSIVE")
             connection.execute("COMMIT")
@@ -133,22 +161,40 @@ def open_ledger(folder: Path) -> Iterator[Ledger]:
 
 
 def _check_schema(connection: sqlite3.Connection) -> None:
-    """Check that the database has the tables of a ledger, and no views and triggers, which would run."""
-    expected = {" ".join(statement.split()) for statement in _SCHEMA.split(";") if statement.strip()}
-    rows = connection.execute("SELECT sql FROM sqlite_master WHERE sql IS NOT NULL LIMIT 10").fetchall()
+    """Check that the database has the tables of a ledger, and no views and triggers,
+    which would run.
+    """
+    expected = {
+        " ".join(statement.split()) for statement in _SCHEMA.split(";") if statement.strip()
+    }
+    rows = connection.execute(
+        "SELECT sql FROM sqlite_master WHERE sql IS NOT NULL LIMIT 10"
+    ).fetchall()
     if {" ".join(str(sql).split()) for (sql,) in rows} != expected:
         raise sqlite3.DatabaseError("it has other tables than a ledger")
 
 
 def _check_chunks(connection: sqlite3.Connection) -> None:
-    """Check that the chunks are contiguous and their states valid, as the database has no checksums of its own."""
-    rows = connection.execute("SELECT number, first, count, state FROM chunk ORDER BY number").fetchall()
+    """Check that the chunks are contiguous and their states valid, as the database has no
+    checksums of its own.
+    """
+    rows = connection.execute(
+        "SELECT number, first, count, state FROM chunk ORDER BY number"
+    ).fetchall()
     begin = 0
     for place, (number, first, count, state) in enumerate(rows):
-        if number != place or first != begin or not isinstance(count, int) or count < 1 or state not in ("waiting", "done"):
+        if (
+            number != place
+            or first != begin
+            or not isinstance(count, int)
+            or count < 1
+            or state not in ("waiting", "done")
+        ):
             raise sqlite3.DatabaseError(f"chunk {place} is not what it was")
         begin += count
-    if [str(begin)] != [value for (value,) in connection.execute("SELECT value FROM study WHERE key = 'size'")]:
+    if [str(begin)] != [
+        value for (value,) in connection.execute("SELECT value FROM study WHERE key = 'size'")
+    ]:
         raise sqlite3.DatabaseError("chunks are missing")
 
 
@@ -177,5 +223,8 @@ def _write_failure(path: Path, why: str) -> str:
 def _damage(path: Path, why: str) -> str:
     """Return the error message for a damaged ledger."""
     shown = "".join(letter if letter.isprintable() else " " for letter in why)[:100]
-    words = "delete this file and go on with --resume: it is made anew from the chunks that are there and whole"
+    words = (
+        "delete this file and go on with --resume: it is made anew from the chunks that are "
+        "there and whole"
+    )
     return f"{path}: the ledger is damaged ({shown}); {words}"

@@ -1,4 +1,6 @@
-"""The limits of the theory for the drops of a study: the number compared with each limit, and the limits exceeded."""
+"""The limits of the theory for the drops of a study: the number compared with each limit,
+and the limits exceeded.
+"""
 
 from __future__ import annotations
 
@@ -29,11 +31,15 @@ from vibroimpact.studies.drop_variables import DOUBTS, LIMIT
 
 def limit_meanings() -> dict[str, tuple[str, str]]:
     """Return unit and meaning of the variables on limits in a study."""
-    return {DOUBTS: ("1", "limits that the drop is beyond"), **{f"{LIMIT}{name}": ("1", limit.meaning) for name, limit in limits().items()}}
+    return {
+        DOUBTS: ("1", "limits that the drop is beyond"),
+        **{f"{LIMIT}{name}": ("1", limit.meaning) for name, limit in limits().items()},
+    }
 
 
 def limit_columns(drops: Conditions, count: int) -> dict[str, NDArray[Any]]:
-    """Return the numbers of the applicable limits, and a bit mask of the limits that each drop exceeds.
+    """Return the numbers of the applicable limits, and a bit mask of the limits that each drop
+    exceeds.
 
     Parameters
     ----------
@@ -46,15 +52,21 @@ def limit_columns(drops: Conditions, count: int) -> dict[str, NDArray[Any]]:
     for bit, (name, limit) in enumerate(limits().items()):
         if name in numbers:
             beyond |= np.left_shift(np.greater(numbers[name], limit.threshold), bit, dtype=np.int32)
-    return {DOUBTS: beyond, **{f"{LIMIT}{name}": _one_each(number, count) for name, number in numbers.items()}}
+    return {
+        DOUBTS: beyond,
+        **{f"{LIMIT}{name}": _one_each(number, count) for name, number in numbers.items()},
+    }
 
 
 def _one_each(number: Any, count: int) -> NDArray[np.float32]:
     return np.array(np.broadcast_to(number, count), dtype=np.float32)
 
 
-def batch_conditions(case: Case, arrays: Mapping[str, Values], law: ContactLaw, peaks: Mapping[str, NDArray[Any]]) -> Conditions:
-    """Return the conditions of a batch of drops with rigid bodies, for the evaluation of the limits.
+def batch_conditions(
+    case: Case, arrays: Mapping[str, Values], law: ContactLaw, peaks: Mapping[str, NDArray[Any]]
+) -> Conditions:
+    """Return the conditions of a batch of drops with rigid bodies, for the evaluation of the
+    limits.
 
     Parameters
     ----------
@@ -67,16 +79,26 @@ def batch_conditions(case: Case, arrays: Mapping[str, Values], law: ContactLaw, 
     peaks : mapping of str to array
         Their peaks.
     """
-    of_law = (key for key in arrays if key.startswith("contact.") and not key.startswith("contact.liquid."))
+    of_law = (
+        key
+        for key in arrays
+        if key.startswith("contact.") and not key.startswith("contact.liquid.")
+    )
     given_elsewhere = {key: arrays[key] for key in arrays.keys() - set(of_law)}
     table = cast("ResolvedCase", with_values(resolved_case(case), given_elsewhere))
-    given = {item.name: getattr(law, item.name) for item in fields(law) if item.name not in by_speed_of(case)}
+    given = {
+        item.name: getattr(law, item.name)
+        for item in fields(law)
+        if item.name not in by_speed_of(case)
+    }
     table["contact"] |= {name: value for name, value in given.items() if value is not None}
     return Conditions(table, _seen(peaks))
 
 
 def drop_conditions(response: Response, peaks: Mapping[str, NDArray[Any]]) -> Conditions:
-    """Return the conditions of one drop, whose bodies may vibrate, for the evaluation of the limits."""
+    """Return the conditions of one drop, whose bodies may vibrate, for the evaluation of
+    the limits.
+    """
     problem, modes = response.problem, {}
     for body, part in response.truncation.items():
         modes[body] = part, float(getattr(problem, body).modes.frequencies[-1])

@@ -11,7 +11,9 @@ from vibroimpact.cases.reader import load_table, prefix_errors
 from vibroimpact.studies.read_sweep import read_sweep
 
 
-def load_drop(source: str | PathLike[str], drop: int, changes: Mapping[str, Any] | None = None) -> Case:
+def load_drop(
+    source: str | PathLike[str], drop: int, changes: Mapping[str, Any] | None = None
+) -> Case:
     """Return the case of one drop of a study.
 
     Parameters

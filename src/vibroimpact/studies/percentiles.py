@@ -34,7 +34,9 @@ class Spread(NamedTuple):
     @property
     def varies(self) -> bool:
         """Whether the values differ by more than rounding."""
-        return self.drops > 1 and self.standard_deviation > 1e-9 * max(abs(self.mean), abs(self.percentiles[2]))
+        return self.drops > 1 and self.standard_deviation > 1e-9 * max(
+            abs(self.mean), abs(self.percentiles[2])
+        )
 
 
 def spread_of(values: Floats) -> Spread:
@@ -55,7 +57,8 @@ def spread_of(values: Floats) -> Spread:
     >>> spread_of(np.array([1.0, 2.0, 3.0, np.nan]))
     Spread(drops=3, mean=2.0, standard_deviation=1.0, percentiles=(1.1, 1.5, 2.0, 2.5, 2.9))
     """
-    finite = np.asarray(values, dtype=float)[np.isfinite(values)]  # a copy, to be sorted and shifted in place
+    # a copy, to be sorted and shifted in place
+    finite = np.asarray(values, dtype=float)[np.isfinite(values)]
     number = len(finite)
     if not number:
         return Spread(0, math.nan, math.nan, (math.nan,) * len(PERCENTILES))

@@ -25,7 +25,8 @@ class Plan:
     design : str
         The name of the design that made them.
     columns : mapping of str to array
-        By swept key the levels of a grid, with the last key varying fastest, else one value per point.
+        By swept key the levels of a grid, with the last key varying fastest, else one value per
+        point.
     is_grid : bool
         Whether the points are all combinations of the levels.
     labels : mapping of str to array, optional
@@ -62,12 +63,22 @@ class Plan:
         if not self.is_grid:
             return {key: values[first : first + count] for key, values in self.columns.items()}
         places = np.unravel_index(np.arange(first, first + count), tuple(self.dimensions.values()))
-        return {key: levels[place] for (key, levels), place in zip(self.columns.items(), places, strict=True)}
+        return {
+            key: levels[place]
+            for (key, levels), place in zip(self.columns.items(), places, strict=True)
+        }
 
     def digest(self) -> str:
         """Return a fingerprint (SHA-256) of all points."""
         found = sha256(f"{self.design} {self.is_grid}".encode())
         for key, values in {**self.columns, **self.labels}.items():
             objects = values.dtype == object
-            found.update(key.encode() + (json.dumps(values.tolist()).encode() if objects else np.ascontiguousarray(values).tobytes()))
+            found.update(
+                key.encode()
+                + (
+                    json.dumps(values.tolist()).encode()
+                    if objects
+                    else np.ascontiguousarray(values).tobytes()
+                )
+            )
         return found.hexdigest()

@@ -1,4 +1,6 @@
-"""Populations of rocks: classes with distributions of their own, and groups of falls that share a rock and a plate."""
+"""Populations of rocks: classes with distributions of their own, and groups of falls that
+share a rock and a plate.
+"""
 
 from __future__ import annotations
 
@@ -16,7 +18,11 @@ from vibroimpact.studies.scaled import Each, Scaled, drawn_for, scaled_columns
 CLASS, ROCK, PLATE = "class", "rock", "plate"
 """Labels of a fall: the name of its class, and the numbers of its rock and its plate, from 0."""
 
-LABELS = {CLASS: ("1", "class of the rock"), ROCK: ("1", "number of the rock, from 0"), PLATE: ("1", "number of the plate, from 0")}
+LABELS = {
+    CLASS: ("1", "class of the rock"),
+    ROCK: ("1", "number of the rock, from 0"),
+    PLATE: ("1", "number of the plate, from 0"),
+}
 """Unit and meaning of each label."""
 
 
@@ -24,7 +30,8 @@ LABELS = {CLASS: ("1", "class of the rock"), ROCK: ("1", "number of the rock, fr
 class Population:
     """Rocks of several classes that fall on plates.
 
-    Keys of [plate] and of sensors are drawn once for each plate, those of [drop] for each fall, and all others for each rock.
+    Keys of [plate] and of sensors are drawn once for each plate, those of [drop] for each fall, and
+    all others for each rock.
 
     Parameters
     ----------
@@ -46,10 +53,13 @@ class Population:
         """How many falls share a plate."""
         return self.falls_per_rock * self.rocks_per_plate
 
-    def draw(self, common: Mapping[str, Axis], falls: int, seed: int) -> tuple[dict[str, Values], dict[str, Values]]:
+    def draw(
+        self, common: Mapping[str, Axis], falls: int, seed: int
+    ) -> tuple[dict[str, Values], dict[str, Values]]:
         """Return the values of each fall by key, and its labels.
 
-        Each key has a random stream of its own, so that more falls or another key leave what was drawn before as it is.
+        Each key has a random stream of its own, so that more falls or another key leave what was
+        drawn before as it is.
 
         Parameters
         ----------
@@ -67,8 +77,13 @@ class Population:
 
         Examples
         --------
-        >>> own = {"light": {"sphere.radius": Listed((1.0,))}, "heavy": {"sphere.radius": Listed((2.0,))}}
-        >>> columns, labels = Population({"light": 1.0, "heavy": 1.0}, own, falls_per_rock=2).draw({}, 8, 0)
+        >>> own = {
+        ...     "light": {"sphere.radius": Listed((1.0,))},
+        ...     "heavy": {"sphere.radius": Listed((2.0,))},
+        ... }
+        >>> columns, labels = Population({"light": 1.0, "heavy": 1.0}, own, falls_per_rock=2).draw(
+        ...     {}, 8, 0
+        ... )
         >>> labels["class"].tolist()[::2]
         ['heavy', 'heavy', 'heavy', 'light']
         >>> columns["sphere.radius"].tolist()[::2]
@@ -76,16 +91,26 @@ class Population:
         """
         rock = np.arange(falls) // self.falls_per_rock
         plate = rock // self.rocks_per_plate
-        of_rock = _drawn(Listed(tuple(range(len(self.shares))), tuple(self.shares.values())), CLASS, rock, seed).astype(int)
+        of_rock = _drawn(
+            Listed(tuple(range(len(self.shares))), tuple(self.shares.values())), CLASS, rock, seed
+        ).astype(int)
         names = list(self.shares)
         none = [name for number, name in enumerate(names) if not (of_rock == number).any()]
         if none:
-            words = f'"{none[0]}" gets none of the {rock[-1] + 1} rocks; ask for more samples, fewer falls per rock, or a larger share'
+            words = (
+                f'"{none[0]}" gets none of the {rock[-1] + 1} rocks; ask for more samples, '
+                "fewer falls per rock, or a larger share"
+            )
             raise InputError(words, "samples")
         groups: dict[Each, Indices] = {"plate": plate, "rock": rock, "fall": np.arange(falls)}
-        columns = {key: _drawn(axis, key, groups[_each(key, axis)], seed) for key, axis in common.items()}
+        columns = {
+            key: _drawn(axis, key, groups[_each(key, axis)], seed) for key, axis in common.items()
+        }
         for key in next(iter(self.own.values())):
-            each = [_drawn(self.own[name][key], key, groups[_each(key, self.own[name][key])], seed) for name in names]
+            each = [
+                _drawn(self.own[name][key], key, groups[_each(key, self.own[name][key])], seed)
+                for name in names
+            ]
             mixed = np.empty(falls, dtype=np.result_type(*each))
             for number, values in enumerate(each):
                 mixed[of_rock == number] = values[of_rock == number]
@@ -93,7 +118,9 @@ class Population:
         columns = scaled_columns(common, columns)
         for number, name in enumerate(names):
             there = of_rock == number
-            rows = scaled_columns(self.own[name], {key: values[there] for key, values in columns.items()})
+            rows = scaled_columns(
+                self.own[name], {key: values[there] for key, values in columns.items()}
+            )
             for key in self.own[name]:
                 columns[key][there] = rows[key]
         return columns, {CLASS: np.array(names, dtype=object)[of_rock], ROCK: rock, PLATE: plate}
@@ -105,6 +132,8 @@ def _each(key: str, axis: Axis) -> Each:
 
 
 def _drawn(axis: Axis, key: str, number: Indices, seed: int) -> Values:
-    """Return a value for each number, which may occur several times, from the random stream of a key."""
+    """Return a value for each number, which may occur several times, from the random
+    stream of a key.
+    """
     parts: Floats = np.random.default_rng([seed, crc32(key.encode())]).random(int(number[-1]) + 1)
     return np.asarray(axis.quantiles(parts)[number])

@@ -22,7 +22,11 @@ from vibroimpact.shown import shortened, shown
 from vibroimpact.studies.axes import Axis, Listed, Normal, Values
 from vibroimpact.studies.design import MOST_DROPS, find_design
 from vibroimpact.studies.drop_variables import OUTCOME, PEAKS
-from vibroimpact.studies.kept_signals import check_need_of_signals, check_signals, check_swept_sensors
+from vibroimpact.studies.kept_signals import (
+    check_need_of_signals,
+    check_signals,
+    check_swept_sensors,
+)
 from vibroimpact.studies.limit_columns import limit_meanings
 from vibroimpact.studies.population import CLASS, LABELS, Population
 from vibroimpact.studies.scaled import Scaled, check_scaled
@@ -33,7 +37,9 @@ MOST_KEYS = 100
 """Maximum number of swept keys."""
 
 MOST_POINT_VALUES = 40_000_000
-"""Maximum number of values (points times keys) of a study that is not a grid; they are held in memory."""
+"""Maximum number of values (points times keys) of a study that is not a grid; they are
+held in memory.
+"""
 
 _SHARED = {"plate": "the plate is", "sensors": "the sensors are"}
 """What rocks of all classes share, for a message."""
@@ -52,7 +58,8 @@ def load_sweep(source: str | PathLike[str], samples: int | None = None) -> Sweep
     Raises
     ------
     InputError
-        If it can't be read or is not a valid study; the message names the key, the value and what is allowed.
+        If it can't be read or is not a valid study; the message names the key, the value and what
+        is allowed.
 
     Examples
     --------
@@ -78,7 +85,17 @@ def read_sweep(table: Mapping[str, Any]) -> Sweep:
     --------
     >>> from vibroimpact.cases.reader import load_table
     >>> case = load_table("paper:type1-theory")
-    >>> study = read_sweep({**case, "sweep": {"over": {"sphere.radius": ["10 mm", "25 mm"], "contact.restitution": [0.5, 0.6, 0.7]}}})
+    >>> study = read_sweep(
+    ...     {
+    ...         **case,
+    ...         "sweep": {
+    ...             "over": {
+    ...                 "sphere.radius": ["10 mm", "25 mm"],
+    ...                 "contact.restitution": [0.5, 0.6, 0.7],
+    ...             }
+    ...         },
+    ...     }
+    ... )
     >>> study.size
     6
     """
@@ -88,19 +105,27 @@ def read_sweep(table: Mapping[str, Any]) -> Sweep:
     base = {key: value for key, value in table.items() if key != "sweep"}
     if "sweep" not in table:
         raise InputError(
-            'it is missing; it specifies the swept keys and their values, such as "sphere.radius" = ["10 mm", "25 mm"] under [sweep.over]',
+            "it is missing; it specifies the swept keys and their values, such as "
+            '"sphere.radius" = ["10 mm", "25 mm"] under [sweep.over]',
             "sweep",
         )
     if not isinstance(table["sweep"], dict):
-        raise InputError(f"{shown(table['sweep'])} is not a table; it takes {listed(keys_of(SweepSection))}", "sweep")
+        raise InputError(
+            f"{shown(table['sweep'])} is not a table; it takes {listed(keys_of(SweepSection))}",
+            "sweep",
+        )
     check_laws(base)
     try:
         section = read_table(SweepSection, table["sweep"])
         design = find_design(section.design)
         if design.is_drawn and section.samples is None:
-            raise InputError(f"it is missing; {design.name} needs the number of points to draw", "samples")
+            raise InputError(
+                f"it is missing; {design.name} needs the number of points to draw", "samples"
+            )
         if not design.is_drawn and section.samples is not None:
-            raise InputError(f"{design.name} has as many points as its values give; leave this out", "samples")
+            raise InputError(
+                f"{design.name} has as many points as its values give; leave this out", "samples"
+            )
         over, quantities, axes = _read_over(base, section.over)
         section = section.model_copy(update={"over": over})
         population = None
@@ -110,29 +135,46 @@ def read_sweep(table: Mapping[str, Any]) -> Sweep:
         elif not over:
             raise InputError("it is empty; it takes dotted keys of the case", "over")
         check_count(len(quantities), MOST_KEYS, "swept keys")
-        own = {} if population is None else {f'classes."{name}".over': of_class for name, of_class in population.own.items()}
+        own = (
+            {}
+            if population is None
+            else {f'classes."{name}".over': of_class for name, of_class in population.own.items()}
+        )
         check_scaled(section.design, {"over": axes, **own}, quantities)
         check_need_of_signals(section, quantities)
         sweep = Sweep(base, section, axes, quantities, population)
         if sweep.size > MOST_DROPS:
-            raise InputError(f"there would be {sweep.size} drops, and {MOST_DROPS} are the most; sweep in parts", "over")
+            raise InputError(
+                f"there would be {sweep.size} drops, and {MOST_DROPS} are the most; sweep in parts",
+                "over",
+            )
         if sweep.size * len(quantities) > MOST_POINT_VALUES and section.design != "grid":
-            words = f"there would be {sweep.size} drops of {len(quantities)} values each, and {MOST_POINT_VALUES} values are the most"
+            words = (
+                f"there would be {sweep.size} drops of {len(quantities)} values each, and "
+                f"{MOST_POINT_VALUES} values are the most"
+            )
             raise InputError(f"{words}; sweep in parts", "over")
         plan = sweep.plan  # of a population without a rock of some class there is none
         for key, axis in axes.items() if plan.is_grid else ():
             again = _twice(axis)
             if again is not None:
-                raise InputError(f"{again} stands there twice, and a grid has each value once", f'over."{key}"')
+                raise InputError(
+                    f"{again} stands there twice, and a grid has each value once", f'over."{key}"'
+                )
     except InputError as error:
         raise InputError(error.message, f"sweep.{error.key}".rstrip(".")) from None
     _check_points(sweep)
     if "signals" in section.keep:
-        check_signals(sweep.case, {*sweep.quantities, *LABELS, OUTCOME, *PEAKS, *limit_meanings(), *ALL_IMPACT_COLUMNS})
+        check_signals(
+            sweep.case,
+            {*sweep.quantities, *LABELS, OUTCOME, *PEAKS, *limit_meanings(), *ALL_IMPACT_COLUMNS},
+        )
     return sweep
 
 
-def _read_over(base: Mapping[str, Any], table: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, Quantity | None], dict[str, Axis]]:
+def _read_over(
+    base: Mapping[str, Any], table: Mapping[str, Any]
+) -> tuple[dict[str, Any], dict[str, Quantity | None], dict[str, Axis]]:
     """Return the entries of swept keys in dotted form, their quantities and their axes."""
     keys = list(_flat(table))
     over = dict(keys)
@@ -157,20 +199,30 @@ def _read_over(base: Mapping[str, Any], table: Mapping[str, Any]) -> tuple[dict[
 def _followed(base: Mapping[str, Any], key: Any) -> Quantity | None:
     """Return the quantity of the key that another one follows."""
     if not isinstance(key, str):
-        raise InputError(f'{shown(key)} is not a text; it is the key that is followed, such as "sphere.radius"', "of")
+        raise InputError(
+            f'{shown(key)} is not a text; it is the key that is followed, such as "sphere.radius"',
+            "of",
+        )
     try:
         return find_quantity(base, key)
     except InputError as error:
         raise InputError(error.message, "of") from None
 
 
-def _read_population(base: Mapping[str, Any], section: SweepSection) -> tuple[SweepSection, dict[str, Quantity | None], Population]:
-    """Return the section with the keys of its classes in dotted form, the quantities of these, and the population."""
+def _read_population(
+    base: Mapping[str, Any], section: SweepSection
+) -> tuple[SweepSection, dict[str, Quantity | None], Population]:
+    """Return the section with the keys of its classes in dotted form, the quantities of
+    these, and the population.
+    """
     assert section.classes is not None
     if section.design != "population":
         raise InputError(f'{section.design} has no classes; give design = "population"', "design")
     if len(section.classes) < 2:
-        raise InputError("there is only one class, so that there is nothing to classify; give two or more", "classes")
+        raise InputError(
+            "there is only one class, so that there is nothing to classify; give two or more",
+            "classes",
+        )
     quantities: dict[str, Quantity | None] = {}
     tables, own = {}, {}
     for name, table in section.classes.items():
@@ -184,31 +236,49 @@ def _read_population(base: Mapping[str, Any], section: SweepSection) -> tuple[Sw
         if wrong or not over:
             words = "it is empty; give one key or more, the same for all classes"
             if wrong:
-                words = f'"{wrong[0]}" is not there for all classes; give the same keys for all, or leave it to [sweep.over]'
+                words = (
+                    f'"{wrong[0]}" is not there for all classes; give the same keys for all, '
+                    "or leave it to [sweep.over]"
+                )
             raise InputError(words, f"{where}.over")
         for key in over:
             shared = _SHARED.get(key.partition(".")[0])
             if key in section.over or shared:
-                words = "it stands in [sweep.over] too" if key in section.over else f"{shared} not of a class"
+                words = (
+                    "it stands in [sweep.over] too"
+                    if key in section.over
+                    else f"{shared} not of a class"
+                )
                 raise InputError(f"{words}; leave it out here", f'{where}.over."{key}"')
         tables[name] = table.model_copy(update={"over": over})
     for key in section.over:
         if key == "plate":
-            raise InputError("a population draws single keys of [plate], one value a plate", 'over."plate"')
+            raise InputError(
+                "a population draws single keys of [plate], one value a plate", 'over."plate"'
+            )
     falls = section.falls_per_rock
     shares = {name: table.share for name, table in tables.items()}
-    population = Population(shares, own, falls, section.rocks_per_plate or max(1, math.ceil((section.samples or 1) / falls)))
+    population = Population(
+        shares,
+        own,
+        falls,
+        section.rocks_per_plate or max(1, math.ceil((section.samples or 1) / falls)),
+    )
     return section.model_copy(update={"classes": tables}), quantities, population
 
 
 def _check_names(axis: Axis) -> None:
-    """Check the number of distinct names and tables, each of which requires the validation of a case."""
+    """Check the number of distinct names and tables, each of which requires the
+    validation of a case.
+    """
     if isinstance(axis, Listed) and len(axis.values) > MOST_ITEMS and axis.levels().dtype == object:
         check_count(len(different(axis.levels())), MOST_ITEMS, "different names and tables")
 
 
 def _twice(axis: Axis) -> str | None:
-    """Return a level that an axis has twice: in a list, or in a range narrower than the precision of numbers."""
+    """Return a level that an axis has twice: in a list, or in a range narrower than the
+    precision of numbers.
+    """
     levels = axis.levels()
     if levels.dtype == object:
         again, often = Counter(map(repr, levels.tolist())).most_common(1)[0]
@@ -219,7 +289,9 @@ def _twice(axis: Axis) -> str | None:
 
 
 def _flat(over: Mapping[str, Any], above: str = "") -> Iterator[tuple[str, Any]]:
-    """Yield the swept keys in dotted form with their entries, also where unquoted keys became nested TOML tables."""
+    """Yield the swept keys in dotted form with their entries, also where unquoted keys
+    became nested TOML tables.
+    """
     for key, value in over.items():
         dotted = f"{above}{key}"
         if isinstance(value, dict) and holds_keys(dotted):
@@ -229,7 +301,9 @@ def _flat(over: Mapping[str, Any], above: str = "") -> Iterator[tuple[str, Any]]
 
 
 def _check_points(sweep: Sweep) -> None:
-    """Check that all values are in range, and that the case is valid at the first point and with each axis at its ends."""
+    """Check that all values are in range, and that the case is valid at the first point
+    and with each axis at its ends.
+    """
     columns = sweep.plan.columns
     for key, values in columns.items():
         quantity = sweep.quantities[key]
@@ -239,7 +313,9 @@ def _check_points(sweep: Sweep) -> None:
             try:
                 quantity.allowed.check(own, quantity.unit)
             except InputError as error:
-                raise InputError(f"{error.message}{_remedy(axis)}", f'sweep.{where}."{key}"') from None
+                raise InputError(
+                    f"{error.message}{_remedy(axis)}", f'sweep.{where}."{key}"'
+                ) from None
     first = sweep.values_of(0)
     check_swept_sensors(sweep.table, columns, sweep.case_at(first))
     for key, values in columns.items():
@@ -248,11 +324,15 @@ def _check_points(sweep: Sweep) -> None:
             try:
                 check_swept_sensors(sweep.table, columns, sweep.case_at({**first, key: value}))
             except InputError as error:
-                raise InputError.of_several(f"at {key} = {_level(value)}: {fault}" for fault in error.faults) from None
+                raise InputError.of_several(
+                    f"at {key} = {_level(value)}: {fault}" for fault in error.faults
+                ) from None
 
 
 def _stated(sweep: Sweep, key: str, values: Values) -> Iterator[tuple[str, Axis, Values]]:
-    """Yield where a key stands, in [sweep.over] or in each class, with its axis and its values there."""
+    """Yield where a key stands, in [sweep.over] or in each class, with its axis and its
+    values there.
+    """
     if sweep.population is None or key in sweep.axes:
         yield "over", sweep.axes[key], values
         return
@@ -261,10 +341,17 @@ def _stated(sweep: Sweep, key: str, values: Values) -> Iterator[tuple[str, Axis,
 
 
 def _remedy(axis: Axis) -> str:
-    """Return what keeps the values of a key in their range, where they are drawn or follow another key."""
+    """Return what keeps the values of a key in their range, where they are drawn or
+    follow another key.
+    """
     if isinstance(axis, Scaled):
-        return "; it follows another key: choose value, exponent and factor so that it stays in this range"
-    return "; truncate the distribution with at_least and at_most" if isinstance(axis, Normal) else ""
+        return (
+            "; it follows another key: choose value, exponent and factor so that "
+            "it stays in this range"
+        )
+    return (
+        "; truncate the distribution with at_least and at_most" if isinstance(axis, Normal) else ""
+    )
 
 
 def _level(value: Any) -> str:

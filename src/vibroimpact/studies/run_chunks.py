@@ -4,7 +4,14 @@ from __future__ import annotations
 
 from collections import Counter, deque
 from collections.abc import Callable, Iterable, Mapping
-from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, CancelledError, Executor, Future, wait
+from concurrent.futures import (
+    FIRST_COMPLETED,
+    BrokenExecutor,
+    CancelledError,
+    Executor,
+    Future,
+    wait,
+)
 
 from vibroimpact.errors import ComputationError
 from vibroimpact.studies.axes import Values
@@ -27,13 +34,15 @@ def run_chunks(
 ) -> None:
     """Compute chunks, and pass each result on as soon as it is available, in any order.
 
-    If a worker dies, the chunks in flight are computed again one at a time. A chunk that then kills its worker repeatedly is abandoned:
-    all its drops count as failed, and the other chunks continue.
+    If a worker dies, the chunks in flight are computed again one at a time. A chunk that then kills
+    its worker repeatedly is abandoned: all its drops count as failed, and the other chunks
+    continue.
 
     Parameters
     ----------
     work : callable
-        Takes the number of the first drop of a chunk and its points, returns their results; it must be picklable.
+        Takes the number of the first drop of a chunk and its points, returns their results; it must
+        be picklable.
     points : callable
         Returns the points of a chunk.
     chunks : iterable of Span
@@ -57,8 +66,11 @@ def run_chunks(
                 while waiting or suspects or running:
                     source, most = (suspects, 1) if suspects else (waiting, in_flight())
                     while source and len(running) < most:
-                        running[executor.submit(work, source[0].first, points(source[0]))] = source[0]
-                        source.popleft()  # only now: submit raises if a worker died while the last result was stored
+                        running[executor.submit(work, source[0].first, points(source[0]))] = source[
+                            0
+                        ]
+                        # only now: submit raises if a worker died while the last result was stored
+                        source.popleft()
                     for future in wait(running, return_when=FIRST_COMPLETED).done:
                         keep(running[future], _result(future, running[future]))
                         del running[future]
@@ -72,7 +84,9 @@ def run_chunks(
                     continue
             suspects.extend(lost)
         except CancelledError:
-            raise ComputationError("the scheduler and its workers are gone; what is done stays: go on with --resume") from None
+            raise ComputationError(
+                "the scheduler and its workers are gone; what is done stays: go on with --resume"
+            ) from None
 
 
 def _check_alive(executor: Executor) -> None:
@@ -82,12 +96,15 @@ def _check_alive(executor: Executor) -> None:
     except BrokenExecutor:
         words = 'a script that starts them does not do its work under: if __name__ == "__main__":'
         raise ComputationError(
-            f"the processes die before they have computed anything; memory may be too short for them, or {words}"
+            "the processes die before they have computed anything; memory may be too "
+            f"short for them, or {words}"
         ) from None
 
 
 def _result(future: Future[ChunkResult], chunk: Span) -> ChunkResult:
-    """Return the results of a chunk; Dask reports one that killed several workers by an exception of its own."""
+    """Return the results of a chunk; Dask reports one that killed several workers by an
+    exception of its own.
+    """
     try:
         return future.result()
     except BrokenExecutor:

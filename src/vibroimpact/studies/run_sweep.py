@@ -27,8 +27,8 @@ def run_sweep(
 ) -> Path:
     """Run a study in a folder: `study.nc`, `drops.csv`, a report, and the ledger of its chunks.
 
-    Each chunk of drops is written as soon as it is computed. After any interruption, `resume` continues with the missing chunks, and
-    the results are identical to the last bit.
+    Each chunk of drops is written as soon as it is computed. After any interruption, `resume`
+    continues with the missing chunks, and the results are identical to the last bit.
 
     Parameters
     ----------
@@ -44,11 +44,14 @@ def run_sweep(
         Number of processes; 1 is this process itself. A script that uses more must be guarded by
         `if __name__ == "__main__":`.
     scheduler : str, optional
-        Address of a Dask scheduler whose workers compute, such as "tcp://10.0.0.5:8786"; "local" starts one with `workers` workers.
+        Address of a Dask scheduler whose workers compute, such as "tcp://10.0.0.5:8786"; "local"
+        starts one with `workers` workers.
     memory : float, default 5e8
-        Approximate memory for the drops of a chunk in each process [bytes], >= 1e6; a resumed study keeps its chunks.
+        Approximate memory for the drops of a chunk in each process [bytes], >= 1e6; a resumed study
+        keeps its chunks.
     progress : callable, optional
-        Called with the number of completed drops and of all drops. An exception that it raises ends the run, which can be resumed.
+        Called with the number of completed drops and of all drops. An exception that it raises ends
+        the run, which can be resumed.
     modes_progress : callable, optional
         Called with the completed fraction of the computation of modes of elastic bodies, in [0, 1].
     tell : callable, optional
@@ -62,7 +65,8 @@ def run_sweep(
     Raises
     ------
     InputError
-        If the folder contains something else or another study, another process is computing in it, or the ledger is damaged.
+        If the folder contains something else or another study, another process is computing in it,
+        or the ledger is damaged.
     ComputationError
         If the disk is full, or the workers are lost.
 
@@ -73,7 +77,9 @@ def run_sweep(
     >>> case = vi.load_case("paper:type1-theory").to_problem().source
     >>> study = vi.read_sweep({**case, "sweep": {"over": {"drop.height": ["1 m", "2 m"]}}})
     >>> with TemporaryDirectory() as folder:
-    ...     vi.read_study(vi.run_sweep(study, f"{folder}/heights")).values("largest_force_N").round(1).tolist()
+    ...     vi.read_study(vi.run_sweep(study, f"{folder}/heights")).values("largest_force_N").round(
+    ...         1
+    ...     ).tolist()
     [4406.8, 6730.2]
     """
     folder = compute_study(

@@ -1,4 +1,6 @@
-"""Values that follow those of another swept key by a power, times a factor that is drawn: speeds that grow with the size."""
+"""Values that follow those of another swept key by a power, times a factor that is drawn:
+speeds that grow with the size.
+"""
 
 from __future__ import annotations
 
@@ -89,7 +91,9 @@ def scaled_columns(axes: Mapping[str, Axis], columns: Mapping[str, Values]) -> d
             if (wrong := np.flatnonzero(~np.isfinite(ratio))).size:
                 one = columns[axis.of][wrong[0]] / axis.at
                 raise InputError(
-                    f"{one:.6g} to the power of {axis.exponent:g} is no finite number; it is {axis.of} over at", f'over."{key}"'
+                    f"{one:.6g} to the power of {axis.exponent:g} is no finite number; it "
+                    f"is {axis.of} over at",
+                    f'over."{key}"',
                 )
             found[key] = values * ratio
     return found
@@ -107,7 +111,9 @@ def drawn_for(key: str) -> Each:
     return shared.get(key.partition(".")[0], "rock")
 
 
-def check_scaled(design: str, groups: Mapping[str, Mapping[str, Axis]], quantities: Mapping[str, Quantity | None]) -> None:
+def check_scaled(
+    design: str, groups: Mapping[str, Mapping[str, Axis]], quantities: Mapping[str, Quantity | None]
+) -> None:
     """Check that values which follow another key have one to follow.
 
     Parameters
@@ -130,13 +136,19 @@ def check_scaled(design: str, groups: Mapping[str, Mapping[str, Axis]], quantiti
             _check(design, key, axis, following, quantities)
             _check_numbers(axis.of, [axes[axis.of] for axes in groups.values() if axis.of in axes])
         except InputError as error:
-            raise InputError(error.message, f'{where}."{key}"{"." if error.key else ""}{error.key}') from None
+            raise InputError(
+                error.message, f'{where}."{key}"{"." if error.key else ""}{error.key}'
+            ) from None
 
 
 def _check_numbers(key: str, axes: Iterable[Axis]) -> None:
-    """Check that a key that another one follows has numbers as values, from which the other's are computed."""
+    """Check that a key that another one follows has numbers as values, from which the
+    other's are computed.
+    """
     if any(isinstance(axis, Listed) and axis.levels().dtype == object for axis in axes):
-        raise InputError(f"{key} has values that are not numbers, so that nothing can follow it", "of")
+        raise InputError(
+            f"{key} has values that are not numbers, so that nothing can follow it", "of"
+        )
 
 
 def _scaled(groups: Mapping[str, Mapping[str, Any]]) -> Iterator[tuple[str, str, Scaled]]:
@@ -144,7 +156,13 @@ def _scaled(groups: Mapping[str, Mapping[str, Any]]) -> Iterator[tuple[str, str,
         yield from ((where, key, axis) for key, axis in axes.items() if isinstance(axis, Scaled))
 
 
-def _check(design: str, key: str, axis: Scaled, following: set[str], quantities: Mapping[str, Quantity | None]) -> None:
+def _check(
+    design: str,
+    key: str,
+    axis: Scaled,
+    following: set[str],
+    quantities: Mapping[str, Quantity | None],
+) -> None:
     if design not in _DESIGNS:
         raise InputError(f"in a {design} no key follows another; take one of {', '.join(_DESIGNS)}")
     if axis.of not in quantities:
@@ -159,7 +177,13 @@ def _check(design: str, key: str, axis: Scaled, following: set[str], quantities:
     finest = _ORDER.index(drawn_for(key))
     if _ORDER.index(drawn_for(axis.of)) > finest:
         raise InputError(
-            f"{axis.of} differs from {drawn_for(axis.of)} to {drawn_for(axis.of)}, and {key} has one value a {_ORDER[finest]}", "of"
+            f"{axis.of} differs from {drawn_for(axis.of)} to {drawn_for(axis.of)}, and "
+            f"{key} has one value a {_ORDER[finest]}",
+            "of",
         )
     if axis.each is not None and _ORDER.index(axis.each) > finest:
-        raise InputError(f"{key} has one value a {_ORDER[finest]}; its factor can't differ from {axis.each} to {axis.each}", "each")
+        raise InputError(
+            f"{key} has one value a {_ORDER[finest]}; its factor can't differ from "
+            f"{axis.each} to {axis.each}",
+            "each",
+        )

@@ -40,34 +40,56 @@ class WindowTable(Section):
 class ClassTable(Section):
     """A class of rocks of a population."""
 
-    share: Annotated[float, Quantity("", "share of the rocks, relative to those of the other classes", Range(above=0))] = 1.0
-    over: dict[str, Any] = Field(description="the distributions of this class by dotted keys, the same keys for all classes")
+    share: Annotated[
+        float,
+        Quantity("", "share of the rocks, relative to those of the other classes", Range(above=0)),
+    ] = 1.0
+    over: dict[str, Any] = Field(
+        description="the distributions of this class by dotted keys, the same keys for all classes"
+    )
 
 
 class SweepSection(Section):
     """Settings of `vibroimpact sweep`; a run ignores them."""
 
-    design: Annotated[str, BeforeValidator(_read_design), WithJsonSchema({"enum": list(designs())})] = Field(
-        "grid", description="design, the choice of the points: " + "; ".join(f"{one.name}: {one.meaning}" for one in designs().values())
+    design: Annotated[
+        str, BeforeValidator(_read_design), WithJsonSchema({"enum": list(designs())})
+    ] = Field(
+        "grid",
+        description="design, the choice of the points: "
+        + "; ".join(f"{one.name}: {one.meaning}" for one in designs().values()),
     )
     over: dict[str, Any] = Field(
-        description='the values of dotted keys of the case, such as "sphere.radius": a list, a range { from, to, number, scale }, '
-        'a distribution { distribution = "normal", "lognormal" or "uniform", ... }, a column of a file { file, column, weights }, '
+        description='the values of dotted keys of the case, such as "sphere.radius": a list, a '
+        "range { from, to, number, scale }, "
+        'a distribution { distribution = "normal", "lognormal" or "uniform", ... }, a '
+        "column of a file { file, column, weights }, "
         "or a dependence on another key { value, of, at, exponent, factor }"
     )
-    samples: Annotated[int, Field(ge=1, le=MOST_DROPS, strict=True)] | None = Field(None, description="number of sampled points")
+    samples: Annotated[int, Field(ge=1, le=MOST_DROPS, strict=True)] | None = Field(
+        None, description="number of sampled points"
+    )
     seed: Annotated[int, Field(ge=0, strict=True)] = Field(0, description="seed of the sampling")
     keep: tuple[Literal["peaks", "impacts", "signals"], ...] = Field(
         ("impacts",),
-        description="stored results of each drop: peaks (always stored), the impact table, the signals of the sensors",
+        description="stored results of each drop: peaks (always stored), the impact table, the "
+        "signals of the sensors",
     )
-    window: WindowTable | None = Field(None, description="the part of the signals that is kept; by default all, from the start")
-    classes: dict[Name, ClassTable] | None = Field(None, description="classes of a population, by name, with the distributions of each")
+    window: WindowTable | None = Field(
+        None, description="the part of the signals that is kept; by default all, from the start"
+    )
+    classes: dict[Name, ClassTable] | None = Field(
+        None, description="classes of a population, by name, with the distributions of each"
+    )
     falls_per_rock: Annotated[int, Field(ge=1, le=MOST_DROPS, strict=True)] = Field(
-        1, description="number of falls of each rock of a population, with all keys in common but those of [drop]"
+        1,
+        description="number of falls of each rock of a population, with all keys in common but "
+        "those of [drop]",
     )
     rocks_per_plate: Annotated[int, Field(ge=1, le=MOST_DROPS, strict=True)] | None = Field(
-        None, description="number of rocks of a population on each plate, with the keys of [plate] and of sensors in common; by default all"
+        None,
+        description="number of rocks of a population on each plate, with the keys of [plate] "
+        "and of sensors in common; by default all",
     )
 
 
@@ -104,7 +126,10 @@ class ColumnTable(Section):
     column: str
     weights: str | None = None
     columns: str | None = Field(
-        None, description='columns of the file in place of its header, in order, such as "radius=mm,-,share", with - for one left out'
+        None,
+        description="columns of the file in place of its header, in order, such as "
+        '"radius=mm,-,share", '
+        "with - for one left out",
     )
 
 
@@ -119,8 +144,15 @@ class ScaledTable(Section):
     each: Each | None = None
 
 
-_DISTRIBUTIONS: dict[str, type[Section]] = {"normal": NormalTable, "lognormal": NormalTable, "uniform": UniformTable}
-_ASKED = "a list of values, a range { from, to, number, scale }, a distribution or a column { file, column, weights, columns }"
+_DISTRIBUTIONS: dict[str, type[Section]] = {
+    "normal": NormalTable,
+    "lognormal": NormalTable,
+    "uniform": UniformTable,
+}
+_ASKED = (
+    "a list of values, a range { from, to, number, scale }, a distribution or a column { file, "
+    "column, weights, columns }"
+)
 _DEPENDENCE = ", or a dependence on another key { value, of, at, exponent, factor }"
 
 
@@ -143,13 +175,17 @@ def read_axis(value: Any, quantity: Quantity | None, otherwise: str = _DEPENDENC
 
     Examples
     --------
-    >>> read_axis({"from": "5 mm", "to": "50 mm", "number": 2}, Quantity("m", "radius")).levels().tolist()
+    >>> read_axis(
+    ...     {"from": "5 mm", "to": "50 mm", "number": 2}, Quantity("m", "radius")
+    ... ).levels().tolist()
     [0.005, 0.05]
     """
     if isinstance(value, list):
         if not value:
             raise InputError("the list is empty; it must have one value or more")
-        return Listed(tuple(value if quantity is None else [_read_item(item, quantity) for item in value]))
+        return Listed(
+            tuple(value if quantity is None else [_read_item(item, quantity) for item in value])
+        )
     if quantity is None:
         raise InputError("this key holds no quantity, so that it takes a list of values alone")
     if not isinstance(value, Mapping):
@@ -160,15 +196,25 @@ def read_axis(value: Any, quantity: Quantity | None, otherwise: str = _DEPENDENC
         kind = value["distribution"]
         if not isinstance(kind, str) or kind not in _DISTRIBUTIONS:
             hint = did_you_mean(str(kind), _DISTRIBUTIONS)
-            raise InputError(f"{shown(kind)} is not allowed; it must be one of {', '.join(_DISTRIBUTIONS)}.{hint}", "distribution")
+            raise InputError(
+                f"{shown(kind)} is not allowed; it must be one of "
+                f"{', '.join(_DISTRIBUTIONS)}.{hint}",
+                "distribution",
+            )
         table = read_table(_DISTRIBUTIONS[kind], value)
-        return _normal(table, quantity) if isinstance(table, NormalTable) else _spaced(table, quantity, is_random=True)
+        return (
+            _normal(table, quantity)
+            if isinstance(table, NormalTable)
+            else _spaced(table, quantity, is_random=True)
+        )
     if "from" not in value and "to" not in value:
         raise InputError(f"{shown(value)} has no values; it must be {_ASKED}{otherwise}")
     return _spaced(read_table(RangeTable, value), quantity, is_random=False)
 
 
-def read_scaled(value: Mapping[str, Any], quantity: Quantity | None, followed: Quantity | None) -> Scaled:
+def read_scaled(
+    value: Mapping[str, Any], quantity: Quantity | None, followed: Quantity | None
+) -> Scaled:
     """Return the axis of a swept key that follows another one.
 
     Parameters
@@ -176,7 +222,8 @@ def read_scaled(value: Mapping[str, Any], quantity: Quantity | None, followed: Q
     value : mapping
         Its entry in the TOML file.
     quantity, followed : Quantity or None
-        The quantities of the key and of the one that it follows; None of a key that is not a quantity.
+        The quantities of the key and of the one that it follows; None of a key that is not a
+        quantity.
 
     Raises
     ------
@@ -184,9 +231,14 @@ def read_scaled(value: Mapping[str, Any], quantity: Quantity | None, followed: Q
         If the entry is invalid, or a key is not a quantity.
     """
     if quantity is None or followed is None:
-        raise InputError("a key can follow another only if both are quantities; take a list of values")
+        raise InputError(
+            "a key can follow another only if both are quantities; take a list of values"
+        )
     table = read_table(ScaledTable, value)
-    one, at = _number(table.value, quantity, quantity.allowed, "value"), _number(table.at, followed, Range(above=0), "at")
+    one, at = (
+        _number(table.value, quantity, quantity.allowed, "value"),
+        _number(table.at, followed, Range(above=0), "at"),
+    )
     try:
         factor = _factor(table.factor)
     except InputError as error:
@@ -203,7 +255,9 @@ def _factor(value: Any) -> Axis:
 
 
 def _read_item(item: Any, quantity: Quantity) -> Any:
-    """Return one value of a list; keys with plain numbers may also take names and tables, such as the damping."""
+    """Return one value of a list; keys with plain numbers may also take names and tables,
+    such as the damping.
+    """
     if isinstance(item, (list, dict)) or (isinstance(item, str) and not quantity.unit):
         return item
     return quantity.read(item)
@@ -218,7 +272,10 @@ def _number(value: Any, quantity: Quantity, allowed: Range, key: str = "") -> fl
 
 def _spaced(table: Section, quantity: Quantity, *, is_random: bool) -> Spaced:
     assert isinstance(table, RangeTable)
-    start, end = (_number(value, quantity, quantity.allowed, key) for key, value in (("from", table.start), ("to", table.end)))
+    start, end = (
+        _number(value, quantity, quantity.allowed, key)
+        for key, value in (("from", table.start), ("to", table.end))
+    )
     if not end > start:
         raise InputError(f"{end:.16g} is not greater than from, {start:.16g}", "to")
     if table.scale == "log" and start <= 0.0:
@@ -230,19 +287,36 @@ def _normal(table: NormalTable, quantity: Quantity) -> Normal:
     anything, positive = Range(), Range(above=0)
     mean = _number(table.mean, quantity, anything, "mean")
     deviation = _number(table.standard_deviation, quantity, positive, "standard_deviation")
-    ends = {key: _number(value, quantity, anything, key) for key in ("at_least", "at_most") if (value := getattr(table, key)) is not None}
+    ends = {
+        key: _number(value, quantity, anything, key)
+        for key in ("at_least", "at_most")
+        if (value := getattr(table, key)) is not None
+    }
     if len(ends) == 2 and not ends["at_most"] > ends["at_least"]:
-        raise InputError(f"{ends['at_most']:.16g} is not more than at_least, {ends['at_least']:.16g}", "at_most")
+        raise InputError(
+            f"{ends['at_most']:.16g} is not more than at_least, {ends['at_least']:.16g}", "at_most"
+        )
     bounds = (ends.get("at_least", -math.inf), ends.get("at_most", math.inf))
-    return Normal(mean, deviation, table.number, *bounds, lognormal=table.distribution == "lognormal")
+    return Normal(
+        mean, deviation, table.number, *bounds, lognormal=table.distribution == "lognormal"
+    )
 
 
 def _columns(table: ColumnTable, quantity: Quantity) -> Listed:
-    """Return the values, and optionally weights, from columns of a CSV file whose header gives the units."""
-    name, weights = (None if column is None else name_and_unit(column)[0] for column in (table.column, table.weights))
+    """Return the values, and optionally weights, from columns of a CSV file whose header
+    gives the units.
+    """
+    name, weights = (
+        None if column is None else name_and_unit(column)[0]
+        for column in (table.column, table.weights)
+    )
     assert name is not None
     try:
-        read = read_table_file(table.file, {name: quantity.unit, **({weights: ""} if weights else {})}, columns=table.columns)
+        read = read_table_file(
+            table.file,
+            {name: quantity.unit, **({weights: ""} if weights else {})},
+            columns=table.columns,
+        )
     except InputError as error:
         raise InputError(error.message, "file") from None
     for key, column in (("column", name), ("weights", weights)):
@@ -258,7 +332,9 @@ def _columns(table: ColumnTable, quantity: Quantity) -> Listed:
     return Listed(values, tuple(read.columns[weights].tolist()))
 
 
-def _check_column(table: ColumnTable, read: TableFile, name: str, allowed: Range, unit: str) -> None:
+def _check_column(
+    table: ColumnTable, read: TableFile, name: str, allowed: Range, unit: str
+) -> None:
     for value, line in zip(read.columns[name].tolist(), read.lines, strict=True):
         try:
             allowed.check(value, unit)

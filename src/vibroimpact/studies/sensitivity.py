@@ -1,4 +1,6 @@
-"""Sensitivity of a result to the swept keys: Sobol indices, rank correlations, and one-at-a-time ranges on a grid."""
+"""Sensitivity of a result to the swept keys: Sobol indices, rank correlations, and
+one-at-a-time ranges on a grid.
+"""
 
 from __future__ import annotations
 
@@ -17,7 +19,9 @@ MOST_LEFT_OUT = 0.05
 RESAMPLES = 200
 """Number of bootstrap samples for the standard error of an index."""
 
-_RESAMPLED = 8192  # points of a block used for the bootstrap; for larger blocks the error is scaled by the root of their number
+# points of a block used for the bootstrap; for larger blocks the error is scaled by the root of
+# their number
+_RESAMPLED = 8192
 _QUANTILE = 1.959964  # of the normal distribution, for 95 %
 
 
@@ -27,7 +31,8 @@ class SobolIndices(NamedTuple):
     Attributes
     ----------
     first, total : array, shape (axes,)
-        First-order index, the fraction of the variance due to an axis alone, and total index, including all interactions.
+        First-order index, the fraction of the variance due to an axis alone, and total index,
+        including all interactions.
     first_error, total_error : array, shape (axes,)
         Half widths of the 95 % intervals.
     points, left_out : int
@@ -45,13 +50,18 @@ class SobolIndices(NamedTuple):
 def sobol_indices(values: Floats, axes: int, seed: int = 0) -> SobolIndices | None:
     r"""Return the Sobol indices of a result at the points of the design "saltelli".
 
-    .. math:: S_i = \frac{\overline{f_B\,(f_{AB_i} - f_A)}}{V}, \qquad T_i = \frac{\overline{(f_A - f_{AB_i})^2}}{2 V}
+    .. math::
 
-    :math:`V` is the variance over the blocks A and B. The half width of the interval is 1.96 standard errors, from a bootstrap over
-    at most the first 8192 points of a block and scaled by the root of the number of points for larger blocks. As the points of a
-    Sobol sequence are more even than random ones, the interval is conservative.
+        S_i = \frac{\overline{f_B\,(f_{AB_i} - f_A)}}{V}, \qquad
+        T_i = \frac{\overline{(f_A - f_{AB_i})^2}}{2 V}
 
-    A point without a value in one block is omitted from all blocks. The indices are then those of the remaining points.
+    :math:`V` is the variance over the blocks A and B. The half width of the interval is 1.96
+    standard errors, from a bootstrap over at most the first 8192 points of a block and scaled by
+    the root of the number of points for larger blocks. As the points of a Sobol sequence are more
+    even than random ones, the interval is conservative.
+
+    A point without a value in one block is omitted from all blocks. The indices are then those of
+    the remaining points.
 
     Parameters
     ----------
@@ -69,8 +79,8 @@ def sobol_indices(values: Floats, axes: int, seed: int = 0) -> SobolIndices | No
 
     References
     ----------
-    Saltelli, A. et al. (2010). Variance based sensitivity analysis of model output. Comput. Phys. Commun. 181, 259-270,
-    table 2 (b) and (f).
+    Saltelli, A. et al. (2010). Variance based sensitivity analysis of model output. Comput. Phys.
+    Commun. 181, 259-270, table 2 (b) and (f).
 
     Examples
     --------
@@ -90,13 +100,18 @@ def sobol_indices(values: Floats, axes: int, seed: int = 0) -> SobolIndices | No
     used = blocks[:2, complete]
     if not float(np.std(used)) > 1e-9 * float(np.abs(used).max()):
         return None
-    # SciPy requires a power of two: omitted points are set to the mean, which contributes nothing to the sums
+    # SciPy requires a power of two: omitted points are set to the mean, which contributes nothing
+    # to the sums
     blocks = np.where(complete, blocks, used.mean())
     first, total = _estimates(blocks)
     drawn = min(len(complete), _RESAMPLED)
     random = generator(seed, drawn)
-    resampled = [_estimates(blocks[:, random.integers(drawn, size=drawn)]) for _ in range(RESAMPLES)]
-    first_error, total_error = _QUANTILE * math.sqrt(drawn / len(complete)) * np.std(resampled, axis=0, ddof=1)
+    resampled = [
+        _estimates(blocks[:, random.integers(drawn, size=drawn)]) for _ in range(RESAMPLES)
+    ]
+    first_error, total_error = (
+        _QUANTILE * math.sqrt(drawn / len(complete)) * np.std(resampled, axis=0, ddof=1)
+    )
     return SobolIndices(first, total, first_error, total_error, points, left_out)
 
 
@@ -104,12 +119,15 @@ def _estimates(blocks: Floats) -> Floats:
     """Return first and total indices, (2, axes), of blocks (2 + axes, points)."""
     from scipy.stats import sobol_indices as estimate
 
-    found = estimate(func={"f_A": blocks[:1], "f_B": blocks[1:2], "f_AB": blocks[2:, None]}, n=blocks.shape[1])
+    found = estimate(
+        func={"f_A": blocks[:1], "f_B": blocks[1:2], "f_AB": blocks[2:, None]}, n=blocks.shape[1]
+    )
     return np.array([found.first_order, found.total_order])
 
 
 def rank_correlations(inputs: Floats, output: Floats) -> Floats:
-    """Return Spearman's rank correlation of a result with each input: 1 if it increases monotonically with it, -1 if it decreases.
+    """Return Spearman's rank correlation of a result with each input: 1 if it increases
+    monotonically with it, -1 if it decreases.
 
     Parameters
     ----------
@@ -125,11 +143,14 @@ def rank_correlations(inputs: Floats, output: Floats) -> Floats:
 
     References
     ----------
-    Spearman, C. (1904). The proof and measurement of association between two things. Am. J. Psychol. 15, 72-101.
+    Spearman, C. (1904). The proof and measurement of association between two things. Am. J.
+    Psychol. 15, 72-101.
 
     Examples
     --------
-    >>> rank_correlations(np.array([[1.0, 2.0, 3.0], [3.0, 2.0, 1.0], [1.0, 1.0, 1.0]]), np.array([1.0, 8.0, 9.0])).tolist()
+    >>> rank_correlations(
+    ...     np.array([[1.0, 2.0, 3.0], [3.0, 2.0, 1.0], [1.0, 1.0, 1.0]]), np.array([1.0, 8.0, 9.0])
+    ... ).tolist()
     [1.0, -1.0, nan]
     """
     from scipy.stats import spearmanr
@@ -146,7 +167,8 @@ def rank_correlations(inputs: Floats, output: Floats) -> Floats:
 
 
 class OneAtATime(NamedTuple):
-    """Range of a result along each axis of a grid with all others at their middle level, one value per axis.
+    """Range of a result along each axis of a grid with all others at their middle level, one value
+    per axis.
 
     Attributes
     ----------
@@ -163,7 +185,11 @@ class OneAtATime(NamedTuple):
     @property
     def relative(self) -> Floats:
         """The range relative to the result in the middle; NaN if that is zero."""
-        return (self.highest - self.lowest) / abs(self.middle) if self.middle else np.full(len(self.lowest), math.nan)
+        return (
+            (self.highest - self.lowest) / abs(self.middle)
+            if self.middle
+            else np.full(len(self.lowest), math.nan)
+        )
 
 
 def one_at_a_time(values: NDArray[Any], orders: list[Indices]) -> OneAtATime:
@@ -174,7 +200,8 @@ def one_at_a_time(values: NDArray[Any], orders: list[Indices]) -> OneAtATime:
     values : array, of as many dimensions as the grid
         The result; NaN where a drop failed.
     orders : list of array
-        For each axis the indices of its levels in ascending order; the middle one (the upper of two) is the middle level.
+        For each axis the indices of its levels in ascending order; the middle one (the upper of
+        two) is the middle level.
 
     Examples
     --------

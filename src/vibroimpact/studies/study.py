@@ -69,7 +69,8 @@ class Study:
     version : str
         Version of the package that computed it.
     dimensions : dict of str to int
-        Leading dimensions of every variable in order, with their lengths: the swept keys, or `sample`.
+        Leading dimensions of every variable in order, with their lengths: the swept keys, or
+        `sample`.
     coordinates : dict of str to array
         By swept key its levels, or its values along `sample`.
     meanings : dict of str to (str, str)
@@ -79,7 +80,8 @@ class Study:
     failures : dict of int to str
         Reason of each failed drop, by its number in the sequence of all points, from 0.
     labels : dict of str to array
-        Of the falls of a population the `class`, by its name, and the numbers of `rock` and `plate`.
+        Of the falls of a population the `class`, by its name, and the numbers of `rock` and
+        `plate`.
 
     Examples
     --------
@@ -121,7 +123,9 @@ class Study:
 
     @property
     def doubts(self) -> list[StudyDoubt]:
-        """The limits of the theory that drops exceed, with the number of drops and the worst of them."""
+        """The limits of the theory that drops exceed, with the number of drops and the
+        worst of them.
+        """
         with _reported_damage(self.path):
             return study_doubts(self.path)
 
@@ -149,12 +153,15 @@ class Study:
         return f"<Study of {self.size} drop{'' if self.size == 1 else 's'}: {over}>"
 
     def _repr_html_(self) -> str:
-        import vibroimpact  # an import upwards, as in Response.save: tables and charts lie above the study
+        # an import upwards, as in Response.save: tables and charts lie above the study
+        import vibroimpact
 
         return vibroimpact.study_html(self)
 
     def plot(self, name: str = "") -> go.Figure:
-        """Return a chart as a figure of plotly, by its name, by default the first; see `vibroimpact.plot_study`."""
+        """Return a chart as a figure of plotly, by its name, by default the first; see
+        `vibroimpact.plot_study`.
+        """
         import vibroimpact
 
         return vibroimpact.plot_study(self, name)
@@ -195,7 +202,11 @@ def study_doubts(dataset: Path) -> list[StudyDoubt]:
         if DOUBTS not in file:
             return []
         beyond, found = read_array(file[DOUBTS]).ravel(), []
-        for mask, limit in zip(file[DOUBTS].attrs["flag_masks"], str(file[DOUBTS].attrs["flag_meanings"]).split(), strict=True):
+        for mask, limit in zip(
+            file[DOUBTS].attrs["flag_masks"],
+            str(file[DOUBTS].attrs["flag_meanings"]).split(),
+            strict=True,
+        ):
             doubted = (beyond & mask) != 0
             if doubted.any():
                 numbers = np.where(doubted, read_array(file[f"{LIMIT}{limit}"]).ravel(), -np.inf)
@@ -234,8 +245,13 @@ def read_study(directory: str | PathLike[str]) -> Study:
         folder = Path(directory)
         if not (folder / STUDY).is_file():
             raise InputError(f"{folder}: this is not the folder of a study; it has no {DATASET}")
-        command = f"vibroimpact sweep {shlex.quote(str(folder / STUDY))} -o {shlex.quote(str(folder))} --resume"
-        raise InputError(f"{folder}: the study is not done; if nothing is at work on it, go on with: {command}")
+        command = (
+            f"vibroimpact sweep {shlex.quote(str(folder / STUDY))} -o "
+            f"{shlex.quote(str(folder))} --resume"
+        )
+        raise InputError(
+            f"{folder}: the study is not done; if nothing is at work on it, go on with: {command}"
+        )
     with _reported_damage(path):
         check_hdf5(path, recorded_digest(path))
     with _reported_damage(path), h5py.File(path, "r") as file:
@@ -244,16 +260,31 @@ def read_study(directory: str | PathLike[str]) -> Study:
         over = swept_keys(table)
         is_grid = _design(table) == "grid"
         coordinates = {key: _coordinate(file[key]) for key in over}
-        dimensions = {key: len(coordinates[key]) for key in over} if is_grid else {SAMPLE: len(file[SAMPLE])}
-        labels = {one: _label(file[one]) for one in LABELS if one in file and table["sweep"].get("classes")}
-        names = [one for one in variables if not variables[one].is_scale and one not in (*over, *labels, FAILED_REASON)]
+        dimensions = (
+            {key: len(coordinates[key]) for key in over} if is_grid else {SAMPLE: len(file[SAMPLE])}
+        )
+        labels = {
+            one: _label(file[one])
+            for one in LABELS
+            if one in file and table["sweep"].get("classes")
+        }
+        names = [
+            one
+            for one in variables
+            if not variables[one].is_scale and one not in (*over, *labels, FAILED_REASON)
+        ]
         _check_variables({one: variables[one] for one in names}, tuple(dimensions.values()))
-        meanings = {one: (str(file[one].attrs["units"]), str(file[one].attrs["long_name"])) for one in [*over, *labels, *names]}
+        meanings = {
+            one: (str(file[one].attrs["units"]), str(file[one].attrs["long_name"]))
+            for one in [*over, *labels, *names]
+        }
         reasons = [reason.decode() for reason in read_array(file[FAILED_REASON])]
         failures = dict(zip(read_array(file[FAILED_POINT]).tolist(), reasons, strict=True))
         shapes = {one: tuple(file[one].shape) for one in names}
         name, version = str(file.attrs["title"]), str(file.attrs["version"])
-        return Study(path, name, table, version, dimensions, coordinates, meanings, shapes, failures, labels)
+        return Study(
+            path, name, table, version, dimensions, coordinates, meanings, shapes, failures, labels
+        )
 
 
 def _check_variables(variables: dict[str, h5py.Dataset], points: tuple[int, ...]) -> None:
@@ -268,7 +299,9 @@ def _check_variables(variables: dict[str, h5py.Dataset], points: tuple[int, ...]
         if data.dtype.kind not in "fiub":
             raise DamageError(f"{name} is no variable of real numbers")
         if name != FAILED_POINT and data.shape[: len(points)] != points:
-            raise DamageError(f"{name} is of the shape {data.shape}, which does not begin with {points}")
+            raise DamageError(
+                f"{name} is of the shape {data.shape}, which does not begin with {points}"
+            )
 
 
 @contextmanager
@@ -279,7 +312,11 @@ def _reported_damage(path: Path) -> Iterator[None]:
     except InputError:
         raise
     except Exception as error:  # damage raises errors of many types
-        words = str(error) if isinstance(error, DamageError) else f"the file is damaged: {short_reason(error)}"
+        words = (
+            str(error)
+            if isinstance(error, DamageError)
+            else f"the file is damaged: {short_reason(error)}"
+        )
         folder = shlex.quote(str(path.parent))
         command = f"vibroimpact sweep {shlex.quote(str(path.parent / STUDY))} -o {folder} --force"
         raise InputError(f"{path}: {words}; make it anew with: {command}") from None
@@ -303,4 +340,8 @@ def _coordinate(data: h5py.Dataset) -> NDArray[Any]:
         raise DamageError(f"{data.name.lstrip('/')} is no row of numbers or texts")
     if values.dtype != object and not np.isfinite(values).all():
         raise DamageError(f"{data.name.lstrip('/')} has values that are not finite")
-    return np.array([text.decode() for text in values], dtype=object) if values.dtype == object else np.asarray(values)
+    return (
+        np.array([text.decode() for text in values], dtype=object)
+        if values.dtype == object
+        else np.asarray(values)
+    )

@@ -30,7 +30,9 @@ def has_study(folder: Path) -> bool:
 
 
 def recover_study(folder: Path) -> None:
-    """Clean up after processes that died while computing a study, unless another process is computing it."""
+    """Clean up after processes that died while computing a study, unless another process
+    is computing it.
+    """
     recover(folder)
     if (folder / LEDGER).is_file() and not is_held(folder):
         clear_study(folder)
@@ -39,7 +41,9 @@ def recover_study(folder: Path) -> None:
 
 
 def clear_study(folder: Path) -> None:
-    """Remove partly written files of a study that no process is computing, and all but complete chunks from the chunk folder."""
+    """Remove partly written files of a study that no process is computing, and all but
+    complete chunks from the chunk folder.
+    """
     clear(folder)
     for path in (folder / CHUNKS).glob("*"):
         if path.suffix != CHUNK:
@@ -54,17 +58,30 @@ def study_toml(table: Mapping[str, Any]) -> str:
     table : mapping
         The case with its [sweep] section.
     """
-    rest = {**table, "sweep": {key: value for key, value in table["sweep"].items() if key != "over"}}
-    lines = [f"{json.dumps(key)} = {_inline(value)}" for key, value in table["sweep"]["over"].items()]
+    rest = {
+        **table,
+        "sweep": {key: value for key, value in table["sweep"].items() if key != "over"},
+    }
+    lines = [
+        f"{json.dumps(key)} = {_inline(value)}" for key, value in table["sweep"]["over"].items()
+    ]
     return "\n".join([tomli_w.dumps(rest).rstrip(), "", "[sweep.over]", *lines, ""])
 
 
 def swept_keys(table: Mapping[str, Any]) -> list[str]:
-    """Return the swept keys of a study in the order of its dimensions; of a population those of its classes come last.
+    """Return the swept keys of a study in the order of its dimensions; of a population those of its
+    classes come last.
 
     Examples
     --------
-    >>> swept_keys({"sweep": {"over": {"drop.height": [1.0]}, "classes": {"coal": {"over": {"sphere.radius": [0.01]}}}}})
+    >>> swept_keys(
+    ...     {
+    ...         "sweep": {
+    ...             "over": {"drop.height": [1.0]},
+    ...             "classes": {"coal": {"over": {"sphere.radius": [0.01]}}},
+    ...         }
+    ...     }
+    ... )
     ['drop.height', 'sphere.radius']
     """
     classes = table["sweep"].get("classes") or {}
@@ -72,9 +89,15 @@ def swept_keys(table: Mapping[str, Any]) -> list[str]:
 
 
 def _inline(value: Any) -> str:
-    """Return a value as inline TOML; the library would move tables behind the other keys and so change their order."""
+    """Return a value as inline TOML; the library would move tables behind the other keys
+    and so change their order.
+    """
     if isinstance(value, dict):
-        return "{ " + ", ".join(f"{json.dumps(key)} = {_inline(one)}" for key, one in value.items()) + " }"
+        return (
+            "{ "
+            + ", ".join(f"{json.dumps(key)} = {_inline(one)}" for key, one in value.items())
+            + " }"
+        )
     if isinstance(value, list):
         return "[" + ", ".join(map(_inline, value)) + "]"
     return tomli_w.dumps({"x": value}).removeprefix("x = ").rstrip()

@@ -100,7 +100,11 @@ class Sweep:
         """Whether anything but the contact deforms, at any level of the swept keys."""
         first = self.values_of(0)
         names = {key: values for key, values in self.plan.columns.items() if values.dtype == object}
-        cases = (self.case_at({**first, key: level}) for key, values in names.items() for level in different(values))
+        cases = (
+            self.case_at({**first, key: level})
+            for key, values in names.items()
+            for level in different(values)
+        )
         return deforms(self.case) or any(map(deforms, cases))
 
     def case_of(self, drop: int, changes: Mapping[str, Any] | None = None) -> Case:
@@ -119,21 +123,33 @@ class Sweep:
             If there is no such drop, or its case is not valid.
         """
         if not 0 <= drop < self.size:
-            raise InputError(f"there is no drop {drop}; the study has {self.size:,}, counted from 0")
+            raise InputError(
+                f"there is no drop {drop}; the study has {self.size:,}, counted from 0"
+            )
         return self.case_at({**self.values_of(drop), **(changes or {})})
 
     @property
     def window(self) -> Window | None:
         """The part of the signals that is kept; None for all."""
-        return None if self.section.window is None else Window(self.section.window.before, self.section.window.length)
+        return (
+            None
+            if self.section.window is None
+            else Window(self.section.window.before, self.section.window.length)
+        )
 
     @property
     def bytes(self) -> float:
         """Approximate size of the results [bytes]."""
         impacts = (impact_limit(self.case) or LONG) if "impacts" in self.section.keep else 0
         kept = self.case.sensors if "signals" in self.section.keep else ()
-        samples = sum(sensor.rate * (self.window.length if self.window else self.case.run.duration or 0.0) for sensor in kept)
-        double, single = len(self.quantities) + len(PEAKS) + impacts * len(IMPACT_COLUMNS), len(limit_meanings()) + samples
+        samples = sum(
+            sensor.rate * (self.window.length if self.window else self.case.run.duration or 0.0)
+            for sensor in kept
+        )
+        double, single = (
+            len(self.quantities) + len(PEAKS) + impacts * len(IMPACT_COLUMNS),
+            len(limit_meanings()) + samples,
+        )
         return self.size * (8.0 * double + 4.0 * single)
 
     @property
@@ -148,23 +164,56 @@ class Sweep:
 
     @property
     def meanings(self) -> dict[str, tuple[str, str]]:
-        """Unit and meaning of every swept key and of all variables that may be kept, in the order of the files."""
-        sensors = {sensor.name: sensor.sensor() for sensor in self.case.sensors} if "signals" in self.section.keep else {}
-        keys = {key: (quantity.unit or "1", quantity.meaning) if quantity else ("1", key) for key, quantity in self.quantities.items()}
-        largest = {f"{name}{SENSOR_PEAK}": (one.unit, f"largest magnitude of the signal of {name}") for name, one in sensors.items()}
-        signals = {f"{SIGNAL}{name}": (one.unit, f"{one.quantity} measured by {name}") for name, one in sensors.items()}
-        starts = {f"{name}{SIGNAL_START}": ("s", f"time of the first sample of {name}") for name in sensors} if self.window else {}
+        """Unit and meaning of every swept key and of all variables that may be kept, in
+        the order of the files.
+        """
+        sensors = (
+            {sensor.name: sensor.sensor() for sensor in self.case.sensors}
+            if "signals" in self.section.keep
+            else {}
+        )
+        keys = {
+            key: (quantity.unit or "1", quantity.meaning) if quantity else ("1", key)
+            for key, quantity in self.quantities.items()
+        }
+        largest = {
+            f"{name}{SENSOR_PEAK}": (one.unit, f"largest magnitude of the signal of {name}")
+            for name, one in sensors.items()
+        }
+        signals = {
+            f"{SIGNAL}{name}": (one.unit, f"{one.quantity} measured by {name}")
+            for name, one in sensors.items()
+        }
+        starts = (
+            {
+                f"{name}{SIGNAL_START}": ("s", f"time of the first sample of {name}")
+                for name in sensors
+            }
+            if self.window
+            else {}
+        )
         impacts = meanings(ALL_IMPACT_COLUMNS)
         del impacts["impact"]  # a dimension, not a variable
         ended = {OUTCOME: ("1", "reason for the end of the run of the drop")}
-        return {**keys, **ended, **PEAKS, **largest, **limit_meanings(), **impacts, **starts, **signals}
+        return {
+            **keys,
+            **ended,
+            **PEAKS,
+            **largest,
+            **limit_meanings(),
+            **impacts,
+            **starts,
+            **signals,
+        }
 
     @cached_property
     def digest(self) -> str:
         """Fingerprint (SHA-256) of the case, its meshes, the points and the kept results."""
         meshes = [mesh_digest(file) for file in _meshes(self.table)]
         rest = json.dumps([self.table, meshes, self.section.keep], sort_keys=True, default=str)
-        return sha256(f"{self.plan.digest()} {rest}{f' {self.window}' if self.window else ''}".encode()).hexdigest()
+        return sha256(
+            f"{self.plan.digest()} {rest}{f' {self.window}' if self.window else ''}".encode()
+        ).hexdigest()
 
 
 def different(values: Values) -> list[Any]:

@@ -1,4 +1,6 @@
-"""The cases of the drops of a study: values at dotted keys, one by one, or as arrays over many drops."""
+"""The cases of the drops of a study: values at dotted keys, one by one, or as arrays over
+many drops.
+"""
 
 from __future__ import annotations
 
@@ -18,7 +20,8 @@ from vibroimpact.cases.reader import read_case
 from vibroimpact.studies.axes import Values
 
 _OF_THE_RUN = ("run.duration", "run.tolerance")  # the same for all drops of a batch
-_WITHOUT_EFFECT = ("plate.size.", "sensors.")  # on rigid bodies, unless the sphere may fall off the edge
+# on rigid bodies, unless the sphere may fall off the edge
+_WITHOUT_EFFECT = ("plate.size.", "sensors.")
 
 
 def case_at(table: Mapping[str, Any], values: Mapping[str, Any]) -> Case:
@@ -29,7 +32,10 @@ def case_at(table: Mapping[str, Any], values: Mapping[str, Any]) -> Case:
     InputError
         If it is not a valid case.
     """
-    plain = {key: value.item() if isinstance(value, np.generic) else value for key, value in values.items()}
+    plain = {
+        key: value.item() if isinstance(value, np.generic) else value
+        for key, value in values.items()
+    }
     return read_case(with_values(table, plain))
 
 
@@ -39,14 +45,17 @@ def is_array_key(key: str, values: Values) -> bool:
 
 
 def with_arrays(case: Case, arrays: Mapping[str, Values]) -> Case:
-    """Return a case whose numbers at dotted keys are arrays, one value per drop, without validation.
+    """Return a case whose numbers at dotted keys are arrays, one value per drop, without
+    validation.
 
     Examples
     --------
     >>> import numpy as np
     >>> from vibroimpact.cases.rigid import rigid_problem
     >>> from vibroimpact.cases.reader import load_case
-    >>> case = with_arrays(load_case("paper:type1-theory"), {"drop.height": np.array([1.0, 2.0, 4.0])})
+    >>> case = with_arrays(
+    ...     load_case("paper:type1-theory"), {"drop.height": np.array([1.0, 2.0, 4.0])}
+    ... )
     >>> rigid_problem(case).shape
     (3,)
     """
@@ -68,19 +77,41 @@ def with_arrays(case: Case, arrays: Mapping[str, Values]) -> Case:
             fields[section][field] = values
     for section, numbers in materials.items():
         fields[section]["material"] = replace(getattr(case, section).material, **numbers)
-    changed: dict[str, Any] = {name: getattr(case, name).model_copy(update=given) for name, given in fields.items() if name != "contact"}
+    changed: dict[str, Any] = {
+        name: getattr(case, name).model_copy(update=given)
+        for name, given in fields.items()
+        if name != "contact"
+    }
     if "contact" in fields:
-        wet = {key: fields["contact"].pop(key) for key in list(fields["contact"]) if key.startswith("liquid.")}
+        wet = {
+            key: fields["contact"].pop(key)
+            for key in list(fields["contact"])
+            if key.startswith("liquid.")
+        }
         if wet:
             numbers = {key.removeprefix("liquid."): values for key, values in wet.items()}
-            liquid = (case.contact.local.liquid or read_table(LiquidTable, {})).model_copy(update=numbers)
-            case = case.model_copy(
-                update={"contact": replace(case.contact, local=case.contact.local.model_copy(update={"liquid": liquid}))}
+            liquid = (case.contact.local.liquid or read_table(LiquidTable, {})).model_copy(
+                update=numbers
             )
-        friction = {key: fields["contact"].pop(key) for key in list(fields["contact"]) if key.startswith("friction.")}
-        changed["contact"] = replace(case.contact, parameters={**case.contact.parameters, **fields["contact"]})
+            case = case.model_copy(
+                update={
+                    "contact": replace(
+                        case.contact, local=case.contact.local.model_copy(update={"liquid": liquid})
+                    )
+                }
+            )
+        friction = {
+            key: fields["contact"].pop(key)
+            for key in list(fields["contact"])
+            if key.startswith("friction.")
+        }
+        changed["contact"] = replace(
+            case.contact, parameters={**case.contact.parameters, **fields["contact"]}
+        )
         if friction and case.contact.friction is not None:
             inner = {key.removeprefix("friction."): values for key, values in friction.items()}
-            table = replace(case.contact.friction, parameters={**case.contact.friction.parameters, **inner})
+            table = replace(
+                case.contact.friction, parameters={**case.contact.friction.parameters, **inner}
+            )
             changed["contact"] = replace(changed["contact"], friction=table)
     return case.model_copy(update=changed)

@@ -22,7 +22,9 @@ def axis_slips(sweep: Sweep) -> list[str]:
 
 
 def sweep_slips(sweep: Sweep) -> list[str]:
-    """Return a sentence for each number of a study, swept or not, that suggests a slip of a unit, without repetition."""
+    """Return a sentence for each number of a study, swept or not, that suggests a slip of
+    a unit, without repetition.
+    """
     return _once(resolved_case(sweep.case), sweep.plan.columns)
 
 
@@ -37,7 +39,10 @@ def study_slips(table: Mapping[str, Any], values: Mapping[str, NDArray[Any]]) ->
         By swept key its values in SI units; the first of each belongs to the first point.
     """
     try:
-        case: Case = case_at({key: one for key, one in table.items() if key != "sweep"}, {key: one[0] for key, one in values.items()})
+        case: Case = case_at(
+            {key: one for key, one in table.items() if key != "sweep"},
+            {key: one[0] for key, one in values.items()},
+        )
     except InputError:  # mesh files may be missing when results are read
         return []
     return _once(resolved_case(case), values)

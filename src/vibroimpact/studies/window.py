@@ -24,11 +24,13 @@ class Window:
     before: float
     length: float
 
-    def samples(self, touches: Floats, rate: float, count: int, *, ended: bool = False) -> tuple[int, int]:
+    def samples(
+        self, touches: Floats, rate: float, count: int, *, ended: bool = False
+    ) -> tuple[int, int]:
         """Return the numbers of the first sample that is kept and of the one after the last.
 
-        The first is the last sample that is not later than `before` ahead of the first touch, so that the touch falls between samples as
-        it happens to.
+        The first is the last sample that is not later than `before` ahead of the first touch, so
+        that the touch falls between samples as it happens to.
 
         Parameters
         ----------
@@ -53,19 +55,31 @@ class Window:
         (990, 1090)
         """
         if not len(touches) or not math.isfinite(touches[0]):
-            raise ComputationError("there was no impact, so that its signal can't be cut around the first touch")
-        begin, length = math.floor((float(touches[0]) - self.before) * rate + 1e-6), round(self.length * rate)
+            raise ComputationError(
+                "there was no impact, so that its signal can't be cut around the first touch"
+            )
+        begin, length = (
+            math.floor((float(touches[0]) - self.before) * rate + 1e-6),
+            round(self.length * rate),
+        )
         if begin < 0:
             early = f"the sphere touches {float(touches[0]):.3g} s after the start"
-            words = f"{early}, less than the {self.before:g} s before the touch that sweep.window keeps"
+            words = (
+                f"{early}, less than the {self.before:g} s before the touch that sweep.window keeps"
+            )
             raise ComputationError(
-                f"{words}; let it fall from higher up, by drop.height in place of drop.speed, or keep less before the touch"
+                f"{words}; let it fall from higher up, by drop.height in place of "
+                "drop.speed, or keep less before the touch"
             )
         if begin + length > count:
-            words = f"the signal ends at {count / rate:.4g} s, before the window does, at {(begin + length) / rate:.4g} s"
+            words = (
+                f"the signal ends at {count / rate:.4g} s, before the window does, at "
+                f"{(begin + length) / rate:.4g} s"
+            )
             if ended:
                 raise ComputationError(
-                    f"{words}, as the run ended before run.duration; where run.impacts ended it, allow more; else keep a shorter part"
+                    f"{words}, as the run ended before run.duration; where run.impacts "
+                    "ended it, allow more; else keep a shorter part"
                 )
             raise ComputationError(f"{words}; give a longer run.duration")
         return begin, begin + length

@@ -1,4 +1,6 @@
-"""Workers that compute chunks: this process, or processes of this machine (for a Dask scheduler see `dask_workers`)."""
+"""Workers that compute chunks: this process, or processes of this machine (for a Dask
+scheduler see `dask_workers`).
+"""
 
 from __future__ import annotations
 
@@ -24,7 +26,9 @@ Setup = Callable[[], object]
 
 
 class WorkerPool(NamedTuple):
-    """Running workers: their executor, and a function that returns the number of chunks to keep in flight so that none is idle."""
+    """Running workers: their executor, and a function that returns the number of chunks
+    to keep in flight so that none is idle.
+    """
 
     executor: Executor
     in_flight: Callable[[], int]
@@ -53,14 +57,18 @@ def this_process() -> Iterator[WorkerPool]:
 
 
 class _FileExecutor(Executor):
-    """An executor that transfers results by files: a worker killed while sending through a pipe would block the parent process."""
+    """An executor that transfers results by files: a worker killed while sending through
+    a pipe would block the parent process.
+    """
 
     def __init__(self, pool: Executor, folder: Path) -> None:
         self.pool, self.folder = pool, folder
 
     def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
         result: Future[Any] = Future()
-        self.pool.submit(_to_file, self.folder, fn, args, kwargs).add_done_callback(partial(_from_file, result))
+        self.pool.submit(_to_file, self.folder, fn, args, kwargs).add_done_callback(
+            partial(_from_file, result)
+        )
         return result
 
 
@@ -76,7 +84,9 @@ def _to_file(folder: Path, fn: Callable[..., Any], args: Any, kwargs: Any) -> Pa
         if path is not folder:
             path.unlink(missing_ok=True)
         words = "see to the disk, then go on with --resume; the chunks that are done stay"
-        raise ComputationError(f"{folder}: what was computed can't be written: {error.strerror}; {words}") from None
+        raise ComputationError(
+            f"{folder}: what was computed can't be written: {error.strerror}; {words}"
+        ) from None
     return path
 
 
@@ -91,10 +101,14 @@ def _from_file(result: Future[Any], written: Future[Path]) -> None:
 
 
 class _InterruptImmuneProcess(SpawnProcess):
-    """A process that ignores Ctrl-C from its first instruction on; the parent process handles it."""
+    """A process that ignores Ctrl-C from its first instruction on; the parent process
+    handles it.
+    """
 
     def start(self) -> None:
-        """Start the process with SIGINT blocked in this thread, which the child inherits; a pending signal is delivered afterwards."""
+        """Start the process with SIGINT blocked in this thread, which the child inherits;
+        a pending signal is delivered afterwards.
+        """
         if not hasattr(signal, "pthread_sigmask"):  # Windows
             super().start()
             return
@@ -107,19 +121,26 @@ class _InterruptImmuneProcess(SpawnProcess):
 
 
 class _InterruptImmuneContext(SpawnContext):
-    """Context of processes that ignore Ctrl-C, whenever an executor starts them; spawned, as a fork would copy held locks of threads."""
+    """Context of processes that ignore Ctrl-C, whenever an executor starts them; spawned,
+    as a fork would copy held locks of threads.
+    """
 
     Process = _InterruptImmuneProcess
 
 
 @contextmanager
 def processes(number: int, setup: Setup, folder: Path) -> Iterator[WorkerPool]:
-    """Provide `number` processes of this machine, which pass their results through files in a folder."""
-    pool = ProcessPoolExecutor(number, _InterruptImmuneContext(), initializer=_begin, initargs=(setup,))
+    """Provide `number` processes of this machine, which pass their results through files
+    in a folder.
+    """
+    pool = ProcessPoolExecutor(
+        number, _InterruptImmuneContext(), initializer=_begin, initargs=(setup,)
+    )
     try:
         yield WorkerPool(_FileExecutor(pool, folder), lambda: 2 * number)
     finally:
-        pool.shutdown(cancel_futures=True)  # each ends after its current chunk, or with this process
+        # each ends after its current chunk, or with this process
+        pool.shutdown(cancel_futures=True)
 
 
 def _begin(setup: Setup) -> None:

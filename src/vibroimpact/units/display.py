@@ -30,7 +30,14 @@ _MULTIPLES: dict[str, tuple[Multiple, ...]] = {
     "m/s": (Multiple("m/s", 1.0), Multiple("mm/s", 1e-3), Multiple("µm/s", 1e-6)),
     "m/s2": (Multiple("m/s²", 1.0), Multiple("mm/s²", 1e-3)),  # nobody reads km/s²
     "m/s2/N": (Multiple("m/s²/N", 1.0),),
-    "N": (Multiple("MN", 1e6), Multiple("kN", 1e3), Multiple("N", 1.0), Multiple("mN", 1e-3), Multiple("µN", 1e-6), Multiple("nN", 1e-9)),
+    "N": (
+        Multiple("MN", 1e6),
+        Multiple("kN", 1e3),
+        Multiple("N", 1.0),
+        Multiple("mN", 1e-3),
+        Multiple("µN", 1e-6),
+        Multiple("nN", 1e-9),
+    ),
     "J": (
         Multiple("MJ", 1e6),
         Multiple("kJ", 1e3),
@@ -50,11 +57,26 @@ _MULTIPLES: dict[str, tuple[Multiple, ...]] = {
         Multiple("µPa", 1e-6),
     ),
     "Hz": (Multiple("GHz", 1e9), Multiple("MHz", 1e6), Multiple("kHz", 1e3), Multiple("Hz", 1.0)),
-    "N/m": (Multiple("GN/m", 1e9), Multiple("MN/m", 1e6), Multiple("kN/m", 1e3), Multiple("N/m", 1.0)),
-    "N s/m": (Multiple("GN s/m", 1e9), Multiple("MN s/m", 1e6), Multiple("kN s/m", 1e3), Multiple("N s/m", 1.0)),
+    "N/m": (
+        Multiple("GN/m", 1e9),
+        Multiple("MN/m", 1e6),
+        Multiple("kN/m", 1e3),
+        Multiple("N/m", 1.0),
+    ),
+    "N s/m": (
+        Multiple("GN s/m", 1e9),
+        Multiple("MN s/m", 1e6),
+        Multiple("kN s/m", 1e3),
+        Multiple("N s/m", 1.0),
+    ),
     "kg": (Multiple("kg", 1.0), Multiple("g", 1e-3)),
     "V": (Multiple("V", 1.0), Multiple("mV", 1e-3), Multiple("µV", 1e-6), Multiple("nV", 1e-9)),
-    "m/m": (Multiple("m/m", 1.0), Multiple("mm/m", 1e-3), Multiple("µm/m", 1e-6), Multiple("nm/m", 1e-9)),
+    "m/m": (
+        Multiple("m/m", 1.0),
+        Multiple("mm/m", 1e-3),
+        Multiple("µm/m", 1e-6),
+        Multiple("nm/m", 1e-9),
+    ),
     "1": (Multiple("", 1.0),),
     "": (Multiple("", 1.0),),
 }
@@ -75,7 +97,8 @@ def multiple(unit: str, values: ArrayLike) -> Multiple:
     Parameters
     ----------
     unit : str
-        SI unit as in `dynamics.columns`, or as in a case, with "^" before powers. A unit without multiples is returned unchanged.
+        SI unit as in `dynamics.columns`, or as in a case, with "^" before powers. A unit without
+        multiples is returned unchanged.
     values : array_like
         Values in that unit; NaN is ignored.
 
@@ -119,7 +142,8 @@ def digits(value: float, significant: int = 4) -> str:
 
 
 def certain(shown: str, value: float, figures: int) -> str:
-    """Return a number in at most `figures` significant figures: the text `shown`, or a shorter one; a question mark for none.
+    """Return a number in at most `figures` significant figures: the text `shown`, or a shorter one;
+    a question mark for none.
 
     Examples
     --------
@@ -144,12 +168,14 @@ ALL_FIGURES = 17
 
 
 def certain_figures(change: ArrayLike) -> Indices:
-    """Return the number of certain significant figures, from the relative change of each number; the last may be off by three.
+    """Return the number of certain significant figures, from the relative change of each number;
+    the last may be off by three.
 
     Parameters
     ----------
     change : array_like
-        Relative change of each number [-] under an unavoidable perturbation of the drop; NaN if it is unbounded.
+        Relative change of each number [-] under an unavoidable perturbation of the drop; NaN if it
+        is unbounded.
 
     Examples
     --------
@@ -157,18 +183,23 @@ def certain_figures(change: ArrayLike) -> Indices:
     [17, 9, 3, 1, 0]
     """
     with np.errstate(divide="ignore", invalid="ignore"):
-        figures = np.floor(0.5 - np.log10(np.nan_to_num(np.asarray(change, dtype=float), nan=np.inf)))
+        figures = np.floor(
+            0.5 - np.log10(np.nan_to_num(np.asarray(change, dtype=float), nan=np.inf))
+        )
     return np.asarray(np.clip(figures, 0, ALL_FIGURES), dtype=np.intp)
 
 
-_LEAST, _MORE = 3, 2  # least significant digits of the smallest number of a column; largest number of decimals added for it
+# least significant digits of the smallest number of a column; largest number of decimals added for
+# it
+_LEAST, _MORE = 3, 2
 
 
 def column_texts(values: ArrayLike, significant: int = 5) -> list[str]:
     """Return the numbers of a column as texts with the same number of decimals.
 
-    The largest number has `significant` digits, or up to two more if the smallest would have fewer than three. If that is not enough,
-    because the numbers differ by orders of magnitude, each number has its own significant digits.
+    The largest number has `significant` digits, or up to two more if the smallest would have fewer
+    than three. If that is not enough, because the numbers differ by orders of magnitude, each
+    number has its own significant digits.
 
     Parameters
     ----------
@@ -188,7 +219,9 @@ def column_texts(values: ArrayLike, significant: int = 5) -> list[str]:
     sizes = np.abs(numbers[np.isfinite(numbers) & (numbers != 0.0)])
     if not sizes.size:
         return [digits(float(value), significant) for value in numbers]
-    top, bottom = (int(f"{size:.{significant - 1}e}".split("e")[1]) for size in (sizes.max(), sizes.min()))
+    top, bottom = (
+        int(f"{size:.{significant - 1}e}".split("e")[1]) for size in (sizes.max(), sizes.min())
+    )
     usual = max(0, significant - 1 - top)
     decimals = max(usual, min(_LEAST, significant) - 1 - bottom)
     if not -4 <= top <= 7 or decimals > usual + _MORE:
@@ -202,7 +235,8 @@ def known_text(value: float, spread: float, most: int = 6) -> str:
     Parameters
     ----------
     value, spread : float
-        The number, and its standard deviation or half an interval; 0 or NaN if it is exact or not known.
+        The number, and its standard deviation or half an interval; 0 or NaN if it is exact or not
+        known.
     most : int, default 6
         Significant digits of the number at most.
 
@@ -221,7 +255,11 @@ def known_text(value: float, spread: float, most: int = 6) -> str:
         return digits(value, most)
     if figures < 1:
         return fixed(0.0 if places < 0 else value, max(0, places))
-    return digits(round(value, places), figures) if places > 0 or abs(value) >= 1e7 else fixed(round(value, places), 0)
+    return (
+        digits(round(value, places), figures)
+        if places > 0 or abs(value) >= 1e7
+        else fixed(round(value, places), 0)
+    )
 
 
 def known_texts(values: ArrayLike, spreads: ArrayLike, most: int = 6) -> list[str]:
@@ -266,7 +304,8 @@ def brief(value: float, unit: str) -> str:
     """
     best = multiple(unit, value)
     shown = f"{value / best.size:.4g}"
-    return f"{digits(value / best.size) if 'e' in shown else shown.replace('-', _MINUS)}\u00a0{best.unit}".rstrip("\u00a0")
+    number = digits(value / best.size) if "e" in shown else shown.replace("-", _MINUS)
+    return f"{number}\u00a0{best.unit}".rstrip("\u00a0")
 
 
 def _superscript(power: str) -> str:

@@ -10,10 +10,19 @@ import re
 _LONGEST = 40  # characters
 _LETTER = "A-Za-z%°µμ"
 _TOKEN = re.compile(
-    rf" *(?:(?P<n>[{_LETTER}][{_LETTER}0-9]*)|(?P<one>1(?![{_LETTER}0-9.]))|(?P<d>\d{{1,3}}(?:\.\d{{1,6}})?(?![{_LETTER}0-9.]))"
+    rf" *(?:(?P<n>[{_LETTER}][{_LETTER}0-9]*)|(?P<one>1(?![{_LETTER}0-9.]))"
+    rf"|(?P<d>\d{{1,3}}(?:\.\d{{1,6}})?(?![{_LETTER}0-9.]))"
     r"|(?P<power>\^|\*\*)|(?P<sign>[+-])|(?P<times>[*·])|(?P<over>/)|(?P<open>\()|(?P<close>\)))"
 )
-_SIGNS = {"one": "1", "power": "^", "sign": "-", "times": "*", "over": "/", "open": "(", "close": ")"}
+_SIGNS = {
+    "one": "1",
+    "power": "^",
+    "sign": "-",
+    "times": "*",
+    "over": "/",
+    "open": "(",
+    "close": ")",
+}
 _EXPONENT = re.compile(r"\^(?:-?[1d]|\(-?[1d](?:/[1d])?\))")
 _PRODUCT = r"(?:n'?|1)(?:[*/]?(?:n'?|1))*"
 _GROUP = re.compile(rf"\({_PRODUCT}\)")
@@ -21,7 +30,8 @@ _MOST_GROUPS = 2
 
 
 def is_unit(text: str) -> bool:
-    """Return whether a text is a product of names, each with at most one exponent, a small number or a ratio of two.
+    """Return whether a text is a product of names, each with at most one exponent, a small number
+    or a ratio of two.
 
     The names are not checked to be units. Parentheses may be nested once.
 

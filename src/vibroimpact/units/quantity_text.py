@@ -12,7 +12,8 @@ _LONGEST = 80  # characters of a quantity
 
 
 def number_and_unit(text: str) -> tuple[float, str] | None:
-    """Return the number and the unit of a text, "" for no unit, neither of which is checked; None if it does not begin with a number.
+    """Return the number and the unit of a text, "" for no unit, neither of which is checked; None
+    if it does not begin with a number.
 
     Examples
     --------

@@ -1,7 +1,8 @@
 """Parsing of quantities and conversion of units: a bare number is in SI, a string has a unit.
 
-Inside the package every quantity is a float in SI; units are converted where input is read, and by the command `units`. pint takes half a
-second to start, and is imported with the first unit that is not an SI unit with or without a prefix, such as "mm" or "GPa".
+Inside the package every quantity is a float in SI; units are converted where input is read, and by
+the command `units`. pint takes half a second to start, and is imported with the first unit that is
+not an SI unit with or without a prefix, such as "mm" or "GPa".
 """
 
 from __future__ import annotations
@@ -96,7 +97,8 @@ def to_si(value: float | str, unit: str = "") -> float:
     Parameters
     ----------
     value : float or str
-        A bare number is in `unit` already; a string must have a unit of the same dimension, in any spelling: m/s2, m/s², m·s⁻², µm.
+        A bare number is in `unit` already; a string must have a unit of the same dimension, in any
+        spelling: m/s2, m/s², m·s⁻², µm.
     unit : str, default ""
         The SI unit of the result; "" for a plain number.
 
@@ -120,12 +122,15 @@ def to_si(value: float | str, unit: str = "") -> float:
     0.025
     >>> to_si("250 mm/s²", "m/s^2")
     0.25
-    >>> to_si("500 g", "m/s^2")  # as data sheets have it: standard gravity; of a mass "g" is the gram
+    >>> to_si(
+    ...     "500 g", "m/s^2"
+    ... )  # as data sheets have it: standard gravity; of a mass "g" is the gram
     4903.325
     >>> to_si("25 kg", "m")
     Traceback (most recent call last):
         ...
-    vibroimpact.errors.InputError: "25 kg" is a mass; expected a length (a number in m, or a string such as "25 mm")
+    vibroimpact.errors.InputError: "25 kg" is a mass; expected a length (a number in m, or a string
+    such as "25 mm")
     """
     unit = spelled(unit)
     if isinstance(value, bool) or not isinstance(value, (int, float, str)):
@@ -153,7 +158,9 @@ def parse_quantity(text: str) -> tuple[float, str]:
     """
     parts = _split(text)
     if parts is None or not parts[1]:
-        raise InputError(f'{shown(text, 80)} is not a number with a unit, such as "5.115e8 N/m^1.5"')
+        raise InputError(
+            f'{shown(text, 80)} is not a number with a unit, such as "5.115e8 N/m^1.5"'
+        )
     return _finite(parts[0], text), parts[1]
 
 
@@ -165,8 +172,8 @@ def convert_units(value: float, unit: str, to: str) -> float:
     value : float
         The number, in `unit`.
     unit, to : str
-        Units, in any spelling: "N/m^1.5", "N·s/mm", "kN/mm¹·⁵", "kg/s". "g" is the gram, or standard gravity if only that is of the
-        dimension of the other unit.
+        Units, in any spelling: "N/m^1.5", "N·s/mm", "kN/mm¹·⁵", "kg/s". "g" is the gram, or
+        standard gravity if only that is of the dimension of the other unit.
 
     Returns
     -------
@@ -190,7 +197,9 @@ def convert_units(value: float, unit: str, to: str) -> float:
     if have.dimensionality != want.dimensionality:
         have, want = _by_gravity(unit, to) or (have, want)
     if have.dimensionality != want.dimensionality:
-        both = " and ".join(f"{shown(name)} is {_dimension_words(one)}" for name, one in ((unit, have), (to, want)))
+        both = " and ".join(
+            f"{shown(name)} is {_dimension_words(one)}" for name, one in ((unit, have), (to, want))
+        )
         raise InputError(f"{both}; one can't be converted to the other")
     try:
         found = float(_registry().Quantity(number, have).to(want).magnitude)
@@ -209,7 +218,8 @@ def _by_gravity(unit: str, to: str) -> tuple[pint.Unit, pint.Unit] | None:
 
 
 def dimension_of(unit: str) -> dict[str, float]:
-    """Return the exponents of "force", "length" and "time" in a unit; of "mass" instead of "force" if the unit has no time.
+    """Return the exponents of "force", "length" and "time" in a unit; of "mass" instead of "force"
+    if the unit has no time.
 
     Raises
     ------
@@ -227,15 +237,26 @@ def dimension_of(unit: str) -> dict[str, float]:
 
 
 def _dimension(unit: pint.Unit) -> dict[str, float]:
-    powers = {str(name).strip("[]"): float(str(power)) for name, power in unit.dimensionality.items()}
+    powers = {
+        str(name).strip("[]"): float(str(power)) for name, power in unit.dimensionality.items()
+    }
     mass = powers.get("mass", 0.0)
     if mass and powers.get("time", 0.0):
-        # a unit with mass and time is expressed by force, since not every program has mass length / time^2 as its unit of force
+        # a unit with mass and time is expressed by force, since not every program has mass length /
+        # time^2 as its unit of force
         del powers["mass"]
-        powers |= {"force": mass, "length": powers.get("length", 0.0) - mass, "time": powers["time"] + 2.0 * mass}
+        powers |= {
+            "force": mass,
+            "length": powers.get("length", 0.0) - mass,
+            "time": powers["time"] + 2.0 * mass,
+        }
     order = ("force", "mass", "length", "time")
     powers = {name: round(power, 9) for name, power in powers.items() if abs(power) > 1e-9}
-    return dict(sorted(powers.items(), key=lambda one: order.index(one[0]) if one[0] in order else len(order)))
+    return dict(
+        sorted(
+            powers.items(), key=lambda one: order.index(one[0]) if one[0] in order else len(order)
+        )
+    )
 
 
 def unit_text(powers: Iterable[tuple[str, float]]) -> str:
@@ -247,7 +268,10 @@ def unit_text(powers: Iterable[tuple[str, float]]) -> str:
     ('N/mm^1.5', 'N s/mm')
     """
     given = list(powers)
-    above, below = ([_power(name, abs(power)) for name, power in given if power * side > 0.0] for side in (1, -1))
+    above, below = (
+        [_power(name, abs(power)) for name, power in given if power * side > 0.0]
+        for side in (1, -1)
+    )
     return "/".join([" ".join(above) or "1", *below])
 
 
@@ -268,9 +292,15 @@ def _dimension_words(unit: pint.Unit) -> str:
 
 
 def _kinds_of(dimension: Mapping[str, Any]) -> list[str]:
-    """Return the kinds of quantity that have a dimension: a stiffness and a work of adhesion have the same."""
+    """Return the kinds of quantity that have a dimension: a stiffness and a work of
+    adhesion have the same.
+    """
     registry = _registry()
-    dimensional = ((registry.parse_units(name), kind) for name, kind in _KIND.items() if name not in _WITHOUT_DIMENSION)
+    dimensional = (
+        (registry.parse_units(name), kind)
+        for name, kind in _KIND.items()
+        if name not in _WITHOUT_DIMENSION
+    )
     return [kind for known, kind in dimensional if known.dimensionality == dimension]
 
 
@@ -281,10 +311,14 @@ def _either(kinds: Iterable[str]) -> str:
 def _known_unit(text: str) -> pint.Unit:
     try:
         unit = _parse_unit(text)
-        _ = unit.dimensionality  # pint makes it at the first use, and has none for products of decibels
+        # pint makes it at the first use, and has none for products of decibels
+        _ = unit.dimensionality
         return unit
     except Exception as error:  # pint raises many kinds for a unit that it can't read
-        raise InputError(f'{shown(text, 80)} is not a unit that is known; write it as "N/mm^1.5", "N s/m" or "kg/s"') from error
+        raise InputError(
+            f'{shown(text, 80)} is not a unit that is known; write it as "N/mm^1.5", "N '
+            's/m" or "kg/s"'
+        ) from error
 
 
 def _parse(text: str, unit: str) -> float:
@@ -295,22 +329,31 @@ def _parse(text: str, unit: str) -> float:
     if not unit:
         if given:
             digits = f"{_finite(number * _plain_factor(given), text):.15g}"
-            raise InputError(f"{shown(text, 80)} has a unit, but a plain number is wanted: write {digits}")
+            raise InputError(
+                f"{shown(text, 80)} has a unit, but a plain number is wanted: write {digits}"
+            )
         return number
     if not given:
         digits = f"{_finite(number, text):.15g}"
-        raise InputError(f'{shown(text, 80)} has no unit: write {digits} (it is then in {unit}) or "{digits} {unit}"')
+        raise InputError(
+            f"{shown(text, 80)} has no unit: write {digits} (it is then in {unit}) or "
+            f'"{digits} {unit}"'
+        )
     return number * _factor(given, unit, text)
 
 
 def _plain_factor(unit: str) -> float:
-    """Return what a unit without a dimension is as a plain number, such as a hundredth for %; 1 of another unit, or of an unknown one."""
+    """Return what a unit without a dimension is as a plain number, such as a hundredth
+    for %; 1 of another unit, or of an unknown one.
+    """
     known = plain_factor(unit)
     if known is not None:
         return known
     try:
         have = _known_unit(unit)
-        return 1.0 if have.dimensionality else float(_registry().Quantity(1.0, have).to("").magnitude)
+        return (
+            1.0 if have.dimensionality else float(_registry().Quantity(1.0, have).to("").magnitude)
+        )
     except InputError:
         return 1.0
 
@@ -352,19 +395,32 @@ def _converted(given: str, unit: str, text: str) -> float:
     registry = _registry()
     try:
         have, want = registry.Quantity(1.0, _parse_unit(given)), registry.parse_units(unit)
-        if have.dimensionality != want.dimensionality:  # of an acceleration, g is standard gravity, and not the gram
+        # of an acceleration, g is standard gravity, and not the gram
+        if have.dimensionality != want.dimensionality:
             other = registry.Quantity(1.0, _parse_unit(by_gravity(spelled(given))))
             have = other if other.dimensionality == want.dimensionality else have
         return float(have.to(want).magnitude)
     except pint.DimensionalityError:
-        kinds = _kinds_of(have.dimensionality) if have.dimensionality else ["number without a dimension"]
-        raise InputError(f"{shown(text, 80)} is {_either(kinds) or 'another kind of quantity'}; expected {_wanted(unit)}") from None
+        kinds = (
+            _kinds_of(have.dimensionality)
+            if have.dimensionality
+            else ["number without a dimension"]
+        )
+        raise InputError(
+            f"{shown(text, 80)} is {_either(kinds) or 'another kind of quantity'}; "
+            f"expected {_wanted(unit)}"
+        ) from None
     except Exception as error:  # pint raises many kinds for a unit that it can't read
-        raise InputError(f"{shown(given, 80)} in {shown(text, 80)} is not a unit that is known; expected {_wanted(unit)}") from error
+        raise InputError(
+            f"{shown(given, 80)} in {shown(text, 80)} is not a unit that is known; "
+            f"expected {_wanted(unit)}"
+        ) from error
 
 
 def _long(number: float) -> str:
-    """Return the first digits of an integer, which may have more digits than Python converts to text."""
+    """Return the first digits of an integer, which may have more digits than Python
+    converts to text.
+    """
     try:
         return f"{str(number)[:20]}..."
     except ValueError:

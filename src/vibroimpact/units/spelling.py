@@ -1,4 +1,6 @@
-"""Spellings of units: as instruments, languages and this program's own tables write them, brought to the one that pint reads."""
+"""Spellings of units: as instruments, languages and this program's own tables write them,
+brought to the one that pint reads.
+"""
 
 from __future__ import annotations
 
@@ -11,7 +13,8 @@ _LOWERED = str.maketrans(f"{_SUPERSCRIPTS}·⋅", "0123456789+-..")
 _SIGNS = str.maketrans(
     {
         **dict.fromkeys("\u2212\u2010\u2011\u2013", "-"),  # minus, hyphens, en dash
-        **dict.fromkeys("\u22c5\u2219\u2022\u00d7", "·"),  # dot operator, bullets, multiplication sign
+        # dot operator, bullets, multiplication sign
+        **dict.fromkeys("\u22c5\u2219\u2022\u00d7", "·"),
         **dict.fromkeys("\u2215\u2044\u00f7", "/"),  # division slash, fraction slash, division sign
         **dict.fromkeys("\u00b5\u03bc", "u"),  # micro sign and Greek mu
     }
@@ -36,11 +39,26 @@ _WORDS = {
     **dict.fromkeys(("meter", "meters", "metre", "metres"), "m"),
     **dict.fromkeys(("pascal", "pascals"), "Pa"),
 }
-"""Names of units, which oscilloscopes and LabVIEW write with and without a capital letter, and in the plural."""
+"""Names of units, which oscilloscopes and LabVIEW write with and without a capital
+letter, and in the plural.
+"""
 
 _PLAIN = {
     **dict.fromkeys(("", "1", "-", "none"), 1.0),
-    **dict.fromkeys(("a.u.", "a.u", "arb. u.", "arb. unit", "arb. units", "arb.units", "arbitrary units", "count", "counts"), 1.0),
+    **dict.fromkeys(
+        (
+            "a.u.",
+            "a.u",
+            "arb. u.",
+            "arb. unit",
+            "arb. units",
+            "arb.units",
+            "arbitrary units",
+            "count",
+            "counts",
+        ),
+        1.0,
+    ),
     **dict.fromkeys(("strain", "m/m", "mm/mm"), 1.0),
     **dict.fromkeys(("um/m", "microstrain", "ustrain", "uε"), 1e-6),
     "mm/m": 1e-3,
@@ -50,24 +68,31 @@ _PLAIN = {
 
 @lru_cache(maxsize=1000)
 def spelled(text: str) -> str:
-    """Return a unit in the spelling that is read: powers after "^", "u" for micro, "·" between factors; unknown words are kept.
+    """Return a unit in the spelling that is read: powers after "^", "u" for micro, "·" between
+    factors; unknown words are kept.
 
     Examples
     --------
-    >>> [spelled(text) for text in ("m/s2", "m·s⁻²", "m.s-2", "kg/m³", "N/m¹·⁵", "µm", "mV/gn", "Ns/m")]
+    >>> [
+    ...     spelled(text)
+    ...     for text in ("m/s2", "m·s⁻²", "m.s-2", "kg/m³", "N/m¹·⁵", "µm", "mV/gn", "Ns/m")
+    ... ]
     ['m/s^2', 'm·s^-2', 'm·s^-2', 'kg/m^3', 'N/m^1.5', 'um', 'mV/g0', 'N s/m']
     >>> spelled("Volts")
     'V'
     """
     if (word := _WORDS.get(text.strip().lower())) is not None:
         return word
-    raised = _RAISED.sub(lambda power: "^" + power[0].translate(_LOWERED).removeprefix("+"), text.strip())
+    raised = _RAISED.sub(
+        lambda power: "^" + power[0].translate(_LOWERED).removeprefix("+"), text.strip()
+    )
     plain = _JOINED.sub(r"\1 s", " ".join(raised.translate(_SIGNS).split()))
     return _POWER.sub(r"^\1", _POINT.sub("·", _STANDARD_GRAVITY.sub(r"\1g0", plain)))
 
 
 def by_gravity(text: str) -> str:
-    """Return a unit in which g, mg, ug and G are standard gravity, 9.80665 m/s^2, and not the gram, its parts and the gauss.
+    """Return a unit in which g, mg, ug and G are standard gravity, 9.80665 m/s^2, and not the gram,
+    its parts and the gauss.
 
     Examples
     --------
@@ -78,7 +103,8 @@ def by_gravity(text: str) -> str:
 
 
 def plain_factor(text: str) -> float | None:
-    """Return the factor of a unit of plain numbers, such as strain or arbitrary units; None if it is none.
+    """Return the factor of a unit of plain numbers, such as strain or arbitrary units; None if it
+    is none.
 
     Examples
     --------

@@ -1,4 +1,6 @@
-"""Numbers as they were written: with the standard deviation that is given with them, or that their digits leave open."""
+"""Numbers as they were written: with the standard deviation that is given with them, or
+that their digits leave open.
+"""
 
 from __future__ import annotations
 
@@ -12,7 +14,9 @@ from vibroimpact.units.reading import to_si
 
 _PLUS_MINUS = re.compile(r"\s*(?:\+/?[-\u2212]|±)\s*")
 _HALF_STEP = 12.0**-0.5
-"""Standard deviation of a number that is anywhere within half a step of what is written, in steps."""
+"""Standard deviation of a number that is anywhere within half a step of what is written,
+in steps.
+"""
 
 
 class Written(float):
@@ -43,7 +47,14 @@ class Written(float):
     stated: bool
     why: str
 
-    def __new__(cls, value: float, deviation: float = 0.0, text: str = "", stated: bool = True, why: str = "") -> Written:
+    def __new__(
+        cls,
+        value: float,
+        deviation: float = 0.0,
+        text: str = "",
+        stated: bool = True,
+        why: str = "",
+    ) -> Written:
         """Return the number."""
         made = super().__new__(cls, value)
         made.deviation, made.text, made.stated, made.why = deviation, text, stated, why
@@ -72,15 +83,17 @@ def read_written(value: float | str, unit: str = "") -> Written:
     Parameters
     ----------
     value : float or str
-        A number in SI, or a text with a unit: "0.6 m +- 5 mm", "0.600 ± 0.005 m", "0.6 m +- 1 %", or "0.6 m" alone. Without a standard
-        deviation the number may lie anywhere within half a unit of the last digit that is written.
+        A number in SI, or a text with a unit: "0.6 m +- 5 mm", "0.600 ± 0.005 m", "0.6 m +- 1 %",
+        or "0.6 m" alone. Without a standard deviation the number may lie anywhere within half a
+        unit of the last digit that is written.
     unit : str, default ""
         The SI unit of the result.
 
     Raises
     ------
     InputError
-        If the value is not a finite number, has a unit of another dimension, or the standard deviation is negative.
+        If the value is not a finite number, has a unit of another dimension, or the standard
+        deviation is negative.
 
     Examples
     --------
@@ -93,7 +106,8 @@ def read_written(value: float | str, unit: str = "") -> Written:
     >>> read_written("0.6 m +- 5 kg", "m")
     Traceback (most recent call last):
         ...
-    vibroimpact.errors.InputError: the standard deviation in "0.6 m +- 5 kg": "5 kg" is a mass; expected a length (a number in m, or a \
+    vibroimpact.errors.InputError: the standard deviation in "0.6 m +- 5 kg": "5 kg" is a mass;
+    expected a length (a number in m, or a \
 string such as "25 mm")
     """
     if not has_deviation(value):
@@ -104,29 +118,44 @@ string such as "25 mm")
     number, deviation = to_si(without_deviation(value), unit), _parts(value)[1]
     part = number_and_unit(deviation)
     try:
-        spread = 0.01 * part[0] * abs(number) if part is not None and part[1] == "%" else to_si(deviation, unit)
+        spread = (
+            0.01 * part[0] * abs(number)
+            if part is not None and part[1] == "%"
+            else to_si(deviation, unit)
+        )
     except InputError as error:
         raise InputError(f"the standard deviation in {shown(value, 80)}: {error}") from None
     if spread < 0.0:
-        raise InputError(f"the standard deviation in {shown(value, 80)} is negative; it must be at least 0")
+        raise InputError(
+            f"the standard deviation in {shown(value, 80)} is negative; it must be at least 0"
+        )
     return Written(number, spread, value.strip())
 
 
 def _parts(text: str) -> tuple[str, str]:
-    """Return number and standard deviation as texts with their units; one that has none has that of the other."""
+    """Return number and standard deviation as texts with their units; one that has none
+    has that of the other.
+    """
     first, deviation = _PLUS_MINUS.split(text.strip(), maxsplit=1)
     of_first, of_deviation = number_and_unit(first), number_and_unit(deviation)
     if of_first is None or of_deviation is None:
         return first, deviation
     if not of_deviation[1]:
         return first, f"{deviation} {of_first[1]}".rstrip()
-    return (first, deviation) if of_first[1] or of_deviation[1] == "%" else (f"{first} {of_deviation[1]}", deviation)
+    return (
+        (first, deviation)
+        if of_first[1] or of_deviation[1] == "%"
+        else (f"{first} {of_deviation[1]}", deviation)
+    )
 
 
 def _last_place(value: float | str, number: float) -> float:
     """Return one unit of the last digit of a number as it is written, in SI."""
     parts = number_and_unit(value) if isinstance(value, str) else None
-    written = re.match(r"\s*[+-]?([\d.]+)(?:[eE]([+-]?\d+))?", value if isinstance(value, str) else f"{float(value)!r}".removesuffix(".0"))
+    written = re.match(
+        r"\s*[+-]?([\d.]+)(?:[eE]([+-]?\d+))?",
+        value if isinstance(value, str) else f"{float(value)!r}".removesuffix(".0"),
+    )
     if written is None:
         return 0.0
     step = 10.0 ** (int(written[2] or 0) - len(written[1].partition(".")[2]))

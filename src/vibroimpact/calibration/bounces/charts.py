@@ -34,11 +34,20 @@ def bounce_charts(found: Rebounds) -> list[Chart]:
     >>> import numpy as np
     >>> import vibroimpact as vi
     >>> microphone = vi.Record("microphone", np.zeros(48000), 48e3, "Pa")
-    >>> heard = vi.Bounces(microphone, np.array([0.0, 0.4, 0.72, 0.976]), np.full(4, 1e-5), np.ones(4), np.zeros(0), ())
+    >>> heard = vi.Bounces(
+    ...     microphone,
+    ...     np.array([0.0, 0.4, 0.72, 0.976]),
+    ...     np.full(4, 1e-5),
+    ...     np.ones(4),
+    ...     np.zeros(0),
+    ...     (),
+    ... )
     >>> [chart.name for chart in vi.bounce_charts(vi.rebounds_of(heard))]
     ['record', 'restitution']
     """
-    of_impacts = partial(restitution_chart, found, each="Each impact whose restitution is known", one="impact")
+    of_impacts = partial(
+        restitution_chart, found, each="Each impact whose restitution is known", one="impact"
+    )
     return made_charts({"record": partial(_record_chart, found), "restitution": of_impacts})
 
 
@@ -53,14 +62,20 @@ def _record_chart(found: Rebounds) -> Chart:
         level = np.full(len(bounces.others), float(np.abs(bounces.peak).max()))
         marks.append(Points(bounces.others, level, "other sounds", "muted", bounces.reasons))
     label = f"{record.name[:1].upper()}{record.name[1:]}"
-    panel = Panel(Axis("Time", "s"), Axis(label, "" if record.unit == "1" else record.unit), tuple(marks))
+    panel = Panel(
+        Axis("Time", "s"), Axis(label, "" if record.unit == "1" else record.unit), tuple(marks)
+    )
     others = ", and other sounds marked by crosses" if len(bounces.others) else ""
     caption = f"The record, with the bounces of the ball marked at their largest magnitude{others}."
     return Chart("record", "Bounces in the record", ((panel,),), caption, height=2.6)
 
 
-def restitution_chart(found: Fitted, each: str = "Each row of the table", one: str = "row") -> Chart:
-    """Return the chart of restitutions over the approach speed with their fits; `each` and `one`: what a point is."""
+def restitution_chart(
+    found: Fitted, each: str = "Each row of the table", one: str = "row"
+) -> Chart:
+    """Return the chart of restitutions over the approach speed with their fits; `each`
+    and `one`: what a point is.
+    """
     known = np.isfinite(found.restitution) & np.isfinite(found.approach_speed)
     speed, (low, high) = found.approach_speed[known], found.intervals[known].T
     names = tuple(f"{one} {number + 1}" for number in np.flatnonzero(known))
@@ -68,12 +83,23 @@ def restitution_chart(found: Fitted, each: str = "Each row of the table", one: s
     marks: list[Mark] = []
     ends = found.laws[-1].band(smooth, found.confidence)
     if np.isfinite(ends).all():
-        marks.append(Band(smooth, *ends, f"{100.0 * found.confidence:g} % band of the {found.laws[-1].name} law", "band"))
-    marks += [Line(smooth, law(smooth), law.name, series(number)) for number, law in enumerate(found.laws)]
+        marks.append(
+            Band(
+                smooth,
+                *ends,
+                f"{100.0 * found.confidence:g} % band of the {found.laws[-1].name} law",
+                "band",
+            )
+        )
+    marks += [
+        Line(smooth, law(smooth), law.name, series(number)) for number, law in enumerate(found.laws)
+    ]
     whole = np.isfinite([low, high]).all()
     bars = {"low": low, "high": high} if whole else {}
     marks.append(Points(speed, found.restitution[known], f"{one}s", "matched", names, **bars))
     panel = Panel(Axis("Approach speed", "m/s"), Axis("Restitution"), tuple(marks))
     interval = f", with its {100.0 * found.confidence:g} % interval" if whole else ""
     caption = f"{each}{interval}, and the fit{'s' if len(found.laws) > 1 else ''}."
-    return Chart("restitution", "Restitution over the approach speed", ((panel,),), caption, height=3.2)
+    return Chart(
+        "restitution", "Restitution over the approach speed", ((panel,),), caption, height=3.2
+    )

@@ -26,7 +26,11 @@ def bounce_rows(found: Rebounds) -> list[dict[str, Any]]:
         "restitution_high": found.intervals[:, 1],
     }
     return [
-        {"impact": number + 1, **{name: _finite(values[number]) for name, values in columns.items()}} for number in range(len(bounces.time))
+        {
+            "impact": number + 1,
+            **{name: _finite(values[number]) for name, values in columns.items()},
+        }
+        for number in range(len(bounces.time))
     ]
 
 
@@ -52,7 +56,8 @@ def bounce_document(found: Rebounds) -> dict[str, Any]:
             "impacts": bounce_rows(found),
             "fits": fits_document(found.laws, found.confidence),
             "others": [
-                {"time_s": float(time), "reason": reason} for time, reason in zip(found.bounces.others, found.bounces.reasons, strict=True)
+                {"time_s": float(time), "reason": reason}
+                for time, reason in zip(found.bounces.others, found.bounces.reasons, strict=True)
             ],
             "doubts": list(found.doubts),
         },
@@ -60,7 +65,9 @@ def bounce_document(found: Rebounds) -> dict[str, Any]:
 
 
 def fits_document(laws: list[SpeedLaw], confidence: float) -> dict[str, Any]:
-    """Return the fits of a restitution over the approach speed by name; None where there is no finite number."""
+    """Return the fits of a restitution over the approach speed by name; None where there
+    is no finite number.
+    """
     return {
         law.name: {
             "coefficients": law.coefficients.tolist(),

@@ -30,9 +30,11 @@ class SpeedLaw:
     covariance : array
         Their covariance; of the power law that of :math:`\ln a` and b.
     freedom : float
-        Degrees of freedom of the scatter; infinite if the uncertainty of the restitutions explains it.
+        Degrees of freedom of the scatter; infinite if the uncertainty of the restitutions explains
+        it.
     scatter : float
-        Standard deviation of the restitutions about the function beside their own uncertainty; of the power law relative.
+        Standard deviation of the restitutions about the function beside their own uncertainty; of
+        the power law relative.
     """
 
     name: str
@@ -57,10 +59,16 @@ class SpeedLaw:
     def band(self, speed: Floats, confidence: float) -> tuple[Floats, Floats]:
         """Return the ends of the confidence band of the restitution at approach speeds [m/s]."""
         power = self.name == POWER
-        design = np.vander(np.log(speed) if power else speed, len(self.coefficients), increasing=True)
-        half = half_width(confidence, self.freedom) * np.sqrt(np.einsum("ni,ij,nj->n", design, self.covariance, design))
+        design = np.vander(
+            np.log(speed) if power else speed, len(self.coefficients), increasing=True
+        )
+        half = half_width(confidence, self.freedom) * np.sqrt(
+            np.einsum("ni,ij,nj->n", design, self.covariance, design)
+        )
         value = self(speed)
-        return (value * np.exp(-half), value * np.exp(half)) if power else (value - half, value + half)
+        return (
+            (value * np.exp(-half), value * np.exp(half)) if power else (value - half, value + half)
+        )
 
 
 class Fitted(Protocol):
@@ -88,12 +96,18 @@ class Fitted(Protocol):
 
 
 def speed_laws(
-    speed: Floats, restitution: Floats, covariance: Floats, count: Floats | None = None, shared: Floats | None = None
+    speed: Floats,
+    restitution: Floats,
+    covariance: Floats,
+    count: Floats | None = None,
+    shared: Floats | None = None,
 ) -> list[SpeedLaw]:
-    """Return the fits to restitutions at several speeds: those with fewer coefficients than there are restitutions, the constant always.
+    """Return the fits to restitutions at several speeds: those with fewer coefficients than there
+    are restitutions, the constant always.
 
-    Real bounces scatter by more than times are uncertain: to their covariance that of a scatter is added, such that the sum of squared
-    residuals is what is expected (Paule and Mandel 1982, J. Res. Natl. Bur. Stand. 87:377).
+    Real bounces scatter by more than times are uncertain: to their covariance that of a scatter is
+    added, such that the sum of squared residuals is what is expected (Paule and Mandel 1982, J.
+    Res. Natl. Bur. Stand. 87:377).
 
     Parameters
     ----------
@@ -102,28 +116,57 @@ def speed_laws(
     covariance : array, shape (n, n)
         Covariance of the restitutions.
     count : array, shape (n,), optional
-        The number of impacts of which each restitution is the mean, of which the scatter is that of one; 1 by default.
+        The number of impacts of which each restitution is the mean, of which the scatter is that of
+        one; 1 by default.
     shared : array, shape (k, 2, n), optional
-        What one standard deviation of each of k inputs, such as gravity, changes in the restitutions and in the speeds.
+        What one standard deviation of each of k inputs, such as gravity, changes in the
+        restitutions and in the speeds.
 
     Examples
     --------
     >>> speed = np.array([1.0, 2.0, 4.0, 8.0])
-    >>> [law.coefficients.round(6).tolist() for law in speed_laws(speed, 0.8 * speed**-0.25, 1e-6 * np.eye(4))][-1]
+    >>> [
+    ...     law.coefficients.round(6).tolist()
+    ...     for law in speed_laws(speed, 0.8 * speed**-0.25, 1e-6 * np.eye(4))
+    ... ][-1]
     [0.8, -0.25]
     """
     one = np.ones(len(speed)) if count is None else 1.0 / count
-    of_value, of_speed = np.zeros((2, 0, len(speed))) if shared is None else (shared[:, 0], shared[:, 1])
-    found = [_fitted(CONSTANT, np.ones((len(speed), 1)), restitution, covariance + of_value.T @ of_value, one)]
+    of_value, of_speed = (
+        np.zeros((2, 0, len(speed))) if shared is None else (shared[:, 0], shared[:, 1])
+    )
+    found = [
+        _fitted(
+            CONSTANT, np.ones((len(speed), 1)), restitution, covariance + of_value.T @ of_value, one
+        )
+    ]
     if len(speed) > 2 and np.ptp(speed) > 0.0:
         found.append(_along(LINEAR, speed, restitution, covariance, one, (of_value, of_speed)))
         relative = covariance / np.outer(restitution, restitution)
-        found.append(_along(POWER, np.log(speed), np.log(restitution), relative, one, (of_value / restitution, of_speed / speed)))
+        found.append(
+            _along(
+                POWER,
+                np.log(speed),
+                np.log(restitution),
+                relative,
+                one,
+                (of_value / restitution, of_speed / speed),
+            )
+        )
     return found
 
 
-def _along(name: str, place: Floats, value: Floats, covariance: Floats, shares: Floats, shared: tuple[Floats, Floats]) -> SpeedLaw:
-    """Return a straight fit; what the inputs change in the places counts by the slope, which is found in a few rounds."""
+def _along(
+    name: str,
+    place: Floats,
+    value: Floats,
+    covariance: Floats,
+    shares: Floats,
+    shared: tuple[Floats, Floats],
+) -> SpeedLaw:
+    """Return a straight fit; what the inputs change in the places counts by the slope,
+    which is found in a few rounds.
+    """
     design, slope, (of_value, of_place) = np.vander(place, 2, increasing=True), 0.0, shared
     for _ in range(_PASSES):
         moved = of_value - slope * of_place
@@ -132,7 +175,9 @@ def _along(name: str, place: Floats, value: Floats, covariance: Floats, shares: 
     return fitted
 
 
-def _fitted(name: str, design: Floats, value: Floats, covariance: Floats, shares: Floats) -> SpeedLaw:
+def _fitted(
+    name: str, design: Floats, value: Floats, covariance: Floats, shares: Floats
+) -> SpeedLaw:
     """Return a fit; `shares`: parts of the variance of the scatter that the values have, (n,)."""
     freedom = len(value) - design.shape[1]
 
@@ -151,7 +196,9 @@ def _fitted(name: str, design: Floats, value: Floats, covariance: Floats, shares
 
 
 def _where(excess: Callable[[float], float], most: float) -> float:
-    """Return where a falling function of the added variance is zero; 0 if it is not above zero there."""
+    """Return where a falling function of the added variance is zero; 0 if it is not above
+    zero there.
+    """
     if excess(0.0) <= 0.0:
         return 0.0
     low, high = 0.0, most

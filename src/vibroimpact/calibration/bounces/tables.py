@@ -46,10 +46,14 @@ def law_sentences(found: Fitted) -> list[str]:
 def drop_sentence(found: Rebounds) -> str:
     """Return from how high the ball fell before the first touch."""
     if found.height is not None:
-        return f"The ball fell by {_length(found.height, found.drop_deviation)} before the first touch, as given."
+        return (
+            f"The ball fell by {_length(found.height, found.drop_deviation)} before the first "
+            "touch, as given."
+        )
     about = _length(found.drop_height, found.drop_deviation)
     return (
-        f"The ball fell by about {about} before the first touch, if it bounced there with the mean restitution; the height of the fall, if "
+        f"The ball fell by about {about} before the first touch, if it bounced there with "
+        "the mean restitution; the height of the fall, if "
         "given, yields the restitution of that impact."
     )
 
@@ -63,21 +67,34 @@ def contact_sentence(found: Rebounds) -> str:
     if found.height is not None:  # the speed after the fall is known without a contact
         by_contact = np.append(by_contact, 0.5 * found.gravity / found.approach_speed[0])
     shift = 1e-4 * float(np.max(by_contact))
-    return f"Contacts are taken as instantaneous: each 0.1 ms of contact time makes a restitution too large, by {digits(shift, 2)} at most."
+    return (
+        "Contacts are taken as instantaneous: each 0.1 ms of contact time makes a restitution "
+        f"too large, by {digits(shift, 2)} at most."
+    )
 
 
 def other_sentences(found: Rebounds) -> list[str]:
     """Return what else is heard."""
     pairs = list(zip(found.bounces.others, found.bounces.reasons, strict=True))
-    told = [f"Not a bounce, at {text(float(time), 's')}: {reason}." for time, reason in pairs[:_MOST]]
+    told = [
+        f"Not a bounce, at {text(float(time), 's')}: {reason}." for time, reason in pairs[:_MOST]
+    ]
     more = len(pairs) - _MOST
-    rest = "1 other sound is no bounce either; summary.json lists it." if more == 1 else f"{more} other sounds are no bounces either"
-    return told if more <= 0 else [*told, rest if more == 1 else f"{rest}; summary.json lists them."]
+    rest = (
+        "1 other sound is no bounce either; summary.json lists it."
+        if more == 1
+        else f"{more} other sounds are no bounces either"
+    )
+    return (
+        told if more <= 0 else [*told, rest if more == 1 else f"{rest}; summary.json lists them."]
+    )
 
 
 def _sentence(law: SpeedLaw, confidence: float) -> str:
     ends = law.intervals(confidence)
-    first, *second = [_known(value, low, high) for value, (low, high) in zip(law.coefficients, ends, strict=True)]
+    first, *second = [
+        _known(value, low, high) for value, (low, high) in zip(law.coefficients, ends, strict=True)
+    ]
     said = {
         CONSTANT: f"Constant: e = {first}",
         LINEAR: f"Linear: e = a + b v with a = {first} and b = {''.join(second)} s/m",

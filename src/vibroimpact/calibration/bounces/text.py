@@ -6,7 +6,13 @@ from rich.console import Group, RenderableType
 from rich.text import Text
 
 from vibroimpact.calibration.bounces.rebounds import Rebounds
-from vibroimpact.calibration.bounces.tables import contact_sentence, drop_sentence, impact_cells, law_sentences, other_sentences
+from vibroimpact.calibration.bounces.tables import (
+    contact_sentence,
+    drop_sentence,
+    impact_cells,
+    law_sentences,
+    other_sentences,
+)
 from vibroimpact.calibration.inputs import inputs_sentence
 from vibroimpact.calibration.text import cells_table
 

@@ -1,1 +1,3 @@
-"""Calibration of the friction law: parameters that are fitted together to measured oblique impacts."""
+"""Calibration of the friction law: parameters that are fitted together to measured
+oblique impacts.
+"""

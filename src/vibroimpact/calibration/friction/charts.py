@@ -1,4 +1,6 @@
-"""Charts of calibrated friction: what was measured and what is computed, over the angle of incidence."""
+"""Charts of calibrated friction: what was measured and what is computed, over the angle
+of incidence.
+"""
 
 from __future__ import annotations
 
@@ -26,7 +28,9 @@ _ALIKE = 0.05
 
 
 class Curve(NamedTuple):
-    """Computed impacts over the angle of incidence [deg]: their model and their quantities, name and role."""
+    """Computed impacts over the angle of incidence [deg]: their model and their
+    quantities, name and role.
+    """
 
     angle: Floats
     model: ImpactModel
@@ -46,10 +50,15 @@ def friction_charts(found: FrictionCalibration) -> list[Chart]:
     Returns
     -------
     list of Chart
-        `angle`: tangential restitution, rebound angle, and what else was measured, over the angle of incidence; `slip_map`, where the
-        moduli of the materials are known.
+        `angle`: tangential restitution, rebound angle, and what else was measured, over the angle
+        of incidence; `slip_map`, where the moduli of the materials are known.
     """
-    return made_charts({"angle": lambda: _angle_chart(found, _curves(found)), "slip_map": lambda: _slip_chart(found, _curves(found))})
+    return made_charts(
+        {
+            "angle": lambda: _angle_chart(found, _curves(found)),
+            "slip_map": lambda: _slip_chart(found, _curves(found)),
+        }
+    )
 
 
 def _angle_chart(found: FrictionCalibration, curves: list[Curve]) -> Chart:
@@ -58,47 +67,97 @@ def _angle_chart(found: FrictionCalibration, curves: list[Curve]) -> Chart:
     for name, (_, unit, phrase) in ALONG_PLATE.items():
         if name not in impacts.measured and name not in ("tangential_restitution", "rebound_angle"):
             continue
-        marks: list[Mark] = [Line(angle, outcomes[name], words, role) for angle, _, outcomes, words, role in curves]
+        marks: list[Mark] = [
+            Line(angle, outcomes[name], words, role) for angle, _, outcomes, words, role in curves
+        ]
         if not curves:
-            marks.append(Points(impacts.angle, found.outcomes[name], "computed", "other mark", impacts.seen.labels))
+            marks.append(
+                Points(
+                    impacts.angle,
+                    found.outcomes[name],
+                    "computed",
+                    "other mark",
+                    impacts.seen.labels,
+                )
+            )
         if name in impacts.measured:
             values, low, high = impacts.measured[name], None, None
             if name in found.weights and impacts.seen.deviations_known:
                 deviation = standard_deviations(impacts.seen.noise[name])
                 low, high = values - deviation, values + deviation
-            marks.append(Points(impacts.angle, values, "measured", "matched", impacts.seen.labels, low=low, high=high))
+            marks.append(
+                Points(
+                    impacts.angle,
+                    values,
+                    "measured",
+                    "matched",
+                    impacts.seen.labels,
+                    low=low,
+                    high=high,
+                )
+            )
         panels.append(Panel(axis, Axis(f"{phrase[:1].upper()}{phrase[1:]}", unit), tuple(marks)))
     rows = tuple(tuple(panels[start : start + 2]) for start in range(0, len(panels), 2))
-    caption = f"Single impacts under friction by {found.parameters.law.name}, measured, and computed with the fitted parameters."
-    if any(mark.low is not None for panel in panels for mark in panel.marks if isinstance(mark, Points)):
+    caption = (
+        f"Single impacts under friction by {found.parameters.law.name}, measured, and computed "
+        "with the fitted parameters."
+    )
+    if any(
+        mark.low is not None for panel in panels for mark in panel.marks if isinstance(mark, Points)
+    ):
         caption += " Bars: one standard deviation to either side."
-    return Chart("angle", "Measured and computed over the angle of incidence", rows, caption, height=3.0)
+    return Chart(
+        "angle", "Measured and computed over the angle of incidence", rows, caption, height=3.0
+    )
 
 
 def _slip_chart(found: FrictionCalibration, curves: list[Curve]) -> Chart | None:
     """Return the dimensionless map of the impacts; None where its scale is not known."""
-    law, source, model, impacts = found.parameters.with_values(found.values), found.problem.source, found.model, found.impacts
+    law, source, model, impacts = (
+        found.parameters.with_values(found.values),
+        found.problem.source,
+        found.model,
+        found.impacts,
+    )
     ratio = moduli_ratio(law, None if source is None else read_case(source))
     scale, radius = float(law.coefficient) * ratio, float(found.problem.sphere.contact_offset)
     if not scale > 0.0:
         return None
-    whole = 1.0 + 1.0 / float(found.problem.inertia_ratio)  # of the change of the centre's velocity is that of the contact point
+    # of the change of the centre's velocity is that of the contact point
+    whole = 1.0 + 1.0 / float(found.problem.inertia_ratio)
 
-    def psi(one: ImpactModel, outcomes: Mapping[str, Floats], more: Floats | float = 0.0) -> tuple[Floats, Floats]:
-        """Return dimensionless slips before and after impacts that leave so much more velocity along the plate than computed [m/s]."""
+    def psi(
+        one: ImpactModel, outcomes: Mapping[str, Floats], more: Floats | float = 0.0
+    ) -> tuple[Floats, Floats]:
+        """Return dimensionless slips before and after impacts that leave so much more
+        velocity along the plate than computed [m/s].
+        """
         before = one.velocity - radius * one.spin
         after = outcomes["separation_velocity_x"] - radius * outcomes["spin_y_after"] + whole * more
         return before / (scale * one.speeds), after / (scale * one.speeds)
 
-    marks: list[Mark] = [Line(*psi(one, outcomes), words, role) for _, one, outcomes, words, role in curves if role == "fit"]
+    marks: list[Mark] = [
+        Line(*psi(one, outcomes), words, role)
+        for _, one, outcomes, words, role in curves
+        if role == "fit"
+    ]
     before, computed = psi(model, found.outcomes)
     if not marks:
         marks.append(Points(before, computed, "computed", "other mark", impacts.seen.labels))
     more = _measured_velocity(found, radius) - found.outcomes["separation_velocity_x"]
-    marks.append(Points(*psi(model, found.outcomes, more), "measured", "matched", impacts.seen.labels))
+    marks.append(
+        Points(*psi(model, found.outcomes, more), "measured", "matched", impacts.seen.labels)
+    )
     restitution = found.outcomes["separation_speed"] / impacts.seen.speeds
     caption = "Single impacts, measured, and computed with the fitted parameters."
-    return slip_map(marks, before, restitution, np.full(len(before), ratio), found.problem.inertia_ratio, caption)
+    return slip_map(
+        marks,
+        before,
+        restitution,
+        np.full(len(before), ratio),
+        found.problem.inertia_ratio,
+        caption,
+    )
 
 
 def _measured_velocity(found: FrictionCalibration, radius: float) -> Floats:
@@ -109,22 +168,35 @@ def _measured_velocity(found: FrictionCalibration, radius: float) -> Floats:
     if "separation_velocity_x" in matched:
         return matched["separation_velocity_x"]
     if "rebound_angle" in matched:
-        return np.asarray(found.outcomes["separation_speed"] * np.tan(np.radians(matched["rebound_angle"])))
+        return np.asarray(
+            found.outcomes["separation_speed"] * np.tan(np.radians(matched["rebound_angle"]))
+        )
     turned = matched["spin_y_after"] - found.outcomes["spin_y_after"]
-    return np.asarray(found.outcomes["separation_velocity_x"] - float(found.problem.inertia_ratio) * radius * turned)
+    return np.asarray(
+        found.outcomes["separation_velocity_x"]
+        - float(found.problem.inertia_ratio) * radius * turned
+    )
 
 
 def _curves(found: FrictionCalibration) -> list[Curve]:
-    """Return the curves over the angle of incidence; none where speeds or spins of the impacts differ."""
+    """Return the curves over the angle of incidence; none where speeds or spins of the
+    impacts differ.
+    """
     impacts = found.impacts
     along, across = impacts.seen.speeds, np.abs(impacts.velocity)
     speeds = {"total": np.hypot(along, across), "normal": along}
     spreads = {name: float(np.ptp(speed) / speed.mean()) for name, speed in speeds.items()}
     steady = min(spreads, key=lambda name: spreads[name])
-    if spreads[steady] > _ALIKE or np.ptp(impacts.spin) > _ALIKE * np.abs(impacts.spin).max() or len(along) < 2:
+    if (
+        spreads[steady] > _ALIKE
+        or np.ptp(impacts.spin) > _ALIKE * np.abs(impacts.spin).max()
+        or len(along) < 2
+    ):
         return []
     margin = 0.02 * float(np.ptp(impacts.angle))
-    angle = np.linspace(max(impacts.angle.min() - margin, 1e-3), min(impacts.angle.max() + margin, 89.0), _SMOOTH)
+    angle = np.linspace(
+        max(impacts.angle.min() - margin, 1e-3), min(impacts.angle.max() + margin, 89.0), _SMOOTH
+    )
     speed, turned = float(speeds[steady].mean()), np.radians(angle)
     normal = speed * np.cos(turned) if steady == "total" else np.full(_SMOOTH, speed)
     order = np.argsort(impacts.angle)
@@ -139,4 +211,9 @@ def _curves(found: FrictionCalibration) -> list[Curve]:
     curves = [(found.values, "computed", "fit")]
     if found.as_given and not np.allclose(found.given, found.values, rtol=1e-3):
         curves.insert(0, (found.given, "as the case gives it", "muted"))
-    return [Curve(angle, model, {name: row[0] for name, row in model(values[None]).items()}, words, role) for values, words, role in curves]
+    return [
+        Curve(
+            angle, model, {name: row[0] for name, row in model(values[None]).items()}, words, role
+        )
+        for values, words, role in curves
+    ]

@@ -1,4 +1,6 @@
-"""Least squares with bounds for many chains at once, which differ in their start, their data, or what they hold fixed."""
+"""Least squares with bounds for many chains at once, which differ in their start, their
+data, or what they hold fixed.
+"""
 
 from __future__ import annotations
 
@@ -10,7 +12,9 @@ import numpy as np
 from vibroimpact.arrays import Bools, Floats, Indices
 
 Residuals = Callable[[Floats, Indices], Floats]
-"""Takes values (S, K) and the indices of their chains (S,); returns residuals over their standard deviations, (S, N)."""
+"""Takes values (S, K) and the indices of their chains (S,); returns residuals over their
+standard deviations, (S, N).
+"""
 
 _SWEEPS = 100
 _STEP = 1e-3
@@ -40,8 +44,11 @@ class Minimum(NamedTuple):
     cost: Floats
 
 
-def minimize(residuals: Residuals, start: Floats, bounds: Bounds, fixed: Bools | None = None) -> Minimum:
-    """Return the values with the least sum of squares near their start, by the method of Levenberg and Marquardt.
+def minimize(
+    residuals: Residuals, start: Floats, bounds: Bounds, fixed: Bools | None = None
+) -> Minimum:
+    """Return the values with the least sum of squares near their start, by the method of Levenberg
+    and Marquardt.
 
     Parameters
     ----------
@@ -56,7 +63,8 @@ def minimize(residuals: Residuals, start: Floats, bounds: Bounds, fixed: Bools |
 
     References
     ----------
-    Marquardt, D. W. (1963). An algorithm for least-squares estimation of nonlinear parameters. J. Soc. Ind. Appl. Math. 11, 431-441.
+    Marquardt, D. W. (1963). An algorithm for least-squares estimation of nonlinear parameters. J.
+    Soc. Ind. Appl. Math. 11, 431-441.
 
     Examples
     --------
@@ -75,13 +83,18 @@ def minimize(residuals: Residuals, start: Floats, bounds: Bounds, fixed: Bools |
         here = values[moving]
         slopes = jacobian(residuals, here, left[moving], moving, bounds)
         uphill = np.einsum("snk,sn->sk", slopes, left[moving])
-        outward = ((here <= bounds.least) & (uphill > 0.0)) | ((here >= bounds.most) & (uphill < 0.0))
+        outward = ((here <= bounds.least) & (uphill > 0.0)) | (
+            (here >= bounds.most) & (uphill < 0.0)
+        )
         free = ~(held[moving] | outward)
         slopes = np.where(free[:, None, :], slopes, 0.0)
         squares = np.einsum("snk,snj->skj", slopes, slopes)
         diagonal = np.einsum("skk->sk", squares)
         scales = damping[moving, None] * np.where(diagonal > 0.0, diagonal, 1.0)
-        step = np.linalg.solve(squares + scales[:, :, None] * np.eye(values.shape[1]), np.where(free, uphill, 0.0)[:, :, None])
+        step = np.linalg.solve(
+            squares + scales[:, :, None] * np.eye(values.shape[1]),
+            np.where(free, uphill, 0.0)[:, :, None],
+        )
         trial = np.clip(here - step[:, :, 0], bounds.least, bounds.most)
         left_there = residuals(trial, moving)
         cost_there = _sum(left_there)
@@ -96,8 +109,12 @@ def minimize(residuals: Residuals, start: Floats, bounds: Bounds, fixed: Bools |
     return Minimum(values, cost)
 
 
-def jacobian(residuals: Residuals, values: Floats, left: Floats, chains: Indices, bounds: Bounds) -> Floats:
-    """Return the derivatives of the residuals by the values, (S, N, K); `left`: the residuals at the values."""
+def jacobian(
+    residuals: Residuals, values: Floats, left: Floats, chains: Indices, bounds: Bounds
+) -> Floats:
+    """Return the derivatives of the residuals by the values, (S, N, K); `left`: the
+    residuals at the values.
+    """
     number, count = values.shape
     step = _STEP * bounds.size(values)
     step = np.where(values + step > bounds.most, -step, step)

@@ -41,7 +41,8 @@ class ObliqueImpacts:
     Parameters
     ----------
     seen : Observations
-        Approach speeds along the normal, and the quantities that are matched by the names of `ALONG_PLATE`.
+        Approach speeds along the normal, and the quantities that are matched by the names of
+        `ALONG_PLATE`.
     velocity : array, shape (n,)
         Velocities of the centre along x at first touch [m/s].
     spin : array, shape (n,)
@@ -55,8 +56,12 @@ class ObliqueImpacts:
     --------
     >>> import numpy as np
     >>> import vibroimpact as vi
-    >>> seen = vi.Observations(speeds=np.array([3.0, 2.0]), wanted={"separation_velocity_x": np.array([2.1, 1.6])})
-    >>> vi.ObliqueImpacts(seen, np.array([3.0, 2.0]), np.zeros(2), seen.wanted).angle.round(3).tolist()
+    >>> seen = vi.Observations(
+    ...     speeds=np.array([3.0, 2.0]), wanted={"separation_velocity_x": np.array([2.1, 1.6])}
+    ... )
+    >>> vi.ObliqueImpacts(seen, np.array([3.0, 2.0]), np.zeros(2), seen.wanted).angle.round(
+    ...     3
+    ... ).tolist()
     [45.0, 45.0]
     """
 
@@ -73,7 +78,8 @@ class ObliqueImpacts:
 
 
 def default_weights(measured: Iterable[str]) -> dict[str, float]:
-    """Return the quantities that are matched by default: the first measure of the motion along the plate, and the spin.
+    """Return the quantities that are matched by default: the first measure of the motion along the
+    plate, and the spin.
 
     Examples
     --------
@@ -81,12 +87,20 @@ def default_weights(measured: Iterable[str]) -> dict[str, float]:
     {'tangential_restitution': 1.0, 'spin_y_after': 1.0}
     """
     there = set(measured)
-    others = set(next(([*DIRECTIONS[place + 1 :]] for place, name in enumerate(DIRECTIONS) if name in there), []))
+    others = set(
+        next(
+            ([*DIRECTIONS[place + 1 :]] for place, name in enumerate(DIRECTIONS) if name in there),
+            [],
+        )
+    )
     return {name: 1.0 for name in ALONG_PLATE if name in there - others}
 
 
-def oblique_impacts_in_file(case: Case, target: FileTarget, match: Iterable[str] | None) -> ObliqueImpacts:
-    """Return the oblique impacts of a file; `match`: the names of what is matched, by default those of `default_weights`.
+def oblique_impacts_in_file(
+    case: Case, target: FileTarget, match: Iterable[str] | None
+) -> ObliqueImpacts:
+    """Return the oblique impacts of a file; `match`: the names of what is matched, by default those
+    of `default_weights`.
 
     Raises
     ------
@@ -94,7 +108,10 @@ def oblique_impacts_in_file(case: Case, target: FileTarget, match: Iterable[str]
         If it can't be read, lacks columns, or has an impossible value; the message names the line.
     """
     if is_universal(target.file) or target.function is not None:
-        raise InputError(f"oblique impacts are rows of a table, with {_APPROACH}, and what was measured after", "target")
+        raise InputError(
+            f"oblique impacts are rows of a table, with {_APPROACH}, and what was measured after",
+            "target",
+        )
     try:
         table = read_table_file(target.file, _COLUMNS, columns=target.columns)
     except InputError as error:
@@ -102,26 +119,43 @@ def oblique_impacts_in_file(case: Case, target: FileTarget, match: Iterable[str]
     speeds, velocity = _approach(table)
     measured = {name: table.columns[name] for name in ALONG_PLATE if name in table.columns}
     if not measured:
-        raise InputError(f"{table.path}: what was measured after the impacts is missing; give one of {', '.join(ALONG_PLATE)}", "target")
+        raise InputError(
+            f"{table.path}: what was measured after the impacts is missing; give one of "
+            f"{', '.join(ALONG_PLATE)}",
+            "target",
+        )
     if "tangential_restitution" in measured and not velocity.all():
         words = "a sphere that does not move along the plate has no tangential restitution"
-        raise InputError(f"{table.path}, line {table.lines[int(np.argmin(np.abs(velocity)))]}: {words}", "target")
+        raise InputError(
+            f"{table.path}, line {table.lines[int(np.argmin(np.abs(velocity)))]}: {words}", "target"
+        )
     names = tuple(default_weights(measured) if match is None else match)
     if others := [name for name in names if name not in ALONG_PLATE]:
-        raise InputError(f"friction is not fitted to {', '.join(others)}; match {', '.join(measured)}", "match")
+        raise InputError(
+            f"friction is not fitted to {', '.join(others)}; match {', '.join(measured)}", "match"
+        )
     if missing := [name for name in names if name not in measured]:
-        raise InputError(f"the file has no column {', '.join(missing)}; there is {', '.join(measured)}", "match")
+        raise InputError(
+            f"the file has no column {', '.join(missing)}; there is {', '.join(measured)}", "match"
+        )
     wanted = {name: measured[name] for name in names}
     for name in names:
         if f"{name}{DEVIATION}" in table.columns:
             check_positive(table, f"{name}{DEVIATION}")
     deviations = known_deviations(table.path, table.columns, names)
-    # of unknown magnitude: the same for all impacts, and of several quantities the same part of the largest of each
-    sizes = deviations or {name: np.full(len(speeds), np.abs(values).max() or 1.0) for name, values in wanted.items()}
+    # of unknown magnitude: the same for all impacts, and of several quantities the same part of the
+    # largest of each
+    sizes = deviations or {
+        name: np.full(len(speeds), np.abs(values).max() or 1.0) for name, values in wanted.items()
+    }
     labels = tuple(f"line {line}" for line in table.lines)
-    seen = replace(from_table(speeds, wanted, sizes, labels), deviations_known=deviations is not None)
+    seen = replace(
+        from_table(speeds, wanted, sizes, labels), deviations_known=deviations is not None
+    )
     spin = table.columns.get("spin_y_before", np.zeros(len(speeds)))
-    return ObliqueImpacts(seen, velocity, spin, measured, _separation_speed(case, table, speeds, labels))
+    return ObliqueImpacts(
+        seen, velocity, spin, measured, _separation_speed(case, table, speeds, labels)
+    )
 
 
 def _approach(table: TableFile) -> tuple[Floats, Floats]:
@@ -132,7 +166,10 @@ def _approach(table: TableFile) -> tuple[Floats, Floats]:
         steep = np.flatnonzero(np.abs(columns["angle"]) >= 90.0)
         if steep.size:
             value = columns["angle"][steep[0]]
-            words = f"angle is {value:g} deg; it is that from the plate's normal, greater than -90 and less than 90 deg"
+            words = (
+                f"angle is {value:g} deg; it is that from the plate's normal, greater than -90 "
+                "and less than 90 deg"
+            )
             raise InputError(f"{table.path}, line {table.lines[steep[0]]}: {words}", "target")
         angle = np.radians(columns["angle"])
         return columns["speed"] * np.cos(angle), columns["speed"] * np.sin(angle)
@@ -140,13 +177,24 @@ def _approach(table: TableFile) -> tuple[Floats, Floats]:
         check_positive(table, "approach_speed")
         return columns["approach_speed"], columns["approach_velocity_x"]
     raise InputError(
-        f"{table.path}: the columns {', '.join(columns)} do not give the approach of the sphere; it needs {_APPROACH}", "target"
+        f"{table.path}: the columns {', '.join(columns)} do not give the approach of the "
+        f"sphere; it needs {_APPROACH}",
+        "target",
     )
 
 
-def _separation_speed(case: Case, table: TableFile, speeds: Floats, labels: tuple[str, ...]) -> Floats | None:
+def _separation_speed(
+    case: Case, table: TableFile, speeds: Floats, labels: tuple[str, ...]
+) -> Floats | None:
     """Return the measured separation speeds along the normal [m/s], if there are any."""
-    name = next((name for name in ("separation_speed", "restitution", "restitution_achieved") if name in table.columns), None)
+    name = next(
+        (
+            name
+            for name in ("separation_speed", "restitution", "restitution_achieved")
+            if name in table.columns
+        ),
+        None,
+    )
     if name is None:
         return None
     check_positive(table, name)

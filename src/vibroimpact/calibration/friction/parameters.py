@@ -1,4 +1,6 @@
-"""The parameters of a friction law that are fitted together, and oblique impacts as a function of them."""
+"""The parameters of a friction law that are fitted together, and oblique impacts as a
+function of them.
+"""
 
 from __future__ import annotations
 
@@ -58,19 +60,31 @@ class FrictionParameters:
         """Bounds of the values within which they matter."""
         sizes, ends = np.array([self._size(name) for name in self.names]), self.allowed.T
         open_below = [np.isfinite(self._range(name).above) for name in self.names]
-        return Bounds(np.where(open_below, sizes / _FAR, ends[0]), np.minimum(ends[1], _FAR * sizes), _SMALL * sizes)
+        return Bounds(
+            np.where(open_below, sizes / _FAR, ends[0]),
+            np.minimum(ends[1], _FAR * sizes),
+            _SMALL * sizes,
+        )
 
     @property
     def allowed(self) -> Floats:
         """The ends of their ranges, (K, 2)."""
-        return np.array([self._range(name).bounded(np.array([-np.inf, np.inf])) for name in self.names])
+        return np.array(
+            [self._range(name).bounded(np.array([-np.inf, np.inf])) for name in self.names]
+        )
 
     def starts(self) -> Floats:
-        """Return the values from which the search begins, (S, K): all combinations of some of each."""
+        """Return the values from which the search begins, (S, K): all combinations of
+        some of each.
+        """
         each = []
         for name, ends in zip(self.names, self.allowed, strict=True):
             inside = np.isfinite(ends).all()
-            each.append(np.linspace(float(ends[0]), float(ends[1]), 5)[1:-1] if inside else self._size(name) * 2.0 ** np.arange(-4.0, 4.0))
+            each.append(
+                np.linspace(float(ends[0]), float(ends[1]), 5)[1:-1]
+                if inside
+                else self._size(name) * 2.0 ** np.arange(-4.0, 4.0)
+            )
         return np.stack(np.meshgrid(*each, indexing="ij"), axis=-1).reshape(-1, len(self.names))
 
     def with_values(self, values: Floats) -> FrictionLaw:
@@ -89,7 +103,8 @@ class FrictionParameters:
 
 
 def friction_parameters(problem: Problem, names: Sequence[str]) -> FrictionParameters:
-    """Return parameters of the friction law of a drop, by their names such as "friction.coefficient".
+    """Return parameters of the friction law of a drop, by their names such as
+    "friction.coefficient".
 
     Raises
     ------
@@ -100,20 +115,37 @@ def friction_parameters(problem: Problem, names: Sequence[str]) -> FrictionParam
     --------
     >>> import vibroimpact as vi
     >>> ball, wall = vi.Body(mass=0.02, contact_offset=0.01), vi.rigid_plate()
-    >>> oblique = vi.Oblique(velocity=(1.0, 0.0), friction=vi.find_friction_law("coulomb")(coefficient=0.2))
+    >>> oblique = vi.Oblique(
+    ...     velocity=(1.0, 0.0), friction=vi.find_friction_law("coulomb")(coefficient=0.2)
+    ... )
     >>> law = vi.find_contact_law("newton")(restitution=0.8)
-    >>> friction_parameters(vi.Problem(sphere=ball, plate=wall, laws=(law,), speed=2.0, oblique=oblique), ["friction.coefficient"]).given
+    >>> friction_parameters(
+    ...     vi.Problem(sphere=ball, plate=wall, laws=(law,), speed=2.0, oblique=oblique),
+    ...     ["friction.coefficient"],
+    ... ).given
     array([0.2])
     """
     law = None if problem.oblique is None else problem.oblique.friction
     if law is None:
         example = "coulomb" if isinstance(problem.laws[0], InstantaneousLaw) else "mdr"
-        raise InputError(f'the case has no friction; give contact.friction a law, such as {{ law = "{example}" }}', "parameter")
+        raise InputError(
+            f"the case has no friction; give contact.friction a law, such as {{ law = "
+            f'"{example}" }}',
+            "parameter",
+        )
     known = [f"{FRICTION}{item.name}" for item in fields(law)]
     for name in names:
         if name not in known:
-            words = f'{law.name} has no parameter "{name.removeprefix(FRICTION)}"; there are {choices(known, name)}'
-            raise InputError(words if name.startswith(FRICTION) else f"{name} is not fitted together with friction", "parameter")
+            words = (
+                f'{law.name} has no parameter "{name.removeprefix(FRICTION)}"; there are '
+                f"{choices(known, name)}"
+            )
+            raise InputError(
+                words
+                if name.startswith(FRICTION)
+                else f"{name} is not fitted together with friction",
+                "parameter",
+            )
     if len(set(names)) < len(names):
         raise InputError("a parameter is named twice", "parameter")
     return FrictionParameters(law, tuple(name.removeprefix(FRICTION) for name in names))
@@ -132,7 +164,8 @@ class ImpactModel:
     parameters : FrictionParameters
         The parameters of the friction law.
     speeds, velocity, spin : array, shape (n,)
-        Approach speeds along the normal [m/s], velocities along x [m/s] and angular velocities about y [rad/s] of the impacts.
+        Approach speeds along the normal [m/s], velocities along x [m/s] and angular velocities
+        about y [rad/s] of the impacts.
     """
 
     problem: Problem
@@ -143,14 +176,24 @@ class ImpactModel:
     spin: Floats
 
     def __call__(self, values: Floats) -> dict[str, Floats]:
-        """Return the quantities of the impacts (S, n), as `oblique_impacts` has them, with values (S, K) of the parameters."""
+        """Return the quantities of the impacts (S, n), as `oblique_impacts` has them,
+        with values (S, K) of the parameters.
+        """
         number = len(self.speeds)
         every = np.arange(len(values) * number)
-        blocks = [self._impacts(values, every[begin : begin + AT_ONCE]) for begin in range(0, len(every), AT_ONCE)]
-        return {name: np.concatenate([block[name] for block in blocks]).reshape(len(values), number) for name in blocks[0]}
+        blocks = [
+            self._impacts(values, every[begin : begin + AT_ONCE])
+            for begin in range(0, len(every), AT_ONCE)
+        ]
+        return {
+            name: np.concatenate([block[name] for block in blocks]).reshape(len(values), number)
+            for name in blocks[0]
+        }
 
     def _impacts(self, values: Floats, pairs: Indices) -> dict[str, Floats]:
-        """Return the quantities of some pairs of values and impacts, numbered along the rows of (S, n)."""
+        """Return the quantities of some pairs of values and impacts, numbered along the
+        rows of (S, n).
+        """
         assert self.problem.oblique is not None
         chains, impacts = np.divmod(pairs, len(self.speeds))
         oblique = Oblique(
@@ -163,17 +206,28 @@ class ImpactModel:
         return oblique_impacts(self.problem, self.law.take(impacts), self.speeds[impacts], oblique)
 
 
-def impact_model(problem: Problem, parameters: FrictionParameters, impacts: ObliqueImpacts) -> ImpactModel:
-    """Return the measured impacts as a function of the parameters; with measured separation speeds, the contact law meets each of them."""
+def impact_model(
+    problem: Problem, parameters: FrictionParameters, impacts: ObliqueImpacts
+) -> ImpactModel:
+    """Return the measured impacts as a function of the parameters; with measured
+    separation speeds, the contact law meets each of them.
+    """
     law, speeds = problem.laws[0], impacts.seen.speeds
     if impacts.separation_speed is not None:
         if law.free_parameter is None:
-            words = f"the normal rebound was measured too, and {law.name} has no parameter to meet it with"
-            raise InputError(f"{words}; take another contact law, or leave that column out", "target")
+            words = (
+                f"the normal rebound was measured too, and {law.name} has no "
+                "parameter to meet it with"
+            )
+            raise InputError(
+                f"{words}; take another contact law, or leave that column out", "target"
+            )
         alone = replace(problem, oblique=None, laws=(law,))
         tuned, wanted = law_parameter(alone), {"separation_speed": impacts.separation_speed}
         seen = from_table(speeds, wanted, None, impacts.seen.labels)
         weights = {"separation_speed": 1.0}
         values = match(tuned, speeds, wanted, weights, seen.which).values
-        law = law.changed({tuned.name: with_nearest_bound(tuned, values, speeds, wanted, weights, seen.which)})
+        law = law.changed(
+            {tuned.name: with_nearest_bound(tuned, values, speeds, wanted, weights, seen.which)}
+        )
     return ImpactModel(problem, law, parameters, speeds, impacts.velocity, impacts.spin)

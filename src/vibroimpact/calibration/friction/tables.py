@@ -1,4 +1,6 @@
-"""What is told of calibrated friction: sentences, the table of the impacts, and the contents of the files."""
+"""What is told of calibrated friction: sentences, the table of the impacts, and the
+contents of the files.
+"""
 
 from __future__ import annotations
 
@@ -19,7 +21,9 @@ from vibroimpact.runs.tables import formatted_column
 from vibroimpact.units.display import column_texts, digits, fixed, text
 
 _ROUNDING = 1e-9
-"""Difference between computed and measured, over the largest that was measured, below which it is none."""
+"""Difference between computed and measured, over the largest that was measured, below
+which it is none.
+"""
 
 
 def friction_words(found: FrictionCalibration) -> str:
@@ -31,7 +35,10 @@ def friction_words(found: FrictionCalibration) -> str:
 def together_words(found: FrictionCalibration) -> str:
     """Return in words what was matched."""
     every = " and the ".join(ALONG_PLATE[name].phrase for name in found.weights)
-    return f"the {every} of all impacts {'is' if len(found.weights) == 1 else 'are'} fitted jointly to the measurement"
+    return (
+        f"the {every} of all impacts {'is' if len(found.weights) == 1 else 'are'} fitted "
+        "jointly to the measurement"
+    )
 
 
 def friction_sentences(found: FrictionCalibration) -> list[str]:
@@ -41,10 +48,18 @@ def friction_sentences(found: FrictionCalibration) -> list[str]:
         each = [
             f"{name} {_interval_words(interval, ends, unit)}"
             for name, interval, ends, unit in zip(
-                found.names, found.intervals, found.parameters.allowed, found.parameters.units, strict=True
+                found.names,
+                found.intervals,
+                found.parameters.allowed,
+                found.parameters.units,
+                strict=True,
             )
         ]
-        way = f"by bootstrap with {found.bootstrap} draws" if found.bootstrap else "by the profile of the sum of squares"
+        way = (
+            f"by bootstrap with {found.bootstrap} draws"
+            if found.bootstrap
+            else "by the profile of the sum of squares"
+        )
         source = "the scatter of the measurement"
         if found.impacts.seen.deviations_known:
             more = " and the scatter beyond them" if math.isfinite(found.freedom) else ""
@@ -53,19 +68,33 @@ def friction_sentences(found: FrictionCalibration) -> list[str]:
     for name, (_, unit, phrase) in ALONG_PLATE.items():
         if name in found.weights:
             off = found.outcomes[name] - found.impacts.measured[name]
-            off = np.where(np.abs(off) > _ROUNDING * np.abs(found.impacts.measured[name]).max(), np.abs(off), 0.0)
+            off = np.where(
+                np.abs(off) > _ROUNDING * np.abs(found.impacts.measured[name]).max(),
+                np.abs(off),
+                0.0,
+            )
             mean, most = (text(float(value), unit, 3) for value in (off.mean(), off.max()))
-            told.append(f"Computed and measured {phrase} differ by {mean} in the mean and {most} at most.")
+            told.append(
+                f"Computed and measured {phrase} differ by {mean} in the mean and {most} at most."
+            )
     if found.impacts.seen.deviations_known and math.isfinite(found.scatter):
-        told.append(f"Residuals are {digits(found.scatter, 3)} times as large as their standard deviations.")
+        told.append(
+            f"Residuals are {digits(found.scatter, 3)} times as large as their standard deviations."
+        )
     slip, number = int(found.slips.sum()), len(found.slips)
-    alone = f"; of friction, {'these depend' if slip > 1 else 'it depends'} on the coefficient alone" if slip else ""
+    alone = (
+        f"; of friction, {'these depend' if slip > 1 else 'it depends'} on the coefficient alone"
+        if slip
+        else ""
+    )
     which = f"Of {number} impacts {slip or 'none'} slip{'s' if slip == 1 else ''}"
     if number == 1:
         which = "The impact slips" if slip else "The impact does not slip"
     told.append(f"{which} throughout{alone}.")
     if found.impacts.separation_speed is not None:
-        told.append("The normal rebound was measured too: the contact law is matched to it at each impact.")
+        told.append(
+            "The normal rebound was measured too: the contact law is matched to it at each impact."
+        )
     return told
 
 
@@ -76,9 +105,15 @@ def given_values_sentences(found: FrictionCalibration) -> list[str]:
         value = float(found.given[place])
         if not math.isfinite(value) or math.isclose(value, found.values[place], rel_tol=1e-3):
             continue
-        inside = found.intervals is not None and found.intervals[place, 0] <= value <= found.intervals[place, 1]
+        inside = (
+            found.intervals is not None
+            and found.intervals[place, 0] <= value <= found.intervals[place, 1]
+        )
         verdict = "inside the interval" if inside else "outside the interval"
-        told.append(f"The case gives {name} = {text(value, unit)}{f', {verdict}' if found.intervals is not None else ''}.")
+        told.append(
+            f"The case gives {name} = "
+            f"{text(value, unit)}{f', {verdict}' if found.intervals is not None else ''}."
+        )
     return told
 
 
@@ -86,7 +121,11 @@ def friction_table(found: FrictionCalibration) -> Cells:
     """Return headers with units, and a row per impact."""
     impacts = found.impacts
     headers = [("", ""), ("Angle", "deg"), ("Speed", "m/s")]
-    columns = [list(impacts.seen.labels), column_texts(impacts.angle), column_texts(np.hypot(impacts.velocity, impacts.seen.speeds))]
+    columns = [
+        list(impacts.seen.labels),
+        column_texts(impacts.angle),
+        column_texts(np.hypot(impacts.velocity, impacts.seen.speeds)),
+    ]
     for name, (column, _, phrase) in ALONG_PLATE.items():
         if name not in impacts.measured:
             continue
@@ -96,10 +135,19 @@ def friction_table(found: FrictionCalibration) -> Cells:
         columns += [cells[:number], cells[number:]]
         if name in found.weights and impacts.seen.deviations_known:
             headers.append(("off by standard deviations", ""))
-            columns.append([fixed(float(part), 2) for part in (found.outcomes[name] - measured) / _deviations(found, name)])
+            columns.append(
+                [
+                    fixed(float(part), 2)
+                    for part in (found.outcomes[name] - measured) / _deviations(found, name)
+                ]
+            )
         if found.as_given:
             headers.append(("as the case gives it", unit))
-            columns.append(formatted_column(column, np.concatenate([measured, found.as_given[name]]))[1][number:])
+            columns.append(
+                formatted_column(column, np.concatenate([measured, found.as_given[name]]))[1][
+                    number:
+                ]
+            )
     headers.append(("Slips throughout", ""))
     columns.append(["yes" if slips else "no" for slips in found.slips])
     rows = [list(row) for row in zip(*columns, strict=True)]
@@ -123,7 +171,14 @@ def friction_document(case: Case, found: FrictionCalibration) -> dict[str, Any]:
         "law": found.parameters.law.name,
         "match": dict(found.weights),
         "parameters": [
-            {"parameter": name, "unit": unit, "value": float(value), "low": _finite(low), "high": _finite(high), "given": _finite(given)}
+            {
+                "parameter": name,
+                "unit": unit,
+                "value": float(value),
+                "low": _finite(low),
+                "high": _finite(high),
+                "given": _finite(given),
+            }
             for name, unit, value, (low, high), given in zip(
                 found.names, found.parameters.units, found.values, ends, found.given, strict=True
             )
@@ -139,7 +194,9 @@ def friction_document(case: Case, found: FrictionCalibration) -> dict[str, Any]:
 
 
 def friction_rows(found: FrictionCalibration) -> list[dict[str, Any]]:
-    """Return the impacts, one mapping each: how they came, what was measured, and what is computed."""
+    """Return the impacts, one mapping each: how they came, what was measured, and what is
+    computed.
+    """
     impacts = found.impacts
     columns: dict[str, list[Any]] = {
         "label": list(impacts.seen.labels),

@@ -1,1 +1,3 @@
-"""Restitutions at several approach speeds from a table: their fits over the speed, as data, text and a page."""
+"""Restitutions at several approach speeds from a table: their fits over the speed, as
+data, text and a page.
+"""

@@ -22,7 +22,13 @@ def restitution_rows(found: Restitutions) -> list[dict[str, Any]]:
         **{f"{law.name}": law(found.approach_speed) for law in found.laws},
     }
     return [
-        {"count": int(number), **{name: float(values[row]) if math.isfinite(values[row]) else None for name, values in columns.items()}}
+        {
+            "count": int(number),
+            **{
+                name: float(values[row]) if math.isfinite(values[row]) else None
+                for name, values in columns.items()
+            },
+        }
         for row, number in enumerate(found.count)
     ]
 

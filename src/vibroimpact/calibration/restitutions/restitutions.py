@@ -10,7 +10,14 @@ import numpy as np
 from vibroimpact.arrays import Floats
 from vibroimpact.calibration.bounces.speed_laws import LINEAR, SpeedLaw, speed_laws
 from vibroimpact.calibration.fitting import half_width
-from vibroimpact.calibration.impact_table import DEVIATION, check_counts, check_positive, is_impact_table, name_in_file, read_impact_table
+from vibroimpact.calibration.impact_table import (
+    DEVIATION,
+    check_counts,
+    check_positive,
+    is_impact_table,
+    name_in_file,
+    read_impact_table,
+)
 from vibroimpact.contact.speed_function import SpeedFunction
 from vibroimpact.errors import InputError
 from vibroimpact.measurements.table_file import TableFile
@@ -36,7 +43,8 @@ class Restitutions:
     count : array, shape (n,)
         The number of impacts of which each restitution is the mean.
     rounding : float
-        Step to which the restitutions are rounded, by their digits; or the separation speeds [m/s], if these are given.
+        Step to which the restitutions are rounded, by their digits; or the separation speeds [m/s],
+        if these are given.
     laws : list of SpeedLaw
         Fits of the restitution over the approach speed.
     confidence : float
@@ -71,28 +79,37 @@ class Restitutions:
 
     @property
     def function(self) -> SpeedFunction | None:
-        """The linear fit as a function of the approach speed, as a case takes it; None if there is none, or it leaves 0 to 1."""
+        """The linear fit as a function of the approach speed, as a case takes it; None if
+        there is none, or it leaves 0 to 1.
+        """
         linear = [law for law in self.laws if law.name == LINEAR]
         if not linear:
             return None
         ends = float(self.approach_speed.min()), float(self.approach_speed.max())
-        found = SpeedFunction((float(linear[0].coefficients[0]), float(linear[0].coefficients[1])), *ends)
+        found = SpeedFunction(
+            (float(linear[0].coefficients[0]), float(linear[0].coefficients[1])), *ends
+        )
         return found if found.extremes[0] > 0.0 and found.extremes[1] <= 1.0 else None
 
     @property
     def intervals(self) -> Floats:
-        """Confidence intervals of the restitutions, (n, 2); NaN where the deviation is not known."""
+        """Confidence intervals of the restitutions, (n, 2); NaN where the deviation is
+        not known.
+        """
         half = half_width(self.confidence, np.inf) * self.deviation
         return np.stack([self.restitution - half, self.restitution + half], axis=1)
 
 
-def read_restitutions(path: str | PathLike[str], *, confidence: float = 0.95, columns: str | None = None) -> Restitutions:
+def read_restitutions(
+    path: str | PathLike[str], *, confidence: float = 0.95, columns: str | None = None
+) -> Restitutions:
     r"""Return the restitutions of a table with a row for each approach speed, and their fits.
 
-    A row has `approach_speed` [m/s] and `restitution`, or `separation_speed` [m/s]; the standard deviation of that column,
-    such as `restitution_standard_deviation`, if it is known; and `count`, if it is the mean of several impacts: then the standard
-    deviation is that of one impact. Without standard deviations the
-    scatter about the fit tells them; what the digits of the table leave open is added.
+    A row has `approach_speed` [m/s] and `restitution`, or `separation_speed` [m/s]; the standard
+    deviation of that column, such as `restitution_standard_deviation`, if it is known; and `count`,
+    if it is the mean of several impacts: then the standard deviation is that of one impact. Without
+    standard deviations the scatter about the fit tells them; what the digits of the table leave
+    open is added.
 
     Parameters
     ----------
@@ -101,12 +118,14 @@ def read_restitutions(path: str | PathLike[str], *, confidence: float = 0.95, co
     confidence : float, default 0.95
         Confidence level of intervals.
     columns : str, optional
-        The columns in place of a header, in order, such as "speed=m/s,restitution", with - for one that is left out.
+        The columns in place of a header, in order, such as "speed=m/s,restitution", with - for one
+        that is left out.
 
     Raises
     ------
     InputError
-        If the file can't be read, has other columns, or a value is impossible; the message names the line.
+        If the file can't be read, has other columns, or a value is impossible; the message names
+        the line.
 
     Examples
     --------
@@ -122,7 +141,9 @@ def read_restitutions(path: str | PathLike[str], *, confidence: float = 0.95, co
     """
     table = read_impact_table(path, columns=columns)
     if not is_impact_table(table.columns):
-        raise InputError(f"{path}: it has no approach_speed [m/s] with a restitution or a separation_speed [m/s]")
+        raise InputError(
+            f"{path}: it has no approach_speed [m/s] with a restitution or a separation_speed [m/s]"
+        )
     given = table.columns
     for name in given:
         if name != "count":
@@ -132,10 +153,14 @@ def read_restitutions(path: str | PathLike[str], *, confidence: float = 0.95, co
     by_speeds = "restitution" not in given
     restitution = given["separation_speed"] / speed if by_speeds else given["restitution"]
     _check_height(table, restitution, by_speeds=by_speeds)
-    measured, other = ("separation_speed", "restitution") if by_speeds else ("restitution", "separation_speed")
+    measured, other = (
+        ("separation_speed", "restitution") if by_speeds else ("restitution", "separation_speed")
+    )
     if f"{other}{DEVIATION}" in given:
         has, of = (name_in_file(table, name) for name in (f"{other}{DEVIATION}", measured))
-        raise InputError(f"{path}: it has {has}, but restitutions are those of {of}; give {of}{DEVIATION}")
+        raise InputError(
+            f"{path}: it has {has}, but restitutions are those of {of}; give {of}{DEVIATION}"
+        )
     known = given.get(f"{measured}{DEVIATION}")
     rounding = rounding_step(given["separation_speed"] if by_speeds else restitution)
     scale = 1.0 / speed if by_speeds else np.ones(len(speed))
@@ -143,11 +168,23 @@ def read_restitutions(path: str | PathLike[str], *, confidence: float = 0.95, co
     variance = np.nan_to_num(deviation) ** 2 + (scale * rounding) ** 2 / 12.0
     laws = speed_laws(speed, restitution, np.diag(variance), count)
     doubts = _doubts(table, restitution, laws)
-    return Restitutions(str(path), speed, restitution, deviation, count, rounding, laws, confidence, doubts, by_speeds)
+    return Restitutions(
+        str(path),
+        speed,
+        restitution,
+        deviation,
+        count,
+        rounding,
+        laws,
+        confidence,
+        doubts,
+        by_speeds,
+    )
 
 
 def rounding_step(values: Floats) -> float:
-    """Return the largest power of ten of which all values are multiples: the step to which they are rounded; at least 1e-9.
+    """Return the largest power of ten of which all values are multiples: the step to which they are
+    rounded; at least 1e-9.
 
     Examples
     --------
@@ -178,9 +215,15 @@ def _doubts(table: TableFile, restitution: Floats, laws: list[SpeedLaw]) -> tupl
     above = np.flatnonzero(restitution > 1.0)
     if above.size:
         worst = int(np.argmax(restitution))
-        words = f"the restitution in line {table.lines[worst]} is {restitution[worst]:.4g}: more than 1 gains energy"
+        words = (
+            f"the restitution in line {table.lines[worst]} is {restitution[worst]:.4g}: more "
+            "than 1 gains energy"
+        )
         found.append(f"{words}; a case takes 1 at most")
     if len(laws) == 1:
-        words = "of fewer than three restitutions, or at one speed, nothing tells a dependence on the speed from scatter"
+        words = (
+            "of fewer than three restitutions, or at one speed, nothing tells a dependence on "
+            "the speed from scatter"
+        )
         found.append(f"{words}: only a constant is fitted")
     return tuple(found)

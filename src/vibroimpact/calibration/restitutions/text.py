@@ -19,9 +19,18 @@ from vibroimpact.units.display import MISSING, column_texts
 def restitution_cells(found: Restitutions) -> Cells:
     """Return headers with units, and a row per row of the table."""
     interval = f"Interval, {100.0 * found.confidence:g} %"
-    headers = [("Row", ""), ("Approach speed", "m/s"), ("Restitution", ""), (interval, ""), ("Impacts", "")]
+    headers = [
+        ("Row", ""),
+        ("Approach speed", "m/s"),
+        ("Restitution", ""),
+        (interval, ""),
+        ("Impacts", ""),
+    ]
     decimals = max(0, -round(math.log10(found.rounding))) + 1
-    intervals = [f"{low:.{decimals}f} to {high:.{decimals}f}" if math.isfinite(low) else MISSING for low, high in found.intervals]
+    intervals = [
+        f"{low:.{decimals}f} to {high:.{decimals}f}" if math.isfinite(low) else MISSING
+        for low, high in found.intervals
+    ]
     columns = [
         [str(row + 1) for row in range(len(found.count))],
         column_texts(found.approach_speed, 4),
@@ -36,7 +45,10 @@ def status_sentence(found: Restitutions) -> str:
     """Return how many restitutions there are."""
     number = int(found.count.sum())
     of = "" if number == len(found.count) else f", means of {number} impacts"
-    return f"{len(found.count)} restitution{'s' if len(found.count) > 1 else ''} over the approach speed{of}."
+    return (
+        f"{len(found.count)} restitution{'s' if len(found.count) > 1 else ''} over the "
+        f"approach speed{of}."
+    )
 
 
 def noise_sentence(found: Restitutions) -> str:
@@ -44,17 +56,31 @@ def noise_sentence(found: Restitutions) -> str:
     many = len(found.count) > 1
     of = ["the scatter about each fit"] if many else []
     if not math.isnan(found.deviation[0]):
-        of = [f"the standard deviation{'s of the table and the scatter beyond them' if many else ' of the table'}"]
-    what = f"{found.rounding:g} m/s to which the separation speeds" if found.by_speeds else f"{found.rounding:g} to which the values"
+        of = [
+            "the standard "
+            f"deviation{'s of the table and the scatter beyond them' if many else ' of the table'}"
+        ]
+    what = (
+        f"{found.rounding:g} m/s to which the separation speeds"
+        if found.by_speeds
+        else f"{found.rounding:g} to which the values"
+    )
     of.append(f"the step of {what} are rounded")
     means = "" if (found.count == 1.0).all() else " A scatter is that of single impacts."
     exact = "approach speeds" if found.by_speeds else "speeds"
-    return f"The intervals of the fits follow from {', and from '.join(of)}; {exact} are taken as exact.{means}"
+    return (
+        f"The intervals of the fits follow from {', and from '.join(of)}; {exact} "
+        f"are taken as exact.{means}"
+    )
 
 
 def case_sentence(found: Restitutions) -> str:
     """Return the linear fit as a case takes it; "" without one."""
-    return "" if found.function is None else f'In a case: law = "newton", restitution = {toml_of(found.function)}'
+    return (
+        ""
+        if found.function is None
+        else f'In a case: law = "newton", restitution = {toml_of(found.function)}'
+    )
 
 
 def restitution_summary(found: Restitutions) -> RenderableType:
@@ -66,7 +92,11 @@ def restitution_summary(found: Restitutions) -> RenderableType:
         cells_table(restitution_cells(found)),
         Text(),
         Text("Restitution over the approach speed", style="bold"),
-        *(Text(f" {sentence}") for sentence in (*law_sentences(found), case_sentence(found)) if sentence),
+        *(
+            Text(f" {sentence}")
+            for sentence in (*law_sentences(found), case_sentence(found))
+            if sentence
+        ),
         Text(),
         Text(noise_sentence(found)),
     ]

@@ -1,4 +1,6 @@
-"""Meshes of the elastic bodies of a case, generated or read, with checks that contact, sensors and supports lie on them."""
+"""Meshes of the elastic bodies of a case, generated or read, with checks that contact,
+sensors and supports lie on them.
+"""
 
 from __future__ import annotations
 
@@ -29,7 +31,8 @@ def meshes_of(case: CaseTable) -> dict[str, Mesh]:
     Raises
     ------
     InputError
-        If one can't be made or read, or the contact point, a sensor or a support does not lie on it; with its key.
+        If one can't be made or read, or the contact point, a sensor or a support does not lie on
+        it; with its key.
     """
     found = {}
     for name, body in elastic_bodies(case).items():
@@ -40,7 +43,13 @@ def meshes_of(case: CaseTable) -> dict[str, Mesh]:
         except InputError as error:
             raise InputError(error.message, f"{name}.{error.key}".rstrip(".")) from None
         brought = getattr(getattr(case, name), "mesh", None)
-        at = f"{name}.mesh.contact" if getattr(brought, "contact", None) else "drop.position" if name == "plate" else f"{name}.mesh"
+        at = (
+            f"{name}.mesh.contact"
+            if getattr(brought, "contact", None)
+            else "drop.position"
+            if name == "plate"
+            else f"{name}.mesh"
+        )
         _check_spot(mesh, body.contact, body.side, at)
         names = [{"name": one} for one in body.sensors]
         for number, (spot, face) in enumerate(body.sensors.values()):
@@ -49,7 +58,9 @@ def meshes_of(case: CaseTable) -> dict[str, Mesh]:
             try:
                 place_of(mesh, listener.spot, listener.side)
             except InputError as error:
-                raise InputError(error.message, f"{item_label('sensors', [{'name': sensor}], 0)}.position") from None
+                raise InputError(
+                    error.message, f"{item_label('sensors', [{'name': sensor}], 0)}.position"
+                ) from None
         if name == "plate":
             _check_supports(case, body, mesh)
         found[name] = mesh
@@ -65,22 +76,31 @@ def _check_spot(mesh: Mesh, spot: Spot, side: Side, key: str) -> None:
 
 
 def _check_supports(case: CaseTable, body: ElasticBody, mesh: Mesh) -> None:
-    """Check that each support finds degrees of freedom to constrain that no other does, and each force sensor a support."""
+    """Check that each support finds degrees of freedom to constrain that no other does,
+    and each force sensor a support.
+    """
     tables = case.plate.supports if isinstance(case.plate.supports, tuple) else ()
-    # constraints depend on the mesh and its mass properties only, so zero matrices and unit density serve
+    # constraints depend on the mesh and its mass properties only, so zero matrices and unit density
+    # serve
     dofs = mesh.dofs_per_node * len(mesh.nodes)
     nothing = csr_array((dofs, dofs))
     thickness = case.plate.size[2] if case.plate.size is not None and mesh.is_flat else 0.0
-    constraints = Constraints(Structure(mesh, nothing, nothing, mass_properties(mesh, 1.0, thickness or 1.0), thickness))
+    constraints = Constraints(
+        Structure(mesh, nothing, nothing, mass_properties(mesh, 1.0, thickness or 1.0), thickness)
+    )
     kinds = [{"type": table.type} for table in tables]
     for number, table in enumerate(tables):
         for support in table.supports():
             try:
                 support.hold(constraints)
             except InputError as error:
-                raise InputError(error.message, item_label("plate.supports", kinds, number)) from None
+                raise InputError(
+                    error.message, item_label("plate.supports", kinds, number)
+                ) from None
     for name, (spot, _) in body.pressed.items():
         try:
             support_at(constraints.structure, body.recipe.supports, spot)
         except InputError as error:
-            raise InputError(error.message, f"{item_label('sensors', [{'name': name}], 0)}.position") from None
+            raise InputError(
+                error.message, f"{item_label('sensors', [{'name': name}], 0)}.position"
+            ) from None

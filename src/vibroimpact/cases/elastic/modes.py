@@ -19,16 +19,28 @@ from vibroimpact.materials import Material
 from vibroimpact.structures.damping import ConstantRatio, RatioOfEach, RatioTable
 from vibroimpact.structures.frequency_error import MESH, REDUCTION, SUPPORTS, THEORY
 from vibroimpact.structures.modal_model import ModalBasis, ModalModel
-from vibroimpact.structures.recipe import MAIN_CAUSE, REMARKS, ImportedMesh, PlateOfSolids, Recipe, SphereOfSolids, is_thin, modal_model_of
+from vibroimpact.structures.recipe import (
+    MAIN_CAUSE,
+    REMARKS,
+    ImportedMesh,
+    PlateOfSolids,
+    Recipe,
+    SphereOfSolids,
+    is_thin,
+    modal_model_of,
+)
 from vibroimpact.structures.surface import Side, materials_at, place_of
 
 if TYPE_CHECKING:
     from vibroimpact.cases.schema import CaseTable
 
 _FREQUENCY_OFF = 0.005  # relative: a larger estimated frequency error is doubted
-_WEIGHT_OFF = 0.05  # relative: a larger difference in mass between an imported mesh and the case is doubted
+# relative: a larger difference in mass between an imported mesh and the case is doubted
+_WEIGHT_OFF = 0.05
 _FINER = 1.5  # times smaller elements are proposed
-_MATERIAL_OFF = 0.1  # relative: a larger difference between the material of a case and that of the elements touched is doubted
+# relative: a larger difference between the material of a case and that of the elements touched is
+# doubted
+_MATERIAL_OFF = 0.1
 _MESH_OFF = 0.005  # relative: a generated mesh with a larger error of its mass is too coarse
 _LARGE = 50.0  # m: the coordinates of a larger body are probably in millimetres
 
@@ -51,10 +63,19 @@ class BodyModes:
     Examples
     --------
     >>> import vibroimpact as vi
-    >>> case = vi.read_case({
-    ...     "sphere": {"radius": "25 mm", "material": "rock-paper", "model": "elastic", "modes": 5},
-    ...     "plate": {"material": "rigid"}, "drop": {"speed": 1.0}, "contact": {"law": "hertz"},
-    ... })
+    >>> case = vi.read_case(
+    ...     {
+    ...         "sphere": {
+    ...             "radius": "25 mm",
+    ...             "material": "rock-paper",
+    ...             "model": "elastic",
+    ...             "modes": 5,
+    ...         },
+    ...         "plate": {"material": "rigid"},
+    ...         "drop": {"speed": 1.0},
+    ...         "contact": {"law": "hertz"},
+    ...     }
+    ... )
     >>> sphere = vi.compute_modes(case)["sphere"]
     >>> len(sphere.basis.frequencies), round(sphere.basis.mass, 4)
     (5, 0.0903)
@@ -67,7 +88,9 @@ class BodyModes:
 
 
 def compute_modes(
-    case: CaseTable, progress: Callable[[float], None] | None = None, tell: Callable[[str], None] | None = None
+    case: CaseTable,
+    progress: Callable[[float], None] | None = None,
+    tell: Callable[[str], None] | None = None,
 ) -> dict[str, BodyModes]:
     """Return the modes of the elastic bodies of a case, by the name of the body.
 
@@ -90,20 +113,33 @@ def compute_modes(
     Examples
     --------
     >>> import vibroimpact as vi
-    >>> case = vi.read_case({
-    ...     "sphere": {"radius": "25 mm", "material": "rock-paper", "model": "elastic", "modes": 5},
-    ...     "plate": {"material": "rigid"}, "drop": {"speed": 1.0}, "contact": {"law": "hertz"},
-    ... })
+    >>> case = vi.read_case(
+    ...     {
+    ...         "sphere": {
+    ...             "radius": "25 mm",
+    ...             "material": "rock-paper",
+    ...             "model": "elastic",
+    ...             "modes": 5,
+    ...         },
+    ...         "plate": {"material": "rigid"},
+    ...         "drop": {"speed": 1.0},
+    ...         "contact": {"law": "hertz"},
+    ...     }
+    ... )
     >>> [round(float(value), -2) for value in compute_modes(case)["sphere"].basis.frequencies[:2]]
     [12700.0, 12700.0]
     """
     bodies = elastic_bodies(case)
     if not bodies and case.plate.radius is not None:
         raise InputError(
-            "two spheres are rigid but for their contact, and have no modes; leave out plate.radius for a plate", "plate.radius"
+            "two spheres are rigid but for their contact, and have no modes; leave out "
+            "plate.radius for a plate",
+            "plate.radius",
         )
     if not bodies:
-        raise InputError('no body of the case is elastic; give the sphere or the plate model = "elastic"')
+        raise InputError(
+            'no body of the case is elastic; give the sphere or the plate model = "elastic"'
+        )
     found = {}
     for number, (name, body) in enumerate(bodies.items()):
 
@@ -114,10 +150,14 @@ def compute_modes(
         try:
             model = modal_model_of(body.recipe, report_part, tell)
             basis = body.basis(model)
-            found[name] = BodyModes(body, model, basis, tuple(_doubts(case, name, body, model, basis)))
+            found[name] = BodyModes(
+                body, model, basis, tuple(_doubts(case, name, body, model, basis))
+            )
         except InputError as error:
             meshes_of(case)  # raises with the key, if something does not lie on a mesh
-            raise InputError(error.message, ".".join(part for part in (name, error.key) if part)) from None
+            raise InputError(
+                error.message, ".".join(part for part in (name, error.key) if part)
+            ) from None
     return found
 
 
@@ -126,22 +166,39 @@ def contact_place(body: BodyModes) -> tuple[tuple[float, float], Side]:
     return place_of(body.model.mesh, body.body.contact, body.body.side), body.body.side
 
 
-def _doubts(case: CaseTable, name: str, body: ElasticBody, model: ModalModel, basis: ModalBasis) -> Iterator[str]:
-    """Yield doubts about an elastic body: a plate that is not held, mesh quality and size, and overcritical damping."""
+def _doubts(
+    case: CaseTable, name: str, body: ElasticBody, model: ModalModel, basis: ModalBasis
+) -> Iterator[str]:
+    """Yield doubts about an elastic body: a plate that is not held, mesh quality and
+    size, and overcritical damping.
+    """
     if name == "plate" and not model.is_held_vertically and case.drop.gravity:
-        yield "the plate is not held: its supports let it fall or tilt, and a drop under gravity needs a plate that is held"
+        yield (
+            "the plate is not held: its supports let it fall or tilt, and a drop under gravity "
+            "needs a plate that is held"
+        )
     yield from _doubts_of_mass(case, name, body, model)
     yield from _doubts_of_materials(case, name, body, model)
     yield from _doubts_of_frequencies(case, name, body, model)
     if any(block.element.order == 1 for block in model.mesh.blocks):
-        yield f"the mesh of the {name} has elements of first order, which are far too stiff in bending; take elements of second order"
-    if isinstance(body.damping, (ConstantRatio, RatioOfEach, RatioTable)) and basis.damping_ratios.max() >= 1.0:
+        yield (
+            f"the mesh of the {name} has elements of first order, which are far too stiff in "
+            "bending; take elements of second order"
+        )
+    if (
+        isinstance(body.damping, (ConstantRatio, RatioOfEach, RatioTable))
+        and basis.damping_ratios.max() >= 1.0
+    ):
         which = "" if isinstance(body.damping, ConstantRatio) else "of at least one mode "
         yield f"the damping {which}of the {name} is critical or more; a ratio of 0.01 is 1 %"
 
 
-def _doubts_of_frequencies(case: CaseTable, name: str, body: ElasticBody, model: ModalModel) -> Iterator[str]:
-    """Yield a doubt if estimated frequency errors exceed half a per cent, with the main cause and a remedy."""
+def _doubts_of_frequencies(
+    case: CaseTable, name: str, body: ElasticBody, model: ModalModel
+) -> Iterator[str]:
+    """Yield a doubt if estimated frequency errors exceed half a per cent, with the main
+    cause and a remedy.
+    """
     errors = np.nan_to_num(model.frequency_errors)
     off = int((errors > _FREQUENCY_OFF).sum())
     if not off:
@@ -150,8 +207,10 @@ def _doubts_of_frequencies(case: CaseTable, name: str, body: ElasticBody, model:
     remedy = _remedy(case, name, body.recipe, cause)
     which = f"{off} of the {len(errors)} modes" if len(errors) > 1 else "the mode"
     yield (
-        f"the frequencies of {which} of the {name} may be off by more than {100 * _FREQUENCY_OFF:g} %, most that of mode {worst + 1}, "
-        f"{model.frequencies[worst]:.4g} Hz, by about {two_digits(100.0 * errors[worst])} %, due to {cause}; {remedy}"
+        f"the frequencies of {which} of the {name} may be off by more than "
+        f"{100 * _FREQUENCY_OFF:g} %, most that of mode {worst + 1}, "
+        f"{model.frequencies[worst]:.4g} Hz, by about {two_digits(100.0 * errors[worst])} "
+        f"%, due to {cause}; {remedy}"
     )
 
 
@@ -171,45 +230,82 @@ def _remedy(case: CaseTable, name: str, recipe: Recipe, cause: str) -> str:
         directions = 2 if mesh.layers else 3
         return f"give {name}.mesh.elements = {math.ceil(_FINER**directions * mesh.elements)}"
     size = getattr(shape, "element_size", 0.0)
-    splits = f", or {name}.mesh.splits = {shape.splits + 1}" if isinstance(shape, PlateOfSolids) else ""
+    splits = (
+        f", or {name}.mesh.splits = {shape.splits + 1}" if isinstance(shape, PlateOfSolids) else ""
+    )
     return f'give {name}.mesh.element_size = "{1e3 * size / _FINER:.3g} mm"{splits}'
 
 
-def _doubts_of_materials(case: CaseTable, name: str, body: ElasticBody, model: ModalModel) -> Iterator[str]:
-    """Yield what of a mesh file is not part of the body, and where its materials are not that of the case."""
+def _doubts_of_materials(
+    case: CaseTable, name: str, body: ElasticBody, model: ModalModel
+) -> Iterator[str]:
+    """Yield what of a mesh file is not part of the body, and where its materials are not
+    that of the case.
+    """
     yield from filter(None, model.facts.get(REMARKS, "").split("\n"))
     if not model.mesh.materials:
         return
     material = getattr(case, name).material
-    touched = materials_at(model.mesh, material, place_of(model.mesh, body.contact, body.side), body.side)
+    touched = materials_at(
+        model.mesh, material, place_of(model.mesh, body.contact, body.side), body.side
+    )
     other = next((one for one in touched if not _alike(one, material)), None)
     if other is not None:
         yield (
-            f"the elements of the {name} at the contact point are of {other.density:.4g} kg/m3 and {other.youngs_modulus:.4g} Pa, and "
-            f"the contact is computed with {name}.material, of {material.density:.4g} kg/m3 and {material.youngs_modulus:.4g} Pa; "
+            f"the elements of the {name} at the contact point are of {other.density:.4g} "
+            f"kg/m3 and {other.youngs_modulus:.4g} Pa, and "
+            f"the contact is computed with {name}.material, of {material.density:.4g} "
+            f"kg/m3 and {material.youngs_modulus:.4g} Pa; "
             "give there the material that is touched"
         )
     if getattr(case, name).damping == "loss-factor":
-        yield f"half the loss factor of {name}.material damps all modes of the {name}, whose mesh has its own materials; give ratios"
+        yield (
+            f"half the loss factor of {name}.material damps all modes of the {name}, whose "
+            "mesh has its own materials; give ratios"
+        )
 
 
 def _alike(one: Material, other: Material) -> bool:
-    """Return whether two materials are the same in contact, up to the spread of values in tables."""
-    return all(abs(getattr(one, key) / getattr(other, key) - 1.0) < _MATERIAL_OFF for key in ("density", "youngs_modulus"))
+    """Return whether two materials are the same in contact, up to the spread of values in
+    tables.
+    """
+    return all(
+        abs(getattr(one, key) / getattr(other, key) - 1.0) < _MATERIAL_OFF
+        for key in ("density", "youngs_modulus")
+    )
 
 
-def _doubts_of_mass(case: CaseTable, name: str, body: ElasticBody, model: ModalModel) -> Iterator[str]:
-    """Yield a doubt if the mass of a mesh differs from that of the case, or its size suggests millimetres."""
+def _doubts_of_mass(
+    case: CaseTable, name: str, body: ElasticBody, model: ModalModel
+) -> Iterator[str]:
+    """Yield a doubt if the mass of a mesh differs from that of the case, or its size
+    suggests millimetres.
+    """
     brought, extent = isinstance(body.recipe.shape, ImportedMesh), model.mesh.extent
     size = " x ".join(f"{side:.3g}" for side in (*extent[:2], model.thickness or extent[2]))
     said = f"the mesh of the {name} is {size} m large and weighs {model.properties.mass:.4g} kg"
-    remedy = 'give mesh = { file = "...", unit = "mm" }' if brought else 'write "520 mm", as a bare number is in metres'
+    remedy = (
+        'give mesh = { file = "...", unit = "mm" }'
+        if brought
+        else 'write "520 mm", as a bare number is in metres'
+    )
     hint = f"; if it is in millimetres, {remedy}" if extent.max() > _LARGE else ""
-    volume = ball_volume(case.sphere.radius) if name == "sphere" else math.prod(case.plate.size) if case.plate.size else None
+    volume = (
+        ball_volume(case.sphere.radius)
+        if name == "sphere"
+        else math.prod(case.plate.size)
+        if case.plate.size
+        else None
+    )
     if name == "plate" and model.mesh.materials:
-        volume = None  # whose mass is that of no one material; a sphere falls with the mass that the case describes
+        # whose mass is that of no one material; a sphere falls with the mass that the case
+        # describes
+        volume = None
     expected = body.recipe.density * (volume or math.nan)
     if abs(model.properties.mass / expected - 1.0) > (_WEIGHT_OFF if brought else _MESH_OFF):
-        yield f"{said}, and what the case describes weighs {expected:.4g} kg{hint or ('' if brought else '; its elements are too large')}"
+        yield (
+            f"{said}, and what the case describes weighs {expected:.4g} "
+            f"kg{hint or ('' if brought else '; its elements are too large')}"
+        )
     elif hint:
         yield said + hint

@@ -19,9 +19,11 @@ if TYPE_CHECKING:
 
 
 def solve_together(cases: Iterable[CaseTable]) -> None:
-    """Solve the statics of plates at the contact points of cases together, where several share a plate and its sensors.
+    """Solve the statics of plates at the contact points of cases together, where several share a
+    plate and its sensors.
 
-    Their problems then take them from memory. A case that can't be solved is left to be refused by itself.
+    Their problems then take them from memory. A case that can't be solved is left to be refused by
+    itself.
     """
     groups = defaultdict(list)
     for case in cases:

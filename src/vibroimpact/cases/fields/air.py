@@ -18,18 +18,41 @@ from vibroimpact.ranges import Range
 class AirTable(Section):
     """Air at rest, whose drag slows the sphere down in flight."""
 
-    density: Annotated[float, Quantity("kg/m^3", "density of the air", Range(above=0))] = AIR_DENSITY
-    viscosity: Annotated[float, Quantity("Pa*s", "viscosity of the air; by default that at 20 C", Range(above=0))] | None = None
+    density: Annotated[float, Quantity("kg/m^3", "density of the air", Range(above=0))] = (
+        AIR_DENSITY
+    )
+    viscosity: (
+        Annotated[
+            float, Quantity("Pa*s", "viscosity of the air; by default that at 20 C", Range(above=0))
+        ]
+        | None
+    ) = None
     drag_coefficient: (
-        Annotated[float, Quantity("", "constant drag coefficient, in place of that of the Reynolds number", Range(above=0))] | None
+        Annotated[
+            float,
+            Quantity(
+                "",
+                "constant drag coefficient, in place of that of the Reynolds number",
+                Range(above=0),
+            ),
+        ]
+        | None
     ) = None
 
     @model_validator(mode="before")
     @classmethod
     def _one_of_two(cls, table: Any) -> Any:
         if isinstance(table, dict) and {"viscosity", "drag_coefficient"} <= table.keys():
-            raise InputError("a constant drag coefficient does not depend on the viscosity; leave one of them out", "drag_coefficient")
-        return {"viscosity": AIR_VISCOSITY, **table} if isinstance(table, dict) and "drag_coefficient" not in table else table
+            raise InputError(
+                "a constant drag coefficient does not depend on the viscosity; "
+                "leave one of them out",
+                "drag_coefficient",
+            )
+        return (
+            {"viscosity": AIR_VISCOSITY, **table}
+            if isinstance(table, dict) and "drag_coefficient" not in table
+            else table
+        )
 
     def air(self) -> Air:
         """Return the air."""
@@ -40,7 +63,8 @@ AirField = Annotated[
     AirTable | None,
     BeforeValidator(lambda value: read_fluid(AirTable, value)),
     JsonSchema(
-        "drag of the air in flight: true for air at 20 C and sea level, or its numbers; none by default",
+        "drag of the air in flight: true for air at 20 C and sea level, or its numbers; "
+        "none by default",
         lambda: {"anyOf": [{"type": "boolean"}, AirTable.model_json_schema()]},
     ),
 ]

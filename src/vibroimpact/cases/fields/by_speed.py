@@ -19,36 +19,49 @@ _FORMS = "{ speed = [...], value = [...] } or { polynomial = [...], from = ..., 
 
 
 def read_by_speed(given: Mapping[str, Any], unit: str, allowed: Range) -> BySpeed:
-    """Return a parameter as a function of the approach speed; `unit` and `allowed`: SI unit and range of its values.
+    """Return a parameter as a function of the approach speed; `unit` and `allowed`: SI unit and
+    range of its values.
 
     Raises
     ------
     InputError
-        If a key is missing or unknown, lists differ in length, speeds do not rise, or a value lies outside its range.
+        If a key is missing or unknown, lists differ in length, speeds do not rise, or a value lies
+        outside its range.
 
     Examples
     --------
-    >>> read_by_speed({"speed": ["1 m/s", "3 m/s"], "value": [0.8, 0.7]}, "", Range(above=0, at_most=1))
+    >>> read_by_speed(
+    ...     {"speed": ["1 m/s", "3 m/s"], "value": [0.8, 0.7]}, "", Range(above=0, at_most=1)
+    ... )
     SpeedTable(speeds=(1.0, 3.0), values=(0.8, 0.7))
     """
     keys = _POLYNOMIAL if "polynomial" in given else _TABLE
     for key in given:
         if key not in keys:
-            raise InputError(f"unknown key {shown(key)}; a function of the approach speed is {_FORMS}. It takes {choices(keys, str(key))}")
+            raise InputError(
+                f"unknown key {shown(key)}; a function of the approach speed is {_FORMS}. "
+                f"It takes {choices(keys, str(key))}"
+            )
     for key in keys:
         if key not in given:
             raise InputError(f"{key} is missing; a function of the approach speed is {_FORMS}")
-    return _polynomial(given, unit, allowed) if keys is _POLYNOMIAL else _table(given, unit, allowed)
+    return (
+        _polynomial(given, unit, allowed) if keys is _POLYNOMIAL else _table(given, unit, allowed)
+    )
 
 
 def _table(given: Mapping[str, Any], unit: str, allowed: Range) -> SpeedTable:
     speeds = _numbers(given["speed"], "speed", "m/s", Range(above=0), _MOST_SPEEDS)
     values = _numbers(given["value"], "value", unit, allowed, _MOST_SPEEDS)
     if len(speeds) != len(values):
-        raise InputError(f"speed has {len(speeds)} numbers and value {len(values)}; give a value for each speed")
+        raise InputError(
+            f"speed has {len(speeds)} numbers and value {len(values)}; give a value for each speed"
+        )
     for slow, fast in pairwise(speeds):
         if not slow < fast:
-            raise InputError(f"in speed {fast:g} m/s comes after {slow:g} m/s; the speeds must rise")
+            raise InputError(
+                f"in speed {fast:g} m/s comes after {slow:g} m/s; the speeds must rise"
+            )
     return SpeedTable(speeds, values)
 
 
@@ -59,7 +72,9 @@ def _polynomial(given: Mapping[str, Any], unit: str, allowed: Range) -> SpeedFun
         raise InputError(f"it is from {ends[0]:g} to {ends[1]:g} m/s; to must be greater than from")
     found = SpeedFunction(coefficients, *ends)
     for value in found.extremes:
-        allowed.check(value, unit, f"between {ends[0]:g} and {ends[1]:g} m/s it comes to {value:.4g}, which")
+        allowed.check(
+            value, unit, f"between {ends[0]:g} and {ends[1]:g} m/s it comes to {value:.4g}, which"
+        )
     return found
 
 
@@ -73,10 +88,31 @@ def _numbers(given: Any, name: str, unit: str, allowed: Range, most: int) -> tup
 def by_speed_schema(unit: str, meaning: str) -> list[dict[str, Any]]:
     """Return the JSON schemas of a function of the approach speed: a table, and a polynomial."""
     value, speed = quantity_schema(unit, meaning), quantity_schema("m/s", "approach speed")
-    lists = {"speed": {"type": "array", "items": speed, "minItems": 1}, "value": {"type": "array", "items": value, "minItems": 1}}
-    powers = {"type": "array", "items": {"type": "number"}, "minItems": 1, "maxItems": _MOST_COEFFICIENTS}
-    polynomial = {"polynomial": {**powers, "description": "coefficients in SI, lowest power first"}, "from": speed, "to": speed}
+    lists = {
+        "speed": {"type": "array", "items": speed, "minItems": 1},
+        "value": {"type": "array", "items": value, "minItems": 1},
+    }
+    powers = {
+        "type": "array",
+        "items": {"type": "number"},
+        "minItems": 1,
+        "maxItems": _MOST_COEFFICIENTS,
+    }
+    polynomial = {
+        "polynomial": {**powers, "description": "coefficients in SI, lowest power first"},
+        "from": speed,
+        "to": speed,
+    }
     return [
-        {"type": "object", "description": words, "properties": one, "required": list(one), "additionalProperties": False}
-        for words, one in (("linear between approach speeds", lists), ("a polynomial of the approach speed", polynomial))
+        {
+            "type": "object",
+            "description": words,
+            "properties": one,
+            "required": list(one),
+            "additionalProperties": False,
+        }
+        for words, one in (
+            ("linear between approach speeds", lists),
+            ("a polynomial of the approach speed", polynomial),
+        )
     ]

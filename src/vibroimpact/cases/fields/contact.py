@@ -19,14 +19,18 @@ from vibroimpact.errors import InputError, choices, listed
 from vibroimpact.shown import shown
 
 Parameter: TypeAlias = float | tuple[float, ...] | BySpeed
-"""The value of a parameter of a contact law: a number, one per impact, or a function of the approach speed."""
+"""The value of a parameter of a contact law: a number, one per impact, or a function of
+the approach speed.
+"""
 
 
 @dataclass(frozen=True)
 class ContactSection:
-    """Name and parameters [SI] of a contact law, how it is combined with the local deformation of elastic bodies (`local`), and friction.
+    """Name and parameters [SI] of a contact law, how it is combined with the local deformation of
+    elastic bodies (`local`), and friction.
 
-    A tuple has one value per impact; its last value holds for all later impacts. A parameter may be a function of the approach speed.
+    A tuple has one value per impact; its last value holds for all later impacts. A parameter may be
+    a function of the approach speed.
     """
 
     law: str
@@ -55,12 +59,17 @@ def read_contact(value: Any) -> ContactSection:
             continue
         if key not in known:
             every = [*known, *LocalSection.model_fields, "friction"]
-            raise InputError(f"unknown key {shown(key)}; {law.name} takes {choices(every, key, 'schema')}", key)
+            raise InputError(
+                f"unknown key {shown(key)}; {law.name} takes {choices(every, key, 'schema')}", key
+            )
         unit, allowed = unit_of(known[key], exponent), known[key].metadata["range"]
         try:
             if isinstance(given, list):
                 if not given:
-                    raise InputError("the list is empty; it must have one value per impact, the last of which holds for all later ones")
+                    raise InputError(
+                        "the list is empty; it must have one value per impact, the last of "
+                        "which holds for all later ones"
+                    )
                 check_count(len(given), MOST_OF_A_LIST, "values")
                 parameters[key] = tuple(read_quantity(item, unit, allowed) for item in given)
             elif isinstance(given, dict):
@@ -70,7 +79,10 @@ def read_contact(value: Any) -> ContactSection:
                         why = "it is the state before the first impact"
                     elif key == "exponent":
                         why = "it is an exponent"
-                    words = "and can't be a function of the approach speed; give a number, or a list with one value per impact"
+                    words = (
+                        "and can't be a function of the approach speed; give a number, or a "
+                        "list with one value per impact"
+                    )
                     raise InputError(f"{why}, {words}")
                 parameters[key] = read_by_speed(given, unit, allowed)
             else:
@@ -83,7 +95,9 @@ def read_contact(value: Any) -> ContactSection:
 
 
 def varies_with_speed(item: Field[Any]) -> bool:
-    """Return whether a parameter may be a function of the approach speed: if it follows neither from the bodies nor is an exponent."""
+    """Return whether a parameter may be a function of the approach speed: if it follows
+    neither from the bodies nor is an exponent.
+    """
     return not (item.metadata["from_pair"] or item.metadata["memory"] or item.name == "exponent")
 
 
@@ -104,11 +118,16 @@ def law_of(value: Any) -> type[ContactLaw]:
     """
     known_laws = listed(contact_laws(), command="laws")
     if not isinstance(value, dict):
-        raise InputError(f"{shown(value)} is not a table with the name of a law and its parameters; there are {known_laws}")
+        raise InputError(
+            f"{shown(value)} is not a table with the name of a law and its parameters; "
+            f"there are {known_laws}"
+        )
     if "law" not in value:
         raise InputError(f'it needs law = "...", one of {known_laws}')
     if not isinstance(value["law"], str):
-        raise InputError(f"{shown(value['law'])} is not the name of a law; there are {known_laws}", "law")
+        raise InputError(
+            f"{shown(value['law'])} is not the name of a law; there are {known_laws}", "law"
+        )
     try:
         return find_contact_law(value["law"])
     except InputError as error:
@@ -118,20 +137,33 @@ def law_of(value: Any) -> type[ContactLaw]:
 def contact_schema() -> dict[str, Any]:
     """Return the JSON schema of the [contact] section: one alternative per law."""
     local = {**LocalSection.model_json_schema()["properties"], "friction": friction_schema()}
-    return {"description": "the contact law and its parameters", "oneOf": [_law_schema(law, local) for law in contact_laws().values()]}
+    return {
+        "description": "the contact law and its parameters",
+        "oneOf": [_law_schema(law, local) for law in contact_laws().values()],
+    }
 
 
 def law_schema() -> dict[str, Any]:
-    """Return the JSON schema of a law and its parameters, without the keys of `LocalSection`: one alternative per law."""
+    """Return the JSON schema of a law and its parameters, without the keys of
+    `LocalSection`: one alternative per law.
+    """
     return {"oneOf": [_law_schema(law, {}) for law in contact_laws().values()]}
 
 
 def _law_schema(law: type[ContactLaw], more: Mapping[str, Any]) -> dict[str, Any]:
-    properties: dict[str, Any] = {"law": {"const": law.name, "description": f"{law.equation} ({law.source})"}, **more}
+    properties: dict[str, Any] = {
+        "law": {"const": law.name, "description": f"{law.equation} ({law.source})"},
+        **more,
+    }
     for item in fields(law):
         one = quantity_schema(item.metadata["unit"], item.metadata["meaning"])
         forms = [one, {"type": "array", "items": one, "minItems": 1}]
         if varies_with_speed(item):
             forms += by_speed_schema(item.metadata["unit"], item.metadata["meaning"])
         properties[item.name] = {"anyOf": forms, "description": one["description"]}
-    return {"type": "object", "properties": properties, "required": ["law"], "additionalProperties": False}
+    return {
+        "type": "object",
+        "properties": properties,
+        "required": ["law"],
+        "additionalProperties": False,
+    }

@@ -11,14 +11,23 @@ from vibroimpact.cases.fields.quantities import read_quantity
 from vibroimpact.errors import InputError, did_you_mean
 from vibroimpact.ranges import Range
 from vibroimpact.shown import shown
-from vibroimpact.structures.damping import AdamsDefault, ConstantRatio, Damping, LossFactor, RatioOfEach, RatioTable, Rayleigh
+from vibroimpact.structures.damping import (
+    AdamsDefault,
+    ConstantRatio,
+    Damping,
+    LossFactor,
+    RatioOfEach,
+    RatioTable,
+    Rayleigh,
+)
 
 ADAMS = "adams-default"
 MATERIAL = "loss-factor"
 _DAMPINGS = (AdamsDefault, ConstantRatio, LossFactor, RatioOfEach, RatioTable, Rayleigh)
 _NOT_NEGATIVE = Range(at_least=0)
 _ALLOWED = (
-    f'a damping ratio, "{ADAMS}", "{MATERIAL}" (of the material), {{ rayleigh = [1/s, s] }}, {{ loss_factor = x }}, '
+    f'a damping ratio, "{ADAMS}", "{MATERIAL}" (of the material), {{ rayleigh = [1/s, s] '
+    f"}}, {{ loss_factor = x }}, "
     "{ ratios = [...] } mode by mode, or { frequencies = [...], ratios = [...] }"
 )
 
@@ -28,7 +37,10 @@ def _read_damping(value: Any) -> Any:
         return value
     if isinstance(value, str):
         if value != ADAMS:
-            raise InputError(f"{shown(value)} is not allowed; it must be {_ALLOWED}.{did_you_mean(value, (ADAMS, MATERIAL))}")
+            raise InputError(
+                f"{shown(value)} is not allowed; it must be "
+                f"{_ALLOWED}.{did_you_mean(value, (ADAMS, MATERIAL))}"
+            )
         return AdamsDefault()
     if isinstance(value, dict):
         return _read_table(value)
@@ -52,21 +64,32 @@ def _read_table(value: dict[str, Any]) -> Damping:
     if keys == {"rayleigh"}:
         pair = value["rayleigh"]
         if not isinstance(pair, list) or len(pair) != 2:
-            raise InputError("it must be a pair, [a, b]: a [1/s] times the mass and b [s] times the stiffness", "rayleigh")
-        return Rayleigh(read_quantity(pair[0], "1/s", _NOT_NEGATIVE), read_quantity(pair[1], "s", _NOT_NEGATIVE))
+            raise InputError(
+                "it must be a pair, [a, b]: a [1/s] times the mass and b [s] times the stiffness",
+                "rayleigh",
+            )
+        return Rayleigh(
+            read_quantity(pair[0], "1/s", _NOT_NEGATIVE), read_quantity(pair[1], "s", _NOT_NEGATIVE)
+        )
     if keys == {"loss_factor"}:
         return LossFactor(read_quantity(value["loss_factor"], "", _NOT_NEGATIVE))
     if keys == {"ratios"}:
         return RatioOfEach(numbers("ratios"))
     if keys == {"frequencies", "ratios"}:
         return RatioTable(numbers("frequencies", "Hz"), numbers("ratios"))
-    raise InputError(f"a table with {', '.join(sorted(keys)) or 'nothing'} is not a damping; it must be {_ALLOWED}")
+    raise InputError(
+        f"a table with {', '.join(sorted(keys)) or 'nothing'} is not a damping; "
+        f"it must be {_ALLOWED}"
+    )
 
 
 DampingField = Annotated[
     Any,
     BeforeValidator(_read_damping),
-    JsonSchema(_ALLOWED, lambda: {"anyOf": [{"type": "number"}, {"enum": [ADAMS, MATERIAL]}, {"type": "object"}]}),
+    JsonSchema(
+        _ALLOWED,
+        lambda: {"anyOf": [{"type": "number"}, {"enum": [ADAMS, MATERIAL]}, {"type": "object"}]},
+    ),
 ]
 
 
@@ -82,7 +105,11 @@ def damping_of(value: Any, loss_factor: float | None) -> Damping:
         return ConstantRatio(0.0)
     if value == MATERIAL:
         if loss_factor is None:
-            raise InputError(f'"{MATERIAL}" needs a loss_factor of the material, and it has none; give {{ loss_factor = x }}', "damping")
+            raise InputError(
+                f'"{MATERIAL}" needs a loss_factor of the material, and it has none; give '
+                f"{{ loss_factor = x }}",
+                "damping",
+            )
         return LossFactor(loss_factor)
     found: Damping = value
     return found

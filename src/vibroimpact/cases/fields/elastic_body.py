@@ -1,4 +1,6 @@
-"""The fields of the [sphere] and [plate] sections that describe an elastic body: mesh, modes and reduction, and their checks."""
+"""The fields of the [sphere] and [plate] sections that describe an elastic body: mesh,
+modes and reduction, and their checks.
+"""
 
 from __future__ import annotations
 
@@ -26,7 +28,8 @@ from vibroimpact.meshes.mesh_digest import mesh_digest
 from vibroimpact.ranges import Range
 from vibroimpact.shown import shown
 
-if TYPE_CHECKING:  # not imported at run time, as a case with rigid bodies does not need scipy.sparse
+# not imported at run time, as a case with rigid bodies does not need scipy.sparse
+if TYPE_CHECKING:
     from vibroimpact.structures.mesh import Mesh
     from vibroimpact.structures.recipe import ImportedMesh, Place, Reduction
     from vibroimpact.structures.surface import Side, Spot
@@ -49,26 +52,36 @@ class BroughtMeshTable(Section):
     """A mesh, or a geometry, from a file."""
 
     file: FileName = Field(
-        description="Nastran (.bdf, .dat, .nas, .fem), Abaqus (.inp), Gmsh (.msh), or with the extra mesh STEP (.step, .stp), BREP (.brep)"
+        description="Nastran (.bdf, .dat, .nas, .fem), Abaqus (.inp), Gmsh (.msh), or with the "
+        "extra mesh STEP (.step, .stp), BREP (.brep)"
     )
-    unit: Annotated[float, Quantity("m", "unit of its coordinates", Range(above=0)), BeforeValidator(_one_unit)] = 1.0
+    unit: Annotated[
+        float, Quantity("m", "unit of its coordinates", Range(above=0)), BeforeValidator(_one_unit)
+    ] = 1.0
     element_size: _Size | None = None
     contact: str | None = Field(None, description="a named set, whose centre is the contact point")
     materials: dict[FileName, MaterialField] | None = Field(
-        None, description="materials in place of those of the file, by the name of a material or an element set of the file"
+        None,
+        description="materials in place of those of the file, by the name of a material or an "
+        "element set of the file",
     )
 
     @model_validator(mode="after")
     def _none_is_rigid(self) -> BroughtMeshTable:
         for name, material in (self.materials or {}).items():
             if material.name == RIGID.name:
-                raise InputError('"rigid" does not deform; an elastic body needs materials with a modulus', f"materials.{name}")
+                raise InputError(
+                    '"rigid" does not deform; an elastic body needs materials with a modulus',
+                    f"materials.{name}",
+                )
         return self
 
     def brought(self, contact: Spot, side: Side) -> ImportedMesh:
-        """Return the mesh, which is identified by the checksum of its file and of those it includes, and read when it is first used.
+        """Return the mesh, which is identified by the checksum of its file and of those it
+        includes, and read when it is first used.
 
-        Of a file with several parts that are not joined it is the part at the contact, and identified by its nodes too.
+        Of a file with several parts that are not joined it is the part at the contact, and
+        identified by its nodes too.
 
         Parameters
         ----------
@@ -88,15 +101,21 @@ class BroughtMeshTable(Section):
             content = mesh_digest(self.file)
         except InputError as error:
             raise with_path(self.file, error, "mesh") from None
-        of_elements = {name: material_table(material) for name, material in (self.materials or {}).items()}
-        digest = json.dumps([content, Path(self.file).suffix.lower(), self.unit, self.element_size, of_elements])
+        of_elements = {
+            name: material_table(material) for name, material in (self.materials or {}).items()
+        }
+        digest = json.dumps(
+            [content, Path(self.file).suffix.lower(), self.unit, self.element_size, of_elements]
+        )
         read = partial(self.read, (contact, side))
         if self._number_of_parts(digest) > 1:
             digest += hashlib.sha256(read().nodes.tobytes()).hexdigest()
         return ImportedMesh(digest, read)
 
     def _number_of_parts(self, digest: str) -> int:
-        """Return the number of parts of the file that are not joined, from the store if it is there."""
+        """Return the number of parts of the file that are not joined, from the store if
+        it is there.
+        """
         from vibroimpact.meshes.mesh_file import mesh_of_file
         from vibroimpact.structures.parts import number_of_parts
         from vibroimpact.structures.store import hold_entry, key_of, load_entry, save_entry
@@ -104,7 +123,9 @@ class BroughtMeshTable(Section):
         key = key_of(["parts of a mesh", digest])
         found, _ = load_entry(key, _PARTS, lambda entry: int(entry[_PARTS].item()))
         if found is None:
-            found = number_of_parts(self._with_keys(lambda: mesh_of_file(self.file, self.unit, self.element_size)))
+            found = number_of_parts(
+                self._with_keys(lambda: mesh_of_file(self.file, self.unit, self.element_size))
+            )
             entry = {_PARTS: np.array(found)}
             hold_entry(key, _PARTS, entry)
             save_entry(key, _PARTS, entry)
@@ -114,14 +135,20 @@ class BroughtMeshTable(Section):
         """Return the table as it is written in a resolved case file."""
         table = self.model_dump(exclude_none=True, exclude={"materials"})
         if self.materials:
-            table["materials"] = {name: material_table(material) for name, material in self.materials.items()}
+            table["materials"] = {
+                name: material_table(material) for name, material in self.materials.items()
+            }
         return table
 
     def read(self, contact: tuple[Spot, Side] | None = None) -> Mesh:
-        """Read the mesh, with coordinates in metres; of several parts that are not joined the one at the contact, or all."""
+        """Read the mesh, with coordinates in metres; of several parts that are not joined
+        the one at the contact, or all.
+        """
         from vibroimpact.meshes.mesh_file import read_mesh
 
-        return self._with_keys(lambda: read_mesh(self.file, self.unit, self.element_size, self.materials, contact))
+        return self._with_keys(
+            lambda: read_mesh(self.file, self.unit, self.element_size, self.materials, contact)
+        )
 
     @staticmethod
     def _with_keys(read: Callable[[], Mesh]) -> Mesh:
@@ -129,7 +156,11 @@ class BroughtMeshTable(Section):
         try:
             return read()
         except InputError as error:
-            key = {"size": "mesh.element_size", "unit_in_metres": "mesh.unit", "materials": "mesh.materials"}.get(error.key, "mesh")
+            key = {
+                "size": "mesh.element_size",
+                "unit_in_metres": "mesh.unit",
+                "materials": "mesh.materials",
+            }.get(error.key, "mesh")
             raise InputError(error.message, key) from None
 
 
@@ -140,27 +171,47 @@ class SphereMeshTable(Section):
         None, description="elements from pole to pole, even and at least 4"
     )
     kind: ElementKind = Field("hex27", description="kind of element")
-    grading: Annotated[float, Quantity("", "refinement factor of the elements at the contact point", Range(at_least=1))] = 1.0
+    grading: Annotated[
+        float,
+        Quantity("", "refinement factor of the elements at the contact point", Range(at_least=1)),
+    ] = 1.0
 
 
 class PlateMeshTable(Section):
     """The mesh of a plate made here."""
 
     element_size: _Size | None = None
-    elements: _Count | None = Field(None, description='approximate number of elements, instead of element_size; only of element = "solid"')
-    layers: _Count | None = Field(None, description='elements through the thickness; only of element = "solid"')
+    elements: _Count | None = Field(
+        None,
+        description="approximate number of elements, instead of element_size; only of element = "
+        '"solid"',
+    )
+    layers: _Count | None = Field(
+        None, description='elements through the thickness; only of element = "solid"'
+    )
     kind: ElementKind | None = Field(None, description='kind of element; only of element = "solid"')
     splits: Annotated[int, Field(ge=0, le=6, strict=True)] | None = Field(
         None,
-        description='number of refinements of elements along edges and at the rims of patches; only of element = "solid"',
+        description="number of refinements of elements along edges and at the rims of patches; "
+        "only of "
+        'element = "solid"',
     )
     lower_splits: Annotated[int, Field(ge=0, le=6, strict=True)] | None = Field(
-        None, description='number of times that the lowest layer is split at a quarter of its height; only of element = "solid"'
+        None,
+        description="number of times that the lowest layer is split at a quarter of its height; "
+        "only of "
+        'element = "solid"',
     )
-    margin: Annotated[float, Quantity("m", "width of elements along edges and straight rims", Range(at_least=0))] | None = Field(
-        None, description='only of element = "plate"; 0 for none'
+    margin: (
+        Annotated[
+            float,
+            Quantity("m", "width of elements along edges and straight rims", Range(at_least=0)),
+        ]
+        | None
+    ) = Field(None, description='only of element = "plate"; 0 for none')
+    theory: Literal["thick", "thin"] | None = Field(
+        None, description='of plates; only of element = "plate"'
     )
-    theory: Literal["thick", "thin"] | None = Field(None, description='of plates; only of element = "plate"')
 
     @model_validator(mode="after")
     def _one_of_two(self) -> PlateMeshTable:
@@ -169,7 +220,9 @@ class PlateMeshTable(Section):
 
 
 def _mesh_field(kind: type[Section]) -> Any:
-    """Return the type of a mesh field: a file name, a table with a file, or a table of the given kind for a generated mesh."""
+    """Return the type of a mesh field: a file name, a table with a file, or a table of
+    the given kind for a generated mesh.
+    """
 
     def read(value: Any) -> Any:
         if isinstance(value, Section) or value is None:
@@ -181,9 +234,19 @@ def _mesh_field(kind: type[Section]) -> Any:
         raise InputError(f"{shown(value)} is neither the name of a file nor a table")
 
     def json_schema() -> dict[str, Any]:
-        return {"anyOf": [{"type": "string"}, BroughtMeshTable.model_json_schema(), kind.model_json_schema()]}
+        return {
+            "anyOf": [
+                {"type": "string"},
+                BroughtMeshTable.model_json_schema(),
+                kind.model_json_schema(),
+            ]
+        }
 
-    return Annotated[Any, BeforeValidator(read), JsonSchema("a mesh file, or settings of the mesh generator", json_schema)]
+    return Annotated[
+        Any,
+        BeforeValidator(read),
+        JsonSchema("a mesh file, or settings of the mesh generator", json_schema),
+    ]
 
 
 SphereMeshField = _mesh_field(SphereMeshTable)
@@ -194,9 +257,20 @@ FrequencyField = Annotated[float, Quantity("Hz", "all modes up to this frequency
 MethodField = Literal["modal", "craig-bampton"]
 
 _ROUNDED = 1e-3
-"""Relative difference of a mass or a moment of inertia from that of a solid sphere that counts as rounding."""
+"""Relative difference of a mass or a moment of inertia from that of a solid sphere that
+counts as rounding.
+"""
 
-_ELASTIC_KEYS = ("modes", "max_frequency", "damping", "supports", "mesh", "reduction", "attachment_mode", "element")
+_ELASTIC_KEYS = (
+    "modes",
+    "max_frequency",
+    "damping",
+    "supports",
+    "mesh",
+    "reduction",
+    "attachment_mode",
+    "element",
+)
 
 
 def check_elastic(section: Any) -> None:
@@ -212,23 +286,36 @@ def check_elastic(section: Any) -> None:
             value = getattr(section, key, None)
             if value in (None, False):
                 continue
-            if hasattr(section, "supports") and section.radius is not None:  # a sphere in the place of the plate
+            # a sphere in the place of the plate
+            if hasattr(section, "supports") and section.radius is not None:
                 if key != "supports":
-                    raise InputError(f"a sphere in the place of the plate is rigid but for its contact; leave out {key}", key)
+                    raise InputError(
+                        "a sphere in the place of the plate is rigid but for its contact; "
+                        f"leave out {key}",
+                        key,
+                    )
                 if value == "free":
                     continue  # a sphere below that moves freely
                 raise InputError('a sphere in the place of the plate is held fixed, or "free"', key)
-            raise InputError(f'a rigid body does not take it; add model = "elastic", or leave out {key}', key)
+            raise InputError(
+                f'a rigid body does not take it; add model = "elastic", or leave out {key}', key
+            )
         return
     check_alternatives(section, "modes", "max_frequency", needed=False, key="modes")
     if section.reduction == "craig-bampton" and section.attachment_mode:
-        raise InputError("the constraint modes of craig-bampton contain it already; leave it out", "attachment_mode")
+        raise InputError(
+            "the constraint modes of craig-bampton contain it already; leave it out",
+            "attachment_mode",
+        )
     if section.material.name == "rigid":
-        raise InputError('"rigid" does not deform; an elastic body needs a material with a modulus', "material")
+        raise InputError(
+            '"rigid" does not deform; an elastic body needs a material with a modulus', "material"
+        )
 
 
 def check_ball(section: Any) -> None:
-    """Check mass and moment of inertia of the sphere, which of an elastic one follow from its material.
+    """Check mass and moment of inertia of the sphere, which of an elastic one follow from its
+    material.
 
     Raises
     ------
@@ -236,15 +323,33 @@ def check_ball(section: Any) -> None:
         With the invalid key.
     """
     radius, material = section.radius, section.material
-    found = rigid_sphere(radius, material, mass=section.mass, inertia=section.inertia)  # raises if no ball has that moment of inertia
+    # raises if no ball has that moment of inertia
+    found = rigid_sphere(radius, material, mass=section.mass, inertia=section.inertia)
     if section.model == "rigid":
         return
-    solid, remedy = rigid_sphere(radius, material, inertia="solid"), 'leave it out, or give model = "rigid"'
+    solid, remedy = (
+        rigid_sphere(radius, material, inertia="solid"),
+        'leave it out, or give model = "rigid"',
+    )
     if abs(found.mass - solid.mass) > _ROUNDED * solid.mass:
-        words = f"an elastic sphere is solid, {solid.mass:.4g} kg of its material, not {found.mass:.4g} kg"
-        raise InputError(f"{words}; {remedy}, or a material with the density {mean_density(found.mass, radius):.4g} kg/m^3", "mass")
-    if found.inertia is not None and solid.inertia is not None and abs(found.inertia - solid.inertia) > _ROUNDED * solid.inertia:
-        words = f"an elastic sphere is solid, with {solid.inertia:.4g} kg m^2 of its material, not {found.inertia:.4g} kg m^2"
+        words = (
+            f"an elastic sphere is solid, {solid.mass:.4g} kg of its material, not "
+            f"{found.mass:.4g} kg"
+        )
+        raise InputError(
+            f"{words}; {remedy}, or a material with the density "
+            f"{mean_density(found.mass, radius):.4g} kg/m^3",
+            "mass",
+        )
+    if (
+        found.inertia is not None
+        and solid.inertia is not None
+        and abs(found.inertia - solid.inertia) > _ROUNDED * solid.inertia
+    ):
+        words = (
+            f"an elastic sphere is solid, with {solid.inertia:.4g} kg m^2 of its material, not "
+            f"{found.inertia:.4g} kg m^2"
+        )
         raise InputError(f"{words}; {remedy}", "inertia")
 
 
@@ -258,33 +363,58 @@ def check_plate(section: Any) -> None:
     """
     if section.radius is not None:
         if section.size is not None:
-            raise InputError("a sphere takes the place of the plate, and has no size; leave out size, or radius", "size")
+            raise InputError(
+                "a sphere takes the place of the plate, and has no size; leave out size, or radius",
+                "size",
+            )
         if section.model == "elastic":
             words = "a sphere in the place of the plate is rigid but for its contact"
-            raise InputError(f"{words}; leave out model, or take a System in Python, whose bodies may all vibrate", "model")
+            raise InputError(
+                f"{words}; leave out model, or take a System in Python, "
+                "whose bodies may all vibrate",
+                "model",
+            )
         if section.supports is not None and section.material.name == "rigid":
-            raise InputError('"rigid" has no density, and a sphere that is free needs a mass', "material")
+            raise InputError(
+                '"rigid" has no density, and a sphere that is free needs a mass', "material"
+            )
     if section.model == "rigid":
         return
     # an elastic plate: its size, supports and mesh keys must suit its elements
     mesh = section.mesh
     brought = isinstance(mesh, BroughtMeshTable)
     if section.size is None and not brought:
-        raise InputError("an elastic plate needs its length, width and thickness, or a mesh file", "size")
+        raise InputError(
+            "an elastic plate needs its length, width and thickness, or a mesh file", "size"
+        )
     if section.supports is None:
-        raise InputError('how is the elastic plate held? Give "free", "clamped", "simply-supported", or tables such as patches', "supports")
+        raise InputError(
+            'how is the elastic plate held? Give "free", "clamped", "simply-supported", or '
+            "tables such as patches",
+            "supports",
+        )
     if brought and section.element == "plate":
-        raise InputError("a mesh file has solid elements; leave out element, or the mesh file", "element")
+        raise InputError(
+            "a mesh file has solid elements; leave out element, or the mesh file", "element"
+        )
     if isinstance(mesh, PlateMeshTable):
         solid = section.element == "solid"
-        for key in ("theory", "margin") if solid else ("elements", "layers", "kind", "splits", "lower_splits"):
+        for key in (
+            ("theory", "margin")
+            if solid
+            else ("elements", "layers", "kind", "splits", "lower_splits")
+        ):
             if getattr(mesh, key) is not None:
                 words = f'element = "{section.element or "plate"}" does not take it'
-                raise InputError(f'{words}; leave it out, or give element = "{"plate" if solid else "solid"}"', f"mesh.{key}")
+                raise InputError(
+                    f'{words}; leave it out, or give element = "{"plate" if solid else "solid"}"',
+                    f"mesh.{key}",
+                )
 
 
 def check_sphere_below(case: Any) -> None:
-    """Check a case in which a sphere replaces the plate: a central impact of bodies that deform only in their contact.
+    """Check a case in which a sphere replaces the plate: a central impact of bodies that deform
+    only in their contact.
 
     Raises
     ------
@@ -309,7 +439,11 @@ def reduction_of(body: Literal["sphere", "plate"], section: Any, place: Place) -
     """Return the modal reduction of a body with its contact point at `place`."""
     from vibroimpact.structures.recipe import Reduction
 
-    number = DEFAULT_MODES[body] if section.modes is None and section.max_frequency is None else section.modes
+    number = (
+        DEFAULT_MODES[body]
+        if section.modes is None and section.max_frequency is None
+        else section.modes
+    )
     return Reduction(
         modes=number,
         max_frequency=section.max_frequency,

@@ -1,4 +1,6 @@
-"""Error messages made from pydantic's validation errors: the key, what is wrong, and what is allowed."""
+"""Error messages made from pydantic's validation errors: the key, what is wrong, and what
+is allowed.
+"""
 
 from __future__ import annotations
 
@@ -17,7 +19,15 @@ from vibroimpact.shown import shown
 _NO_SUCH_TYPE = ("string_type", "tuple_type", "list_type", "literal_error", "bool_type")
 """Errors of an alternative that takes another type of value."""
 
-_WHOLE = ("int_type", "int_parsing", "int_parsing_size", "int_from_float", "greater_than_equal", "less_than_equal", "multiple_of")
+_WHOLE = (
+    "int_type",
+    "int_parsing",
+    "int_parsing_size",
+    "int_from_float",
+    "greater_than_equal",
+    "less_than_equal",
+    "multiple_of",
+)
 """Errors of whole numbers."""
 
 _BOUNDS = ("ge", "le", "multiple_of")
@@ -25,19 +35,30 @@ _BOUNDS = ("ge", "le", "multiple_of")
 
 
 class InvalidTable(ValueError):
-    """The validation errors of a table in another one, raised while that is validated, and the section that the table should be."""
+    """The validation errors of a table in another one, raised while that is validated,
+    and the section that the table should be.
+    """
 
     def __init__(self, section: type[BaseModel], error: ValidationError) -> None:
         super().__init__(str(error))
         self.section, self.error = section, error
 
 
-def fault_messages(error: ValidationError, section: type[BaseModel], *, of_case: bool = False) -> Iterator[tuple[str, str]]:
-    """Yield the dotted key path and the message of each validation error of a section, or of a whole case."""
+def fault_messages(
+    error: ValidationError, section: type[BaseModel], *, of_case: bool = False
+) -> Iterator[tuple[str, str]]:
+    """Yield the dotted key path and the message of each validation error of a section, or
+    of a whole case.
+    """
     faults = [_Fault(fault, section, of_case=of_case) for fault in error.errors()]
-    misspelt = [(fault.path[:-1], fault.path[-1]) for fault in faults if fault.kind == "extra_forbidden"]
+    misspelt = [
+        (fault.path[:-1], fault.path[-1]) for fault in faults if fault.kind == "extra_forbidden"
+    ]
     for fault in _by_value(faults):
-        if fault.kind == "missing" and any(above == fault.path[:-1] and did_you_mean(key, [fault.path[-1]]) for above, key in misspelt):
+        if fault.kind == "missing" and any(
+            above == fault.path[:-1] and did_you_mean(key, [fault.path[-1]])
+            for above, key in misspelt
+        ):
             continue  # the unknown key is reported, with the one that was meant
         yield from fault.messages()
 
@@ -55,8 +76,12 @@ class _Fault:
 
     @property
     def branch(self) -> int:
-        """Number of the part of the location that names an alternative of a union; that of the parts if there is none."""
-        return next((number for number, part in enumerate(self.loc) if _is_branch(part)), len(self.loc))
+        """Number of the part of the location that names an alternative of a union; that
+        of the parts if there is none.
+        """
+        return next(
+            (number for number, part in enumerate(self.loc) if _is_branch(part)), len(self.loc)
+        )
 
     @property
     def about(self) -> str:
@@ -66,7 +91,10 @@ class _Fault:
             return ""
         if field.description:
             return field.description
-        return next((_words(part) for part in parts_of(field) if isinstance(part, (Quantity, JsonSchema))), "")
+        return next(
+            (_words(part) for part in parts_of(field) if isinstance(part, (Quantity, JsonSchema))),
+            "",
+        )
 
     @property
     def wanted(self) -> str:
@@ -88,10 +116,16 @@ class _Fault:
         """Yield the key path and the message; several of a table in the table."""
         path, cause = ".".join(self.path), self.context.get("error")
         if isinstance(cause, InvalidTable):
-            yield from ((f"{path}.{key}" if path else key, text) for key, text in fault_messages(cause.error, cause.section))
+            yield from (
+                (f"{path}.{key}" if path else key, text)
+                for key, text in fault_messages(cause.error, cause.section)
+            )
         elif self.kind == "value_error":
             key = getattr(cause, "key", "")
-            yield ".".join(part for part in (path, key) if part), getattr(cause, "message", str(cause))
+            yield (
+                ".".join(part for part in (path, key) if part),
+                getattr(cause, "message", str(cause)),
+            )
         elif self.kind == "missing" and self.path[-1].isdigit():
             yield ".".join(self.path[:-1]), f"there are too few values{_takes(self.about)}"
         else:
@@ -108,9 +142,16 @@ class _Fault:
             return f"the text is empty{_which_is(self.about)}"
         if self.kind in ("model_type", "model_attributes_type", "dict_type"):
             inside = section_at(self.section, self.path)
-            return f"{given} is not a table{_takes(listed(keys_of(inside)) if inside is not None else self.about)}"
+            return (
+                f"{given} is not a "
+                f"table{_takes(listed(keys_of(inside)) if inside is not None else self.about)}"
+            )
         if self.kind in ("tuple_type", "list_type") and section_at(self.section, self.path):
-            is_one = "this is one table, and it must be" if isinstance(self.value, dict) else f"{given} is not allowed; it must be"
+            is_one = (
+                "this is one table, and it must be"
+                if isinstance(self.value, dict)
+                else f"{given} is not allowed; it must be"
+            )
             return f"{is_one} a list of tables; write [[{'.'.join(self.path)}]] above each"
         if self.kind in ("tuple_type", "list_type"):
             return f"{given} is not a list{_takes(self.about)}"
@@ -120,7 +161,11 @@ class _Fault:
             return f"{given} is not allowed; it takes {self.context['expected']}"
         if self.kind == "string_type" and isinstance(self.value, (bool, int, float)):
             return f"{given} is not a text; put it in quotes"
-        hint = did_you_mean(self.value, re.findall(r'"([^"]*)"', self.wanted)) if isinstance(self.value, str) else ""
+        hint = (
+            did_you_mean(self.value, re.findall(r'"([^"]*)"', self.wanted))
+            if isinstance(self.value, str)
+            else ""
+        )
         return f"{given} is not allowed; it must be {self.wanted}{'.' if hint else ''}{hint}"
 
     def _unknown_key(self) -> str:
@@ -135,7 +180,9 @@ class _Fault:
 
 
 def _by_value(faults: Sequence[_Fault]) -> Iterator[_Fault]:
-    """Yield the faults, of a value with several alternatives only those of the one that was meant, or one in place of all."""
+    """Yield the faults, of a value with several alternatives only those of the one that
+    was meant, or one in place of all.
+    """
     done = set()
     for fault in faults:
         if fault.branch == len(fault.loc):
@@ -145,11 +192,19 @@ def _by_value(faults: Sequence[_Fault]) -> Iterator[_Fault]:
         if place in done:
             continue
         done.add(place)
-        yield from _meant([one for one in faults if one.branch == fault.branch and one.loc[: fault.branch] == place])
+        yield from _meant(
+            [
+                one
+                for one in faults
+                if one.branch == fault.branch and one.loc[: fault.branch] == place
+            ]
+        )
 
 
 def _meant(faults: Sequence[_Fault]) -> Sequence[_Fault]:
-    """Return the faults of the alternative that suits the type of the value; if none does, one that names all."""
+    """Return the faults of the alternative that suits the type of the value; if none
+    does, one that names all.
+    """
     inside = [fault for fault in faults if len(fault.loc) > fault.branch + 1]
     if inside:
         return inside
@@ -164,8 +219,13 @@ def _meant(faults: Sequence[_Fault]) -> Sequence[_Fault]:
 
 
 def _is_branch(part: str) -> bool:
-    """Return whether a part of a location is the label that pydantic gives to an alternative of a union, or to the key of a table."""
-    return part.startswith(("literal[", "constrained-", "function-", "tuple[", "nullable")) or part == "[key]"
+    """Return whether a part of a location is the label that pydantic gives to an
+    alternative of a union, or to the key of a table.
+    """
+    return (
+        part.startswith(("literal[", "constrained-", "function-", "tuple[", "nullable"))
+        or part == "[key]"
+    )
 
 
 def _which_is(about: str) -> str:
@@ -184,7 +244,12 @@ def _words(annotation: Quantity | JsonSchema) -> str:
 
 def _whole_number(parts: Iterable[Any]) -> str:
     """Return the whole numbers that a field takes, in words, from the parts of its annotation."""
-    bounds = {bound: value for part in parts for bound in _BOUNDS if (value := getattr(part, bound, None)) is not None}
+    bounds = {
+        bound: value
+        for part in parts
+        for bound in _BOUNDS
+        if (value := getattr(part, bound, None)) is not None
+    }
     least, most, multiple = (bounds.get(bound) for bound in _BOUNDS)
     kind = "a whole number" if multiple is None else f"a multiple of {multiple}"
     if least is None or most is None:

@@ -1,4 +1,6 @@
-"""What the keys `drop.air` and `contact.liquid` have in common: true for the usual fluid, false for none, or a table of its numbers."""
+"""What the keys `drop.air` and `contact.liquid` have in common: true for the usual fluid,
+false for none, or a table of its numbers.
+"""
 
 from __future__ import annotations
 
@@ -28,9 +30,15 @@ def read_fluid(kind: type[Table], value: Any) -> Table | None:
         return read_table(kind, {}) if value else None
     if isinstance(value, dict):
         return read_table(kind, value)
-    raise InputError(f"{shown(value)} is not allowed; it must be true, false, or a table with any of {', '.join(kind.model_fields)}")
+    raise InputError(
+        f"{shown(value)} is not allowed; it must be true, false, or a table with any of "
+        f"{', '.join(kind.model_fields)}"
+    )
 
 
 def fluid_words(table: Mapping[str, Any]) -> str:
     """Return what a resolved table of a fluid holds, in words."""
-    return ", ".join(f"{name.replace('_', ' ')} {float(value):.4g}{_UNITS[name]}" for name, value in table.items())
+    return ", ".join(
+        f"{name.replace('_', ' ')} {float(value):.4g}{_UNITS[name]}"
+        for name, value in table.items()
+    )

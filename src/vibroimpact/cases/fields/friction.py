@@ -32,16 +32,25 @@ def read_friction(value: Any) -> FrictionTable | None:
     """
     check_friction_law(value)
     # "none" may have what others take: so a law can be switched off, or swept
-    laws = list(friction_laws().values()) if value["law"] == NO_FRICTION else [find_friction_law(value["law"])]
+    laws = (
+        list(friction_laws().values())
+        if value["law"] == NO_FRICTION
+        else [find_friction_law(value["law"])]
+    )
     known = {item.name: item for law in laws for item in fields(law)}
     parameters = {}
     for key, given in value.items():
         if key == "law":
             continue
         if key not in known:
-            raise InputError(f"unknown key {shown(key)}; {value['law']} takes {choices(known, key)}", f"friction.{key}")
+            raise InputError(
+                f"unknown key {shown(key)}; {value['law']} takes {choices(known, key)}",
+                f"friction.{key}",
+            )
         try:
-            parameters[key] = read_quantity(given, known[key].metadata["unit"], known[key].metadata["range"])
+            parameters[key] = read_quantity(
+                given, known[key].metadata["unit"], known[key].metadata["range"]
+            )
         except InputError as error:
             raise InputError(error.message, f"friction.{key}") from None
     return None if value["law"] == NO_FRICTION else FrictionTable(value["law"], parameters)
@@ -58,22 +67,48 @@ def check_friction_law(value: Any) -> None:
     names = [NO_FRICTION, *friction_laws()]
     known_laws = ", ".join(f'"{name}"' for name in names)  # "there are none" would be misread
     if not isinstance(value, dict):
-        raise InputError(f"{shown(value)} is not a table with the name of a friction law; there are {known_laws}", "friction")
+        raise InputError(
+            f"{shown(value)} is not a table with the name of a friction "
+            f"law; there are {known_laws}",
+            "friction",
+        )
     if "law" not in value:
         raise InputError(f'it needs law = "...", one of {known_laws}', "friction")
     if not isinstance(value["law"], str):
-        raise InputError(f"{shown(value['law'])} is not the name of a friction law; there are {known_laws}", "friction.law")
+        raise InputError(
+            f"{shown(value['law'])} is not the name of a friction law; there are {known_laws}",
+            "friction.law",
+        )
     if value["law"] not in names:
-        words = f"there is no friction law {shown(value['law'])}; there are {known_laws}.{did_you_mean(value['law'], names)}"
+        words = (
+            f"there is no friction law {shown(value['law'])}; there are "
+            f"{known_laws}.{did_you_mean(value['law'], names)}"
+        )
         raise InputError(words, "friction.law")
 
 
 def friction_schema() -> dict[str, Any]:
     """Return the JSON schema of the [contact.friction] table: one alternative per law."""
-    none: dict[str, Any] = {"type": "object", "properties": {"law": {"const": NO_FRICTION}}, "required": ["law"]}
+    none: dict[str, Any] = {
+        "type": "object",
+        "properties": {"law": {"const": NO_FRICTION}},
+        "required": ["law"],
+    }
     found = [none]
     for law in friction_laws().values():
-        properties: dict[str, Any] = {"law": {"const": law.name, "description": f"{law.equation} ({law.source})"}}
-        properties |= {item.name: quantity_schema(item.metadata["unit"], item.metadata["meaning"]) for item in fields(law)}
-        found.append({"type": "object", "properties": properties, "required": ["law"], "additionalProperties": False})
+        properties: dict[str, Any] = {
+            "law": {"const": law.name, "description": f"{law.equation} ({law.source})"}
+        }
+        properties |= {
+            item.name: quantity_schema(item.metadata["unit"], item.metadata["meaning"])
+            for item in fields(law)
+        }
+        found.append(
+            {
+                "type": "object",
+                "properties": properties,
+                "required": ["law"],
+                "additionalProperties": False,
+            }
+        )
     return {"description": "the friction law and its parameters", "oneOf": found}

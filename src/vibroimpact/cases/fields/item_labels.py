@@ -5,14 +5,18 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-NUMBER_LABELS: dict[str, tuple[str, ...]] = {"position": ("x", "y"), "size": ("length", "width", "thickness")}
+NUMBER_LABELS: dict[str, tuple[str, ...]] = {
+    "position": ("x", "y"),
+    "size": ("length", "width", "thickness"),
+}
 """Labels of the numbers of a list, such as in "drop.position.x"."""
 
 _LONGEST = 40  # characters of a name that serves as a label
 
 
 def item_label(key: str, items: Sequence[Any], number: int) -> str:
-    """Return the key of a list item with its name, such as sensors."a1", or with its ordinal if the list has several items.
+    """Return the key of a list item with its name, such as sensors."a1", or with its ordinal if the
+    list has several items.
 
     Parameters
     ----------
@@ -25,9 +29,15 @@ def item_label(key: str, items: Sequence[Any], number: int) -> str:
 
     Examples
     --------
-    >>> item_label("sensors", [{"name": "a1"}, {"rate": 5e4}], 0), item_label("sensors", [{"name": "a1"}, {"rate": 5e4}], 1)
+    >>> (
+    ...     item_label("sensors", [{"name": "a1"}, {"rate": 5e4}], 0),
+    ...     item_label("sensors", [{"name": "a1"}, {"rate": 5e4}], 1),
+    ... )
     ('sensors."a1"', 'sensors (the 2nd)')
-    >>> item_label("drop.position", [0.1, 0.0], 1), item_label("plate.supports", [{"type": "point"}], 0)
+    >>> (
+    ...     item_label("drop.position", [0.1, 0.0], 1),
+    ...     item_label("plate.supports", [{"type": "point"}], 0),
+    ... )
     ('drop.position.y', 'plate.supports')
     """
     item = items[number] if number < len(items) else None
@@ -35,7 +45,11 @@ def item_label(key: str, items: Sequence[Any], number: int) -> str:
     if not isinstance(item, dict) and number < len(names):
         return f"{key}.{names[number]}"
     name = item.get("name") if isinstance(item, dict) else None
-    alone = isinstance(name, str) and name and sum(isinstance(one, dict) and one.get("name") == name for one in items) == 1
+    alone = (
+        isinstance(name, str)
+        and name
+        and sum(isinstance(one, dict) and one.get("name") == name for one in items) == 1
+    )
     if alone and len(str(name)) <= _LONGEST and str(name).isprintable():
         return f'{key}."{name}"'
     return key if len(items) == 1 else f"{key} (the {ordinal(number + 1)})"
@@ -49,7 +63,9 @@ def ordinal(number: int) -> str:
     >>> [ordinal(number) for number in (1, 2, 3, 4, 11, 22, 113)]
     ['1st', '2nd', '3rd', '4th', '11th', '22nd', '113th']
     """
-    ending = "th" if 10 <= number % 100 <= 20 else {1: "st", 2: "nd", 3: "rd"}.get(number % 10, "th")
+    ending = (
+        "th" if 10 <= number % 100 <= 20 else {1: "st", 2: "nd", 3: "rd"}.get(number % 10, "th")
+    )
     return f"{number}{ending}"
 
 

@@ -1,4 +1,6 @@
-"""What the sections of a case take: their keys as a file has them, and the fields and tables at a key path, for messages."""
+"""What the sections of a case take: their keys as a file has them, and the fields and
+tables at a key path, for messages.
+"""
 
 from __future__ import annotations
 
@@ -10,7 +12,8 @@ from pydantic.fields import FieldInfo
 
 
 def keys_of(section: type[BaseModel]) -> list[str]:
-    """Return the keys of a section as a file has them; without the type of a table, by which the section was chosen.
+    """Return the keys of a section as a file has them; without the type of a table, by which the
+    section was chosen.
 
     Examples
     --------
@@ -27,25 +30,38 @@ def section_at(section: type[BaseModel], path: Sequence[str]) -> type[BaseModel]
     Examples
     --------
     >>> from vibroimpact.cases.schema import CaseTable
-    >>> section_at(CaseTable, ["sensors", "0", "geophone"]).__name__, section_at(CaseTable, ["sweep", "classes", "coal"]).__name__
+    >>> (
+    ...     section_at(CaseTable, ["sensors", "0", "geophone"]).__name__,
+    ...     section_at(CaseTable, ["sweep", "classes", "coal"]).__name__,
+    ... )
     ('GeophoneTable', 'ClassTable')
     """
     inside: type[BaseModel] | None = section
     named = False
     for key in path:
-        if key.isdigit() or named:  # an item of a list of tables, or a table by a name that the user chose
+        # an item of a list of tables, or a table by a name that the user chose
+        if key.isdigit() or named:
             named = False
             continue
         field = None if inside is None else field_of(inside, key)
         if field is None:
             return None
-        inside = next((part for part in parts_of(field) if isinstance(part, type) and issubclass(part, BaseModel)), None)
+        inside = next(
+            (
+                part
+                for part in parts_of(field)
+                if isinstance(part, type) and issubclass(part, BaseModel)
+            ),
+            None,
+        )
         named = any(get_origin(part) is dict for part in parts_of(field))
     return inside
 
 
 def field_at(section: type[BaseModel], path: Sequence[str]) -> FieldInfo | None:
-    """Return the field at a key path in a section, of an item of a list that of the list; None if there is none."""
+    """Return the field at a key path in a section, of an item of a list that of the list;
+    None if there is none.
+    """
     keys = [key for number, key in enumerate(path) if number < len(path) - 1 or not key.isdigit()]
     above = section_at(section, keys[:-1])
     return field_of(above, keys[-1]) if above is not None and keys else None
@@ -58,7 +74,9 @@ def field_of(section: type[BaseModel], key: str) -> FieldInfo | None:
 
 
 def parts_of(field: FieldInfo) -> Iterator[Any]:
-    """Yield the types that the annotation of a field is made of, and what they are annotated with."""
+    """Yield the types that the annotation of a field is made of, and what they are
+    annotated with.
+    """
     yield from field.metadata
     yield from _parts(field.annotation)
 

@@ -15,10 +15,16 @@ from vibroimpact.ranges import Range
 
 
 class LiquidTable(Section):
-    """A liquid at rest, through which the sphere falls, and whose film between the surfaces takes from the rebound."""
+    """A liquid at rest, through which the sphere falls, and whose film between the
+    surfaces takes from the rebound.
+    """
 
-    density: Annotated[float, Quantity("kg/m^3", "density of the liquid", Range(above=0))] = WATER_DENSITY
-    viscosity: Annotated[float, Quantity("Pa*s", "viscosity of the liquid", Range(above=0))] = WATER_VISCOSITY
+    density: Annotated[float, Quantity("kg/m^3", "density of the liquid", Range(above=0))] = (
+        WATER_DENSITY
+    )
+    viscosity: Annotated[float, Quantity("Pa*s", "viscosity of the liquid", Range(above=0))] = (
+        WATER_VISCOSITY
+    )
 
     def liquid(self) -> Liquid:
         """Return the liquid."""
@@ -29,8 +35,8 @@ LiquidField = Annotated[
     LiquidTable | None,
     BeforeValidator(lambda value: read_fluid(LiquidTable, value)),
     JsonSchema(
-        "liquid around sphere and plate, which slows the fall and reduces the rebound: true for water at 20 C, or its numbers; "
-        "none by default",
+        "liquid around sphere and plate, which slows the fall and reduces the rebound: true "
+        "for water at 20 C, or its numbers; none by default",
         lambda: {"anyOf": [{"type": "boolean"}, LiquidTable.model_json_schema()]},
     ),
 ]

@@ -24,8 +24,16 @@ class InlineMaterial(Section):
     youngs_modulus: Annotated[float, Quantity("Pa", "Young's modulus", Range(above=0))]
     poissons_ratio: Annotated[float, Quantity("", "Poisson's ratio", Range(above=-1, below=0.5))]
     yield_strength: Annotated[float, Quantity("Pa", "yield strength", Range(above=0))] | None = None
-    compressive_strength: Annotated[float, Quantity("Pa", "compressive strength of a brittle material", Range(above=0))] | None = None
-    tensile_strength: Annotated[float, Quantity("Pa", "tensile strength of a brittle material", Range(above=0))] | None = None
+    compressive_strength: (
+        Annotated[
+            float, Quantity("Pa", "compressive strength of a brittle material", Range(above=0))
+        ]
+        | None
+    ) = None
+    tensile_strength: (
+        Annotated[float, Quantity("Pa", "tensile strength of a brittle material", Range(above=0))]
+        | None
+    ) = None
     loss_factor: Annotated[float, Quantity("", "loss factor", Range(at_least=0))] | None = None
     name: Name = ""
 
@@ -37,10 +45,16 @@ def _read_material(value: Any) -> Material:
         return find_material(value)
     if isinstance(value, dict):
         return Material(**read_inner_table(InlineMaterial, value).model_dump())
-    raise InputError(f"{shown(value)} is neither the name of a material nor a table with density, youngs_modulus and poissons_ratio")
+    raise InputError(
+        f"{shown(value)} is neither the name of a material nor a table with density, "
+        "youngs_modulus and poissons_ratio"
+    )
 
 
-_WORDS = 'the name of a material ("vibroimpact materials" lists them), or its numbers; "rigid" for a plate of infinite modulus'
+_WORDS = (
+    'the name of a material ("vibroimpact materials" lists them), or its numbers; "rigid" for a '
+    "plate of infinite modulus"
+)
 MaterialField = Annotated[
     Material,
     BeforeValidator(_read_material),
@@ -52,4 +66,8 @@ def material_table(material: Material) -> dict[str, Any] | str:
     """Return a material as it is written in a resolved case file."""
     if material is RIGID:
         return RIGID.name
-    return {key: value for key, value in asdict(material).items() if key in InlineMaterial.model_fields and value not in (None, "")}
+    return {
+        key: value
+        for key, value in asdict(material).items()
+        if key in InlineMaterial.model_fields and value not in (None, "")
+    }

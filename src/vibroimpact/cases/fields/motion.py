@@ -16,19 +16,38 @@ from vibroimpact.ranges import Range
 class MotionTable(Section):
     """How the supports of the plate move: harmonically, or as a file tells."""
 
-    amplitude: Annotated[float, Quantity("m", "amplitude of the motion", Range(at_least=0))] | None = None
-    frequency: Annotated[float, Quantity("Hz", "frequency of the motion", Range(above=0))] | None = None
-    phase: Annotated[float, Quantity("rad", "phase at the start; at 0 the plate passes its mean position along `direction`")] = 0.0
+    amplitude: (
+        Annotated[float, Quantity("m", "amplitude of the motion", Range(at_least=0))] | None
+    ) = None
+    frequency: (
+        Annotated[float, Quantity("Hz", "frequency of the motion", Range(above=0))] | None
+    ) = None
+    phase: Annotated[
+        float,
+        Quantity(
+            "rad", "phase at the start; at 0 the plate passes its mean position along `direction`"
+        ),
+    ] = 0.0
     file: FileName | None = Field(
-        None, description="CSV file of the motion over time: time, and displacement or acceleration, with their units"
+        None,
+        description="CSV file of the motion over time: time, and displacement or acceleration, "
+        "with their units",
     )
     columns: str | None = Field(
         None,
-        description='columns of the file in place of its header, in order, such as "time=s,-,displacement=mm", with - for one left out',
+        description="columns of the file in place of its header, in order, such as "
+        '"time=s,-,displacement=mm", with - for one left out',
     )
-    repeat: StrictBool = Field(False, description="whether the file has one period of the motion, which repeats")
-    direction: tuple[Annotated[float, Quantity("", "x")], Annotated[float, Quantity("", "y")], Annotated[float, Quantity("", "z")]] = Field(
-        (0.0, 0.0, 1.0), description="direction of the motion along x, y and the normal z, of any length but 0"
+    repeat: StrictBool = Field(
+        False, description="whether the file has one period of the motion, which repeats"
+    )
+    direction: tuple[
+        Annotated[float, Quantity("", "x")],
+        Annotated[float, Quantity("", "y")],
+        Annotated[float, Quantity("", "z")],
+    ] = Field(
+        (0.0, 0.0, 1.0),
+        description="direction of the motion along x, y and the normal z, of any length but 0",
     )
 
     @model_validator(mode="after")
@@ -36,15 +55,31 @@ class MotionTable(Section):
         given = [name for name in ("amplitude", "frequency") if getattr(self, name) is not None]
         harmonic = [*given, *(["phase"] if "phase" in self.model_fields_set else [])]
         if self.file is not None and harmonic:
-            words = f"give either a file or a harmonic motion; leave out {' and '.join(harmonic)}, or leave out this"
+            words = (
+                f"give either a file or a harmonic motion; leave out {' and '.join(harmonic)}, "
+                "or leave out this"
+            )
             raise InputError(words, "file")
         if self.file is None and self.repeat:
-            raise InputError("only the motion of a file is repeated, and a harmonic motion repeats by itself; leave this out", "repeat")
+            raise InputError(
+                "only the motion of a file is repeated, and a harmonic motion repeats by "
+                "itself; leave this out",
+                "repeat",
+            )
         if self.file is None and len(given) < 2:
-            missing = "amplitude" if given == ["frequency"] else "frequency" if given else "amplitude and frequency"
+            missing = (
+                "amplitude"
+                if given == ["frequency"]
+                else "frequency"
+                if given
+                else "amplitude and frequency"
+            )
             raise InputError(f"this key needs {missing}, or file in place of both")
         if self.file is None and self.columns is not None:
             raise InputError("only a file has columns; leave this out", "columns")
         if not any(self.direction):
-            raise InputError("a direction of length 0 is none; give one along x, y and z, such as [0, 0, 1]", "direction")
+            raise InputError(
+                "a direction of length 0 is none; give one along x, y and z, such as [0, 0, 1]",
+                "direction",
+            )
         return self

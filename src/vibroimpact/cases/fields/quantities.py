@@ -17,7 +17,9 @@ from vibroimpact.units.reading import to_si
 from vibroimpact.units.written import Written, has_deviation, read_written, without_deviation
 
 SMALLEST, LARGEST = 1e-50, 1e50
-"""Range of the magnitude of a nonzero quantity in SI, within which squares and products neither overflow nor underflow."""
+"""Range of the magnitude of a nonzero quantity in SI, within which squares and products
+neither overflow nor underflow.
+"""
 
 
 def read_quantity(value: Any, unit: str, allowed: Range) -> float:
@@ -35,7 +37,9 @@ def read_quantity(value: Any, unit: str, allowed: Range) -> float:
     """
     if has_deviation(value):
         keys = "drop.height, drop.speed, drop.gravity, sphere.radius and material.density"
-        words = f"a standard deviation, for the intervals of a calibration, may stand at {keys} alone"
+        words = (
+            f"a standard deviation, for the intervals of a calibration, may stand at {keys} alone"
+        )
         raise InputError(f'{shown(value, 80)}: {words}; write "{without_deviation(value)}"')
     try:
         number = to_si(value, unit)
@@ -47,7 +51,9 @@ def read_quantity(value: Any, unit: str, allowed: Range) -> float:
 
 
 def _check_remedy(value: Any, unit: str, allowed: Range) -> None:
-    """Check the number of a text that lacks its unit, or has one where none belongs: only one in range is worth to be written otherwise."""
+    """Check the number of a text that lacks its unit, or has one where none belongs: only
+    one in range is worth to be written otherwise.
+    """
     parts = number_and_unit(value) if isinstance(value, str) else None
     if parts is not None and not (unit and parts[1]):
         number = parts[0] / 100.0 if parts[1] == "%" else parts[0]
@@ -58,13 +64,17 @@ def _check(number: float, value: Any, unit: str, allowed: Range) -> None:
     """Check that a number can be computed with, and is in its range."""
     if number and not SMALLEST <= abs(number) <= LARGEST:
         limits = f"from {SMALLEST:g} to {LARGEST:g} {unit}".rstrip()
-        raise InputError(f"{shown(value)} is beyond what can be computed; a magnitude that is not 0 lies {limits}")
+        raise InputError(
+            f"{shown(value)} is beyond what can be computed; a magnitude that "
+            f"is not 0 lies {limits}"
+        )
     allowed.check(number, unit, shown(value, 80))
 
 
 @dataclass(frozen=True)
 class Quantity:
-    """Annotation of a quantity field with its SI unit, meaning and range, from which pydantic validates it and makes its JSON schema.
+    """Annotation of a quantity field with its SI unit, meaning and range, from which pydantic
+    validates it and makes its JSON schema.
 
     `words` may stand in place of a value, and are left as they are.
     """
@@ -92,27 +102,50 @@ class Quantity:
             return read_quantity(value, self.unit, self.allowed)
         if value not in self.words:
             known = " or ".join(f'"{word}"' for word in self.words)
-            words = f"{shown(value)} is not allowed; it must be {known}, or a {self.meaning} with its unit [{self.unit}]"
+            words = (
+                f"{shown(value)} is not allowed; it must be {known}, or a {self.meaning} with "
+                f"its unit [{self.unit}]"
+            )
             raise InputError(f"{words}.{did_you_mean(value, self.words)}")
         return value
 
-    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+    def __get_pydantic_core_schema__(
+        self, source: Any, handler: GetCoreSchemaHandler
+    ) -> CoreSchema:
         return core_schema.no_info_plain_validator_function(self.read)
 
-    def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+    def __get_pydantic_json_schema__(
+        self, schema: CoreSchema, handler: GetJsonSchemaHandler
+    ) -> dict[str, Any]:
         found = quantity_schema(self.unit, self.meaning)
-        return {"anyOf": [{"enum": list(self.words)}, found], "description": found["description"]} if self.words else found
+        return (
+            {"anyOf": [{"enum": list(self.words)}, found], "description": found["description"]}
+            if self.words
+            else found
+        )
 
 
 @dataclass(frozen=True)
 class UncertainQuantity(Quantity):
-    """Annotation of a quantity with which a measurement is evaluated: a text may have a standard deviation, "0.6 m +- 5 mm"."""
+    """Annotation of a quantity with which a measurement is evaluated: a text may have a
+    standard deviation, "0.6 m +- 5 mm".
+    """
 
-    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
-        return core_schema.no_info_plain_validator_function(lambda value: read_uncertain(value, self.unit, self.allowed))
+    def __get_pydantic_core_schema__(
+        self, source: Any, handler: GetCoreSchemaHandler
+    ) -> CoreSchema:
+        return core_schema.no_info_plain_validator_function(
+            lambda value: read_uncertain(value, self.unit, self.allowed)
+        )
 
-    def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
-        return quantity_schema(self.unit, f'{self.meaning}; for a calibration its standard deviation may be added, as in "... +- 1 %"')
+    def __get_pydantic_json_schema__(
+        self, schema: CoreSchema, handler: GetJsonSchemaHandler
+    ) -> dict[str, Any]:
+        return quantity_schema(
+            self.unit,
+            f"{self.meaning}; for a calibration its standard deviation may be added, as in "
+            '"... +- 1 %"',
+        )
 
 
 def read_uncertain(value: Any, unit: str, allowed: Range) -> Written:
@@ -138,8 +171,13 @@ def quantity_schema(unit: str, description: str) -> dict[str, Any]:
     """Return the JSON schema of a quantity."""
     if not unit:
         return {"type": "number", "description": description}
-    gravity = ', in which "g" is standard gravity, 9.80665 m/s^2' if unit in ("m/s^2", "V s^2/m") else ""
-    return {"type": ["number", "string"], "description": f"{description} [{unit}]; a string carries its own unit{gravity}"}
+    gravity = (
+        ', in which "g" is standard gravity, 9.80665 m/s^2' if unit in ("m/s^2", "V s^2/m") else ""
+    )
+    return {
+        "type": ["number", "string"],
+        "description": f"{description} [{unit}]; a string carries its own unit{gravity}",
+    }
 
 
 def quantity_of(info: FieldInfo) -> Quantity | None:

@@ -33,7 +33,8 @@ Of = TypeVar("Of", bound=Section)
 
 
 def derived(function: Callable[[Of], Value]) -> Callable[[Of], Value]:
-    """Decorate a function of a section so that its value is computed once and kept with the section, which is frozen.
+    """Decorate a function of a section so that its value is computed once and kept with the
+    section, which is frozen.
 
     Examples
     --------
@@ -65,7 +66,8 @@ Table = TypeVar("Table", bound=Section)
 
 
 def read_inner_table(kind: type[Table], value: Mapping[str, Any]) -> Table:
-    """Return a validated table of the given kind, while the section that it is in is validated, which reports all its faults.
+    """Return a validated table of the given kind, while the section that it is in is validated,
+    which reports all its faults.
 
     Raises
     ------
@@ -96,7 +98,9 @@ def read_table(kind: type[Table], value: Mapping[str, Any]) -> Table:
     known = keys_of(kind)
     for key in value:
         if key not in known and key != "type":
-            raise InputError(f"unknown key {shown(key)}; it takes {choices(known, key, 'schema')}", key)
+            raise InputError(
+                f"unknown key {shown(key)}; it takes {choices(known, key, 'schema')}", key
+            )
     try:
         return kind.model_validate(dict(value))
     except ValidationError as error:
@@ -104,8 +108,11 @@ def read_table(kind: type[Table], value: Mapping[str, Any]) -> Table:
         raise InputError(message, path) from None
 
 
-def check_alternatives(table: Section, one: str, other: str, *, needed: bool, key: str = "") -> None:
-    """Check that at most one of two alternative keys of a table is given, and, if `needed`, that one is.
+def check_alternatives(
+    table: Section, one: str, other: str, *, needed: bool, key: str = ""
+) -> None:
+    """Check that at most one of two alternative keys of a table is given, and, if `needed`, that
+    one is.
 
     Raises
     ------
@@ -114,4 +121,6 @@ def check_alternatives(table: Section, one: str, other: str, *, needed: bool, ke
     """
     given = [name for name in (one, other) if getattr(table, name) is not None]
     if len(given) == 2 or (needed and not given):
-        raise InputError(f"give either {one} or {other}; {'both are' if given else 'neither is'} given", key)
+        raise InputError(
+            f"give either {one} or {other}; {'both are' if given else 'neither is'} given", key
+        )

@@ -1,4 +1,6 @@
-"""Limits on the size of a case file, checked before validation, so that oversized or hostile input is rejected quickly."""
+"""Limits on the size of a case file, checked before validation, so that oversized or
+hostile input is rejected quickly.
+"""
 
 from __future__ import annotations
 
@@ -43,7 +45,8 @@ _DOTTED = re.compile(rf"(?<![\w-]){_PART}(?:[ \t]*+\.[ \t]*+{_PART}){{{DEEPEST}}
 
 
 def check_text(text: str) -> None:
-    """Check that no dotted key has more parts than the maximum nesting depth; the TOML parser takes quadratic time in that number.
+    """Check that no dotted key has more parts than the maximum nesting depth; the TOML parser takes
+    quadratic time in that number.
 
     Raises
     ------
@@ -57,11 +60,13 @@ def check_text(text: str) -> None:
     if max(map(_dots, text.split("\n"))) < DEEPEST:
         return
     found = _DOTTED.search(text)
-    if found is not None and not text[text.rfind("\n", 0, found.start()) + 1 : found.start()].lstrip().startswith("#"):
+    if found is not None and not text[
+        text.rfind("\n", 0, found.start()) + 1 : found.start()
+    ].lstrip().startswith("#"):
         line = text.count("\n", 0, found.start()) + 1
         raise InputError(
-            f"line {line}: {shown(found[0])} has more than {DEEPEST} parts joined by dots; a key may have so many at most, "
-            "and a text or a comment too"
+            f"line {line}: {shown(found[0])} has more than {DEEPEST} parts joined by dots; "
+            "a key may have so many at most, and a text or a comment too"
         )
 
 
@@ -70,7 +75,8 @@ def _dots(line: str) -> int:
 
 
 def check_bounds(table: Mapping[str, Any]) -> None:
-    """Check the size of a parsed case: number of values, nesting depth, lengths of keys and strings, magnitude of integers.
+    """Check the size of a parsed case: number of values, nesting depth, lengths of keys and
+    strings, magnitude of integers.
 
     Raises
     ------
@@ -88,7 +94,9 @@ def check_bounds(table: Mapping[str, Any]) -> None:
 
 
 def _check_table(table: Any, where: tuple[Any, ...], number: int) -> int:
-    """Check a table or a list recursively; return `number`, the count of values so far, plus its own."""
+    """Check a table or a list recursively; return `number`, the count of values so far,
+    plus its own.
+    """
     number += len(table)
     if number > MOST_VALUES:
         words = "a case is a page of text, and many points of a study go into a CSV file"
@@ -103,10 +111,16 @@ def _check_table(table: Any, where: tuple[Any, ...], number: int) -> int:
             continue
         if kind is str:
             if len(value) > LONGEST_TEXT:
-                raise _too_large((*where, key), f"the text has {len(value)} characters; {LONGEST_TEXT} are the most")
+                raise _too_large(
+                    (*where, key),
+                    f"the text has {len(value)} characters; {LONGEST_TEXT} are the most",
+                )
         elif kind is int:
             if not -LARGEST_WHOLE <= value <= LARGEST_WHOLE:
-                words = f"the number is too large for a whole number; beyond {LARGEST_WHOLE} write it as 1e20"
+                words = (
+                    f"the number is too large for a whole number; beyond {LARGEST_WHOLE} write "
+                    "it as 1e20"
+                )
                 raise _too_large((*where, key), words)
         elif isinstance(value, (dict, list, tuple)):
             number = _check_table(value, (*where, key), number)
@@ -119,12 +133,15 @@ def check_name(name: str) -> str:
     Raises
     ------
     InputError
-        If it is too long, or contains non-printable characters, such as the escape sequences of terminals.
+        If it is too long, or contains non-printable characters, such as the escape sequences of
+        terminals.
     """
     if len(name) > LONGEST_NAME:
         raise InputError(f"the name has {len(name)} characters; {LONGEST_NAME} are the most")
     if not name.replace("\u00a0", " ").isprintable():
-        raise InputError(f"{shown(name)} has characters that can't be shown; a name is one line of text")
+        raise InputError(
+            f"{shown(name)} has characters that can't be shown; a name is one line of text"
+        )
     return name
 
 
@@ -143,7 +160,9 @@ FileName = Annotated[str, AfterValidator(_check_file_name)]
 
 
 def at_most(number: int, what: str) -> BeforeValidator:
-    """Return a validator that rejects a list of more than `number` items before the items themselves are validated."""
+    """Return a validator that rejects a list of more than `number` items before the items
+    themselves are validated.
+    """
 
     def check(value: Any) -> Any:
         if isinstance(value, (list, tuple)):

@@ -21,7 +21,8 @@ from vibroimpact.materials import RIGID, Material
 from vibroimpact.ranges import Range
 from vibroimpact.shown import shown
 
-if TYPE_CHECKING:  # not imported at run time, as a case with rigid bodies does not need scipy.sparse
+# not imported at run time, as a case with rigid bodies does not need scipy.sparse
+if TYPE_CHECKING:
     from vibroimpact.structures.supports.support import Support
 
 EdgeName = Literal["x-min", "x-max", "y-min", "y-max"]
@@ -32,7 +33,9 @@ _Position = Annotated[
 ]
 _Radius = Annotated[float, Quantity("m", "radius", Range(above=0))]
 _Directions = Literal["x", "y", "z", "xy", "xz", "yz", "xyz"]
-_Spacing = Annotated[tuple[_Length, _Length], Field(description="two lengths: between centres along x and along y")]
+_Spacing = Annotated[
+    tuple[_Length, _Length], Field(description="two lengths: between centres along x and along y")
+]
 
 WORDS = ("free", "clamped", "simply-supported")
 
@@ -50,11 +53,15 @@ class SupportTable(Section):
 class PatchTable(SupportTable):
     """A rigid patch of the lower side."""
 
-    what = "a rigid patch of the lower side, held fixed: a disc of a radius, or a rectangle of a size"
+    what = (
+        "a rigid patch of the lower side, held fixed: a disc of a radius, or a rectangle of a size"
+    )
     type: Literal["patch"]
     position: _Position
     radius: _Radius | None = None
-    size: tuple[_Length, _Length] | None = Field(None, description="two lengths: along x and along y")
+    size: tuple[_Length, _Length] | None = Field(
+        None, description="two lengths: along x and along y"
+    )
 
     @model_validator(mode="after")
     def _one_of_two(self) -> PatchTable:
@@ -73,7 +80,10 @@ class PatchTable(SupportTable):
 class PatchesTable(SupportTable):
     """Four rigid patches, at the corners of a rectangle."""
 
-    what = "four rigid circular patches of the lower side, at the corners of a rectangle of this spacing around the centre"
+    what = (
+        "four rigid circular patches of the lower side, at the corners of a rectangle of this "
+        "spacing around the centre"
+    )
     type: Literal["patches"]
     spacing: _Spacing
     radius: _Radius
@@ -87,7 +97,9 @@ class PatchesTable(SupportTable):
 
 def _not_rigid(value: Material) -> Material:
     if value is RIGID:
-        raise InputError('a bar is elastic, and "rigid" has no modulus; for rigid bars take patches')
+        raise InputError(
+            'a bar is elastic, and "rigid" has no modulus; for rigid bars take patches'
+        )
     return value
 
 
@@ -95,7 +107,9 @@ _BarMaterial = Annotated[MaterialField, AfterValidator(_not_rigid)]
 
 
 def _elastic_part(material: Material) -> Material:
-    """Return the properties that determine the modes of a bar, so that names and sources do not change the key of the mode store."""
+    """Return the properties that determine the modes of a bar, so that names and sources
+    do not change the key of the mode store.
+    """
     return Material(material.density, material.youngs_modulus, material.poissons_ratio)
 
 
@@ -119,7 +133,10 @@ class BarTable(SupportTable):
 class BarsTable(SupportTable):
     """Four elastic columns, at the corners of a rectangle."""
 
-    what = "four elastic round columns, at the corners of a rectangle of this spacing around the centre"
+    what = (
+        "four elastic round columns, at the corners of a rectangle of this "
+        "spacing around the centre"
+    )
     type: Literal["bars"]
     spacing: _Spacing
     radius: _Radius
@@ -130,7 +147,10 @@ class BarsTable(SupportTable):
         """Return the four columns."""
         from vibroimpact.structures.supports.bar import Bar
 
-        return tuple(Bar(x, y, self.radius, self.length, _elastic_part(self.material)) for x, y in _corners(self.spacing))
+        return tuple(
+            Bar(x, y, self.radius, self.length, _elastic_part(self.material))
+            for x, y in _corners(self.spacing)
+        )
 
 
 class EdgeTable(SupportTable):
@@ -170,7 +190,9 @@ class SpringTable(SupportTable):
     type: Literal["spring"]
     position: _Position
     stiffness: Annotated[float, Quantity("N/m", "vertical stiffness", Range(above=0))]
-    horizontal_stiffness: Annotated[float, Quantity("N/m", "stiffness along x, and along y", Range(at_least=0))] = 0.0
+    horizontal_stiffness: Annotated[
+        float, Quantity("N/m", "stiffness along x, and along y", Range(at_least=0))
+    ] = 0.0
     radius: Annotated[float, Quantity("m", "radius", Range(at_least=0))] = 0.0
 
     def supports(self) -> tuple[Support, ...]:
@@ -197,7 +219,16 @@ class SetTable(SupportTable):
 
 _TABLES: Mapping[str, type[SupportTable]] = {
     get_args(kind.model_fields["type"].annotation)[0]: kind
-    for kind in (PatchesTable, PatchTable, BarsTable, BarTable, EdgeTable, PointTable, SpringTable, SetTable)
+    for kind in (
+        PatchesTable,
+        PatchTable,
+        BarsTable,
+        BarTable,
+        EdgeTable,
+        PointTable,
+        SpringTable,
+        SetTable,
+    )
 }
 _ALLOWED = f"{', '.join(WORDS)}, or a table (or a list of tables) with type = {', '.join(_TABLES)}"
 
@@ -206,7 +237,9 @@ def _read_supports(value: Any) -> Any:
     """Return a keyword, or the validated tables as a tuple."""
     if isinstance(value, str):
         if value not in WORDS:
-            raise InputError(f"{shown(value)} is not allowed; it must be {_ALLOWED}.{did_you_mean(value, WORDS)}")
+            raise InputError(
+                f"{shown(value)} is not allowed; it must be {_ALLOWED}.{did_you_mean(value, WORDS)}"
+            )
         return value
     if isinstance(value, dict):
         return (_read_support(value),)
@@ -217,7 +250,9 @@ def _read_supports(value: Any) -> Any:
             try:
                 found.append(item if isinstance(item, SupportTable) else _read_support(item))
             except InputError as error:
-                raise InputError(error.message, ".".join(part for part in (str(number), error.key) if part)) from None
+                raise InputError(
+                    error.message, ".".join(part for part in (str(number), error.key) if part)
+                ) from None
         return tuple(found)
     raise InputError(f"{shown(value)} is not allowed; it must be {_ALLOWED}")
 
@@ -230,18 +265,28 @@ def _read_support(value: Any) -> SupportTable:
     name = value.get("type") if isinstance(value, dict) else None
     if not isinstance(name, str) or name not in _TABLES:
         if value in WORDS:
-            raise InputError(f"{shown(value)} stands alone, without a list: supports = {shown(value)}")
-        fault = f"there is no support of type {shown(name)}" if name is not None else "a support is a table with a type"
+            raise InputError(
+                f"{shown(value)} stands alone, without a list: supports = {shown(value)}"
+            )
+        fault = (
+            f"there is no support of type {shown(name)}"
+            if name is not None
+            else "a support is a table with a type"
+        )
         raise InputError(f"{fault}; there are {choices(_TABLES, str(name))}")
     return read_table(_TABLES[name], value)
 
 
 def _json_schema() -> dict[str, Any]:
     tables = [{**kind.model_json_schema(), "description": kind.what} for kind in _TABLES.values()]
-    return {"anyOf": [{"enum": list(WORDS)}, *tables, {"type": "array", "items": {"anyOf": tables}}]}
+    return {
+        "anyOf": [{"enum": list(WORDS)}, *tables, {"type": "array", "items": {"anyOf": tables}}]
+    }
 
 
-SupportsField = Annotated[Any, BeforeValidator(_read_supports), JsonSchema("supports of the plate", _json_schema)]
+SupportsField = Annotated[
+    Any, BeforeValidator(_read_supports), JsonSchema("supports of the plate", _json_schema)
+]
 
 
 def supports_of(value: str | tuple[SupportTable, ...]) -> tuple[Support, ...]:
@@ -261,9 +306,19 @@ def _corners(spacing: tuple[float, float]) -> list[tuple[float, float]]:
 def supports_table(value: Any) -> Any:
     """Return supports as they are written in a resolved case file."""
     if isinstance(value, tuple):
-        return [{**table.model_dump(exclude_none=True, exclude={"material"}, mode="json"), **_material(table)} for table in value]
+        return [
+            {
+                **table.model_dump(exclude_none=True, exclude={"material"}, mode="json"),
+                **_material(table),
+            }
+            for table in value
+        ]
     return value
 
 
 def _material(table: SupportTable) -> dict[str, Any]:
-    return {"material": material_table(table.material)} if isinstance(table, (BarTable, BarsTable)) else {}
+    return (
+        {"material": material_table(table.material)}
+        if isinstance(table, (BarTable, BarsTable))
+        else {}
+    )

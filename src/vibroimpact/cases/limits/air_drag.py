@@ -13,15 +13,21 @@ from vibroimpact.dynamics.air import AIR_DENSITY, AIR_VISCOSITY, check_thin
 from vibroimpact.dynamics.core.fall import drag_coefficient
 from vibroimpact.errors import InputError
 
-_ROUNDS = 2  # fixed-point iterations of speed and drag coefficient; each reduces the error of the speed by a factor of 20
+# fixed-point iterations of speed and drag coefficient; each reduces the error of the speed by a
+# factor of 20
+_ROUNDS = 2
 
 
-def drag_loss(radius: Array, density: Array, fall: Array, gravity: Array, longer: Array = 1.0) -> Array:
+def drag_loss(
+    radius: Array, density: Array, fall: Array, gravity: Array, longer: Array = 1.0
+) -> Array:
     r"""Return the relative loss of speed by air drag of a sphere that falls from rest.
 
     With a constant drag coefficient the speed after a fall of height H is
-    :math:`\sqrt{1 - e^{-2 k H}}\,\sqrt{g/k}`, with :math:`k = \tfrac12 \rho_a C_d \pi R^2 / m`. As the drag grows with the square of
-    the speed, and so with the height fallen, the coefficient is evaluated after two thirds of the fall.
+    :math:`\sqrt{1 - e^{-2 k H}}\,\sqrt{g/k}`, with :math:`k = \tfrac12 \rho_a C_d \pi R^2 / m`. As
+    the drag grows with the square of
+    the speed, and so with the height fallen, the coefficient is evaluated after two thirds of the
+    fall.
 
     Parameters
     ----------
@@ -38,46 +44,70 @@ def drag_loss(radius: Array, density: Array, fall: Array, gravity: Array, longer
     part, exponent = 1.0, 0.0
     for _ in range(_ROUNDS):
         reynolds = AIR_DENSITY * math.sqrt(2.0 / 3.0) * speed * part * 2.0 * radius / AIR_VISCOSITY
-        exponent = 0.75 * AIR_DENSITY / density * drag_coefficient(reynolds) * longer * fall / radius
+        exponent = (
+            0.75 * AIR_DENSITY / density * drag_coefficient(reynolds) * longer * fall / radius
+        )
         part = np.sqrt(-np.expm1(-exponent) / exponent)
     return 1.0 - part
 
 
 def _number(drops: Conditions) -> Array:
     height = drops.case["drop"].get("height")
-    if height is None or drops.case["drop"].get("air") is not None or drops.case["contact"].get("liquid") is not None:
+    if (
+        height is None
+        or drops.case["drop"].get("air") is not None
+        or drops.case["contact"].get("liquid") is not None
+    ):
         return math.nan
-    gravity, slope = drops.case["drop"]["gravity"], np.cos(drops.case["plate"].get("inclination") or 0.0)
+    gravity, slope = (
+        drops.case["drop"]["gravity"],
+        np.cos(drops.case["plate"].get("inclination") or 0.0),
+    )
     velocity = drops.case["drop"].get("velocity")
     if velocity is None:  # straight down
         return drag_loss(drops.radius, drops.density, (height - drops.radius) / slope, gravity)
-    # along the normal: the top of a flight that is thrown up, or from which it would have the speed that it is thrown down with, is higher;
-    # on the way from there drag takes energy with the square of its length, up once more in the first case, and none in the second
+    # along the normal: the top of a flight that is thrown up, or from which it would have the speed
+    # that it is thrown down with, is higher; on the way from there drag takes energy with the
+    # square of its length, up once more in the first case, and none in the second
     higher = 0.5 * velocity[2] ** 2 / (gravity * slope)
     whole = height - drops.radius + higher
-    return drag_loss(drops.radius, drops.density, whole, gravity * slope, 1.0 + np.sign(velocity[2]) * (higher / whole) ** 2)
+    return drag_loss(
+        drops.radius,
+        drops.density,
+        whole,
+        gravity * slope,
+        1.0 + np.sign(velocity[2]) * (higher / whole) ** 2,
+    )
 
 
 def _sentence(drop: Conditions, lost: float) -> str:
     plate, flight = drop.case["plate"], drop.case["drop"]
     velocity, is_inclined = flight.get("velocity"), plate.get("inclination") is not None
-    about = "" if velocity is None else "at least " if is_inclined or any(velocity[:2]) else "about "
+    about = (
+        "" if velocity is None else "at least " if is_inclined or any(velocity[:2]) else "about "
+    )
     remedy = f"give {_air_for(drop)}"
     if velocity is None and not is_inclined and plate.get("motion") is None:
         speed = math.sqrt(2.0 * flight["gravity"] * (flight["height"] - drop.radius)) * (1.0 - lost)
         remedy += f", or drop.speed = {speed:.4g} in place of the height to begin with that speed"
     return (
-        f"in air the first touch would be {about}{percent_less(lost).removeprefix('-')} slower than in the vacuum that this drop falls "
+        f"in air the first touch would be {about}{percent_less(lost).removeprefix('-')} "
+        "slower than in the vacuum that this drop falls "
         f"through, and each rebound loses speed again; {remedy}"
     )
 
 
 def _air_for(drop: Conditions) -> str:
-    """Return the key that makes a sphere fall through air, of which a very light one takes more than drag."""
+    """Return the key that makes a sphere fall through air, of which a very light one
+    takes more than drag.
+    """
     try:
         check_thin(AIR_DENSITY, drop.density)
     except InputError:
-        return f"contact.liquid = {{ density = {AIR_DENSITY:g}, viscosity = {AIR_VISCOSITY:g} }} with a law that takes a restitution"
+        return (
+            f"contact.liquid = {{ density = {AIR_DENSITY:g}, viscosity = {AIR_VISCOSITY:g} }} "
+            "with a law that takes a restitution"
+        )
     return "drop.air = true"
 
 

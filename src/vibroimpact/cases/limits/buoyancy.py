@@ -1,4 +1,6 @@
-"""Buoyancy in air, which flights with its drag alone neglect, as they do the air that moves along."""
+"""Buoyancy in air, which flights with its drag alone neglect, as they do the air that
+moves along.
+"""
 
 from __future__ import annotations
 
@@ -23,13 +25,15 @@ def _number(drops: Conditions) -> Array:
 def _sentence(drop: Conditions, lost: float) -> str:
     air = Air(**drop.case["drop"]["air"])
     remedy = (
-        f"give contact.liquid = {{ density = {air.density:g}, viscosity = {air.viscosity:g} }} in its place, which has all three, with a "
+        f"give contact.liquid = {{ density = {air.density:g}, viscosity = "
+        f"{air.viscosity:g} }} in its place, which has all three, with a "
         "law that takes a restitution"
     )
     if drop.case["plate"].get("radius") is not None:  # a sphere in a liquid falls on a plate
         remedy = "take the speeds of impacts for too high"
     return (
-        f"buoyancy and the air that moves along would take {percent_less(lost).removeprefix('-')} of the acceleration of so light a ball, "
+        "buoyancy and the air that moves along would take "
+        f"{percent_less(lost).removeprefix('-')} of the acceleration of so light a ball, "
         f"of a mean density of {drop.density:.3g} kg/m^3, and drop.air has drag alone; {remedy}"
     )
 
@@ -38,7 +42,8 @@ LIMITS = (
     Limit(
         name="air_buoyancy",
         title="buoyancy in air",
-        meaning="part of the acceleration of a fall in air that buoyancy and the air that moves along would take",
+        meaning="part of the acceleration of a fall in air that buoyancy and the air that moves "
+        "along would take",
         threshold=0.01,
         number=_number,
         sentence=_sentence,

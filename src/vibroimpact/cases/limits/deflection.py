@@ -1,4 +1,6 @@
-r"""Deflection of the plate: linear bending neglects the membrane stretching of large deflections."""
+r"""Deflection of the plate: linear bending neglects the membrane stretching of large
+deflections.
+"""
 
 from __future__ import annotations
 
@@ -9,19 +11,26 @@ from vibroimpact.cases.conditions import Conditions
 from vibroimpact.cases.limit import Limit, percent_more
 
 _STIFFENING = {True: (0.200, 0.443), False: (0.272, 1.430)}
-"""Coefficients A of clamped plates (True) and others (False): for edges that are free to move in the plane, and immovable edges.
+"""Coefficients A of clamped plates (True) and others (False): for edges that are free to move in
+the plane, and immovable edges.
 
-Timoshenko and Woinowsky-Krieger 1959, Theory of Plates and Shells, section 100, eq. (232) and Table 82 (after Volmir), circular plates
-under a force at the centre: w/h + A (w/h)^3 is proportional to the force.
+Timoshenko and Woinowsky-Krieger 1959, Theory of Plates and Shells, section 100, eq. (232) and Table
+82 (after Volmir), circular plates under a force at the centre: w/h + A (w/h)^3 is proportional to
+the force.
 """
 
 
 def _number(drops: Conditions) -> Array:
-    return drops.summary.deflection / drops.size[2] if drops.size is not None and drops.model("plate") == "elastic" else math.nan
+    return (
+        drops.summary.deflection / drops.size[2]
+        if drops.size is not None and drops.model("plate") == "elastic"
+        else math.nan
+    )
 
 
 def stiffening(ratio: float, *, clamped: bool) -> tuple[float, float]:
-    """Return the relative increase of the stiffness of a plate by its deflection, for edges free in the plane and immovable edges.
+    """Return the relative increase of the stiffness of a plate by its deflection, for edges free in
+    the plane and immovable edges.
 
     Parameters
     ----------
@@ -37,8 +46,10 @@ def stiffening(ratio: float, *, clamped: bool) -> tuple[float, float]:
 def _sentence(drop: Conditions, ratio: float) -> str:
     sliding, held = stiffening(ratio, clamped=drop.case["plate"].get("supports") == "clamped")
     return (
-        f"the plate deflects by {ratio:.2g} of its thickness: it also stretches, which is not computed, and is stiffer by about "
-        f"{percent_more(sliding).removeprefix('+')} if its edges may slide in its plane, {percent_more(held).removeprefix('+')} if they "
+        f"the plate deflects by {ratio:.2g} of its thickness: it also stretches, which is "
+        "not computed, and is stiffer by about "
+        f"{percent_more(sliding).removeprefix('+')} if its edges may slide in its plane, "
+        f"{percent_more(held).removeprefix('+')} if they "
         "are held; take a lower speed, a thicker plate, or a program for large deflections"
     )
 

@@ -1,4 +1,6 @@
-r"""Proximity to an edge: the contact is that of a half space, which is too stiff near an edge (quarter space)."""
+r"""Proximity to an edge: the contact is that of a half space, which is too stiff near an
+edge (quarter space).
+"""
 
 from __future__ import annotations
 
@@ -12,17 +14,21 @@ from vibroimpact.cases.limit import Limit
 from vibroimpact.materials import RIGID
 
 _RADII, _THICKNESSES = 10.0, 2.0
-"""Least distance of the contact from an edge: for a rigid plate in contact radii, where a half space is 3 to 5 % too stiff; for an elastic
-plate in thicknesses, beyond which the local deformation vanishes (it decays as exp(-pi d / h))."""
+"""Least distance of the contact from an edge: for a rigid plate in contact radii, where a half
+space is 3 to 5 % too stiff; for an elastic plate in thicknesses, beyond which the local deformation
+vanishes (it decays as exp(-pi d / h))."""
 
 _NEAR = 2.0  # contact radii: a nearer edge softens more than to first order
 
 
 def softening(contact_radius: Array, distance: Array, poissons_ratio: Array, share: Array) -> Array:
-    r"""Return the relative reduction of contact stiffness near a free edge, to first order in contact radius over distance from the edge.
+    r"""Return the relative reduction of contact stiffness near a free edge, to first order in
+    contact radius over distance from the edge.
 
-    Under a force F at a distance d from the edge, the indentation of a quarter space exceeds that of a half space by
-    :math:`\psi (1 - \nu^2) F / (2 \pi E d)`: :math:`\psi` times that due to the mirror image of the force. Hertz's indentation is
+    Under a force F at a distance d from the edge, the indentation of a quarter space exceeds that
+    of a half space by
+    :math:`\psi (1 - \nu^2) F / (2 \pi E d)`: :math:`\psi` times that due to the mirror image of the
+    force. Hertz's indentation is
     :math:`3 F / (4 E^* a)`.
 
     Parameters
@@ -36,8 +42,10 @@ def softening(contact_radius: Array, distance: Array, poissons_ratio: Array, sha
 
     Notes
     -----
-    :math:`\psi = 1.35 + 0.3 \nu + 4.2 \nu^2` is fitted to three-dimensional finite elements, within 4 %. The problem is that of
-    Hetenyi, M. (1970). A general solution for the elastic quarter space. Journal of Applied Mechanics 37, 70-76.
+    :math:`\psi = 1.35 + 0.3 \nu + 4.2 \nu^2` is fitted to three-dimensional finite elements, within
+    4 %. The problem is that of
+    Hetenyi, M. (1970). A general solution for the elastic quarter space. Journal of Applied
+    Mechanics 37, 70-76.
 
     Examples
     --------
@@ -49,12 +57,17 @@ def softening(contact_radius: Array, distance: Array, poissons_ratio: Array, sha
 
 
 def _distance(drops: Conditions) -> Array:
-    """Return the distance of the contact from the nearest edge [m]; NaN if the edges of the plate are not known."""
-    if drops.size is None or (isinstance(drops.case["plate"].get("mesh"), dict) and "file" in drops.case["plate"]["mesh"]):
+    """Return the distance of the contact from the nearest edge [m]; NaN if the edges of
+    the plate are not known.
+    """
+    if drops.size is None or (
+        isinstance(drops.case["plate"].get("mesh"), dict) and "file" in drops.case["plate"]["mesh"]
+    ):
         return math.nan
     sides = zip(drops.size[:2], _place(drops), strict=True)
     distance = np.minimum(*(0.5 * length - abs(place) for length, place in sides))
-    return np.where(distance >= 0.0, distance, math.nan)[()]  # beyond an edge it falls past the plate
+    # beyond an edge it falls past the plate
+    return np.where(distance >= 0.0, distance, math.nan)[()]
 
 
 def _place(drops: Conditions) -> tuple[Array, Array]:
@@ -66,7 +79,9 @@ def _place(drops: Conditions) -> tuple[Array, Array]:
     along_x, along_y, up = drop.get("velocity") or (0.0, 0.0, 0.0)
     down = drop["gravity"] * np.cos(inclination)
     time = (up + np.sqrt(up**2 + 2.0 * down * (drop["height"] - drops.radius))) / down
-    return x + along_x * time + 0.5 * drop["gravity"] * np.sin(inclination) * time**2, y + along_y * time
+    return x + along_x * time + 0.5 * drop["gravity"] * np.sin(
+        inclination
+    ) * time**2, y + along_y * time
 
 
 def _is_oblique(drops: Conditions) -> bool:
@@ -74,7 +89,9 @@ def _is_oblique(drops: Conditions) -> bool:
 
 
 def _least_distance(drops: Conditions) -> Array:
-    """Return the distance from the edge beyond which the half space holds [m]; a rigid one holds where it is touched."""
+    """Return the distance from the edge beyond which the half space holds [m]; a rigid
+    one holds where it is touched.
+    """
     if drops.model("plate") == "elastic":
         return _THICKNESSES * drops.size[2]
     return (1.0 if drops.materials["plate"] is RIGID else _RADII) * drops.contact_radius
@@ -88,27 +105,46 @@ def _number(drops: Conditions) -> Array:
 def _sentence(drop: Conditions, _: float) -> str:
     distance, plate = float(_distance(drop)), drop.materials["plate"]
     patch, least = float(drop.contact_radius), float(_least_distance(drop))
-    reach = f"{distance / drop.size[2]:.2g} thicknesses" if drop.model("plate") == "elastic" else f"{distance / patch:.2g} contact radii"
+    reach = (
+        f"{distance / drop.size[2]:.2g} thicknesses"
+        if drop.model("plate") == "elastic"
+        else f"{distance / patch:.2g} contact radii"
+    )
     why = "it reaches over the edge, and is computed as on a plane"
     if plate is not RIGID:
-        soft = float(softening(patch, max(distance, patch), plate.poissons_ratio, float(drop.modulus / plate.plane_strain_modulus)))
+        soft = float(
+            softening(
+                patch,
+                max(distance, patch),
+                plate.poissons_ratio,
+                float(drop.modulus / plate.plane_strain_modulus),
+            )
+        )
         by = "at least" if distance < _NEAR * patch else "about"
-        why = f"a half space is too stiff there, by {by} {100.0 * soft:.2g} % where the edge is free"
+        why = (
+            f"a half space is too stiff there, by {by} {100.0 * soft:.2g} % where the edge is free"
+        )
     remedy = f"choose drop.position so that it keeps {least:.3g} m"
     if least > 0.5 * float(min(drop.size[:2])):
         remedy = f"take a larger plate, on which it keeps {least:.3g} m"
     about = "about " if _is_oblique(drop) else ""
-    return f"the first contact is {about}{distance:.3g} m from the edge of the plate, {reach}: {why}; {remedy}"
+    return (
+        f"the first contact is {about}{distance:.3g} m from the edge of the plate, {reach}: "
+        f"{why}; {remedy}"
+    )
 
 
 LIMITS = (
     Limit(
         name="plate_edge",
         title="edge of the plate",
-        meaning="distance that the contact should keep from the edge of the plate over the one that it keeps",
+        meaning="distance that the contact should keep from the edge of the plate over the one "
+        "that it keeps",
         threshold=1.0,
         number=_number,
         sentence=_sentence,
-        shown=lambda ratio: f"{1.0 / ratio:.2g} of the distance to keep" if ratio < math.inf else "on the edge",
+        shown=lambda ratio: (
+            f"{1.0 / ratio:.2g} of the distance to keep" if ratio < math.inf else "on the edge"
+        ),
     ),
 )

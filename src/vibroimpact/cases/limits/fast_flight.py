@@ -37,7 +37,9 @@ def _speed(drops: Conditions) -> Array:
 
 def _medium(drops: Conditions) -> Mapping[str, Array] | None:
     """Return the table of the air or the liquid in which the sphere falls, None in a vacuum."""
-    found: Mapping[str, Array] | None = drops.case["drop"].get("air") or drops.case["contact"].get("liquid")
+    found: Mapping[str, Array] | None = drops.case["drop"].get("air") or drops.case["contact"].get(
+        "liquid"
+    )
     return found
 
 
@@ -48,8 +50,10 @@ def _drag_sentence(drop: Conditions, number: float) -> str:
         else "take the speeds after flights for uncertain"
     )
     return (
-        f"the Reynolds number of the flight reaches {HIGHEST_REYNOLDS * number:.2g}: from about {HIGHEST_REYNOLDS:g} on the drag "
-        f"coefficient of a smooth sphere falls to a fraction of the 0.5 that is taken, of a rough one earlier; {remedy}"
+        f"the Reynolds number of the flight reaches {HIGHEST_REYNOLDS * number:.2g}: from "
+        f"about {HIGHEST_REYNOLDS:g} on the drag "
+        "coefficient of a smooth sphere falls to a fraction of the 0.5 that is taken, of "
+        f"a rough one earlier; {remedy}"
     )
 
 
@@ -65,7 +69,8 @@ def _sound_sentence(drop: Conditions, number: float) -> str:
         key = "drop.speed" if given.get("velocity") is None else "drop.velocity without drop.height"
         start = f"begin with the speed at first touch, {key}, and "
     return (
-        f"the sphere flies at {number:.2g} of the speed of sound in air at 20 C, and the compression of the air increases the drag, which "
+        f"the sphere flies at {number:.2g} of the speed of sound in air at 20 C, and the "
+        "compression of the air increases the drag, which "
         f"is that of slow flight here; {start}take the rebounds for uncertain"
     )
 
@@ -74,7 +79,8 @@ LIMITS = (
     Limit(
         name="drag_coefficient",
         title="drag at high speed",
-        meaning=f"Reynolds number at first touch over {HIGHEST_REYNOLDS:g}, up to which the drag coefficient holds",
+        meaning=f"Reynolds number at first touch over {HIGHEST_REYNOLDS:g}, up to which the drag "
+        "coefficient holds",
         threshold=1.0,
         number=lambda drops: _reynolds(drops) / HIGHEST_REYNOLDS,
         sentence=_drag_sentence,

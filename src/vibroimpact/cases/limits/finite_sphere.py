@@ -13,30 +13,43 @@ from vibroimpact.contact.quasi_static import QuasiStatic
 from vibroimpact.structures.sphere_compliance import FITTED, sphere_term
 
 _STEPS = 3  # Newton iterations, which leave an error below 1e-6
-_RATIOS = np.linspace(0.0, 0.49, 15)  # Poisson's ratios of the interpolation table, whose relative error is 1e-3
+# Poisson's ratios of the interpolation table, whose relative error is 1e-3
+_RATIOS = np.linspace(0.0, 0.49, 15)
 
 
-def force_lacking(force: Array, radius: Array, modulus: Array, youngs_modulus: Array, poissons_ratio: Array) -> Array:
-    r"""Return the relative deficit of Hertz's largest force (half space) with respect to that of a sphere of finite size.
+def force_lacking(
+    force: Array, radius: Array, modulus: Array, youngs_modulus: Array, poissons_ratio: Array
+) -> Array:
+    r"""Return the relative deficit of Hertz's largest force (half space) with respect to that of a
+    sphere of finite size.
 
-    Both absorb the same energy quasi-statically. With Hertz's indentation :math:`\delta` at his force :math:`F`, and the displacement
-    :math:`s(F)` in series for the finite sphere (`QuasiStatic`), the force of the finite sphere is :math:`f F`, and
+    Both absorb the same energy quasi-statically. With Hertz's indentation :math:`\delta` at his
+    force :math:`F`, and the displacement
+    :math:`s(F)` in series for the finite sphere (`QuasiStatic`), the force of the finite sphere is
+    :math:`f F`, and
 
     .. math:: \tfrac25 F \delta\, f^{5/3} + \int_0^{f F} F'\, s'(F')\, dF' = \tfrac25 F \delta
 
-    The result is :math:`1 - 1/f`. Only the sphere is of finite size, so the effect is small if the plate is softer than the sphere.
+    The result is :math:`1 - 1/f`. Only the sphere is of finite size, so the effect is small if the
+    plate is softer than the sphere.
 
     Parameters
     ----------
     force, radius, modulus : float or array
-        Hertz's largest force [N], the radius of the sphere [m] and the effective modulus of the pair [Pa].
+        Hertz's largest force [N], the radius of the sphere [m] and the effective modulus of the
+        pair [Pa].
     youngs_modulus, poissons_ratio : float or array
         Young's modulus [Pa] and Poisson's ratio of the sphere.
 
     Examples
     --------
     >>> modulus = 2.26e9 / (1 - 0.28**2)  # a soft sphere on a rigid plane
-    >>> float(round(force_lacking(4 / 3 * modulus * 0.025**2 * 0.115**3, 0.025, modulus, 2.26e9, 0.28), 3))
+    >>> float(
+    ...     round(
+    ...         force_lacking(4 / 3 * modulus * 0.025**2 * 0.115**3, 0.025, modulus, 2.26e9, 0.28),
+    ...         3,
+    ...     )
+    ... )
     0.054
     """
     whole = 4.0 / 3.0 * modulus * radius**2
@@ -48,22 +61,29 @@ def force_lacking(force: Array, radius: Array, modulus: Array, youngs_modulus: A
     for _ in range(_STEPS):
         part = np.cbrt(more)
         wrong = hertz * (part**5 - 1.0) + series.energy(more * force)
-        more = more - wrong / (hertz * 5.0 / 3.0 * part**2 + more * force**2 * series.linearised(more * force)[1])
+        more = more - wrong / (
+            hertz * 5.0 / 3.0 * part**2 + more * force**2 * series.linearised(more * force)[1]
+        )
     return 1.0 - 1.0 / more
 
 
 def _factors(poissons_ratio: Array) -> tuple[Array, Array, Array, Array]:
     """Return the factors of the finite-size term; for an array of ratios they are interpolated."""
     if np.ndim(poissons_ratio) == 0:
-        term = sphere_term(min(max(float(poissons_ratio), 0.0), 0.5))  # rare negative ratios: the term of zero is close
+        # rare negative ratios: the term of zero is close
+        term = sphere_term(min(max(float(poissons_ratio), 0.0), 0.5))
         return term.constant, term.logarithm, term.linear, term.square
-    constant, logarithm, linear, square = (np.interp(poissons_ratio, _RATIOS, row) for row in _table())
+    constant, logarithm, linear, square = (
+        np.interp(poissons_ratio, _RATIOS, row) for row in _table()
+    )
     return constant, logarithm, linear, square
 
 
 @cache
 def _table() -> Array:
-    """Return the factors of the finite-size term at the ratios of the interpolation table, one row per factor."""
+    """Return the factors of the finite-size term at the ratios of the interpolation
+    table, one row per factor.
+    """
     terms = [sphere_term(float(ratio)) for ratio in _RATIOS]
     return np.array([[term.constant, term.logarithm, term.linear, term.square] for term in terms]).T
 
@@ -72,21 +92,36 @@ def _number(drops: Conditions) -> Array:
     contact = drops.case["contact"]
     if "radius" in drops.case["plate"]:
         return np.nan  # the correction is known for a sphere on a flat only
-    if drops.model("sphere") == "elastic" or contact.get("finite_sphere") or contact.get("local_compliance") == "identified":
+    if (
+        drops.model("sphere") == "elastic"
+        or contact.get("finite_sphere")
+        or contact.get("local_compliance") == "identified"
+    ):
         return np.nan  # these include the effect, or count local deformation twice
     sphere = drops.materials["sphere"]
-    lacking = force_lacking(drops.summary.force, drops.radius, drops.modulus, sphere.youngs_modulus, sphere.poissons_ratio)
+    lacking = force_lacking(
+        drops.summary.force,
+        drops.radius,
+        drops.modulus,
+        sphere.youngs_modulus,
+        sphere.poissons_ratio,
+    )
     return np.where(drops.is_hertzian, lacking, np.nan)
 
 
 def _sentence(drop: Conditions, lacking: float) -> str:
     case = drop.case
-    oblique = {"velocity", "angle", "spin"} & set(case["drop"]) or "inclination" in case["plate"] or "friction" in case["contact"]
+    oblique = (
+        {"velocity", "angle", "spin"} & set(case["drop"])
+        or "inclination" in case["plate"]
+        or "friction" in case["contact"]
+    )
     remedy = "" if oblique else "; contact.finite_sphere = true corrects it"
     ratio = float(drop.contact_radius / drop.radius)
     about = "about" if ratio <= FITTED[1] else "at least"
     return (
-        f"Hertz's half space makes the largest force {about} {percent_less(lacking).removeprefix('-')} too small: the contact radius is "
+        f"Hertz's half space makes the largest force {about} "
+        f"{percent_less(lacking).removeprefix('-')} too small: the contact radius is "
         f"{ratio:.2g} of the sphere's, which is stiffer than a half space{remedy}"
     )
 
@@ -95,7 +130,8 @@ LIMITS = (
     Limit(
         name="finite_sphere",
         title="half space for a finite sphere",
-        meaning="part by which the largest force of Hertz's half space is below that of a sphere of finite size",
+        meaning="part by which the largest force of Hertz's half space is below that of a "
+        "sphere of finite size",
         threshold=0.02,
         number=_number,
         sentence=_sentence,

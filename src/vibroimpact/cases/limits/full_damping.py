@@ -16,8 +16,10 @@ def _number(drops: Conditions) -> Array:
 def _sentence(drop: Conditions, ratio: float) -> str:
     fade = float(drop.law_parameter("full_damping_penetration"))
     return (
-        f"the largest indentation, {drop.summary.depth:.3g} m, stays below the full-damping penetration, {fade:.3g} m: the damping never "
-        f"acts in full, and less energy is lost; take a full_damping_penetration of {0.1 * drop.summary.depth:.1g} m or so, or calibrate"
+        f"the largest indentation, {drop.summary.depth:.3g} m, stays below the "
+        f"full-damping penetration, {fade:.3g} m: the damping never "
+        "acts in full, and less energy is lost; take a full_damping_penetration of "
+        f"{0.1 * drop.summary.depth:.1g} m or so, or calibrate"
     )
 
 

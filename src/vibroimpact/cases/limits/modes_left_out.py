@@ -13,12 +13,16 @@ from vibroimpact.cases.limit import Limit, in_kilohertz, two_digits
 from vibroimpact.units.display import text
 
 _TRUNCATED = 0.05  # allowed relative change of the largest force by truncated modes
-_CYCLES, _ENOUGH = 1.5, 3.0  # periods of the highest mode in a contact: doubted below, and recommended
+# periods of the highest mode in a contact: doubted below, and recommended
+_CYCLES, _ENOUGH = 1.5, 3.0
 
 
 def _number(body: str, drops: Conditions) -> Array:
-    if body not in drops.summary.modes or (body == "sphere" and drops.case.get("contact", {}).get("local_compliance") == "superposed"):
-        return math.nan  # with superposition, more modes of the sphere would only make the contact softer
+    if body not in drops.summary.modes or (
+        body == "sphere" and drops.case.get("contact", {}).get("local_compliance") == "superposed"
+    ):
+        # with superposition, more modes of the sphere would only make the contact softer
+        return math.nan
     part, highest = drops.summary.modes[body]
     return np.fmax(part / _TRUNCATED, np.divide(_CYCLES, highest * drops.summary.duration))
 
@@ -26,11 +30,14 @@ def _number(body: str, drops: Conditions) -> Array:
 def _sentence(body: str, drop: Conditions, _: float) -> str:
     (part, highest), duration = drop.summary.modes[body], float(drop.summary.duration)
     enough = _ENOUGH / duration
-    wanted = enough if highest < enough else 2.0 * highest  # those of a very compliant body may matter beyond
+    # those of a very compliant body may matter beyond
+    wanted = enough if highest < enough else 2.0 * highest
     instead = f", in place of {body}.modes" if drop.case and "modes" in drop.case[body] else ""  # type: ignore[literal-required]
     return (
-        f"the modes of the {body} end at {text(highest, 'Hz')}, and the contact lasts {text(duration, 's', 3)}: the modes left out may "
-        f"change the largest force by up to {two_digits(100.0 * part)} %, and rebound and vibration by more; ask for "
+        f"the modes of the {body} end at {text(highest, 'Hz')}, and the contact lasts "
+        f"{text(duration, 's', 3)}: the modes left out may "
+        f"change the largest force by up to {two_digits(100.0 * part)} %, and rebound and "
+        "vibration by more; ask for "
         f'{body}.max_frequency = "{in_kilohertz(wanted)}" or so{instead}'
     )
 
@@ -39,13 +46,14 @@ LIMITS = tuple(
     Limit(
         name=f"{body}_modes",
         title=f"modes of the {body} left out",
-        meaning=f"change of the largest force by the modes of the {body} left out, over 5 %; or 1.5 over the periods of the highest in "
-        "the contact, if that is more",
+        meaning=f"change of the largest force by the modes of the {body} left out, over 5 %; or "
+        "1.5 over the periods of the highest in the contact, if that is more",
         threshold=1.0,
         number=partial(_number, body),
         sentence=partial(_sentence, body),
         shown=lambda ratio: (
-            f"{two_digits(ratio)} times the limit (5 % of the largest force, or 1.5 periods of the highest mode in a contact)"
+            f"{two_digits(ratio)} times the limit (5 % of the largest force, or 1.5 "
+            "periods of the highest mode in a contact)"
         ),
         without_case=True,
     )

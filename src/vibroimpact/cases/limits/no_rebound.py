@@ -14,14 +14,18 @@ def _number(drops: Conditions) -> Array:
     liquid = drops.case["contact"].get("liquid")
     if liquid is None:
         return math.nan
-    return CRITICAL_STOKES / Liquid(**liquid).stokes_number(drops.summary.speed, drops.radius, drops.density)
+    return CRITICAL_STOKES / Liquid(**liquid).stokes_number(
+        drops.summary.speed, drops.radius, drops.density
+    )
 
 
 def _sentence(drop: Conditions, number: float) -> str:
     stokes = CRITICAL_STOKES / number
     return (
-        f"the first impact has a Stokes number of {stokes:.3g}: the correlation leaves {float(restitution_kept(stokes)):.2g} of the "
-        f"restitution, and below about {CRITICAL_STOKES:g} spheres were seen to stay on the wall; read it as no rebound"
+        f"the first impact has a Stokes number of {stokes:.3g}: the correlation leaves "
+        f"{float(restitution_kept(stokes)):.2g} of the "
+        f"restitution, and below about {CRITICAL_STOKES:g} spheres were seen to stay on "
+        "the wall; read it as no rebound"
     )
 
 

@@ -10,25 +10,30 @@ from vibroimpact.cases.conditions import Conditions
 from vibroimpact.cases.limit import Limit, percent_more, two_digits
 
 PLATE_MESH_COMPLIANCE = "plate_mesh_compliance_m_N"
-"""The fact of the elastic bodies with the compliance that the elements of the plate lack at the contact point."""
+"""The fact of the elastic bodies with the compliance that the elements of the plate lack
+at the contact point.
+"""
 
 _ALLOWED = 0.005  # relative error of the largest force
 _SPARE = 2.0  # the error differs by so much with the place in an element
 
 
 def plate_mesh_error(facts: Mapping[str, Any], impacts: Mapping[str, Any]) -> float:
-    r"""Return the estimated part by which the first largest force is too large, as the elements of the plate lack compliance.
+    r"""Return the estimated part by which the first largest force is too large, as the elements of
+    the plate lack compliance.
 
-    A compliance c that is added in series with the contact takes energy from it. While the ball is stopped the plate hardly yields but
-    in the quasi-static response C of the modes left out, so that, for a given energy, a small c changes the largest force F of
-    Hertz's contact with the indentation d by
+    A compliance c that is added in series with the contact takes energy from it. While the ball is
+    stopped the plate hardly yields but in the quasi-static response C of the modes left out, so
+    that, for a given energy, a small c changes the largest force F of Hertz's contact with the
+    indentation d by
 
     .. math:: \frac{\Delta F}{F} = -\frac{c}{2\,(\tfrac23 d / F + C)}
 
     Parameters
     ----------
     facts : mapping
-        Facts of the elastic bodies; `plate_mesh_compliance_m_N` is c, and `series_compliance_m_N` is C.
+        Facts of the elastic bodies; `plate_mesh_compliance_m_N` is c, and `series_compliance_m_N`
+        is C.
     impacts : mapping of str to array
         The impact table.
 
@@ -46,16 +51,26 @@ def plate_mesh_error(facts: Mapping[str, Any], impacts: Mapping[str, Any]) -> fl
     if lacking is None or not len(impacts["impact"]):
         return math.nan
     force, depth = (float(impacts[name][0]) for name in ("max_force_N", "max_indentation_m"))
-    return 0.5 * float(lacking) * force / (2.0 / 3.0 * depth + float(facts.get("series_compliance_m_N", 0.0)) * force)
+    return (
+        0.5
+        * float(lacking)
+        * force
+        / (2.0 / 3.0 * depth + float(facts.get("series_compliance_m_N", 0.0)) * force)
+    )
 
 
 def _sentence(drop: Conditions, error: float) -> str:
-    # what elements lack grows a little less than with the square of their size, and faster where they are small
+    # what elements lack grows a little less than with the square of their size, and faster where
+    # they are small
     large = percent_more(error).removeprefix("+")
-    finer = float(drop.case["plate"]["mesh"]["element_size"]) * math.sqrt(_ALLOWED / (_SPARE * error))
+    finer = float(drop.case["plate"]["mesh"]["element_size"]) * math.sqrt(
+        _ALLOWED / (_SPARE * error)
+    )
     return (
-        "the elements of the plate are large for its thickness and do not follow its deflection next to the contact, which makes "
-        f'the first largest force about {large} too large; give plate.mesh.element_size = "{two_digits(1e3 * finer)} mm"'
+        "the elements of the plate are large for its thickness and do not follow its "
+        "deflection next to the contact, which makes "
+        f"the first largest force about {large} too large; give plate.mesh.element_size = "
+        f'"{two_digits(1e3 * finer)} mm"'
     )
 
 
@@ -63,7 +78,8 @@ LIMITS = (
     Limit(
         name="plate_mesh",
         title="elements of the plate too large for the contact",
-        meaning="part by which the first largest force is too large, as the elements of the plate lack compliance at the contact",
+        meaning="part by which the first largest force is too large, as the elements of the plate "
+        "lack compliance at the contact",
         threshold=_ALLOWED,
         number=lambda drops: drops.summary.plate_mesh,
         sentence=_sentence,

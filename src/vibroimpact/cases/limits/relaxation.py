@@ -19,8 +19,10 @@ def _sentence(drop: Conditions, ratio: float) -> str:
     time = float(drop.law_parameter("dissipation_time"))
     second = two_digits(50.0 * (math.pi * ratio) ** 2)
     return (
-        f"the dissipation time, {time:.2g} s, is {two_digits(ratio)} of the contact's {drop.summary.duration:.2g} s: "
-        f"{drop.law.name} keeps the first order of it, and the second would be about {second} % of the force; "
+        f"the dissipation time, {time:.2g} s, is {two_digits(ratio)} of the contact's "
+        f"{drop.summary.duration:.2g} s: "
+        f"{drop.law.name} keeps the first order of it, and the second would be about "
+        f"{second} % of the force; "
         "take a shorter time, or a law that is fitted to a restitution"
     )
 
@@ -29,7 +31,8 @@ LIMITS = (
     Limit(
         name="relaxation",
         title="viscoelastic time beside the contact",
-        meaning="dissipation time of the law over the duration of the first impact, or of a Hertzian contact as deep if that is shorter",
+        meaning="dissipation time of the law over the duration of the first impact, or of a "
+        "Hertzian contact as deep if that is shorter",
         threshold=0.1,
         number=_number,
         sentence=_sentence,

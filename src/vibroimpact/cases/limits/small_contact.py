@@ -13,15 +13,22 @@ def _number(drops: Conditions) -> Array:
     by_depth = np.sqrt(drops.summary.depth / drops.effective_radius)
     if "elastic" not in (drops.model("sphere"), drops.model("plate")):
         return by_depth
-    # the indentation includes the deflection of elastic bodies near the contact, which takes no contact radius
+    # the indentation includes the deflection of elastic bodies near the contact, which takes no
+    # contact radius
     return np.fmin(by_depth, drops.contact_radius / drops.effective_radius)
 
 
 def _sentence(drop: Conditions, part: float) -> str:
-    whose = "the sphere's" if drop.case["plate"].get("radius") is None else "the effective radius of both spheres"
+    whose = (
+        "the sphere's"
+        if drop.case["plate"].get("radius") is None
+        else "the effective radius of both spheres"
+    )
     return (
-        f"the contact radius reaches about {part:.2g} of {whose}, and strains about {0.2 * part:.2g}: Hertz's theory, and its "
-        "correction for a finite sphere, hold for small ones; take a lower speed or a stiffer material, or measure the force"
+        f"the contact radius reaches about {part:.2g} of {whose}, and strains about "
+        f"{0.2 * part:.2g}: Hertz's theory, and its "
+        "correction for a finite sphere, hold for small ones; take a lower speed or a "
+        "stiffer material, or measure the force"
     )
 
 

@@ -1,4 +1,6 @@
-"""Approach speeds beyond those for which a parameter of the contact law is given as a function of the speed."""
+"""Approach speeds beyond those for which a parameter of the contact law is given as a
+function of the speed.
+"""
 
 from __future__ import annotations
 
@@ -16,16 +18,26 @@ _FAR = 1.05  # times a speed at an end
 def _number(drops: Conditions) -> Array:
     if not drops.by_speed:
         return math.nan
-    fastest, slowest = (min(one.fastest for one in drops.by_speed.values()), max(one.slowest for one in drops.by_speed.values()))
-    return np.fmax(drops.summary.speed / fastest, slowest / np.fmin(drops.summary.slowest, drops.summary.speed))
+    fastest, slowest = (
+        min(one.fastest for one in drops.by_speed.values()),
+        max(one.slowest for one in drops.by_speed.values()),
+    )
+    return np.fmax(
+        drops.summary.speed / fastest, slowest / np.fmin(drops.summary.slowest, drops.summary.speed)
+    )
 
 
 def _sentence(drop: Conditions, number: float) -> str:
     slow, fast = float(np.fmin(drop.summary.slowest, drop.summary.speed)), float(drop.summary.speed)
-    name, one = max(drop.by_speed.items(), key=lambda item: max(fast / item[1].fastest, item[1].slowest / slow))
-    speeds = f"the first impact comes at {fast:.4g} m/s" + ("" if slow == fast else f", the slowest at {slow:.4g} m/s")
+    name, one = max(
+        drop.by_speed.items(), key=lambda item: max(fast / item[1].fastest, item[1].slowest / slow)
+    )
+    speeds = f"the first impact comes at {fast:.4g} m/s" + (
+        "" if slow == fast else f", the slowest at {slow:.4g} m/s"
+    )
     return (
-        f"contact.{name} is given for approach speeds from {one.slowest:.4g} to {one.fastest:.4g} m/s, and {speeds}: "
+        f"contact.{name} is given for approach speeds from {one.slowest:.4g} to "
+        f"{one.fastest:.4g} m/s, and {speeds}: "
         "beyond the ends the value at the nearest one holds; give it for more speeds"
     )
 
@@ -34,7 +46,8 @@ LIMITS = (
     Limit(
         name="speeds_given",
         title="speeds of a function",
-        meaning="approach speed over the highest, or lowest over the approach speed, for which a parameter of the law is given",
+        meaning="approach speed over the highest, or lowest over the approach speed, for which a "
+        "parameter of the law is given",
         threshold=_FAR,
         number=_number,
         sentence=_sentence,

@@ -25,8 +25,10 @@ def _number(drops: Conditions) -> Array:
 def _sentence(drop: Conditions, number: float) -> str:
     exponent = float(drop.law_parameter("exponent"))
     return (
-        f"the stiffness that follows from the materials is Hertz's, for an exponent of 1.5; with the exponent {exponent:g} its number is "
-        f"taken in N/m^{exponent:g}, which no theory gives: give contact.stiffness, or leave out contact.exponent"
+        "the stiffness that follows from the materials is Hertz's, for an exponent of "
+        f"1.5; with the exponent {exponent:g} its number is "
+        f"taken in N/m^{exponent:g}, which no theory gives: give contact.stiffness, or "
+        "leave out contact.exponent"
     )
 
 

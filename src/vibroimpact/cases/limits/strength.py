@@ -12,14 +12,18 @@ from vibroimpact.cases.conditions import Conditions
 from vibroimpact.cases.limit import Limit, two_digits
 from vibroimpact.materials import RIGID, Material
 
-_YIELD = 1.6  # Johnson 1985, section 6.1: yield begins below the surface at a peak pressure of 1.6 times the yield strength
+# Johnson 1985, section 6.1: yield begins below the surface at a peak pressure of 1.6 times the
+# yield strength
+_YIELD = 1.6
 _BODIES = ("sphere", "plate")
 
 
 def demands(material: Material, peak_pressure: Array) -> dict[str, tuple[Array, Array, str]]:
-    r"""Return, by the name of each known strength, the stress in a body under a Hertz contact, the strength, and the verb of its failure.
+    r"""Return, by the name of each known strength, the stress in a body under a Hertz contact, the
+    strength, and the verb of its failure.
 
-    The largest shear stress below the surface equals that of a uniaxial test at :math:`p_0 / 1.6`; the tension at the rim of the contact
+    The largest shear stress below the surface equals that of a uniaxial test at :math:`p_0 / 1.6`;
+    the tension at the rim of the contact
     is :math:`(1 - 2 \nu) p_0 / 3`.
 
     Parameters
@@ -31,40 +35,61 @@ def demands(material: Material, peak_pressure: Array) -> dict[str, tuple[Array, 
 
     References
     ----------
-    Johnson, K. L. (1985). Contact Mechanics. Cambridge University Press, section 3.4 (rim) and eq. (6.9).
+    Johnson, K. L. (1985). Contact Mechanics. Cambridge University Press, section 3.4 (rim) and eq.
+    (6.9).
     """
-    uniaxial, rim = peak_pressure / _YIELD, (1.0 - 2.0 * material.poissons_ratio) / 3.0 * peak_pressure
+    uniaxial, rim = (
+        peak_pressure / _YIELD,
+        (1.0 - 2.0 * material.poissons_ratio) / 3.0 * peak_pressure,
+    )
     found = {
         "yield_strength": (uniaxial, material.yield_strength, "yields"),
         "compressive_strength": (uniaxial, material.compressive_strength, "is crushed"),
         "tensile_strength": (rim, material.tensile_strength, "cracks"),
     }
-    return {name: (stress, strength, verb) for name, (stress, strength, verb) in found.items() if strength is not None}
+    return {
+        name: (stress, strength, verb)
+        for name, (stress, strength, verb) in found.items()
+        if strength is not None
+    }
 
 
 def _stress_ratio(body: str, drops: Conditions) -> Array:
-    """Return the largest ratio of stress to strength of a body; NaN if no strength is known or the law models yielding."""
+    """Return the largest ratio of stress to strength of a body; NaN if no strength is
+    known or the law models yielding.
+    """
     if drops.yields:
         return math.nan
-    ratios = [stress / strength for stress, strength, _ in demands(drops.materials[body], drops.peak_pressure).values()]
+    ratios = [
+        stress / strength
+        for stress, strength, _ in demands(drops.materials[body], drops.peak_pressure).values()
+    ]
     return math.nan if not ratios else np.maximum.reduce(np.broadcast_arrays(*ratios))
 
 
 def _strength_sentence(body: str, drop: Conditions, ratio: float) -> str:
     material, pressure = drop.materials[body], float(drop.peak_pressure)
-    name, (stress, strength, verb) = max(demands(material, pressure).items(), key=lambda item: item[1][0] / item[1][1])
+    name, (stress, strength, verb) = max(
+        demands(material, pressure).items(), key=lambda item: item[1][0] / item[1][1]
+    )
     known = f"its {name.replace('_', ' ')} of {_stress(strength)}"
-    how = f": the tension at the rim of the contact is {_stress(stress)}, {two_digits(ratio)} times {known}"
+    how = (
+        f": the tension at the rim of the contact is {_stress(stress)}, {two_digits(ratio)} "
+        f"times {known}"
+    )
     if name != "tensile_strength":
         begins = "yield" if name == "yield_strength" else "be crushed"
         times = "just above" if ratio < 1.05 else f"{two_digits(ratio)} times"
         how = f", {times} that at which it begins to {begins} ({_YIELD} times {known})"
     remedy = (
         "take a law that yields, such as meyer"
-        if name == "yield_strength" and drop.case["contact"].get("liquid") is None  # in which laws take a restitution
+        # in which laws take a restitution
+        if name == "yield_strength" and drop.case["contact"].get("liquid") is None
         else "take the force for an upper bound, and the restitution from a measurement"
     )
-    beginning = f"{_named(body, material)} {verb} under Hertz's peak pressure of {_stress(pressure)}{how}"
+    beginning = (
+        f"{_named(body, material)} {verb} under Hertz's peak pressure of {_stress(pressure)}{how}"
+    )
     return f"{beginning}; {drop.law.name} leaves this out: {remedy}"
 
 
@@ -79,19 +104,32 @@ def _named(body: str, material: Material) -> str:
 
 def _bodies_without_strength(drops: Conditions) -> list[str]:
     """Return the names of the bodies that deform and have no known strength."""
-    return [body for body in _BODIES if drops.materials[body] is not RIGID and not demands(drops.materials[body], 1.0)]
+    return [
+        body
+        for body in _BODIES
+        if drops.materials[body] is not RIGID and not demands(drops.materials[body], 1.0)
+    ]
 
 
 def _pressure_ratio(drops: Conditions) -> Array:
-    """Return the peak pressure over the effective modulus; NaN if a strength of each body is known or the law models yielding."""
-    return drops.peak_pressure / drops.modulus if _bodies_without_strength(drops) and not drops.yields else math.nan
+    """Return the peak pressure over the effective modulus; NaN if a strength of each body
+    is known or the law models yielding.
+    """
+    return (
+        drops.peak_pressure / drops.modulus
+        if _bodies_without_strength(drops) and not drops.yields
+        else math.nan
+    )
 
 
 def _unknown_sentence(drop: Conditions, _: float) -> str:
     bodies = [_named(body, drop.materials[body]) for body in _bodies_without_strength(drop)]
     return (
-        f"whether {' and '.join(bodies)} {'yield or crack' if len(bodies) > 1 else 'yields or cracks'} under Hertz's peak pressure of "
-        f"{_stress(float(drop.peak_pressure))} is not known: no strength is given; give yield_strength, compressive_strength or "
+        f"whether {' and '.join(bodies)} "
+        f"{'yield or crack' if len(bodies) > 1 else 'yields or cracks'} "
+        "under Hertz's peak pressure of "
+        f"{_stress(float(drop.peak_pressure))} is not known: no strength is given; give "
+        "yield_strength, compressive_strength or "
         f"tensile_strength in {'their materials' if len(bodies) > 1 else 'its material'}"
     )
 
@@ -112,7 +150,8 @@ LIMITS = (
     Limit(
         name="strength_not_known",
         title="strength not known",
-        meaning="Hertz's peak pressure over the effective modulus, where no strength of a body is known",
+        meaning="Hertz's peak pressure over the effective modulus, where no strength of a body is "
+        "known",
         threshold=0.0,
         number=_pressure_ratio,
         sentence=_unknown_sentence,

@@ -1,1 +1,3 @@
-"""Slips of units: detection of implausible values in a case, with the unit that was likely meant."""
+"""Slips of units: detection of implausible values in a case, with the unit that was
+likely meant.
+"""

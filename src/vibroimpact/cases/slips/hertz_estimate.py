@@ -1,4 +1,6 @@
-"""Estimates of the first impact by Hertz's theory, against which the values of a case are checked."""
+"""Estimates of the first impact by Hertz's theory, against which the values of a case are
+checked.
+"""
 
 from __future__ import annotations
 
@@ -19,7 +21,8 @@ from vibroimpact.resolved_case import ResolvedCase
 
 @dataclass(frozen=True)
 class HertzEstimate:
-    """Peak values of the first impact of a case by Hertz's theory without damping; NaN where they can't be estimated.
+    """Peak values of the first impact of a case by Hertz's theory without damping; NaN where they
+    can't be estimated.
 
     Parameters
     ----------
@@ -79,7 +82,9 @@ class HertzEstimate:
             return float(drop["speed"])
         if drop.get("height") is None:
             return -self._upward
-        return float(np.sqrt(self._upward**2 + 2.0 * self.gravity * max(drop["height"] - self.radius, 0.0)))
+        return float(
+            np.sqrt(self._upward**2 + 2.0 * self.gravity * max(drop["height"] - self.radius, 0.0))
+        )
 
     @property
     def touch(self) -> float:
@@ -101,7 +106,9 @@ class HertzEstimate:
     @cached_property
     def depth(self) -> float:
         """Largest indentation [m]."""
-        return math.pow(1.25 * float(self._conditions.effective_mass) * self.speed**2 / self.stiffness, 0.4)
+        return math.pow(
+            1.25 * float(self._conditions.effective_mass) * self.speed**2 / self.stiffness, 0.4
+        )
 
     @property
     def force(self) -> float:
@@ -115,7 +122,9 @@ class HertzEstimate:
 
     @property
     def critical_damping(self) -> float:
-        """Critical damping of the sphere with the tangent stiffness of the contact at the largest indentation [N s/m]."""
+        """Critical damping of the sphere with the tangent stiffness of the contact at the
+        largest indentation [N s/m].
+        """
         return 2.0 * math.sqrt(self.mass * 1.5 * self.stiffness * math.sqrt(self.depth))
 
     @property
@@ -128,9 +137,13 @@ class HertzEstimate:
 
     @property
     def derived_parameters(self) -> set[str]:
-        """Names of the parameters of the law whose values equal those derived from the bodies, so that the user did not give them."""
+        """Names of the parameters of the law whose values equal those derived from the
+        bodies, so that the user did not give them.
+        """
         bodies = self._conditions.materials.values()
-        strengths = [material.yield_strength for material in bodies if material.yield_strength is not None]
+        strengths = [
+            material.yield_strength for material in bodies if material.yield_strength is not None
+        ]
         given = {
             "stiffness": [self.stiffness],
             "effective_modulus": [float(self._conditions.modulus)],
@@ -142,4 +155,8 @@ class HertzEstimate:
         contact = self.case["contact"]
         # a parameter may have one value for each impact
         own = {name: np.atleast_1d(contact.get(name, math.nan)) for name in given}
-        return {name for name, values in given.items() if any(np.allclose(own[name], value, rtol=1e-9, atol=0.0) for value in values)}
+        return {
+            name
+            for name, values in given.items()
+            if any(np.allclose(own[name], value, rtol=1e-9, atol=0.0) for value in values)
+        }

@@ -11,7 +11,8 @@ _FAR = 5.0  # excess ratio below which a length is not taken for a slip of a uni
 
 
 def likely_lengths(values: Sequence[float], most: Sequence[float]) -> str:
-    """Return a hint, to be added to a message, that lengths which are far too large were meant in another unit; "" if no unit fits.
+    """Return a hint, to be added to a message, that lengths which are far too large were meant in
+    another unit; "" if no unit fits.
 
     Parameters
     ----------
@@ -30,5 +31,8 @@ def likely_lengths(values: Sequence[float], most: Sequence[float]) -> str:
     for unit, size in _UNITS.items():
         if all(abs(value) * size <= end for value, end in zip(values, most, strict=True)):
             texts = [f'"{number_text(value)} {unit}"' for value in values]
-            return f"; were {unit} meant? Write {texts[0] if len(texts) == 1 else '[' + ', '.join(texts) + ']'}"
+            return (
+                f"; were {unit} meant? Write "
+                f"{texts[0] if len(texts) == 1 else '[' + ', '.join(texts) + ']'}"
+            )
     return ""

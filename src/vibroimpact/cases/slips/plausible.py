@@ -25,8 +25,8 @@ class PlausibleRange:
     below, above : str or callable
         Message for a value below or above the range.
     reference : float, optional
-        Physical estimate of the value: of several units, the one that brings the value close to it and is common is taken. Without it,
-        the first unit that brings the value into the range.
+        Physical estimate of the value: of several units, the one that brings the value close to it
+        and is common is taken. Without it, the first unit that brings the value into the range.
     within : float, default 100
         Largest ratio between the corrected value and the reference.
     remedy : str or callable, optional
@@ -43,7 +43,9 @@ class PlausibleRange:
 
 
 Rule = Callable[[HertzEstimate, Mapping[str, Any]], PlausibleRange]
-"""Returns the plausible range of a value, from the estimate of the case and the table that holds the value."""
+"""Returns the plausible range of a value, from the estimate of the case and the table
+that holds the value.
+"""
 
 
 @dataclass(frozen=True)
@@ -74,7 +76,14 @@ def between(low: float = 0.0, high: float = math.inf, *, below: str = "", above:
     return lambda estimate, table: bounds
 
 
-def near(what: Callable[[HertzEstimate], float], words: str, unit: str, *, factor: float = 300.0, within: float = 30.0) -> Rule:
+def near(
+    what: Callable[[HertzEstimate], float],
+    words: str,
+    unit: str,
+    *,
+    factor: float = 300.0,
+    within: float = 30.0,
+) -> Rule:
     """Return the rule of a value with a physical estimate.
 
     Parameters
@@ -95,9 +104,19 @@ def near(what: Callable[[HertzEstimate], float], words: str, unit: str, *, facto
         reference = what(estimate)
 
         def said(value: float) -> str:
-            return f"is {ratio_text(value / reference)} than {words} {number_text(reference, 4)} {unit}"
+            return (
+                f"is {ratio_text(value / reference)} than {words} {number_text(reference, 4)} "
+                f"{unit}"
+            )
 
-        return PlausibleRange(low=reference / factor, high=reference * factor, below=said, above=said, reference=reference, within=within)
+        return PlausibleRange(
+            low=reference / factor,
+            high=reference * factor,
+            below=said,
+            above=said,
+            reference=reference,
+            within=within,
+        )
 
     return rule
 
@@ -110,7 +129,11 @@ def ratio_text(ratio: float) -> str:
     >>> ratio_text(64.3), ratio_text(1 / 31622.8)
     ('64 times more', '31,623 times less')
     """
-    return f"{count_text(ratio)} times more" if ratio > 1.0 else f"{count_text(1.0 / ratio)} times less"
+    return (
+        f"{count_text(ratio)} times more"
+        if ratio > 1.0
+        else f"{count_text(1.0 / ratio)} times less"
+    )
 
 
 def count_text(value: float) -> str:
@@ -133,4 +156,6 @@ def number_text(value: float, digits: int = 6) -> str:
     ('16176', '5.115e8', '7.85e-9', '2800')
     """
     rounded = float(f"{value:.{digits}g}")
-    return re.sub(r"e([+-])0*", lambda power: "e" + power[1].strip("+"), f"{rounded:.{max(digits, 6)}g}")
+    return re.sub(
+        r"e([+-])0*", lambda power: "e" + power[1].strip("+"), f"{rounded:.{max(digits, 6)}g}"
+    )

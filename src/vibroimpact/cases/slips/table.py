@@ -1,7 +1,8 @@
 """The table of the keys that are checked for slips of units, with their plausible ranges.
 
-The ranges are far wider than those in use (rubber to diamond, dust to boulders, foils to slabs), and narrower only where other values of
-the case give an estimate: Hertz's stiffness for a stiffness, critical damping for a damping, the fall for a duration.
+The ranges are far wider than those in use (rubber to diamond, dust to boulders, foils to slabs),
+and narrower only where other values of the case give an estimate: Hertz's stiffness for a
+stiffness, critical damping for a damping, the fall for a duration.
 """
 
 from __future__ import annotations
@@ -27,7 +28,10 @@ def _material(at: str) -> tuple[CheckedKey, ...]:
     return (
         CheckedKey(f"{at}.density", "kg/m^3", ("g/cm^3", "kg/mm^3", "t/mm^3"), rules.density),
         CheckedKey(f"{at}.youngs_modulus", "Pa", _MODULI, rules.elastic_modulus),
-        *(CheckedKey(f"{at}.{name}_strength", "Pa", _STRENGTHS, rules.strength) for name in ("yield", "compressive", "tensile")),
+        *(
+            CheckedKey(f"{at}.{name}_strength", "Pa", _STRENGTHS, rules.strength)
+            for name in ("yield", "compressive", "tensile")
+        ),
     )
 
 
@@ -38,14 +42,24 @@ CHECKED_KEYS: tuple[CheckedKey, ...] = (
     *_material("sphere.material"),
     *_material("plate.material"),
     *(
-        CheckedKey(f"plate.size.{side}", "m", _LENGTHS, between(high=60.0, above="is very long for a plate"))
+        CheckedKey(
+            f"plate.size.{side}",
+            "m",
+            _LENGTHS,
+            between(high=60.0, above="is very long for a plate"),
+        )
         for side in ("length", "width")
     ),
     CheckedKey("plate.size.thickness", "m", _LENGTHS, rules.plate_thickness),
     CheckedKey("plate.radius", "m", _LENGTHS, rules.sphere_radius),
     CheckedKey("sphere.radius", "m", _LENGTHS, rules.sphere_radius),
     CheckedKey("sphere.mass", "kg", ("g", "mg"), rules.sphere_mass),
-    CheckedKey("sphere.inertia", "kg m^2", ("kg cm^2", "g m^2", "kg mm^2", "g cm^2", "g mm^2"), rules.sphere_inertia),
+    CheckedKey(
+        "sphere.inertia",
+        "kg m^2",
+        ("kg cm^2", "g m^2", "kg mm^2", "g cm^2", "g mm^2"),
+        rules.sphere_inertia,
+    ),
     CheckedKey("drop.height", "m", _LENGTHS, between(high=300.0, above="is very high")),
     CheckedKey("drop.speed", "m/s", _SPEEDS, between(high=1000.0, above="is very fast")),
     CheckedKey("drop.gravity", "m/s^2", _ACCELERATIONS, rules.gravitational_acceleration),
@@ -53,17 +67,30 @@ CHECKED_KEYS: tuple[CheckedKey, ...] = (
     CheckedKey("contact.penalty", "N/m", _STIFFNESSES, rules.contact_stiffness),
     CheckedKey("contact.damping_max", "N s/m", _DAMPINGS, rules.contact_damping),
     CheckedKey("contact.damping", "N s/m", _DAMPINGS, rules.contact_damping),
-    CheckedKey("contact.full_damping_penetration", "m", ("mm", "um"), rules.full_damping_penetration),
+    CheckedKey(
+        "contact.full_damping_penetration", "m", ("mm", "um"), rules.full_damping_penetration
+    ),
     CheckedKey("contact.effective_modulus", "Pa", _MODULI, rules.elastic_modulus),
     CheckedKey("contact.yield_strength", "Pa", _STRENGTHS, rules.strength),
     CheckedKey("contact.yield_pressure", "Pa", _STRENGTHS, rules.strength),
     CheckedKey(
-        "contact.effective_radius", "m", _LENGTHS, near(lambda estimate: estimate.radius, "the sphere's", "m", factor=100.0, within=5.0)
+        "contact.effective_radius",
+        "m",
+        _LENGTHS,
+        near(lambda estimate: estimate.radius, "the sphere's", "m", factor=100.0, within=5.0),
     ),
     CheckedKey(
-        "contact.effective_mass", "kg", ("g",), near(lambda estimate: estimate.mass, "the sphere's", "kg", factor=100.0, within=5.0)
+        "contact.effective_mass",
+        "kg",
+        ("g",),
+        near(lambda estimate: estimate.mass, "the sphere's", "kg", factor=100.0, within=5.0),
     ),
-    CheckedKey("contact.work_of_adhesion", "J/m^2", ("mJ/m^2",), between(high=20.0, above="is very much for two surfaces")),
+    CheckedKey(
+        "contact.work_of_adhesion",
+        "J/m^2",
+        ("mJ/m^2",),
+        between(high=20.0, above="is very much for two surfaces"),
+    ),
     CheckedKey("contact.dissipation_time", "s", ("us", "ms"), rules.dissipation_time),
     CheckedKey(
         "contact.local_stiffness",
@@ -75,10 +102,16 @@ CHECKED_KEYS: tuple[CheckedKey, ...] = (
     CheckedKey("contact.measured.rebound_height", "m", _LENGTHS, _REBOUND),
     CheckedKey("calibrate.target.max_force", "N", _FORCES, _LARGEST_FORCE),
     CheckedKey(
-        "calibrate.target.duration", "s", _TIMES, near(lambda estimate: estimate.contact_time, "the duration of Hertz's contact,", "s")
+        "calibrate.target.duration",
+        "s",
+        _TIMES,
+        near(lambda estimate: estimate.contact_time, "the duration of Hertz's contact,", "s"),
     ),
     CheckedKey(
-        "calibrate.target.max_indentation", "m", _LENGTHS, near(lambda estimate: estimate.depth, "Hertz's largest indentation,", "m")
+        "calibrate.target.max_indentation",
+        "m",
+        _LENGTHS,
+        near(lambda estimate: estimate.depth, "Hertz's largest indentation,", "m"),
     ),
     CheckedKey("calibrate.target.rebound_height", "m", _LENGTHS, _REBOUND),
     CheckedKey("calibrate.target.rebound_heights", "m", _LENGTHS, _REBOUND),
@@ -86,7 +119,12 @@ CHECKED_KEYS: tuple[CheckedKey, ...] = (
     CheckedKey("run.rest_speed", "m/s", _SPEEDS, rules.rest_speed),
     *_material("plate.supports.#.material"),
     CheckedKey("plate.supports.#.stiffness", "N/m", _STIFFNESSES, rules.support_stiffness),
-    CheckedKey("plate.supports.#.length", "m", _LENGTHS, between(high=50.0, above="is very long for a column")),
+    CheckedKey(
+        "plate.supports.#.length",
+        "m",
+        _LENGTHS,
+        between(high=50.0, above="is very long for a column"),
+    ),
     CheckedKey("plate.mesh.element_size", "m", _LENGTHS, rules.element_size),
     CheckedKey("plate.mesh.margin", "m", _LENGTHS, rules.margin),
     CheckedKey("sphere.max_frequency", "Hz", _FREQUENCIES, rules.modal_frequency),
@@ -97,15 +135,24 @@ CHECKED_KEYS: tuple[CheckedKey, ...] = (
         "sensors.#.accelerometer.resonance",
         "Hz",
         _FREQUENCIES,
-        between(100.0, 1e8, below="is very low for an accelerometer", above="is very high for an accelerometer"),
+        between(
+            100.0,
+            1e8,
+            below="is very low for an accelerometer",
+            above="is very high for an accelerometer",
+        ),
     ),
     CheckedKey(
         "sensors.#.geophone.natural_frequency",
         "Hz",
         _FREQUENCIES,
-        between(0.01, 500.0, below="is very low for a geophone", above="is very high for a geophone"),
+        between(
+            0.01, 500.0, below="is very low for a geophone", above="is very high for a geophone"
+        ),
     ),
     CheckedKey("sensors.#.accelerometer.noise", "m/s^2", _ACCELERATIONS, rules.below_sensor_range),
-    CheckedKey("sensors.#.accelerometer.resolution", "m/s^2", _ACCELERATIONS, rules.below_sensor_range),
+    CheckedKey(
+        "sensors.#.accelerometer.resolution", "m/s^2", _ACCELERATIONS, rules.below_sensor_range
+    ),
 )
 """Checked keys, in an order in which a value precedes those whose range depends on it."""

@@ -1,1 +1,3 @@
-"""Friction laws: the force along the plate from the normal force and the slip of the contact point."""
+"""Friction laws: the force along the plate from the normal force and the slip of the
+contact point.
+"""

@@ -1,11 +1,12 @@
 """The interface of a friction law.
 
-A law is a frozen dataclass in a file of its own under `vibroimpact.contact.friction.laws`, where the registry finds it. It declares `name`,
-`equation` and `source`, its parameters as contact laws do, and is one of
+A law is a frozen dataclass in a file of its own under `vibroimpact.contact.friction.laws`, where
+the registry finds it. It declares `name`, `equation` and `source`, its parameters as contact laws
+do, and is one of
 
 * `ImpulsiveFriction`, whose slip velocity follows from the normal impulse so far;
-* `CompliantFriction`, whose force depends on the tangential displacement and its history: by the turning points of this along one
-  direction, and a row of springs in two, or by a single spring.
+* `CompliantFriction`, whose force depends on the tangential displacement and its history: by the
+  turning points of this along one direction, and a row of springs in two, or by a single spring.
 """
 
 from __future__ import annotations
@@ -32,10 +33,16 @@ class FrictionLaw(Parameters):
     (True, 'coulomb')
     """
 
-    coefficient: Array = parameter("coefficient of friction mu", detail=r"Coefficient of friction :math:`\mu`.", example=0.3, at_least=0)
+    coefficient: Array = parameter(
+        "coefficient of friction mu",
+        detail=r"Coefficient of friction :math:`\mu`.",
+        example=0.3,
+        at_least=0,
+    )
     rolling_coefficient: Array = parameter(
         "coefficient of rolling friction mu_r",
-        detail=r"Coefficient of rolling friction :math:`\mu_r`: its moment is :math:`\mu_r R F`, with the radius of the sphere.",
+        detail=r"Coefficient of rolling friction :math:`\mu_r`: its moment is :math:`\mu_r R F`, "
+        r"with the radius of the sphere.",
         default=0.0,
         at_least=0,
     )
@@ -45,13 +52,17 @@ class FrictionLaw(Parameters):
         return np.zeros_like(force)
 
     def twisting_moment(self, force: Floats) -> Floats:
-        """Return the moment of full twisting under a normal force [N m]: 3 pi/16 mu F a (Johnson 1985, section 7.2; Lubkin 1951)."""
+        """Return the moment of full twisting under a normal force [N m]: 3 pi/16 mu F a
+        (Johnson 1985, section 7.2; Lubkin 1951).
+        """
         return np.asarray(FULL_TWISTING * self.coefficient * force * self.contact_radius(force))
 
     def twisting_part(self, force: Floats, friction: Floats, slip: Floats, spin: Floats) -> Floats:
-        """Return the part of the moment of full twisting that a contact has beside its friction [-], of the shape of `force`.
+        """Return the part of the moment of full twisting that a contact has beside its friction
+        [-], of the shape of `force`.
 
-        It is `contact.friction.twisting.twisting_share`, of a contact of the radius that the normal force makes.
+        It is `contact.friction.twisting.twisting_share`, of a contact of the radius that the normal
+        force makes.
 
         Parameters
         ----------
@@ -66,17 +77,25 @@ class FrictionLaw(Parameters):
 
         References
         ----------
-        Contensou, P. (1963). Couplage entre frottement de glissement et frottement de pivotement dans la theorie de la toupie. In:
-        Kreiselprobleme (ed. H. Ziegler), Springer, 201-216.
+        Contensou, P. (1963). Couplage entre frottement de glissement et frottement de pivotement
+        dans la theorie de la toupie. In: Kreiselprobleme (ed. H. Ziegler), Springer, 201-216.
 
-        Howe, R. D. and Cutkosky, M. R. (1996). Practical force-motion models for sliding manipulation. Int. J. Robotics Res. 15, 557-572.
+        Howe, R. D. and Cutkosky, M. R. (1996). Practical force-motion models for sliding
+        manipulation. Int. J. Robotics Res. 15, 557-572.
 
         Examples
         --------
         >>> from vibroimpact.contact.friction.laws.mdr import Mdr
-        >>> law = Mdr(coefficient=0.1, effective_modulus=60e9, effective_shear_modulus=50e9, effective_radius=2.5e-3)
+        >>> law = Mdr(
+        ...     coefficient=0.1,
+        ...     effective_modulus=60e9,
+        ...     effective_shear_modulus=50e9,
+        ...     effective_radius=2.5e-3,
+        ... )
         >>> force, spin = np.full(3, 100.0), np.full(3, 50.0)
-        >>> law.twisting_part(force, 0.1 * force, np.array([0.0, 1e-3, 1.0]), spin).round(4).tolist()
+        >>> law.twisting_part(force, 0.1 * force, np.array([0.0, 1e-3, 1.0]), spin).round(
+        ...     4
+        ... ).tolist()
         [1.0, 0.9814, 0.0025]
         """
         most = self.coefficient * force
@@ -105,7 +124,9 @@ class ImpulsiveFriction(FrictionLaw):
         raise NotImplementedError
 
     def force(self, slip: Floats, normal_force: Floats) -> Floats:
-        """Return the friction force against the slip [N]; none where the law tells the impulse alone."""
+        """Return the friction force against the slip [N]; none where the law tells the
+        impulse alone.
+        """
         return np.zeros_like(slip)
 
 
@@ -113,31 +134,51 @@ class ImpulsiveFriction(FrictionLaw):
 class CompliantFriction(FrictionLaw):
     r"""Base of the laws with the tangential compliance of elastic half-spaces.
 
-    The normal force F acts on a Hertzian contact, whose depth under it is :math:`D = [3F / (4 E^* \sqrt R)]^{2/3}`. Tangential
-    displacements s are counted in :math:`\kappa = \mu E^* / G^*`, and the friction force is :math:`2 G^* \sqrt R\, \kappa I`, at most
+    The normal force F acts on a Hertzian contact, whose depth under it is :math:`D = [3F / (4 E^*
+    \sqrt R)]^{2/3}`. Tangential
+    displacements s are counted in :math:`\kappa = \mu E^* / G^*`, and the friction force is
+    :math:`2 G^* \sqrt R\, \kappa I`, at most
     :math:`\mu F`, where :math:`I = \tfrac23 D^{3/2}`.
     """
 
     stretching: ClassVar[tuple[int, int]] = (0, 0)
-    r"""Powers :math:`\gamma` of the contact radius in the integral of a contact that sticks, as it grows and as it shrinks.
+    r"""Powers :math:`\gamma` of the contact radius in the integral of a contact that sticks, as it
+    grows and as it shrinks.
 
-    With the radius over the root of R, a, that is :math:`I = a^\gamma z`, where :math:`\dot z = a^{1 - \gamma} \dot s`.
+    With the radius over the root of R, a, that is :math:`I = a^\gamma z`, where :math:`\dot z =
+    a^{1 - \gamma} \dot s`.
     """
 
     slips_at_rim: ClassVar[bool] = False
-    """Do parts of the contact slip while others stick, as turning points tell? Otherwise it sticks or slides."""
+    """Do parts of the contact slip while others stick, as turning points tell? Otherwise
+    it sticks or slides.
+    """
 
     sliding_energy: ClassVar[float] = 0.4
-    r"""Elastic work of a contact as it grows while all of it slides, over :math:`\mu F \kappa D`."""
+    r"""Elastic work of a contact as it grows while all of it slides, over :math:`\mu F
+    \kappa D`.
+    """
 
     effective_modulus: Array = parameter(
-        "effective modulus E*", "Pa", detail="Effective modulus :math:`E^*`.", above=0, from_pair="effective_modulus"
+        "effective modulus E*",
+        "Pa",
+        detail="Effective modulus :math:`E^*`.",
+        above=0,
+        from_pair="effective_modulus",
     )
     effective_shear_modulus: Array = parameter(
-        "effective shear modulus G*", "Pa", detail="Effective shear modulus :math:`G^*`.", above=0, from_pair="effective_shear_modulus"
+        "effective shear modulus G*",
+        "Pa",
+        detail="Effective shear modulus :math:`G^*`.",
+        above=0,
+        from_pair="effective_shear_modulus",
     )
     effective_radius: Array = parameter(
-        "effective radius R", "m", detail="Effective radius :math:`R`.", above=0, from_pair="effective_radius"
+        "effective radius R",
+        "m",
+        detail="Effective radius :math:`R`.",
+        above=0,
+        from_pair="effective_radius",
     )
 
     @property

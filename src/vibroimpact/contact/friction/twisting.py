@@ -1,12 +1,18 @@
 r"""The moment against twisting of a contact that also slides, as floats and arrays have it.
 
-Each point of a contact that slides at the speed s and twists at the rate :math:`\omega` rubs against its own velocity. Over Hertz's
-pressure on a circle of radius a this leaves, of the moment of full twisting and with :math:`q = a |\omega| / s`, the part
+Each point of a contact that slides at the speed s and twists at the rate :math:`\omega` rubs
+against its own velocity. Over Hertz's
+pressure on a circle of radius a this leaves, of the moment of full twisting and with :math:`q = a
+|\omega| / s`, the part
 
-.. math:: \frac{16}{15\pi}\, q\; F(q^2) \quad (q \le 1),\qquad 1 - \frac{1}{q^2} + \frac{3}{8 q^4} \quad (q \ge 1),\qquad
+.. math::
+
+    \frac{16}{15\pi}\, q\; F(q^2) \quad (q \le 1),\qquad
+    1 - \frac{1}{q^2} + \frac{3}{8 q^4} \quad (q \ge 1),\qquad
    F(z) = {}_2F_1\left(\tfrac12, \tfrac12; \tfrac72; z\right)
 
-A contact whose friction Q is less than :math:`\mu F` sticks somewhere; it has at most about :math:`\sqrt{1 - (Q / \mu F)^2}`, which is
+A contact whose friction Q is less than :math:`\mu F` sticks somewhere; it has at most about
+:math:`\sqrt{1 - (Q / \mu F)^2}`, which is
 taken if it is more.
 """
 
@@ -41,14 +47,19 @@ _COEFFICIENTS = _series(20)
 def sliding_factor(ratio: Array) -> Array:
     r"""Return F of a squared ratio of velocities q, 0 <= q <= 1 [-].
 
-    The series, or what Gauss's relations between neighbours make of :math:`{}_2F_1(1/2, 1/2; 3/2; z) = \arcsin\sqrt z / \sqrt z`
+    The series, or what Gauss's relations between neighbours make of :math:`{}_2F_1(1/2, 1/2; 3/2;
+    z) = \arcsin\sqrt z / \sqrt z`
     (Abramowitz and Stegun 1964, 15.1.6 and 15.2.12).
 
     Examples
     --------
     >>> from scipy.special import hyp2f1
     >>> ratio = np.linspace(0.0, 1.0, 1001)
-    >>> bool(np.allclose(sliding_factor(ratio), hyp2f1(0.5, 0.5, 3.5, ratio**2), rtol=2e-13, atol=0.0))
+    >>> bool(
+    ...     np.allclose(
+    ...         sliding_factor(ratio), hyp2f1(0.5, 0.5, 3.5, ratio**2), rtol=2e-13, atol=0.0
+    ...     )
+    ... )
     True
     """
     square = ratio * ratio
@@ -69,7 +80,8 @@ def twisting_share(rim_speed: Array, slip: Array, used: Array) -> Array:
     Parameters
     ----------
     rim_speed, slip : float or array
-        Speed of the rim by the twisting, and speed of the contact point along the plate [m/s], >= 0.
+        Speed of the rim by the twisting, and speed of the contact point along the plate [m/s], >=
+        0.
     used : float or array
         Friction over the largest there can be [-].
 

@@ -1,4 +1,6 @@
-"""The IMPACT function of MSC Adams: power-law spring and a dashpot that grows with the penetration."""
+"""The IMPACT function of MSC Adams: power-law spring and a dashpot that grows with the
+penetration.
+"""
 
 from __future__ import annotations
 
@@ -16,7 +18,9 @@ from vibroimpact.contact.power_law import PowerLaw, power
 
 
 @scalar
-def _forces(delta: Array, delta_dot: Array, approach_speed: Array, coefficients: Any) -> tuple[Array, Array]:
+def _forces(
+    delta: Array, delta_dot: Array, approach_speed: Array, coefficients: Any
+) -> tuple[Array, Array]:
     stiffness, exponent = coefficients[0], coefficients[1]
     damping_max, full_damping_penetration = coefficients[2], coefficients[3]
     s = np.minimum(delta / full_damping_penetration, 1.0)
@@ -38,8 +42,9 @@ class AdamsImpact(PowerLaw):
 
     Notes
     -----
-    The clip at zero belongs to Adams' definition of the function. The contact is over when the bodies no longer overlap.
-    Without the clip the rebound heights of the case `paper:type1-variable` are 3 to 9 % lower.
+    The clip at zero belongs to Adams' definition of the function. The contact is over when the
+    bodies no longer overlap. Without the clip the rebound heights of the case
+    `paper:type1-variable` are 3 to 9 % lower.
 
     References
     ----------
@@ -63,10 +68,16 @@ class AdamsImpact(PowerLaw):
     free_parameter = "damping_max"
 
     stiffness: Array = inherited_parameter(
-        PowerLaw, "stiffness", detail="Contact stiffness :math:`K`. From N/mm^n it is multiplied by 1000^n."
+        PowerLaw,
+        "stiffness",
+        detail="Contact stiffness :math:`K`. From N/mm^n it is multiplied by 1000^n.",
     )
-    exponent: Array = inherited_parameter(PowerLaw, "exponent", detail="Force exponent :math:`n` (Adams calls it e).")
-    damping_max: Array = parameter("largest damping C", "N s/m", detail="Largest damping :math:`C`.", example=150.0, at_least=0)
+    exponent: Array = inherited_parameter(
+        PowerLaw, "exponent", detail="Force exponent :math:`n` (Adams calls it e)."
+    )
+    damping_max: Array = parameter(
+        "largest damping C", "N s/m", detail="Largest damping :math:`C`.", example=150.0, at_least=0
+    )
     full_damping_penetration: Array = parameter(
         "indentation d at which the damping is full",
         "m",

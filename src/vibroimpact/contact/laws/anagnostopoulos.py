@@ -14,20 +14,23 @@ from vibroimpact.contact.parameters import inherited_parameter
 class Anagnostopoulos(RestitutionForMassLaw, KelvinVoigtLaw):
     r"""Linear viscoelastic impact element of earthquake engineering (Anagnostopoulos 1988).
 
-    .. math:: F = k \delta + 2 \xi \sqrt{k m}\, \dot\delta,\qquad \xi = -\ln e / \sqrt{\pi^2 + \ln^2 e}
+    .. math::
+
+        F = k \delta + 2 \xi \sqrt{k m}\, \dot\delta,\qquad \xi = -\ln e / \sqrt{\pi^2 + \ln^2 e}
 
     Notes
     -----
-    The element acts while the bodies overlap, so that with e < 1 it pulls shortly before the end. Without gravity the
-    restitution of an impact with this effective mass is the one asked for. With e < 1 the force jumps at first touch.
+    The element acts while the bodies overlap, so that with e < 1 it pulls shortly before the end.
+    Without gravity the restitution of an impact with this effective mass is the one asked for. With
+    e < 1 the force jumps at first touch.
 
     References
     ----------
-    Anagnostopoulos, S. A. (1988). Pounding of buildings in series during earthquakes. Earthquake Eng. Struct.
-    Dyn. 16, 443-456.
+    Anagnostopoulos, S. A. (1988). Pounding of buildings in series during earthquakes. Earthquake
+    Eng. Struct. Dyn. 16, 443-456.
 
-    Anagnostopoulos, S. A. (2004). Equivalent viscous damping for modeling inelastic impacts in earthquake
-    pounding problems. Earthquake Eng. Struct. Dyn. 33, 897-902.
+    Anagnostopoulos, S. A. (2004). Equivalent viscous damping for modeling inelastic impacts in
+    earthquake pounding problems. Earthquake Eng. Struct. Dyn. 33, 897-902.
 
     Examples
     --------
@@ -41,7 +44,9 @@ class Anagnostopoulos(RestitutionForMassLaw, KelvinVoigtLaw):
     equation = "F = k delta + 2 xi sqrt(k m) delta_dot, xi = -ln e / sqrt(pi^2 + ln^2 e)"
     source = "Anagnostopoulos 1988, Earthquake Eng. Struct. Dyn. 16:443"
 
-    stiffness: Array = inherited_parameter(KelvinVoigtLaw, "stiffness", detail="Stiffness of the impact element :math:`k`.")
+    stiffness: Array = inherited_parameter(
+        KelvinVoigtLaw, "stiffness", detail="Stiffness of the impact element :math:`k`."
+    )
 
     @property
     def dashpot(self) -> Array:

@@ -15,16 +15,18 @@ class Flores(HystereticLaw):
 
     .. math:: F = K \delta^n \left[1 + \frac{8 (1 - e)}{5 e}\, \dot\delta / \dot\delta_0\right]
 
-    with :math:`\dot\delta_0` the closing speed at touch; each further contact of an impact has its own.
+    with :math:`\dot\delta_0` the closing speed at touch; each further contact of an impact has its
+    own.
 
     Notes
     -----
-    For e < 1 the restitution achieved is smaller than the one asked for: 0.7 gives 0.683, 0.3 gives 0.256.
+    For e < 1 the restitution achieved is smaller than the one asked for: 0.7 gives 0.683, 0.3 gives
+    0.256.
 
     References
     ----------
-    Flores, P., Machado, M., Silva, M. T. and Martins, J. M. (2011). On the continuous contact force models for
-    soft materials in multibody dynamics. Multibody Syst. Dyn. 25, 357-375.
+    Flores, P., Machado, M., Silva, M. T. and Martins, J. M. (2011). On the continuous contact force
+    models for soft materials in multibody dynamics. Multibody Syst. Dyn. 25, 357-375.
 
     Examples
     --------

@@ -15,17 +15,18 @@ class Gonthier(HystereticLaw):
 
     .. math:: F = K \delta^n \left[1 + (1 - e^2)/e\, \dot\delta / \dot\delta_0\right]
 
-    with :math:`\dot\delta_0` the closing speed at touch; each further contact of an impact has its own.
+    with :math:`\dot\delta_0` the closing speed at touch; each further contact of an impact has its
+    own.
 
     Notes
     -----
-    An approximation of the relation between damping and restitution. The restitution achieved is within 0.033 of the one
-    asked for: 0.7 gives 0.670, 0.1 gives 0.101.
+    An approximation of the relation between damping and restitution. The restitution achieved is
+    within 0.033 of the one asked for: 0.7 gives 0.670, 0.1 gives 0.101.
 
     References
     ----------
-    Gonthier, Y., McPhee, J., Lange, C. and Piedboeuf, J.-C. (2004). A regularized contact model with asymmetric
-    damping and dwell-time dependent friction. Multibody Syst. Dyn. 11, 209-233.
+    Gonthier, Y., McPhee, J., Lange, C. and Piedboeuf, J.-C. (2004). A regularized contact model
+    with asymmetric damping and dwell-time dependent friction. Multibody Syst. Dyn. 11, 209-233.
 
     Examples
     --------

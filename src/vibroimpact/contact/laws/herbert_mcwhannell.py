@@ -12,19 +12,23 @@ from vibroimpact.contact.hysteretic import HystereticLaw
 class HerbertMcWhannell(HystereticLaw):
     r"""Hertz's force with hysteretic damping (Herbert and McWhannell 1977).
 
-    .. math:: F = K \delta^n \left[1 + \frac{6 (1 - e)}{(2 e - 1)^2 + 3}\, \dot\delta / \dot\delta_0\right]
+    .. math::
 
-    with :math:`\dot\delta_0` the closing speed at touch; each further contact of an impact has its own.
+        F = K \delta^n \left[1 + \frac{6 (1 - e)}{(2 e - 1)^2 + 3}\, \dot\delta /
+        \dot\delta_0\right]
+
+    with :math:`\dot\delta_0` the closing speed at touch; each further contact of an impact has its
+    own.
 
     Notes
     -----
-    For e < 1 the restitution achieved is larger than the one asked for: 0.9 gives 0.901, 0.7 gives 0.723, and no value
-    gives less than 0.487.
+    For e < 1 the restitution achieved is larger than the one asked for: 0.9 gives 0.901, 0.7 gives
+    0.723, and no value gives less than 0.487.
 
     References
     ----------
-    Herbert, R. G. and McWhannell, D. C. (1977). Shape and frequency composition of pulses from an impact pair.
-    J. Eng. Ind. 99, 513-518.
+    Herbert, R. G. and McWhannell, D. C. (1977). Shape and frequency composition of pulses from an
+    impact pair. J. Eng. Ind. 99, 513-518.
 
     Examples
     --------

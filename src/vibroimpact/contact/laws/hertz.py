@@ -16,7 +16,9 @@ from vibroimpact.contact.power_law import PowerLaw, power
 
 
 @scalar
-def _forces(delta: Array, delta_dot: Array, approach_speed: Array, coefficients: Any) -> tuple[Array, Array]:
+def _forces(
+    delta: Array, delta_dot: Array, approach_speed: Array, coefficients: Any
+) -> tuple[Array, Array]:
     stiffness, exponent = coefficients[0], coefficients[1]
     return stiffness * power(delta, exponent), 0.0 * delta
 
@@ -29,12 +31,13 @@ class Hertz(PowerLaw):
 
     Notes
     -----
-    The law loses nothing: its restitution is 1. It is valid while the contact radius is small beside the sphere's and
-    nothing yields.
+    The law loses nothing: its restitution is 1. It is valid while the contact radius is small
+    beside the sphere's and nothing yields.
 
     References
     ----------
-    Hertz, H. (1881). Ueber die Beruehrung fester elastischer Koerper. J. reine angew. Math. 92, 156-171.
+    Hertz, H. (1881). Ueber die Beruehrung fester elastischer Koerper. J. reine angew. Math. 92,
+    156-171.
 
     Johnson, K. L. (1985). Contact Mechanics. Cambridge University Press, eq. (4.23).
 
@@ -52,7 +55,9 @@ class Hertz(PowerLaw):
     tension = "none"
     scalar_forces: ClassVar[ScalarForces | None] = staticmethod(_forces)
 
-    exponent: Array = inherited_parameter(PowerLaw, "exponent", detail="Force exponent :math:`n`; 1.5 for a sphere.")
+    exponent: Array = inherited_parameter(
+        PowerLaw, "exponent", detail="Force exponent :math:`n`; 1.5 for a sphere."
+    )
 
     @cached_property
     def coefficients(self) -> tuple[Array, ...]:

@@ -15,16 +15,18 @@ class HuGuo(HystereticLaw):
 
     .. math:: F = K \delta^n \left[1 + \frac{3 (1 - e)}{2 e}\, \dot\delta / \dot\delta_0\right]
 
-    with :math:`\dot\delta_0` the closing speed at touch; each further contact of an impact has its own.
+    with :math:`\dot\delta_0` the closing speed at touch; each further contact of an impact has its
+    own.
 
     Notes
     -----
-    The restitution achieved is within 0.01 of the one asked for above 0.55: 0.7 gives 0.697, 0.3 gives 0.271.
+    The restitution achieved is within 0.01 of the one asked for above 0.55: 0.7 gives 0.697, 0.3
+    gives 0.271.
 
     References
     ----------
-    Hu, S. and Guo, X. (2015). A dissipative contact force model for impact analysis in multibody dynamics.
-    Multibody Syst. Dyn. 35, 131-151.
+    Hu, S. and Guo, X. (2015). A dissipative contact force model for impact analysis in multibody
+    dynamics. Multibody Syst. Dyn. 35, 131-151.
 
     Examples
     --------

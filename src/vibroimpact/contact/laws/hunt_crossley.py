@@ -21,7 +21,8 @@ class HuntCrossley(HystereticLaw):
 
     .. math:: F = K \delta^n (1 + d\, \dot\delta)
 
-    with :math:`\dot\delta_0` the closing speed at touch; each further contact of an impact has its own.
+    with :math:`\dot\delta_0` the closing speed at touch; each further contact of an impact has its
+    own.
 
     Raises
     ------
@@ -30,15 +31,17 @@ class HuntCrossley(HystereticLaw):
 
     Notes
     -----
-    The relation with e is for e near 1. For e < 1 the restitution achieved is larger than the one asked for: 0.7 gives
-    0.768, and no value gives less than 0.487. With a dissipation the restitution falls with the approach speed v, and tends
-    to :math:`1 - \alpha v` with :math:`\alpha = \tfrac23 d` at low speeds. In Hunt and Crossley's notation
+    The relation with e is for e near 1. For e < 1 the restitution achieved is larger than the one
+    asked for: 0.7 gives 0.768, and no value gives less than 0.487. With a dissipation the
+    restitution falls with the approach speed v, and tends
+    to :math:`1 - \alpha v` with :math:`\alpha = \tfrac23 d` at low speeds. In Hunt and Crossley's
+    notation
     :math:`d = \lambda / k`.
 
     References
     ----------
-    Hunt, K. H. and Crossley, F. R. E. (1975). Coefficient of restitution interpreted as damping in vibroimpact.
-    J. Appl. Mech. 42, 440-445.
+    Hunt, K. H. and Crossley, F. R. E. (1975). Coefficient of restitution interpreted as damping in
+    vibroimpact. J. Appl. Mech. 42, 440-445.
 
     Examples
     --------
@@ -47,7 +50,10 @@ class HuntCrossley(HystereticLaw):
     >>> float(elastic), round(float(dissipative), 6)
     (16.0, 12.0)
     >>> law = HuntCrossley(stiffness=2.0, dissipation=0.5)
-    >>> [round(float(law.closed_form_restitution(mass=1.0, speed=speed)), 4) for speed in (0.01, 1.0, 2.0)]
+    >>> [
+    ...     round(float(law.closed_form_restitution(mass=1.0, speed=speed)), 4)
+    ...     for speed in (0.01, 1.0, 2.0)
+    ... ]
     [0.9967, 0.7484, 0.5936]
     """
 
@@ -64,13 +70,19 @@ class HuntCrossley(HystereticLaw):
         default=None,
     )
     dissipation: Array | None = parameter(
-        "dissipation d, instead of restitution", "s/m", detail="Dissipation :math:`d`.", at_least=0, default=None
+        "dissipation d, instead of restitution",
+        "s/m",
+        detail="Dissipation :math:`d`.",
+        at_least=0,
+        default=None,
     )
 
     def __post_init__(self) -> None:
         super().__post_init__()
         if (self.restitution is None) == (self.dissipation is None):
-            raise InputError(f"{self.name} needs either restitution or dissipation [s/m], and not both")
+            raise InputError(
+                f"{self.name} needs either restitution or dissipation [s/m], and not both"
+            )
 
     @property
     def free_parameter(self) -> str:
@@ -87,12 +99,19 @@ class HuntCrossley(HystereticLaw):
             If a dissipation is given, with which it depends on the approach speed.
         """
         if self.restitution is None:
-            raise InputError("with a dissipation the damping factor depends on the approach speed; take damping_factor_at")
+            raise InputError(
+                "with a dissipation the damping factor depends on the approach speed; take "
+                "damping_factor_at"
+            )
         return 1.5 * (1.0 - self.restitution)
 
     def damping_factor_at(self, approach_speed: Array) -> Array:
-        """Return the damping factor of an impact [-]: D(e), or the dissipation times the approach speed [m/s]."""
-        return self.damping_factor if self.dissipation is None else self.dissipation * approach_speed
+        """Return the damping factor of an impact [-]: D(e), or the dissipation times the
+        approach speed [m/s].
+        """
+        return (
+            self.damping_factor if self.dissipation is None else self.dissipation * approach_speed
+        )
 
     @cached_property
     def coefficients(self) -> tuple[Array, ...]:

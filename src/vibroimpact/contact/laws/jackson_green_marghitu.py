@@ -20,7 +20,8 @@ class JacksonGreenMarghitu(ElasticPairLaw, InstantaneousLaw):
 
     .. math:: e = \begin{cases} 1 & V^* \le 1 \\
               1 - 0.1 \ln V^* \left(\frac{V^* - 1}{59}\right)^{0.156} & 1 < V^* \le 60 \\
-              1 - 0.1 \ln 60 - 0.11 \ln\frac{V^*}{60}\, (V^* - 60)^{2.36 S_y/E^*} & V^* > 60 \end{cases}
+              1 - 0.1 \ln 60 - 0.11 \ln\frac{V^*}{60}\, (V^* - 60)^{2.36 S_y/E^*} & V^* > 60
+              \end{cases}
 
     with :math:`V^* = v/v_c`, :math:`v_c = \sqrt{4 \omega_c P_c/(5 m)}`,
     :math:`\omega_c = R\, (\pi C S_y/2 E^*)^2`, :math:`P_c = \tfrac43 (R/E^*)^2 (\pi C S_y/2)^3` and
@@ -28,23 +29,27 @@ class JacksonGreenMarghitu(ElasticPairLaw, InstantaneousLaw):
 
     Notes
     -----
-    The law gives the restitution and no force. It keeps no dent: every impact falls on fresh material.
+    The law gives the restitution and no force. It keeps no dent: every impact falls on fresh
+    material.
 
     References
     ----------
-    Jackson, R. L., Green, I. and Marghitu, D. B. (2010). Predicting the coefficient of restitution of impacting
-    elastic-perfectly plastic spheres. Nonlinear Dynamics 60, 217-229.
+    Jackson, R. L., Green, I. and Marghitu, D. B. (2010). Predicting the coefficient of restitution
+    of impacting elastic-perfectly plastic spheres. Nonlinear Dynamics 60, 217-229.
 
     Examples
     --------
-    >>> law = JacksonGreenMarghitu(effective_modulus=7e10, effective_radius=0.01, yield_strength=4e8, poissons_ratio=0.3)
+    >>> law = JacksonGreenMarghitu(
+    ...     effective_modulus=7e10, effective_radius=0.01, yield_strength=4e8, poissons_ratio=0.3
+    ... )
     >>> [round(float(law.closed_form_restitution(0.01, v)), 5) for v in (0.001, 1.0, 10.0)]
     [1.0, 0.78782, 0.4878]
     """
 
     name = "jackson-green-marghitu"
     equation = (
-        "e = 1 - 0.1 ln(V) ((V - 1)/59)^0.156 for 1 < V <= 60, 1 - 0.1 ln(60) - 0.11 ln(V/60) (V - 60)^(2.36 Sy/E*) beyond, V = v/v_c"
+        "e = 1 - 0.1 ln(V) ((V - 1)/59)^0.156 for 1 < V <= 60, 1 - 0.1 ln(60) - 0.11 ln(V/60) "
+        "(V - 60)^(2.36 Sy/E*) beyond, V = v/v_c"
     )
     source = "Jackson, Green & Marghitu 2010, Nonlinear Dynamics 60:217"
     departure = "Where the formula is negative, at high speeds, the restitution is zero."
@@ -80,5 +85,7 @@ class JacksonGreenMarghitu(ElasticPairLaw, InstantaneousLaw):
         low = np.clip(ratio, 1.0, _CHANGE)
         high = np.maximum(ratio, _CHANGE)
         loss = 0.1 * np.log(low) * ((low - 1.0) / (_CHANGE - 1.0)) ** 0.156
-        loss = loss + 0.11 * np.log(high / _CHANGE) * (high - _CHANGE) ** (2.36 * self.yield_strength / self.effective_modulus)
+        loss = loss + 0.11 * np.log(high / _CHANGE) * (high - _CHANGE) ** (
+            2.36 * self.yield_strength / self.effective_modulus
+        )
         return np.maximum(1.0 - loss, 0.0) * approach_speed

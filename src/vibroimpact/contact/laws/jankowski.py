@@ -25,15 +25,17 @@ class Jankowski(RestitutionForMassLaw, SphereLaw, TwoPhaseLaw):
 
     Notes
     -----
-    The damping ratio is approximate: 0.5 gives 0.495, 0.3 gives 0.292. Once the indentation has turned, nothing is lost.
+    The damping ratio is approximate: 0.5 gives 0.495, 0.3 gives 0.292. Once the indentation has
+    turned, nothing is lost.
 
     References
     ----------
-    Jankowski, R. (2005). Non-linear viscoelastic modelling of earthquake-induced structural pounding. Earthquake
-    Eng. Struct. Dyn. 34, 595-611.
+    Jankowski, R. (2005). Non-linear viscoelastic modelling of earthquake-induced structural
+    pounding. Earthquake Eng. Struct. Dyn. 34, 595-611.
 
-    Jankowski, R. (2006). Analytical expression between the impact damping ratio and the coefficient of restitution
-    in the non-linear viscoelastic model of structural pounding. Earthquake Eng. Struct. Dyn. 35, 517-524.
+    Jankowski, R. (2006). Analytical expression between the impact damping ratio and the coefficient
+    of restitution in the non-linear viscoelastic model of structural pounding. Earthquake Eng.
+    Struct. Dyn. 35, 517-524.
 
     Examples
     --------
@@ -45,7 +47,8 @@ class Jankowski(RestitutionForMassLaw, SphereLaw, TwoPhaseLaw):
 
     name = "jankowski"
     equation = (
-        "F = K delta^1.5 + 2 xi sqrt(m K sqrt(delta)) delta_dot until the indentation first turns, K delta^1.5 from then on, "
+        "F = K delta^1.5 + 2 xi sqrt(m K sqrt(delta)) delta_dot until the indentation first "
+        "turns, K delta^1.5 from then on, "
         "xi = 9 sqrt(5)/2 (1 - e^2) / (e [e (9 pi - 16) + 16])"
     )
     source = "Jankowski 2006, Earthquake Eng. Struct. Dyn. 35:517"
@@ -56,7 +59,9 @@ class Jankowski(RestitutionForMassLaw, SphereLaw, TwoPhaseLaw):
 
     @cached_property
     def coefficients(self) -> tuple[Array, ...]:
-        """Stiffness, and the dashpot constant, which is zero once the indentation has turned, by phase."""
+        """Stiffness, and the dashpot constant, which is zero once the indentation has
+        turned, by phase.
+        """
         e = self.restitution
         ratio = 4.5 * np.sqrt(5.0) * (1.0 - e * e) / (e * (e * (9.0 * np.pi - 16.0) + 16.0))
         dashpot = 2.0 * ratio * np.sqrt(self.effective_mass * self.stiffness)

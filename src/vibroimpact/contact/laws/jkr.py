@@ -15,23 +15,28 @@ from vibroimpact.contact.parameters import inherited_parameter
 class JKR(AdhesiveLaw):
     r"""Elastic sphere with adhesion (Johnson, Kendall and Roberts 1971).
 
-    .. math:: F = \frac{4 E^* a^3}{3 R} - \sqrt{8 \pi w E^* a^3},\qquad \delta = \frac{a^2}{R} - \sqrt{\frac{2 \pi w a}{E^*}}
+    .. math::
+
+        F = \frac{4 E^* a^3}{3 R} - \sqrt{8 \pi w E^* a^3},\qquad
+        \delta = \frac{a^2}{R} - \sqrt{\frac{2 \pi w a}{E^*}}
 
     Notes
     -----
-    At first touch, at zero indentation, the force jumps to :math:`-\tfrac43 \pi w R`; the bodies part when drawn out to
+    At first touch, at zero indentation, the force jumps to :math:`-\tfrac43 \pi w R`; the bodies
+    part when drawn out to
     :math:`\delta = -\tfrac34 (\pi^2 w^2 R/E^{*2})^{1/3}`. The work from zero indentation to there,
-    :math:`7.09\, (w^5 R^4/E^{*2})^{1/3}`, is lost (Thornton and Ning 1998). A sphere with less kinetic energy, on a plate
-    that does not vibrate, sticks. The law is for soft, large spheres of high surface energy; small hard ones follow Derjaguin,
-    Muller and Toporov.
+    :math:`7.09\, (w^5 R^4/E^{*2})^{1/3}`, is lost (Thornton and Ning 1998). A sphere with less
+    kinetic energy, on a plate
+    that does not vibrate, sticks. The law is for soft, large spheres of high surface energy; small
+    hard ones follow Derjaguin, Muller and Toporov.
 
     References
     ----------
-    Johnson, K. L., Kendall, K. and Roberts, A. D. (1971). Surface energy and the contact of elastic solids. Proc. R.
-    Soc. Lond. A 324, 301-313.
+    Johnson, K. L., Kendall, K. and Roberts, A. D. (1971). Surface energy and the contact of elastic
+    solids. Proc. R. Soc. Lond. A 324, 301-313.
 
-    Thornton, C. and Ning, Z. (1998). A theoretical model for the stick/bounce behaviour of adhesive, elastic-plastic
-    spheres. Powder Technology 99, 154-162.
+    Thornton, C. and Ning, Z. (1998). A theoretical model for the stick/bounce behaviour of
+    adhesive, elastic-plastic spheres. Powder Technology 99, 154-162.
 
     Examples
     --------
@@ -49,10 +54,13 @@ class JKR(AdhesiveLaw):
     work_of_adhesion: Array = inherited_parameter(
         AdhesiveLaw,
         "work_of_adhesion",
-        detail="Work of adhesion :math:`w`: what it takes to part a unit of area, for equal materials twice the surface energy of each.",
+        detail="Work of adhesion :math:`w`: what it takes to part a unit of area, for equal "
+        "materials twice the surface energy of each.",
     )
 
     def closed_form_restitution(self, mass: Array, speed: Array) -> Array:
-        r"""Return :math:`\sqrt{1 - v_s^2/v^2}`, with the sticking speed :math:`v_s`, below which it is zero."""
+        r"""Return :math:`\sqrt{1 - v_s^2/v^2}`, with the sticking speed :math:`v_s`,
+        below which it is zero.
+        """
         lost = self.elastic_energy(self.release_level) / (0.5 * mass * speed * speed)
         return np.sqrt(np.maximum(1.0 - lost, 0.0))

@@ -14,17 +14,18 @@ class LankaraniNikravesh(HystereticLaw):
 
     .. math:: F = K \delta^n \left[1 + \tfrac34 (1 - e^2)\, \dot\delta / \dot\delta_0\right]
 
-    with :math:`\dot\delta_0` the closing speed at touch; each further contact of an impact has its own.
+    with :math:`\dot\delta_0` the closing speed at touch; each further contact of an impact has its
+    own.
 
     Notes
     -----
-    The relation is for e near 1. For e < 1 the restitution achieved is larger than the one asked for: 0.65 gives 0.775,
-    and no value gives less than 0.66.
+    The relation is for e near 1. For e < 1 the restitution achieved is larger than the one asked
+    for: 0.65 gives 0.775, and no value gives less than 0.66.
 
     References
     ----------
-    Lankarani, H. M. and Nikravesh, P. E. (1990). A contact force model with hysteresis damping for impact
-    analysis of multibody systems. J. Mech. Des. 112, 369-376.
+    Lankarani, H. M. and Nikravesh, P. E. (1990). A contact force model with hysteresis damping for
+    impact analysis of multibody systems. J. Mech. Des. 112, 369-376.
 
     Examples
     --------

@@ -14,16 +14,18 @@ class LeeWang(HystereticLaw):
 
     .. math:: F = K \delta^n \left[1 + \tfrac34 (1 - e)\, \dot\delta / \dot\delta_0\right]
 
-    with :math:`\dot\delta_0` the closing speed at touch; each further contact of an impact has its own.
+    with :math:`\dot\delta_0` the closing speed at touch; each further contact of an impact has its
+    own.
 
     Notes
     -----
-    The energy lost is about half of that at the restitution asked for: 0.7 gives 0.869, and no value gives less than 0.66.
+    The energy lost is about half of that at the restitution asked for: 0.7 gives 0.869, and no
+    value gives less than 0.66.
 
     References
     ----------
-    Lee, T. W. and Wang, A. C. (1983). On the dynamics of intermittent-motion mechanisms, part 1: dynamic model
-    and response. J. Mech. Transm. Autom. Des. 105, 534-540.
+    Lee, T. W. and Wang, A. C. (1983). On the dynamics of intermittent-motion mechanisms, part 1:
+    dynamic model and response. J. Mech. Transm. Autom. Des. 105, 534-540.
 
     Examples
     --------

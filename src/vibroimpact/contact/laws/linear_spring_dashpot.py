@@ -25,13 +25,15 @@ class LinearSpringDashpot(KelvinVoigtLaw):
 
     Notes
     -----
-    The contact ends at zero overlap, and the dashpot may pull before that. Without gravity the restitution of an
-    impact with this effective mass is the one asked for. The force jumps at first touch from zero to :math:`c\dot\delta_0`.
+    The contact ends at zero overlap, and the dashpot may pull before that. Without gravity the
+    restitution of an
+    impact with this effective mass is the one asked for. The force jumps at first touch from zero
+    to :math:`c\dot\delta_0`.
 
     References
     ----------
-    Garg, R., Galvin, J., Li, T. and Pannala, S. (2012). Open-source MFIX-DEM software for gas-solids flows:
-    Part I, verification studies. Powder Technology 220, 122-137.
+    Garg, R., Galvin, J., Li, T. and Pannala, S. (2012). Open-source MFIX-DEM software for
+    gas-solids flows: Part I, verification studies. Powder Technology 220, 122-137.
 
     Examples
     --------
@@ -46,7 +48,11 @@ class LinearSpringDashpot(KelvinVoigtLaw):
     source = "Garg et al. 2012, Powder Technology 220:122"
 
     damping: Array | None = parameter(
-        "dashpot c, unless a restitution is given", "N s/m", detail="Dashpot :math:`c`.", at_least=0, default=None
+        "dashpot c, unless a restitution is given",
+        "N s/m",
+        detail="Dashpot :math:`c`.",
+        at_least=0,
+        default=None,
     )
     restitution: Array | None = parameter(
         "restitution asked for, instead of damping",
@@ -68,7 +74,9 @@ class LinearSpringDashpot(KelvinVoigtLaw):
     def __post_init__(self) -> None:
         super().__post_init__()
         if (self.damping is None) == (self.restitution is None):
-            raise InputError(f"{self.name} needs either damping [N s/m] or restitution, and not both")
+            raise InputError(
+                f"{self.name} needs either damping [N s/m] or restitution, and not both"
+            )
         if self.restitution is not None and self.effective_mass is None:
             raise InputError(f"{self.name} needs effective_mass [kg] with restitution")
 

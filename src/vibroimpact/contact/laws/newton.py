@@ -15,8 +15,10 @@ class Newton(InstantaneousLaw):
 
     Notes
     -----
-    There is no force and no indentation; the restitution asked for is the one achieved. With e < 1 a ball that is dropped
-    from h onto a plate at rest comes to rest after :math:`\sqrt{2h/g}\,(1+e)/(1-e)` and infinitely many bounces.
+    There is no force and no indentation; the restitution asked for is the one achieved. With e < 1
+    a ball that is dropped
+    from h onto a plate at rest comes to rest after :math:`\sqrt{2h/g}\,(1+e)/(1-e)` and infinitely
+    many bounces.
 
     References
     ----------
@@ -33,7 +35,11 @@ class Newton(InstantaneousLaw):
     source = "Newton 1687, Principia, scholium to the laws of motion"
 
     restitution: Array = parameter(
-        "coefficient of restitution e", detail="Coefficient of restitution :math:`e`.", example=0.7, at_least=0, at_most=1
+        "coefficient of restitution e",
+        detail="Coefficient of restitution :math:`e`.",
+        example=0.7,
+        at_least=0,
+        at_most=1,
     )
 
     def separation_speed(self, approach_speed: Array, mass: Array) -> Array:

@@ -15,16 +15,18 @@ class Safaeifar(HystereticLaw):
 
     .. math:: F = K \delta^n \left[1 + \frac{5 (1 - e)}{4 e}\, \dot\delta / \dot\delta_0\right]
 
-    with :math:`\dot\delta_0` the closing speed at touch; each further contact of an impact has its own.
+    with :math:`\dot\delta_0` the closing speed at touch; each further contact of an impact has its
+    own.
 
     Notes
     -----
-    The restitution achieved is larger than the one asked for above 0.22 and below 1: 0.7 gives 0.735, 0.3 gives 0.314.
+    The restitution achieved is larger than the one asked for above 0.22 and below 1: 0.7 gives
+    0.735, 0.3 gives 0.314.
 
     References
     ----------
-    Safaeifar, H. and Farshidianfar, A. (2020). A new model of the contact force for the collision between two
-    solid bodies. Multibody Syst. Dyn. 50, 233-257.
+    Safaeifar, H. and Farshidianfar, A. (2020). A new model of the contact force for the collision
+    between two solid bodies. Multibody Syst. Dyn. 50, 233-257.
 
     Examples
     --------

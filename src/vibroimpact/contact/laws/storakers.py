@@ -1,4 +1,6 @@
-"""Elastic-plastic sphere of a power-law-hardening material: Thornton's law with the pressure of Storakers and others."""
+"""Elastic-plastic sphere of a power-law-hardening material: Thornton's law with the
+pressure of Storakers and others.
+"""
 
 from __future__ import annotations
 
@@ -26,10 +28,17 @@ def _plastic_force(delta: Array, coefficients: Any) -> Array:
 def _plastic_state(delta: Array, coefficients: Any) -> tuple[Array, Array, Array]:
     yield_indentation, effective_radius = coefficients[6], coefficients[9]
     yield_force, plastic_stiffness = coefficients[10], coefficients[11]
-    exponent, power_at_yield, next_power_at_yield = coefficients[12], coefficients[13], coefficients[14]
+    exponent, power_at_yield, next_power_at_yield = (
+        coefficients[12],
+        coefficients[13],
+        coefficients[14],
+    )
     constant = yield_force - plastic_stiffness * power_at_yield
     rise = exponent + 1.0
-    work = constant * (delta - yield_indentation) + plastic_stiffness * (power(delta, rise) - next_power_at_yield) / rise
+    work = (
+        constant * (delta - yield_indentation)
+        + plastic_stiffness * (power(delta, rise) - next_power_at_yield) / rise
+    )
     return _plastic_force(delta, coefficients), work, np.sqrt(effective_radius * delta)
 
 
@@ -37,46 +46,64 @@ def _plastic_state(delta: Array, coefficients: Any) -> tuple[Array, Array, Array
 class Storakers(YieldingSphereLaw):
     r"""Power-law-hardening elastic-plastic sphere (pressure: Storakers, Biwa and Larsson 1997).
 
-    A material with :math:`\sigma = \sigma_0\, \varepsilon^{1/m}` carries, in the fully plastic contact, the mean pressure
+    A material with :math:`\sigma = \sigma_0\, \varepsilon^{1/m}` carries, in the fully plastic
+    contact, the mean pressure
 
-    .. math:: p = 3 \sigma_0 \left(\frac{a}{6 R}\right)^{1/m},\qquad \sigma_0 = Y \left(\frac{E^*}{Y}\right)^{1/m}
+    .. math::
 
-    which grows with the contact radius a. With it in the place of a constant limiting pressure, Thornton's law reads
+        p = 3 \sigma_0 \left(\frac{a}{6 R}\right)^{1/m},\qquad
+        \sigma_0 = Y \left(\frac{E^*}{Y}\right)^{1/m}
+
+    which grows with the contact radius a. With it in the place of a constant limiting pressure,
+    Thornton's law reads
 
     .. math:: F = \begin{cases} \tfrac43 E^* \sqrt R\, \delta^{3/2} & \delta \le \delta_y \\
-              F_y + \pi R\, [\delta\, p(\delta) - \delta_y\, p(\delta_y)] & \delta > \delta_y \end{cases},\qquad a^2 = R \delta
+              F_y + \pi R\, [\delta\, p(\delta) - \delta_y\, p(\delta_y)] & \delta > \delta_y
+              \end{cases},\qquad a^2 = R \delta
 
-    and :math:`\delta_y` is where the two slopes agree. It unloads as Hertz's contact of a flatter sphere.
+    and :math:`\delta_y` is where the two slopes agree. It unloads as Hertz's contact of a flatter
+    sphere.
 
     Notes
     -----
-    Far above yield the restitution falls as :math:`v^{-(1 - 1/m)/(4 + 1/m)}`. The dent lasts: the next impact on the same spot
-    loses nothing unless it goes deeper.
+    Far above yield the restitution falls as :math:`v^{-(1 - 1/m)/(4 + 1/m)}`. The dent lasts: the
+    next impact on the same spot loses nothing unless it goes deeper.
 
     References
     ----------
-    Storakers, B., Biwa, S. and Larsson, P.-L. (1997). Similarity analysis of inelastic contact. Int. J. Solids
-    Struct. 34, 3061-3083.
+    Storakers, B., Biwa, S. and Larsson, P.-L. (1997). Similarity analysis of inelastic contact.
+    Int. J. Solids Struct. 34, 3061-3083.
 
-    Thornton, C. (1997). Coefficient of restitution for collinear collisions of elastic-perfectly plastic spheres.
-    J. Appl. Mech. 64, 383-386.
+    Thornton, C. (1997). Coefficient of restitution for collinear collisions of elastic-perfectly
+    plastic spheres. J. Appl. Mech. 64, 383-386.
 
     Examples
     --------
-    >>> law = Storakers(effective_modulus=7e10, effective_radius=0.01, yield_strength=4e8, hardening_exponent=10.0)
+    >>> law = Storakers(
+    ...     effective_modulus=7e10,
+    ...     effective_radius=0.01,
+    ...     yield_strength=4e8,
+    ...     hardening_exponent=10.0,
+    ... )
     >>> [round(float(law.closed_form_restitution(0.01, v)), 5) for v in (0.001, 1.0, 10.0)]
     [1.0, 0.88244, 0.54901]
     """
 
     name = "storakers"
     equation = (
-        "F = 4/3 E* sqrt(R) delta^1.5 up to yield, F_y + pi R [delta p(delta) - delta_y p(delta_y)] beyond, "
+        "F = 4/3 E* sqrt(R) delta^1.5 up to yield, F_y + pi R [delta p(delta) - delta_y "
+        "p(delta_y)] beyond, "
         "p = 3 Y (E*/Y)^(1/m) (a/6R)^(1/m), a^2 = R delta; unloading Hertz's, of a flatter sphere"
     )
-    source = "Storakers, Biwa & Larsson 1997, Int. J. Solids Struct. 34:3061, in Thornton 1997, J. Appl. Mech. 64:383"
+    source = (
+        "Storakers, Biwa & Larsson 1997, Int. J. Solids Struct. 34:3061, in Thornton 1997, J. "
+        "Appl. Mech. 64:383"
+    )
     departure = (
-        "The pressure of the fully plastic contact is put into Thornton's law, which has a constant one, with Hertz's contact radius, "
-        "a^2 = R delta. The source has a^2 = 2 c^2 R delta when fully plastic, where c^2 is 0.5 for m = 1, and 1.43 "
+        "The pressure of the fully plastic contact is put into Thornton's law, which has a "
+        "constant one, with Hertz's contact radius, "
+        "a^2 = R delta. The source has a^2 = 2 c^2 R delta when fully plastic, where c^2 is "
+        "0.5 for m = 1, and 1.43 "
         "without hardening, for which the restitution far above yield would be 1.48 times as high."
     )
     free_parameter = "yield_strength"
@@ -85,7 +112,8 @@ class Storakers(YieldingSphereLaw):
     yield_strength: Array = parameter(
         "yield strength Y",
         "Pa",
-        detail="Yield strength :math:`Y` of the body that yields; the power law goes through it at the strain :math:`Y/E^*`.",
+        detail="Yield strength :math:`Y` of the body that yields; the power law goes through it at "
+        "the strain :math:`Y/E^*`.",
         example=2e7,
         above=0,
         from_pair="yield_strength",
@@ -105,10 +133,18 @@ class Storakers(YieldingSphereLaw):
 
     @property
     def plastic_coefficients(self) -> tuple[Array, ...]:
-        """The force at yield, the stiffness of the plastic force, its exponent n, and the powers n and n + 1 of the yield indentation."""
+        """The force at yield, the stiffness of the plastic force, its exponent n, and the
+        powers n and n + 1 of the yield indentation.
+        """
         at_yield, exponent = self.yield_indentation, self._power
         yield_force = self.stiffness * at_yield**1.5
-        return yield_force, self._plastic_stiffness, exponent, at_yield**exponent, at_yield ** (exponent + 1.0)
+        return (
+            yield_force,
+            self._plastic_stiffness,
+            exponent,
+            at_yield**exponent,
+            at_yield ** (exponent + 1.0),
+        )
 
     @property
     def _power(self) -> Array:
@@ -117,5 +153,7 @@ class Storakers(YieldingSphereLaw):
     @property
     def _plastic_stiffness(self) -> Array:
         radius, hardening = self.effective_radius, 1.0 / self.hardening_exponent
-        flow_stress = self.yield_strength * (self.effective_modulus / self.yield_strength) ** hardening
+        flow_stress = (
+            self.yield_strength * (self.effective_modulus / self.yield_strength) ** hardening
+        )
         return 3.0 * np.pi * flow_stress * radius * (36.0 * radius) ** (-0.5 * hardening)

@@ -36,22 +36,27 @@ class Thornton(YieldingSphereLaw):
               F_y + \pi R\, p_y (\delta - \delta_y) & \delta > \delta_y \end{cases},\qquad
               \delta_y = R \left(\frac{\pi p_y}{2 E^*}\right)^2
 
-    with unloading as Hertz's contact of a flatter sphere, from the deepest point to the dent that remains.
+    with unloading as Hertz's contact of a flatter sphere, from the deepest point to the dent that
+    remains.
 
     Notes
     -----
     The pressure is Hertz's, cut off at :math:`p_y`. Below the yield speed
-    :math:`v_y = \sqrt{4 K \delta_y^{5/2}/(5 m)}` nothing is lost; far above it e tends to :math:`1.185 (v_y/v)^{1/4}`, where
-    :math:`K = \tfrac43 E^* \sqrt R` and m is the effective mass. The pressure of fully plastic contacts is about 2.8 times the yield
-    strength (Tabor 1951); with 1.6 times the law then loses too much, and `yield_pressure` should be the hardness. The dent
-    lasts: the next impact on the same spot meets a flatter contact, and loses nothing unless it goes deeper.
+    :math:`v_y = \sqrt{4 K \delta_y^{5/2}/(5 m)}` nothing is lost; far above it e tends to
+    :math:`1.185 (v_y/v)^{1/4}`, where
+    :math:`K = \tfrac43 E^* \sqrt R` and m is the effective mass. The pressure of fully plastic
+    contacts is about 2.8 times the yield
+    strength (Tabor 1951); with 1.6 times the law then loses too much, and `yield_pressure` should
+    be the hardness. The dent lasts: the next impact on the same spot meets a flatter contact, and
+    loses nothing unless it goes deeper.
 
     References
     ----------
-    Thornton, C. (1997). Coefficient of restitution for collinear collisions of elastic-perfectly plastic spheres.
-    J. Appl. Mech. 64, 383-386.
+    Thornton, C. (1997). Coefficient of restitution for collinear collisions of elastic-perfectly
+    plastic spheres. J. Appl. Mech. 64, 383-386.
 
-    Johnson, K. L. (1985). Contact Mechanics. Cambridge University Press, section 6.1 (1.6 times the yield strength).
+    Johnson, K. L. (1985). Contact Mechanics. Cambridge University Press, section 6.1 (1.6 times the
+    yield strength).
 
     Tabor, D. (1951). The Hardness of Metals. Oxford University Press.
 
@@ -63,7 +68,10 @@ class Thornton(YieldingSphereLaw):
     """
 
     name = "thornton"
-    equation = "F = 4/3 E* sqrt(R) delta^1.5 up to yield, F_y + pi R p_y (delta - delta_y) beyond; unloading Hertz's, of a flatter sphere"
+    equation = (
+        "F = 4/3 E* sqrt(R) delta^1.5 up to yield, F_y + pi R p_y (delta - delta_y) beyond; "
+        "unloading Hertz's, of a flatter sphere"
+    )
     source = "Thornton 1997, J. Appl. Mech. 64:383"
     free_parameter = "yield_pressure"
     loading_curve: ClassVar[LoadingCurve] = yielding_sphere(_plastic_force, _plastic_state)
@@ -71,7 +79,8 @@ class Thornton(YieldingSphereLaw):
     yield_pressure: Array = parameter(
         "limiting contact pressure p_y",
         "Pa",
-        detail="Limiting contact pressure :math:`p_y`; from the materials, 1.6 times the smaller yield strength.",
+        detail="Limiting contact pressure :math:`p_y`; from the materials, 1.6 times the smaller "
+        "yield strength.",
         example=1e8,
         above=0,
         from_pair="yield_pressure",
@@ -80,7 +89,10 @@ class Thornton(YieldingSphereLaw):
     @property
     def yield_indentation(self) -> Array:
         r"""Indentation :math:`\delta_y` at yield [m]."""
-        return self.effective_radius * (np.pi * self.yield_pressure / (2.0 * self.effective_modulus)) ** 2
+        return (
+            self.effective_radius
+            * (np.pi * self.yield_pressure / (2.0 * self.effective_modulus)) ** 2
+        )
 
     @property
     def plastic_coefficients(self) -> tuple[Array, ...]:

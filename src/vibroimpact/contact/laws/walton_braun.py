@@ -33,7 +33,8 @@ class WaltonBraun(ElasticPlasticLaw):
     .. math:: F = k_1 \delta \ \text{loading},\qquad F = k_2 (\delta - \delta_r) \ \text{unloading},
               \qquad \delta_r = \delta_m (1 - k_1/k_2)
 
-    with :math:`k_2 = k_1/e^2`, if a `restitution` is given, or :math:`k_2 = k_1 + S F_m`, if `stiffening` is.
+    with :math:`k_2 = k_1/e^2`, if a `restitution` is given, or :math:`k_2 = k_1 + S F_m`, if
+    `stiffening` is.
 
     Raises
     ------
@@ -42,14 +43,16 @@ class WaltonBraun(ElasticPlasticLaw):
 
     Notes
     -----
-    Without gravity the restitution is the one asked for if a `restitution` is given; with `stiffening` it falls with the
-    approach speed :math:`v_0`, :math:`e = \sqrt{\omega_0/(S v_0 + \omega_0)}`, :math:`\omega_0 = \sqrt{k_1/m}`. The
+    Without gravity the restitution is the one asked for if a `restitution` is given; with
+    `stiffening` it falls with the
+    approach speed :math:`v_0`, :math:`e = \sqrt{\omega_0/(S v_0 + \omega_0)}`, :math:`\omega_0 =
+    \sqrt{k_1/m}`. The
     contact ends at zero force, at :math:`\delta_r`; the next contact begins without a dent.
 
     References
     ----------
-    Walton, O. R. and Braun, R. L. (1986). Viscosity, granular-temperature, and stress calculations for shearing
-    assemblies of inelastic, frictional disks. J. Rheology 30, 949-980.
+    Walton, O. R. and Braun, R. L. (1986). Viscosity, granular-temperature, and stress calculations
+    for shearing assemblies of inelastic, frictional disks. J. Rheology 30, 949-980.
 
     Examples
     --------
@@ -67,8 +70,16 @@ class WaltonBraun(ElasticPlasticLaw):
     unloading_exponent = 1.0
     loading_curve: ClassVar[LoadingCurve] = LoadingCurve(_loading_force, _loading_state)
 
-    loaded_to: Array = inherited_parameter(ElasticPlasticLaw, "loaded_to", detail="Deepest indentation of this contact so far.")
-    stiffness: Array = parameter("stiffness of loading k1", "N/m", detail="Stiffness of loading :math:`k_1`.", example=2e6, above=0)
+    loaded_to: Array = inherited_parameter(
+        ElasticPlasticLaw, "loaded_to", detail="Deepest indentation of this contact so far."
+    )
+    stiffness: Array = parameter(
+        "stiffness of loading k1",
+        "N/m",
+        detail="Stiffness of loading :math:`k_1`.",
+        example=2e6,
+        above=0,
+    )
     restitution: Array | None = parameter(
         "restitution asked for, unless stiffening is given",
         detail="Restitution asked for, :math:`e`.",
@@ -88,7 +99,9 @@ class WaltonBraun(ElasticPlasticLaw):
     def __post_init__(self) -> None:
         super().__post_init__()
         if (self.restitution is None) == (self.stiffening is None):
-            raise InputError(f"{self.name} needs either restitution or stiffening [1/m], and not both")
+            raise InputError(
+                f"{self.name} needs either restitution or stiffening [1/m], and not both"
+            )
 
     @property
     def free_parameter(self) -> str:
@@ -97,12 +110,20 @@ class WaltonBraun(ElasticPlasticLaw):
 
     @property
     def loading_coefficients(self) -> tuple[Array, ...]:
-        """Stiffness of loading, square of the restitution, and stiffening: one or zero where they are not given."""
+        """Stiffness of loading, square of the restitution, and stiffening: one or zero
+        where they are not given.
+        """
         squared_restitution = 1.0 if self.restitution is None else self.restitution**2
-        return self.stiffness, squared_restitution, 0.0 if self.stiffening is None else self.stiffening
+        return (
+            self.stiffness,
+            squared_restitution,
+            0.0 if self.stiffening is None else self.stiffening,
+        )
 
     def closed_form_restitution(self, mass: Array, speed: Array) -> Array:
-        """Return the published restitution of a fresh contact, that of the energy balance otherwise."""
+        """Return the published restitution of a fresh contact, that of the energy balance
+        otherwise.
+        """
         if np.any(self.loaded_to):
             return super().closed_form_restitution(mass, speed)
         if self.restitution is not None:

@@ -1,4 +1,6 @@
-"""Writes the modes of measured frequency responses as a folder: tables, the summary and a report."""
+"""Writes the modes of measured frequency responses as a folder: tables, the summary and a
+report.
+"""
 
 from __future__ import annotations
 
@@ -16,7 +18,12 @@ from vibroimpact.charts.made import made_charts
 from vibroimpact.charts.marks import Mark, Rug
 from vibroimpact.correlation.charts import MOST, magnitude_lines, those_drawn
 from vibroimpact.correlation.document import TEXTS
-from vibroimpact.correlation.measured.document import MEASURED_COLUMNS, measured_records, measured_table, summary_of_measured
+from vibroimpact.correlation.measured.document import (
+    MEASURED_COLUMNS,
+    measured_records,
+    measured_table,
+    summary_of_measured,
+)
 from vibroimpact.correlation.measured.modes_of_file import MeasuredModes
 from vibroimpact.report.page import render_page
 from vibroimpact.results.csv_files import write_csv
@@ -25,9 +32,15 @@ from vibroimpact.shown import shortened, visible
 
 
 def save_measured_modes(
-    found: MeasuredModes, name: str, directory: str | PathLike[str], *, force: bool = False, figures: Sequence[str] = ()
+    found: MeasuredModes,
+    name: str,
+    directory: str | PathLike[str],
+    *,
+    force: bool = False,
+    figures: Sequence[str] = (),
 ) -> Path:
-    """Write the modes of measured frequency responses atomically: `modes.csv`, `summary.json` and a report.
+    """Write the modes of measured frequency responses atomically: `modes.csv`, `summary.json` and a
+    report.
 
     Parameters
     ----------
@@ -40,7 +53,8 @@ def save_measured_modes(
     force : bool, default False
         Replace an existing folder.
     figures : sequence of str
-        Formats in which the charts are also written as files, into a folder `figures`: of "png", "svg" and "pdf".
+        Formats in which the charts are also written as files, into a folder `figures`: of "png",
+        "svg" and "pdf".
 
     Raises
     ------
@@ -70,12 +84,17 @@ def save_measured_modes(
 
 def _chart(found: MeasuredModes) -> Chart:
     axis = Axis("Frequency", "Hz", range=(float(found.frequency[0]), float(found.frequency[-1])))
-    places = np.array([pair.measured.frequency.value for pair in found.modes if pair.measured is not None])
+    places = np.array(
+        [pair.measured.frequency.value for pair in found.modes if pair.measured is not None]
+    )
     rows = []
     for one, value in zip(found.responses[:MOST], found.value, strict=False):
         lines, shown = magnitude_lines(found.frequency, (value,), (("measured", "main"),))
         scale = Axis("Magnitude", one.unit, log=True, range=shown)
         marks: tuple[Mark, ...] = (*lines, Rug(places, "measured modes"))
         rows.append((Panel(axis, scale, marks, shortened(visible(one.name), 40)),))
-    caption = f"Measured frequency responses. Ticks mark the modes that were found.{those_drawn(len(found.responses))}"
+    caption = (
+        "Measured frequency responses. Ticks mark the modes that were "
+        f"found.{those_drawn(len(found.responses))}"
+    )
     return Chart("responses", "Frequency responses", tuple(rows), caption)

@@ -51,7 +51,8 @@ def modes_of_files(paths: Sequence[str | PathLike[str]]) -> MeasuredModes:
     Raises
     ------
     InputError
-        If a file can't be read or has no frequency response, their frequencies differ, or there are too few.
+        If a file can't be read or has no frequency response, their frequencies differ, or there are
+        too few.
     """
     responses, frequency, value = _read(paths)
     nan = float("nan")
@@ -61,7 +62,8 @@ def modes_of_files(paths: Sequence[str | PathLike[str]]) -> MeasuredModes:
 
 
 def modes_beside(basis: ModalBasis | None, paths: Sequence[str | PathLike[str]]) -> MeasuredModes:
-    """Return the modes in the frequency responses of universal files beside those of a plate, whatever places they were measured at.
+    """Return the modes in the frequency responses of universal files beside those of a plate,
+    whatever places they were measured at.
 
     Modes are compared from half the lowest frequency of the plate to its highest.
 
@@ -71,26 +73,46 @@ def modes_beside(basis: ModalBasis | None, paths: Sequence[str | PathLike[str]])
         As `modes_of_files`, or if the plate has no modes or the responses end below them.
     """
     if basis is None:
-        raise InputError('only the modes of a plate are compared, and that of the case is rigid; give it model = "elastic"', "plate.model")
+        raise InputError(
+            "only the modes of a plate are compared, and that of the case is rigid; give it "
+            'model = "elastic"',
+            "plate.model",
+        )
     responses, frequency, value = _read(paths)
     lowest, highest = float(basis.frequencies[0]), float(basis.frequencies[-1])
-    band = (max(0.5 * lowest, float(frequency[0])), min(max(highest, 1.5 * lowest), float(frequency[-1])))
+    band = (
+        max(0.5 * lowest, float(frequency[0])),
+        min(max(highest, 1.5 * lowest), float(frequency[-1])),
+    )
     if band[0] >= band[1] or lowest >= frequency[-1]:
         words = f"the modes of the plate are from {lowest:.5g} to {highest:.5g} Hz"
-        raise InputError(f"{words}, and the responses from {frequency[0]:.5g} to {frequency[-1]:.5g} Hz; they have no mode in common")
+        raise InputError(
+            f"{words}, and the responses from {frequency[0]:.5g} to {frequency[-1]:.5g} "
+            "Hz; they have no mode in common"
+        )
     found = modes_in_responses(responses, band)
-    pairs = paired(basis.frequencies, basis.damping_ratios, np.ones(len(basis.frequencies)), found, band)
+    pairs = paired(
+        basis.frequencies, basis.damping_ratios, np.ones(len(basis.frequencies)), found, band
+    )
     doubts = (*_doubts(responses, found, frequency), *shared_differences(pairs).sentences)
     return MeasuredModes(responses, frequency, value, pairs, doubts)
 
 
-def _read(paths: Sequence[str | PathLike[str]]) -> tuple[tuple[FrequencyResponse, ...], Floats, Complex]:
+def _read(
+    paths: Sequence[str | PathLike[str]],
+) -> tuple[tuple[FrequencyResponse, ...], Floats, Complex]:
     responses = tuple(response for path in paths for response in read_responses(path))
     return responses, *common_lines(responses)
 
 
-def _doubts(responses: Sequence[FrequencyResponse], found: Sequence[DecayMode], frequency: Floats) -> tuple[str, ...]:
-    return (*_of_records(responses), *doubts_of_files(responses), *doubts_of_resolution(found, frequency))
+def _doubts(
+    responses: Sequence[FrequencyResponse], found: Sequence[DecayMode], frequency: Floats
+) -> tuple[str, ...]:
+    return (
+        *_of_records(responses),
+        *doubts_of_files(responses),
+        *doubts_of_resolution(found, frequency),
+    )
 
 
 def _of_records(responses: Sequence[FrequencyResponse]) -> Iterator[str]:
@@ -99,4 +121,7 @@ def _of_records(responses: Sequence[FrequencyResponse]) -> Iterator[str]:
         number = len(contents_of(source).records)
         if number:
             records = f"{number} record{'s' if number > 1 else ''} over time"
-            yield f"{source} also has {records}, which these modes are not from; correlate --compare records compares them with a case"
+            yield (
+                f"{source} also has {records}, which these modes are not from; correlate "
+                "--compare records compares them with a case"
+            )

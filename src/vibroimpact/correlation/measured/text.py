@@ -14,9 +14,15 @@ from vibroimpact.runs.text import doubt_lines
 
 def measured_summary(found: MeasuredModes, name: str) -> RenderableType:
     """Return the measured modes and the doubts about them, for the terminal."""
-    return Group(Text(name, style="bold"), criteria_table(*measured_table(found)), *doubt_lines(found.doubts))
+    return Group(
+        Text(name, style="bold"), criteria_table(*measured_table(found)), *doubt_lines(found.doubts)
+    )
 
 
 def compared_summary(found: MeasuredTable) -> RenderableType:
     """Return measured modes beside those of a case, and the doubts about them, for the terminal."""
-    return Group(Text("\nmeasured modes", style="bold"), criteria_table(found.headers, found.cells), *doubt_lines(found.doubts))
+    return Group(
+        Text("\nmeasured modes", style="bold"),
+        criteria_table(found.headers, found.cells),
+        *doubt_lines(found.doubts),
+    )

@@ -37,37 +37,53 @@ def correlate_responses(
     band: tuple[float, float] | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> ResponseCorrelation:
-    """Compare measured frequency responses with those of a case: amplitudes, phases, FRAC, and the modes of both.
+    """Compare measured frequency responses with those of a case: amplitudes, phases, FRAC, and the
+    modes of both.
 
     Parameters
     ----------
     case : Case
-        The plate with its supports and damping, the sensors, named after the responses, and the place of the impact, where the force acts.
+        The plate with its supports and damping, the sensors, named after the responses, and the
+        place of the impact, where the force acts.
     responses : sequence of FrequencyResponse
         The measured responses, at the same frequencies.
     reference : str, optional
-        Name in the file of the place that is that of the case's impact; by default the only one where a force acts, or else the only one
-        where motion was measured, which is the same by reciprocity.
+        Name in the file of the place that is that of the case's impact; by default the only one
+        where a force acts, or else the only one where motion was measured, which is the same by
+        reciprocity.
     band : tuple of two floats, optional
-        The band of frequencies [Hz]; by default from half the lowest mode of the plate to its highest, as far as it was measured.
+        The band of frequencies [Hz]; by default from half the lowest mode of the plate to its
+        highest, as far as it was measured.
     progress : callable, optional
         Called with the fraction done while modes are computed.
 
     Raises
     ------
     InputError
-        If the plate is rigid or moves, the impact is oblique, no sensor has a response, a direction or a unit is another, frequencies
-        differ, or there are too few in the band.
+        If the plate is rigid or moves, the impact is oblique, no sensor has a response, a direction
+        or a unit is another, frequencies differ, or there are too few in the band.
 
     Examples
     --------
     >>> import numpy as np
     >>> import vibroimpact as vi
-    >>> plate = {"size": [0.3, 0.3, 0.02], "material": "steel", "model": "elastic", "modes": 10, "supports": "clamped", "damping": 0.01}
-    >>> case = vi.read_case({
-    ...     "sphere": {"radius": 0.02, "material": "steel"}, "plate": plate, "drop": {"speed": 1.0, "position": [0.02, 0.01]},
-    ...     "contact": {"law": "hertz"}, "sensors": [{"name": "a", "position": [0.1, 0.03]}],
-    ... })
+    >>> plate = {
+    ...     "size": [0.3, 0.3, 0.02],
+    ...     "material": "steel",
+    ...     "model": "elastic",
+    ...     "modes": 10,
+    ...     "supports": "clamped",
+    ...     "damping": 0.01,
+    ... }
+    >>> case = vi.read_case(
+    ...     {
+    ...         "sphere": {"radius": 0.02, "material": "steel"},
+    ...         "plate": plate,
+    ...         "drop": {"speed": 1.0, "position": [0.02, 0.01]},
+    ...         "contact": {"law": "hertz"},
+    ...         "sensors": [{"name": "a", "position": [0.1, 0.03]}],
+    ...     }
+    ... )
     >>> measured = vi.responses_of_case(case, np.arange(500.0, 4000.0, 2.0))
     >>> found = vi.correlate_responses(case, measured)
     >>> pair = found.modes[0]
@@ -80,18 +96,33 @@ def correlate_responses(
     used = _band(problem, frequency, band)
     inside = (frequency >= used[0]) & (frequency <= used[1])
     if inside.sum() < _FEWEST:
-        there = {0: "there is no frequency", 1: "there is one frequency"}.get(int(inside.sum()), f"there are {inside.sum()} frequencies")
-        words = f"{there} from {used[0]:.5g} to {used[1]:.5g} Hz, and the responses are from {frequency[0]:.5g} to {frequency[-1]:.5g} Hz"
-        remedy = "measure at more frequencies" if band is None else "state a wider band, or measure at more frequencies"
+        there = {0: "there is no frequency", 1: "there is one frequency"}.get(
+            int(inside.sum()), f"there are {inside.sum()} frequencies"
+        )
+        words = (
+            f"{there} from {used[0]:.5g} to {used[1]:.5g} Hz, and the responses are from "
+            f"{frequency[0]:.5g} to {frequency[-1]:.5g} Hz"
+        )
+        remedy = (
+            "measure at more frequencies"
+            if band is None
+            else "state a wider band, or measure at more frequencies"
+        )
         raise InputError(f"{words}; {_FEWEST} are needed: {remedy}")
     found = modes_in_responses(match.responses, used)
     pairs = pairs_of(problem, match.sensors, found, used)
     differences = shared_differences(pairs)
-    units = tuple(one.unit or unit_of(sensor) for sensor, one in zip(match.sensors, match.responses, strict=True))
+    units = tuple(
+        one.unit or unit_of(sensor)
+        for sensor, one in zip(match.sensors, match.responses, strict=True)
+    )
     stated = np.array(match.signs)[:, None]
     as_scaled = differences.scaled(problem)
     plates = (problem, as_scaled, differences.damped(as_scaled))
-    simulated, scaled, damped = (stated * computed_responses(plate, match.sensors, units, frequency[inside]) for plate in plates)
+    simulated, scaled, damped = (
+        stated * computed_responses(plate, match.sensors, units, frequency[inside])
+        for plate in plates
+    )
     polarity = _polarity(value[:, inside], damped, match)
     measured = polarity[:, None] * value[:, inside]
     octaves = octaves_of(used)
@@ -115,11 +146,19 @@ def correlate_responses(
         modes=pairs,
         doubts=(),
     )
-    return replace(compared, doubts=tuple(doubts_about(compared, problem, match, differences, _norms(measured) / _norms(damped))))
+    return replace(
+        compared,
+        doubts=tuple(
+            doubts_about(compared, problem, match, differences, _norms(measured) / _norms(damped))
+        ),
+    )
 
 
-def responses_of_case(case: CaseTable, frequency: object, progress: Callable[[float], None] | None = None) -> tuple[FrequencyResponse, ...]:
-    """Return the frequency responses of the sensors of a case to a force upwards at the place of its impact.
+def responses_of_case(
+    case: CaseTable, frequency: object, progress: Callable[[float], None] | None = None
+) -> tuple[FrequencyResponse, ...]:
+    """Return the frequency responses of the sensors of a case to a force upwards at the place of
+    its impact.
 
     Parameters
     ----------
@@ -133,16 +172,29 @@ def responses_of_case(case: CaseTable, frequency: object, progress: Callable[[fl
     Raises
     ------
     InputError
-        If the plate is rigid or moves, the impact is oblique, there are no sensors or a microphone, or frequencies do not rise.
+        If the plate is rigid or moves, the impact is oblique, there are no sensors or a microphone,
+        or frequencies do not rise.
 
     Examples
     --------
     >>> import vibroimpact as vi
-    >>> plate = {"size": [0.3, 0.3, 0.02], "material": "steel", "model": "elastic", "modes": 10, "supports": "clamped", "damping": 0.01}
-    >>> case = vi.read_case({
-    ...     "sphere": {"radius": 0.02, "material": "steel"}, "plate": plate, "drop": {"speed": 1.0, "position": [0.02, 0.01]},
-    ...     "contact": {"law": "hertz"}, "sensors": [{"name": "a", "position": [0.1, 0.03]}],
-    ... })
+    >>> plate = {
+    ...     "size": [0.3, 0.3, 0.02],
+    ...     "material": "steel",
+    ...     "model": "elastic",
+    ...     "modes": 10,
+    ...     "supports": "clamped",
+    ...     "damping": 0.01,
+    ... }
+    >>> case = vi.read_case(
+    ...     {
+    ...         "sphere": {"radius": 0.02, "material": "steel"},
+    ...         "plate": plate,
+    ...         "drop": {"speed": 1.0, "position": [0.02, 0.01]},
+    ...         "contact": {"law": "hertz"},
+    ...         "sensors": [{"name": "a", "position": [0.1, 0.03]}],
+    ...     }
+    ... )
     >>> (response,) = vi.responses_of_case(case, [200.0, 400.0, 800.0])
     >>> response.unit, len(response.value)
     ('m/s2/N', 3)
@@ -152,7 +204,11 @@ def responses_of_case(case: CaseTable, frequency: object, progress: Callable[[fl
     units = tuple(unit_of(sensor) for sensor in problem.sensors)
     told = [
         FrequencyResponse(
-            DegreeOfFreedom((sensor.name,)), DegreeOfFreedom(("impact",), UP), lines, np.ones(lines.shape, dtype=complex), unit
+            DegreeOfFreedom((sensor.name,)),
+            DegreeOfFreedom(("impact",), UP),
+            lines,
+            np.ones(lines.shape, dtype=complex),
+            unit,
         )
         for sensor, unit in zip(problem.sensors, units, strict=True)
     ]
@@ -161,7 +217,9 @@ def responses_of_case(case: CaseTable, frequency: object, progress: Callable[[fl
     return tuple(replace(one, value=value) for one, value in zip(told, values, strict=True))
 
 
-def _band(problem: Problem, frequency: Floats, band: tuple[float, float] | None) -> tuple[float, float]:
+def _band(
+    problem: Problem, frequency: Floats, band: tuple[float, float] | None
+) -> tuple[float, float]:
     """Return the band of frequencies that is compared.
 
     Raises
@@ -175,19 +233,23 @@ def _band(problem: Problem, frequency: Floats, band: tuple[float, float] | None)
     if band is not None:
         if not (first <= band[0] < band[1] <= last):
             raise InputError(
-                f"a band from {band[0]:g} to {band[1]:g} Hz is not allowed; it must rise, within the {first:g} to {last:g} Hz measured"
+                f"a band from {band[0]:g} to {band[1]:g} Hz is not allowed; it must rise, "
+                f"within the {first:g} to {last:g} Hz measured"
             )
         return band
     lowest, highest = float(modes.frequencies[0]), float(modes.frequencies[-1])
     if lowest >= last:
         raise InputError(
-            f"the lowest mode of the plate has {lowest:.5g} Hz, and the responses end at {last:.5g} Hz; measure up to higher frequencies"
+            f"the lowest mode of the plate has {lowest:.5g} Hz, and the responses end at "
+            f"{last:.5g} Hz; measure up to higher frequencies"
         )
     return max(0.5 * lowest, first), min(max(highest, 1.5 * lowest), last)
 
 
 def _polarity(measured: Complex, simulated: Complex, match: Matched) -> Floats:
-    """Return 1, or -1 for responses that are upside down: where it is not stated how the force is positive, as the clearest one is."""
+    """Return 1, or -1 for responses that are upside down: where it is not stated how the
+    force is positive, as the clearest one is.
+    """
     alike = np.real(np.sum(measured * simulated.conj(), axis=1))
     alike /= np.linalg.norm(measured, axis=1) * np.linalg.norm(simulated, axis=1)
     usual = 1.0
@@ -209,4 +271,6 @@ def _coherence(match: Matched, inside: Bools) -> Floats | None:
     if all(one.coherence is None for one in match.responses):
         return None
     untold = np.full(int(inside.sum()), np.nan)
-    return np.stack([untold if one.coherence is None else one.coherence[inside] for one in match.responses])
+    return np.stack(
+        [untold if one.coherence is None else one.coherence[inside] for one in match.responses]
+    )

@@ -16,14 +16,21 @@ _ORDERS = {"m/N": 0, "m/s/N": 1, "m/s2/N": 2}
 """Order of the derivative of the displacement that a response is of."""
 
 
-def computed_responses(problem: Problem, sensors: Sequence[Sensor], units: Sequence[str], frequency: Floats) -> Complex:
-    r"""Return the frequency responses of sensors to a force upwards at the contact point, (S, frequencies).
+def computed_responses(
+    problem: Problem, sensors: Sequence[Sensor], units: Sequence[str], frequency: Floats
+) -> Complex:
+    r"""Return the frequency responses of sensors to a force upwards at the contact point, (S,
+    frequencies).
 
-    .. math:: H = G(i \omega) \left(\sum_r \frac{\varphi_r(x_s)\,\varphi_r(x_c)}{\omega_r^2 - \omega^2 + 2 i \zeta_r \omega_r \omega}
+    .. math::
+
+        H = G(i \omega) \left(\sum_r \frac{\varphi_r(x_s)\,\varphi_r(x_c)}{\omega_r^2 - \omega^2 + 2
+        i \zeta_r \omega_r \omega}
         + C\right)
 
-    with rigid motions and modes of unit modal mass, the static compliance C of the modes left out, and the instrument G. Anti-alias
-    filters are left out: force and motion pass through the same, and their ratio has none.
+    with rigid motions and modes of unit modal mass, the static compliance C of the modes left out,
+    and the instrument G. Anti-alias filters are left out: force and motion pass through the same,
+    and their ratio has none.
 
     Parameters
     ----------
@@ -38,13 +45,25 @@ def computed_responses(problem: Problem, sensors: Sequence[Sensor], units: Seque
     """
     omega = 2.0 * np.pi * np.asarray(frequency)
     bases = bases_of_plate(problem)
-    natural, ratios = (np.concatenate(part) for part in zip(*((one.angular_frequencies, one.damping_ratios) for one in bases), strict=True))
+    natural, ratios = (
+        np.concatenate(part)
+        for part in zip(
+            *((one.angular_frequencies, one.damping_ratios) for one in bases), strict=True
+        )
+    )
     resonances = 1.0 / (natural[:, None] ** 2 - omega**2 + 2j * (ratios * natural)[:, None] * omega)
-    touched, left_out = shapes_of(problem), compliances_of(problem, [sensor.name for sensor in sensors])
+    touched, left_out = (
+        shapes_of(problem),
+        compliances_of(problem, [sensor.name for sensor in sensors]),
+    )
     found = []
     for sensor, unit, compliance in zip(sensors, units, left_out, strict=True):
-        shapes = np.concatenate([basis.points[sensor.name] for basis in bases]) @ np.asarray(sensor.components)
-        found.append(_transfer(sensor, unit, omega) * ((touched * shapes) @ resonances + compliance))
+        shapes = np.concatenate([basis.points[sensor.name] for basis in bases]) @ np.asarray(
+            sensor.components
+        )
+        found.append(
+            _transfer(sensor, unit, omega) * ((touched * shapes) @ resonances + compliance)
+        )
     return np.stack(found)
 
 
@@ -52,7 +71,11 @@ def _transfer(sensor: Sensor, unit: str, omega: Floats) -> Complex:
     """Return what a sensor makes of the displacement or the strain that it sees."""
     if sensor.instrument is None:
         return np.asarray((1j * omega) ** _ORDERS.get(unit, sensor.order))
-    passed = np.full(len(omega), sensor.instrument.gain * (sensor.amplifier.gain if sensor.amplifier else 1.0), dtype=complex)
+    passed = np.full(
+        len(omega),
+        sensor.instrument.gain * (sensor.amplifier.gain if sensor.amplifier else 1.0),
+        dtype=complex,
+    )
     for stiffness, damping in sensor.sections:
         passed *= stiffness / (stiffness - omega**2 + 1j * damping * omega)
     return np.asarray(passed * (1j * omega) ** sensor.order)

@@ -1,4 +1,6 @@
-"""A correlation of frequency responses as data: its table, and its summary, which `correlate --json` prints."""
+"""A correlation of frequency responses as data: its table, and its summary, which
+`correlate --json` prints.
+"""
 
 from __future__ import annotations
 
@@ -14,7 +16,16 @@ from vibroimpact.correlation.responses.result import ResponseCorrelation
 from vibroimpact.shown import visible
 from vibroimpact.units.display import MISSING, digits, multiple
 
-RESPONSE_HEADERS = ("Response", "Unit", "Polarity", "Measured over simulated", "Level, dB", "Phase, °", "FRAC", "Coherence")
+RESPONSE_HEADERS = (
+    "Response",
+    "Unit",
+    "Polarity",
+    "Measured over simulated",
+    "Level, dB",
+    "Phase, °",
+    "FRAC",
+    "Coherence",
+)
 """Headers of the table of responses."""
 WHAT_FRAC_IS_OF = "the measured frequency responses"
 
@@ -55,7 +66,9 @@ def _coherences(found: ResponseCorrelation) -> list[float | None]:
 
 
 def summary_of_responses(found: ResponseCorrelation) -> dict[str, Any]:
-    """Return the content of `summary.json`, and of what `correlate --json` prints of frequency responses."""
+    """Return the content of `summary.json`, and of what `correlate --json` prints of
+    frequency responses.
+    """
     coherences = _coherences(found)
     return {
         "name": found.case.name,
@@ -72,7 +85,9 @@ def summary_of_responses(found: ResponseCorrelation) -> dict[str, Any]:
                 "level_difference_dB": float(found.level_difference[number]),
                 "phase_difference_rad": float(found.phase_difference[number]),
                 "frac": float(found.frac[number]),
-                "octave_frac": [None if np.isnan(value) else float(value) for value in found.octave_frac[number]],
+                "octave_frac": [
+                    None if np.isnan(value) else float(value) for value in found.octave_frac[number]
+                ],
                 "scaled_frac": float(found.scaled_frac[number]),
                 "damped_frac": float(found.damped_frac[number]),
                 "coherence_median": coherences[number],

@@ -16,11 +16,17 @@ from vibroimpact.signals.decay.find import DecayMode
 from vibroimpact.signals.frequency_response import FrequencyResponse
 
 COHERENT = 0.9
-"""Coherence below which a response is not sure: its standard deviation is then a quarter of it, of one average."""
+"""Coherence below which a response is not sure: its standard deviation is then a quarter
+of it, of one average.
+"""
 _MANY = 0.2
-"""Part of the frequencies with a low coherence from which on it is said; antiresonances have some."""
+"""Part of the frequencies with a low coherence from which on it is said; antiresonances
+have some.
+"""
 _ALIKE, _GAIN = 0.9, 0.05
-"""FRAC from which on a scale is that of a sensitivity, and the relative error of it that is said."""
+"""FRAC from which on a scale is that of a sensitivity, and the relative error of it that
+is said.
+"""
 _LARGE_GAIN = 0.5
 """Relative error of the size of a response that is said of others."""
 _LINES = 3
@@ -29,7 +35,11 @@ _NAMED = 4
 
 
 def doubts_about(
-    found: ResponseCorrelation, problem: Problem, match: Matched, differences: SharedDifferences, scale: Floats
+    found: ResponseCorrelation,
+    problem: Problem,
+    match: Matched,
+    differences: SharedDifferences,
+    scale: Floats,
 ) -> Iterator[str]:
     """Yield the doubts about a correlation, one sentence each without its full stop.
 
@@ -49,23 +59,36 @@ def doubts_about(
     yield from doubts_of_files(match.responses)
     if match.left_out:
         number, have = match.left_out, "responses have" if match.left_out > 1 else "response has"
-        yield f"{number} {have} no sensor of that name and direction in the case, and {'are' if number > 1 else 'is'} not compared"
+        yield (
+            f"{number} {have} no sensor of that name and direction in the case, and "
+            f"{'are' if number > 1 else 'is'} not compared"
+        )
     if match.reciprocal:
-        yield f"the hammer was at the sensors, and the motion was measured at {shown(match.reference)}: taken as equal, by reciprocity"
+        yield (
+            "the hammer was at the sensors, and the motion was measured at "
+            f"{shown(match.reference)}: taken as equal, by reciprocity"
+        )
     for name, sign in zip((sensor.name for sensor in found.sensors), found.polarity, strict=True):
         if sign < 0.0:
             yield f"the response {shown(name)} has inverted polarity; its sign is changed"
     yield from doubts_of_differences(differences, found.frac, found.scaled_frac, found.damped_frac)
-    for name, size, of in zip((sensor.name for sensor in found.sensors), scale, found.damped_frac, strict=True):
+    for name, size, of in zip(
+        (sensor.name for sensor in found.sensors), scale, found.damped_frac, strict=True
+    ):
         if abs(size - 1.0) > (_GAIN if of > _ALIKE else _LARGE_GAIN):
             words = f"the response {shown(name)} has {size:.3g} times the simulated magnitude"
             yield f"{words}: check the sensitivity, and mass and damping of the plate"
     yield from _of_coherence(found)
-    yield from doubts_of_resolution([pair.measured for pair in found.modes if pair.measured is not None], found.frequency)
+    yield from doubts_of_resolution(
+        [pair.measured for pair in found.modes if pair.measured is not None], found.frequency
+    )
     assert problem.plate.modes is not None
     highest = float(problem.plate.modes.frequencies[-1])
     if highest < found.band[1]:
-        yield f"the modes of the case end at {highest:.5g} Hz, and the band at {found.band[1]:.5g} Hz: ask for more modes"
+        yield (
+            f"the modes of the case end at {highest:.5g} Hz, and the band at "
+            f"{found.band[1]:.5g} Hz: ask for more modes"
+        )
 
 
 def doubts_of_files(responses: Sequence[FrequencyResponse]) -> Iterator[str]:
@@ -94,15 +117,34 @@ def _of_coherence(found: ResponseCorrelation) -> Iterator[str]:
         at = f"at the mode{'s' if len(low) > 1 else ''} of {_few(low)} Hz" if low else ""
         many = f"at {100.0 * part:.2g} % of the frequencies" if part > _MANY else ""
         if at or many:
-            words = f"the coherence of {shown(sensor.name)} is below {COHERENT} {' and '.join(filter(None, (at, many)))}"
-            yield f"{words}: noise, leakage, a second hit, or a nonlinearity; magnitude and damping are uncertain there"
+            words = (
+                f"the coherence of {shown(sensor.name)} is below {COHERENT} "
+                f"{' and '.join(filter(None, (at, many)))}"
+            )
+            yield (
+                f"{words}: noise, leakage, a second hit, or a nonlinearity; magnitude and "
+                "damping are uncertain there"
+            )
 
 
 def doubts_of_resolution(modes: Sequence[DecayMode], frequency: Floats) -> Iterator[str]:
     """Yield modes that are narrower than what the frequencies resolve."""
     step = float(np.median(np.diff(frequency)))
-    narrow = [f"{mode.frequency.value:.4g}" for mode in modes if 2.0 * mode.damping_ratio.value * mode.frequency.value < _LINES * step]
+    narrow = [
+        f"{mode.frequency.value:.4g}"
+        for mode in modes
+        if 2.0 * mode.damping_ratio.value * mode.frequency.value < _LINES * step
+    ]
     if narrow:
-        places = f"bandwidths of the modes of {_few(narrow)} Hz are" if len(narrow) > 1 else f"bandwidth of the mode of {narrow[0]} Hz is"
-        words = f"the half-power {places} below {_LINES} steps of the frequencies, {step:.3g} Hz each"
-        yield f"{words}: a window or a record that was cut off makes damping look larger; measure longer"
+        places = (
+            f"bandwidths of the modes of {_few(narrow)} Hz are"
+            if len(narrow) > 1
+            else f"bandwidth of the mode of {narrow[0]} Hz is"
+        )
+        words = (
+            f"the half-power {places} below {_LINES} steps of the frequencies, {step:.3g} Hz each"
+        )
+        yield (
+            f"{words}: a window or a record that was cut off makes "
+            "damping look larger; measure longer"
+        )

@@ -1,4 +1,6 @@
-"""Writes a correlation of frequency responses as a folder: responses, modes, the summary, the case and a report."""
+"""Writes a correlation of frequency responses as a folder: responses, modes, the summary,
+the case and a report.
+"""
 
 from __future__ import annotations
 
@@ -22,7 +24,12 @@ from vibroimpact.correlation.document import (
 )
 from vibroimpact.correlation.mode_pairs import damping_field
 from vibroimpact.correlation.responses.charts import response_charts
-from vibroimpact.correlation.responses.document import RESPONSE_HEADERS, WHAT_FRAC_IS_OF, response_rows, summary_of_responses
+from vibroimpact.correlation.responses.document import (
+    RESPONSE_HEADERS,
+    WHAT_FRAC_IS_OF,
+    response_rows,
+    summary_of_responses,
+)
 from vibroimpact.correlation.responses.result import ResponseCorrelation
 from vibroimpact.files.plain_names import plain_names
 from vibroimpact.report.page import render_page
@@ -31,12 +38,16 @@ from vibroimpact.results.folder import new_folder, write_summary
 
 
 def save_response_correlation(
-    found: ResponseCorrelation, directory: str | PathLike[str], *, force: bool = False, figures: Sequence[str] = ()
+    found: ResponseCorrelation,
+    directory: str | PathLike[str],
+    *,
+    force: bool = False,
+    figures: Sequence[str] = (),
 ) -> Path:
     """Write a correlation of frequency responses atomically.
 
-    The folder has `responses.csv` (frequency, and of each response magnitude and phase of both, and the coherence), `modes.csv`,
-    `summary.json`, `case.toml` and a report.
+    The folder has `responses.csv` (frequency, and of each response magnitude and phase of both, and
+    the coherence), `modes.csv`, `summary.json`, `case.toml` and a report.
 
     Parameters
     ----------
@@ -47,7 +58,8 @@ def save_response_correlation(
     force : bool, default False
         Replace an existing folder.
     figures : sequence of str
-        Formats in which the charts are also written as files, into a folder `figures`: of "png", "svg" and "pdf".
+        Formats in which the charts are also written as files, into a folder `figures`: of "png",
+        "svg" and "pdf".
 
     Raises
     ------
@@ -59,14 +71,31 @@ def save_response_correlation(
     >>> from tempfile import TemporaryDirectory
     >>> import numpy as np
     >>> import vibroimpact as vi
-    >>> plate = {"size": [0.3, 0.3, 0.02], "material": "steel", "model": "elastic", "modes": 10, "supports": "clamped", "damping": 0.01}
-    >>> case = vi.read_case({
-    ...     "sphere": {"radius": 0.02, "material": "steel"}, "plate": plate, "drop": {"speed": 1.0, "position": [0.02, 0.01]},
-    ...     "contact": {"law": "hertz"}, "sensors": [{"name": "a", "position": [0.1, 0.03]}],
-    ... })
-    >>> found = vi.correlate_responses(case, vi.responses_of_case(case, np.arange(500.0, 4000.0, 2.0)))
+    >>> plate = {
+    ...     "size": [0.3, 0.3, 0.02],
+    ...     "material": "steel",
+    ...     "model": "elastic",
+    ...     "modes": 10,
+    ...     "supports": "clamped",
+    ...     "damping": 0.01,
+    ... }
+    >>> case = vi.read_case(
+    ...     {
+    ...         "sphere": {"radius": 0.02, "material": "steel"},
+    ...         "plate": plate,
+    ...         "drop": {"speed": 1.0, "position": [0.02, 0.01]},
+    ...         "contact": {"law": "hertz"},
+    ...         "sensors": [{"name": "a", "position": [0.1, 0.03]}],
+    ...     }
+    ... )
+    >>> found = vi.correlate_responses(
+    ...     case, vi.responses_of_case(case, np.arange(500.0, 4000.0, 2.0))
+    ... )
     >>> with TemporaryDirectory() as folder:
-    ...     sorted(file.name for file in vi.save_response_correlation(found, f"{folder}/compared").iterdir())
+    ...     sorted(
+    ...         file.name
+    ...         for file in vi.save_response_correlation(found, f"{folder}/compared").iterdir()
+    ...     )
     ['case.toml', 'modes.csv', 'report.html', 'responses.csv', 'summary.json']
     """
     with new_folder(directory, force=force) as folder:
@@ -74,7 +103,9 @@ def save_response_correlation(
         write_columns(response_columns(found, plain), folder / "responses.csv")
         write_csv(mode_table(found), list(MODE_COLUMNS), folder / "modes.csv")
         write_summary(summary_of_responses(found), folder)
-        (folder / "case.toml").write_text(tomli_w.dumps(resolved_case(found.case)), encoding="utf-8")
+        (folder / "case.toml").write_text(
+            tomli_w.dumps(resolved_case(found.case)), encoding="utf-8"
+        )
         charts = response_charts(found)
         write_figures(charts, folder, figures)
         page = render_page(

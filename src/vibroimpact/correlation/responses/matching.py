@@ -29,13 +29,16 @@ class Matched:
     responses : tuple of FrequencyResponse
         The response of each.
     signs : tuple of float
-        1 where the measured response is that of the sensor to a force upwards, -1 where force or direction are the other way round.
+        1 where the measured response is that of the sensor to a force upwards, -1 where force or
+        direction are the other way round.
     reference : str
         The place that is that of the impact.
     reciprocal : bool
-        Whether the hammer was at the sensors, and the motion was measured at the place of the impact.
+        Whether the hammer was at the sensors, and the motion was measured at the place of the
+        impact.
     sense_known : bool
-        Whether it is stated in which direction the force is positive; else it is taken as that of a hammer, downwards.
+        Whether it is stated in which direction the force is positive; else it is taken as that of a
+        hammer, downwards.
     left_out : int
         Number of responses to this force that no sensor of the case is named after.
     """
@@ -49,7 +52,9 @@ class Matched:
     left_out: int
 
 
-def matched(sensors: Sequence[Sensor], responses: Sequence[FrequencyResponse], reference: str | None) -> Matched:
+def matched(
+    sensors: Sequence[Sensor], responses: Sequence[FrequencyResponse], reference: str | None
+) -> Matched:
     """Return the responses of sensors.
 
     Parameters
@@ -59,13 +64,14 @@ def matched(sensors: Sequence[Sensor], responses: Sequence[FrequencyResponse], r
     responses : sequence of FrequencyResponse
         The measured responses.
     reference : str, optional
-        Name of the place of the case's impact in the file; by default the only one where a force acts, or where motion was measured.
+        Name of the place of the case's impact in the file; by default the only one where a force
+        acts, or where motion was measured.
 
     Raises
     ------
     InputError
-        If there is no response, it is not clear which place is that of the impact, no sensor has a response or one has several, or a
-        direction or a unit is another.
+        If there is no response, it is not clear which place is that of the impact, no sensor has a
+        response or one has several, or a direction or a unit is another.
     """
     if not responses:
         raise InputError("there is no frequency response; give at least one")
@@ -73,7 +79,8 @@ def matched(sensors: Sequence[Sensor], responses: Sequence[FrequencyResponse], r
     across = [(one, there) for one, here, there in pairs if abs(here.direction) in (0, UP)]
     if not across:
         raise InputError(
-            f"the {'motions' if reciprocal else 'forces'} at {shown(name)} are along the plate, and the case's force is normal to it; "
+            f"the {'motions' if reciprocal else 'forces'} at {shown(name)} are along the "
+            "plate, and the case's force is normal to it; "
             "give responses with those along z"
         )
     chosen: dict[str, tuple[Sensor, FrequencyResponse, DegreeOfFreedom]] = {}
@@ -81,19 +88,36 @@ def matched(sensors: Sequence[Sensor], responses: Sequence[FrequencyResponse], r
         fitting = [(one, there) for one, there in across if sensor.name in there.names]
         along = [(one, there) for one, there in fitting if _axis_fits(sensor, there)]
         if fitting and not along:
-            words = f"the response {shown(sensor.name)} is along {_AXES[abs(fitting[0][1].direction) - 1]}, and the case's sensor along"
-            raise InputError(f"{words} {list(sensor.direction)}; write its direction as it was measured", "sensors.direction")
+            words = (
+                f"the response {shown(sensor.name)} is along "
+                f"{_AXES[abs(fitting[0][1].direction) - 1]}, and the case's sensor along"
+            )
+            raise InputError(
+                f"{words} {list(sensor.direction)}; write its direction as it was measured",
+                "sensors.direction",
+            )
         if len(along) > 1:
             motion, force = (name, sensor.name) if reciprocal else (sensor.name, name)
-            words = f"there are {len(along)} frequency responses of the motion at {shown(motion)} to a force at {shown(force)}"
+            words = (
+                f"there are {len(along)} frequency responses of the motion at {shown(motion)} "
+                f"to a force at {shown(force)}"
+            )
             raise InputError(f"{words}; leave one of them in the file")
         if along:
             chosen[sensor.name] = (sensor, *along[0])
     if not chosen:
         named = listed(dict.fromkeys(there.name for _, there in across), sensors[0].name)
-        what = f"a force with a response at {shown(name)}" if reciprocal else f"a response to the force at {shown(name)}"
-        words = f"no sensor of the case ({listed(one.name for one in sensors)}) is named after {what}"
-        remedy = f'write the name of the sensor as the file has it, such as name = "{across[0][1].name}"'
+        what = (
+            f"a force with a response at {shown(name)}"
+            if reciprocal
+            else f"a response to the force at {shown(name)}"
+        )
+        words = (
+            f"no sensor of the case ({listed(one.name for one in sensors)}) is named after {what}"
+        )
+        remedy = (
+            f'write the name of the sensor as the file has it, such as name = "{across[0][1].name}"'
+        )
         raise InputError(f"{words}: {named}; {remedy}", "sensors.name")
     for sensor, one, _ in chosen.values():
         _check_unit(sensor, one)
@@ -102,7 +126,10 @@ def matched(sensors: Sequence[Sensor], responses: Sequence[FrequencyResponse], r
     return Matched(
         tuple(sensor for sensor, _, _ in chosen.values()),
         tuple(one for _, one, _ in chosen.values()),
-        tuple((1.0 if here[id(one)].direction > 0 else -1.0) * _sense(sensor, there) for sensor, one, there in chosen.values()),
+        tuple(
+            (1.0 if here[id(one)].direction > 0 else -1.0) * _sense(sensor, there)
+            for sensor, one, there in chosen.values()
+        ),
         name,
         reciprocal,
         all(directions),
@@ -113,7 +140,8 @@ def matched(sensors: Sequence[Sensor], responses: Sequence[FrequencyResponse], r
 def _of_impact(
     responses: Sequence[FrequencyResponse], reference: str | None
 ) -> tuple[str, list[tuple[FrequencyResponse, DegreeOfFreedom, DegreeOfFreedom]], bool]:
-    """Return the name of the place of the impact, the responses with that place and the other one, and whether they are reciprocal.
+    """Return the name of the place of the impact, the responses with that place and the other one,
+    and whether they are reciprocal.
 
     Raises
     ------
@@ -121,27 +149,43 @@ def _of_impact(
         If there is no such place, or there are several and none is named.
     """
     by_force, by_motion = [one.reference for one in responses], [one.response for one in responses]
-    forces, motions = (list(dict.fromkeys(place.name for place in places)) for places in (by_force, by_motion))
+    forces, motions = (
+        list(dict.fromkeys(place.name for place in places)) for places in (by_force, by_motion)
+    )
     if reference is None:
         if len(forces) > 1 and len(motions) > 1:
             raise InputError(
-                f"the forces act at {listed(forces)}; name the one at drop.position of the case by --hammer (in Python reference)"
+                f"the forces act at {listed(forces)}; name the one at drop.position of the "
+                "case by --hammer (in Python reference)"
             )
         reciprocal = len(forces) > 1
         name = motions[0] if reciprocal else forces[0]
     else:
-        at_force, at_motion = (sum(reference in place.names for place in places) for places in (by_force, by_motion))
+        at_force, at_motion = (
+            sum(reference in place.names for place in places) for places in (by_force, by_motion)
+        )
         if not at_force and not at_motion:
             acting = f"forces act at {listed(forces)}, motion was measured at {listed(motions)}"
             meant = did_you_mean(reference, [*motions, *forces])
-            raise InputError(f"no force acts, and no motion was measured, at {shown(reference)}; {acting}.{meant}", "--hammer")
+            raise InputError(
+                f"no force acts, and no motion was measured, at {shown(reference)}; "
+                f"{acting}.{meant}",
+                "--hammer",
+            )
         name, reciprocal = reference, at_motion > at_force
-    ends = [(one, one.response, one.reference) if reciprocal else (one, one.reference, one.response) for one in responses]
+    ends = [
+        (one, one.response, one.reference) if reciprocal else (one, one.reference, one.response)
+        for one in responses
+    ]
     return name, [(one, here, there) for one, here, there in ends if name in here.names], reciprocal
 
 
 def _axis_fits(sensor: Sensor, there: DegreeOfFreedom) -> bool:
-    return there.direction == 0 or sensor.sees_strain or abs(sensor.direction[abs(there.direction) - 1]) > _ALONG
+    return (
+        there.direction == 0
+        or sensor.sees_strain
+        or abs(sensor.direction[abs(there.direction) - 1]) > _ALONG
+    )
 
 
 def _sense(sensor: Sensor, there: DegreeOfFreedom) -> float:
@@ -157,11 +201,24 @@ def unit_of(sensor: Sensor) -> str:
 
 
 def _check_unit(sensor: Sensor, response: FrequencyResponse) -> None:
-    """Raise InputError if a response can't be that of a sensor: one without an instrument may be of any motion."""
+    """Raise InputError if a response can't be that of a sensor: one without an instrument
+    may be of any motion.
+    """
     if isinstance(sensor.instrument, Microphone):
-        raise InputError(f"{shown(sensor.name)} is a microphone, which hears the whole plate; leave it out", "sensors")
+        raise InputError(
+            f"{shown(sensor.name)} is a microphone, which hears the whole plate; leave it out",
+            "sensors",
+        )
     motions = ("m/N", "m/s/N", "m/s2/N")
-    any_motion = sensor.instrument is None and response.unit in motions and unit_of(sensor) in motions
+    any_motion = (
+        sensor.instrument is None and response.unit in motions and unit_of(sensor) in motions
+    )
     if response.unit not in ("", unit_of(sensor)) and not any_motion:
-        words = f"the response {shown(sensor.name)} is in {response.unit}, and the sensor of that name gives {unit_of(sensor)}"
-        raise InputError(f"{words}; give the case's sensor the quantity or the instrument that was used", "sensors")
+        words = (
+            f"the response {shown(sensor.name)} is in {response.unit}, and the sensor of that "
+            f"name gives {unit_of(sensor)}"
+        )
+        raise InputError(
+            f"{words}; give the case's sensor the quantity or the instrument that was used",
+            "sensors",
+        )

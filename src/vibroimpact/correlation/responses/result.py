@@ -27,7 +27,8 @@ class ResponseCorrelation:
     reference : str
         Name in the file of the place that is that of the case's impact.
     reciprocal : bool
-        Whether the hammer was at the sensors, and the motion was measured at the place of the impact.
+        Whether the hammer was at the sensors, and the motion was measured at the place of the
+        impact.
     band : tuple of two floats
         The band of frequencies that is compared [Hz].
     polarity : array, shape (S,)
@@ -41,11 +42,13 @@ class ResponseCorrelation:
     octaves : tuple of (float, float)
         The octaves of the band [Hz].
     frac, octave_frac : array, shape (S,) and (S, octaves)
-        Frequency response assurance criterion over the band, and over each octave; NaN with fewer than four frequencies in it.
+        Frequency response assurance criterion over the band, and over each octave; NaN with fewer
+        than four frequencies in it.
     scaled_frac : array, shape (S,)
         The criterion with the frequencies of the case scaled by what all of them have in common.
     damped_frac : array, shape (S,)
-        The criterion with these frequencies and the measured damping ratios, where they differ from the case's.
+        The criterion with these frequencies and the measured damping ratios, where they differ from
+        the case's.
     modes : tuple of ModePair
         The modes of the case and of the responses.
     doubts : tuple of str
@@ -55,11 +58,23 @@ class ResponseCorrelation:
     --------
     >>> import numpy as np
     >>> import vibroimpact as vi
-    >>> plate = {"size": [0.3, 0.3, 0.02], "material": "steel", "model": "elastic", "modes": 10, "supports": "clamped", "damping": 0.01}
-    >>> case = vi.read_case({
-    ...     "sphere": {"radius": 0.02, "material": "steel"}, "plate": plate, "drop": {"speed": 1.0, "position": [0.02, 0.01]},
-    ...     "contact": {"law": "hertz"}, "sensors": [{"name": "a", "position": [0.1, 0.03]}],
-    ... })
+    >>> plate = {
+    ...     "size": [0.3, 0.3, 0.02],
+    ...     "material": "steel",
+    ...     "model": "elastic",
+    ...     "modes": 10,
+    ...     "supports": "clamped",
+    ...     "damping": 0.01,
+    ... }
+    >>> case = vi.read_case(
+    ...     {
+    ...         "sphere": {"radius": 0.02, "material": "steel"},
+    ...         "plate": plate,
+    ...         "drop": {"speed": 1.0, "position": [0.02, 0.01]},
+    ...         "contact": {"law": "hertz"},
+    ...         "sensors": [{"name": "a", "position": [0.1, 0.03]}],
+    ...     }
+    ... )
     >>> measured = vi.responses_of_case(case, np.arange(500.0, 4000.0, 2.0))
     >>> found = vi.correlate_responses(case, measured)
     >>> found.sensors[0].name, found.frac.round(6).tolist(), found.scale.round(6).tolist()
@@ -87,7 +102,9 @@ class ResponseCorrelation:
 
     @property
     def scale(self) -> Floats:
-        """The size of the multiple of the simulated response that is nearest to the measured one, by least squares, (S,)."""
+        """The size of the multiple of the simulated response that is nearest to the
+        measured one, by least squares, (S,).
+        """
         return np.abs(_multiple(self.measured_response, self.simulated_response))
 
     @property
@@ -99,12 +116,18 @@ class ResponseCorrelation:
     @property
     def phase_difference(self) -> Floats:
         """Median of the absolute difference of phases over the band, (S,) [rad]."""
-        return np.asarray(np.median(np.abs(np.angle(self.measured_response * self.simulated_response.conj())), axis=1))
+        return np.asarray(
+            np.median(
+                np.abs(np.angle(self.measured_response * self.simulated_response.conj())), axis=1
+            )
+        )
 
 
 def _multiple(measured: Complex, simulated: Complex) -> Complex:
     """Return the multiples of simulated responses that are nearest to the measured ones, (S,)."""
-    return np.asarray(np.sum(measured * simulated.conj(), axis=1) / np.sum(np.abs(simulated) ** 2, axis=1))
+    return np.asarray(
+        np.sum(measured * simulated.conj(), axis=1) / np.sum(np.abs(simulated) ** 2, axis=1)
+    )
 
 
 def _sizes(response: Complex) -> Floats:

@@ -7,14 +7,20 @@ from rich.text import Text
 
 from vibroimpact.correlation.document import mode_cells, octave_headers, octave_rows
 from vibroimpact.correlation.mode_pairs import damping_field
-from vibroimpact.correlation.responses.document import RESPONSE_HEADERS, WHAT_FRAC_IS_OF, response_rows
+from vibroimpact.correlation.responses.document import (
+    RESPONSE_HEADERS,
+    WHAT_FRAC_IS_OF,
+    response_rows,
+)
 from vibroimpact.correlation.responses.result import ResponseCorrelation
 from vibroimpact.correlation.text import criteria_table
 from vibroimpact.runs.text import doubt_lines
 
 
 def response_summary(found: ResponseCorrelation) -> RenderableType:
-    """Return how frequency responses agree, the modes of both, the damping to be put into the case, and the doubts, for the terminal."""
+    """Return how frequency responses agree, the modes of both, the damping to be put into
+    the case, and the doubts, for the terminal.
+    """
     parts: list[RenderableType] = [
         Text(found.case.name or "a test", style="bold"),
         criteria_table(RESPONSE_HEADERS, response_rows(found)),

@@ -1,4 +1,6 @@
-"""One attempt at a stretch of contact: solved, read back, searched for events, and its error measured."""
+"""One attempt at a stretch of contact: solved, read back, searched for events, and its
+error measured.
+"""
 
 from __future__ import annotations
 
@@ -7,13 +9,38 @@ import numpy as np
 from vibroimpact.arrays import Floats
 from vibroimpact.compiled import compiled, force_at
 from vibroimpact.dynamics.core.contact_records import Attempt, Balance, Beginning, Bodies, Manner
-from vibroimpact.dynamics.core.events import BREAKPOINT, NO_EVENT, NO_PUSH, PARTED, TURN, first_event
+from vibroimpact.dynamics.core.events import (
+    BREAKPOINT,
+    NO_EVENT,
+    NO_PUSH,
+    PARTED,
+    TURN,
+    first_event,
+)
 from vibroimpact.dynamics.core.flight import approach_of
 from vibroimpact.dynamics.core.histories import contact_histories
 from vibroimpact.dynamics.core.law import contacts_of, law_of, static_work
 from vibroimpact.dynamics.core.path import stretch_path
-from vibroimpact.dynamics.core.records import Bases, Basis, Contacts, Coordinates, End, Event, Law, Nodes, Start, State, Surfaces, System
-from vibroimpact.dynamics.core.rubbing import first_friction, free_motions, rubbed_part, under_friction
+from vibroimpact.dynamics.core.records import (
+    Bases,
+    Basis,
+    Contacts,
+    Coordinates,
+    End,
+    Event,
+    Law,
+    Nodes,
+    Start,
+    State,
+    Surfaces,
+    System,
+)
+from vibroimpact.dynamics.core.rubbing import (
+    first_friction,
+    free_motions,
+    rubbed_part,
+    under_friction,
+)
 from vibroimpact.dynamics.core.rubbing_records import Rubbed, Rubbing
 from vibroimpact.dynamics.core.stretch import (
     AT_LEVEL,
@@ -67,8 +94,12 @@ def weights_at(basis: Basis, x: float, weights: Floats) -> None:
 
 
 @compiled(lambda t: t.of(Start)(t.of(System), t.of(Surfaces), t.of(Coordinates), t.of(State)))
-def surface_start(system: System, surfaces: Surfaces, coordinates: Coordinates, state: State) -> Start:
-    """Return the state of the surfaces in a state of a system with one contact, and with directions of friction as further contacts."""
+def surface_start(
+    system: System, surfaces: Surfaces, coordinates: Coordinates, state: State
+) -> Start:
+    """Return the state of the surfaces in a state of a system with one contact, and with
+    directions of friction as further contacts.
+    """
     parts, contacts, modes = surfaces.shapes.shape
     displacement = state.displacement[system.rigid :].copy()
     velocity = state.velocity[system.rigid :].copy()
@@ -86,23 +117,47 @@ def surface_start(system: System, surfaces: Surfaces, coordinates: Coordinates, 
             outer_rate[contact] += shape * velocity[mode]
             if parts == 2:
                 inner_rate[contact] += surfaces.shapes[1, contact, mode] * velocity[mode]
-    approach[0], _ = approach_of(system, state)  # with the modes inside the contact, massless elements and the gap
+    # with the modes inside the contact, massless elements and the gap
+    approach[0], _ = approach_of(system, state)
     return Start(displacement, velocity, state.local, approach, outer_rate, inner_rate)
 
 
-@compiled(lambda t: t.of(Beginning)(t.of(Bodies), t.of(Law), t.of(Manner), t.of(State), t.of(Rubbing), t.real))
-def beginning_of(bodies: Bodies, law: Law, manner: Manner, state: State, rubbing: Rubbing, delta: float) -> Beginning:
-    """Return what a stretch of one contact begins with; `delta`: about the indentation of the law [m]."""
+@compiled(
+    lambda t: t.of(Beginning)(
+        t.of(Bodies), t.of(Law), t.of(Manner), t.of(State), t.of(Rubbing), t.real
+    )
+)
+def beginning_of(
+    bodies: Bodies, law: Law, manner: Manner, state: State, rubbing: Rubbing, delta: float
+) -> Beginning:
+    """Return what a stretch of one contact begins with; `delta`: about the indentation of
+    the law [m].
+    """
     start = surface_start(bodies.system, bodies.surfaces, bodies.coordinates, state)
     along = start
     if rubbing.directions:
-        along = surface_start(bodies.system, bodies.rubbed_surfaces, bodies.rubbed_coordinates, state)
+        along = surface_start(
+            bodies.system, bodies.rubbed_surfaces, bodies.rubbed_coordinates, state
+        )
     contacts = contacts_of(law, manner.tension)
     rubbed = Rubbed(bodies.rubbed_surfaces, along, rubbing)
-    return Beginning(state, start, contacts, begun_indentations(contacts, start, np.array([delta])), rubbed)
+    return Beginning(
+        state, start, contacts, begun_indentations(contacts, start, np.array([delta])), rubbed
+    )
 
 
-@compiled(lambda t: t.of(Attempt)(t.of(Basis), t.of(Bodies), t.of(Manner), t.of(Beginning), t.of(Nodes), t.vector, t.boolean, t.of(Event)))
+@compiled(
+    lambda t: t.of(Attempt)(
+        t.of(Basis),
+        t.of(Bodies),
+        t.of(Manner),
+        t.of(Beginning),
+        t.of(Nodes),
+        t.vector,
+        t.boolean,
+        t.of(Event),
+    )
+)
 def attempt(
     basis: Basis,
     bodies: Bodies,
@@ -113,9 +168,11 @@ def attempt(
     guessed: bool,
     event: Event,
 ) -> Attempt:
-    """Return a stretch solved up to an event, or of the length that `event.x` gives [s] where there is none.
+    """Return a stretch solved up to an event, or of the length that `event.x` gives [s] where there
+    is none.
 
-    `guess`: forces and indentations to begin with, if `guessed`; else they are extrapolated by the `trend` of the forces [N/s] (c,).
+    `guess`: forces and indentations to begin with, if `guessed`; else they are extrapolated by the
+    `trend` of the forces [N/s] (c,).
     """
     surfaces = bodies.surfaces
     start = beginning.start
@@ -144,13 +201,21 @@ def attempt(
     contact = contact_histories(basis, surfaces, contacts, start, begun, nodes, motion, length)
     seen = Event(NO_EVENT, 0.0, np.inf, 0)
     if solved:
-        seen = first_event(basis, surfaces, contacts, contact, nodes, manner.motion_speed, manner.span)
+        seen = first_event(
+            basis, surfaces, contacts, contact, nodes, manner.motion_speed, manner.span
+        )
     return Attempt(nodes, contact, part, length, solved, seen)
 
 
-@compiled(lambda t: t.of(Balance)(t.of(Basis), t.of(Bodies), t.of(Manner), t.of(Beginning), t.of(Attempt)))
-def balance_of(basis: Basis, bodies: Bodies, manner: Manner, beginning: Beginning, tried: Attempt) -> Balance:
-    """Return the motion of all coordinates through a stretch, and whether it is resolved by two measures of its error."""
+@compiled(
+    lambda t: t.of(Balance)(t.of(Basis), t.of(Bodies), t.of(Manner), t.of(Beginning), t.of(Attempt))
+)
+def balance_of(
+    basis: Basis, bodies: Bodies, manner: Manner, beginning: Beginning, tried: Attempt
+) -> Balance:
+    """Return the motion of all coordinates through a stretch, and whether it is resolved
+    by two measures of its error.
+    """
     histories = tried.contact
     nodes = tried.nodes
     directions, number = tried.rubbed.force.shape
@@ -168,13 +233,17 @@ def balance_of(basis: Basis, bodies: Bodies, manner: Manner, beginning: Beginnin
     if directions:
         surfaces = bodies.rubbed_surfaces
         coordinates = bodies.rubbed_coordinates
-    path = stretch_path(basis, surfaces, coordinates, beginning.state, tried.length, force, static, False)
+    path = stretch_path(
+        basis, surfaces, coordinates, beginning.state, tried.length, force, static, False
+    )
     work = np.zeros(len(histories.dissipated))
     imbalance = path.energies[0] - tried.rubbed.surface_work
     for contact in range(len(work)):
         if tried.solved:
             law = law_of(beginning.contacts, contact)
-            work[contact] = static_work(law, histories.delta[contact, number]) - static_work(law, histories.delta[contact, 0])
+            work[contact] = static_work(law, histories.delta[contact, number]) - static_work(
+                law, histories.delta[contact, 0]
+            )
         imbalance += work[contact] + histories.dissipated[contact]
     for coordinate in range(len(path.lost)):
         imbalance += path.lost[coordinate]
@@ -185,8 +254,12 @@ def balance_of(basis: Basis, bodies: Bodies, manner: Manner, beginning: Beginnin
 
 
 @compiled(lambda t: t.of(Nodes)(t.of(Basis), t.of(Basis), t.of(Contacts), t.of(Attempt), t.real))
-def guess_from(basis: Basis, other: Basis, contacts: Contacts, solved: Attempt, share: float) -> Nodes:
-    """Return forces and indentations at the nodes of another rule, over a share of the time of a solved stretch."""
+def guess_from(
+    basis: Basis, other: Basis, contacts: Contacts, solved: Attempt, share: float
+) -> Nodes:
+    """Return forces and indentations at the nodes of another rule, over a share of the
+    time of a solved stretch.
+    """
     number = len(basis.time)
     size = len(contacts.numbers) * number
     force = np.empty(size)
@@ -202,7 +275,9 @@ def guess_from(basis: Basis, other: Basis, contacts: Contacts, solved: Attempt, 
             for point in range(number + 1):
                 reached += weights[point] * solved.contact.delta[contact, point]
                 rate += weights[point] * solved.contact.rate[contact, point]
-            static, dissipative = force_of(max(reached, law.release), rate, law.speed, law.coefficients)
+            static, dissipative = force_of(
+                max(reached, law.release), rate, law.speed, law.coefficients
+            )
             delta[contact * number + node] = reached
             force[contact * number + node] = static + dissipative
     return Nodes(np.zeros(size), force, delta)
@@ -224,9 +299,15 @@ def basis_of(bases: Bases, time_map: int) -> Basis:
     )
 )
 def up_to_event(
-    bases: Bases, bodies: Bodies, manner: Manner, beginning: Beginning, tried: Attempt, time_map: int
+    bases: Bases,
+    bodies: Bodies,
+    manner: Manner,
+    beginning: Beginning,
+    tried: Attempt,
+    time_map: int,
 ) -> tuple[bool, Attempt, int, Event]:
-    """Return whether it succeeds to solve a stretch again up to its first event, the solution, its map of time, and the event.
+    """Return whether it succeeds to solve a stretch again up to its first event, the solution, its
+    map of time, and the event.
 
     An event of a solution that is not resolved may be spurious, or preceded by another one.
     """

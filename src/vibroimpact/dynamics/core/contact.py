@@ -1,8 +1,10 @@
-"""One contact from touch to release, where bodies vibrate: stretches of contact, the events that end them, and recoil.
+"""One contact from touch to release, where bodies vibrate: stretches of contact, the events that
+end them, and recoil.
 
-Each stretch is searched for its first event: separation, zero force of a law that may not pull, a breakpoint of the law, a turn of the
-approach at which the law's memory changes. It is then solved again so that it ends there. Once the law has stopped pushing while the
-surfaces still overlap, they recoil without a force until they separate or it pushes again.
+Each stretch is searched for its first event: separation, zero force of a law that may not pull, a
+breakpoint of the law, a turn of the approach at which the law's memory changes. It is then solved
+again so that it ends there. Once the law has stopped pushing while the surfaces still overlap, they
+recoil without a force until they separate or it pushes again.
 """
 
 from __future__ import annotations
@@ -15,7 +17,14 @@ from vibroimpact.arrays import Floats
 from vibroimpact.compiled import compiled
 from vibroimpact.dynamics.core.attempt import beginning_of
 from vibroimpact.dynamics.core.contact_records import Begun, Bodies, Manner, Parts, Progress
-from vibroimpact.dynamics.core.events import ENDS_AT_NO_FORCE, NO_EVENT, NO_PUSH, PARTED, TENSION_CUT, TURN
+from vibroimpact.dynamics.core.events import (
+    ENDS_AT_NO_FORCE,
+    NO_EVENT,
+    NO_PUSH,
+    PARTED,
+    TENSION_CUT,
+    TURN,
+)
 from vibroimpact.dynamics.core.flight import approach_of, lost_in_flight, state_after
 from vibroimpact.dynamics.core.law import law_after, law_indentation, stored_energy
 from vibroimpact.dynamics.core.next_stretch import end_of, next_stretch
@@ -27,8 +36,9 @@ from vibroimpact.dynamics.core.rubbing import flown
 from vibroimpact.dynamics.core.touch import time_to_separation
 
 RELEASED, CAPTURED, RIDES, TOO_STIFF, NEAR_REST, FULL = 0, 1, 2, 3, 4, 5
-"""How a contact goes on: released; too little energy to leave; in contact at the end of the time or of the steps; not to be integrated;
-near equilibrium, which is to be looked at; no room for a further part.
+"""How a contact goes on: released; too little energy to leave; in contact at the end of the time or
+of the steps; not to be integrated; near equilibrium, which is to be looked at; no room for a
+further part.
 """
 
 _ROUNDING = 1e-14  # of the deepest indentation
@@ -44,7 +54,9 @@ _TINY = 1e-300
 
 @compiled(lambda t: t.boolean(t.of(System), t.of(Law), t.of(Manner), t.of(State)))
 def separates_at_no_force(system: System, law: Law, manner: Manner, state: State) -> bool:
-    """Does a contact end with its force? Its law does, and the surfaces will separate; otherwise they close again."""
+    """Does a contact end with its force? Its law does, and the surfaces will separate;
+    otherwise they close again.
+    """
     if manner.contact_end != ENDS_AT_NO_FORCE:
         return False
     return bool(np.isfinite(time_to_separation(system, state, law.release_level)))
@@ -52,14 +64,23 @@ def separates_at_no_force(system: System, law: Law, manner: Manner, state: State
 
 @compiled(lambda t: t.real(t.of(Law), t.of(Manner), t.real))
 def energy_held(law: Law, manner: Manner, delta: float) -> float:
-    """Return the energy that a contact stores at an indentation of its law [J], with rounding errors set to zero."""
+    """Return the energy that a contact stores at an indentation of its law [J], with
+    rounding errors set to zero.
+    """
     held = stored_energy(law, delta)
     return held if abs(held) > _NOTHING * manner.energy else 0.0
 
 
 @compiled(
     lambda t: t.tuple(t.integer, t.integer, t.of(Progress), t.of(State), t.of(Law))(
-        t.of(Bases), t.of(Bodies), t.of(Manner), t.of(Law), t.of(State), t.of(Progress), t.vector, t.of(Parts)
+        t.of(Bases),
+        t.of(Bodies),
+        t.of(Manner),
+        t.of(Law),
+        t.of(State),
+        t.of(Progress),
+        t.vector,
+        t.of(Parts),
     )
 )
 def follow_contact(
@@ -72,7 +93,8 @@ def follow_contact(
     lost: Floats,
     parts: Parts,
 ) -> tuple[int, int, Progress, State, Law]:
-    """Follow a contact until it is released, or until something is to be decided; return how it goes on, and the number of parts written.
+    """Follow a contact until it is released, or until something is to be decided; return how it
+    goes on, and the number of parts written.
 
     Parameters
     ----------
@@ -111,7 +133,8 @@ def follow_contact(
     changes = 0  # of the law's memory, in this call
     outcome = FULL
     parts.late_loss[0] = 0.0
-    while part < len(parts.start) and changes + 1 < len(parts.turned_at):  # two changes at most are made on the way
+    # two changes at most are made on the way
+    while part < len(parts.start) and changes + 1 < len(parts.turned_at):
         if not pushes:  # recoil
             length, separates = end_of_recoil(system, law, manner, state)
             if not np.isfinite(length):
@@ -123,8 +146,12 @@ def follow_contact(
             parts.length[part] = length
             part += 1
             gone = lost_in_flight(system, state, after)
-            held = stored_energy(law, law_indentation(law, max(approach_of(system, state)[0], law.release_level)))
-            left = stored_energy(law, law_indentation(law, max(approach_of(system, after)[0], law.release_level)))
+            held = stored_energy(
+                law, law_indentation(law, max(approach_of(system, state)[0], law.release_level))
+            )
+            left = stored_energy(
+                law, law_indentation(law, max(approach_of(system, after)[0], law.release_level))
+            )
             for coordinate in range(len(lost)):
                 lost[coordinate] += gone[coordinate]
             lost[elements] += held - left
@@ -170,7 +197,9 @@ def follow_contact(
             break
 
         beginning = beginning_of(bodies, law, manner, state, rubbing, delta)
-        stretch = next_stretch(bases, bodies, manner, beginning, 0 if fresh else 1, min(next_length, longest), trend)
+        stretch = next_stretch(
+            bases, bodies, manner, beginning, 0 if fresh else 1, min(next_length, longest), trend
+        )
         if not stretch.accepted:
             next_length = 0.5 * min(next_length, stretch.event_time)
             continue
@@ -190,10 +219,15 @@ def follow_contact(
         event = stretch.event
         fresh = False
         if event.kind == NO_EVENT:
-            growth = (_EASY * math.sqrt(manner.tolerance) / max(end.roughness, _TINY)) ** (1.0 / nodes)
+            growth = (_EASY * math.sqrt(manner.tolerance) / max(end.roughness, _TINY)) ** (
+                1.0 / nodes
+            )
             next_length = end.length * min(max(growth, 0.7), 4.0)
-        elif event.kind == PARTED or (event.kind == NO_PUSH and separates_at_no_force(system, law, manner, state)):
-            # stored energy is lost where a sticking contact breaks, or where the surface recovers more slowly than the bodies part
+        elif event.kind == PARTED or (
+            event.kind == NO_PUSH and separates_at_no_force(system, law, manner, state)
+        ):
+            # stored energy is lost where a sticking contact breaks, or where the surface recovers
+            # more slowly than the bodies part
             lose_at_end(parts, part, lost, energy_held(law, manner, delta))
             outcome = RELEASED
             break
@@ -211,5 +245,19 @@ def follow_contact(
             if is_near_rest(system, law, state, force):
                 outcome = NEAR_REST
                 break
-    now = Progress(time, next_length, delta, force, trend, closing, fresh, pushes, steps, memories, largest_force, deepest, rubbing)
+    now = Progress(
+        time,
+        next_length,
+        delta,
+        force,
+        trend,
+        closing,
+        fresh,
+        pushes,
+        steps,
+        memories,
+        largest_force,
+        deepest,
+        rubbing,
+    )
     return outcome, part, now, state, law

@@ -30,9 +30,11 @@ from vibroimpact.dynamics.core.rubbing_records import Rubbed, RubbedPart, Rubbin
 
 
 class Bodies(NamedTuple):
-    """The bodies of one contact: the linear system, what moves its surfaces, and all its coordinates.
+    """The bodies of one contact: the linear system, what moves its surfaces, and all its
+    coordinates.
 
-    rubbed_surfaces, rubbed_coordinates: with the directions of friction as further contacts; the same where there is none.
+    rubbed_surfaces, rubbed_coordinates: with the directions of friction as further contacts; the
+    same where there is none.
     """
 
     system: System
@@ -43,7 +45,8 @@ class Bodies(NamedTuple):
 
 
 class Beginning(NamedTuple):
-    """What a stretch of c contacts begins with: the state, also as that of the surfaces, the laws, and their indentations (c,) [m].
+    """What a stretch of c contacts begins with: the state, also as that of the surfaces, the laws,
+    and their indentations (c,) [m].
 
     rubbed: the surfaces that rub.
     """
@@ -58,8 +61,8 @@ class Beginning(NamedTuple):
 class Attempt(NamedTuple):
     """A stretch of contacts as Newton's method leaves it.
 
-    nodes, contact: its forces and histories. rubbed: what friction does. length [s]. solved: did Newton's method converge? event: the first
-    one within it.
+    nodes, contact: its forces and histories. rubbed: what friction does. length [s]. solved: did
+    Newton's method converge? event: the first one within it.
     """
 
     nodes: Nodes
@@ -73,8 +76,8 @@ class Attempt(NamedTuple):
 class Solved(NamedTuple):
     """Solved stretches of one contact, one after the other.
 
-    time_map (P,): their maps of time, in `MAPS`. length (P,) [s]. At the start and the nodes (P, N + 1): delta, indentation of the law [m],
-    and rate of the approach at its dashpot [m/s].
+    time_map (P,): their maps of time, in `MAPS`. length (P,) [s]. At the start and the nodes (P, N
+    + 1): delta, indentation of the law [m], and rate of the approach at its dashpot [m/s].
     """
 
     time_map: Integers
@@ -86,8 +89,8 @@ class Solved(NamedTuple):
 class Balance(NamedTuple):
     """Motion of all coordinates through a solved stretch of contacts, and its balance of energy.
 
-    work (c,): increase of the energy stored by the laws and of the plastic work [J]. resolved: is it solved with an error within the
-    tolerance?
+    work (c,): increase of the energy stored by the laws and of the plastic work [J]. resolved: is
+    it solved with an error within the tolerance?
     """
 
     path: Path
@@ -98,8 +101,9 @@ class Balance(NamedTuple):
 class NextStretch(NamedTuple):
     """A stretch that is accepted, or rejected and to be tried again with a shorter length.
 
-    accepted. tried, balance: the stretch. time_map: its map of time, of `MAPS`. event: the one that ends it, if any. event_time: of a
-    rejected stretch with an event that is certain, about its time since the start [s], else infinite.
+    accepted. tried, balance: the stretch. time_map: its map of time, of `MAPS`. event: the one that
+    ends it, if any. event_time: of a rejected stretch with an event that is certain, about its time
+    since the start [s], else infinite.
     """
 
     accepted: Boolean
@@ -111,7 +115,9 @@ class NextStretch(NamedTuple):
 
 
 class Begun(NamedTuple):
-    """What a part of the motion begins with: time [s], the state, the changes of the law's memory before, and friction."""
+    """What a part of the motion begins with: time [s], the state, the changes of the
+    law's memory before, and friction.
+    """
 
     time: Real
     state: State
@@ -122,8 +128,9 @@ class Begun(NamedTuple):
 class StretchEnd(NamedTuple):
     """The end of a stretch of one contact.
 
-    length: of the stretch [s]. state, rubbing: then. delta: indentation of the law [m], force [N], its rate of change trend [N/s], and
-    closing, the whole rate of the approach [m/s]. largest_force: at a node [N]. roughness: as in `Histories`.
+    length: of the stretch [s]. state, rubbing: then. delta: indentation of the law [m], force [N],
+    its rate of change trend [N/s], and closing, the whole rate of the approach [m/s].
+    largest_force: at a node [N]. roughness: as in `Histories`.
     """
 
     length: Real
@@ -140,9 +147,10 @@ class StretchEnd(NamedTuple):
 class Manner(NamedTuple):
     """What stays the same through a contact.
 
-    tension, contact_end: numbers of the law's, of `events`. motion_speed: speed of the motion [m/s]; energy: that of it [J]. span:
-    approximate duration of a contact [s]. tolerance: relative error allowed at the end of each stretch. begun: time of touch [s]. until:
-    end of a ride [s]. longest: length of a stretch [s]. most_steps: how many stretches are tried.
+    tension, contact_end: numbers of the law's, of `events`. motion_speed: speed of the motion
+    [m/s]; energy: that of it [J]. span: approximate duration of a contact [s]. tolerance: relative
+    error allowed at the end of each stretch. begun: time of touch [s]. until: end of a ride [s].
+    longest: length of a stretch [s]. most_steps: how many stretches are tried.
     """
 
     tension: Integer
@@ -160,10 +168,11 @@ class Manner(NamedTuple):
 class Progress(NamedTuple):
     """How far a contact has come.
 
-    time [s]. next_length: of the next stretch [s]. At the end of the last stretch: delta, indentation of the law [m], force [N], its rate
-    of change trend [N/s], and closing, the whole rate of the approach [m/s]. fresh: no stretch has been solved yet. pushes: the law acts,
-    otherwise the contact recoils. steps: stretches tried. memories: changes of the law's memory. largest_force [N], deepest [m]: at a node.
-    rubbing: friction.
+    time [s]. next_length: of the next stretch [s]. At the end of the last stretch: delta,
+    indentation of the law [m], force [N], its rate of change trend [N/s], and closing, the whole
+    rate of the approach [m/s]. fresh: no stretch has been solved yet. pushes: the law acts,
+    otherwise the contact recoils. steps: stretches tried. memories: changes of the law's memory.
+    largest_force [N], deepest [m]: at a node. rubbing: friction.
     """
 
     time: Real
@@ -184,12 +193,15 @@ class Progress(NamedTuple):
 class Parts(NamedTuple):
     """Room for P parts of the motion through a contact: stretches (kind 1) and recoils (kind 0).
 
-    kind, time_map (P,). start, length [s] (P,). displacement, velocity (P, n), local (P, k): state at the start. memories (P,): changes of
-    the law's memory before it. Of stretches, as in `Nodes`, `Histories` and `Attempt`: static, force (P, N), approach, rate, closing,
-    delta (P, N + 1), work, dissipated, roughness (P,). separation_loss (P,): stored energy that is lost at the end [J]. indentation
-    (P, N + 1): of the surface by the centre above [m]. turned_at (P,): indentations of the law at the changes of its memory [m]. late_loss
-    (1,): stored energy lost at the end of the last part of the call before [J]. Of stretches with friction in F directions: friction, slip
-    (P, F, N), as in `RubbedPart`, and rubbing (P, 2, 13), the numbers of `rubbing_records` at their starts and ends.
+    kind, time_map (P,). start, length [s] (P,). displacement, velocity (P, n), local (P, k): state
+    at the start. memories (P,): changes of the law's memory before it. Of stretches, as in `Nodes`,
+    `Histories` and `Attempt`: static, force (P, N), approach, rate, closing, delta (P, N + 1),
+    work, dissipated, roughness (P,). separation_loss (P,): stored energy that is lost at the end
+    [J]. indentation (P, N + 1): of the surface by the centre above [m]. turned_at (P,):
+    indentations of the law at the changes of its memory [m]. late_loss (1,): stored energy lost at
+    the end of the last part of the call before [J]. Of stretches with friction in F directions:
+    friction, slip (P, F, N), as in `RubbedPart`, and rubbing (P, 2, 13), the numbers of
+    `rubbing_records` at their starts and ends.
     """
 
     kind: Integers

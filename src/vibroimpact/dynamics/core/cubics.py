@@ -24,7 +24,9 @@ def cubic_at(cubic: Cubic, share: float) -> tuple[float, float]:
 
 @compiled(lambda t: t.matrix(t.vector, t.vector, t.integer))
 def values_in_parts(values: Floats, slopes: Floats, parts: int) -> Floats:
-    """Return the values of cubics at the ends of equal parts of steps (G - 1, parts), from values and slopes at their ends (G,)."""
+    """Return the values of cubics at the ends of equal parts of steps (G - 1, parts),
+    from values and slopes at their ends (G,).
+    """
     refined = np.empty((len(values) - 1, parts))
     for step in range(len(values) - 1):
         cubic = Cubic(values[step], slopes[step], values[step + 1], slopes[step + 1])
@@ -35,20 +37,26 @@ def values_in_parts(values: Floats, slopes: Floats, parts: int) -> Floats:
 
 @compiled(lambda t: t.real(t.of(Cubic)))
 def turn_of(cubic: Cubic) -> float:
-    """Return the share of the step at which the slope of a cubic changes sign; 0 where it does not."""
+    """Return the share of the step at which the slope of a cubic changes sign; 0 where it
+    does not.
+    """
     if not cubic.slope * cubic.end_slope < 0.0:
         return 0.0
     turn = cubic.end_slope - cubic.slope
     excess = 6.0 * (cubic.end_value - cubic.value - 0.5 * (cubic.slope + cubic.end_slope))
     share = -cubic.slope / turn
     for _ in range(2):  # Newton's method
-        share -= (cubic.slope + share * (turn + excess * (1.0 - share))) / (turn + excess * (1.0 - 2.0 * share))
+        share -= (cubic.slope + share * (turn + excess * (1.0 - share))) / (
+            turn + excess * (1.0 - 2.0 * share)
+        )
     return min(max(share, 0.0), 1.0)
 
 
 @compiled(lambda t: t.real(t.of(Cubic), t.real))
 def share_at(cubic: Cubic, value: float) -> float:
-    """Return the share of the step at which a cubic that passes a value does so, by Newton's method from the straight line."""
+    """Return the share of the step at which a cubic that passes a value does so, by
+    Newton's method from the straight line.
+    """
     rise = cubic.end_value - cubic.value
     share = 0.0
     if rise != 0.0:

@@ -19,17 +19,21 @@ _MOST_ITERATIONS = 60
 
 @compiled(lambda t: t.real(t.integers, t.vector, t.real))
 def static_work_of(addresses: Integers, coefficients: Floats, delta: float) -> float:
-    """Return the work of the static force of a law since touch [J]; `addresses`: of its functions."""
+    """Return the work of the static force of a law since touch [J]; `addresses`: of its
+    functions.
+    """
     elastic, plastic = energies_at(addresses[1])(delta, coefficients)
     return float(elastic + plastic)
 
 
 @compiled(lambda t: t.real(t.integers, t.vector, t.real, t.real, t.real))
-def undamped_depth(addresses: Integers, coefficients: Floats, touch: float, energy: float, weight: float) -> float:
+def undamped_depth(
+    addresses: Integers, coefficients: Floats, touch: float, energy: float, weight: float
+) -> float:
     """Return the largest indentation of an impact without damping [m], to a relative 1e-3.
 
-    By iteration with the local exponent of the work, which is exact after one step for a power law; where that does not converge, within
-    bounds.
+    By iteration with the local exponent of the work, which is exact after one step for a power law;
+    where that does not converge, within bounds.
 
     Parameters
     ----------
@@ -60,8 +64,12 @@ def undamped_depth(addresses: Integers, coefficients: Floats, touch: float, ener
 
 
 @compiled(lambda t: t.real(t.integers, t.vector, t.real, t.real, t.real))
-def bounded_depth(addresses: Integers, coefficients: Floats, touch: float, energy: float, weight: float) -> float:
-    """Return what `undamped_depth` does, by the secant within bounds; at the last bound where there is none, as without a force."""
+def bounded_depth(
+    addresses: Integers, coefficients: Floats, touch: float, energy: float, weight: float
+) -> float:
+    """Return what `undamped_depth` does, by the secant within bounds; at the last bound
+    where there is none, as without a force.
+    """
     low = 0.0
     high = _NEAREST
     low_value = -energy
@@ -78,7 +86,10 @@ def bounded_depth(addresses: Integers, coefficients: Floats, touch: float, energ
     bracket = Bracket(low, high, low_value, high_value, 0)
     for _ in range(_MOST_ITERATIONS):
         middle = secant_of(bracket)
-        if bracket.high - bracket.low <= _WITHIN * bracket.high or middle in (bracket.low, bracket.high):
+        if bracket.high - bracket.low <= _WITHIN * bracket.high or middle in (
+            bracket.low,
+            bracket.high,
+        ):
             break
         value = static_work_of(addresses, coefficients, touch + middle) - weight * middle - energy
         if value == 0.0:
@@ -88,7 +99,18 @@ def bounded_depth(addresses: Integers, coefficients: Floats, touch: float, energ
 
 
 @compiled(lambda t: t.void(t.integers, t.matrix, t.vector, t.vector, t.vector, t.vector))
-def write_undamped_depths(addresses: Integers, coefficients: Floats, touch: Floats, energy: Floats, weight: Floats, depths: Floats) -> None:
-    """Write the largest indentations of B impacts without damping [m] (B,); the other arguments as in `undamped_depth`, for each."""
+def write_undamped_depths(
+    addresses: Integers,
+    coefficients: Floats,
+    touch: Floats,
+    energy: Floats,
+    weight: Floats,
+    depths: Floats,
+) -> None:
+    """Write the largest indentations of B impacts without damping [m] (B,); the other
+    arguments as in `undamped_depth`, for each.
+    """
     for drop in range(len(depths)):
-        depths[drop] = undamped_depth(addresses, coefficients[drop], touch[drop], energy[drop], weight[drop])
+        depths[drop] = undamped_depth(
+            addresses, coefficients[drop], touch[drop], energy[drop], weight[drop]
+        )

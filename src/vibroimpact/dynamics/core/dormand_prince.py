@@ -1,6 +1,8 @@
-"""Coefficients of the explicit Runge-Kutta method of order 8 by Dormand and Prince, in the form of Hairer's DOP853.
+"""Coefficients of the explicit Runge-Kutta method of order 8 by Dormand and Prince, in the form of
+Hairer's DOP853.
 
-Source: E. Hairer, S. P. Norsett, G. Wanner, Solving Ordinary Differential Equations I, second edition, Springer 1993, section II.5.
+Source: E. Hairer, S. P. Norsett, G. Wanner, Solving Ordinary Differential Equations I, second
+edition, Springer 1993, section II.5.
 """
 
 from __future__ import annotations
@@ -17,8 +19,25 @@ _ROWS = [
     [0.2413651341592667, 0.0, -0.8845494793282861, 0.924834003261792],
     [0.037037037037037035, 0.0, 0.0, 0.17082860872947386, 0.12546768756682242],
     [0.037109375, 0.0, 0.0, 0.17025221101954405, 0.06021653898045596, -0.017578125],
-    [0.03709200011850479, 0.0, 0.0, 0.17038392571223998, 0.10726203044637328, -0.015319437748624402, 0.008273789163814023],
-    [0.6241109587160757, 0.0, 0.0, -3.3608926294469414, -0.868219346841726, 27.59209969944671, 20.154067550477894, -43.48988418106996],
+    [
+        0.03709200011850479,
+        0.0,
+        0.0,
+        0.17038392571223998,
+        0.10726203044637328,
+        -0.015319437748624402,
+        0.008273789163814023,
+    ],
+    [
+        0.6241109587160757,
+        0.0,
+        0.0,
+        -3.3608926294469414,
+        -0.868219346841726,
+        27.59209969944671,
+        20.154067550477894,
+        -43.48988418106996,
+    ],
     [
         0.47766253643826434,
         0.0,
@@ -93,7 +112,9 @@ ERROR_OF_ORDER_5 = np.array(
         0.0,
     ]
 )
-"""Weights of the stages, and last of the end of the step, in the difference to a result of order 5."""
+"""Weights of the stages, and last of the end of the step, in the difference to a result
+of order 5.
+"""
 
 ERROR_OF_ORDER_3 = np.append(STAGE_WEIGHTS[-1], 0.0)
 """The same, to a result of order 3, which has three stages."""

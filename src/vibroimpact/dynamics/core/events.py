@@ -1,4 +1,6 @@
-"""Events within a stretch of contact: separation, zero force, a breakpoint of the law, a turn of the approach."""
+"""Events within a stretch of contact: separation, zero force, a breakpoint of the law, a
+turn of the approach.
+"""
 
 from __future__ import annotations
 
@@ -11,7 +13,9 @@ from vibroimpact.dynamics.core.linear import largest_of, least_of, product
 from vibroimpact.dynamics.core.records import Basis, Contacts, Event, Histories, Nodes, Surfaces
 
 NO_EVENT, PARTED, NO_PUSH, BREAKPOINT, TURN = 0, 1, 2, 3, 4
-"""Kinds of events: none; the surfaces separate; the force is zero; the law's indentation is at a breakpoint; the approach turns."""
+"""Kinds of events: none; the surfaces separate; the force is zero; the law's indentation
+is at a breakpoint; the approach turns.
+"""
 
 NO_TENSION, TENSION_CUT, TENSION_KEPT = 0, 1, 2
 """May the force of a law be tensile? No; by its formula, which is cut; yes."""
@@ -25,14 +29,18 @@ ENDS = ("zero-indentation", "zero-force", "pull-off")
 ENDS_AT_NO_FORCE = 1
 
 _ROUNDING = 1e-11  # relative to an indentation
-_ON_LEVEL = 1e-10  # relative to an indentation: a stretch that begins so near to a breakpoint begins on it; ends are solved to 1e-11
+# relative to an indentation: a stretch that begins so near to a breakpoint begins on it; ends are
+# solved to 1e-11
+_ON_LEVEL = 1e-10
 _ZERO_RATE = 1e-9  # of the speed of the motion: a slower approach counts as having turned already
 _SLACK = 1e-11  # of the force
 
 
 @compiled(lambda t: t.tuple(t.real, t.boolean)(t.vector, t.booleans))
 def crossing(values: Floats, reached: Bools) -> tuple[float, bool]:
-    """Return where values on the grid fall below zero, as a part of it, by the secant; and whether they do."""
+    """Return where values on the grid fall below zero, as a part of it, by the secant;
+    and whether they do.
+    """
     last = len(values) - 1
     for point in range(1, last + 1):
         if reached[point]:
@@ -43,9 +51,19 @@ def crossing(values: Floats, reached: Bools) -> tuple[float, bool]:
     return 1.0, False
 
 
-@compiled(lambda t: t.of(Event)(t.of(Basis), t.of(Surfaces), t.of(Contacts), t.of(Histories), t.of(Nodes), t.real, t.real))
+@compiled(
+    lambda t: t.of(Event)(
+        t.of(Basis), t.of(Surfaces), t.of(Contacts), t.of(Histories), t.of(Nodes), t.real, t.real
+    )
+)
 def first_event(
-    basis: Basis, surfaces: Surfaces, contacts: Contacts, histories: Histories, nodes: Nodes, speed: float, span: float
+    basis: Basis,
+    surfaces: Surfaces,
+    contacts: Contacts,
+    histories: Histories,
+    nodes: Nodes,
+    speed: float,
+    span: float,
 ) -> Event:
     """Return the first event in a stretch of contacts of about a speed [m/s] and a duration [s]."""
     first = Event(NO_EVENT, 0.0, np.inf, 0)
@@ -56,7 +74,18 @@ def first_event(
     return first
 
 
-@compiled(lambda t: t.of(Event)(t.of(Basis), t.of(Surfaces), t.of(Contacts), t.of(Histories), t.of(Nodes), t.real, t.real, t.integer))
+@compiled(
+    lambda t: t.of(Event)(
+        t.of(Basis),
+        t.of(Surfaces),
+        t.of(Contacts),
+        t.of(Histories),
+        t.of(Nodes),
+        t.real,
+        t.real,
+        t.integer,
+    )
+)
 def first_event_of(
     basis: Basis,
     surfaces: Surfaces,
@@ -84,7 +113,8 @@ def first_event_of(
     if crosses:
         first = Event(PARTED, law.release, x, contact)
 
-    if contacts.tension[contact] != TENSION_KEPT:  # also without tension the force is negative where the surfaces recoil fast enough
+    # also without tension the force is negative where the surfaces recoil fast enough
+    if contacts.tension[contact] != TENSION_KEPT:
         number = len(basis.time)
         largest = 0.0
         for node in range(contact * number, (contact + 1) * number):
@@ -93,7 +123,9 @@ def first_event_of(
         force_of = force_at(law.addresses[0])
         force = np.empty(points)
         for point in range(points):
-            static, dissipative = force_of(max(delta[point], law.release), rate[point], law.speed, law.coefficients)
+            static, dissipative = force_of(
+                max(delta[point], law.release), rate[point], law.speed, law.coefficients
+            )
             force[point] = static + dissipative
             reached[point] = force[point] < -slack
         x, crosses = crossing(force, reached)

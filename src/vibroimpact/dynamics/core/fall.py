@@ -1,8 +1,8 @@
 r"""Flight of spheres through air or a liquid at rest, in pieces by Radau collocation.
 
-In a piece the acceleration is a polynomial through the nodes of a Radau rule, in a time that is finest at the top of the flight. Its
-integral gives the velocities at the nodes, and these the next acceleration; such sweeps converge fast, as a piece is short beside the time
-constant of the drag.
+In a piece the acceleration is a polynomial through the nodes of a Radau rule, in a time that is
+finest at the top of the flight. Its integral gives the velocities at the nodes, and these the next
+acceleration; such sweeps converge fast, as a piece is short beside the time constant of the drag.
 """
 
 from __future__ import annotations
@@ -29,20 +29,25 @@ _STILL = 1e-30  # m/s
 def drag_coefficient(reynolds: Array) -> Array:
     r"""Return the drag coefficient of a smooth sphere at a Reynolds number.
 
-    .. math:: C_d = \frac{24}{Re}\left(1 + 0.15\,Re^{0.687}\right) + \frac{0.42}{1 + 42500\,Re^{-1.16}}
+    .. math::
+
+        C_d = \frac{24}{Re}\left(1 + 0.15\,Re^{0.687}\right) + \frac{0.42}{1 + 42500\,Re^{-1.16}}
 
     Within 6 % of measurements up to a Reynolds number of 3e5.
 
     References
     ----------
-    Clift, R. and Gauvin, W. H. (1970). The motion of particles in turbulent gas streams. Proc. Chemeca '70, 1, 14-28.
+    Clift, R. and Gauvin, W. H. (1970). The motion of particles in turbulent gas streams. Proc.
+    Chemeca '70, 1, 14-28.
 
     Examples
     --------
     >>> round(float(drag_coefficient(1e4)), 2)
     0.42
     """
-    return 24.0 / reynolds * (1.0 + 0.15 * reynolds**0.687) + 0.42 / (1.0 + 42500.0 * reynolds**-1.16)
+    return 24.0 / reynolds * (1.0 + 0.15 * reynolds**0.687) + 0.42 / (
+        1.0 + 42500.0 * reynolds**-1.16
+    )
 
 
 @compiled(lambda t: t.real(t.of(Falling), t.integer, t.real))
@@ -65,13 +70,19 @@ def size_of(vectors: Floats, column: int) -> float:
 
 
 @compiled(lambda t: t.real(t.of(Falling), t.integer, t.matrix, t.integer, t.matrix, t.integer))
-def accelerate(falling: Falling, drop: int, velocity: Floats, column: int, acceleration: Floats, into: int) -> float:
-    """Write the acceleration of a sphere at a velocity into a column (C, .) [m/s^2]; return the power per mass that drag takes [W/kg]."""
+def accelerate(
+    falling: Falling, drop: int, velocity: Floats, column: int, acceleration: Floats, into: int
+) -> float:
+    """Write the acceleration of a sphere at a velocity into a column (C, .) [m/s^2];
+    return the power per mass that drag takes [W/kg].
+    """
     speed = size_of(velocity, column)
     drag = drag_of(falling, drop, speed)
     part = drag / max(speed, _STILL)
     for component in range(len(velocity)):
-        acceleration[component, into] = falling.gravity[component, drop] - part * velocity[component, column]
+        acceleration[component, into] = (
+            falling.gravity[component, drop] - part * velocity[component, column]
+        )
     return float(drag * speed * falling.inertia[drop])
 
 
@@ -121,14 +132,27 @@ def accelerations(falling: Falling, drops: Integers, velocity: Floats) -> Floats
 
 @compiled(lambda t: t.real(t.real, t.real, t.real))
 def time_to_fall(height: float, down: float, mean: float) -> float:
-    """Return the time of a fall through a height [s], from a downward velocity and half the mean acceleration of its first part."""
+    """Return the time of a fall through a height [s], from a downward velocity and half
+    the mean acceleration of its first part.
+    """
     if not height > 0.0:
         return 0.0
     return 2.0 * height / (down + math.sqrt(max(down * down + 4.0 * mean * height, 0.0)))
 
 
 @compiled(
-    lambda t: t.void(t.of(FallRule), t.of(Falling), t.integer, t.of(Moving), t.integer, t.integer, t.real, t.real, t.of(Moving), t.integer)
+    lambda t: t.void(
+        t.of(FallRule),
+        t.of(Falling),
+        t.integer,
+        t.of(Moving),
+        t.integer,
+        t.integer,
+        t.real,
+        t.real,
+        t.of(Moving),
+        t.integer,
+    )
 )
 def follow_piece(
     rule: FallRule,
@@ -151,8 +175,8 @@ def follow_piece(
     ends : int
         What ends the piece: GIVEN_TIME, AT_TOP or AT_GAP.
     first, second : float
-        The time [s]; or the velocity upwards at the start [m/s]; or the height that is fallen through [m], and the velocity downwards
-        at the start [m/s].
+        The time [s]; or the velocity upwards at the start [m/s]; or the height that is fallen
+        through [m], and the velocity downwards at the start [m/s].
     """
     components = len(begin.velocity)
     nodes = len(rule.integral)
@@ -208,28 +232,45 @@ def follow_piece(
         for node in range(nodes):
             gained += rule.integral[nodes - 1, node] * now[component, node]
             moved += rule.moved[node] * now[component, node]
-        found.place[component, into] = begin.place[component, at] + time * (begin.velocity[component, at] + time * moved)
+        found.place[component, into] = begin.place[component, at] + time * (
+            begin.velocity[component, at] + time * moved
+        )
         found.velocity[component, into] = begin.velocity[component, at] + time * gained
 
 
 @compiled(lambda t: t.of(Moving)(t.integer, t.integer))
 def room_for(components: int, columns: int) -> Moving:
     """Return room for motions."""
-    return Moving(np.empty(columns), np.empty((components, columns)), np.empty((components, columns)), np.empty(columns))
+    return Moving(
+        np.empty(columns),
+        np.empty((components, columns)),
+        np.empty((components, columns)),
+        np.empty(columns),
+    )
 
 
-@compiled(lambda t: t.of(Moving)(t.of(FallRule), t.of(Falling), t.of(Moving), t.integers, t.vector, t.vector))
-def follow_pieces(rule: FallRule, falling: Falling, begin: Moving, ends: Integers, first: Floats, second: Floats) -> Moving:
+@compiled(
+    lambda t: t.of(Moving)(
+        t.of(FallRule), t.of(Falling), t.of(Moving), t.integers, t.vector, t.vector
+    )
+)
+def follow_pieces(
+    rule: FallRule, falling: Falling, begin: Moving, ends: Integers, first: Floats, second: Floats
+) -> Moving:
     """Return the motion of all drops at the end of a piece of each, as `follow_piece` does."""
     found = room_for(len(begin.velocity), len(ends))
     for drop in range(len(ends)):
-        follow_piece(rule, falling, drop, begin, drop, ends[drop], first[drop], second[drop], found, drop)
+        follow_piece(
+            rule, falling, drop, begin, drop, ends[drop], first[drop], second[drop], found, drop
+        )
     return found
 
 
 @compiled(lambda t: t.of(Moving)(t.of(FallRule), t.of(Falling), t.of(Moving)))
 def rise(rule: FallRule, falling: Falling, begin: Moving) -> Moving:
-    """Return the motion of all drops at the end of a piece upwards, which the top of the flight ends at the latest."""
+    """Return the motion of all drops at the end of a piece upwards, which the top of the
+    flight ends at the latest.
+    """
     components = len(begin.velocity)
     found = room_for(components, len(begin.time))
     acceleration = np.empty((components, 1))
@@ -238,14 +279,29 @@ def rise(rule: FallRule, falling: Falling, begin: Moving) -> Moving:
         longest = longest_piece(falling, drop, begin.velocity, drop)
         accelerate(falling, drop, begin.velocity, drop, acceleration, 0)
         ends = up <= -acceleration[components - 1, 0] * longest
-        follow_piece(rule, falling, drop, begin, drop, AT_TOP if ends else GIVEN_TIME, up if ends else longest, 0.0, found, drop)
+        follow_piece(
+            rule,
+            falling,
+            drop,
+            begin,
+            drop,
+            AT_TOP if ends else GIVEN_TIME,
+            up if ends else longest,
+            0.0,
+            found,
+            drop,
+        )
         if ends:
             found.velocity[components - 1, drop] = 0.0
     return found
 
 
-@compiled(lambda t: t.of(Moving)(t.of(FallRules), t.of(Falling), t.of(Corners), t.integers, t.vector))
-def motion_at(rules: FallRules, falling: Falling, corners: Corners, drops: Integers, elapsed: Floats) -> Moving:
+@compiled(
+    lambda t: t.of(Moving)(t.of(FallRules), t.of(Falling), t.of(Corners), t.integers, t.vector)
+)
+def motion_at(
+    rules: FallRules, falling: Falling, corners: Corners, drops: Integers, elapsed: Floats
+) -> Moving:
     """Return the motion of drops at times since the starts of their flights [s] (m,)."""
     components = corners.place.shape[1]
     found = room_for(components, len(drops))
@@ -255,7 +311,23 @@ def motion_at(rules: FallRules, falling: Falling, corners: Corners, drops: Integ
         for number in range(1, len(corners.time)):
             if corners.time[number, drop] <= elapsed[column]:
                 corner = number
-        begin = Moving(corners.time[corner], corners.place[corner], corners.velocity[corner], corners.lost[corner])
+        begin = Moving(
+            corners.time[corner],
+            corners.place[corner],
+            corners.velocity[corner],
+            corners.lost[corner],
+        )
         rule = rules.rising if elapsed[column] < corners.time[corners.top, drop] else rules.falling
-        follow_piece(rule, falling, drop, begin, drop, GIVEN_TIME, elapsed[column] - begin.time[drop], 0.0, found, column)
+        follow_piece(
+            rule,
+            falling,
+            drop,
+            begin,
+            drop,
+            GIVEN_TIME,
+            elapsed[column] - begin.time[drop],
+            0.0,
+            found,
+            column,
+        )
     return found

@@ -10,8 +10,9 @@ from vibroimpact.dynamics.core.records import Cube, Integer, Matrix, Vector
 class Moving(NamedTuple):
     """Motion of b spheres that fly through a fluid.
 
-    time: since the start of the flight [s] (b,). place [m], velocity [m/s]: (C, b), the last component along the normal. lost: energy per
-    mass of the sphere that drag has taken since the start [J/kg] (b,).
+    time: since the start of the flight [s] (b,). place [m], velocity [m/s]: (C, b), the last
+    component along the normal. lost: energy per mass of the sphere that drag has taken since the
+    start [J/kg] (b,).
     """
 
     time: Vector
@@ -23,8 +24,8 @@ class Moving(NamedTuple):
 class Corners(NamedTuple):
     """Motion of B spheres at the ends of the K pieces of their flights.
 
-    time (K, B), place, velocity (K, C, B), lost (K, B): as in `Moving`; a drop with fewer pieces repeats its last. top: the number of the
-    one that is at the top of all flights.
+    time (K, B), place, velocity (K, C, B), lost (K, B): as in `Moving`; a drop with fewer pieces
+    repeats its last. top: the number of the one that is at the top of all flights.
     """
 
     time: Matrix
@@ -37,9 +38,10 @@ class Corners(NamedTuple):
 class Falling(NamedTuple):
     """What B spheres fall through, and how they are pulled.
 
-    reynolds: Reynolds number over the speed [s/m]. drag: deceleration over the drag coefficient and the square of the speed [1/m].
-    coefficient: a constant drag coefficient, NaN where it follows from the Reynolds number. inertia: mass that is accelerated over that of
-    the sphere. All (B,). gravity: acceleration without drag [m/s^2] (C, B).
+    reynolds: Reynolds number over the speed [s/m]. drag: deceleration over the drag coefficient and
+    the square of the speed [1/m]. coefficient: a constant drag coefficient, NaN where it follows
+    from the Reynolds number. inertia: mass that is accelerated over that of the sphere. All (B,).
+    gravity: acceleration without drag [m/s^2] (C, B).
     """
 
     reynolds: Vector
@@ -50,7 +52,9 @@ class Falling(NamedTuple):
 
 
 class FallRule(NamedTuple):
-    """A Radau rule of N nodes under a time map: integral (N, N) up to the nodes, and moved (N,), the second integral up to the end."""
+    """A Radau rule of N nodes under a time map: integral (N, N) up to the nodes, and
+    moved (N,), the second integral up to the end.
+    """
 
     integral: Matrix
     moved: Vector

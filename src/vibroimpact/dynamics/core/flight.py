@@ -68,7 +68,9 @@ def state_after(system: System, state: State, time: float) -> State:
 
 @compiled(lambda t: t.tuple(t.real, t.real)(t.of(System), t.of(State)))
 def approach_of(system: System, state: State) -> tuple[float, float]:
-    """Return the approach of the surfaces [m], negative where there is a gap, and its rate without contact force [m/s]."""
+    """Return the approach of the surfaces [m], negative where there is a gap, and its
+    rate without contact force [m/s].
+    """
     approach = system.offset
     rate = 0.0
     for coordinate in range(len(state.displacement)):
@@ -102,7 +104,9 @@ def local_energy(system: System, state: State) -> float:
 
 @compiled(lambda t: t.real(t.of(System), t.of(State)))
 def energy_of_approach(system: System, state: State) -> float:
-    """Return the mechanical energy [J], without what the contact stores, and without that of free bodies moving together."""
+    """Return the mechanical energy [J], without what the contact stores, and without that
+    of free bodies moving together.
+    """
     energy = local_energy(system, state)
     along = 0.0
     of_rigid = 0.0
@@ -122,7 +126,9 @@ def energy_of_approach(system: System, state: State) -> float:
 
 @compiled(lambda t: t.vector(t.of(System), t.of(State), t.of(State)))
 def lost_in_flight(system: System, before: State, after: State) -> Floats:
-    """Return the energy lost between two states of a free motion [J] (n + 1,): in each coordinate, and last in the massless elements."""
+    """Return the energy lost between two states of a free motion [J] (n + 1,): in each
+    coordinate, and last in the massless elements.
+    """
     number = len(before.displacement)
     lost = np.zeros(number + 1)
     for coordinate in range(system.rigid, number - system.driven):
@@ -136,11 +142,15 @@ def lost_in_flight(system: System, before: State, after: State) -> Floats:
 
 @compiled(lambda t: t.real(t.of(System), t.of(State)))
 def greatest_vibration(system: System, state: State) -> float:
-    """Return a bound of the future contribution of modes and massless elements to the approach [m], from their energy."""
+    """Return a bound of the future contribution of modes and massless elements to the
+    approach [m], from their energy.
+    """
     reach = 0.0
     for coordinate in range(system.rigid, len(state.velocity)):
         frequency = system.frequency[coordinate]
-        peak_speed = math.sqrt(state.velocity[coordinate] ** 2 + (frequency * state.displacement[coordinate]) ** 2)
+        peak_speed = math.sqrt(
+            state.velocity[coordinate] ** 2 + (frequency * state.displacement[coordinate]) ** 2
+        )
         reach += abs(system.shape[coordinate]) * peak_speed / frequency
     for element in range(len(state.local)):
         reach += abs(state.local[element])

@@ -1,7 +1,7 @@
 """What the core computes friction along one direction with, in named tuples.
 
-The annotations name the types of compiled code, in `vibroimpact.compiler.types`. Velocities, displacements and integrals are those of
-`contact.friction.law`: over kappa, and I.
+The annotations name the types of compiled code, in `vibroimpact.compiler.types`. Velocities,
+displacements and integrals are those of `contact.friction.law`: over kappa, and I.
 """
 
 from __future__ import annotations
@@ -15,8 +15,8 @@ from vibroimpact.dynamics.core.records import Boolean, Matrix, Real
 class NormalState(NamedTuple):
     r"""The normal motion at one end of a step, whose parameter goes from 0 to 1.
 
-    time: since first touch [s]; pace, pace_slope: its derivatives. depth [m], depth_slope. most: the integral I of a contact that slides
-    [m^1.5]; swept: its integral over time so far.
+    time: since first touch [s]; pace, pace_slope: its derivatives. depth [m], depth_slope. most:
+    the integral I of a contact that slides [m^1.5]; swept: its integral over time so far.
     """
 
     time: Real
@@ -29,10 +29,12 @@ class NormalState(NamedTuple):
 
 
 class SlipState(NamedTuple):
-    """The motion of a contact along the plate: velocity [m/s], displacement [m] and integral I [m^1.5].
+    """The motion of a contact along the plate: velocity [m/s], displacement [m] and integral I
+    [m^1.5].
 
-    direction: of the slip, 1 or -1; 0 while all of the contact sticks. front: root of the depth at which the slip ends, 0 where all of it
-    slides. microslip: energy lost while a part of the contact sticks, over mass and the square of kappa [J/kg].
+    direction: of the slip, 1 or -1; 0 while all of the contact sticks. front: root of the depth at
+    which the slip ends, 0 where all of it slides. microslip: energy lost while a part of the
+    contact sticks, over mass and the square of kappa [J/kg].
     """
 
     velocity: Real
@@ -46,8 +48,9 @@ class SlipState(NamedTuple):
 class Friction(NamedTuple):
     r"""Law and bodies of one contact.
 
-    growing, shrinking, at_rim, sliding_energy: `stretching`, `slips_at_rim` and `sliding_energy` of the law. stiffness: k = 2 G* sqrt(R)
-    over m [1/(m^0.5 s^2)]. pull: acceleration along the direction [m/s^2].
+    growing, shrinking, at_rim, sliding_energy: `stretching`, `slips_at_rim` and `sliding_energy` of
+    the law. stiffness: k = 2 G* sqrt(R) over m [1/(m^0.5 s^2)]. pull: acceleration along the
+    direction [m/s^2].
     """
 
     growing: Real
@@ -61,8 +64,8 @@ class Friction(NamedTuple):
 class Curve(NamedTuple):
     """The turning points of a contact, from its middle to its rim; see `core.turning_points`.
 
-    points (P, 3): depth [m], displacement [m], integral [m^1.5] of each. top (2,): number of the point at the rim, and of that below which
-    the slip ends.
+    points (P, 3): depth [m], displacement [m], integral [m^1.5] of each. top (2,): number of the
+    point at the rim, and of that below which the slip ends.
     """
 
     points: Matrix

@@ -7,15 +7,44 @@ import numpy as np
 from vibroimpact.arrays import Floats
 from vibroimpact.compiled import compiled
 from vibroimpact.dynamics.core.linear import less_product
-from vibroimpact.dynamics.core.records import RELEASE_LEVEL, Basis, Contacts, Histories, Motion, Nodes, Start, Surfaces
+from vibroimpact.dynamics.core.records import (
+    RELEASE_LEVEL,
+    Basis,
+    Contacts,
+    Histories,
+    Motion,
+    Nodes,
+    Start,
+    Surfaces,
+)
 from vibroimpact.dynamics.core.stretch import begun_rate
 
 
-@compiled(lambda t: t.of(Histories)(t.of(Basis), t.of(Surfaces), t.of(Contacts), t.of(Start), t.vector, t.of(Nodes), t.of(Motion), t.real))
+@compiled(
+    lambda t: t.of(Histories)(
+        t.of(Basis),
+        t.of(Surfaces),
+        t.of(Contacts),
+        t.of(Start),
+        t.vector,
+        t.of(Nodes),
+        t.of(Motion),
+        t.real,
+    )
+)
 def contact_histories(
-    basis: Basis, surfaces: Surfaces, contacts: Contacts, start: Start, begun: Floats, found: Nodes, motion: Motion, length: float
+    basis: Basis,
+    surfaces: Surfaces,
+    contacts: Contacts,
+    start: Start,
+    begun: Floats,
+    found: Nodes,
+    motion: Motion,
+    length: float,
 ) -> Histories:
-    """Return motion and energy of the contacts through a solved stretch; `begun`: indentations of the laws at the start [m] (c,)."""
+    """Return motion and energy of the contacts through a solved stretch; `begun`:
+    indentations of the laws at the start [m] (c,).
+    """
     nodes = len(basis.time)
     number = len(begun)
     approaches = less_product(motion.approach, motion.approach_by_force, found.force)
@@ -33,7 +62,9 @@ def contact_histories(
     roughness = 0.0
     for contact in range(number):
         first = contact * nodes
-        approach[contact, 0] = max(start.approach[contact], contacts.numbers[contact, RELEASE_LEVEL])
+        approach[contact, 0] = max(
+            start.approach[contact], contacts.numbers[contact, RELEASE_LEVEL]
+        )
         delta[contact, 0] = begun[contact]
         first_rate = begun_rate(surfaces, start, contact)
         if surfaces.incidence[contact].any():  # the rate of a massless element jumps with the force

@@ -1,6 +1,7 @@
 """Calls of a contact law in series with a quasi-static compliance, from compiled code.
 
-The law's force is given by the address of a C function, so that one compiled core serves all laws; in plain Python it is the function.
+The law's force is given by the address of a C function, so that one compiled core serves all laws;
+in plain Python it is the function.
 """
 
 from __future__ import annotations
@@ -35,7 +36,8 @@ _MOST_ITERATIONS = 60
 
 @compiled(lambda t: t.tuple(t.real, t.real)(t.vector, t.real))
 def series_indentation(series: Floats, force: float) -> tuple[float, float]:
-    """Return the indentation of a compliance in series [m] at a force [N], and its derivative [m/N].
+    """Return the indentation of a compliance in series [m] at a force [N], and its derivative
+    [m/N].
 
     `series` (7,): C, 1/(E R), c0, c1, c2, c3 and F_R of `contact.quasi_static.QuasiStatic`.
     """
@@ -46,7 +48,11 @@ def series_indentation(series: Floats, force: float) -> tuple[float, float]:
     x = max((abs(force) / series[6]) ** (1.0 / 3.0), _LEAST_RADIUS)
     logarithm = math.log(x)
     factor = series[2] + series[3] * logarithm + x * (series[4] + series[5] * x)
-    slope = series[2] + series[3] * (logarithm + 1.0 / 3.0) + x * (4.0 / 3.0 * series[4] + 5.0 / 3.0 * series[5] * x)
+    slope = (
+        series[2]
+        + series[3] * (logarithm + 1.0 / 3.0)
+        + x * (4.0 / 3.0 * series[4] + 5.0 / 3.0 * series[5] * x)
+    )
     return force * (linear + unit * factor), linear + unit * slope
 
 
@@ -57,11 +63,14 @@ def is_in_series(series: Floats) -> bool:
 
 
 @compiled(lambda t: t.real(t.address, t.vector, t.real, t.real, t.vector, t.real))
-def indentation_at(law: Any, coefficients: Floats, speed: float, release: float, series: Floats, approach: float) -> float:
-    """Return the indentation of a law [m] at an approach of the surfaces [m], at least that of release, to 1e-8 of it.
+def indentation_at(
+    law: Any, coefficients: Floats, speed: float, release: float, series: Floats, approach: float
+) -> float:
+    """Return the indentation of a law [m] at an approach of the surfaces [m], at least that of
+    release, to 1e-8 of it.
 
-    By Newton's method, and by bisection where that goes to and fro between two branches of a law, as between those with and without its
-    memory of a deeper indentation.
+    By Newton's method, and by bisection where that goes to and fro between two branches of a law,
+    as between those with and without its memory of a deeper indentation.
     """
     if not is_in_series(series):
         return max(approach, release)
@@ -97,14 +106,24 @@ def indentation_at(law: Any, coefficients: Floats, speed: float, release: float,
     return delta
 
 
-@compiled(lambda t: t.void(t.address, t.vector, t.real, t.real, t.vector, t.vector, t.vector, t.matrix))
+@compiled(
+    lambda t: t.void(t.address, t.vector, t.real, t.real, t.vector, t.vector, t.vector, t.matrix)
+)
 def linearise(
-    law: Any, coefficients: Floats, speed: float, release: float, series: Floats, delta: Floats, rate: Floats, linear: Floats
+    law: Any,
+    coefficients: Floats,
+    speed: float,
+    release: float,
+    series: Floats,
+    delta: Floats,
+    rate: Floats,
+    linear: Floats,
 ) -> None:
     """Write forces, approach and derivatives of a law at N nodes into `linear` (7, N).
 
-    Rows: static and dissipative force [N]; approach of the surfaces [m]; derivative of the approach by the indentation [-]; of the static
-    force by it [N/m]; of the dissipative force by it [N/m] and by the rate [N s/m]. By finite differences; constant beyond release.
+    Rows: static and dissipative force [N]; approach of the surfaces [m]; derivative of the approach
+    by the indentation [-]; of the static force by it [N/m]; of the dissipative force by it [N/m]
+    and by the rate [N s/m]. By finite differences; constant beyond release.
     """
     deepest = 0.0
     fastest = 0.0
@@ -122,7 +141,9 @@ def linearise(
         stiffness = 0.0
         by_delta = 0.0
         if held:
-            deeper_static, deeper_dissipative = force(reached + step, rate[node], speed, coefficients)
+            deeper_static, deeper_dissipative = force(
+                reached + step, rate[node], speed, coefficients
+            )
             stiffness = (deeper_static - static) / step
             by_delta = (deeper_dissipative - dissipative) / step
         _, faster_dissipative = force(reached, rate[node] + faster, speed, coefficients)
@@ -143,18 +164,25 @@ def linearise(
 
 @compiled(lambda t: t.real(t.vector, t.real))
 def series_energy(series: Floats, force: float) -> float:
-    """Return the energy of a compliance in series [J] at a force [N]; negative for a negative compliance."""
+    """Return the energy of a compliance in series [J] at a force [N]; negative for a
+    negative compliance.
+    """
     linear = series[0]
     unit = series[1]
     if unit == 0.0:
         return float(0.5 * force * force * linear)
     x = max((abs(force) / series[6]) ** (1.0 / 3.0), _LEAST_RADIUS)
-    factor = series[2] + series[3] * (math.log(x) + 1.0 / 6.0) + x * (8.0 / 7.0 * series[4] + 1.25 * series[5] * x)
+    factor = (
+        series[2]
+        + series[3] * (math.log(x) + 1.0 / 6.0)
+        + x * (8.0 / 7.0 * series[4] + 1.25 * series[5] * x)
+    )
     return float(0.5 * force * force * (linear + unit * factor))
 
 
 _TENSILE_POINTS = 2000
-_LEAST_SLOPE = 0.05  # of the approach by the indentation; at zero a contact snaps off, with 1e-4 less energy lost
+# of the approach by the indentation; at zero a contact snaps off, with 1e-4 less energy lost
+_LEAST_SLOPE = 0.05
 
 
 @compiled(lambda t: t.real(t.of(Law), t.real))
@@ -174,13 +202,19 @@ def approach_at(law: Law, delta: float) -> float:
 
 @compiled(lambda t: t.real(t.of(Law), t.real))
 def law_indentation(law: Law, approach: float) -> float:
-    """Return the indentation of a law [m] at an approach of the surfaces [m], at least that of release."""
-    return indentation_at(law.addresses[0], law.coefficients, law.speed, law.release, law.series, approach)
+    """Return the indentation of a law [m] at an approach of the surfaces [m], at least
+    that of release.
+    """
+    return indentation_at(
+        law.addresses[0], law.coefficients, law.speed, law.release, law.series, approach
+    )
 
 
 @compiled(lambda t: t.real(t.of(Law), t.real))
 def stored_energy(law: Law, delta: float) -> float:
-    """Return the energy that a law and the compliance in series store since touch [J], at an indentation of the law [m]."""
+    """Return the energy that a law and the compliance in series store since touch [J], at
+    an indentation of the law [m].
+    """
     reached = max(delta, law.release)
     elastic, _ = energies_at(law.addresses[1])(reached, law.coefficients)
     if is_in_series(law.series):
@@ -190,7 +224,9 @@ def stored_energy(law: Law, delta: float) -> float:
 
 @compiled(lambda t: t.real(t.of(Law), t.real))
 def static_work(law: Law, delta: float) -> float:
-    """Return the sum of the stored energy and the plastic work [J] at an indentation of a law [m]."""
+    """Return the sum of the stored energy and the plastic work [J] at an indentation of a
+    law [m].
+    """
     _, plastic = energies_at(law.addresses[1])(max(delta, law.release), law.coefficients)
     return float(stored_energy(law, delta) + plastic)
 
@@ -240,36 +276,80 @@ def contacts_of(law: Law, tension: int) -> Contacts:
 
 @compiled(lambda t: t.of(Law)(t.integers, t.vector, t.vector, t.real))
 def law_at_touch(addresses: Integers, coefficients: Floats, series: Floats, speed: float) -> Law:
-    """Return a law of one contact with the levels that follow from its coefficients; `speed`: closing speed at touch [m/s]."""
+    """Return a law of one contact with the levels that follow from its coefficients;
+    `speed`: closing speed at touch [m/s].
+    """
     _, _, memory_level, _, _ = levels_at(addresses[2])(coefficients)
     return law_beyond(addresses, coefficients, series, speed, memory_level)
 
 
 @compiled(lambda t: t.of(Law)(t.integers, t.vector, t.vector, t.real, t.real))
-def law_beyond(addresses: Integers, coefficients: Floats, series: Floats, speed: float, memory_level: float) -> Law:
+def law_beyond(
+    addresses: Integers, coefficients: Floats, series: Floats, speed: float, memory_level: float
+) -> Law:
     """Return a law of one contact whose memory changes beyond an indentation [m]."""
     touch, release, _, first, second = levels_at(addresses[2])(coefficients)
-    law = Law(addresses, coefficients, series, speed, touch, release, release, memory_level, first, second, 0.0)
+    law = Law(
+        addresses,
+        coefficients,
+        series,
+        speed,
+        touch,
+        release,
+        release,
+        memory_level,
+        first,
+        second,
+        0.0,
+    )
     if not is_in_series(series):
         return law
     if release < touch:  # a sticking contact may snap off before the law releases
         release = snap_off(law)
-        law = Law(addresses, coefficients, series, speed, touch, release, release, memory_level, first, second, 0.0)
+        law = Law(
+            addresses,
+            coefficients,
+            series,
+            speed,
+            touch,
+            release,
+            release,
+            memory_level,
+            first,
+            second,
+            0.0,
+        )
     jump = 0.0
     if static_force(law, touch) != 0.0:
         delta = law_indentation(law, touch)
         elastic, _ = energies_at(addresses[1])(delta, coefficients)
         jump = elastic + series_energy(series, static_force(law, delta))
-    return Law(addresses, coefficients, series, speed, touch, release, approach_at(law, release), memory_level, first, second, jump)
+    return Law(
+        addresses,
+        coefficients,
+        series,
+        speed,
+        touch,
+        release,
+        approach_at(law, release),
+        memory_level,
+        first,
+        second,
+        jump,
+    )
 
 
 @compiled(lambda t: t.real(t.of(Law)))
 def snap_off(law: Law) -> float:
-    """Return the indentation [m] at which a sticking contact with a compliance in series snaps off, or that at which its law releases."""
+    """Return the indentation [m] at which a sticking contact with a compliance in series
+    snaps off, or that at which its law releases.
+    """
     deltas = np.empty(_TENSILE_POINTS)
     approaches = np.empty(_TENSILE_POINTS)
     for point in range(_TENSILE_POINTS):  # graded towards release
-        deltas[point] = law.release + (law.touch - law.release) * (point / (_TENSILE_POINTS - 1)) ** 6
+        deltas[point] = (
+            law.release + (law.touch - law.release) * (point / (_TENSILE_POINTS - 1)) ** 6
+        )
         approaches[point] = approach_at(law, deltas[point])
     snapped = law.release
     for point in range(_TENSILE_POINTS):
@@ -290,5 +370,7 @@ def law_after(law: Law, deepest: float) -> Law:
 
 @compiled(lambda t: t.of(Law)(t.of(Law), t.real))
 def law_remembering(law: Law, deepest: float) -> Law:
-    """Return a law after a compression to an indentation [m]: itself where that does not change its memory."""
+    """Return a law after a compression to an indentation [m]: itself where that does not
+    change its memory.
+    """
     return law_after(law, deepest) if deepest > law.memory_level else law

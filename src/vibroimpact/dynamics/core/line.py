@@ -1,8 +1,10 @@
-"""The contact of two rigid bodies from touch to release: steps in the variable that suits, each of which ends at the next event.
+"""The contact of two rigid bodies from touch to release: steps in the variable that suits, each of
+which ends at the next event.
 
-Compression goes through the breakpoints of the law to the deepest point, at which the law's memory changes; restitution goes back through
-them to release. Where the force of a law that may not pull becomes zero, the contact ends, or the bodies move freely within the
-indentation until the law pushes again.
+Compression goes through the breakpoints of the law to the deepest point, at which the law's memory
+changes; restitution goes back through them to release. Where the force of a law that may not pull
+becomes zero, the contact ends, or the bodies move freely within the indentation until the law
+pushes again.
 """
 
 from __future__ import annotations
@@ -27,7 +29,14 @@ from vibroimpact.dynamics.core.line_events import (
     length_to_tension,
     sag_of,
 )
-from vibroimpact.dynamics.core.line_records import Advance, Line, LineContact, LineManner, LineState, LineSteps
+from vibroimpact.dynamics.core.line_records import (
+    Advance,
+    Line,
+    LineContact,
+    LineManner,
+    LineState,
+    LineSteps,
+)
 from vibroimpact.dynamics.core.line_step import (
     BY_FLOW,
     BY_RATE,
@@ -45,7 +54,8 @@ from vibroimpact.dynamics.core.records import Law
 RELEASED, CAPTURED, FAILED = 0, 1, 2
 """Outcomes: released; too little energy to leave the indentation; not to be integrated."""
 
-_FIRST_LENGTH = 1.7  # of the root of the depth over the speed, times the order-th root of the tolerance
+# of the root of the depth over the speed, times the order-th root of the tolerance
+_FIRST_LENGTH = 1.7
 _SAFETY = 0.82
 _LEAST_GROWTH = 0.2
 _MOST_GROWTH = 4.0
@@ -63,7 +73,9 @@ _TINY = 1e-300
 
 @compiled(lambda t: t.real(t.of(Law), t.real, t.boolean, t.real))
 def next_level(law: Law, delta: float, compressing: bool, rounding: float) -> float:
-    """Return the next indentation at which the force is not smooth [m], on the way in infinite if there is none, on the way out release."""
+    """Return the next indentation at which the force is not smooth [m], on the way in
+    infinite if there is none, on the way out release.
+    """
     if compressing:
         level = np.inf
         if law.first_breakpoint > delta + rounding:
@@ -80,7 +92,9 @@ def next_level(law: Law, delta: float, compressing: bool, rounding: float) -> fl
 
 
 @compiled(lambda t: t.void(t.of(LineSteps), t.integer, t.boolean, t.of(LineState), t.real))
-def write_step(steps: LineSteps, variable: int, after: bool, begun: LineState, length: float) -> None:
+def write_step(
+    steps: LineSteps, variable: int, after: bool, begun: LineState, length: float
+) -> None:
     """Write a step, or count it where there is no room."""
     step = steps.written[0]
     steps.written[0] += 1
@@ -117,11 +131,18 @@ def line_under(law: Law, manner: LineManner) -> Line:
     )
 
 
-@compiled(lambda t: t.tuple(t.integer, t.real, t.of(Advance))(t.of(Line), t.of(LineState), t.boolean, t.real, t.real, t.matrix))
-def next_step(line: Line, state: LineState, compressing: bool, level: float, length: float, stages: Floats) -> tuple[int, float, Advance]:
+@compiled(
+    lambda t: t.tuple(t.integer, t.real, t.of(Advance))(
+        t.of(Line), t.of(LineState), t.boolean, t.real, t.real, t.matrix
+    )
+)
+def next_step(
+    line: Line, state: LineState, compressing: bool, level: float, length: float, stages: Floats
+) -> tuple[int, float, Advance]:
     """Return the variable, the length and the end of a step of about a length of the flow.
 
-    One that seems to reach the next level, or the deepest point, is first tried with the root, or the rate, for its variable.
+    One that seems to reach the next level, or the deepest point, is first tried with the root, or
+    the rate, for its variable.
     """
     root = root_of(line, state.delta)
     ahead = root_of(line, level) - root if np.isfinite(level) else np.inf
@@ -140,7 +161,17 @@ def next_step(line: Line, state: LineState, compressing: bool, level: float, len
 
 @compiled(
     lambda t: t.tuple(t.integer, t.real, t.of(LineState))(
-        t.of(Line), t.of(LineManner), t.integer, t.of(LineState), t.boolean, t.real, t.real, t.of(Advance), t.real, t.real, t.matrix
+        t.of(Line),
+        t.of(LineManner),
+        t.integer,
+        t.of(LineState),
+        t.boolean,
+        t.real,
+        t.real,
+        t.of(Advance),
+        t.real,
+        t.real,
+        t.matrix,
     )
 )
 def first_end(
@@ -215,7 +246,9 @@ def first_end(
 
 @compiled(lambda t: t.tuple(t.boolean, t.real)(t.of(Line), t.of(LineState), t.real))
 def sinks_to(line: Line, state: LineState, least_energy: float) -> tuple[bool, float]:
-    """Has a body in compression crept to its static indentation without a turn, and which is that [m]?"""
+    """Has a body in compression crept to its static indentation without a turn, and which
+    is that [m]?
+    """
     if not energy_to_part(line, state) < least_energy:
         return False, 0.0
     weight = line.mass * line.gravity
@@ -223,13 +256,17 @@ def sinks_to(line: Line, state: LineState, least_energy: float) -> tuple[bool, f
     elastic, plastic = energies_of(line, state.delta)
     elastic_there, plastic_there = energies_of(line, sag)
     kinetic = 0.5 * line.mass * state.rate * state.rate
-    left = kinetic + elastic + plastic - elastic_there - plastic_there - weight * (state.delta - sag)
+    left = (
+        kinetic + elastic + plastic - elastic_there - plastic_there - weight * (state.delta - sag)
+    )
     return kinetic < least_energy or left < max(_STILL * weight * sag, least_energy), sag
 
 
 @compiled(lambda t: t.real(t.of(Line), t.of(LineState), t.real))
 def energy_of(line: Line, state: LineState, plastic: float) -> float:
-    """Return the energy of the motion, of the law and of the weight, with what was lost in damping and in plastic work, `plastic` [J]."""
+    """Return the energy of the motion, of the law and of the weight, with what was lost
+    in damping and in plastic work, `plastic` [J].
+    """
     elastic, _ = energies_of(line, state.delta)
     kinetic = 0.5 * line.mass * state.rate * state.rate
     return kinetic + elastic + plastic + state.lost - line.mass * line.gravity * state.delta
@@ -257,7 +294,9 @@ def follow_line(law: Law, manner: LineManner, steps: LineSteps) -> LineContact:
     shortest = _SHORTEST * length
     state = LineState(0.0, law.touch, law.speed, 0.0)
     brought = energy_of(line, state, 0.0)
-    imbalance = max(_IMBALANCE * manner.tolerance, _LEAST_IMBALANCE) * line.mass * manner.speed_scale**2
+    imbalance = (
+        max(_IMBALANCE * manner.tolerance, _LEAST_IMBALANCE) * line.mass * manner.speed_scale**2
+    )
     compressing = True
     deepest = 0.0
     time_of_deepest = 0.0
@@ -278,7 +317,9 @@ def follow_line(law: Law, manner: LineManner, steps: LineSteps) -> LineContact:
         else:
             variable, tried, step = next_step(line, state, compressing, level, length, stages)
         order = _ORDER_IMPLICIT if is_stiff else _ORDER
-        growth = min(max(_SAFETY * max(step.error, _TINY) ** (-1.0 / order), _LEAST_GROWTH), _MOST_GROWTH)
+        growth = min(
+            max(_SAFETY * max(step.error, _TINY) ** (-1.0 / order), _LEAST_GROWTH), _MOST_GROWTH
+        )
         if variable == BY_FLOW or is_stiff:
             length *= growth
         if not step.error <= 1.0:
@@ -286,7 +327,19 @@ def follow_line(law: Law, manner: LineManner, steps: LineSteps) -> LineContact:
                 break
             continue
         slack = _NO_FORCE * peak_force
-        end, tried, after = first_end(line, manner, variable, state, compressing, level, tried, step, slack, least_energy, stages)
+        end, tried, after = first_end(
+            line,
+            manner,
+            variable,
+            state,
+            compressing,
+            level,
+            tried,
+            step,
+            slack,
+            least_energy,
+            stages,
+        )
         write_step(steps, variable, not compressing, state, tried)
         if steps.written[0] == _STIFF:
             is_stiff = True
@@ -296,7 +349,9 @@ def follow_line(law: Law, manner: LineManner, steps: LineSteps) -> LineContact:
             before = trend
             trend = force_trend(line, after, force)
             if before > 0.0 > trend:
-                highest, when, _ = extreme_force(line, variable, state, tried, before, trend, stages)
+                highest, when, _ = extreme_force(
+                    line, variable, state, tried, before, trend, stages
+                )
                 if highest > peak_force:
                     peak_force = highest
                     time_of_peak = when
@@ -339,7 +394,10 @@ def follow_line(law: Law, manner: LineManner, steps: LineSteps) -> LineContact:
             if sinks:
                 deepest = max(deepest, sag)
             # held by its energy, or by a force that does not exceed the weight
-            if energy_to_part(line, state) < least_energy or line.gravity >= force_of(line, state) / line.mass:
+            if (
+                energy_to_part(line, state) < least_energy
+                or line.gravity >= force_of(line, state) / line.mass
+            ):
                 outcome = CAPTURED
                 break
             if not is_stiff:
@@ -347,4 +405,6 @@ def follow_line(law: Law, manner: LineManner, steps: LineSteps) -> LineContact:
     if not abs(energy_of(line, state, plastic) - brought) <= imbalance:
         outcome = FAILED
     stored = energies_of(line, state.delta)[0]
-    return LineContact(outcome, state, deepest, time_of_deepest, peak_force, time_of_peak, plastic, stored)
+    return LineContact(
+        outcome, state, deepest, time_of_deepest, peak_force, time_of_peak, plastic, stored
+    )

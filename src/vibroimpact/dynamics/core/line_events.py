@@ -1,4 +1,6 @@
-"""Where a step of the contact of two rigid bodies has to end: at an indentation, where it turns, where it no longer pushes, and so on."""
+"""Where a step of the contact of two rigid bodies has to end: at an indentation, where it
+turns, where it no longer pushes, and so on.
+"""
 
 from __future__ import annotations
 
@@ -12,7 +14,9 @@ from vibroimpact.dynamics.core.line_records import Bracket, Line, LineState
 from vibroimpact.dynamics.core.line_step import FREE, advance, energies_of, force_of, force_trend
 
 NO_END, AT_LEVEL, AT_TURN, AT_NO_FORCE, AT_CAPTURE = range(5)
-"""Ends of a step: none; at an indentation; at a rate of zero; at a force of zero; where the energy no longer takes the bodies apart."""
+"""Ends of a step: none; at an indentation; at a rate of zero; at a force of zero; where
+the energy no longer takes the bodies apart.
+"""
 
 LOW, HIGH = -1, 1
 """Ends of a bracket; 0 where none has been moved."""
@@ -29,7 +33,9 @@ _MOST_HALVINGS = 200
 
 @compiled(lambda t: t.real(t.of(Line), t.integer, t.real, t.of(LineState)))
 def distance_to(line: Line, end: int, level: float, state: LineState) -> float:
-    """Return how far a state is from an end [m], [m/s], [N] or [J]; `level`: an indentation [m], or the least energy to part [J]."""
+    """Return how far a state is from an end [m], [m/s], [N] or [J]; `level`: an
+    indentation [m], or the least energy to part [J].
+    """
     if end == AT_LEVEL:
         return state.delta - level
     if end == AT_TURN:
@@ -41,24 +47,35 @@ def distance_to(line: Line, end: int, level: float, state: LineState) -> float:
 
 @compiled(lambda t: t.real(t.of(Line), t.of(LineState)))
 def energy_to_part(line: Line, state: LineState) -> float:
-    """Return the energy above that with which the bodies would part without speed, if nothing more were lost [J]."""
+    """Return the energy above that with which the bodies would part without speed, if
+    nothing more were lost [J].
+    """
     weight = line.mass * line.gravity
     elastic, plastic = energies_of(line, state.delta)
     barrier, _ = energies_of(line, line.release)
-    return 0.5 * line.mass * state.rate * state.rate + elastic + plastic - barrier - weight * (state.delta - line.release)
+    return (
+        0.5 * line.mass * state.rate * state.rate
+        + elastic
+        + plastic
+        - barrier
+        - weight * (state.delta - line.release)
+    )
 
 
 @compiled(lambda t: t.real(t.of(Bracket)))
 def secant_of(bracket: Bracket) -> float:
     """Return where the secant through the ends of a bracket is zero."""
-    return bracket.low + (bracket.high - bracket.low) * bracket.low_value / (bracket.low_value - bracket.high_value)
+    return bracket.low + (bracket.high - bracket.low) * bracket.low_value / (
+        bracket.low_value - bracket.high_value
+    )
 
 
 @compiled(lambda t: t.of(Bracket)(t.of(Bracket), t.real, t.real))
 def narrowed(bracket: Bracket, middle: float, value: float) -> Bracket:
     """Return a bracket with the value in its middle in place of that at one end.
 
-    The value at an end that stays for the second time is halved, or it would stay for ever (the Illinois method).
+    The value at an end that stays for the second time is halved, or it would stay for ever (the
+    Illinois method).
     """
     low, high, low_value, high_value, moved = bracket
     if (value > 0.0) == (high_value > 0.0):
@@ -66,8 +83,21 @@ def narrowed(bracket: Bracket, middle: float, value: float) -> Bracket:
     return Bracket(middle, high, value, high_value * (0.5 if moved == LOW else 1.0), LOW)
 
 
-@compiled(lambda t: t.real(t.of(Line), t.integer, t.of(LineState), t.real, t.real, t.integer, t.real, t.matrix))
-def length_to(line: Line, variable: int, begun: LineState, low: float, high: float, end: int, level: float, stages: Floats) -> float:
+@compiled(
+    lambda t: t.real(
+        t.of(Line), t.integer, t.of(LineState), t.real, t.real, t.integer, t.real, t.matrix
+    )
+)
+def length_to(
+    line: Line,
+    variable: int,
+    begun: LineState,
+    low: float,
+    high: float,
+    end: int,
+    level: float,
+    stages: Floats,
+) -> float:
     """Return the length of a step to an end between two lengths, by the secant within a bracket."""
     low_value = distance_to(line, end, level, advance(line, variable, begun, low, stages).state)
     high_value = distance_to(line, end, level, advance(line, variable, begun, high, stages).state)
@@ -78,7 +108,10 @@ def length_to(line: Line, variable: int, begun: LineState, low: float, high: flo
     bracket = Bracket(low, high, low_value, high_value, 0)
     for _ in range(_MOST_ITERATIONS):
         middle = secant_of(bracket)
-        if not abs(bracket.high - bracket.low) > _NEAR * abs(bracket.high) or middle in (bracket.low, bracket.high):
+        if not abs(bracket.high - bracket.low) > _NEAR * abs(bracket.high) or middle in (
+            bracket.low,
+            bracket.high,
+        ):
             break
         value = distance_to(line, end, level, advance(line, variable, begun, middle, stages).state)
         if value == 0.0:
@@ -87,18 +120,35 @@ def length_to(line: Line, variable: int, begun: LineState, low: float, high: flo
     return bracket.low if abs(bracket.low_value) < abs(bracket.high_value) else bracket.high
 
 
-@compiled(lambda t: t.real(t.of(Line), t.integer, t.of(LineState), t.real, t.real, t.boolean, t.matrix))
-def length_to_tension(line: Line, variable: int, begun: LineState, length: float, slack: float, is_seen: bool, stages: Floats) -> float:
-    """Return the length of a step to where the force becomes tensile by more than `slack` [N]; infinite where it does not.
+@compiled(
+    lambda t: t.real(t.of(Line), t.integer, t.of(LineState), t.real, t.real, t.boolean, t.matrix)
+)
+def length_to_tension(
+    line: Line,
+    variable: int,
+    begun: LineState,
+    length: float,
+    slack: float,
+    is_seen: bool,
+    stages: Floats,
+) -> float:
+    """Return the length of a step to where the force becomes tensile by more than `slack` [N];
+    infinite where it does not.
 
-    It is looked for at some places if it `is_seen`, and where the force has a minimum within the step.
+    It is looked for at some places if it `is_seen`, and where the force has a minimum within the
+    step.
     """
     if is_seen:
         before = 0.0
         for probe in range(len(_PROBES) + 1):
             share = _PROBES[probe] if probe < len(_PROBES) else 1.0
-            if force_of(line, advance(line, variable, begun, share * length, stages).state) < -slack:
-                return length_to(line, variable, begun, before * length, share * length, AT_NO_FORCE, 0.0, stages)
+            if (
+                force_of(line, advance(line, variable, begun, share * length, stages).state)
+                < -slack
+            ):
+                return length_to(
+                    line, variable, begun, before * length, share * length, AT_NO_FORCE, 0.0, stages
+                )
             before = share
     begun_force = force_of(line, begun)
     falling = force_trend(line, begun, begun_force)
@@ -113,7 +163,8 @@ def length_to_tension(line: Line, variable: int, begun: LineState, length: float
 
 @compiled(lambda t: t.tuple(t.real, t.boolean, t.boolean)(t.of(Line), t.of(LineState)))
 def end_of_glide(line: Line, begun: LineState) -> tuple[float, bool, bool]:
-    """Return how long bodies move freely within the indentation [s], whether the law then pushes, and whether they stay within.
+    """Return how long bodies move freely within the indentation [s], whether the law then pushes,
+    and whether they stay within.
 
     They stay where gravity turns them before they separate.
     """
@@ -129,14 +180,20 @@ def end_of_glide(line: Line, begun: LineState) -> tuple[float, bool, bool]:
         if force_of(line, advance(line, FREE, begun, time, no_room).state) > 0.0:
             if sample == 1:
                 return time, True, False
-            return length_to(line, FREE, begun, before, time, AT_NO_FORCE, 0.0, no_room), True, False
+            return (
+                length_to(line, FREE, begun, before, time, AT_NO_FORCE, 0.0, no_room),
+                True,
+                False,
+            )
         before = time
     return length, False, stays
 
 
 @compiled(lambda t: t.of(LineState)(t.of(Line), t.of(LineState), t.real, t.boolean))
 def after_glide(line: Line, begun: LineState, length: float, within: bool) -> LineState:
-    """Return the state after free motion for a time [s], `within` the indentation or to release; the energy stored meanwhile is lost."""
+    """Return the state after free motion for a time [s], `within` the indentation or to
+    release; the energy stored meanwhile is lost.
+    """
     after = advance(line, FREE, begun, length, np.empty((4, 0))).state
     delta = after.delta if within else line.release
     lost = energies_of(line, begun.delta)[0] - energies_of(line, delta)[0]
@@ -171,13 +228,25 @@ def sag_of(line: Line, weight: float) -> float:
     return high
 
 
-@compiled(lambda t: t.tuple(t.real, t.real, t.real)(t.of(Line), t.integer, t.of(LineState), t.real, t.real, t.real, t.matrix))
+@compiled(
+    lambda t: t.tuple(t.real, t.real, t.real)(
+        t.of(Line), t.integer, t.of(LineState), t.real, t.real, t.real, t.matrix
+    )
+)
 def extreme_force(
-    line: Line, variable: int, begun: LineState, length: float, before: float, after: float, stages: Floats
+    line: Line,
+    variable: int,
+    begun: LineState,
+    length: float,
+    before: float,
+    after: float,
+    stages: Floats,
 ) -> tuple[float, float, float]:
-    """Return the largest or least force within a step [N], its time since touch [s], and the length of the step up to it.
+    """Return the largest or least force within a step [N], its time since touch [s], and the length
+    of the step up to it.
 
-    `before`, `after`: rates of change of the force at its start and at its end, of opposite signs [N/s].
+    `before`, `after`: rates of change of the force at its start and at its end, of opposite signs
+    [N/s].
     """
     bracket = Bracket(0.0, length, before, after, 0)
     force = 0.0

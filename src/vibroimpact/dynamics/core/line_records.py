@@ -17,10 +17,11 @@ Booleans: TypeAlias = Bools
 class Line(NamedTuple):
     """Two rigid bodies in contact, with the indentation as their only coordinate.
 
-    force, energies: addresses of the functions of the law. coefficients (K,): of the law, with its memory. speed: at touch [m/s]. release:
-    indentation at release [m]. root: power of the indentation in whose root the force is smooth, 2 or 4. mass: effective [kg]. gravity
-    [m/s^2]. span: approximate duration of a contact [s]. Errors allowed in a step: root_scale of the root of the indentation, speed_scale
-    [m/s], time_scale [s], energy_scale [J].
+    force, energies: addresses of the functions of the law. coefficients (K,): of the law, with its
+    memory. speed: at touch [m/s]. release: indentation at release [m]. root: power of the
+    indentation in whose root the force is smooth, 2 or 4. mass: effective [kg]. gravity [m/s^2].
+    span: approximate duration of a contact [s]. Errors allowed in a step: root_scale of the root of
+    the indentation, speed_scale [m/s], time_scale [s], energy_scale [J].
     """
 
     force: Address
@@ -39,7 +40,9 @@ class Line(NamedTuple):
 
 
 class LineState(NamedTuple):
-    """State of the contact of two rigid bodies: time since touch [s], indentation delta [m], its rate [m/s], energy lost in damping [J]."""
+    """State of the contact of two rigid bodies: time since touch [s], indentation delta
+    [m], its rate [m/s], energy lost in damping [J].
+    """
 
     time: Real
     delta: Real
@@ -48,7 +51,9 @@ class LineState(NamedTuple):
 
 
 class Advance(NamedTuple):
-    """A step of the contact of two rigid bodies: the state after it, its error over the tolerance, its least and its last force [N]."""
+    """A step of the contact of two rigid bodies: the state after it, its error over the
+    tolerance, its least and its last force [N].
+    """
 
     state: LineState
     error: Real
@@ -57,7 +62,9 @@ class Advance(NamedTuple):
 
 
 class Bracket(NamedTuple):
-    """Two places between which a function changes its sign, its values there, and which end was moved last, of `line_events`."""
+    """Two places between which a function changes its sign, its values there, and which
+    end was moved last, of `line_events`.
+    """
 
     low: Real
     high: Real
@@ -69,9 +76,10 @@ class Bracket(NamedTuple):
 class LineManner(NamedTuple):
     """Two rigid bodies as they touch, and what stays the same through their contact.
 
-    root: power of the indentation in whose root the force is smooth. tension, contact_end: numbers of the law's, of `events`. mass:
-    effective [kg]. gravity [m/s^2]. depth: largest indentation without damping [m]. speed_scale: of the speed in contact [m/s]. tolerance:
-    relative error allowed in a step. most_steps: how many steps are tried.
+    root: power of the indentation in whose root the force is smooth. tension, contact_end: numbers
+    of the law's, of `events`. mass: effective [kg]. gravity [m/s^2]. depth: largest indentation
+    without damping [m]. speed_scale: of the speed in contact [m/s]. tolerance: relative error
+    allowed in a step. most_steps: how many steps are tried.
     """
 
     root: Integer
@@ -88,9 +96,10 @@ class LineManner(NamedTuple):
 class LineSteps(NamedTuple):
     """Room for P steps of the contact of two rigid bodies.
 
-    variable (P,): of `line_step`. after (P,): has the deepest point been passed, so that the law has its memory of it? begun (P, 4): time
-    [s], indentation [m], its rate [m/s] and energy lost [J] at the start. length (P,): in the variable. written (1,): number of steps;
-    those for which there is no room are counted.
+    variable (P,): of `line_step`. after (P,): has the deepest point been passed, so that the law
+    has its memory of it? begun (P, 4): time [s], indentation [m], its rate [m/s] and energy lost
+    [J] at the start. length (P,): in the variable. written (1,): number of steps; those for which
+    there is no room are counted.
     """
 
     variable: Integers
@@ -103,8 +112,9 @@ class LineSteps(NamedTuple):
 class LineContact(NamedTuple):
     """The contact of two rigid bodies: its outcome, of `core.line`, and how it ended.
 
-    end: the state at its end. deepest: largest indentation [m]. time_of_deepest [s]. peak_force [N], time_of_peak_force [s].
-    plastic: plastic work [J]. stored: energy left in the contact [J]. All times are since touch.
+    end: the state at its end. deepest: largest indentation [m]. time_of_deepest [s]. peak_force
+    [N], time_of_peak_force [s]. plastic: plastic work [J]. stored: energy left in the contact [J].
+    All times are since touch.
     """
 
     outcome: Integer
@@ -120,10 +130,12 @@ class LineContact(NamedTuple):
 class LineContacts(NamedTuple):
     """Room for the contacts of B pairs of rigid bodies.
 
-    outcomes (B,): of `core.line`. ends (10, B): duration [s], indentation [m] and its rate at the end [m/s], energy lost in damping [J],
-    deepest indentation [m] and its time [s], largest force [N] and its time [s], plastic work and stored energy [J]. shapes (B,): numbers
-    that tell the parts of the normal motions, 0 of contacts that were followed step by step. begins (B,): where these begin in motions,
-    six rows of points each, of `normal_records`. The last three are empty where no normal motion is asked for.
+    outcomes (B,): of `core.line`. ends (10, B): duration [s], indentation [m] and its rate at the
+    end [m/s], energy lost in damping [J], deepest indentation [m] and its time [s], largest force
+    [N] and its time [s], plastic work and stored energy [J]. shapes (B,): numbers that tell the
+    parts of the normal motions, 0 of contacts that were followed step by step. begins (B,): where
+    these begin in motions, six rows of points each, of `normal_records`. The last three are empty
+    where no normal motion is asked for.
     """
 
     outcomes: Integers

@@ -1,12 +1,19 @@
-r"""One step of the contact of two rigid bodies: explicit, of order 8, in a variable in which the motion is smooth.
+r"""One step of the contact of two rigid bodies: explicit, of order 8, in a variable in which the
+motion is smooth.
 
-Such a contact has one coordinate, the indentation. With s, the root of the indentation above that of release in which the force is smooth,
+Such a contact has one coordinate, the indentation. With s, the root of the indentation above that
+of release in which the force is smooth,
 
-.. math:: \frac{ds}{d\tau} = v,\quad \frac{dv}{d\tau} = n s^{n-1} a(s^n, v),\quad \frac{dt}{d\tau} = n s^{n-1}
+.. math::
 
-is smooth from touch to release (Sundman's time), where v is the rate of the indentation and a its second derivative. A step that ends where
-the root, or the rate, has a given value takes that for its variable (M. Henon, Physica D 5, 1982, 412-414), and is exact there. The motion
-within a step is that at the end of a shorter one. Where damping is so strong that such steps become minute, they are implicit.
+    \frac{ds}{d\tau} = v,\quad \frac{dv}{d\tau} = n s^{n-1} a(s^n, v),\quad \frac{dt}{d\tau} = n
+    s^{n-1}
+
+is smooth from touch to release (Sundman's time), where v is the rate of the indentation and a its
+second derivative. A step that ends where the root, or the rate, has a given value takes that for
+its variable (M. Henon, Physica D 5, 1982, 412-414), and is exact there. The motion within a step is
+that at the end of a shorter one. Where damping is so strong that such steps become minute, they are
+implicit.
 """
 
 from __future__ import annotations
@@ -17,13 +24,18 @@ import numpy as np
 
 from vibroimpact.arrays import Floats
 from vibroimpact.compiled import compiled, energies_at, force_at
-from vibroimpact.dynamics.core.dormand_prince import ERROR_OF_ORDER_3, ERROR_OF_ORDER_5, STAGE_WEIGHTS, STAGES
+from vibroimpact.dynamics.core.dormand_prince import (
+    ERROR_OF_ORDER_3,
+    ERROR_OF_ORDER_5,
+    STAGE_WEIGHTS,
+    STAGES,
+)
 from vibroimpact.dynamics.core.line_records import Advance, Line, LineState
 from vibroimpact.dynamics.core.line_stiff import advance_implicitly
 
 BY_FLOW, BY_ROOT, BY_RATE, FREE, IMPLICIT = range(5)
-"""Variables of a step: Sundman's time; the root of the indentation; its rate; FREE: time, without a contact force, in closed form;
-IMPLICIT: time, where damping is strong.
+"""Variables of a step: Sundman's time; the root of the indentation; its rate; FREE: time, without a
+contact force, in closed form; IMPLICIT: time, where damping is strong.
 """
 
 _TINY = 1e-300
@@ -57,7 +69,12 @@ def advance(line: Line, variable: int, begun: LineState, length: float, stages: 
     gravity = line.gravity
     if variable == FREE:
         delta = begun.delta + length * (begun.rate + 0.5 * gravity * length)
-        return Advance(LineState(begun.time + length, delta, begun.rate + gravity * length, begun.lost), 0.0, 0.0, 0.0)
+        return Advance(
+            LineState(begun.time + length, delta, begun.rate + gravity * length, begun.lost),
+            0.0,
+            0.0,
+            0.0,
+        )
     if variable == IMPLICIT:
         return advance_implicitly(line, begun, length)
     force = force_at(line.force)
@@ -115,21 +132,29 @@ def advance(line: Line, variable: int, begun: LineState, length: float, stages: 
         both = math.sqrt(fifth * fifth + 0.01 * third * third) * scale
         error = max(error, abs(length) * fifth * fifth / (both + _TINY))
     after = LineState(begun.time + length * time, delta, rate, begun.lost + length * lost)
-    if not np.isfinite(after.time + delta + rate + after.lost + error) or (variable == BY_FLOW and root < 0.0):
+    if not np.isfinite(after.time + delta + rate + after.lost + error) or (
+        variable == BY_FLOW and root < 0.0
+    ):
         error = np.inf
     return Advance(after, error, least, whole)
 
 
 @compiled(lambda t: t.real(t.of(Line), t.of(LineState)))
 def force_of(line: Line, state: LineState) -> float:
-    """Return the force of the formula of the law [N], which may pull; it ends at the indentation of release."""
-    static, dissipative = force_at(line.force)(max(state.delta, line.release), state.rate, line.speed, line.coefficients)
+    """Return the force of the formula of the law [N], which may pull; it ends at the
+    indentation of release.
+    """
+    static, dissipative = force_at(line.force)(
+        max(state.delta, line.release), state.rate, line.speed, line.coefficients
+    )
     return float(static + dissipative)
 
 
 @compiled(lambda t: t.tuple(t.real, t.real)(t.of(Line), t.real))
 def energies_of(line: Line, delta: float) -> tuple[float, float]:
-    """Return the energy that the law stores, and the plastic work since its memory [J], at an indentation [m]."""
+    """Return the energy that the law stores, and the plastic work since its memory [J],
+    at an indentation [m].
+    """
     elastic, plastic = energies_at(line.energies)(max(delta, line.release), line.coefficients)
     return elastic, plastic
 
@@ -141,7 +166,11 @@ def force_trend(line: Line, state: LineState, force: float) -> float:
     acceleration = line.gravity - force / line.mass
     aside = _ASIDE * line.span
     before = max(state.delta - aside * state.rate, line.release)
-    static, dissipative = function(before, state.rate - aside * acceleration, line.speed, line.coefficients)
+    static, dissipative = function(
+        before, state.rate - aside * acceleration, line.speed, line.coefficients
+    )
     after = max(state.delta + aside * state.rate, line.release)
-    later_static, later_dissipative = function(after, state.rate + aside * acceleration, line.speed, line.coefficients)
+    later_static, later_dissipative = function(
+        after, state.rate + aside * acceleration, line.speed, line.coefficients
+    )
     return float((later_static + later_dissipative - static - dissipative) / (2.0 * aside))

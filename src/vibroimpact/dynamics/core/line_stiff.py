@@ -1,8 +1,10 @@
-"""Implicit steps of the contact of two rigid bodies, where damping is so strong that explicit ones become minute.
+"""Implicit steps of the contact of two rigid bodies, where damping is so strong that explicit ones
+become minute.
 
-Such bodies creep at a rate at which all forces nearly balance. The steps are those of the Radau IIA method of order 5 in time (E. Hairer,
-G. Wanner, Solving Ordinary Differential Equations II, second edition, Springer 1996, section IV.5); the error is that between one step and
-two of half the length.
+Such bodies creep at a rate at which all forces nearly balance. The steps are those of the Radau IIA
+method of order 5 in time (E. Hairer, G. Wanner, Solving Ordinary Differential Equations II, second
+edition, Springer 1996, section IV.5); the error is that between one step and two of half the
+length.
 """
 
 from __future__ import annotations
@@ -33,7 +35,9 @@ _OF_ERROR = 31.0  # one step has 32 times the error of two of half its length
 
 @compiled(lambda t: t.of(Advance)(t.of(Line), t.of(LineState), t.real))
 def advance_implicitly(line: Line, begun: LineState, length: float) -> Advance:
-    """Return the state after a step of a length of time [s], made in two halves, with an estimate of its error."""
+    """Return the state after a step of a length of time [s], made in two halves, with an
+    estimate of its error.
+    """
     whole = implicit_step(line, begun, length)
     half = implicit_step(line, begun, 0.5 * length)
     after = implicit_step(line, half.state, 0.5 * length)
@@ -48,7 +52,9 @@ def advance_implicitly(line: Line, begun: LineState, length: float) -> Advance:
 
 @compiled(lambda t: t.of(Advance)(t.of(Line), t.of(LineState), t.real))
 def implicit_step(line: Line, begun: LineState, length: float) -> Advance:
-    """Return the state after one step; its error is infinite if Newton's method does not converge, else zero."""
+    """Return the state after one step; its error is infinite if Newton's method does not
+    converge, else zero.
+    """
     force = force_at(line.force)
     rate = np.full(3, begun.rate)
     delta = np.empty(3)
@@ -71,8 +77,12 @@ def implicit_step(line: Line, begun: LineState, length: float) -> Advance:
             static, dissipative = force(delta[stage], rate[stage], line.speed, line.coefficients)
             deeper = _ASIDE * (abs(delta[stage]) + line.speed_scale * line.span)
             faster = _ASIDE * (abs(rate[stage]) + line.speed_scale)
-            deeper_static, deeper_dissipative = force(delta[stage] + deeper, rate[stage], line.speed, line.coefficients)
-            faster_static, faster_dissipative = force(delta[stage], rate[stage] + faster, line.speed, line.coefficients)
+            deeper_static, deeper_dissipative = force(
+                delta[stage] + deeper, rate[stage], line.speed, line.coefficients
+            )
+            faster_static, faster_dissipative = force(
+                delta[stage], rate[stage] + faster, line.speed, line.coefficients
+            )
             last = static + dissipative
             least = min(least, last)
             acceleration[stage] = line.gravity - last / line.mass
@@ -85,7 +95,13 @@ def implicit_step(line: Line, begun: LineState, length: float) -> Advance:
                 reached += length * _WEIGHTS[stage, other] * acceleration[other]
                 change = length * _WEIGHTS[stage, other] * by_rate[other]
                 for through in range(3):
-                    change += length * length * _WEIGHTS[stage, through] * by_delta[through] * _WEIGHTS[through, other]
+                    change += (
+                        length
+                        * length
+                        * _WEIGHTS[stage, through]
+                        * by_delta[through]
+                        * _WEIGHTS[through, other]
+                    )
                 matrix[stage, other] = (1.0 if stage == other else 0.0) - change
             right[stage, 0] = reached - rate[stage]
         solve_in_place(matrix, right)
@@ -103,5 +119,7 @@ def implicit_step(line: Line, begun: LineState, length: float) -> Advance:
     for stage in range(3):
         moved += _WEIGHTS[2, stage] * rate[stage]
         dissipated += _WEIGHTS[2, stage] * lost[stage]
-    state = LineState(begun.time + length, begun.delta + length * moved, rate[2], begun.lost + length * dissipated)
+    state = LineState(
+        begun.time + length, begun.delta + length * moved, rate[2], begun.lost + length * dissipated
+    )
     return Advance(state, error, least, last)

@@ -10,7 +10,8 @@ from vibroimpact.compiled import compiled
 
 @compiled(lambda t: t.void(t.matrix, t.matrix))
 def solve_in_place(matrix: Floats, right: Floats) -> None:
-    """Solve linear equations by elimination with partial pivoting; both arguments are overwritten, `right` by the solutions.
+    """Solve linear equations by elimination with partial pivoting; both arguments are overwritten,
+    `right` by the solutions.
 
     Parameters
     ----------
@@ -28,9 +29,15 @@ def solve_in_place(matrix: Floats, right: Floats) -> None:
                 pivot = row
         if pivot != step:
             for column in range(step, size):
-                matrix[step, column], matrix[pivot, column] = matrix[pivot, column], matrix[step, column]
+                matrix[step, column], matrix[pivot, column] = (
+                    matrix[pivot, column],
+                    matrix[step, column],
+                )
             for column in range(columns):
-                right[step, column], right[pivot, column] = right[pivot, column], right[step, column]
+                right[step, column], right[pivot, column] = (
+                    right[pivot, column],
+                    right[step, column],
+                )
         inverse = 1.0 / matrix[step, step]
         for row in range(step + 1, size):
             factor = matrix[row, step] * inverse

@@ -1,4 +1,6 @@
-"""Contacts of many pairs of rigid bodies, one after the other, and the motion within one of them."""
+"""Contacts of many pairs of rigid bodies, one after the other, and the motion within one
+of them.
+"""
 
 from __future__ import annotations
 
@@ -8,7 +10,13 @@ from vibroimpact.arrays import Floats, Integers
 from vibroimpact.compiled import compiled
 from vibroimpact.dynamics.core.law import law_at_touch, law_remembering
 from vibroimpact.dynamics.core.line import follow_line, line_under
-from vibroimpact.dynamics.core.line_records import Line, LineContacts, LineManner, LineState, LineSteps
+from vibroimpact.dynamics.core.line_records import (
+    Line,
+    LineContacts,
+    LineManner,
+    LineState,
+    LineSteps,
+)
 from vibroimpact.dynamics.core.line_step import FREE, IMPLICIT, advance, energies_of
 from vibroimpact.dynamics.core.normal_records import MOTION_ROWS, NormalGrid
 from vibroimpact.dynamics.core.phase_contact import collocate_contact
@@ -21,7 +29,9 @@ _NEAR = 4e-16  # of the time since touch
 
 @compiled(lambda t: t.of(LineManner)(t.of(LineManner), t.matrix, t.integer))
 def with_bodies(manner: LineManner, touches: Floats, pair: int) -> LineManner:
-    """Return what stays the same through the contact of a pair of bodies; `touches` (5, B): as in `follow_lines`."""
+    """Return what stays the same through the contact of a pair of bodies; `touches` (5,
+    B): as in `follow_lines`.
+    """
     return LineManner(
         manner.root,
         manner.tension,
@@ -61,9 +71,11 @@ def follow_lines(
     first: int,
     written: int,
 ) -> tuple[int, int]:
-    """Solve the contacts of B pairs of rigid bodies, each from touch on: by collocation, or step by step where that does not come out.
+    """Solve the contacts of B pairs of rigid bodies, each from touch on: by collocation, or step by
+    step where that does not come out.
 
-    Return how many are solved, and how many numbers of normal motions are written; it ends early where there is no room for more of these.
+    Return how many are solved, and how many numbers of normal motions are written; it ends early
+    where there is no room for more of these.
 
     Parameters
     ----------
@@ -80,7 +92,8 @@ def follow_lines(
     coefficients : array, shape (B, K)
         Its coefficients for each pair.
     touches : array, shape (5, B)
-        Effective mass [kg], gravity [m/s^2], approach speed [m/s], depth [m] and speed scale [m/s] of each pair.
+        Effective mass [kg], gravity [m/s^2], approach speed [m/s], depth [m] and speed scale [m/s]
+        of each pair.
     contacts : LineContacts
         Room for the contacts.
     first, written : int
@@ -88,7 +101,13 @@ def follow_lines(
     """
     room = np.zeros((ROWS, rules.vectors.shape[2]))
     series = np.zeros(7)
-    steps = LineSteps(np.zeros(0, np.int64), np.zeros(0, np.bool_), np.zeros((0, 4)), np.zeros(0), np.zeros(1, np.int64))
+    steps = LineSteps(
+        np.zeros(0, np.int64),
+        np.zeros(0, np.bool_),
+        np.zeros((0, 4)),
+        np.zeros(0),
+        np.zeros(1, np.int64),
+    )
     outcomes = contacts.outcomes
     ends = contacts.ends
     for pair in range(first, len(outcomes)):
@@ -123,8 +142,12 @@ def follow_lines(
     return len(outcomes), written
 
 
-@compiled(lambda t: t.void(t.of(Law), t.of(LineManner), t.real, t.of(LineSteps), t.vector, t.matrix))
-def read_line(law: Law, manner: LineManner, deepest: float, steps: LineSteps, times: Floats, motion: Floats) -> None:
+@compiled(
+    lambda t: t.void(t.of(Law), t.of(LineManner), t.real, t.of(LineSteps), t.vector, t.matrix)
+)
+def read_line(
+    law: Law, manner: LineManner, deepest: float, steps: LineSteps, times: Floats, motion: Floats
+) -> None:
     """Read the motion of a contact at rising times, each as the end of a shorter step.
 
     Parameters
@@ -155,12 +178,18 @@ def read_line(law: Law, manner: LineManner, deepest: float, steps: LineSteps, ti
         motion[1, point] = state.rate
         motion[2, point] = state.lost
         if steps.variable[number] == FREE:
-            motion[2, point] += energies_of(line, begun.delta)[0] - energies_of(line, state.delta)[0]
+            motion[2, point] += (
+                energies_of(line, begun.delta)[0] - energies_of(line, state.delta)[0]
+            )
 
 
 @compiled(lambda t: t.void(t.of(Law), t.of(LineManner), t.real, t.of(LineSteps), t.matrix))
-def time_line(law: Law, manner: LineManner, deepest: float, steps: LineSteps, times: Floats) -> None:
-    """Write the times at which a contact is well resolved [s] (steps, n): at the start of n parts of each step."""
+def time_line(
+    law: Law, manner: LineManner, deepest: float, steps: LineSteps, times: Floats
+) -> None:
+    """Write the times at which a contact is well resolved [s] (steps, n): at the start of
+    n parts of each step.
+    """
     coming = line_under(law, manner)
     leaving = line_under(law_remembering(law, deepest), manner)
     stages = np.empty((4, 13))
@@ -169,7 +198,9 @@ def time_line(law: Law, manner: LineManner, deepest: float, steps: LineSteps, ti
         line = leaving if steps.after[number] else coming
         for part in range(parts):
             length = steps.length[number] * part / parts
-            times[number, part] = advance(line, steps.variable[number], begun_of(steps, number), length, stages).state.time
+            times[number, part] = advance(
+                line, steps.variable[number], begun_of(steps, number), length, stages
+            ).state.time
 
 
 @compiled(lambda t: t.of(LineState)(t.of(LineSteps), t.integer))
@@ -179,9 +210,15 @@ def begun_of(steps: LineSteps, number: int) -> LineState:
     return LineState(begun[0], begun[1], begun[2], begun[3])
 
 
-@compiled(lambda t: t.of(LineState)(t.of(Line), t.integer, t.of(LineState), t.real, t.real, t.matrix))
-def state_at(line: Line, variable: int, begun: LineState, length: float, time: float, stages: Floats) -> LineState:
-    """Return the state at a time within a step [s], by Newton's method within a bracket; `length`: of the step."""
+@compiled(
+    lambda t: t.of(LineState)(t.of(Line), t.integer, t.of(LineState), t.real, t.real, t.matrix)
+)
+def state_at(
+    line: Line, variable: int, begun: LineState, length: float, time: float, stages: Floats
+) -> LineState:
+    """Return the state at a time within a step [s], by Newton's method within a bracket;
+    `length`: of the step.
+    """
     if variable in (FREE, IMPLICIT):
         return advance(line, variable, begun, time - begun.time, stages).state
     if time <= begun.time:

@@ -1,4 +1,6 @@
-"""The next stretch of contact of one sphere: of the length that is given, or up to its first event."""
+"""The next stretch of contact of one sphere: of the length that is given, or up to its
+first event.
+"""
 
 from __future__ import annotations
 
@@ -6,16 +8,33 @@ import numpy as np
 
 from vibroimpact.compiled import compiled
 from vibroimpact.dynamics.core.attempt import attempt, balance_of, basis_of, time_at, up_to_event
-from vibroimpact.dynamics.core.contact_records import Beginning, Bodies, Manner, NextStretch, StretchEnd
+from vibroimpact.dynamics.core.contact_records import (
+    Beginning,
+    Bodies,
+    Manner,
+    NextStretch,
+    StretchEnd,
+)
 from vibroimpact.dynamics.core.events import NO_EVENT
 from vibroimpact.dynamics.core.records import Bases, Event, Nodes, State
 
 
-@compiled(lambda t: t.of(NextStretch)(t.of(Bases), t.of(Bodies), t.of(Manner), t.of(Beginning), t.integer, t.real, t.real))
+@compiled(
+    lambda t: t.of(NextStretch)(
+        t.of(Bases), t.of(Bodies), t.of(Manner), t.of(Beginning), t.integer, t.real, t.real
+    )
+)
 def next_stretch(
-    bases: Bases, bodies: Bodies, manner: Manner, beginning: Beginning, time_map: int, length: float, trend: float
+    bases: Bases,
+    bodies: Bodies,
+    manner: Manner,
+    beginning: Beginning,
+    time_map: int,
+    length: float,
+    trend: float,
 ) -> NextStretch:
-    """Return the stretch of a length [s] under a map of time, or, if an event is met within it, that up to the first one.
+    """Return the stretch of a length [s] under a map of time, or, if an event is met within it,
+    that up to the first one.
 
     It is accepted if it is solved and resolved. `trend`: of the force at its start [N/s].
     """

@@ -1,7 +1,7 @@
 """The normal motion of a contact on a grid, written segment by segment as it is collocated.
 
-Its parameter counts the steps of the grid. It rises nearly evenly with y through each segment, slowly at its ends, so that the depth of the
-contact grows with its square.
+Its parameter counts the steps of the grid. It rises nearly evenly with y through each segment,
+slowly at its ends, so that the depth of the contact grows with its square.
 """
 
 from __future__ import annotations
@@ -30,11 +30,23 @@ from vibroimpact.dynamics.core.normal_records import (
     VALUES,
     NormalGrid,
 )
-from vibroimpact.dynamics.core.phase_records import BARYCENTRIC, KINDS, LOSS, PLACE, STATIC, TURNING, Phase, PhaseRules, Segment
+from vibroimpact.dynamics.core.phase_records import (
+    BARYCENTRIC,
+    KINDS,
+    LOSS,
+    PLACE,
+    STATIC,
+    TURNING,
+    Phase,
+    PhaseRules,
+    Segment,
+)
 from vibroimpact.dynamics.core.phase_records import PACE as PACE_OF_PHASE
 
 _COARSER = 0.2
-"""Part by which steps are longer than evenly where the contact is deepest, and shorter where it begins and ends."""
+"""Part by which steps are longer than evenly where the contact is deepest, and shorter
+where it begins and ends.
+"""
 
 _NONE = 1e-6  # of the largest force: one that is zero
 _STEEP = 1e-2  # of the largest force: a slope that is not
@@ -57,7 +69,8 @@ def note_part(grid: NormalGrid, steps: int, digit: int) -> None:
 
 @compiled(lambda t: t.boolean(t.of(NormalGrid), t.integer, t.integer))
 def is_steep(grid: NormalGrid, rule: int, count: int) -> bool:
-    """Return whether the force of a segment pulls at an end of it, or begins or ends there with a slope.
+    """Return whether the force of a segment pulls at an end of it, or begins or ends there with a
+    slope.
 
     Where it becomes zero with a slope, the radius of the contact has an infinite one.
     """
@@ -78,8 +91,12 @@ def is_steep(grid: NormalGrid, rule: int, count: int) -> bool:
     return False
 
 
-@compiled(lambda t: t.void(t.of(NormalGrid), t.of(PhaseRules), t.integer, t.integer, t.integer, t.real))
-def write_own(grid: NormalGrid, rules: PhaseRules, vector: int, count: int, steps: int, end: float) -> None:
+@compiled(
+    lambda t: t.void(t.of(NormalGrid), t.of(PhaseRules), t.integer, t.integer, t.integer, t.real)
+)
+def write_own(
+    grid: NormalGrid, rules: PhaseRules, vector: int, count: int, steps: int, end: float
+) -> None:
     """Write the matrices of a grid from the deep end of a segment up to another y."""
     vectors = rules.vectors
     own = grid.own
@@ -103,8 +120,20 @@ def write_own(grid: NormalGrid, rules: PhaseRules, vector: int, count: int, step
                 own[matrix, node, point] = 0.0
 
 
-@compiled(lambda t: t.void(t.of(NormalGrid), t.of(PhaseRules), t.of(Segment), t.of(Phase), t.real, t.real, t.matrix))
-def write_segment(grid: NormalGrid, rules: PhaseRules, segment: Segment, phase: Phase, end: float, stopped: float, solved: Floats) -> None:
+@compiled(
+    lambda t: t.void(
+        t.of(NormalGrid), t.of(PhaseRules), t.of(Segment), t.of(Phase), t.real, t.real, t.matrix
+    )
+)
+def write_segment(
+    grid: NormalGrid,
+    rules: PhaseRules,
+    segment: Segment,
+    phase: Phase,
+    end: float,
+    stopped: float,
+    solved: Floats,
+) -> None:
     """Write the normal motion in a segment of a phase.
 
     Parameters
@@ -118,7 +147,8 @@ def write_segment(grid: NormalGrid, rules: PhaseRules, segment: Segment, phase: 
     end : float
         The y at which the contact ends within it, or 1.
     stopped : float
-        The impulse of the force in it by the speeds at its ends [N s], which are more exact than its nodes.
+        The impulse of the force in it by the speeds at its ends [N s], which are more exact than
+        its nodes.
     solved : array, shape (17, M)
         The room in which it was solved.
     """

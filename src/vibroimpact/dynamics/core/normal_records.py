@@ -14,12 +14,18 @@ MORE_STEPS = 3
 """Times as many steps where the force is steep."""
 
 TIME, PACE, PACE_SLOPE, FORCE, FORCE_SLOPE, IMPULSE = range(6)
-"""Rows of a normal motion: time since touch [s] and its derivatives by the parameter, force [N] and its derivative, impulse [N s]."""
+"""Rows of a normal motion: time since touch [s] and its derivatives by the parameter,
+force [N] and its derivative, impulse [N s].
+"""
 
 MOTION_ROWS = 6
 
-NODE_PACE, NODE_FORCE, NODE_PUSH, NODE_PACE_SLOPE, NODE_FORCE_SLOPE, NODE_TIME, NODE_IMPULSE = range(6, 13)
-"""Further rows of the room: values at the nodes of a segment, the push being the derivative of the impulse."""
+NODE_PACE, NODE_FORCE, NODE_PUSH, NODE_PACE_SLOPE, NODE_FORCE_SLOPE, NODE_TIME, NODE_IMPULSE = (
+    range(6, 13)
+)
+"""Further rows of the room: values at the nodes of a segment, the push being the
+derivative of the impulse.
+"""
 
 GRID_ROWS = 13
 
@@ -27,7 +33,9 @@ VALUES, INTEGRALS = range(2)
 """Matrices of a grid of one's own."""
 
 SMOOTH, STEEP = 1, 2
-"""Digits, to the base `SHAPES`, of the number that tells of which parts a normal motion consists, the last one first."""
+"""Digits, to the base `SHAPES`, of the number that tells of which parts a normal motion
+consists, the last one first.
+"""
 
 SHAPES = 3
 
@@ -35,11 +43,13 @@ SHAPES = 3
 class NormalGrid(NamedTuple):
     """Grids in y on which the normal motion in the segments of a contact is written.
 
-    steps: of a segment; 0 where no motion is asked for. derivatives (L, M, M): from values at the nodes of each rule to their derivatives
-    by y there. values, integrals (2 L, M, N): from values at the nodes, and from integrals up to the nodes and y = 1, to the points of the
-    grid; of each rule for `steps` and for `MORE_STEPS` times as many. own (2, M, N): room for such matrices of a segment in which a contact
-    ends. room (13, W): room for values at the nodes and on the grid. motion (6, R): room for the motion of a contact. extent (2,): number
-    that tells its parts, and number of its points.
+    steps: of a segment; 0 where no motion is asked for. derivatives (L, M, M): from values at the
+    nodes of each rule to their derivatives by y there. values, integrals (2 L, M, N): from values
+    at the nodes, and from integrals up to the nodes and y = 1, to the points of the grid; of each
+    rule for `steps` and for `MORE_STEPS` times as many. own (2, M, N): room for such matrices of a
+    segment in which a contact ends. room (13, W): room for values at the nodes and on the grid.
+    motion (6, R): room for the motion of a contact. extent (2,): number that tells its parts, and
+    number of its points.
     """
 
     steps: Integer

@@ -23,7 +23,9 @@ from vibroimpact.dynamics.core.rubbing_records import (
 
 @compiled(lambda t: t.void(t.of(Parts), t.integer, t.real, t.of(State), t.integer))
 def write_part(parts: Parts, part: int, start: float, state: State, memories: int) -> None:
-    """Write what all parts of a motion have: their start [s], the state then, and the changes of the law's memory before."""
+    """Write what all parts of a motion have: their start [s], the state then, and the
+    changes of the law's memory before.
+    """
     parts.start[part] = start
     write_row(parts.displacement, part, state.displacement)
     write_row(parts.velocity, part, state.velocity)
@@ -34,7 +36,9 @@ def write_part(parts: Parts, part: int, start: float, state: State, memories: in
 
 @compiled(lambda t: t.void(t.of(Parts), t.integer, t.vector, t.real))
 def lose_at_end(parts: Parts, part: int, lost: Floats, energy: float) -> None:
-    """Add stored energy that is lost at the end of the last part [J]; it may be that of an earlier call."""
+    """Add stored energy that is lost at the end of the last part [J]; it may be that of
+    an earlier call.
+    """
     lost[len(lost) - 1] += energy
     if part > 0:
         parts.separation_loss[part - 1] += energy
@@ -42,11 +46,33 @@ def lose_at_end(parts: Parts, part: int, lost: Floats, energy: float) -> None:
         parts.late_loss[0] += energy
 
 
-@compiled(lambda t: t.void(t.of(Parts), t.integer, t.of(Bases), t.of(System), t.of(NextStretch), t.of(Begun), t.vector))
-def write_next(parts: Parts, part: int, bases: Bases, system: System, stretch: NextStretch, begun: Begun, lost: Floats) -> None:
-    """Write a stretch that is accepted, and add what is lost in it [J] to `lost` (n + 1,): by each coordinate, and last in the contact."""
+@compiled(
+    lambda t: t.void(
+        t.of(Parts), t.integer, t.of(Bases), t.of(System), t.of(NextStretch), t.of(Begun), t.vector
+    )
+)
+def write_next(
+    parts: Parts,
+    part: int,
+    bases: Bases,
+    system: System,
+    stretch: NextStretch,
+    begun: Begun,
+    lost: Floats,
+) -> None:
+    """Write a stretch that is accepted, and add what is lost in it [J] to `lost` (n +
+    1,): by each coordinate, and last in the contact.
+    """
     write_part(parts, part, begun.time, begun.state, begun.memories)
-    write_stretch(parts, part, basis_of(bases, stretch.time_map), system, stretch.tried, stretch.balance, begun.state)
+    write_stretch(
+        parts,
+        part,
+        basis_of(bases, stretch.time_map),
+        system,
+        stretch.tried,
+        stretch.balance,
+        begun.state,
+    )
     write_rubbed(parts, part, begun.rubbing, stretch.tried.rubbed)
     lost_on_path = stretch.balance.path.lost
     for coordinate in range(len(lost)):
@@ -54,8 +80,20 @@ def write_next(parts: Parts, part: int, bases: Bases, system: System, stretch: N
     lost[len(lost) - 1] += stretch.tried.contact.dissipated[0]
 
 
-@compiled(lambda t: t.void(t.of(Parts), t.integer, t.of(Basis), t.of(System), t.of(Attempt), t.of(Balance), t.of(State)))
-def write_stretch(parts: Parts, part: int, basis: Basis, system: System, solved: Attempt, balance: Balance, begun: State) -> None:
+@compiled(
+    lambda t: t.void(
+        t.of(Parts), t.integer, t.of(Basis), t.of(System), t.of(Attempt), t.of(Balance), t.of(State)
+    )
+)
+def write_stretch(
+    parts: Parts,
+    part: int,
+    basis: Basis,
+    system: System,
+    solved: Attempt,
+    balance: Balance,
+    begun: State,
+) -> None:
     """Write a solved stretch."""
     path = balance.path
     number = len(basis.time)

@@ -1,4 +1,6 @@
-"""Motion of all coordinates through a stretch, from the contact forces at its nodes, and its balance of energy."""
+"""Motion of all coordinates through a stretch, from the contact forces at its nodes, and
+its balance of energy.
+"""
 
 from __future__ import annotations
 
@@ -11,8 +13,17 @@ from vibroimpact.dynamics.core.records import Basis, Coordinates, Path, State, S
 
 
 @compiled(lambda t: t.void(t.of(Surfaces), t.vector, t.vector, t.complex, t.complex, t.matrix))
-def write_springs(surfaces: Surfaces, displacement: Floats, velocity: Floats, one: complex, clock: complex, of_modes: Floats) -> None:
-    """Write the accelerations by the springs and dampers of all modes at the start, going on at the speeds then, into `of_modes` (2, m)."""
+def write_springs(
+    surfaces: Surfaces,
+    displacement: Floats,
+    velocity: Floats,
+    one: complex,
+    clock: complex,
+    of_modes: Floats,
+) -> None:
+    """Write the accelerations by the springs and dampers of all modes at the start, going
+    on at the speeds then, into `of_modes` (2, m).
+    """
     for mode in range(len(displacement)):
         frequency_squared = surfaces.frequency_squared[mode]
         spring = surfaces.damping[mode] * velocity[mode] + frequency_squared * displacement[mode]
@@ -23,20 +34,27 @@ def write_springs(surfaces: Surfaces, displacement: Floats, velocity: Floats, on
 
 @compiled(lambda t: t.void(t.vector, t.complex, t.matrix))
 def add_product(shapes: Floats, factor: complex, of_modes: Floats) -> None:
-    """Add the product of real numbers of all modes (m,) and a complex one to `of_modes`, real and imaginary parts (2, m)."""
+    """Add the product of real numbers of all modes (m,) and a complex one to `of_modes`,
+    real and imaginary parts (2, m).
+    """
     for mode in range(len(shapes)):
         of_modes[0, mode] += shapes[mode] * factor.real
         of_modes[1, mode] += shapes[mode] * factor.imag
 
 
 @compiled(lambda t: t.void(t.of(Surfaces), t.real, t.real, t.matrix))
-def divide_by_impedances(surfaces: Surfaces, sigma: float, sigma_imaginary: float, of_modes: Floats) -> None:
+def divide_by_impedances(
+    surfaces: Surfaces, sigma: float, sigma_imaginary: float, of_modes: Floats
+) -> None:
     """Divide real and imaginary parts of all modes (2, m) by 1 + d sigma + w^2 sigma^2."""
     square = sigma * sigma - sigma_imaginary * sigma_imaginary
     square_imaginary = 2.0 * sigma * sigma_imaginary
     for mode in range(len(surfaces.damping)):
         impedance = 1.0 + surfaces.damping[mode] * sigma + surfaces.frequency_squared[mode] * square
-        impedance_imaginary = surfaces.damping[mode] * sigma_imaginary + surfaces.frequency_squared[mode] * square_imaginary
+        impedance_imaginary = (
+            surfaces.damping[mode] * sigma_imaginary
+            + surfaces.frequency_squared[mode] * square_imaginary
+        )
         inverse = 1.0 / (impedance * impedance + impedance_imaginary * impedance_imaginary)
         real = of_modes[0, mode]
         imaginary = of_modes[1, mode]
@@ -51,7 +69,18 @@ def subtract_real_part(real: float, imaginary: float, of_modes: Floats, values: 
         values[mode] -= real * of_modes[0, mode] + imaginary * of_modes[1, mode]
 
 
-@compiled(lambda t: t.of(Path)(t.of(Basis), t.of(Surfaces), t.of(Coordinates), t.of(State), t.real, t.vector, t.vector, t.boolean))
+@compiled(
+    lambda t: t.of(Path)(
+        t.of(Basis),
+        t.of(Surfaces),
+        t.of(Coordinates),
+        t.of(State),
+        t.real,
+        t.vector,
+        t.vector,
+        t.boolean,
+    )
+)
 def stretch_path(
     basis: Basis,
     surfaces: Surfaces,
@@ -99,7 +128,9 @@ def stretch_path(
         for node in range(nodes):
             value = coordinates.load[coordinate]
             for contact in range(contacts):
-                value -= coordinates.rigid_shapes[contact, coordinate] * force[contact * nodes + node]
+                value -= (
+                    coordinates.rigid_shapes[contact, coordinate] * force[contact * nodes + node]
+                )
             if accelerated:
                 acceleration[node, coordinate] = value
             for later in range(nodes):
@@ -130,10 +161,19 @@ def stretch_path(
     for element in range(elements):
         for k in range(pairs):
             sigma = length * complex(basis.eigenvalues[0, k], basis.eigenvalues[1, k])
-            yielding = coordinates.rate[element] * local[element] * complex(basis.one[0, k], basis.one[1, k])
+            yielding = (
+                coordinates.rate[element]
+                * local[element]
+                * complex(basis.one[0, k], basis.one[1, k])
+            )
             for contact in range(contacts):
                 yielding += surfaces.mobility[contact, element] * pushed[0, k, contact]
-            add_at_nodes(basis.backward, k, -yielding / (1.0 + coordinates.rate[element] * sigma), massless[element])
+            add_at_nodes(
+                basis.backward,
+                k,
+                -yielding / (1.0 + coordinates.rate[element] * sigma),
+                massless[element],
+            )
         for node in range(nodes):
             local_end[element] += length * basis.integral[nodes - 1, node] * massless[element, node]
 
@@ -143,14 +183,22 @@ def stretch_path(
         weight = length * basis.integral[nodes - 1, node]
         for coordinate in range(number):
             moved[coordinate] += weight * speeds[node, coordinate]
-            lost[coordinate] += weight * coordinates.damping[coordinate] * speeds[node, coordinate] * speeds[node, coordinate]
+            lost[coordinate] += (
+                weight
+                * coordinates.damping[coordinate]
+                * speeds[node, coordinate]
+                * speeds[node, coordinate]
+            )
     displacement_end = displacement + moved
     for element in range(elements):
         for node in range(nodes):
-            power = massless[element, node] * massless[element, node] / coordinates.mobility[element]
+            power = (
+                massless[element, node] * massless[element, node] / coordinates.mobility[element]
+            )
             lost[number] += length * basis.integral[nodes - 1, node] * power
 
-    # as differences of squares, so that motion that the contact does not change causes no rounding error
+    # as differences of squares, so that motion that the contact does not change causes no rounding
+    # error
     gain = 0.0
     rounding = 0.0
     driven = coordinates.driven_shapes.shape[1]
@@ -158,21 +206,37 @@ def stretch_path(
         faster = speeds[nodes - 1, coordinate] - velocity[coordinate]
         spring = 0.5 * coordinates.frequency[coordinate] * coordinates.frequency[coordinate]
         gain += 0.5 * faster * (speeds[nodes - 1, coordinate] + velocity[coordinate])
-        gain += moved[coordinate] * (spring * (displacement_end[coordinate] + displacement[coordinate]) - coordinates.load[coordinate])
+        gain += moved[coordinate] * (
+            spring * (displacement_end[coordinate] + displacement[coordinate])
+            - coordinates.load[coordinate]
+        )
         held = spring * displacement[coordinate] * displacement[coordinate]
-        rounding += coordinates.rounding[coordinate] * (0.5 * velocity[coordinate] * velocity[coordinate] + held)
+        rounding += coordinates.rounding[coordinate] * (
+            0.5 * velocity[coordinate] * velocity[coordinate] + held
+        )
     for element in range(elements):
         stiffness = coordinates.rate[element] / coordinates.mobility[element]
-        gain += 0.5 * (local_end[element] - local[element]) * (local_end[element] + local[element]) * stiffness
-    for number_driven in range(driven):  # the energy of a driven coordinate is not counted, but the work of its drive
+        gain += (
+            0.5
+            * (local_end[element] - local[element])
+            * (local_end[element] + local[element])
+            * stiffness
+        )
+    # the energy of a driven coordinate is not counted, but the work of its drive
+    for number_driven in range(driven):
         coordinate = number - driven + number_driven
         work = 0.0
         for node in range(nodes):
             push = 0.0
             for contact in range(contacts):
-                push += coordinates.driven_shapes[contact, number_driven] * force[contact * nodes + node]
+                push += (
+                    coordinates.driven_shapes[contact, number_driven]
+                    * force[contact * nodes + node]
+                )
             work += basis.integral[nodes - 1, node] * push * speeds[node, coordinate]
         lost[coordinate] = -length * work
     end_speed = speeds[nodes - 1].copy()
     energies = np.array([gain, rounding])
-    return Path(acceleration, speeds, massless, displacement_end, end_speed, local_end, lost, energies)
+    return Path(
+        acceleration, speeds, massless, displacement_end, end_speed, local_end, lost, energies
+    )

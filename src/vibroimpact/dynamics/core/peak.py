@@ -14,7 +14,9 @@ _ROUNDS = 3  # each narrows the search to a sixteenth
 
 @compiled(lambda t: t.tuple(t.real, t.real)(t.of(Basis), t.vector, t.vector, t.real))
 def values_between(basis: Basis, values: Floats, others: Floats, x: float) -> tuple[float, float]:
-    """Return the values at x in [0, 1] of two quantities with values at the start and the nodes (N + 1,)."""
+    """Return the values at x in [0, 1] of two quantities with values at the start and the
+    nodes (N + 1,).
+    """
     total = 0.0
     value = 0.0
     other = 0.0
@@ -47,7 +49,9 @@ def nodal_value_between(basis: Basis, values: Floats, x: float) -> float:
 
 @compiled(lambda t: t.real(t.of(Basis), t.of(Contacts), t.vector, t.vector, t.real))
 def force_between(basis: Basis, law: Contacts, delta: Floats, rate: Floats, x: float) -> float:
-    """Return the force of a law [N] at x in [0, 1], from its indentation and its rate at the start and the nodes (N + 1,)."""
+    """Return the force of a law [N] at x in [0, 1], from its indentation and its rate at
+    the start and the nodes (N + 1,).
+    """
     reached, speed = values_between(basis, delta, rate, x)
     static, dissipative = force_at(law.addresses[0])(
         max(reached, law.numbers[0, RELEASE]), speed, law.numbers[0, SPEED], law.coefficients[0]
@@ -57,35 +61,44 @@ def force_between(basis: Basis, law: Contacts, delta: Floats, rate: Floats, x: f
 
 @compiled(lambda t: t.tuple(t.real, t.real)(t.of(Basis), t.vector))
 def peak_of(basis: Basis, values: Floats) -> tuple[float, float]:
-    """Return the x in [0, 1] at which a quantity with values at the start and the nodes (N + 1,) is largest, and how large."""
+    """Return the x in [0, 1] at which a quantity with values at the start and the nodes
+    (N + 1,) is largest, and how large.
+    """
     sampled = np.empty(_POINTS)
     low = 0.0
     high = 1.0
     x = 0.0
     for _ in range(_ROUNDS):
         for point in range(_POINTS):
-            sampled[point], _ = values_between(basis, values, values, low + (high - low) * point / (_POINTS - 1))
+            sampled[point], _ = values_between(
+                basis, values, values, low + (high - low) * point / (_POINTS - 1)
+            )
         x, low, high = narrowed(sampled, low, high)
     return x, values_between(basis, values, values, x)[0]
 
 
 @compiled(lambda t: t.tuple(t.real, t.real)(t.of(Basis), t.of(Contacts), t.vector, t.vector))
 def peak_of_force(basis: Basis, law: Contacts, delta: Floats, rate: Floats) -> tuple[float, float]:
-    """Return the x in [0, 1] at which the force of `force_between` is largest, and that force [N]."""
+    """Return the x in [0, 1] at which the force of `force_between` is largest, and that
+    force [N].
+    """
     sampled = np.empty(_POINTS)
     low = 0.0
     high = 1.0
     x = 0.0
     for _ in range(_ROUNDS):
         for point in range(_POINTS):
-            sampled[point] = force_between(basis, law, delta, rate, low + (high - low) * point / (_POINTS - 1))
+            sampled[point] = force_between(
+                basis, law, delta, rate, low + (high - low) * point / (_POINTS - 1)
+            )
         x, low, high = narrowed(sampled, low, high)
     return x, force_between(basis, law, delta, rate, x)
 
 
 @compiled(lambda t: t.tuple(t.real, t.real, t.real)(t.vector, t.real, t.real))
 def narrowed(sampled: Floats, low: float, high: float) -> tuple[float, float, float]:
-    """Return about where values at evenly spaced points of an interval are largest, and the two points around.
+    """Return about where values at evenly spaced points of an interval are largest, and the two
+    points around.
 
     It is the vertex of the parabola through three of them, which is insensitive to rounding.
     """

@@ -1,15 +1,20 @@
-r"""A segment of a phase of the contact of two rigid bodies, collocated as a whole: the speed over the indentation.
+r"""A segment of a phase of the contact of two rigid bodies, collocated as a whole: the speed over
+the indentation.
 
-A phase, compression or restitution, is divided where the force is not smooth. In a segment y goes from 0 at its deep end to 1 at its
-shallow one, and the indentation is :math:`\delta = \delta_1 + (\delta_0 - \delta_1)\, s(y)`, with :math:`s = 1 - y^2`, so that it is smooth
-in y also just beyond a point where the speed is zero; that is raised to the power p, the root of the law, in a segment that ends at touch.
-The square of the speed, :math:`w = f^2 u` with f = y in a segment where the speed becomes zero and f = 1 else, is smooth in y throughout.
-It is collocated at N Gauss nodes, with the acceleration a:
+A phase, compression or restitution, is divided where the force is not smooth. In a segment y goes
+from 0 at its deep end to 1 at its
+shallow one, and the indentation is :math:`\delta = \delta_1 + (\delta_0 - \delta_1)\, s(y)`, with
+:math:`s = 1 - y^2`, so that it is smooth
+in y also just beyond a point where the speed is zero; that is raised to the power p, the root of
+the law, in a segment that ends at touch. The square of the speed, :math:`w = f^2 u` with f = y in a
+segment where the speed becomes zero and f = 1 else, is smooth in y throughout. It is collocated at
+N Gauss nodes, with the acceleration a:
 
 .. math:: \frac{dw}{dy} = 2 a(\delta, \pm\sqrt w)\, \frac{d\delta}{dy} = f\, G(y),
           \qquad u(y) = \frac1{f^2} \left(w(0) + \int_0^y f\, G(z)\, dz\right)
 
-which is of order 2N - 1 at y = 1 (Hairer, Lubich and Wanner 2006, section II.1), and so is the time, :math:`dt = d\delta/\sqrt w`.
+which is of order 2N - 1 at y = 1 (Hairer, Lubich and Wanner 2006, section II.1), and so is the
+time, :math:`dt = d\delta/\sqrt w`.
 """
 
 from __future__ import annotations
@@ -61,13 +66,21 @@ _LEAST_OF_BEFORE = 0.1  # of u, in one sweep
 _OF_WORK = 0.05  # of the tolerance: error of the static work
 
 
-@compiled(lambda t: t.tuple(t.real, t.real, t.real, t.real)(t.of(Line), t.of(PhaseRules), t.of(Segment), t.matrix))
-def start_phase(line: Line, rules: PhaseRules, segment: Segment, room: Floats) -> tuple[float, float, float, float]:
-    r"""Write starting values of u, and return the length [m], the powers of the indentation with which both forces grow, and the potential
-    at the shallow end [J].
+@compiled(
+    lambda t: t.tuple(t.real, t.real, t.real, t.real)(
+        t.of(Line), t.of(PhaseRules), t.of(Segment), t.matrix
+    )
+)
+def start_phase(
+    line: Line, rules: PhaseRules, segment: Segment, room: Floats
+) -> tuple[float, float, float, float]:
+    r"""Write starting values of u, and return the length [m], the powers of the indentation with
+    which both forces grow, and the potential at the shallow end [J].
 
-    Under a force :math:`F_s (1 + D\, \dot\delta/v)`, with the approach speed v, the square of the speed x v changes nearly as the static
-    work over :math:`1 + \tfrac23 D x`, which is solved for x; D is taken from the forces in the middle of the segment.
+    Under a force :math:`F_s (1 + D\, \dot\delta/v)`, with the approach speed v, the square of the
+    speed x v changes nearly as the static
+    work over :math:`1 + \tfrac23 D x`, which is solved for x; D is taken from the forces in the
+    middle of the segment.
     """
     force = force_at(line.force)
     energies = energies_at(line.energies)
@@ -118,16 +131,25 @@ def start_phase(line: Line, rules: PhaseRules, segment: Segment, room: Floats) -
     return span, static_power, loss_power, low
 
 
-@compiled(lambda t: t.of(Phase)(t.of(Line), t.of(PhaseRules), t.of(Segment), t.real, t.real, t.matrix))
-def solve_phase(line: Line, rules: PhaseRules, segment: Segment, roughness: float, sharper: float, room: Floats) -> Phase:
+@compiled(
+    lambda t: t.of(Phase)(t.of(Line), t.of(PhaseRules), t.of(Segment), t.real, t.real, t.matrix)
+)
+def solve_phase(
+    line: Line, rules: PhaseRules, segment: Segment, roughness: float, sharper: float, room: Floats
+) -> Phase:
     r"""Solve a segment of a phase by Newton's method, with more nodes until it is resolved.
 
-    With d the residual of u, the linearised equation for its correction e is scalar, and is solved by quadrature:
+    With d the residual of u, the linearised equation for its correction e is scalar, and is solved
+    by quadrature:
 
-    .. math:: e = d + M \int_0^y \frac{J d}{M} dz,\qquad M = \exp \int_0^y J\, dz,\qquad J = -\frac{d\delta}{dy}\, \frac{F_d}{m w}
+    .. math::
 
-    for a dissipative force F_d proportional to the indentation rate, as nearly all are; for others it takes more iterations. Where the
-    deep end is sought, the logarithm of the length is corrected as well, so that the speed at the shallow end is the one wanted.
+        e = d + M \int_0^y \frac{J d}{M} dz,\qquad M = \exp \int_0^y J\, dz,\qquad
+        J = -\frac{d\delta}{dy}\, \frac{F_d}{m w}
+
+    for a dissipative force F_d proportional to the indentation rate, as nearly all are; for others
+    it takes more iterations. Where the deep end is sought, the logarithm of the length is corrected
+    as well, so that the speed at the shallow end is the one wanted.
 
     Parameters
     ----------
@@ -140,7 +162,8 @@ def solve_phase(line: Line, rules: PhaseRules, segment: Segment, roughness: floa
     roughness : float
         The last Legendre coefficients allowed.
     sharper : float
-        Times as small those of G have to be, on which the motion between the nodes depends, while a larger number of nodes is left.
+        Times as small those of G have to be, on which the motion between the nodes depends, while a
+        larger number of nodes is left.
     room : array, shape (17, M)
         Room; the motion stays in it.
     """
@@ -186,7 +209,9 @@ def solve_phase(line: Line, rules: PhaseRules, segment: Segment, roughness: floa
             square = room[SQUARE, node]
             slope = span * vectors[vector, FALL, node]
             rate = sign * vectors[vector, FACTOR, node] * math.sqrt(square)
-            static, loss = force(shallow + span * vectors[vector, SHAPE, node], rate, speed, coefficients)
+            static, loss = force(
+                shallow + span * vectors[vector, SHAPE, node], rate, speed, coefficients
+            )
             by_square = -per_mass * loss * slope / square
             room[STATIC, node] = static
             room[LOSS, node] = loss
@@ -204,9 +229,12 @@ def solve_phase(line: Line, rules: PhaseRules, segment: Segment, roughness: floa
             apart = max(apart, abs(defect))
         if not apart < math.inf:
             break
-        if rule > 0 and sweep == 0:  # the first correction with more nodes is as good as the last one before
+        # the first correction with more nodes is as good as the last one before
+        if rule > 0 and sweep == 0:
             before = apart / contraction
-        settled = apart <= close or (apart <= _FAST * before and _DOUBT * apart * (apart / before) <= close)
+        settled = apart <= close or (
+            apart <= _FAST * before and _DOUBT * apart * (apart / before) <= close
+        )
         contraction = apart / before if before > 0.0 else 1.0
         before = apart
         solved_span = span
@@ -214,7 +242,11 @@ def solve_phase(line: Line, rules: PhaseRules, segment: Segment, roughness: floa
             multiply_row(room, SUMMAND, matrices, matrix + 1, width, width, GROWTH)
             for node in range(width):  # the exponential, as closely as Newton's method needs it
                 part = 0.125 * room[GROWTH, node]
-                part = 1.0 + part * (1.0 + part * (1.0 / 2.0 + part * (1.0 / 6.0 + part * (1.0 / 24.0 + part * (1.0 / 120.0)))))
+                part = 1.0 + part * (
+                    1.0
+                    + part
+                    * (1.0 / 2.0 + part * (1.0 / 6.0 + part * (1.0 / 24.0 + part * (1.0 / 120.0))))
+                )
                 part *= part
                 part *= part
                 part *= part
@@ -234,7 +266,9 @@ def solve_phase(line: Line, rules: PhaseRules, segment: Segment, roughness: floa
             span *= 1.0 + longer if longer > 0.0 else math.exp(longer)
         for node in range(width):
             square = room[SQUARE, node]
-            change = room[DEFECT, node] + room[GROWTH, node] * (room[CHANGE, node] + longer * room[BY_DEPTH, node])
+            change = room[DEFECT, node] + room[GROWTH, node] * (
+                room[CHANGE, node] + longer * room[BY_DEPTH, node]
+            )
             room[SQUARE, node] = max(square + change, _LEAST_OF_BEFORE * square)
         sweep += 1
         if not settled:
@@ -254,7 +288,12 @@ def solve_phase(line: Line, rules: PhaseRules, segment: Segment, roughness: floa
             pace = room[PACE, node]
             rate = room[RATE, node]
             duration += vectors[vector, WEIGHT, node] * pace
-            work -= vectors[vector, WEIGHT, node] * room[STATIC, node] * room[SLOPE, node] * vectors[vector, FACTOR, node]
+            work -= (
+                vectors[vector, WEIGHT, node]
+                * room[STATIC, node]
+                * room[SLOPE, node]
+                * vectors[vector, FACTOR, node]
+            )
             rough_rate += vectors[vector, LAST, node] * rate
             rough_rate_before += vectors[vector, BEFORE_LAST, node] * rate
             rough_pace += vectors[vector, LAST, node] * pace
@@ -290,7 +329,9 @@ def solve_phase(line: Line, rules: PhaseRules, segment: Segment, roughness: floa
     deep = shallow + span
     reached = segment.wanted if is_sought else room[SQUARE, count]
     lost = 0.0
-    if is_lossy:  # what is missing in the balance of energy, which is more accurate than the work of the dissipative force
+    # what is missing in the balance of energy, which is more accurate than the work of the
+    # dissipative force
+    if is_lossy:
         if is_sought:
             elastic, plastic = energies(deep, coefficients)
             high = elastic + plastic - weight * deep

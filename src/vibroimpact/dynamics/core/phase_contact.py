@@ -1,8 +1,9 @@
-"""The contact of two rigid bodies, collocated phase by phase, where that comes out to the tolerance.
+"""The contact of two rigid bodies, collocated phase by phase, where that comes out to the
+tolerance.
 
-Compression is solved from the touch inwards between the breakpoints of the law, and then up to its deepest point, which is sought;
-restitution goes back through them. No event has to be located in time but the largest force, and the place where the force of a law
-that may not pull becomes zero.
+Compression is solved from the touch inwards between the breakpoints of the law, and then up to its
+deepest point, which is sought; restitution goes back through them. No event has to be located in
+time but the largest force, and the place where the force of a law that may not pull becomes zero.
 """
 
 from __future__ import annotations
@@ -14,7 +15,13 @@ from vibroimpact.compiled import compiled, energies_at, force_at, multiply_row
 from vibroimpact.dynamics.core.events import ENDS_AT_NO_FORCE, TENSION_CUT
 from vibroimpact.dynamics.core.law import law_remembering
 from vibroimpact.dynamics.core.line import RELEASED, line_under, next_level
-from vibroimpact.dynamics.core.line_events import after_glide, end_of_glide, energy_to_part, narrowed, secant_of
+from vibroimpact.dynamics.core.line_events import (
+    after_glide,
+    end_of_glide,
+    energy_to_part,
+    narrowed,
+    secant_of,
+)
 from vibroimpact.dynamics.core.line_records import Bracket, Line, LineContact, LineManner, LineState
 from vibroimpact.dynamics.core.line_step import energies_of, force_of
 from vibroimpact.dynamics.core.normal_motion import write_glide, write_segment
@@ -68,7 +75,9 @@ def weigh(vectors: Floats, vector: int, count: int, y: float, room: Floats) -> N
     """Write the weights of the nodes and the far end in the value of a polynomial at y."""
     width = (count + 8) // 8 * 8
     for node in range(width):
-        room[SHARE, node] = vectors[vector, BARYCENTRIC, node] / (y - vectors[vector, PLACE, node] + _TINY)
+        room[SHARE, node] = vectors[vector, BARYCENTRIC, node] / (
+            y - vectors[vector, PLACE, node] + _TINY
+        )
     even = 0.0
     odd = 0.0
     for node in range(0, count, 2):
@@ -81,7 +90,9 @@ def weigh(vectors: Floats, vector: int, count: int, y: float, room: Floats) -> N
 
 @compiled(lambda t: t.real(t.integer, t.integer, t.matrix))
 def weighed(count: int, values: int, room: Floats) -> float:
-    """Return the value of a polynomial where `weigh` has been called, from the row of its values in the room."""
+    """Return the value of a polynomial where `weigh` has been called, from the row of its
+    values in the room.
+    """
     even = 0.0
     odd = 0.0
     for node in range(0, count, 2):
@@ -91,7 +102,9 @@ def weighed(count: int, values: int, room: Floats) -> float:
 
 
 @compiled(lambda t: t.of(LineState)(t.of(PhaseRules), t.of(Segment), t.of(Phase), t.real, t.matrix))
-def state_in(rules: PhaseRules, segment: Segment, phase: Phase, y: float, room: Floats) -> LineState:
+def state_in(
+    rules: PhaseRules, segment: Segment, phase: Phase, y: float, room: Floats
+) -> LineState:
     """Return the state at y in a segment, with no time and no loss."""
     kind = segment.kind
     shape = 1.0 - y * y
@@ -106,8 +119,12 @@ def state_in(rules: PhaseRules, segment: Segment, phase: Phase, y: float, room: 
 
 
 @compiled(lambda t: t.real(t.cube, t.cube, t.integer, t.integer, t.real, t.matrix))
-def elapsed_at(vectors: Floats, matrices: Floats, vector: int, count: int, y: float, room: Floats) -> float:
-    """Return the integral of the pace up to y [s], from the end of a segment where the motion is known."""
+def elapsed_at(
+    vectors: Floats, matrices: Floats, vector: int, count: int, y: float, room: Floats
+) -> float:
+    """Return the integral of the pace up to y [s], from the end of a segment where the
+    motion is known.
+    """
     width = (count + 8) // 8 * 8
     for node in range(count, width):
         room[PACE, node] = 0.0
@@ -116,11 +133,19 @@ def elapsed_at(vectors: Floats, matrices: Floats, vector: int, count: int, y: fl
     return weighed(count, ELAPSED, room)
 
 
-@compiled(lambda t: t.tuple(t.real, t.real)(t.of(Line), t.of(PhaseRules), t.of(Segment), t.of(Phase), t.matrix))
-def peak_in(line: Line, rules: PhaseRules, segment: Segment, phase: Phase, room: Floats) -> tuple[float, float]:
-    """Return the largest force within a segment of compression [N], and its time since the start of that [s]; none if at an end of it.
+@compiled(
+    lambda t: t.tuple(t.real, t.real)(
+        t.of(Line), t.of(PhaseRules), t.of(Segment), t.of(Phase), t.matrix
+    )
+)
+def peak_in(
+    line: Line, rules: PhaseRules, segment: Segment, phase: Phase, room: Floats
+) -> tuple[float, float]:
+    """Return the largest force within a segment of compression [N], and its time since the start of
+    that [s]; none if at an end of it.
 
-    It is where the rate of change of the force is zero, by inverse quadratic interpolation within a bracket.
+    It is where the rate of change of the force is zero, by inverse quadratic interpolation within a
+    bracket.
     """
     force = force_at(line.force)
     coefficients = line.coefficients
@@ -193,8 +218,14 @@ def peak_in(line: Line, rules: PhaseRules, segment: Segment, phase: Phase, room:
             else:
                 high = y
             nearer = (
-                first * second_trend * trend / ((first_trend - second_trend) * (first_trend - trend))
-                + second * first_trend * trend / ((second_trend - first_trend) * (second_trend - trend))
+                first
+                * second_trend
+                * trend
+                / ((first_trend - second_trend) * (first_trend - trend))
+                + second
+                * first_trend
+                * trend
+                / ((second_trend - first_trend) * (second_trend - trend))
                 + y * first_trend * second_trend / ((trend - first_trend) * (trend - second_trend))
             )
             if not low <= nearer <= high:
@@ -213,11 +244,19 @@ def peak_in(line: Line, rules: PhaseRules, segment: Segment, phase: Phase, room:
     return highest, when
 
 
-@compiled(lambda t: t.tuple(t.boolean, t.real)(t.of(Line), t.of(PhaseRules), t.of(Segment), t.of(Phase), t.boolean, t.matrix))
-def tension_in(line: Line, rules: PhaseRules, segment: Segment, phase: Phase, is_last: bool, room: Floats) -> tuple[bool, float]:
-    """Return whether it is certain where the force of a segment of restitution first pulls, and that y; infinite if it does not.
+@compiled(
+    lambda t: t.tuple(t.boolean, t.real)(
+        t.of(Line), t.of(PhaseRules), t.of(Segment), t.of(Phase), t.boolean, t.matrix
+    )
+)
+def tension_in(
+    line: Line, rules: PhaseRules, segment: Segment, phase: Phase, is_last: bool, room: Floats
+) -> tuple[bool, float]:
+    """Return whether it is certain where the force of a segment of restitution first pulls, and
+    that y; infinite if it does not.
 
-    It is looked for at the nodes and the shallow end, and not certain if a parabola through three of them pulls between them.
+    It is looked for at the nodes and the shallow end, and not certain if a parabola through three
+    of them pulls between them.
     """
     count = rules.counts[phase.rule]
     vector = phase.rule * KINDS + segment.kind
@@ -234,7 +273,11 @@ def tension_in(line: Line, rules: PhaseRules, segment: Segment, phase: Phase, is
         if node < count:
             force = room[STATIC, node] + room[LOSS, node]
         else:
-            force = 0.0 if is_last else force_of(line, LineState(0.0, segment.shallow, -math.sqrt(phase.reached), 0.0))
+            force = (
+                0.0
+                if is_last
+                else force_of(line, LineState(0.0, segment.shallow, -math.sqrt(phase.reached), 0.0))
+            )
         if force < -slack:
             bracket = Bracket(last_y, y, last, force, 0)
             if node == 0 or not last > 0.0:
@@ -262,8 +305,14 @@ def tension_in(line: Line, rules: PhaseRules, segment: Segment, phase: Phase, is
     return True, math.inf
 
 
-@compiled(lambda t: t.tuple(t.boolean, t.of(LineContact))(t.of(Law), t.of(LineManner), t.of(PhaseRules), t.of(NormalGrid), t.matrix))
-def collocate_contact(law: Law, manner: LineManner, rules: PhaseRules, grid: NormalGrid, room: Floats) -> tuple[bool, LineContact]:
+@compiled(
+    lambda t: t.tuple(t.boolean, t.of(LineContact))(
+        t.of(Law), t.of(LineManner), t.of(PhaseRules), t.of(NormalGrid), t.matrix
+    )
+)
+def collocate_contact(
+    law: Law, manner: LineManner, rules: PhaseRules, grid: NormalGrid, room: Floats
+) -> tuple[bool, LineContact]:
     """Return whether the contact of two rigid bodies is solved to the tolerance, and the contact.
 
     Parameters
@@ -297,18 +346,37 @@ def collocate_contact(law: Law, manner: LineManner, rules: PhaseRules, grid: Nor
         phase = Phase(False, 0, 0.0, 0.0, 0.0, 0.0, 0.0)
         segment = Segment(TURNING, 1.0, 0.0, 0.0, 0.0, 0.0)
         if level < manner.depth - _MARGIN * (manner.depth - law.touch):
-            segment = Segment(AT_TOUCH_INWARD if is_at_touch else BETWEEN_INWARD, 1.0, level, deepest, square, 0.0)
+            segment = Segment(
+                AT_TOUCH_INWARD if is_at_touch else BETWEEN_INWARD, 1.0, level, deepest, square, 0.0
+            )
             phase = solve_phase(line, rules, segment, rules.roughness, rules.sharper, room)
         if not phase.solved:
-            segment = Segment(TURNING_AT_TOUCH if is_at_touch else TURNING, 1.0, manner.depth, deepest, 0.0, square)
+            segment = Segment(
+                TURNING_AT_TOUCH if is_at_touch else TURNING,
+                1.0,
+                manner.depth,
+                deepest,
+                0.0,
+                square,
+            )
             phase = solve_phase(line, rules, segment, rules.roughness, rules.sharper, room)
             turned = True
-            if not phase.solved or phase.deep > level + _ABOUT * rules.tolerance * (phase.deep - law.touch):
+            if not phase.solved or phase.deep > level + _ABOUT * rules.tolerance * (
+                phase.deep - law.touch
+            ):
                 return False, unsolved
         highest, when = peak_in(line, rules, segment, phase, room)
         if grid.steps > 0:
             slower = math.sqrt(square) - (0.0 if turned else math.sqrt(phase.reached))
-            write_segment(grid, rules, segment, phase, 1.0, line.mass * (slower + line.gravity * phase.duration), room)
+            write_segment(
+                grid,
+                rules,
+                segment,
+                phase,
+                1.0,
+                line.mass * (slower + line.gravity * phase.duration),
+                room,
+            )
         if highest > peak_force:
             peak_force = highest
             time_of_peak = time + when
@@ -330,11 +398,17 @@ def collocate_contact(law: Law, manner: LineManner, rules: PhaseRules, grid: Nor
     line = line_under(law, manner)
     state = LineState(time, deepest, 0.0, lost)
     least_energy = 0.5 * line.mass * (rules.tolerance * manner.speed_scale) ** 2
-    if energy_to_part(line, state) < least_energy or line.gravity >= force_of(line, state) / line.mass:
+    if (
+        energy_to_part(line, state) < least_energy
+        or line.gravity >= force_of(line, state) / line.mass
+    ):
         return False, unsolved
-    sharper_back = rules.sharper if grid.steps > 0 else 1.0  # nothing between the nodes is asked for without friction
+    # nothing between the nodes is asked for without friction
+    sharper_back = rules.sharper if grid.steps > 0 else 1.0
     for _ in range(_SEGMENTS_BACK):
-        level = next_level(law, state.delta, False, _ABOUT * rules.tolerance * (deepest - law.release))
+        level = next_level(
+            law, state.delta, False, _ABOUT * rules.tolerance * (deepest - law.release)
+        )
         is_last = level == law.release
         kind = TURNING if state.rate == 0.0 else BETWEEN
         if is_last:
@@ -351,7 +425,9 @@ def collocate_contact(law: Law, manner: LineManner, rules: PhaseRules, grid: Nor
                 return False, unsolved
             if y < math.inf:
                 if phase.roughness > rules.roughness_inside:
-                    phase = solve_phase(line, rules, segment, rules.roughness_inside, sharper_back, room)
+                    phase = solve_phase(
+                        line, rules, segment, rules.roughness_inside, sharper_back, room
+                    )
                     if not phase.solved:
                         return False, unsolved
                     certain, y = tension_in(line, rules, segment, phase, is_last, room)
@@ -361,11 +437,23 @@ def collocate_contact(law: Law, manner: LineManner, rules: PhaseRules, grid: Nor
                 energy = 0.5 * line.mass * (pulled.rate * pulled.rate - state.rate * state.rate)
                 fallen = potential_of(line, state.delta) - potential_of(line, pulled.delta) - energy
                 vector = phase.rule * KINDS + kind
-                elapsed = elapsed_at(rules.vectors, rules.matrices, vector, rules.counts[phase.rule], y, room)
+                elapsed = elapsed_at(
+                    rules.vectors, rules.matrices, vector, rules.counts[phase.rule], y, room
+                )
                 begun = state.rate
-                state = LineState(state.time + elapsed, pulled.delta, pulled.rate, state.lost + fallen)
+                state = LineState(
+                    state.time + elapsed, pulled.delta, pulled.rate, state.lost + fallen
+                )
                 if grid.steps > 0:
-                    write_segment(grid, rules, segment, phase, y, line.mass * (begun - pulled.rate + line.gravity * elapsed), room)
+                    write_segment(
+                        grid,
+                        rules,
+                        segment,
+                        phase,
+                        y,
+                        line.mass * (begun - pulled.rate + line.gravity * elapsed),
+                        room,
+                    )
                 if manner.contact_end != ENDS_AT_NO_FORCE:
                     glide, pushes, stays = end_of_glide(line, state)
                     if stays:
@@ -378,12 +466,28 @@ def collocate_contact(law: Law, manner: LineManner, rules: PhaseRules, grid: Nor
                 break
         if grid.steps > 0:
             faster = state.rate + math.sqrt(phase.reached)
-            write_segment(grid, rules, segment, phase, 1.0, line.mass * (faster + line.gravity * phase.duration), room)
-        state = LineState(state.time + phase.duration, level, -math.sqrt(phase.reached), state.lost + phase.lost)
+            write_segment(
+                grid,
+                rules,
+                segment,
+                phase,
+                1.0,
+                line.mass * (faster + line.gravity * phase.duration),
+                room,
+            )
+        state = LineState(
+            state.time + phase.duration, level, -math.sqrt(phase.reached), state.lost + phase.lost
+        )
         if is_last:
             break
-    is_short = manner.tension == TENSION_CUT and manner.contact_end == ENDS_AT_NO_FORCE and state.delta == law.release
+    is_short = (
+        manner.tension == TENSION_CUT
+        and manner.contact_end == ENDS_AT_NO_FORCE
+        and state.delta == law.release
+    )
     if is_short or not state.rate * state.rate > _LEAST_RESTITUTION * _LEAST_RESTITUTION * touch:
         return False, unsolved
     stored = energies_of(line, state.delta)[0]
-    return True, LineContact(RELEASED, state, deepest, time_of_deepest, peak_force, time_of_peak, plastic, stored)
+    return True, LineContact(
+        RELEASED, state, deepest, time_of_deepest, peak_force, time_of_peak, plastic, stored
+    )

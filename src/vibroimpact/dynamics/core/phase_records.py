@@ -11,23 +11,40 @@ from vibroimpact.arrays import Integers
 from vibroimpact.dynamics.core.records import Boolean, Cube, Integer, Real
 
 TURNING_AT_TOUCH, TURNING, AT_TOUCH, BETWEEN, AT_TOUCH_INWARD, BETWEEN_INWARD = range(6)
-"""Kinds of segment: TURNING, its speed is zero at its deep end; AT_TOUCH, its shallow end is where the surfaces meet or part.
+"""Kinds of segment: TURNING, its speed is zero at its deep end; AT_TOUCH, its shallow end is where
+the surfaces meet or part.
 
-The motion of those INWARD is known at the shallow end, of the others at the deep end, or at both where the deep end is sought.
+The motion of those INWARD is known at the shallow end, of the others at the deep end, or at both
+where the deep end is sought.
 """
 
 KINDS = 6
 
 PLACE, BARYCENTRIC, FACTOR, PER_FACTOR, SHAPE, FALL, WEIGHT, LAST, BEFORE_LAST = range(9)
-"""Vectors of a kind of segment: nodes and far end, their barycentric weights, f, 1/f, s, ds/dy over f, the weights of the integral over the
-segment, and those of the last two Legendre coefficients.
+"""Vectors of a kind of segment: nodes and far end, their barycentric weights, f, 1/f, s, ds/dy over
+f, the weights of the integral over the segment, and those of the last two Legendre coefficients.
 """
 
 VECTORS = 9
 
-STATIC, LOSS, RATE, SLOPE, SQUARE, DEFECT, BY_SQUARE, REACHED, GROWTH, SHRUNK, CHANGE, BY_DEPTH, BY_LENGTH, SUMMAND = range(14)
-"""Vectors of the solution, rows of its room: static and dissipative force, G, the slope of the indentation by y over f, u, and others of
-Newton's method.
+(
+    STATIC,
+    LOSS,
+    RATE,
+    SLOPE,
+    SQUARE,
+    DEFECT,
+    BY_SQUARE,
+    REACHED,
+    GROWTH,
+    SHRUNK,
+    CHANGE,
+    BY_DEPTH,
+    BY_LENGTH,
+    SUMMAND,
+) = range(14)
+"""Vectors of the solution, rows of its room: static and dissipative force, G, the slope of the
+indentation by y over f, u, and others of Newton's method.
 """
 
 PACE, ELAPSED, SHARE = 14, 15, 16
@@ -39,12 +56,15 @@ ROWS = 17
 class PhaseRules(NamedTuple):
     """Gauss rules of L numbers of nodes, rising, for the segments of a phase.
 
-    tolerance: relative error allowed of the approach speed. roughness: the last Legendre coefficients allowed, and roughness_inside, where
-    a contact ends within a segment; sharper: times as small they have to be for G where the motion between the nodes is asked for. root:
-    power of the indentation in whose root the force is smooth at touch. counts (L,): numbers of nodes. vectors (6 L, 9, M): of each kind of
-    segment; M, their length, has room for the nodes and the far end. matrices (12 L, M, M), two of each kind: from G at the nodes to the
-    change of u, and from values to their integrals, up to the nodes and the far end, with a row for each node that they are taken from.
-    onward (L, M, M): from values at the nodes of the rule before to those at its own.
+    tolerance: relative error allowed of the approach speed. roughness: the last Legendre
+    coefficients allowed, and roughness_inside, where a contact ends within a segment; sharper:
+    times as small they have to be for G where the motion between the nodes is asked for. root:
+    power of the indentation in whose root the force is smooth at touch. counts (L,): numbers of
+    nodes. vectors (6 L, 9, M): of each kind of segment; M, their length, has room for the nodes and
+    the far end. matrices (12 L, M, M), two of each kind: from G at the nodes to the change of u,
+    and from values to their integrals, up to the nodes and the far end, with a row for each node
+    that they are taken from. onward (L, M, M): from values at the nodes of the rule before to those
+    at its own.
     """
 
     tolerance: Real
@@ -61,9 +81,9 @@ class PhaseRules(NamedTuple):
 class Segment(NamedTuple):
     """A segment of a phase between two indentations, as it is to be solved.
 
-    kind: of those above. sign: of the indentation rate, 1 or -1. deep, shallow: its ends [m]; the deep one an estimate where it is sought.
-    begun: square of the speed at the end where it is known. wanted: that at the shallow end where the deep end is sought, else 0
-    [m^2/s^2].
+    kind: of those above. sign: of the indentation rate, 1 or -1. deep, shallow: its ends [m]; the
+    deep one an estimate where it is sought. begun: square of the speed at the end where it is
+    known. wanted: that at the shallow end where the deep end is sought, else 0 [m^2/s^2].
     """
 
     kind: Integer
@@ -77,8 +97,9 @@ class Segment(NamedTuple):
 class Phase(NamedTuple):
     """The solution of a segment, in whose room the motion at the nodes stays.
 
-    solved: to the tolerance? rule: number of the rule. deep: its deep end [m]. reached: square of the speed at the far end [m^2/s^2].
-    duration [s]. lost: energy [J]. roughness: the last Legendre coefficients of acceleration and pace, relative to their integrals.
+    solved: to the tolerance? rule: number of the rule. deep: its deep end [m]. reached: square of
+    the speed at the far end [m^2/s^2]. duration [s]. lost: energy [J]. roughness: the last Legendre
+    coefficients of acceleration and pace, relative to their integrals.
     """
 
     solved: Boolean

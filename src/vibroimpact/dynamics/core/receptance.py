@@ -1,12 +1,18 @@
 r"""Motion of the surfaces at contacts through a stretch, reduced to the nodes of Radau collocation.
 
-Collocation integrates by a matrix Q. In its eigenbasis, with eigenvalues :math:`\lambda`, the modes enter only through the receptances
+Collocation integrates by a matrix Q. In its eigenbasis, with eigenvalues :math:`\lambda`, the modes
+enter only through the receptances
 between contacts at the complex frequencies :math:`1/\sigma`, :math:`\sigma = h \lambda`,
 
-.. math:: G_{cd}(\sigma) = \sum_i \frac{\chi_{ci} \chi_{di}}{1 + 2 \zeta_i \omega_i \sigma + \omega_i^2 \sigma^2}
+.. math::
 
-so that the number of unknowns does not depend on the number of modes. A mode much faster than the stretch follows the force
-quasi-statically, a slower one is integrated with order 2 N - 1. For rigid motions the receptance is :math:`h^2 Q^2 \sum \chi_c \chi_d`.
+    G_{cd}(\sigma) = \sum_i \frac{\chi_{ci} \chi_{di}}{1 + 2 \zeta_i \omega_i \sigma + \omega_i^2
+    \sigma^2}
+
+so that the number of unknowns does not depend on the number of modes. A mode much faster than the
+stretch follows the force
+quasi-statically, a slower one is integrated with order 2 N - 1. For rigid motions the receptance is
+:math:`h^2 Q^2 \sum \chi_c \chi_d`.
 """
 
 from __future__ import annotations
@@ -22,8 +28,9 @@ from vibroimpact.dynamics.core.records import Basis, Motion, Start, Surfaces
 def modal_weights(surfaces: Surfaces, start: Start) -> Floats:
     """Return the weights of the modes in the sums of `modal_sums` (W, m).
 
-    By part (outside and within the contacts): first of the receptance of each two contacts, then of the spring and damper accelerations of
-    each contact at the start, and last of the rates of the spring accelerations.
+    By part (outside and within the contacts): first of the receptance of each two contacts, then of
+    the spring and damper accelerations of each contact at the start, and last of the rates of the
+    spring accelerations.
     """
     parts, contacts, modes = surfaces.shapes.shape
     weights = np.empty((parts * contacts * (contacts + 2), modes))
@@ -32,7 +39,9 @@ def modal_weights(surfaces: Surfaces, start: Start) -> Floats:
         for contact in range(contacts):
             for other in range(contacts):
                 for mode in range(modes):
-                    weights[row, mode] = surfaces.shapes[part, contact, mode] * surfaces.shapes[part, other, mode]
+                    weights[row, mode] = (
+                        surfaces.shapes[part, contact, mode] * surfaces.shapes[part, other, mode]
+                    )
                 row += 1
     for part in range(parts):
         for contact in range(contacts):
@@ -51,8 +60,12 @@ def modal_weights(surfaces: Surfaces, start: Start) -> Floats:
 
 
 @compiled(lambda t: t.void(t.of(Surfaces), t.real, t.real, t.matrix))
-def write_admittances(surfaces: Surfaces, sigma: float, sigma_imaginary: float, admittances: Floats) -> None:
-    """Write 1/(1 + d sigma + w^2 sigma^2) of all modes, as real and imaginary parts (2, m), into `admittances`."""
+def write_admittances(
+    surfaces: Surfaces, sigma: float, sigma_imaginary: float, admittances: Floats
+) -> None:
+    """Write 1/(1 + d sigma + w^2 sigma^2) of all modes, as real and imaginary parts (2,
+    m), into `admittances`.
+    """
     square = sigma * sigma - sigma_imaginary * sigma_imaginary
     square_imaginary = 2.0 * sigma * sigma_imaginary
     for mode in range(len(surfaces.damping)):
@@ -66,12 +79,19 @@ def write_admittances(surfaces: Surfaces, sigma: float, sigma_imaginary: float, 
 
 
 @compiled(lambda t: t.void(t.of(Surfaces), t.real, t.real, t.matrix, t.matrix))
-def write_slopes(surfaces: Surfaces, sigma: float, sigma_imaginary: float, admittances: Floats, slopes: Floats) -> None:
-    """Write the derivatives of the admittances of `write_admittances` by sigma into `slopes` (2, m)."""
+def write_slopes(
+    surfaces: Surfaces, sigma: float, sigma_imaginary: float, admittances: Floats, slopes: Floats
+) -> None:
+    """Write the derivatives of the admittances of `write_admittances` by sigma into
+    `slopes` (2, m).
+    """
     for mode in range(len(surfaces.damping)):
         slope = surfaces.damping[mode] + 2.0 * surfaces.frequency_squared[mode] * sigma
         slope_imaginary = 2.0 * surfaces.frequency_squared[mode] * sigma_imaginary
-        squared = admittances[0, mode] * admittances[0, mode] - admittances[1, mode] * admittances[1, mode]
+        squared = (
+            admittances[0, mode] * admittances[0, mode]
+            - admittances[1, mode] * admittances[1, mode]
+        )
         squared_imaginary = 2.0 * admittances[0, mode] * admittances[1, mode]
         slopes[0, mode] = -(slope * squared - slope_imaginary * squared_imaginary)
         slopes[1, mode] = -(slope * squared_imaginary + slope_imaginary * squared)
@@ -79,7 +99,9 @@ def write_slopes(surfaces: Surfaces, sigma: float, sigma_imaginary: float, admit
 
 @compiled(lambda t: t.tuple(t.integers, t.integers)(t.matrix))
 def extents(weights: Floats) -> tuple[Integers, Integers]:
-    """Return the first mode that has a weight in each row (W, m), and the one after the last: the modes of the other body have none."""
+    """Return the first mode that has a weight in each row (W, m), and the one after the
+    last: the modes of the other body have none.
+    """
     first = np.zeros(len(weights), dtype=np.int64)
     last = np.zeros(len(weights), dtype=np.int64)
     for row in range(len(weights)):
@@ -93,7 +115,9 @@ def extents(weights: Floats) -> tuple[Integers, Integers]:
 
 @compiled(lambda t: t.tuple(t.real, t.real)(t.vector, t.vector, t.vector))
 def weighted_sum(weights: Floats, real: Floats, imaginary: Floats) -> tuple[float, float]:
-    """Return the sums of real and imaginary parts, times their weights; two sums of each side by side wait less for one another."""
+    """Return the sums of real and imaginary parts, times their weights; two sums of each
+    side by side wait less for one another.
+    """
     pairs = len(weights) // 2 * 2
     total = 0.0
     total_imaginary = 0.0
@@ -111,24 +135,34 @@ def weighted_sum(weights: Floats, real: Floats, imaginary: Floats) -> tuple[floa
 
 
 @compiled(lambda t: t.void(t.matrix, t.integers, t.integers, t.matrix, t.integer, t.cube))
-def write_sums(weights: Floats, first: Integers, last: Integers, values: Floats, k: int, sums: Floats) -> None:
-    """Write the sums of values of all modes (2, m), times their weights in each row within its extent, into `sums` (2, W, H) at k."""
+def write_sums(
+    weights: Floats, first: Integers, last: Integers, values: Floats, k: int, sums: Floats
+) -> None:
+    """Write the sums of values of all modes (2, m), times their weights in each row
+    within its extent, into `sums` (2, W, H) at k.
+    """
     for row in range(len(weights)):
         within = weights[row, first[row] : last[row]]
-        real, imaginary = weighted_sum(within, values[0, first[row] : last[row]], values[1, first[row] : last[row]])
+        real, imaginary = weighted_sum(
+            within, values[0, first[row] : last[row]], values[1, first[row] : last[row]]
+        )
         sums[0, row, k] = real
         sums[1, row, k] = imaginary
 
 
 @compiled(lambda t: t.cube(t.of(Surfaces), t.matrix, t.matrix, t.real))
 def modal_sums(surfaces: Surfaces, weights: Floats, eigenvalues: Floats, length: float) -> Floats:
-    """Return the weighted sums over the modes of 1/(1 + d sigma + w^2 sigma^2) at all eigenvalues, as parts (2, W, H)."""
+    """Return the weighted sums over the modes of 1/(1 + d sigma + w^2 sigma^2) at all
+    eigenvalues, as parts (2, W, H).
+    """
     number = eigenvalues.shape[1]
     sums = np.empty((2, len(weights), number))
     first, last = extents(weights)
     admittances = np.empty((2, len(surfaces.damping)))
     for k in range(number):
-        write_admittances(surfaces, length * eigenvalues[0, k], length * eigenvalues[1, k], admittances)
+        write_admittances(
+            surfaces, length * eigenvalues[0, k], length * eigenvalues[1, k], admittances
+        )
         write_sums(weights, first, last, admittances, k, sums)
     return sums
 
@@ -154,12 +188,18 @@ def modal_slopes(surfaces: Surfaces, weights: Floats, eigenvalues: Floats, lengt
 def add_at_nodes(backward: Floats, k: int, coefficient: complex, values: Floats) -> None:
     """Add what a coefficient in the eigenbasis is at the nodes to `values` (N,)."""
     for node in range(len(values)):
-        values[node] += backward[2 * k, node] * coefficient.real + backward[2 * k + 1, node] * coefficient.imag
+        values[node] += (
+            backward[2 * k, node] * coefficient.real + backward[2 * k + 1, node] * coefficient.imag
+        )
 
 
 @compiled(lambda t: t.void(t.matrix, t.complexes, t.matrix, t.integer, t.integer))
-def write_matrix(filters: Floats, operators: Complex, matrix: Floats, row: int, column: int) -> None:
-    """Write the matrix on the nodes of an operator in the eigenbasis (H,) into the block of `matrix` that begins at a row and a column."""
+def write_matrix(
+    filters: Floats, operators: Complex, matrix: Floats, row: int, column: int
+) -> None:
+    """Write the matrix on the nodes of an operator in the eigenbasis (H,) into the block
+    of `matrix` that begins at a row and a column.
+    """
     entries = np.zeros(filters.shape[1])
     for k in range(len(operators)):
         real = operators[k].real
@@ -197,13 +237,20 @@ def surface_motion(basis: Basis, surfaces: Surfaces, start: Start, length: float
         for contact in range(contacts):
             rate = 0.0 + 0.0j
             for part in range(parts):
-                spring = complex(sums[0, springs + part * contacts + contact, k], sums[1, springs + part * contacts + contact, k])
+                spring = complex(
+                    sums[0, springs + part * contacts + contact, k],
+                    sums[1, springs + part * contacts + contact, k],
+                )
                 row = spring_rates + part * contacts + contact
                 spring_rate = complex(sums[0, row, k], sums[1, row, k])
                 of_part = -sigma * (one * spring + clock * spring_rate)
                 if part == 0:
                     for element in range(elements):
-                        held = surfaces.incidence[contact, element] * surfaces.rate[element] * start.local[element]
+                        held = (
+                            surfaces.incidence[contact, element]
+                            * surfaces.rate[element]
+                            * start.local[element]
+                        )
                         of_part -= one * held / (1.0 + surfaces.rate[element] * sigma)
                     add_at_nodes(basis.backward, k, of_part, outer[contact])
                 else:
@@ -216,7 +263,9 @@ def surface_motion(basis: Basis, surfaces: Surfaces, start: Start, length: float
                     between = sigma * complex(sums[0, pair, k], sums[1, pair, k])
                     if part == 0 and contact == other:
                         for element in range(elements):
-                            between += surfaces.mobility[contact, element] / (1.0 + surfaces.rate[element] * sigma)
+                            between += surfaces.mobility[contact, element] / (
+                                1.0 + surfaces.rate[element] * sigma
+                            )
                     mobility[part, contact, other, k] = between
                     receptance[part, contact, other, k] = sigma * between
 
@@ -229,11 +278,17 @@ def surface_motion(basis: Basis, surfaces: Surfaces, start: Start, length: float
         for other in range(contacts):
             row = contact * nodes
             column = other * nodes
-            write_matrix(basis.filters, receptance[0, contact, other], approach_by_force, row, column)
+            write_matrix(
+                basis.filters, receptance[0, contact, other], approach_by_force, row, column
+            )
             write_matrix(basis.filters, mobility[0, contact, other], rate_by_force, row, column)
             if parts == 2:
-                write_matrix(basis.filters, receptance[1, contact, other], approach_by_static, row, column)
-                write_matrix(basis.filters, mobility[1, contact, other], closing_by_static, row, column)
+                write_matrix(
+                    basis.filters, receptance[1, contact, other], approach_by_static, row, column
+                )
+                write_matrix(
+                    basis.filters, mobility[1, contact, other], closing_by_static, row, column
+                )
 
     approach = np.empty(size)
     rate_of_approach = np.empty(size)
@@ -242,8 +297,14 @@ def surface_motion(basis: Basis, surfaces: Surfaces, start: Start, length: float
         for node in range(nodes):
             row = contact * nodes + node
             time = length * basis.time[node]
-            outer_rate = start.outer_rate[contact] + surfaces.gravity[contact] * time + outer[contact, node]
-            mean_rate = start.outer_rate[contact] + start.inner_rate[contact] + 0.5 * surfaces.gravity[contact] * time
+            outer_rate = (
+                start.outer_rate[contact] + surfaces.gravity[contact] * time + outer[contact, node]
+            )
+            mean_rate = (
+                start.outer_rate[contact]
+                + start.inner_rate[contact]
+                + 0.5 * surfaces.gravity[contact] * time
+            )
             rate_of_approach[row] = outer_rate
             closing[row] = outer_rate + start.inner_rate[contact] + inner[contact, node]
             approach[row] = start.approach[contact] + time * mean_rate + moved[contact, node]
@@ -251,16 +312,28 @@ def surface_motion(basis: Basis, surfaces: Surfaces, start: Start, length: float
                 rigid = surfaces.rigid_pairs[contact, other]
                 for force_node in range(nodes):
                     column = other * nodes + force_node
-                    approach_by_force[row, column] += rigid * length * length * basis.integral_twice[node, force_node]
+                    approach_by_force[row, column] += (
+                        rigid * length * length * basis.integral_twice[node, force_node]
+                    )
                     rate_by_force[row, column] += rigid * length * basis.integral[node, force_node]
     return Motion(
-        approach, rate_of_approach, closing, approach_by_force, rate_by_force, approach_by_static, closing_by_static, weights, sums
+        approach,
+        rate_of_approach,
+        closing,
+        approach_by_force,
+        rate_by_force,
+        approach_by_static,
+        closing_by_static,
+        weights,
+        sums,
     )
 
 
 @compiled(lambda t: t.void(t.matrix, t.vector, t.integer, t.complexes))
 def to_eigenbasis(forward: Floats, values: Floats, k: int, coefficients: Complex) -> None:
-    """Write the coefficients of an eigenvector in the nodal values (c N,) of each contact into `coefficients` (c,)."""
+    """Write the coefficients of an eigenvector in the nodal values (c N,) of each contact
+    into `coefficients` (c,).
+    """
     nodes = len(forward)
     for contact in range(len(coefficients)):
         real = 0.0
@@ -272,13 +345,25 @@ def to_eigenbasis(forward: Floats, values: Floats, k: int, coefficients: Complex
         coefficients[contact] = complex(real, imaginary)
 
 
-@compiled(lambda t: t.matrix(t.of(Basis), t.of(Surfaces), t.of(Start), t.of(Motion), t.real, t.vector, t.vector))
+@compiled(
+    lambda t: t.matrix(
+        t.of(Basis), t.of(Surfaces), t.of(Start), t.of(Motion), t.real, t.vector, t.vector
+    )
+)
 def motion_by_length(
-    basis: Basis, surfaces: Surfaces, start: Start, motion: Motion, length: float, force: Floats, static: Floats
+    basis: Basis,
+    surfaces: Surfaces,
+    start: Start,
+    motion: Motion,
+    length: float,
+    force: Floats,
+    static: Floats,
 ) -> Floats:
-    """Return the derivatives of approach, rate and closing rate at the nodes by the length of a stretch (3, M).
+    """Return the derivatives of approach, rate and closing rate at the nodes by the length of a
+    stretch (3, M).
 
-    `motion`: through that length. `force`, `static`: forces and their static parts at the nodes [N] (M,).
+    `motion`: through that length. `force`, `static`: forces and their static parts at the nodes [N]
+    (M,).
     """
     parts, contacts, _ = surfaces.shapes.shape
     nodes = len(basis.time)
@@ -314,15 +399,24 @@ def motion_by_length(
                 spring_rate = complex(sums[0, row, k], sums[1, row, k])
                 spring_rate_slope = complex(slopes[0, row, k], slopes[1, row, k])
                 acceleration = -(one * spring + length * clock * spring_rate)
-                acceleration_slope = -(value * (one * spring_slope + length * clock * spring_rate_slope) + clock * spring_rate)
+                acceleration_slope = -(
+                    value * (one * spring_slope + length * clock * spring_rate_slope)
+                    + clock * spring_rate
+                )
                 rate = sigma * acceleration
                 rate_slope = value * acceleration + sigma * acceleration_slope
                 if part == 0:
                     for element in range(elements):
                         relaxing = 1.0 / (1.0 + surfaces.rate[element] * sigma)
-                        held = surfaces.incidence[contact, element] * surfaces.rate[element] * start.local[element]
+                        held = (
+                            surfaces.incidence[contact, element]
+                            * surfaces.rate[element]
+                            * start.local[element]
+                        )
                         rate -= one * held * relaxing
-                        rate_slope += one * value * held * surfaces.rate[element] * relaxing * relaxing
+                        rate_slope += (
+                            one * value * held * surfaces.rate[element] * relaxing * relaxing
+                        )
                     outer_slope = rate_slope
                 else:
                     inner_slope = rate_slope
@@ -342,15 +436,24 @@ def motion_by_length(
                     for element in range(elements):
                         relaxing = 1.0 / (1.0 + surfaces.rate[element] * sigma)
                         mobility += surfaces.mobility[contact, element] * relaxing
-                        mobility_slope -= surfaces.mobility[contact, element] * surfaces.rate[element] * relaxing * relaxing
+                        mobility_slope -= (
+                            surfaces.mobility[contact, element]
+                            * surfaces.rate[element]
+                            * relaxing
+                            * relaxing
+                        )
                 by_force += (mobility + sigma * mobility_slope) * pushed[other]
                 by_force_slope += mobility_slope * pushed[other]
                 if parts == 2:
                     pair += contacts * contacts
                     accelerance = complex(sums[0, pair, k], sums[1, pair, k])
                     accelerance_slope = complex(slopes[0, pair, k], slopes[1, pair, k])
-                    by_static += (2.0 * sigma * accelerance + sigma * sigma * accelerance_slope) * pushed_static[other]
-                    by_static_slope += (accelerance + sigma * accelerance_slope) * pushed_static[other]
+                    by_static += (
+                        2.0 * sigma * accelerance + sigma * sigma * accelerance_slope
+                    ) * pushed_static[other]
+                    by_static_slope += (accelerance + sigma * accelerance_slope) * pushed_static[
+                        other
+                    ]
             moved_slope = value * rates + sigma * rate_slopes - value * (by_force + by_static)
             add_at_nodes(basis.backward, k, moved_slope, moved[contact])
             add_at_nodes(basis.backward, k, outer_slope - value * by_force_slope, outer[contact])
@@ -372,7 +475,11 @@ def motion_by_length(
                     held_back += push * basis.integral_twice[node, force_node]
             row = contact * nodes + node
             rate = gravity * time + outer[contact, node] - slowed
-            found[0, row] = time * (speed + gravity * length * time) + moved[contact, node] - 2.0 * length * held_back
+            found[0, row] = (
+                time * (speed + gravity * length * time)
+                + moved[contact, node]
+                - 2.0 * length * held_back
+            )
             found[1, row] = rate
             found[2, row] = rate + inner[contact, node]
     return found

@@ -1,4 +1,6 @@
-"""Recoil: a law has stopped pushing while the surfaces still overlap, and they move freely until they separate or it pushes again."""
+"""Recoil: a law has stopped pushing while the surfaces still overlap, and they move
+freely until they separate or it pushes again.
+"""
 
 from __future__ import annotations
 
@@ -6,7 +8,13 @@ import numpy as np
 
 from vibroimpact.compiled import compiled, force_at
 from vibroimpact.dynamics.core.contact_records import Manner
-from vibroimpact.dynamics.core.flight import approach_of, dashpot_rate, flight_of, flown, state_after
+from vibroimpact.dynamics.core.flight import (
+    approach_of,
+    dashpot_rate,
+    flight_of,
+    flown,
+    state_after,
+)
 from vibroimpact.dynamics.core.law import law_indentation
 from vibroimpact.dynamics.core.records import Law, State, System
 
@@ -18,21 +26,29 @@ _TIME_ROUNDING = 1e-13  # of the time of a recoil
 
 @compiled(lambda t: t.tuple(t.real, t.real)(t.of(System), t.of(Law), t.of(State)))
 def recoil_values(system: System, law: Law, state: State) -> tuple[float, float]:
-    """Return numbers that are positive where a recoiling contact has separated, and where its law pushes again."""
+    """Return numbers that are positive where a recoiling contact has separated, and where
+    its law pushes again.
+    """
     approach, _ = approach_of(system, state)
     pushes = -1.0
     if approach > law.release_level:
         delta = law_indentation(law, approach)
-        static, dissipative = force_at(law.addresses[0])(delta, dashpot_rate(system, state), law.speed, law.coefficients)
+        static, dissipative = force_at(law.addresses[0])(
+            delta, dashpot_rate(system, state), law.speed, law.coefficients
+        )
         pushes = static + dissipative
     return law.release_level - approach, pushes
 
 
 @compiled(lambda t: t.real(t.of(System), t.of(Law), t.of(State), t.real, t.real, t.boolean))
-def change_between(system: System, law: Law, state: State, low: float, high: float, separates: bool) -> float:
-    """Return when between two times [s] a recoiling contact separates, or else pushes again, to the rounding of the time.
+def change_between(
+    system: System, law: Law, state: State, low: float, high: float, separates: bool
+) -> float:
+    """Return when between two times [s] a recoiling contact separates, or else pushes again, to the
+    rounding of the time.
 
-    By the secant, with the value of an end that has stayed for two steps halved (the Illinois method).
+    By the secant, with the value of an end that has stayed for two steps halved (the Illinois
+    method).
     """
     kind = 0 if separates else 1
     low_value = recoil_values(system, law, state_after(system, state, low))[kind]
@@ -41,8 +57,14 @@ def change_between(system: System, law: Law, state: State, low: float, high: flo
     for _ in range(_MOST_SECANTS):
         if not high - low > _TIME_ROUNDING * high:
             break
-        middle = high - (high - low) * high_value / (high_value - low_value) if low_value < 0.0 else 0.5 * (low + high)
-        middle = min(max(middle, low + 0.25 * _TIME_ROUNDING * high), high - 0.25 * _TIME_ROUNDING * high)
+        middle = (
+            high - (high - low) * high_value / (high_value - low_value)
+            if low_value < 0.0
+            else 0.5 * (low + high)
+        )
+        middle = min(
+            max(middle, low + 0.25 * _TIME_ROUNDING * high), high - 0.25 * _TIME_ROUNDING * high
+        )
         value = recoil_values(system, law, state_after(system, state, middle))[kind]
         if value > 0.0:
             high = middle
@@ -59,7 +81,9 @@ def change_between(system: System, law: Law, state: State, low: float, high: flo
 
 @compiled(lambda t: t.tuple(t.real, t.boolean)(t.of(System), t.of(Law), t.of(Manner), t.of(State)))
 def end_of_recoil(system: System, law: Law, manner: Manner, state: State) -> tuple[float, bool]:
-    """Return when a recoiling contact separates or pushes again [s from here], and whether it separates."""
+    """Return when a recoiling contact separates or pushes again [s from here], and
+    whether it separates.
+    """
     approach, rate = approach_of(system, state)
     above = max(approach - law.release_level, 0.0)
     step = max(above / max(-rate, 1e-3 * manner.motion_speed), 1e-6 * manner.span)

@@ -1,4 +1,6 @@
-"""Necessary conditions of rest, and the energy below which a sphere cannot leave its indentation."""
+"""Necessary conditions of rest, and the energy below which a sphere cannot leave its
+indentation.
+"""
 
 from __future__ import annotations
 
@@ -15,22 +17,30 @@ _REST_MARGIN = 0.5  # of the weight: largest variation of the force at rest
 
 @compiled(lambda t: t.boolean(t.of(System), t.of(Law), t.of(Manner), t.of(State), t.real))
 def is_captured(system: System, law: Law, manner: Manner, state: State, delta: float) -> bool:
-    """Is the energy too small to lift the sphere out of its indentation? Never so where a drive brings more."""
+    """Is the energy too small to lift the sphere out of its indentation? Never so where a
+    drive brings more.
+    """
     if system.driven > 0:
         return False
     energy = energy_of_approach(system, state) + static_work(law, delta)
     weight = system.mass * system.gravity
-    barrier = stored_energy(law, law.release) - weight * law.release_level - 0.5 * system.compliance * weight * weight
+    barrier = (
+        stored_energy(law, law.release)
+        - weight * law.release_level
+        - 0.5 * system.compliance * weight * weight
+    )
     least = 0.5 * system.mass * (manner.tolerance * manner.motion_speed) ** 2
     return energy < barrier + least
 
 
 @compiled(lambda t: t.boolean(t.of(System), t.of(Law), t.of(State), t.real))
 def is_near_rest(system: System, law: Law, state: State, force: float) -> bool:
-    """May a riding sphere be at rest? A necessary condition that needs no eigenvalues; where a plate is driven, always.
+    """May a riding sphere be at rest? A necessary condition that needs no eigenvalues; where a
+    plate is driven, always.
 
-    The force must be close to the weight, and the speed low: the force decelerates and accelerates the sphere at no lower an angular
-    frequency than that from the trace of the flexibility, on a contact with about the stiffness of force over indentation.
+    The force must be close to the weight, and the speed low: the force decelerates and accelerates
+    the sphere at no lower an angular frequency than that from the trace of the flexibility, on a
+    contact with about the stiffness of force over indentation.
     """
     if system.driven > 0:
         return True

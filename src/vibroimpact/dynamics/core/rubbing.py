@@ -1,22 +1,30 @@
-r"""Friction at the contact of a rigid sphere with a surface that moves, through a stretch of contact.
+r"""Friction at the contact of a rigid sphere with a surface that moves, through a stretch of
+contact.
 
-The contact point of the sphere moves along the surface as a particle of its effective mass :math:`m_t`, 2/7 of that of a solid sphere, the
-surface by the modes of the body below, which friction bends and turns. With the displacements u of the first and w of the second,
+The contact point of the sphere moves along the surface as a particle of its effective mass
+:math:`m_t`, 2/7 of that of a solid sphere, the surface by the modes of the body below, which
+friction bends and turns. With the displacements u of the first and w of the second,
 
-.. math:: m_t \ddot u = m_t g_t - Q,\qquad w = \sum_i \psi_i q_i,\qquad \ddot q_i + \ldots = -\chi_i F + \psi_i Q
+.. math::
 
-and Q follows from F and the history of u - w by the friction law. At the nodes of a stretch all displacements are linear in F and Q. Q is
-found by iteration beside Newton's method for F: it follows from displacements before it, so that each iteration adds an order in time.
+    m_t \ddot u = m_t g_t - Q,\qquad w = \sum_i \psi_i q_i,\qquad
+    \ddot q_i + \ldots = -\chi_i F + \psi_i Q
 
-Where rolling is resisted or the sphere spins about the normal, the moments M act as well, against the part of its spin that rolls and that
-about the normal, both relative to the rigid rotation of the plate, which they turn. With the moment of inertia I of the sphere
+and Q follows from F and the history of u - w by the friction law. At the nodes of a stretch all
+displacements are linear in F and Q. Q is found by iteration beside Newton's method for F: it
+follows from displacements before it, so that each iteration adds an order in time.
+
+Where rolling is resisted or the sphere spins about the normal, the moments M act as well, against
+the part of its spin that rolls and that about the normal, both relative to the rigid rotation of
+the plate, which they turn. With the moment of inertia I of the sphere
 
 .. math:: I \dot\omega = -R Q - M,\qquad m_t \ddot u = m_t g_t - Q - \frac{m_t R}{I} M
 
-for the spins about -y, x (and z, on which Q has no moment). Moments that would turn a spin back within a stretch are as large as brings it
-to its end.
+for the spins about -y, x (and z, on which Q has no moment). Moments that would turn a spin back
+within a stretch are as large as brings it to its end.
 
-The directions of friction are further contacts of the system, the first of which is that of the normal force.
+The directions of friction are further contacts of the system, the first of which is that of the
+normal force.
 """
 
 from __future__ import annotations
@@ -28,8 +36,19 @@ from vibroimpact.compiled import compiled
 from vibroimpact.dynamics.core.linear import write_row
 from vibroimpact.dynamics.core.receptance import surface_motion
 from vibroimpact.dynamics.core.records import Basis, Motion, Start, Surfaces
-from vibroimpact.dynamics.core.rubbing_moments import slowing_spins, sphere_spins, spin_imbalance, turned_after, write_moments
-from vibroimpact.dynamics.core.rubbing_motions import slowing, sphere_displacements, sphere_velocities, surface_along
+from vibroimpact.dynamics.core.rubbing_moments import (
+    slowing_spins,
+    sphere_spins,
+    spin_imbalance,
+    turned_after,
+    write_moments,
+)
+from vibroimpact.dynamics.core.rubbing_motions import (
+    slowing,
+    sphere_displacements,
+    sphere_velocities,
+    surface_along,
+)
 from vibroimpact.dynamics.core.rubbing_records import (
     AT_X,
     AT_Y,
@@ -41,7 +60,11 @@ from vibroimpact.dynamics.core.rubbing_records import (
     RubbedPart,
     Rubbing,
 )
-from vibroimpact.dynamics.core.tangential_history import follow_history, lost_in_microslip, with_state
+from vibroimpact.dynamics.core.tangential_history import (
+    follow_history,
+    lost_in_microslip,
+    with_state,
+)
 
 
 @compiled(lambda t: t.of(Rubbing)(t.of(Rubbing), t.real))
@@ -53,10 +76,16 @@ def flown(rubbing: Rubbing, time: float) -> Rubbing:
     for direction in range(2):
         speed = rubbing.velocity[direction]
         pull = rubbing.pull[direction]
-        displacement[direction] = rubbing.displacement[direction] + (speed + 0.5 * pull * time) * time
+        displacement[direction] = (
+            rubbing.displacement[direction] + (speed + 0.5 * pull * time) * time
+        )
         velocity[direction] = speed + pull * time
-        turned_way[direction] = rubbing.turned_way[direction] + rubbing.radius * rubbing.turned[direction] * time
-    history = with_state(rubbing.history, 0.0, np.zeros_like(rubbing.history.stretch), np.zeros(2), 0.0)
+        turned_way[direction] = (
+            rubbing.turned_way[direction] + rubbing.radius * rubbing.turned[direction] * time
+        )
+    history = with_state(
+        rubbing.history, 0.0, np.zeros_like(rubbing.history.stretch), np.zeros(2), 0.0
+    )
     return Rubbing(
         rubbing.directions,
         rubbing.rolling_coefficient,
@@ -78,8 +107,12 @@ def flown(rubbing: Rubbing, time: float) -> Rubbing:
 
 
 @compiled(lambda t: t.of(Motions)(t.of(Basis), t.of(Surfaces), t.of(Start), t.of(Rubbed), t.real))
-def free_motions(basis: Basis, surfaces: Surfaces, start: Start, rubbed: Rubbed, length: float) -> Motions:
-    """Return the motion of the surfaces through a stretch of a length [s], across and along them."""
+def free_motions(
+    basis: Basis, surfaces: Surfaces, start: Start, rubbed: Rubbed, length: float
+) -> Motions:
+    """Return the motion of the surfaces through a stretch of a length [s], across and
+    along them.
+    """
     across = surface_motion(basis, surfaces, start, length)
     if rubbed.rubbing.directions == 0:
         return Motions(across, across)
@@ -100,7 +133,9 @@ def first_friction(rubbing: Rubbing, nodes: int) -> FrictionAtNodes:
 
 @compiled(lambda t: t.of(Motion)(t.of(Motions), t.matrix))
 def under_friction(motions: Motions, friction: Floats) -> Motion:
-    """Return the motion of the surfaces across, with what friction forces at the nodes [N] move them."""
+    """Return the motion of the surfaces across, with what friction forces at the nodes
+    [N] move them.
+    """
     free = motions.across
     directions, nodes = friction.shape
     if directions == 0:
@@ -132,11 +167,21 @@ def under_friction(motions: Motions, friction: Floats) -> Motion:
     )
 
 
-@compiled(lambda t: t.of(FrictionAtNodes)(t.of(Basis), t.of(Motions), t.of(Rubbed), t.real, t.vector, t.of(FrictionAtNodes)))
+@compiled(
+    lambda t: t.of(FrictionAtNodes)(
+        t.of(Basis), t.of(Motions), t.of(Rubbed), t.real, t.vector, t.of(FrictionAtNodes)
+    )
+)
 def follow_friction(
-    basis: Basis, motions: Motions, rubbed: Rubbed, length: float, normal: Floats, before: FrictionAtNodes
+    basis: Basis,
+    motions: Motions,
+    rubbed: Rubbed,
+    length: float,
+    normal: Floats,
+    before: FrictionAtNodes,
 ) -> FrictionAtNodes:
-    """Return the friction at the nodes under normal forces there [N] (N,), from the displacements under the friction before.
+    """Return the friction at the nodes under normal forces there [N] (N,), from the displacements
+    under the friction before.
 
     The history is followed in some steps from each node to the next.
     """
@@ -180,9 +225,22 @@ def follow_friction(
     return FrictionAtNodes(force, history, pressed, friction, steps_moved, slid)
 
 
-@compiled(lambda t: t.of(RubbedPart)(t.of(Basis), t.of(Motions), t.of(Rubbing), t.real, t.vector, t.of(FrictionAtNodes)))
-def rubbed_part(basis: Basis, motions: Motions, rubbing: Rubbing, length: float, normal: Floats, friction: FrictionAtNodes) -> RubbedPart:
-    """Return what friction does through a solved stretch, under normal forces at its nodes [N] (N,)."""
+@compiled(
+    lambda t: t.of(RubbedPart)(
+        t.of(Basis), t.of(Motions), t.of(Rubbing), t.real, t.vector, t.of(FrictionAtNodes)
+    )
+)
+def rubbed_part(
+    basis: Basis,
+    motions: Motions,
+    rubbing: Rubbing,
+    length: float,
+    normal: Floats,
+    friction: FrictionAtNodes,
+) -> RubbedPart:
+    """Return what friction does through a solved stretch, under normal forces at its
+    nodes [N] (N,).
+    """
     nodes = len(normal)
     last = nodes - 1
     force = friction.force
@@ -202,7 +260,11 @@ def rubbed_part(basis: Basis, motions: Motions, rubbing: Rubbing, length: float,
     imbalance = 0.0
     for direction in range(directions):
         for node in range(nodes):
-            own = velocity[direction, node] if direction <= AT_Y else spins[direction - ROLLING_X, node]
+            own = (
+                velocity[direction, node]
+                if direction <= AT_Y
+                else spins[direction - ROLLING_X, node]
+            )
             slip[direction, node] = own + surface[direction, node]
             weight = length * basis.integral[last, node]
             taken += weight * force[direction, node] * slip[direction, node]
@@ -216,9 +278,18 @@ def rubbed_part(basis: Basis, motions: Motions, rubbing: Rubbing, length: float,
         end_force[direction] = force[direction, last]
         end_velocity[direction] = ended
         end_displacement[direction] = rubbing.displacement[direction] + moved[direction, last]
-        imbalance += rubbing.mass * (0.5 * (ended - begun) * (ended + begun) - rubbing.pull[direction] * moved[direction, last])
+        imbalance += rubbing.mass * (
+            0.5 * (ended - begun) * (ended + begun)
+            - rubbing.pull[direction] * moved[direction, last]
+        )
         for node in range(nodes):
-            imbalance += length * basis.integral[last, node] * rubbing.mass * slowed[direction, node] * velocity[direction, node]
+            imbalance += (
+                length
+                * basis.integral[last, node]
+                * rubbing.mass
+                * slowed[direction, node]
+                * velocity[direction, node]
+            )
     imbalance = abs(imbalance)
     spin = rubbing.spin
     turned = rubbing.turned
@@ -229,7 +300,9 @@ def rubbed_part(basis: Basis, motions: Motions, rubbing: Rubbing, length: float,
         for axis in range(3):
             spin[axis] = spins[axis, last]
         turned, turned_way = turned_after(basis, rubbing, length, force)
-    microslip = lost_in_microslip(rubbing.history, friction.pressed, friction.on_the_way, friction.moved, friction.slid)
+    microslip = lost_in_microslip(
+        rubbing.history, friction.pressed, friction.on_the_way, friction.moved, friction.slid
+    )
     end = Rubbing(
         rubbing.directions,
         rubbing.rolling_coefficient,

@@ -1,4 +1,5 @@
-"""The moments with which a surface that moves resists the rolling and the twisting of a sphere, through a stretch of contact.
+"""The moments with which a surface that moves resists the rolling and the twisting of a sphere,
+through a stretch of contact.
 
 See `rubbing`, for the equations as well.
 """
@@ -15,13 +16,23 @@ from vibroimpact.contact.friction.twisting import FULL_TWISTING, twisting_share
 from vibroimpact.dynamics.core.linear import product
 from vibroimpact.dynamics.core.records import Basis
 from vibroimpact.dynamics.core.rubbing_motions import slowing, sphere_velocities, surface_along
-from vibroimpact.dynamics.core.rubbing_records import ABOUT_NORMAL, AT_X, AT_Y, ROLLING_X, ROLLING_Y, Motions, Rubbing
+from vibroimpact.dynamics.core.rubbing_records import (
+    ABOUT_NORMAL,
+    AT_X,
+    AT_Y,
+    ROLLING_X,
+    ROLLING_Y,
+    Motions,
+    Rubbing,
+)
 from vibroimpact.dynamics.core.tangential_history import depth_under
 
 
 @compiled(lambda t: t.matrix(t.of(Rubbing), t.matrix))
 def slowing_spins(rubbing: Rubbing, friction: Floats) -> Floats:
-    """Return by how much friction and its moments slow the spins of the sphere at the nodes [rad/s^2] (3, N)."""
+    """Return by how much friction and its moments slow the spins of the sphere at the
+    nodes [rad/s^2] (3, N).
+    """
     nodes = friction.shape[1]
     slowed = np.empty((3, nodes))
     turn = rubbing.radius / rubbing.inertia
@@ -45,18 +56,28 @@ def sphere_spins(basis: Basis, rubbing: Rubbing, length: float, slowed: Floats) 
 
 
 @compiled(lambda t: t.real(t.of(Rubbing), t.real, t.real, t.real, t.real))
-def twisting_moment(rubbing: Rubbing, load: float, friction: float, slip: float, spin: float) -> float:
-    """Return the moment against twisting at a rate `spin` [rad/s] under a normal force, beside friction [N], at a slip speed [m/s]."""
+def twisting_moment(
+    rubbing: Rubbing, load: float, friction: float, slip: float, spin: float
+) -> float:
+    """Return the moment against twisting at a rate `spin` [rad/s] under a normal force,
+    beside friction [N], at a slip speed [m/s].
+    """
     history = rubbing.history
     contact_radius = math.sqrt(history.radius * depth_under(history, load))
     most = history.coefficient * load
     used = friction / most if most > 0.0 else 1.0
-    return float(FULL_TWISTING * most * contact_radius * twisting_share(contact_radius * spin, slip, used))
+    return float(
+        FULL_TWISTING * most * contact_radius * twisting_share(contact_radius * spin, slip, used)
+    )
 
 
 @compiled(lambda t: t.void(t.of(Basis), t.of(Motions), t.of(Rubbing), t.real, t.vector, t.matrix))
-def write_moments(basis: Basis, motions: Motions, rubbing: Rubbing, length: float, normal: Floats, force: Floats) -> None:
-    """Write the moments at the nodes [N m] beside friction into `force`: they act along the spins without them, and end with these."""
+def write_moments(
+    basis: Basis, motions: Motions, rubbing: Rubbing, length: float, normal: Floats, force: Floats
+) -> None:
+    """Write the moments at the nodes [N m] beside friction into `force`: they act along
+    the spins without them, and end with these.
+    """
     along = motions.along
     nodes = len(normal)
     slips = sphere_velocities(basis, rubbing, length, slowing(rubbing, force))
@@ -69,7 +90,8 @@ def write_moments(basis: Basis, motions: Motions, rubbing: Rubbing, length: floa
             force[ROLLING_X + axis, node] = 0.0
     free = sphere_spins(basis, rubbing, length, slowing_spins(rubbing, force))
     surface = surface_along(along.rate, along.rate_by_force, normal, force)
-    direction_of = np.zeros((3, nodes))  # of the spins, of those that roll and of that about the normal
+    # of the spins, of those that roll and of that about the normal
+    direction_of = np.zeros((3, nodes))
     for node in range(nodes):
         roll_x = free[0, node] + surface[ROLLING_X, node]
         roll_y = free[1, node] + surface[ROLLING_Y, node]
@@ -88,7 +110,9 @@ def write_moments(basis: Basis, motions: Motions, rubbing: Rubbing, length: floa
         moment = rubbing.rolling_coefficient * rubbing.radius * load
         force[ROLLING_X, node] = moment * direction_of[0, node]
         force[ROLLING_Y, node] = moment * direction_of[1, node]
-        force[ABOUT_NORMAL, node] = twisting_moment(rubbing, load, friction, slip, abs(twist)) * direction_of[2, node]
+        force[ABOUT_NORMAL, node] = (
+            twisting_moment(rubbing, load, friction, slip, abs(twist)) * direction_of[2, node]
+        )
     slowed = sphere_spins(basis, rubbing, length, slowing_spins(rubbing, force))
     surface = surface_along(along.rate, along.rate_by_force, normal, force)
     last = nodes - 1
@@ -108,14 +132,18 @@ def write_moments(basis: Basis, motions: Motions, rubbing: Rubbing, length: floa
 
 @compiled(lambda t: t.real(t.real, t.real))
 def share_left(left: float, lost: float) -> float:
-    """Return the part of a moment after which nothing is left of a spin, of which `left` is there and it would take `lost`."""
+    """Return the part of a moment after which nothing is left of a spin, of which `left`
+    is there and it would take `lost`.
+    """
     if lost > left:
         return min(max(left / lost, 0.0), 1.0)
     return 1.0
 
 
 @compiled(lambda t: t.real(t.of(Basis), t.of(Rubbing), t.real, t.matrix, t.matrix))
-def spin_imbalance(basis: Basis, rubbing: Rubbing, length: float, force: Floats, spins: Floats) -> float:
+def spin_imbalance(
+    basis: Basis, rubbing: Rubbing, length: float, force: Floats, spins: Floats
+) -> float:
     """Return the error of the balance of energy of the spins through a stretch [J]."""
     slowed = slowing_spins(rubbing, force)
     nodes = len(basis.time)
@@ -132,8 +160,12 @@ def spin_imbalance(basis: Basis, rubbing: Rubbing, length: float, force: Floats,
 
 
 @compiled(lambda t: t.tuple(t.vector, t.vector)(t.of(Basis), t.of(Rubbing), t.real, t.matrix))
-def turned_after(basis: Basis, rubbing: Rubbing, length: float, force: Floats) -> tuple[Floats, Floats]:
-    """Return what moments made of the spin [rad/s] (3,), and of the displacement [m] (2,), at the end of a stretch."""
+def turned_after(
+    basis: Basis, rubbing: Rubbing, length: float, force: Floats
+) -> tuple[Floats, Floats]:
+    """Return what moments made of the spin [rad/s] (3,), and of the displacement [m]
+    (2,), at the end of a stretch.
+    """
     nodes = len(basis.time)
     last = nodes - 1
     turned = np.empty(3)

@@ -1,4 +1,5 @@
-"""The motion of the contact point of a sphere and of the surface below along each other, under friction at the nodes of a stretch.
+"""The motion of the contact point of a sphere and of the surface below along each other, under
+friction at the nodes of a stretch.
 
 See `rubbing`, for the equations as well.
 """
@@ -16,7 +17,8 @@ from vibroimpact.dynamics.core.rubbing_records import ROLLING_X, WITH_MOMENTS, R
 
 @compiled(lambda t: t.matrix(t.vector, t.matrix, t.vector, t.matrix))
 def surface_along(free: Floats, by_force: Floats, normal: Floats, friction: Floats) -> Floats:
-    """Return what the surface below adds to displacements or velocities along it at the nodes (F, N), under forces there.
+    """Return what the surface below adds to displacements or velocities along it at the nodes (F,
+    N), under forces there.
 
     free (M,), by_force (M, M): of a `Motion` along, its approach or its rate.
     """
@@ -37,7 +39,9 @@ def surface_along(free: Floats, by_force: Floats, normal: Floats, friction: Floa
 
 @compiled(lambda t: t.matrix(t.of(Rubbing), t.matrix))
 def slowing(rubbing: Rubbing, friction: Floats) -> Floats:
-    """Return by how much friction and its moments slow the contact point of the sphere at the nodes [m/s^2] (2, N)."""
+    """Return by how much friction and its moments slow the contact point of the sphere at
+    the nodes [m/s^2] (2, N).
+    """
     directions, nodes = friction.shape
     slowed = np.empty((2, nodes))
     turn = rubbing.radius / rubbing.inertia
@@ -51,7 +55,9 @@ def slowing(rubbing: Rubbing, friction: Floats) -> Floats:
 
 @compiled(lambda t: t.matrix(t.of(Basis), t.of(Rubbing), t.real, t.matrix))
 def sphere_displacements(basis: Basis, rubbing: Rubbing, length: float, slowed: Floats) -> Floats:
-    """Return the displacements of the contact point of the sphere from the start to the nodes [m] (2, N)."""
+    """Return the displacements of the contact point of the sphere from the start to the
+    nodes [m] (2, N).
+    """
     nodes = len(basis.time)
     moved = np.empty((2, nodes))
     for direction in range(2):
@@ -71,6 +77,8 @@ def sphere_velocities(basis: Basis, rubbing: Rubbing, length: float, slowed: Flo
     for direction in range(2):
         lost = product(basis.integral, slowed[direction])
         for node in range(nodes):
-            free = rubbing.velocity[direction] + rubbing.pull[direction] * (length * basis.time[node])
+            free = rubbing.velocity[direction] + rubbing.pull[direction] * (
+                length * basis.time[node]
+            )
             velocities[direction, node] = free - length * lost[node]
     return velocities

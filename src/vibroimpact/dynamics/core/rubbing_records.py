@@ -11,7 +11,9 @@ from vibroimpact.dynamics.core.records import Integer, Matrix, Motion, Real, Sta
 from vibroimpact.dynamics.core.tangential_history import TangentialHistory
 
 AT_X, AT_Y, ROLLING_X, ROLLING_Y, ABOUT_NORMAL = range(5)
-"""Directions of friction: forces along x and y, and moments on the spins about -y, x and the normal."""
+"""Directions of friction: forces along x and y, and moments on the spins about -y, x and
+the normal.
+"""
 
 WITH_MOMENTS = 5
 """Number of directions where moments act; without them it is 2, and 0 without friction."""
@@ -25,13 +27,16 @@ NUMBERS = 13
 class Rubbing(NamedTuple):
     """Friction of one drop, and the motion of the contact point of its sphere, at an instant.
 
-    directions: how many friction has, see above. rolling_coefficient: of the law. mass: effective mass of the motion of the
-    contact point [kg]. radius [m], inertia [kg m^2]: of the sphere. pull (2,): acceleration of gravity along x and y [m/s^2].
+    directions: how many friction has, see above. rolling_coefficient: of the law. mass: effective
+    mass of the motion of the contact point [kg]. radius [m], inertia [kg m^2]: of the sphere. pull
+    (2,): acceleration of gravity along x and y [m/s^2].
 
-    velocity [m/s] and displacement since first touch [m] (2,): of the contact point. spin (3,): of the sphere about -y, x and z [rad/s].
-    force (2,): of friction on it, against these [N]. Since first touch, what the moments made of the spin, turned [rad/s] (3,), and of the
-    displacement, turned_way [m] (2,). normal: force [N]. work: energy that friction took since then, with what the contact stores
-    tangentially [J]; microslip: the part of it that was not lost while all of the contact slid [J]. history: of the contact.
+    velocity [m/s] and displacement since first touch [m] (2,): of the contact point. spin (3,): of
+    the sphere about -y, x and z [rad/s]. force (2,): of friction on it, against these [N]. Since
+    first touch, what the moments made of the spin, turned [rad/s] (3,), and of the displacement,
+    turned_way [m] (2,). normal: force [N]. work: energy that friction took since then, with what
+    the contact stores tangentially [J]; microslip: the part of it that was not lost while all of
+    the contact slid [J]. history: of the contact.
     """
 
     directions: Integer
@@ -53,7 +58,9 @@ class Rubbing(NamedTuple):
 
 
 class Rubbed(NamedTuple):
-    """Surfaces that rub, at the start of a stretch: with a contact for the normal force and one for each direction of friction."""
+    """Surfaces that rub, at the start of a stretch: with a contact for the normal force
+    and one for each direction of friction.
+    """
 
     surfaces: Surfaces
     start: Start
@@ -63,7 +70,8 @@ class Rubbed(NamedTuple):
 class Motions(NamedTuple):
     """Motion of the surfaces through a stretch, as far as contact forces do not make it.
 
-    across: at the contacts. along: with the directions of friction as further contacts; the same as across where there is none.
+    across: at the contacts. along: with the directions of friction as further contacts; the same as
+    across where there is none.
     """
 
     across: Motion
@@ -73,9 +81,10 @@ class Motions(NamedTuple):
 class FrictionAtNodes(NamedTuple):
     """Friction through a stretch, in S steps.
 
-    force (F, N): forces [N] and moments [N m] at the nodes in F directions. history: at the end. At the start and the ends of the steps:
-    pressed (S + 1,), the normal force [N], on_the_way (S + 1, 2), friction along x and y [N], and slid (S + 1,), how far all of the contact
-    slid in the step before [m]. In each step: moved (S, 2), displacement of the surfaces past each other [m].
+    force (F, N): forces [N] and moments [N m] at the nodes in F directions. history: at the end. At
+    the start and the ends of the steps: pressed (S + 1,), the normal force [N], on_the_way (S + 1,
+    2), friction along x and y [N], and slid (S + 1,), how far all of the contact slid in the step
+    before [m]. In each step: moved (S, 2), displacement of the surfaces past each other [m].
     """
 
     force: Matrix
@@ -89,9 +98,10 @@ class FrictionAtNodes(NamedTuple):
 class RubbedPart(NamedTuple):
     """What friction does through a stretch.
 
-    At the nodes (F, N): force, as in `FrictionAtNodes`, and slip, the velocity of the contact point of the sphere past the surface [m/s]
-    and the spin past it [rad/s]. end: friction at the end. surface_work: work of friction on the body below [J]. imbalance: error of the
-    balances of energy of the contact point and of the spins [J].
+    At the nodes (F, N): force, as in `FrictionAtNodes`, and slip, the velocity of the contact point
+    of the sphere past the surface [m/s] and the spin past it [rad/s]. end: friction at the end.
+    surface_work: work of friction on the body below [J]. imbalance: error of the balances of energy
+    of the contact point and of the spins [J].
     """
 
     force: Matrix

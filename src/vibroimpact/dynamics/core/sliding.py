@@ -1,7 +1,9 @@
-"""The sliding of a contact along one direction: it sticks, slips at its rim or slides, from point to point of its normal motion.
+"""The sliding of a contact along one direction: it sticks, slips at its rim or slides, from point
+to point of its normal motion.
 
-Where it begins or ceases to slip or to slide within a step, that place is located and the contact takes the rest of the step from there.
-A contact of Cattaneo and Mindlin slips at its rim while its middle sticks (`at_rim`); one with a single spring sticks, or all of it slides.
+Where it begins or ceases to slip or to slide within a step, that place is located and the contact
+takes the rest of the step from there. A contact of Cattaneo and Mindlin slips at its rim while its
+middle sticks (`at_rim`); one with a single spring sticks, or all of it slides.
 """
 
 from __future__ import annotations
@@ -12,8 +14,22 @@ import numpy as np
 
 from vibroimpact.compiled import compiled
 from vibroimpact.dynamics.core.cubics import cubic_at, share_at, turn_of
-from vibroimpact.dynamics.core.friction_records import Cubic, Curve, Friction, NormalState, SlipState
-from vibroimpact.dynamics.core.sliding_steps import moved, normal_between, shortened, slide, slip_at_rim, stick, swept_to_middle
+from vibroimpact.dynamics.core.friction_records import (
+    Cubic,
+    Curve,
+    Friction,
+    NormalState,
+    SlipState,
+)
+from vibroimpact.dynamics.core.sliding_steps import (
+    moved,
+    normal_between,
+    shortened,
+    slide,
+    slip_at_rim,
+    stick,
+    swept_to_middle,
+)
 from vibroimpact.dynamics.core.slip_states import (
     begin_sliding,
     end_sliding,
@@ -25,7 +41,13 @@ from vibroimpact.dynamics.core.slip_states import (
     slides,
     state_within,
 )
-from vibroimpact.dynamics.core.turning_points import add_rim, begin_at_rim, end_slip, held_at, middle_of
+from vibroimpact.dynamics.core.turning_points import (
+    add_rim,
+    begin_at_rim,
+    end_slip,
+    held_at,
+    middle_of,
+)
 
 MOST_CHANGES = 6
 """Changes of a contact in one step at most."""
@@ -35,20 +57,30 @@ _SAME = 1e-6
 """Relative difference below which the depths where two parts of a contact meet are the same."""
 
 _NEAR = 0.25
-"""Part of the way of the slip to the middle of a contact that is left where its force is not smooth any more."""
+"""Part of the way of the slip to the middle of a contact that is left where its force is
+not smooth any more.
+"""
 
 _DIP = 1e-3
-"""Part of the bound by which the force of a spring exceeds it within a step, so that it slides there; less is an error of interpolation."""
+"""Part of the bound by which the force of a spring exceeds it within a step, so that it
+slides there; less is an error of interpolation.
+"""
 
 _ROUNDS = 3
 """How often the place at which a spring begins to slide at the end of a contact is mended."""
 
 
-@compiled(lambda t: t.pair(t.of(Friction), t.of(NormalState), t.of(NormalState), t.of(SlipState), t.real))
-def last_slide(friction: Friction, start: NormalState, end: NormalState, before: SlipState, power: float) -> tuple[float, float]:
-    """Return where a spring begins to slide in the step at whose end the contact ends, as a share of it, and in which direction.
+@compiled(
+    lambda t: t.pair(t.of(Friction), t.of(NormalState), t.of(NormalState), t.of(SlipState), t.real)
+)
+def last_slide(
+    friction: Friction, start: NormalState, end: NormalState, before: SlipState, power: float
+) -> tuple[float, float]:
+    """Return where a spring begins to slide in the step at whose end the contact ends, as a share
+    of it, and in which direction.
 
-    Towards the end the integral goes like a power of the radius, which falls evenly to zero, and is more than its bound at last.
+    Towards the end the integral goes like a power of the radius, which falls evenly to zero, and is
+    more than its bound at last.
     """
     depths = Cubic(start.depth, start.depth_slope, end.depth, end.depth_slope)
     depth = start.depth
@@ -59,26 +91,57 @@ def last_slide(friction: Friction, start: NormalState, end: NormalState, before:
         share = share_at(depths, min(rim * rim, start.depth))
         there = normal_between(start, end, share)
         depth = there.depth
-        integral = stick(friction, shortened(start, share), shortened(there, share), before, power).integral
+        integral = stick(
+            friction, shortened(start, share), shortened(there, share), before, power
+        ).integral
     return share, -1.0 if integral < 0.0 else 1.0
 
 
-@compiled(lambda t: t.of(Cubic)(t.of(NormalState), t.of(NormalState), t.of(SlipState), t.of(SlipState), t.real, t.real))
-def friction_reserve(start: NormalState, end: NormalState, before: SlipState, after: SlipState, direction: float, power: float) -> Cubic:
-    """Return by how much the integral of a spring in a direction is below its bound through a step [m^1.5]; `power`: see `stick`."""
+@compiled(
+    lambda t: t.of(Cubic)(
+        t.of(NormalState), t.of(NormalState), t.of(SlipState), t.of(SlipState), t.real, t.real
+    )
+)
+def friction_reserve(
+    start: NormalState,
+    end: NormalState,
+    before: SlipState,
+    after: SlipState,
+    direction: float,
+    power: float,
+) -> Cubic:
+    """Return by how much the integral of a spring in a direction is below its bound
+    through a step [m^1.5]; `power`: see `stick`.
+    """
     return Cubic(
         start.most - direction * before.integral,
-        math.sqrt(start.depth) * start.depth_slope - direction * integral_slope(start, before, power),
+        math.sqrt(start.depth) * start.depth_slope
+        - direction * integral_slope(start, before, power),
         end.most - direction * after.integral,
         math.sqrt(end.depth) * end.depth_slope - direction * integral_slope(end, after, power),
     )
 
 
-@compiled(lambda t: t.pair(t.of(Friction), t.of(NormalState), t.of(NormalState), t.of(SlipState), t.of(SlipState), t.real))
+@compiled(
+    lambda t: t.pair(
+        t.of(Friction),
+        t.of(NormalState),
+        t.of(NormalState),
+        t.of(SlipState),
+        t.of(SlipState),
+        t.real,
+    )
+)
 def spring_slides(
-    friction: Friction, start: NormalState, end: NormalState, before: SlipState, after: SlipState, power: float
+    friction: Friction,
+    start: NormalState,
+    end: NormalState,
+    before: SlipState,
+    after: SlipState,
+    power: float,
 ) -> tuple[float, float]:
-    """Return the share of a step after which a spring that sticks begins to slide, infinite if it does not, and the direction.
+    """Return the share of a step after which a spring that sticks begins to slide, infinite if it
+    does not, and the direction.
 
     The direction is 0 where the spring sticks on, but begins to shrink.
     """
@@ -93,7 +156,10 @@ def spring_slides(
             reserve = friction_reserve(start, end, before, after, sign, power)
             turn = turn_of(reserve)
             lowest, _ = cubic_at(reserve, turn)
-            if reserve.slope < 0.0 < reserve.end_slope and lowest < -_DIP * max(start.most, end.most):  # it would have slid on the way
+            # it would have slid on the way
+            if reserve.slope < 0.0 < reserve.end_slope and lowest < -_DIP * max(
+                start.most, end.most
+            ):
                 falling = Cubic(reserve.value, turn * reserve.slope, lowest, 0.0)
                 share = turn * share_at(falling, 0.0)
                 direction = sign
@@ -105,8 +171,12 @@ def spring_slides(
 
 
 @compiled(lambda t: t.pair(t.of(NormalState), t.of(NormalState), t.of(SlipState), t.of(SlipState)))
-def rim_slips(start: NormalState, end: NormalState, before: SlipState, after: SlipState) -> tuple[float, float]:
-    """Return the share of a step after which a contact that sticks begins to slip at its rim, infinite if never, and the direction."""
+def rim_slips(
+    start: NormalState, end: NormalState, before: SlipState, after: SlipState
+) -> tuple[float, float]:
+    """Return the share of a step after which a contact that sticks begins to slip at its
+    rim, infinite if never, and the direction.
+    """
     share = np.inf
     direction = 1.0
     if abs(end.pace * after.velocity) > end.depth_slope:
@@ -120,9 +190,17 @@ def rim_slips(start: NormalState, end: NormalState, before: SlipState, after: Sl
     return share, direction
 
 
-@compiled(lambda t: t.of(SlipState)(t.of(Friction), t.of(Curve), t.of(NormalState), t.of(SlipState), t.real))
-def begin_slip(friction: Friction, curve: Curve, normal: NormalState, state: SlipState, direction: float) -> SlipState:
-    """Return the state of a contact that has stuck and begins to slip, or sticks on where the direction is 0."""
+@compiled(
+    lambda t: t.of(SlipState)(
+        t.of(Friction), t.of(Curve), t.of(NormalState), t.of(SlipState), t.real
+    )
+)
+def begin_slip(
+    friction: Friction, curve: Curve, normal: NormalState, state: SlipState, direction: float
+) -> SlipState:
+    """Return the state of a contact that has stuck and begins to slip, or sticks on where
+    the direction is 0.
+    """
     if not friction.at_rim:
         state = in_direction(state, direction, 0.0)
         return begin_sliding(friction, state, normal.depth) if direction != 0.0 else state
@@ -132,8 +210,12 @@ def begin_slip(friction: Friction, curve: Curve, normal: NormalState, state: Sli
     return begin_sliding(friction, state, normal.depth) if state.front == 0.0 else state
 
 
-@compiled(lambda t: t.of(SlipState)(t.of(Friction), t.of(Curve), t.of(NormalState), t.of(SlipState)))
-def cease_to_slip(friction: Friction, curve: Curve, normal: NormalState, state: SlipState) -> SlipState:
+@compiled(
+    lambda t: t.of(SlipState)(t.of(Friction), t.of(Curve), t.of(NormalState), t.of(SlipState))
+)
+def cease_to_slip(
+    friction: Friction, curve: Curve, normal: NormalState, state: SlipState
+) -> SlipState:
     """Return the state of a contact that has slipped and sticks from now on."""
     direction = state.direction
     has_slid = slides(state)
@@ -143,14 +225,33 @@ def cease_to_slip(friction: Friction, curve: Curve, normal: NormalState, state: 
         if not has_slid:
             begin_at_rim(curve)
             held, front = held_at(curve, direction, normal.depth - direction * state.displacement)
-        end_slip(curve, direction, held, front, normal.depth, state.displacement, direction * (normal.most - held))
-    state = SlipState(state.velocity, state.displacement, direction * (normal.most - held), 0.0, 0.0, state.microslip)
+        end_slip(
+            curve,
+            direction,
+            held,
+            front,
+            normal.depth,
+            state.displacement,
+            direction * (normal.most - held),
+        )
+    state = SlipState(
+        state.velocity,
+        state.displacement,
+        direction * (normal.most - held),
+        0.0,
+        0.0,
+        state.microslip,
+    )
     return end_sliding(friction, state, normal.depth) if has_slid else state
 
 
-@compiled(lambda t: t.of(SlipState)(t.of(Friction), t.of(Curve), t.of(NormalState), t.of(SlipState)))
+@compiled(
+    lambda t: t.of(SlipState)(t.of(Friction), t.of(Curve), t.of(NormalState), t.of(SlipState))
+)
 def turn_back(friction: Friction, curve: Curve, normal: NormalState, state: SlipState) -> SlipState:
-    """Return the state of a contact that ceases to slip at its rim; one that shrinks slips in the other direction."""
+    """Return the state of a contact that ceases to slip at its rim; one that shrinks
+    slips in the other direction.
+    """
     direction = state.direction
     state = cease_to_slip(friction, curve, normal, state)
     if friction.at_rim and normal.depth_slope < 0.0:
@@ -159,9 +260,13 @@ def turn_back(friction: Friction, curve: Curve, normal: NormalState, state: Slip
     return state
 
 
-@compiled(lambda t: t.of(SlipState)(t.of(Friction), t.of(Curve), t.of(NormalState), t.of(SlipState)))
+@compiled(
+    lambda t: t.of(SlipState)(t.of(Friction), t.of(Curve), t.of(NormalState), t.of(SlipState))
+)
 def settle(friction: Friction, curve: Curve, start: NormalState, state: SlipState) -> SlipState:
-    """Return the state with which a part of a contact begins, whose rates may be others than at the end of the part before."""
+    """Return the state with which a part of a contact begins, whose rates may be others
+    than at the end of the part before.
+    """
     rate = start.pace * state.velocity
     if state.direction == 0.0:
         if friction.at_rim and abs(rate) > start.depth_slope:
@@ -173,8 +278,14 @@ def settle(friction: Friction, curve: Curve, start: NormalState, state: SlipStat
     return state
 
 
-@compiled(lambda t: t.of(SlipState)(t.of(Friction), t.of(Curve), t.of(NormalState), t.of(NormalState), t.of(SlipState)))
-def jump_of_spring(friction: Friction, curve: Curve, start: NormalState, end: NormalState, state: SlipState) -> SlipState:
+@compiled(
+    lambda t: t.of(SlipState)(
+        t.of(Friction), t.of(Curve), t.of(NormalState), t.of(NormalState), t.of(SlipState)
+    )
+)
+def jump_of_spring(
+    friction: Friction, curve: Curve, start: NormalState, end: NormalState, state: SlipState
+) -> SlipState:
     """Return the state of a spring that stretches, or shrinks, with a depth that jumps."""
     power = friction.growing if end.depth > start.depth else friction.shrinking
     ratio = end.depth / start.depth if start.depth > 0.0 else 1.0
@@ -189,9 +300,17 @@ def jump_of_spring(friction: Friction, curve: Curve, start: NormalState, end: No
     return begin_sliding(friction, state, end.depth) if is_over and not had_slid else state
 
 
-@compiled(lambda t: t.of(SlipState)(t.of(Friction), t.of(Curve), t.of(NormalState), t.of(NormalState), t.of(SlipState)))
-def jump_of_rim(friction: Friction, curve: Curve, start: NormalState, end: NormalState, state: SlipState) -> SlipState:
-    """Return the state of a contact whose rim jumps: it sticks as it grows, and slips in the direction in which it slips deeper."""
+@compiled(
+    lambda t: t.of(SlipState)(
+        t.of(Friction), t.of(Curve), t.of(NormalState), t.of(NormalState), t.of(SlipState)
+    )
+)
+def jump_of_rim(
+    friction: Friction, curve: Curve, start: NormalState, end: NormalState, state: SlipState
+) -> SlipState:
+    """Return the state of a contact whose rim jumps: it sticks as it grows, and slips in
+    the direction in which it slips deeper.
+    """
     if end.depth > start.depth:
         add_rim(curve, end.depth, state.displacement, state.integral)
         return state
@@ -208,12 +327,25 @@ def jump_of_rim(friction: Friction, curve: Curve, start: NormalState, end: Norma
     if not has_slid:
         begin_at_rim(curve)
         held, front = held_at(curve, direction, end.depth - direction * state.displacement)
-    state = SlipState(state.velocity, state.displacement, direction * (end.most - held), direction, front, state.microslip)
+    state = SlipState(
+        state.velocity,
+        state.displacement,
+        direction * (end.most - held),
+        direction,
+        front,
+        state.microslip,
+    )
     return begin_sliding(friction, state, end.depth) if not has_slid and front == 0.0 else state
 
 
-@compiled(lambda t: t.of(SlipState)(t.of(Friction), t.of(Curve), t.of(NormalState), t.of(NormalState), t.of(SlipState)))
-def join(friction: Friction, curve: Curve, start: NormalState, end: NormalState, state: SlipState) -> SlipState:
+@compiled(
+    lambda t: t.of(SlipState)(
+        t.of(Friction), t.of(Curve), t.of(NormalState), t.of(NormalState), t.of(SlipState)
+    )
+)
+def join(
+    friction: Friction, curve: Curve, start: NormalState, end: NormalState, state: SlipState
+) -> SlipState:
     """Return the state after a jump of the depth, where two parts of a contact meet."""
     if abs(end.depth - start.depth) <= _SAME * max(start.depth, end.depth):
         return state
@@ -226,13 +358,24 @@ def join(friction: Friction, curve: Curve, start: NormalState, end: NormalState,
 
 @compiled(
     lambda t: t.tuple(t.of(SlipState), t.real)(
-        t.of(Friction), t.of(Curve), t.of(NormalState), t.of(NormalState), t.of(SlipState), t.boolean
+        t.of(Friction),
+        t.of(Curve),
+        t.of(NormalState),
+        t.of(NormalState),
+        t.of(SlipState),
+        t.boolean,
     )
 )
 def advance_sticking(
-    friction: Friction, curve: Curve, start: NormalState, end: NormalState, before: SlipState, stays: bool
+    friction: Friction,
+    curve: Curve,
+    start: NormalState,
+    end: NormalState,
+    before: SlipState,
+    stays: bool,
 ) -> tuple[SlipState, float]:
-    """Take a contact that sticks to the end of a step, or to where it changes; return that share of the step, infinite at the end.
+    """Take a contact that sticks to the end of a step, or to where it changes; return that share of
+    the step, infinite at the end.
 
     `stays`: it does not change any more.
     """
@@ -247,7 +390,12 @@ def advance_sticking(
         if friction.at_rim:
             add_rim(curve, end.depth, after.displacement, after.integral)
         return after, np.inf
-    integrals = Cubic(before.integral, integral_slope(start, before, power), after.integral, integral_slope(end, after, power))
+    integrals = Cubic(
+        before.integral,
+        integral_slope(start, before, power),
+        after.integral,
+        integral_slope(end, after, power),
+    )
     integral, _ = cubic_at(integrals, share)
     state = state_within(friction, start, end, before, after, share)
     state = SlipState(state.velocity, state.displacement, integral, 0.0, 0.0, state.microslip)
@@ -256,16 +404,30 @@ def advance_sticking(
 
 @compiled(
     lambda t: t.tuple(t.of(SlipState), t.real)(
-        t.of(Friction), t.of(Curve), t.of(NormalState), t.of(NormalState), t.of(SlipState), t.boolean
+        t.of(Friction),
+        t.of(Curve),
+        t.of(NormalState),
+        t.of(NormalState),
+        t.of(SlipState),
+        t.boolean,
     )
 )
 def advance_sliding(
-    friction: Friction, curve: Curve, start: NormalState, end: NormalState, before: SlipState, stays: bool
+    friction: Friction,
+    curve: Curve,
+    start: NormalState,
+    end: NormalState,
+    before: SlipState,
+    stays: bool,
 ) -> tuple[SlipState, float]:
-    """Take a contact all of which slides to the end of a step, or to where it ceases to; as `advance_sticking`."""
+    """Take a contact all of which slides to the end of a step, or to where it ceases to;
+    as `advance_sticking`.
+    """
     after = slide(friction, start, end, before)
     least = 1.0 if friction.at_rim else least_rate(friction, rises(start) or end.depth_slope > 0.0)
-    goes_on = before.direction * end.pace * after.velocity >= least * end.depth_slope or end.depth <= 0.0
+    goes_on = (
+        before.direction * end.pace * after.velocity >= least * end.depth_slope or end.depth <= 0.0
+    )
     if stays or goes_on:
         return after, np.inf
     share = turn_of(excess_depth(start, end, before, after, before.direction, least))
@@ -273,49 +435,101 @@ def advance_sliding(
     return turn_back(friction, curve, normal_between(start, end, share), state), share
 
 
-@compiled(lambda t: t.of(SlipState)(t.of(Friction), t.of(Curve), t.of(NormalState), t.of(NormalState), t.of(SlipState), t.of(SlipState)))
+@compiled(
+    lambda t: t.of(SlipState)(
+        t.of(Friction),
+        t.of(Curve),
+        t.of(NormalState),
+        t.of(NormalState),
+        t.of(SlipState),
+        t.of(SlipState),
+    )
+)
 def mended_near_middle(
-    friction: Friction, curve: Curve, start: NormalState, end: NormalState, before: SlipState, after: SlipState
+    friction: Friction,
+    curve: Curve,
+    start: NormalState,
+    end: NormalState,
+    before: SlipState,
+    after: SlipState,
 ) -> SlipState:
-    """Return the state at the end of a step of a contact that slips nearly to its middle, near where the force is not smooth."""
+    """Return the state at the end of a step of a contact that slips nearly to its middle,
+    near where the force is not smooth.
+    """
     direction = before.direction
     begin_at_rim(curve)
     excess = excess_depth(start, end, before, after, direction, 1.0)
     swept = swept_to_middle(curve, direction, start, end, excess)
-    velocity = before.velocity + friction.pull * (end.time - start.time) - friction.stiffness * swept
+    velocity = (
+        before.velocity + friction.pull * (end.time - start.time) - friction.stiffness * swept
+    )
     mended = moved(friction, start, end, before, velocity, after.integral)
     held, front = held_at(curve, direction, end.depth - direction * mended.displacement)
     integral = direction * (end.most - held)
-    return SlipState(mended.velocity, mended.displacement, integral, direction, front, before.microslip)
+    return SlipState(
+        mended.velocity, mended.displacement, integral, direction, front, before.microslip
+    )
 
 
 @compiled(
-    lambda t: t.of(SlipState)(t.of(Friction), t.of(Curve), t.of(NormalState), t.of(NormalState), t.of(SlipState), t.of(Cubic), t.real)
+    lambda t: t.of(SlipState)(
+        t.of(Friction),
+        t.of(Curve),
+        t.of(NormalState),
+        t.of(NormalState),
+        t.of(SlipState),
+        t.of(Cubic),
+        t.real,
+    )
 )
 def arrived_at_middle(
-    friction: Friction, curve: Curve, start: NormalState, known: NormalState, before: SlipState, excess: Cubic, share: float
+    friction: Friction,
+    curve: Curve,
+    start: NormalState,
+    known: NormalState,
+    before: SlipState,
+    excess: Cubic,
+    share: float,
 ) -> SlipState:
-    """Return the state of a contact whose slip comes to its middle at a share of a step; `known`: the normal motion there."""
+    """Return the state of a contact whose slip comes to its middle at a share of a step;
+    `known`: the normal motion there.
+    """
     direction = before.direction
     there, slope = cubic_at(excess, share)
     begin_at_rim(curve)
     x = Cubic(excess.value, excess.slope * share, there, slope * share)
     swept = swept_to_middle(curve, direction, shortened(start, share), shortened(known, share), x)
-    velocity = before.velocity + friction.pull * (known.time - start.time) - friction.stiffness * swept
+    velocity = (
+        before.velocity + friction.pull * (known.time - start.time) - friction.stiffness * swept
+    )
     displacement = direction * (known.depth - middle_of(curve, direction))
-    state = SlipState(velocity, displacement, direction * known.most, direction, 0.0, before.microslip)
+    state = SlipState(
+        velocity, displacement, direction * known.most, direction, 0.0, before.microslip
+    )
     return begin_sliding(friction, state, known.depth)
 
 
 @compiled(
     lambda t: t.tuple(t.of(SlipState), t.real)(
-        t.of(Friction), t.of(Curve), t.of(NormalState), t.of(NormalState), t.of(SlipState), t.boolean
+        t.of(Friction),
+        t.of(Curve),
+        t.of(NormalState),
+        t.of(NormalState),
+        t.of(SlipState),
+        t.boolean,
     )
 )
 def advance_slipping(
-    friction: Friction, curve: Curve, start: NormalState, end: NormalState, before: SlipState, stays: bool
+    friction: Friction,
+    curve: Curve,
+    start: NormalState,
+    end: NormalState,
+    before: SlipState,
+    stays: bool,
 ) -> tuple[SlipState, float]:
-    """Take a contact that slips at its rim to the end of a step, or to where it changes; as `advance_sticking`."""
+    """Take a contact that slips at its rim to the end of a step, or to where it changes;
+    as `advance_sticking`.
+    """
     direction = before.direction
     after = slip_at_rim(friction, curve, start, end, before)
     begun_x = start.depth - direction * before.displacement
@@ -325,7 +539,8 @@ def advance_slipping(
     if not arrives and x - middle < _NEAR * (begun_x - middle):
         after = mended_near_middle(friction, curve, start, end, before, after)
     is_turned = direction * end.pace * after.velocity < end.depth_slope and end.depth > 0.0
-    leaves = after.front * after.front > end.depth  # the slip ends at the rim, and begins there in the other direction
+    # the slip ends at the rim, and begins there in the other direction
+    leaves = after.front * after.front > end.depth
     if stays or not (is_turned or arrives or leaves):
         return after, np.inf
     excess = excess_depth(start, end, before, after, direction, 1.0)
@@ -342,8 +557,14 @@ def advance_slipping(
     return turn_back(friction, curve, normal_between(start, end, share), state), share
 
 
-@compiled(lambda t: t.of(SlipState)(t.of(Friction), t.of(Curve), t.of(NormalState), t.of(NormalState), t.of(SlipState)))
-def advance_step(friction: Friction, curve: Curve, start: NormalState, end: NormalState, state: SlipState) -> SlipState:
+@compiled(
+    lambda t: t.of(SlipState)(
+        t.of(Friction), t.of(Curve), t.of(NormalState), t.of(NormalState), t.of(SlipState)
+    )
+)
+def advance_step(
+    friction: Friction, curve: Curve, start: NormalState, end: NormalState, state: SlipState
+) -> SlipState:
     """Return the state at the end of a step, from change to change."""
     for changes in range(MOST_CHANGES + 1):
         stays = changes == MOST_CHANGES

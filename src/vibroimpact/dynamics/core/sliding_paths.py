@@ -1,11 +1,13 @@
-r"""The sliding of contacts with tangential compliance along one direction, driven by their normal motion.
+r"""The sliding of contacts with tangential compliance along one direction, driven by their normal
+motion.
 
 With the displacement s over kappa and the integral I (`contact.friction.law`)
 
 .. math:: \ddot s = -\frac{2 G^* \sqrt R}{m_t}\, I + \frac{g_t}{\kappa}
 
-for the effective mass :math:`m_t` of the tangential motion, 2/7 of that of a solid sphere. A contact that slides from first touch on is
-not integrated before it may stick: until then the normal impulse gives its velocity.
+for the effective mass :math:`m_t` of the tangential motion, 2/7 of that of a solid sphere. A
+contact that slides from first touch on is not integrated before it may stick: until then the normal
+impulse gives its velocity.
 """
 
 from __future__ import annotations
@@ -17,7 +19,13 @@ import numpy as np
 from vibroimpact.arrays import Floats
 from vibroimpact.compiled import compiled
 from vibroimpact.dynamics.core.cubics import cubic_at
-from vibroimpact.dynamics.core.friction_records import Cubic, Curve, Friction, NormalState, SlipState
+from vibroimpact.dynamics.core.friction_records import (
+    Cubic,
+    Curve,
+    Friction,
+    NormalState,
+    SlipState,
+)
 from vibroimpact.dynamics.core.sliding import MOST_CHANGES, advance_step, join, settle
 from vibroimpact.dynamics.core.sliding_steps import shortened, sliding_integral
 from vibroimpact.dynamics.core.slip_states import begin_sliding, least_rate, slides
@@ -34,14 +42,18 @@ VELOCITY, DISPLACEMENT, FRICTION_FORCE = range(3)
 
 _LEAST = 1e-9
 _MOST = 1e6
-"""Bounds of kappa in slip per depth: contacts with less friction slide freely, and those with more stick."""
+"""Bounds of kappa in slip per depth: contacts with less friction slide freely, and those
+with more stick.
+"""
 
 _PRESSED = 1e-7
 """Part of the largest normal force below which it is the error of the normal motion."""
 
 _MOST_TURNING = 0.2
 _MOST_PARTS = 64
-"""Angle by which the free oscillation of a contact that sticks turns in a step at most [rad], and parts of a step for that at most."""
+"""Angle by which the free oscillation of a contact that sticks turns in a step at most
+[rad], and parts of a step for that at most.
+"""
 
 
 @compiled(lambda t: t.void(t.matrix, t.real, t.real, t.matrix))
@@ -99,13 +111,21 @@ def normal_at(grid: Floats, point: int) -> NormalState:
 
 @compiled(lambda t: t.of(NormalState)(t.of(NormalState), t.of(NormalState), t.integer, t.integer))
 def normal_of_part(start: NormalState, end: NormalState, part: int, parts: int) -> NormalState:
-    """Return the normal motion at the start of one of some equal parts of a step, for a parameter that goes from 0 to 1 in a part."""
+    """Return the normal motion at the start of one of some equal parts of a step, for a
+    parameter that goes from 0 to 1 in a part.
+    """
     share = part / parts
     per_part = 1.0 / parts
     time, pace = cubic_at(Cubic(start.time, start.pace, end.time, end.pace), share)
-    pace, pace_slope = cubic_at(Cubic(start.pace, start.pace_slope, end.pace, end.pace_slope), share)
-    depth, depth_slope = cubic_at(Cubic(start.depth, start.depth_slope, end.depth, end.depth_slope), share)
-    swept, _ = cubic_at(Cubic(start.swept, start.pace * start.most, end.swept, end.pace * end.most), share)
+    pace, pace_slope = cubic_at(
+        Cubic(start.pace, start.pace_slope, end.pace, end.pace_slope), share
+    )
+    depth, depth_slope = cubic_at(
+        Cubic(start.depth, start.depth_slope, end.depth, end.depth_slope), share
+    )
+    swept, _ = cubic_at(
+        Cubic(start.swept, start.pace * start.most, end.swept, end.pace * end.most), share
+    )
     depth = max(depth, 0.0)
     return NormalState(
         time,
@@ -120,9 +140,11 @@ def normal_of_part(start: NormalState, end: NormalState, part: int, parts: int) 
 
 @compiled(lambda t: t.void(t.of(Friction), t.matrix, t.vector, t.real, t.matrix))
 def write_slide(friction: Friction, grid: Floats, steps: Floats, slip: float, path: Floats) -> None:
-    """Write velocity, displacement and integral (3, G) of a contact every point of which slips all the time.
+    """Write velocity, displacement and integral (3, G) of a contact every point of which slips all
+    the time.
 
-    So it is where nowhere the displacement grows more slowly than the depth, or shrinks faster than a part of it. `slip`: at first touch.
+    So it is where nowhere the displacement grows more slowly than the depth, or shrinks faster than
+    a part of it. `slip`: at first touch.
     """
     displacement = 0.0
     velocity = slip
@@ -137,19 +159,30 @@ def write_slide(friction: Friction, grid: Floats, steps: Floats, slip: float, pa
         rate_before = rate
         bend_before = bend
         rate = normal.pace * velocity
-        bend = normal.pace_slope * velocity + normal.pace * normal.pace * (friction.pull - friction.stiffness * normal.most)
+        bend = normal.pace_slope * velocity + normal.pace * normal.pace * (
+            friction.pull - friction.stiffness * normal.most
+        )
         if point:
-            by_pace = 0.5 * (before.pace + normal.pace) + (before.pace_slope - normal.pace_slope) / 12.0
-            displacement += (normal.time - before.time - steps[point - 1] * by_pace) * velocity_before
-            displacement += steps[point - 1] * (0.5 * (rate + rate_before) + (bend_before - bend) / 12.0)
+            by_pace = (
+                0.5 * (before.pace + normal.pace) + (before.pace_slope - normal.pace_slope) / 12.0
+            )
+            displacement += (
+                normal.time - before.time - steps[point - 1] * by_pace
+            ) * velocity_before
+            displacement += steps[point - 1] * (
+                0.5 * (rate + rate_before) + (bend_before - bend) / 12.0
+            )
         path[VELOCITY, point] = velocity
         path[DISPLACEMENT, point] = displacement
         path[FRICTION_FORCE, point] = normal.most
 
 
 @compiled(lambda t: t.integer(t.of(Friction), t.matrix, t.vector, t.real, t.matrix))
-def first_point_to_stick(friction: Friction, grid: Floats, steps: Floats, rounding: float, path: Floats) -> int:
-    """Return the last point up to which a contact certainly slides: 0 if it sticks from first touch on, -1 if it slides throughout.
+def first_point_to_stick(
+    friction: Friction, grid: Floats, steps: Floats, rounding: float, path: Floats
+) -> int:
+    """Return the last point up to which a contact certainly slides: 0 if it sticks from first touch
+    on, -1 if it slides throughout.
 
     `rounding`: error of the rate of the depth at release, as a part of the largest.
     """
@@ -169,9 +202,22 @@ def first_point_to_stick(friction: Friction, grid: Floats, steps: Floats, roundi
     return -1
 
 
-@compiled(lambda t: t.real(t.of(Friction), t.of(Curve), t.matrix, t.vector, t.integer, t.integer, t.matrix))
-def follow_slip(friction: Friction, curve: Curve, grid: Floats, steps: Floats, first: int, parts: int, path: Floats) -> float:
-    """Write the motion of a contact from a point on, and return the energy lost in microslip, over mass and the square of kappa [J/kg].
+@compiled(
+    lambda t: t.real(
+        t.of(Friction), t.of(Curve), t.matrix, t.vector, t.integer, t.integer, t.matrix
+    )
+)
+def follow_slip(
+    friction: Friction,
+    curve: Curve,
+    grid: Floats,
+    steps: Floats,
+    first: int,
+    parts: int,
+    path: Floats,
+) -> float:
+    """Write the motion of a contact from a point on, and return the energy lost in microslip, over
+    mass and the square of kappa [J/kg].
 
     Parameters
     ----------
@@ -194,7 +240,14 @@ def follow_slip(friction: Friction, curve: Curve, grid: Floats, steps: Floats, f
             add_rim(curve, grid[0, 3], 0.0, 0.0)
     microslip = 0.0 if first > 0 else 0.5 * path[VELOCITY, 0] ** 2
     direction = 1.0 if first > 0 else 0.0
-    state = SlipState(path[VELOCITY, first], path[DISPLACEMENT, first], path[FRICTION_FORCE, first], direction, 0.0, microslip)
+    state = SlipState(
+        path[VELOCITY, first],
+        path[DISPLACEMENT, first],
+        path[FRICTION_FORCE, first],
+        direction,
+        0.0,
+        microslip,
+    )
     begins = True
     for point in range(first, len(steps)):
         start = normal_at(grid, point)
@@ -208,7 +261,11 @@ def follow_slip(friction: Friction, curve: Curve, grid: Floats, steps: Floats, f
                 state = settle(friction, curve, part_start, state)
             for part in range(parts):
                 is_last = part + 1 == parts
-                part_end = shortened(end, 1.0 / parts) if is_last else normal_of_part(start, end, part + 1, parts)
+                part_end = (
+                    shortened(end, 1.0 / parts)
+                    if is_last
+                    else normal_of_part(start, end, part + 1, parts)
+                )
                 state = advance_step(friction, curve, part_start, part_end, state)
                 part_start = part_end
             begins = False
@@ -222,7 +279,9 @@ def follow_slip(friction: Friction, curve: Curve, grid: Floats, steps: Floats, f
 
 @compiled(lambda t: t.integer(t.of(Friction), t.matrix))
 def parts_of_step(friction: Friction, grid: Floats) -> int:
-    """Return into how many parts the steps of a contact are divided, a power of two, so that what sticks turns by a small angle in each."""
+    """Return into how many parts the steps of a contact are divided, a power of two, so
+    that what sticks turns by a small angle in each.
+    """
     deepest = 0.0
     slowest = 0.0
     for point in range(len(grid)):
@@ -235,7 +294,11 @@ def parts_of_step(friction: Friction, grid: Floats) -> int:
     return parts
 
 
-@compiled(lambda t: t.void(t.real, t.real, t.boolean, t.real, t.real, t.matrix, t.cube, t.vector, t.cube, t.vector))
+@compiled(
+    lambda t: t.void(
+        t.real, t.real, t.boolean, t.real, t.real, t.matrix, t.cube, t.vector, t.cube, t.vector
+    )
+)
 def slide_contacts(
     growing: float,
     shrinking: float,
@@ -257,8 +320,9 @@ def slide_contacts(
     rounding : float
         Error of the rate of the depth at release, as a part of the largest.
     contacts : array, shape (B, 6)
-        Of each: Hertz's stiffness [N/m^1.5]; 2 G* sqrt(R) [N/m^1.5]; kappa; slip velocity at first touch [m/s]; effective mass of the
-        tangential motion [kg]; acceleration along the direction [m/s^2].
+        Of each: Hertz's stiffness [N/m^1.5]; 2 G* sqrt(R) [N/m^1.5]; kappa; slip velocity at first
+        touch [m/s]; effective mass of the tangential motion [kg]; acceleration along the direction
+        [m/s^2].
     normals : array, shape (B, 6, G)
         Normal motion; see `write_grid`.
     steps : array, shape (G - 1,)
@@ -271,7 +335,9 @@ def slide_contacts(
     points = len(steps) + 1
     grid = np.empty((points, 7))
     # in each part of a step the rim is added once, and twice where the contact ceases to slip
-    curve = Curve(np.empty((2 * (MOST_CHANGES + 2) * _MOST_PARTS * points, 3)), np.zeros(2, np.int64))
+    curve = Curve(
+        np.empty((2 * (MOST_CHANGES + 2) * _MOST_PARTS * points, 3)), np.zeros(2, np.int64)
+    )
     for number in range(len(contacts)):
         contact = contacts[number]
         normal = normals[number]
@@ -288,7 +354,14 @@ def slide_contacts(
             kappa = 1.0
         # of the integral: none where friction is below the least
         spring = 0.0 if contact[KAPPA] < kappa else contact[SPRING]
-        friction = Friction(growing, shrinking, at_rim, sliding_energy, spring / contact[MASS], contact[PULL] / kappa)
+        friction = Friction(
+            growing,
+            shrinking,
+            at_rim,
+            sliding_energy,
+            spring / contact[MASS],
+            contact[PULL] / kappa,
+        )
         write_slide(friction, grid, steps, contact[SLIP] / kappa, path)
         microslips[number] = 0.0
         if spring > 0.0:
@@ -297,7 +370,9 @@ def slide_contacts(
                 curve.points[:2] = 0.0
                 curve.top[RIM] = 0
                 curve.top[BELOW] = 0
-                lost = follow_slip(friction, curve, grid, steps, first, parts_of_step(friction, grid), path)
+                lost = follow_slip(
+                    friction, curve, grid, steps, first, parts_of_step(friction, grid), path
+                )
                 microslips[number] = contact[MASS] * kappa * kappa * lost
         for point in range(points):
             path[VELOCITY, point] *= kappa

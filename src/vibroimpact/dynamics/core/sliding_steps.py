@@ -1,11 +1,15 @@
-r"""Steps of a contact along one direction, with known normal motion: the tangential motion between two points of a grid.
+r"""Steps of a contact along one direction, with known normal motion: the tangential motion between
+two points of a grid.
 
-A step has the parameter :math:`\theta` from 0 to 1, and the method is that with first and second derivatives at both ends,
+A step has the parameter :math:`\theta` from 0 to 1, and the method is that with first and second
+derivatives at both ends,
 
 .. math:: y_1 - y_0 = \tfrac12 (y_0' + y_1') + \tfrac1{12} (y_0'' - y_1''),
 
-of order four with the error constant 1/720 (Hairer, Norsett and Wanner 1993, section II.13). With the velocity v, the displacement s and
-the integral I of `contact.friction.law`, the pace :math:`t' = dt/d\theta` and :math:`k = 2 G^* \sqrt R / m_t`
+of order four with the error constant 1/720 (Hairer, Norsett and Wanner 1993, section II.13). With
+the velocity v, the displacement s and
+the integral I of `contact.friction.law`, the pace :math:`t' = dt/d\theta` and :math:`k = 2 G^*
+\sqrt R / m_t`
 
 .. math:: v' = t' (g - k I),\qquad s' = t' v,
 
@@ -20,7 +24,13 @@ import numpy as np
 
 from vibroimpact.compiled import compiled
 from vibroimpact.dynamics.core.cubics import cubic_at
-from vibroimpact.dynamics.core.friction_records import Cubic, Curve, Friction, NormalState, SlipState
+from vibroimpact.dynamics.core.friction_records import (
+    Cubic,
+    Curve,
+    Friction,
+    NormalState,
+    SlipState,
+)
 from vibroimpact.dynamics.core.turning_points import held_at
 
 _TINY = 1e-150
@@ -53,8 +63,12 @@ def shortened(normal: NormalState, share: float) -> NormalState:
 def normal_between(start: NormalState, end: NormalState, share: float) -> NormalState:
     """Return the normal motion at a share of a step."""
     time, _ = cubic_at(Cubic(start.time, start.pace, end.time, end.pace), share)
-    pace, pace_slope = cubic_at(Cubic(start.pace, start.pace_slope, end.pace, end.pace_slope), share)
-    depth, depth_slope = cubic_at(Cubic(start.depth, start.depth_slope, end.depth, end.depth_slope), share)
+    pace, pace_slope = cubic_at(
+        Cubic(start.pace, start.pace_slope, end.pace, end.pace_slope), share
+    )
+    depth, depth_slope = cubic_at(
+        Cubic(start.depth, start.depth_slope, end.depth, end.depth_slope), share
+    )
     depth = max(depth, 0.0)
     most = sliding_integral(depth)
     rest = 1.0 - share
@@ -69,20 +83,38 @@ def normal_between(start: NormalState, end: NormalState, share: float) -> Normal
 def missed_time(start: NormalState, end: NormalState) -> float:
     """Return the time of a step less the integral of the pace by the same rule [s].
 
-    At the velocity at the start this is displacement as well: without it the two would not belong together in steps of next to no time.
+    At the velocity at the start this is displacement as well: without it the two would not belong
+    together in steps of next to no time.
     """
     by_pace = 0.5 * (start.pace + end.pace) + (start.pace_slope - end.pace_slope) / 12.0
     return end.time - start.time - by_pace
 
 
-@compiled(lambda t: t.of(SlipState)(t.of(Friction), t.of(NormalState), t.of(NormalState), t.of(SlipState), t.real, t.real))
-def moved(friction: Friction, start: NormalState, end: NormalState, before: SlipState, velocity: float, integral: float) -> SlipState:
+@compiled(
+    lambda t: t.of(SlipState)(
+        t.of(Friction), t.of(NormalState), t.of(NormalState), t.of(SlipState), t.real, t.real
+    )
+)
+def moved(
+    friction: Friction,
+    start: NormalState,
+    end: NormalState,
+    before: SlipState,
+    velocity: float,
+    integral: float,
+) -> SlipState:
     """Return the motion at the end of a step, from velocity and integral at both ends."""
-    bend = start.pace_slope * before.velocity + start.pace * start.pace * (friction.pull - friction.stiffness * before.integral)
-    bend -= end.pace_slope * velocity + end.pace * end.pace * (friction.pull - friction.stiffness * integral)
+    bend = start.pace_slope * before.velocity + start.pace * start.pace * (
+        friction.pull - friction.stiffness * before.integral
+    )
+    bend -= end.pace_slope * velocity + end.pace * end.pace * (
+        friction.pull - friction.stiffness * integral
+    )
     displacement = before.displacement + missed_time(start, end) * before.velocity
     displacement += 0.5 * (start.pace * before.velocity + end.pace * velocity) + bend / 12.0
-    return SlipState(velocity, displacement, integral, before.direction, before.front, before.microslip)
+    return SlipState(
+        velocity, displacement, integral, before.direction, before.front, before.microslip
+    )
 
 
 @compiled(lambda t: t.pair(t.of(NormalState), t.real))
@@ -92,15 +124,24 @@ def paced(normal: NormalState, power: float) -> tuple[float, float]:
         return normal.pace, normal.pace_slope
     depth = max(normal.depth, _TINY)
     raised = math.sqrt(depth) if power == 1.0 else depth ** (0.5 * power)
-    slope = normal.pace_slope * raised + 0.5 * power * normal.pace * raised / depth * normal.depth_slope
+    slope = (
+        normal.pace_slope * raised + 0.5 * power * normal.pace * raised / depth * normal.depth_slope
+    )
     return normal.pace * raised, slope
 
 
-@compiled(lambda t: t.of(SlipState)(t.of(Friction), t.of(NormalState), t.of(NormalState), t.of(SlipState), t.real))
-def stick(friction: Friction, start: NormalState, end: NormalState, before: SlipState, power: float) -> SlipState:
+@compiled(
+    lambda t: t.of(SlipState)(
+        t.of(Friction), t.of(NormalState), t.of(NormalState), t.of(SlipState), t.real
+    )
+)
+def stick(
+    friction: Friction, start: NormalState, end: NormalState, before: SlipState, power: float
+) -> SlipState:
     r"""Return the motion at the end of a step in which a contact sticks.
 
-    There :math:`I = a^\gamma z` with the contact radius over the root of R, :math:`a = \sqrt D`, the `power` :math:`\gamma`, and
+    There :math:`I = a^\gamma z` with the contact radius over the root of R, :math:`a = \sqrt D`,
+    the `power` :math:`\gamma`, and
     :math:`z' = t' a^{1 - \gamma} v`.
     """
     stretch = before.integral
@@ -110,7 +151,8 @@ def stick(friction: Friction, start: NormalState, end: NormalState, before: Slip
     pull_end, pull_end_slope = paced(end, power)
     spring_start, spring_start_slope = paced(start, 1.0 - power)
     spring_end, spring_end_slope = paced(end, 1.0 - power)
-    if power > 1.0 and not end.depth > 0.0:  # where the contact ends the pace over its radius is as before
+    # where the contact ends the pace over its radius is as before
+    if power > 1.0 and not end.depth > 0.0:
         spring_end = spring_start
         spring_end_slope = 0.0
     stiffness = friction.stiffness
@@ -122,7 +164,9 @@ def stick(friction: Friction, start: NormalState, end: NormalState, before: Slip
     less_end = 1.0 - pull_end * spring_end / 12.0
     right = less_start * before.velocity - (0.5 * pull_start + pull_start_slope / 12.0) * stretch
     right += friction.pull * (end.time - start.time)
-    right_stretch = (0.5 * spring_start + spring_start_slope / 12.0) * before.velocity + less_start * stretch
+    right_stretch = (
+        0.5 * spring_start + spring_start_slope / 12.0
+    ) * before.velocity + less_start * stretch
     right_stretch += friction.pull / 12.0 * (spring_start * start.pace - spring_end * end.pace)
     back = 0.5 * pull_end - pull_end_slope / 12.0
     forth = 0.5 * spring_end - spring_end_slope / 12.0
@@ -134,7 +178,9 @@ def stick(friction: Friction, start: NormalState, end: NormalState, before: Slip
     return moved(friction, start, end, before, velocity, integral)
 
 
-@compiled(lambda t: t.of(SlipState)(t.of(Friction), t.of(NormalState), t.of(NormalState), t.of(SlipState)))
+@compiled(
+    lambda t: t.of(SlipState)(t.of(Friction), t.of(NormalState), t.of(NormalState), t.of(SlipState))
+)
 def slide(friction: Friction, start: NormalState, end: NormalState, before: SlipState) -> SlipState:
     """Return the motion at the end of a step in which all of a contact slides."""
     rubbed = friction.stiffness * before.direction * (end.swept - start.swept)
@@ -142,8 +188,14 @@ def slide(friction: Friction, start: NormalState, end: NormalState, before: Slip
     return moved(friction, start, end, before, velocity, before.direction * end.most)
 
 
-@compiled(lambda t: t.of(SlipState)(t.of(Friction), t.of(Curve), t.of(NormalState), t.of(NormalState), t.of(SlipState)))
-def slip_at_rim(friction: Friction, curve: Curve, start: NormalState, end: NormalState, before: SlipState) -> SlipState:
+@compiled(
+    lambda t: t.of(SlipState)(
+        t.of(Friction), t.of(Curve), t.of(NormalState), t.of(NormalState), t.of(SlipState)
+    )
+)
+def slip_at_rim(
+    friction: Friction, curve: Curve, start: NormalState, end: NormalState, before: SlipState
+) -> SlipState:
     """Return the motion at the end of a step in which a contact slips at its rim."""
     direction = before.direction
     stiffness = friction.stiffness
@@ -153,11 +205,18 @@ def slip_at_rim(friction: Friction, curve: Curve, start: NormalState, end: Norma
     square = end.pace * end.pace / 12.0
     flow = start.pace * before.velocity
     tangential = pull - stiffness * before.integral
-    ahead = before.displacement + missed_time(start, end) * before.velocity + 0.5 * flow - square * pull
+    ahead = (
+        before.displacement + missed_time(start, end) * before.velocity + 0.5 * flow - square * pull
+    )
     ahead += (start.pace_slope * before.velocity + start.pace * start.pace * tangential) / 12.0
-    grows = direction * (math.sqrt(start.depth) - before.front) * start.depth_slope + before.front * flow
+    grows = (
+        direction * (math.sqrt(start.depth) - before.front) * start.depth_slope
+        + before.front * flow
+    )
     right = before.velocity + pull * (end.time - start.time)
-    right -= stiffness * ((0.5 * start.pace + start.pace_slope / 12.0) * before.integral + start.pace / 12.0 * grows)
+    right -= stiffness * (
+        (0.5 * start.pace + start.pace_slope / 12.0) * before.integral + start.pace / 12.0 * grows
+    )
     # first with the rate at the start, then along the tangent of H at the x to which that leads
     expected = stiffness * (before.integral + grows)
     there = ahead + weight * (right - weight * expected) + square * expected
@@ -177,17 +236,24 @@ def slip_at_rim(friction: Friction, curve: Curve, start: NormalState, end: Norma
 
 
 @compiled(lambda t: t.real(t.of(Curve), t.real, t.of(NormalState), t.of(NormalState), t.of(Cubic)))
-def swept_to_middle(curve: Curve, direction: float, start: NormalState, end: NormalState, x: Cubic) -> float:
-    """Return the integral of I over the time of a step at whose end the slip comes to the middle of a contact; `x`: on the way."""
+def swept_to_middle(
+    curve: Curve, direction: float, start: NormalState, end: NormalState, x: Cubic
+) -> float:
+    """Return the integral of I over the time of a step at whose end the slip comes to the
+    middle of a contact; `x`: on the way.
+    """
     paces = Cubic(start.pace, start.pace_slope, end.pace, end.pace_slope)
     depths = Cubic(start.depth, start.depth_slope, end.depth, end.depth_slope)
     swept = 0.0
     for node in range(len(_GAUSS_NODES)):
-        # of the distance to the end, where H has a power of 3/2; from the start on, as the curve is followed inwards
+        # of the distance to the end, where H has a power of 3/2; from the start on, as the curve is
+        # followed inwards
         root = _GAUSS_NODES[node]
         share = 1.0 - root * root
         pace, _ = cubic_at(paces, share)
         depth, _ = cubic_at(depths, share)
         held, _ = held_at(curve, direction, cubic_at(x, share)[0])
-        swept += 2.0 * root * _GAUSS_WEIGHTS[node] * pace * (sliding_integral(max(depth, 0.0)) - held)
+        swept += (
+            2.0 * root * _GAUSS_WEIGHTS[node] * pace * (sliding_integral(max(depth, 0.0)) - held)
+        )
     return direction * swept

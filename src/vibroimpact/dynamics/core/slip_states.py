@@ -20,7 +20,9 @@ def rises(normal: NormalState) -> bool:
 
 @compiled(lambda t: t.real(t.of(Friction), t.boolean))
 def least_rate(friction: Friction, grows: bool) -> float:
-    """Return the rate of the displacement above which all of a contact slides on, over that of the depth, as it grows or shrinks."""
+    """Return the rate of the displacement above which all of a contact slides on, over
+    that of the depth, as it grows or shrinks.
+    """
     return 1.0 - (friction.growing if grows else friction.shrinking) / 3.0
 
 
@@ -32,36 +34,60 @@ def slides(state: SlipState) -> bool:
 
 @compiled(lambda t: t.real(t.of(Friction), t.of(SlipState), t.real))
 def energy_over_mass(friction: Friction, state: SlipState, depth: float) -> float:
-    """Return kinetic energy, that of the pull, and what a contact stores that slides, over mass and the square of kappa [J/kg]."""
+    """Return kinetic energy, that of the pull, and what a contact stores that slides,
+    over mass and the square of kappa [J/kg].
+    """
     stored = friction.sliding_energy * friction.stiffness * abs(state.integral) * depth
     return 0.5 * state.velocity * state.velocity - friction.pull * state.displacement + stored
 
 
 @compiled(lambda t: t.of(SlipState)(t.of(SlipState), t.real, t.real))
 def in_direction(state: SlipState, direction: float, front: float) -> SlipState:
-    """Return a state with another direction of slip, and another root of the depth at which it ends."""
-    return SlipState(state.velocity, state.displacement, state.integral, direction, front, state.microslip)
+    """Return a state with another direction of slip, and another root of the depth at
+    which it ends.
+    """
+    return SlipState(
+        state.velocity, state.displacement, state.integral, direction, front, state.microslip
+    )
 
 
 @compiled(lambda t: t.of(SlipState)(t.of(Friction), t.of(SlipState), t.real))
 def begin_sliding(friction: Friction, state: SlipState, depth: float) -> SlipState:
-    """Return the state of a contact of which no part sticks any more: what it has lost in microslip is known from its energy."""
+    """Return the state of a contact of which no part sticks any more: what it has lost in
+    microslip is known from its energy.
+    """
     lost = state.microslip - energy_over_mass(friction, state, depth)
-    return SlipState(state.velocity, state.displacement, state.integral, state.direction, state.front, lost)
+    return SlipState(
+        state.velocity, state.displacement, state.integral, state.direction, state.front, lost
+    )
 
 
 @compiled(lambda t: t.of(SlipState)(t.of(Friction), t.of(SlipState), t.real))
 def end_sliding(friction: Friction, state: SlipState, depth: float) -> SlipState:
     """Return the state of a contact that has slid, and from now on sticks in its middle."""
     lost = state.microslip + energy_over_mass(friction, state, depth)
-    return SlipState(state.velocity, state.displacement, state.integral, state.direction, state.front, lost)
+    return SlipState(
+        state.velocity, state.displacement, state.integral, state.direction, state.front, lost
+    )
 
 
-@compiled(lambda t: t.of(Cubic)(t.of(NormalState), t.of(NormalState), t.of(SlipState), t.of(SlipState), t.real, t.real))
-def excess_depth(start: NormalState, end: NormalState, before: SlipState, after: SlipState, direction: float, least: float) -> Cubic:
+@compiled(
+    lambda t: t.of(Cubic)(
+        t.of(NormalState), t.of(NormalState), t.of(SlipState), t.of(SlipState), t.real, t.real
+    )
+)
+def excess_depth(
+    start: NormalState,
+    end: NormalState,
+    before: SlipState,
+    after: SlipState,
+    direction: float,
+    least: float,
+) -> Cubic:
     """Return a part of the depth, less the displacement in a direction, through a step [m].
 
-    Where that ceases to rise, a contact that sticks begins to slip in the direction; where it rises again, it ceases to.
+    Where that ceases to rise, a contact that sticks begins to slip in the direction; where it rises
+    again, it ceases to.
     """
     return Cubic(
         least * start.depth - direction * before.displacement,
@@ -73,17 +99,44 @@ def excess_depth(start: NormalState, end: NormalState, before: SlipState, after:
 
 @compiled(lambda t: t.real(t.of(NormalState), t.of(SlipState), t.real))
 def integral_slope(normal: NormalState, state: SlipState, power: float) -> float:
-    """Return the derivative of the integral of a contact that sticks; `power`: see `sliding_steps.stick`."""
+    """Return the derivative of the integral of a contact that sticks; `power`: see
+    `sliding_steps.stick`.
+    """
     stretched = 0.5 * power * normal.depth_slope * state.integral / max(normal.depth, _TINY)
     return normal.pace * math.sqrt(normal.depth) * state.velocity + stretched
 
 
-@compiled(lambda t: t.of(SlipState)(t.of(Friction), t.of(NormalState), t.of(NormalState), t.of(SlipState), t.of(SlipState), t.real))
-def state_within(friction: Friction, start: NormalState, end: NormalState, before: SlipState, after: SlipState, share: float) -> SlipState:
-    """Return the state at a share of a step, but with the integral, the direction and the front at its start."""
+@compiled(
+    lambda t: t.of(SlipState)(
+        t.of(Friction),
+        t.of(NormalState),
+        t.of(NormalState),
+        t.of(SlipState),
+        t.of(SlipState),
+        t.real,
+    )
+)
+def state_within(
+    friction: Friction,
+    start: NormalState,
+    end: NormalState,
+    before: SlipState,
+    after: SlipState,
+    share: float,
+) -> SlipState:
+    """Return the state at a share of a step, but with the integral, the direction and the
+    front at its start.
+    """
     begun = start.pace * (friction.pull - friction.stiffness * before.integral)
     ended = end.pace * (friction.pull - friction.stiffness * after.integral)
     velocity, _ = cubic_at(Cubic(before.velocity, begun, after.velocity, ended), share)
-    path = Cubic(before.displacement, start.pace * before.velocity, after.displacement, end.pace * after.velocity)
+    path = Cubic(
+        before.displacement,
+        start.pace * before.velocity,
+        after.displacement,
+        end.pace * after.velocity,
+    )
     displacement, _ = cubic_at(path, share)
-    return SlipState(velocity, displacement, before.integral, before.direction, before.front, before.microslip)
+    return SlipState(
+        velocity, displacement, before.integral, before.direction, before.front, before.microslip
+    )

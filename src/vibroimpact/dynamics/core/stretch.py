@@ -1,7 +1,8 @@
-"""One stretch of contact: Newton's method for the forces at its nodes, and for its length where an event ends it.
+"""One stretch of contact: Newton's method for the forces at its nodes, and for its length where an
+event ends it.
 
-The unknowns are the contact forces and the indentations of the laws at the nodes and, where an event ends the stretch, its length. All
-other quantities are linear in the forces (`receptance`).
+The unknowns are the contact forces and the indentations of the laws at the nodes and, where an
+event ends the stretch, its length. All other quantities are linear in the forces (`receptance`).
 """
 
 from __future__ import annotations
@@ -11,26 +12,52 @@ import numpy as np
 from vibroimpact.arrays import Floats
 from vibroimpact.compiled import compiled, force_at
 from vibroimpact.dynamics.core.law import indentation_at, is_in_series, linearise
-from vibroimpact.dynamics.core.linear import largest_magnitude_of, least_of, less_product, product, solve_in_place
+from vibroimpact.dynamics.core.linear import (
+    largest_magnitude_of,
+    least_of,
+    less_product,
+    product,
+    solve_in_place,
+)
 from vibroimpact.dynamics.core.receptance import motion_by_length
-from vibroimpact.dynamics.core.records import RELEASE, RELEASE_LEVEL, SPEED, Basis, Contacts, End, Motion, Nodes, Start, Surfaces
+from vibroimpact.dynamics.core.records import (
+    RELEASE,
+    RELEASE_LEVEL,
+    SPEED,
+    Basis,
+    Contacts,
+    End,
+    Motion,
+    Nodes,
+    Start,
+    Surfaces,
+)
 from vibroimpact.dynamics.core.rubbing import follow_friction, free_motions, under_friction
 from vibroimpact.dynamics.core.rubbing_records import FrictionAtNodes, Motions, Rubbed
 
 GIVEN_LENGTH, AT_LEVEL, AT_NO_FORCE, AT_TURN = 0, 1, 2, 3
-"""What ends a stretch: a given length; an indentation of a law; no force of a law; no rate of an approach."""
+"""What ends a stretch: a given length; an indentation of a law; no force of a law; no
+rate of an approach.
+"""
 
 MOST_ITERATIONS = 25
-_LENGTH_FACTOR = 3.0  # one iteration lengthens by no more than this times the length, to four times it, or shortens to a quarter
+# one iteration lengthens by no more than this times the length, to four times it, or shortens to a
+# quarter
+_LENGTH_FACTOR = 3.0
 _CONVERGED = 1e-13
 _STALLED = 1e-11
-_INEXACT = 1e-6  # of a Newton step: least size of the next one, as the derivatives are finite differences
+# of a Newton step: least size of the next one, as the derivatives are finite differences
+_INEXACT = 1e-6
 _TINY = 1e-300
 
 
 @compiled(lambda t: t.void(t.of(Contacts), t.integer, t.vector, t.vector, t.matrix))
-def linearise_contact(contacts: Contacts, contact: int, delta: Floats, rate: Floats, linear: Floats) -> None:
-    """Write forces, approach and derivatives of the law of one contact at N nodes into `linear` (7, N), as `law.linearise` does."""
+def linearise_contact(
+    contacts: Contacts, contact: int, delta: Floats, rate: Floats, linear: Floats
+) -> None:
+    """Write forces, approach and derivatives of the law of one contact at N nodes into
+    `linear` (7, N), as `law.linearise` does.
+    """
     linearise(
         contacts.addresses[4 * contact],
         contacts.coefficients[contact],
@@ -54,7 +81,9 @@ def begun_rate(surfaces: Surfaces, start: Start, contact: int) -> float:
 
 @compiled(lambda t: t.vector(t.of(Contacts), t.of(Start), t.vector))
 def begun_indentations(contacts: Contacts, start: Start, estimates: Floats) -> Floats:
-    """Return the indentations of the laws at the start [m] (c,) by one Newton step from close estimates."""
+    """Return the indentations of the laws at the start [m] (c,) by one Newton step from
+    close estimates.
+    """
     found = np.empty(len(estimates))
     linear = np.empty((7, 1))
     still = np.zeros(1)
@@ -68,11 +97,31 @@ def begun_indentations(contacts: Contacts, start: Start, estimates: Floats) -> F
     return found
 
 
-@compiled(lambda t: t.of(Nodes)(t.of(Basis), t.of(Surfaces), t.of(Contacts), t.of(Start), t.of(Motion), t.vector, t.vector, t.real))
+@compiled(
+    lambda t: t.of(Nodes)(
+        t.of(Basis),
+        t.of(Surfaces),
+        t.of(Contacts),
+        t.of(Start),
+        t.of(Motion),
+        t.vector,
+        t.vector,
+        t.real,
+    )
+)
 def first_guess(
-    basis: Basis, surfaces: Surfaces, contacts: Contacts, start: Start, motion: Motion, begun: Floats, trend: Floats, length: float
+    basis: Basis,
+    surfaces: Surfaces,
+    contacts: Contacts,
+    start: Start,
+    motion: Motion,
+    begun: Floats,
+    trend: Floats,
+    length: float,
 ) -> Nodes:
-    """Return a guess of forces and indentations at the nodes, from the forces at the start extrapolated linearly by their `trend` [N/s]."""
+    """Return a guess of forces and indentations at the nodes, from the forces at the
+    start extrapolated linearly by their `trend` [N/s].
+    """
     nodes = len(basis.time)
     size = len(motion.approach)
     static = np.empty(size)
@@ -81,7 +130,9 @@ def first_guess(
         rate = begun_rate(surfaces, start, contact)
         reached = max(begun[contact], contacts.numbers[contact, RELEASE])
         law = force_at(contacts.addresses[4 * contact])
-        begun_static, begun_dissipative = law(reached, rate, contacts.numbers[contact, SPEED], contacts.coefficients[contact])
+        begun_static, begun_dissipative = law(
+            reached, rate, contacts.numbers[contact, SPEED], contacts.coefficients[contact]
+        )
         for node in range(nodes):
             later = trend[contact] * length * basis.time[node]
             static[contact * nodes + node] = begun_static + later
@@ -104,7 +155,12 @@ def first_guess(
             )
             reached = max(delta[row], contacts.numbers[contact, RELEASE])
             law = force_at(contacts.addresses[4 * contact])
-            of_law, dissipative = law(reached, rates[row], contacts.numbers[contact, SPEED], contacts.coefficients[contact])
+            of_law, dissipative = law(
+                reached,
+                rates[row],
+                contacts.numbers[contact, SPEED],
+                contacts.coefficients[contact],
+            )
             static[row] = 0.0
             force[row] = of_law + dissipative
     return Nodes(static, force, delta)
@@ -119,13 +175,17 @@ def force_scale(surfaces: Surfaces, motion: Motion, length: float) -> float:
         fastest = 0.0
         for node in range(nodes):
             fastest = max(fastest, abs(motion.rate[contact * nodes + node]))
-        scale = max(scale, surfaces.mass[contact] * (fastest / length + abs(surfaces.gravity[contact])))
+        scale = max(
+            scale, surfaces.mass[contact] * (fastest / length + abs(surfaces.gravity[contact]))
+        )
     return scale
 
 
 @compiled(lambda t: t.matrix(t.of(Contacts), t.of(Motion), t.of(Nodes)))
 def linearised_laws(contacts: Contacts, motion: Motion, now: Nodes) -> Floats:
-    """Return forces, approach and derivatives of all laws at the nodes (7, M), as `law.linearise` gives them."""
+    """Return forces, approach and derivatives of all laws at the nodes (7, M), as
+    `law.linearise` gives them.
+    """
     rate = less_product(motion.rate, motion.rate_by_force, now.force)
     size = len(rate)
     nodes = size // len(contacts.numbers)
@@ -133,7 +193,13 @@ def linearised_laws(contacts: Contacts, motion: Motion, now: Nodes) -> Floats:
     of_contact = np.empty((7, nodes))
     for contact in range(len(contacts.numbers)):
         first = contact * nodes
-        linearise_contact(contacts, contact, now.delta[first : first + nodes], rate[first : first + nodes], of_contact)
+        linearise_contact(
+            contacts,
+            contact,
+            now.delta[first : first + nodes],
+            rate[first : first + nodes],
+            of_contact,
+        )
         for row in range(7):
             for node in range(nodes):
                 linear[row, first + node] = of_contact[row, node]
@@ -142,7 +208,9 @@ def linearised_laws(contacts: Contacts, motion: Motion, now: Nodes) -> Floats:
 
 @compiled(lambda t: t.matrix(t.matrix, t.of(Motion), t.matrix))
 def indentations_by(linear: Floats, motion: Motion, columns: Floats) -> Floats:
-    """Return the changes of the indentations (M, r) for changes of the approach that forces do not cause [m] (M, r)."""
+    """Return the changes of the indentations (M, r) for changes of the approach that
+    forces do not cause [m] (M, r).
+    """
     size = len(columns)
     found = columns.copy()
     if not len(motion.approach_by_static):
@@ -161,21 +229,33 @@ def indentations_by(linear: Floats, motion: Motion, columns: Floats) -> Floats:
 
 @compiled(lambda t: t.void(t.matrix, t.of(Motion), t.matrix, t.matrix))
 def write_force_jacobian(linear: Floats, motion: Motion, by: Floats, matrix: Floats) -> None:
-    """Write the Jacobian of the equations in the forces, without the indentations, into the first rows and columns of `matrix`.
+    """Write the Jacobian of the equations in the forces, without the indentations, into the first
+    rows and columns of `matrix`.
 
-    `by`: derivatives of the indentations by the approach that the forces cause, in its first columns, as `indentations_by` gives them.
+    `by`: derivatives of the indentations by the approach that the forces cause, in its first
+    columns, as `indentations_by` gives them.
     """
     size = len(motion.rate)
     for row in range(size):
         force_by_delta = linear[4, row] + linear[5, row]
         for column in range(size):
-            matrix[row, column] = linear[6, row] * motion.rate_by_force[row, column] + force_by_delta * by[row, column]
+            matrix[row, column] = (
+                linear[6, row] * motion.rate_by_force[row, column]
+                + force_by_delta * by[row, column]
+            )
         matrix[row, row] += 1.0
 
 
 @compiled(
     lambda t: t.tuple(t.vector, t.vector, t.real)(
-        t.of(Basis), t.of(Surfaces), t.of(Start), t.of(Motion), t.matrix, t.of(Nodes), t.real, t.of(End)
+        t.of(Basis),
+        t.of(Surfaces),
+        t.of(Start),
+        t.of(Motion),
+        t.matrix,
+        t.of(Nodes),
+        t.real,
+        t.of(End),
     )
 )
 def newton_step(
@@ -188,15 +268,19 @@ def newton_step(
     length: float,
     end: End,
 ) -> tuple[Floats, Floats, float]:
-    r"""Return the Newton steps of the indentations, the forces (M,) and the length, to be subtracted.
+    r"""Return the Newton steps of the indentations, the forces (M,) and the length, to be
+    subtracted.
 
-    With the approach y that belongs to an indentation, the equations are :math:`y(\delta) = y_0(h) - G(h) F - G_s(h) F_s(\delta)` and
-    :math:`F = F_{law}(\delta, \dot y_0(h) - R(h) F)`. The indentations are eliminated from the linearised equations.
+    With the approach y that belongs to an indentation, the equations are :math:`y(\delta) = y_0(h)
+    - G(h) F - G_s(h) F_s(\delta)` and
+    :math:`F = F_{law}(\delta, \dot y_0(h) - R(h) F)`. The indentations are eliminated from the
+    linearised equations.
     """
     size = len(now.force)
     nodes = len(basis.time)
     inside = len(motion.approach_by_static) > 0
-    # approach by forces, residual of the approach, and minus the approach by the length, each divided by that of the indentations
+    # approach by forces, residual of the approach, and minus the approach by the length, each
+    # divided by that of the indentations
     columns = np.empty((size, size + 2))
     caused = product(motion.approach_by_force, now.force)
     caused_within = product(motion.approach_by_static, linear[0]) if inside else np.zeros(size)
@@ -213,15 +297,20 @@ def newton_step(
         columns[row, size + 1] = -by_length[0, row]
     by = indentations_by(linear, motion, columns)
 
-    unknowns = size if end.kind == GIVEN_LENGTH else size + 1  # the last one is the relative change of the length
+    # the last one is the relative change of the length
+    unknowns = size if end.kind == GIVEN_LENGTH else size + 1
     matrix = np.empty((unknowns, unknowns))
     right = np.empty((unknowns, 1))
     write_force_jacobian(linear, motion, by, matrix)
     for row in range(size):
         force_by_delta = linear[4, row] + linear[5, row]
-        right[row, 0] = now.force[row] - (linear[0, row] + linear[1, row]) + force_by_delta * by[row, size]
+        right[row, 0] = (
+            now.force[row] - (linear[0, row] + linear[1, row]) + force_by_delta * by[row, size]
+        )
         if end.kind != GIVEN_LENGTH:
-            matrix[row, size] = (force_by_delta * by[row, size + 1] - linear[6, row] * by_length[1, row]) * length
+            matrix[row, size] = (
+                force_by_delta * by[row, size + 1] - linear[6, row] * by_length[1, row]
+            ) * length
     if end.kind != GIVEN_LENGTH:
         last = (end.contact + 1) * nodes - 1
         unit = _TINY
@@ -274,7 +363,15 @@ def newton_step(
 
 @compiled(
     lambda t: t.tuple(t.of(Nodes), t.real, t.real, t.boolean)(
-        t.of(Basis), t.of(Surfaces), t.of(Contacts), t.of(Start), t.of(Motion), t.of(Nodes), t.real, t.real, t.of(End)
+        t.of(Basis),
+        t.of(Surfaces),
+        t.of(Contacts),
+        t.of(Start),
+        t.of(Motion),
+        t.of(Nodes),
+        t.real,
+        t.real,
+        t.of(End),
     )
 )
 def improved(
@@ -288,12 +385,16 @@ def improved(
     scale: float,
     end: End,
 ) -> tuple[Nodes, float, float, bool]:
-    """Return the next iterate of the nodes and of the length [s], the relative size of the step, and whether the problem is well posed."""
+    """Return the next iterate of the nodes and of the length [s], the relative size of
+    the step, and whether the problem is well posed.
+    """
     linear = linearised_laws(contacts, motion, now)
     # a negative compliance in series that exceeds that of the law makes the problem ill-posed
     if not least_of(linear[3]) > 0.0:
         return now, length, np.inf, False
-    delta_step, force_step, length_step = newton_step(basis, surfaces, start, motion, linear, now, length, end)
+    delta_step, force_step, length_step = newton_step(
+        basis, surfaces, start, motion, linear, now, length, end
+    )
     size = len(now.force)
     static = np.empty(size)
     force = np.empty(size)
@@ -309,7 +410,10 @@ def improved(
         largest_force = max(largest_force, abs(force[row]))
     step_size = largest_step / (scale + largest_force)
     if end.kind != GIVEN_LENGTH:
-        length_step = min(max(length_step, -_LENGTH_FACTOR * length), _LENGTH_FACTOR / (1.0 + _LENGTH_FACTOR) * length)
+        length_step = min(
+            max(length_step, -_LENGTH_FACTOR * length),
+            _LENGTH_FACTOR / (1.0 + _LENGTH_FACTOR) * length,
+        )
         length -= length_step
         step_size = max(step_size, abs(length_step) / length)
     return Nodes(static, force, delta), length, step_size, largest_magnitude_of(force) < np.inf
@@ -327,7 +431,9 @@ def largest_change(now: Floats, before: Floats) -> float:
 
 @compiled(lambda t: t.boolean(t.real, t.real))
 def is_converged(size: float, last_size: float) -> bool:
-    """Is the next step of Newton's method below rounding, after two relative steps? Convergence is quadratic, but for the derivatives."""
+    """Is the next step of Newton's method below rounding, after two relative steps?
+    Convergence is quadratic, but for the derivatives.
+    """
     next_size = size * min(max((size / last_size) ** 2, _INEXACT), 1.0)
     return next_size < _CONVERGED or (size < _STALLED and size > 0.3 * last_size)
 
@@ -358,7 +464,8 @@ def solve_stretch(
     length: float,
     end: End,
 ) -> tuple[Nodes, Motions, FrictionAtNodes, float, bool]:
-    """Return forces and indentations at the nodes, motion of the surfaces, friction, length [s], and whether the method converged.
+    """Return forces and indentations at the nodes, motion of the surfaces, friction, length [s],
+    and whether the method converged.
 
     Parameters
     ----------
@@ -377,7 +484,9 @@ def solve_stretch(
     size = np.inf
     for _ in range(MOST_ITERATIONS):
         last_size = size
-        now, length, size, well_posed = improved(basis, surfaces, contacts, start, motion, now, length, scale, end)
+        now, length, size, well_posed = improved(
+            basis, surfaces, contacts, start, motion, now, length, scale, end
+        )
         if not (well_posed and np.isfinite(size)):
             break
         if end.kind != GIVEN_LENGTH:
@@ -386,7 +495,11 @@ def solve_stretch(
         if rubbed.rubbing.directions:
             before = friction
             friction = follow_friction(basis, motions, rubbed, length, now.force, before)
-            size = max(size, largest_change(friction.force, before.force) / (scale + largest_magnitude_of(now.force)))
+            size = max(
+                size,
+                largest_change(friction.force, before.force)
+                / (scale + largest_magnitude_of(now.force)),
+            )
             motion = under_friction(motions, friction.force)
         if is_converged(size, last_size):
             return now, motions, friction, length, True

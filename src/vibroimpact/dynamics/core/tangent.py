@@ -1,7 +1,9 @@
-"""Small differences of the motion through stretches of contact, by the linearised equations at their nodes.
+"""Small differences of the motion through stretches of contact, by the linearised equations at
+their nodes.
 
-The forces at the nodes solve equations whose Jacobian is known, and all other quantities are linear in the forces. A difference of the
-state at the start gives that at the end by one more linear solve. Differences are taken at equal times.
+The forces at the nodes solve equations whose Jacobian is known, and all other quantities are linear
+in the forces. A difference of the state at the start gives that at the end by one more linear
+solve. Differences are taken at equal times.
 """
 
 from __future__ import annotations
@@ -16,11 +18,19 @@ from vibroimpact.dynamics.core.linear import product, solve_in_place
 from vibroimpact.dynamics.core.path import stretch_path
 from vibroimpact.dynamics.core.receptance import surface_motion
 from vibroimpact.dynamics.core.records import Bases, Contacts, Motion, State
-from vibroimpact.dynamics.core.stretch import indentations_by, linearise_contact, write_force_jacobian
+from vibroimpact.dynamics.core.stretch import (
+    indentations_by,
+    linearise_contact,
+    write_force_jacobian,
+)
 
 
-@compiled(lambda t: t.tuple(t.vector, t.vector)(t.of(Motion), t.matrix, t.vector, t.vector, t.vector))
-def force_differences(motion: Motion, linear: Floats, approach: Floats, static: Floats, dissipative: Floats) -> tuple[Floats, Floats]:
+@compiled(
+    lambda t: t.tuple(t.vector, t.vector)(t.of(Motion), t.matrix, t.vector, t.vector, t.vector)
+)
+def force_differences(
+    motion: Motion, linear: Floats, approach: Floats, static: Floats, dissipative: Floats
+) -> tuple[Floats, Floats]:
     """Return the differences of the contact forces and of their static parts at the nodes [N] (M,).
 
     Parameters
@@ -30,7 +40,8 @@ def force_differences(motion: Motion, linear: Floats, approach: Floats, static: 
     linear : array, shape (7, M)
         The laws at the nodes, as `linearise` gives them.
     approach, static, dissipative : array, shape (M,)
-        What a varied law changes, at fixed indentations and rates: the approach [m], and the parts of the force [N].
+        What a varied law changes, at fixed indentations and rates: the approach [m], and the parts
+        of the force [N].
     """
     size = len(approach)
     columns = np.empty((size, size + 1))
@@ -60,9 +71,16 @@ def force_differences(motion: Motion, linear: Floats, approach: Floats, static: 
     return force, static_difference
 
 
-@compiled(lambda t: t.tuple(t.of(State), t.matrix)(t.of(Bases), t.of(Bodies), t.of(Contacts), t.vector, t.of(Solved), t.of(State)))
-def propagate(bases: Bases, bodies: Bodies, laws: Contacts, weights: Floats, solved: Solved, difference: State) -> tuple[State, Floats]:
-    """Return the difference of the state at the end of stretches of one contact, and of the contact force at their nodes [N] (P, N).
+@compiled(
+    lambda t: t.tuple(t.of(State), t.matrix)(
+        t.of(Bases), t.of(Bodies), t.of(Contacts), t.vector, t.of(Solved), t.of(State)
+    )
+)
+def propagate(
+    bases: Bases, bodies: Bodies, laws: Contacts, weights: Floats, solved: Solved, difference: State
+) -> tuple[State, Floats]:
+    """Return the difference of the state at the end of stretches of one contact, and of the contact
+    force at their nodes [N] (P, N).
 
     Parameters
     ----------
@@ -77,7 +95,8 @@ def propagate(bases: Bases, bodies: Bodies, laws: Contacts, weights: Floats, sol
     solved : Solved
         The stretches, one after the other.
     difference : State
-        Difference of the state at their start between a neighbouring motion and that one, to first order.
+        Difference of the state at their start between a neighbouring motion and that one, to first
+        order.
     """
     number, points = solved.delta.shape
     nodes = points - 1
@@ -90,16 +109,22 @@ def propagate(bases: Bases, bodies: Bodies, laws: Contacts, weights: Floats, sol
         delta = solved.delta[stretch, 1:]
         rate = solved.rate[stretch, 1:]
         linearise_contact(laws, 0, delta, rate, linear)
-        # a varied closing speed or memory changes the forces of the law and its approach at fixed indentations and rates
+        # a varied closing speed or memory changes the forces of the law and its approach at fixed
+        # indentations and rates
         change = np.zeros((3, nodes))
         for variation in range(len(weights)):
             linearise_contact(laws, 1 + variation, delta, rate, varied)
             change += weights[variation] * (varied[:3] - linear[:3])
         motion = surface_motion(
-            basis, bodies.surfaces, surface_start(bodies.system, bodies.surfaces, bodies.coordinates, difference), length
+            basis,
+            bodies.surfaces,
+            surface_start(bodies.system, bodies.surfaces, bodies.coordinates, difference),
+            length,
         )
         force, static = force_differences(motion, linear, change[2], change[0], change[1])
-        path = stretch_path(basis, bodies.surfaces, bodies.coordinates, difference, length, force, static, False)
+        path = stretch_path(
+            basis, bodies.surfaces, bodies.coordinates, difference, length, force, static, False
+        )
         difference = State(path.displacement, path.speed, path.local)
         forces[stretch] = force
     return difference, forces

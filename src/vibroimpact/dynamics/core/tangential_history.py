@@ -1,11 +1,16 @@
 r"""The tangential contact of elastic spheres under way, for displacements in two directions.
 
-A law with a single spring keeps its force Q. As the radius a of the contact changes, Q goes with the power :math:`\gamma` of it, and a
-displacement s adds :math:`dQ = 2 G^* a\, ds`: with :math:`\gamma` = 1 the displacement of the spring is kept, with 0 its force.
+A law with a single spring keeps its force Q. As the radius a of the contact changes, Q goes with
+the power :math:`\gamma` of it, and a
+displacement s adds :math:`dQ = 2 G^* a\, ds`: with :math:`\gamma` = 1 the displacement of the
+spring is kept, with 0 its force.
 
-By the method of dimensionality reduction the contact is a row of independent springs, side by side on a line through it,
-:math:`|x| \le a = \sqrt{R D}`. Each has the stiffness :math:`G^*` per unit length, follows the displacement of the surfaces while it is in
-contact, and slips where its force would exceed :math:`\mu E^* (D - x^2 / R)` per unit length. Along one direction this is what
+By the method of dimensionality reduction the contact is a row of independent springs, side by side
+on a line through it,
+:math:`|x| \le a = \sqrt{R D}`. Each has the stiffness :math:`G^*` per unit length, follows the
+displacement of the surfaces while it is in
+contact, and slips where its force would exceed :math:`\mu E^* (D - x^2 / R)` per unit length. Along
+one direction this is what
 `turning_points` follows exactly; that has no counterpart where the direction turns.
 """
 
@@ -21,20 +26,25 @@ from vibroimpact.compiled import compiled
 from vibroimpact.dynamics.core.records import Boolean, Matrix, Real, Vector
 
 SPRINGS = 200
-"""Springs in the radius of the largest contact: the friction force is then within 1e-4 of that of infinitely many."""
+"""Springs in the radius of the largest contact: the friction force is then within 1e-4 of
+that of infinitely many.
+"""
 
 _TINY = 1e-300
 
 
 class TangentialHistory(NamedTuple):
-    """Law, and state of one contact under way in two directions; it does not change, so that a way may be tried.
+    """Law, and state of one contact under way in two directions; it does not change, so that a way
+    may be tried.
 
-    at_rim: is it a row of springs, and not a single one? growing, shrinking: powers of the radius of a single spring. hertz: Hertz's
-    stiffness [N/m^1.5]. radius: effective radius [m]. stiffness: 2 G* [Pa]. coefficient: of friction. ratio: mu E*/G* [-]. sliding_energy:
-    elastic work of a contact as it grows while all of it slides, over mu F mu E*/G* D. width: of a spring [m].
+    at_rim: is it a row of springs, and not a single one? growing, shrinking: powers of the radius
+    of a single spring. hertz: Hertz's stiffness [N/m^1.5]. radius: effective radius [m]. stiffness:
+    2 G* [Pa]. coefficient: of friction. ratio: mu E*/G* [-]. sliding_energy: elastic work of a
+    contact as it grows while all of it slides, over mu F mu E*/G* D. width: of a spring [m].
 
-    depth: D [m]. stretch (2, N): displacement of each spring of one half, integrated over its width in contact [m^2]. force (2,): of
-    friction [N]. slid: how far all of the contact slid on the way to here [m]; nothing if a part of it sticks.
+    depth: D [m]. stretch (2, N): displacement of each spring of one half, integrated over its width
+    in contact [m^2]. force (2,): of friction [N]. slid: how far all of the contact slid on the way
+    to here [m]; nothing if a part of it sticks.
     """
 
     at_rim: Boolean
@@ -53,8 +63,12 @@ class TangentialHistory(NamedTuple):
     slid: Real
 
 
-@compiled(lambda t: t.of(TangentialHistory)(t.of(TangentialHistory), t.real, t.matrix, t.vector, t.real))
-def with_state(history: TangentialHistory, depth: float, stretch: Floats, force: Floats, slid: float) -> TangentialHistory:
+@compiled(
+    lambda t: t.of(TangentialHistory)(t.of(TangentialHistory), t.real, t.matrix, t.vector, t.real)
+)
+def with_state(
+    history: TangentialHistory, depth: float, stretch: Floats, force: Floats, slid: float
+) -> TangentialHistory:
     """Return a history with another state."""
     return TangentialHistory(
         history.at_rim,
@@ -80,11 +94,21 @@ def pressed_up_to(history: TangentialHistory, place: float, depth: float) -> flo
     return float(place * (depth - place * place / (3.0 * history.radius)))
 
 
-@compiled(lambda t: t.tuple(t.real, t.real, t.real)(t.of(TangentialHistory), t.matrix, t.real, t.real, t.real, t.real))
+@compiled(
+    lambda t: t.tuple(t.real, t.real, t.real)(
+        t.of(TangentialHistory), t.matrix, t.real, t.real, t.real, t.real
+    )
+)
 def move_springs(
-    history: TangentialHistory, stretch: Floats, before: float, depth: float, moved_x: float, moved_y: float
+    history: TangentialHistory,
+    stretch: Floats,
+    before: float,
+    depth: float,
+    moved_x: float,
+    moved_y: float,
 ) -> tuple[float, float, float]:
-    """Stretch a row of springs from a depth to another [m], while the surfaces move past each other [m]; `stretch`: that of the springs.
+    """Stretch a row of springs from a depth to another [m], while the surfaces move past each other
+    [m]; `stretch`: that of the springs.
 
     Return the friction along x and y [N], and how far all of the contact slid [m].
     """
@@ -110,7 +134,8 @@ def move_springs(
         y = stretch[1, spring]
         follows = covered
         if covered > covered_before and depth > before:
-            # depth and displacement grow evenly: what comes into contact on the way follows for the rest of it
+            # depth and displacement grow evenly: what comes into contact on the way follows for the
+            # rest of it
             entering = pressed - pressed_up_to(history, left + covered_before, depth)
             follows = covered_before + entering / (depth - before)
         elif covered < covered_before:
@@ -145,9 +170,15 @@ def springs_for(history: TangentialHistory, depth: float) -> Floats:
     return stretch
 
 
-@compiled(lambda t: t.of(TangentialHistory)(t.of(TangentialHistory), t.real, t.real, t.real, t.real))
-def spring_after(history: TangentialHistory, depth: float, most: float, moved_x: float, moved_y: float) -> TangentialHistory:
-    """Return a single spring at another depth [m], after the surfaces have moved past each other [m]; `most`: its largest force [N]."""
+@compiled(
+    lambda t: t.of(TangentialHistory)(t.of(TangentialHistory), t.real, t.real, t.real, t.real)
+)
+def spring_after(
+    history: TangentialHistory, depth: float, most: float, moved_x: float, moved_y: float
+) -> TangentialHistory:
+    """Return a single spring at another depth [m], after the surfaces have moved past
+    each other [m]; `most`: its largest force [N].
+    """
     contact_radius = math.sqrt(history.radius * depth)
     radius_before = math.sqrt(history.radius * history.depth)
     power = history.growing if contact_radius >= radius_before else history.shrinking
@@ -175,19 +206,33 @@ def depth_under(history: TangentialHistory, normal_force: float) -> float:
 
 
 @compiled(lambda t: t.of(TangentialHistory)(t.of(TangentialHistory), t.real, t.real, t.real))
-def history_after(history: TangentialHistory, normal_force: float, moved_x: float, moved_y: float) -> TangentialHistory:
-    """Return the history at another normal force [N], after the surfaces have moved past each other along x and y [m]."""
+def history_after(
+    history: TangentialHistory, normal_force: float, moved_x: float, moved_y: float
+) -> TangentialHistory:
+    """Return the history at another normal force [N], after the surfaces have moved past
+    each other along x and y [m].
+    """
     depth = depth_under(history, normal_force)
     if not history.at_rim:
-        return spring_after(history, depth, history.coefficient * max(normal_force, 0.0), moved_x, moved_y)
+        return spring_after(
+            history, depth, history.coefficient * max(normal_force, 0.0), moved_x, moved_y
+        )
     stretch = springs_for(history, depth)
     force = np.empty(2)
-    force[0], force[1], slid = move_springs(history, stretch, history.depth, depth, moved_x, moved_y)
+    force[0], force[1], slid = move_springs(
+        history, stretch, history.depth, depth, moved_x, moved_y
+    )
     return with_state(history, depth, stretch, force, slid)
 
 
-@compiled(lambda t: t.of(TangentialHistory)(t.of(TangentialHistory), t.vector, t.matrix, t.matrix, t.vector))
-def follow_history(history: TangentialHistory, normal: Floats, moved: Floats, friction: Floats, slid: Floats) -> TangentialHistory:
+@compiled(
+    lambda t: t.of(TangentialHistory)(
+        t.of(TangentialHistory), t.vector, t.matrix, t.matrix, t.vector
+    )
+)
+def follow_history(
+    history: TangentialHistory, normal: Floats, moved: Floats, friction: Floats, slid: Floats
+) -> TangentialHistory:
     """Return the history at the end of a way of T steps.
 
     Parameters
@@ -217,7 +262,9 @@ def follow_history(history: TangentialHistory, normal: Floats, moved: Floats, fr
     before = history.depth
     for step in range(len(normal)):
         depth = depth_under(history, normal[step])
-        x, y, slid[step] = move_springs(history, stretch, before, depth, moved[step, 0], moved[step, 1])
+        x, y, slid[step] = move_springs(
+            history, stretch, before, depth, moved[step, 0], moved[step, 1]
+        )
         friction[step, 0] = x
         friction[step, 1] = y
         before = depth
@@ -227,12 +274,22 @@ def follow_history(history: TangentialHistory, normal: Floats, moved: Floats, fr
 
 @compiled(lambda t: t.real(t.of(TangentialHistory), t.real))
 def energy_in_sliding(history: TangentialHistory, load: float) -> float:
-    """Return the work that stretches a contact along the plate, while all of it slides up to a normal force [J]."""
-    return float(history.sliding_energy * history.coefficient * load * history.ratio * depth_under(history, load))
+    """Return the work that stretches a contact along the plate, while all of it slides up
+    to a normal force [J].
+    """
+    return float(
+        history.sliding_energy
+        * history.coefficient
+        * load
+        * history.ratio
+        * depth_under(history, load)
+    )
 
 
 @compiled(lambda t: t.real(t.of(TangentialHistory), t.vector, t.matrix, t.matrix, t.vector))
-def lost_in_microslip(history: TangentialHistory, normal: Floats, friction: Floats, moved: Floats, slid: Floats) -> float:
+def lost_in_microslip(
+    history: TangentialHistory, normal: Floats, friction: Floats, moved: Floats, slid: Floats
+) -> float:
     """Return what friction took on a way of T steps [J], but while all of the contact slid.
 
     Less its elastic energy, where it slides at the end.
@@ -260,6 +317,10 @@ def lost_in_microslip(history: TangentialHistory, normal: Floats, friction: Floa
             lost += energy_in_sliding(history, load) - energy_in_sliding(history, load_before)
             continue
         for direction in range(2):
-            lost += 0.5 * (friction[step + 1, direction] + friction[step, direction]) * moved[step, direction]
+            lost += (
+                0.5
+                * (friction[step + 1, direction] + friction[step, direction])
+                * moved[step, direction]
+            )
         lost -= history.coefficient * 0.5 * (load + load_before) * slid[step + 1]
     return lost

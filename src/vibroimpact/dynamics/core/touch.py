@@ -1,4 +1,6 @@
-"""First touch of moving surfaces in free motion, and the time at which overlapping surfaces separate."""
+"""First touch of moving surfaces in free motion, and the time at which overlapping
+surfaces separate.
+"""
 
 from __future__ import annotations
 
@@ -7,7 +9,13 @@ import math
 import numpy as np
 
 from vibroimpact.compiled import compiled
-from vibroimpact.dynamics.core.flight import approach_of, flight_of, flown, greatest_vibration, state_after
+from vibroimpact.dynamics.core.flight import (
+    approach_of,
+    flight_of,
+    flown,
+    greatest_vibration,
+    state_after,
+)
 from vibroimpact.dynamics.core.records import Approach, State, System
 
 _MOST_STEPS = 100_000
@@ -18,7 +26,9 @@ _ROUNDING = 4e-16  # of the sum of the magnitudes of the terms of an approach, o
 
 @compiled(lambda t: t.of(Approach)(t.of(System), t.of(State)))
 def approach_in(system: System, state: State) -> Approach:
-    """Return the approach of the surfaces in a state, and bounds of what the vibration adds to it."""
+    """Return the approach of the surfaces in a state, and bounds of what the vibration
+    adds to it.
+    """
     approach, rate = approach_of(system, state)
     rigid = system.offset
     rigid_rate = 0.0
@@ -32,16 +42,27 @@ def approach_in(system: System, state: State) -> Approach:
             rigid += term
             rigid_rate += system.shape[coordinate] * state.velocity[coordinate]
         else:
-            peak_speed = math.sqrt(state.velocity[coordinate] ** 2 + (frequency * state.displacement[coordinate]) ** 2)
-            fastest += abs(system.shape[coordinate]) * peak_speed * frequency * (1.0 + 2.0 * system.ratio[coordinate])
+            peak_speed = math.sqrt(
+                state.velocity[coordinate] ** 2 + (frequency * state.displacement[coordinate]) ** 2
+            )
+            fastest += (
+                abs(system.shape[coordinate])
+                * peak_speed
+                * frequency
+                * (1.0 + 2.0 * system.ratio[coordinate])
+            )
     for element in range(len(state.local)):
         fastest += abs(state.local[element]) * system.rate[element] ** 2
-    return Approach(approach, rate, rigid, rigid_rate, greatest_vibration(system, state), fastest, terms)
+    return Approach(
+        approach, rate, rigid, rigid_rate, greatest_vibration(system, state), fastest, terms
+    )
 
 
 @compiled(lambda t: t.real(t.real, t.real, t.real, t.real))
 def fall_time(approach: float, speed: float, gravity: float, level: float) -> float:
-    """Return when a rigid approach reaches a level [s] under gravity; 0 if it already has, infinite if it never will."""
+    """Return when a rigid approach reaches a level [s] under gravity; 0 if it already
+    has, infinite if it never will.
+    """
     height = level - approach
     if height <= 0.0:
         return 0.0
@@ -56,10 +77,13 @@ def fall_time(approach: float, speed: float, gravity: float, level: float) -> fl
 
 @compiled(lambda t: t.real(t.of(Approach), t.real, t.real))
 def time_apart(now: Approach, level: float, gravity: float) -> float:
-    r"""Return how long surfaces surely stay apart [s], under a bound of the acceleration of the approach by what is not vibration [m/s^2].
+    r"""Return how long surfaces surely stay apart [s], under a bound of the acceleration of the
+    approach by what is not vibration [m/s^2].
 
-    With a bound M of the whole acceleration, a gap G that opens at the rate :math:`\dot G` can't close before
-    :math:`\tau = (\dot G + \sqrt{\dot G^2 + 2 M G}) / M`. Far away, the displacement of the vibrating surface is bounded by its energy, and
+    With a bound M of the whole acceleration, a gap G that opens at the rate :math:`\dot G` can't
+    close before
+    :math:`\tau = (\dot G + \sqrt{\dot G^2 + 2 M G}) / M`. Far away, the displacement of the
+    vibrating surface is bounded by its energy, and
     the parabola of the rigid motion gives the time until it is that near.
     """
     gap = max(level - now.approach, 0.0)
@@ -88,7 +112,9 @@ def is_closing(now: Approach, level: float) -> bool:
 
 @compiled(lambda t: t.boolean(t.of(Approach), t.real))
 def is_apart(now: Approach, level: float) -> bool:
-    """Do surfaces not overlap beyond a level, or by no more than a rounding error where they separate?"""
+    """Do surfaces not overlap beyond a level, or by no more than a rounding error where
+    they separate?
+    """
     return now.approach <= level + (_ROUNDING * now.terms if now.rate < 0.0 else 0.0)
 
 
@@ -100,13 +126,17 @@ def never_separates(now: Approach, level: float, gravity: float) -> bool:
 
 @compiled(lambda t: t.boolean(t.of(Approach), t.real, t.real))
 def never_returns(now: Approach, level: float, gravity: float) -> bool:
-    """Does the rigid motion open beyond the range of the vibration, with no gravity that turns it? What slows it in a fluid does not."""
+    """Does the rigid motion open beyond the range of the vibration, with no gravity that
+    turns it? What slows it in a fluid does not.
+    """
     return gravity <= 0.0 and now.rigid_rate <= 0.0 and now.rigid + now.reach < level
 
 
 @compiled(lambda t: t.real(t.of(System), t.of(State), t.real))
 def time_to_separation(system: System, state: State, level: float) -> float:
-    """Return when surfaces that overlap beyond a level separate to it [s]; 0 if they do not overlap, infinite if they never separate."""
+    """Return when surfaces that overlap beyond a level separate to it [s]; 0 if they do
+    not overlap, infinite if they never separate.
+    """
     time = 0.0
     horizon = 0.0
     before = np.nan
@@ -133,9 +163,11 @@ def time_to_separation(system: System, state: State, level: float) -> float:
 
 @compiled(lambda t: t.real(t.of(Approach), t.real, t.real, t.real))
 def next_horizon(now: Approach, level: float, horizon: float, before: float) -> float:
-    """Return for how long to look for a separation [s]: to about twice that time, or longer than the last horizon if that changed nothing.
+    """Return for how long to look for a separation [s]: to about twice that time, or longer than
+    the last horizon if that changed nothing.
 
-    `before`: approach at the start of that [m]. It does not change over a time below the rounding of the time of a flight.
+    `before`: approach at the start of that [m]. It does not change over a time below the rounding
+    of the time of a flight.
     """
     if now.approach == before:
         return 2.0 * horizon
@@ -144,10 +176,12 @@ def next_horizon(now: Approach, level: float, horizon: float, before: float) -> 
 
 @compiled(lambda t: t.real(t.of(System), t.of(State), t.real, t.real))
 def next_touch(system: System, state: State, level: float, until: float) -> float:
-    """Return when the approach first rises to a level [s from here]; infinite if not before `until`.
+    """Return when the approach first rises to a level [s from here]; infinite if not before
+    `until`.
 
-    From an open gap no touch is stepped over: the search advances by the times for which the surfaces surely stay apart. Near the touch
-    these converge as fast as Newton's method. Surfaces that overlap beyond the level separate first.
+    From an open gap no touch is stepped over: the search advances by the times for which the
+    surfaces surely stay apart. Near the touch these converge as fast as Newton's method. Surfaces
+    that overlap beyond the level separate first.
     """
     time = time_to_separation(system, state, level)
     if not time < until:

@@ -1,22 +1,33 @@
-r"""Memory of a Hertzian contact under varying normal and tangential forces: the turning points of its history.
+r"""Memory of a Hertzian contact under varying normal and tangential forces: the turning points of
+its history.
 
-By the method of dimensionality reduction the contact is a row of independent springs, each of stiffness :math:`G^* dx`. That at x
-touches at the depth :math:`c = x^2/R` and slips where its displacement reaches :math:`\kappa (D - c)`: this gives the force of Cattaneo's
-and Mindlin's contact, under any history (V. L. Popov and M. Hess, Method of Dimensionality Reduction in Contact Mechanics and Friction,
-Springer 2015, chapter 5; J. Jaeger, New Solutions in Contact Mechanics, WIT Press 2005).
+By the method of dimensionality reduction the contact is a row of independent springs, each of
+stiffness :math:`G^* dx`. That at x
+touches at the depth :math:`c = x^2/R` and slips where its displacement reaches :math:`\kappa (D -
+c)`: this gives the force of Cattaneo's
+and Mindlin's contact, under any history (V. L. Popov and M. Hess, Method of Dimensionality
+Reduction in Contact Mechanics and Friction, Springer 2015, chapter 5; J. Jaeger, New Solutions in
+Contact Mechanics, WIT Press 2005).
 
-The displacements of all springs are a curve: with s the displacement of the sphere over kappa, a spring that does not slip keeps the
-displacement S(c) at which it would be free of force. For slip in the direction :math:`r = \pm 1` the coordinate
+The displacements of all springs are a curve: with s the displacement of the sphere over kappa, a
+spring that does not slip keeps the
+displacement S(c) at which it would be free of force. For slip in the direction :math:`r = \pm 1`
+the coordinate
 
 .. math:: x = c - r S
 
-rises along the curve, which ends at the present :math:`D - r s`. When that falls, every spring slips whose x is larger, and those
-that stick are as they were when the rim of the contact was where the slip ends. So with the integral I of the friction force
+rises along the curve, which ends at the present :math:`D - r s`. When that falls, every spring
+slips whose x is larger, and those that stick are as they were when the rim of the contact was where
+the slip ends. So with the integral I of the friction force
 (`contact.friction.law`) and its largest value :math:`\tfrac23 D^{3/2}`
 
-.. math:: r I = \tfrac23 D^{3/2} - H(x),\qquad H = \tfrac23 c^{3/2} - r I(c),\qquad \frac{dH}{dx} = \sqrt c
+.. math::
 
-where H(x) is known of the points of the curve. When the slip ends, what slipped is replaced by a straight line.
+    r I = \tfrac23 D^{3/2} - H(x),\qquad H = \tfrac23 c^{3/2} - r I(c),\qquad
+    \frac{dH}{dx} = \sqrt c
+
+where H(x) is known of the points of the curve. When the slip ends, what slipped is replaced by a
+straight line.
 """
 
 from __future__ import annotations
@@ -45,7 +56,8 @@ def new_curve(room: int) -> Curve:
 
     Examples
     --------
-    A contact is pressed to the depth 1, then displaced by 0.19: the force is Cattaneo's, :math:`1 - (1 - s)^{3/2}` of that of sliding.
+    A contact is pressed to the depth 1, then displaced by 0.19: the force is Cattaneo's, :math:`1 -
+    (1 - s)^{3/2}` of that of sliding.
 
     >>> curve = new_curve(4)
     >>> add_rim(curve, 1.0, 0.0, 0.0)
@@ -86,7 +98,8 @@ def middle_of(curve: Curve, direction: float) -> float:
 
 @compiled(lambda t: t.pair(t.of(Curve), t.real, t.real))
 def held_at(curve: Curve, direction: float, x: float) -> tuple[float, float]:
-    """Return H of a contact that slips [m^1.5], and its derivative, the root of the depth at which the slip ends [m^0.5].
+    """Return H of a contact that slips [m^1.5], and its derivative, the root of the depth at which
+    the slip ends [m^0.5].
 
     Between two points c is taken as linear in x, and H has its value at both.
     """
@@ -109,13 +122,23 @@ def held_at(curve: Curve, direction: float, x: float) -> tuple[float, float]:
     cube_high = high * math.sqrt(high)
     # what H changes by between the points, beside what it would if c were linear
     pulled = points[below, INTEGRAL]
-    excess = (2.0 / 3.0 - slope) * (cube_high - cube_low) - direction * (points[below + 1, INTEGRAL] - pulled)
+    excess = (2.0 / 3.0 - slope) * (cube_high - cube_low) - direction * (
+        points[below + 1, INTEGRAL] - pulled
+    )
     linear = (2.0 / 3.0) * cube_low - direction * pulled + slope * (depth * root - cube_low)
     return linear + excess * share * share * (3.0 - 2.0 * share), root
 
 
 @compiled(lambda t: t.void(t.of(Curve), t.real, t.real, t.real, t.real, t.real, t.real))
-def end_slip(curve: Curve, direction: float, held: float, root: float, depth: float, displacement: float, integral: float) -> None:
+def end_slip(
+    curve: Curve,
+    direction: float,
+    held: float,
+    root: float,
+    depth: float,
+    displacement: float,
+    integral: float,
+) -> None:
     """Let a contact cease to slip: a straight line leads from where the slip ended to the rim.
 
     Parameters
@@ -125,11 +148,18 @@ def end_slip(curve: Curve, direction: float, held: float, root: float, depth: fl
     direction : float
         Of the slip, 1 or -1.
     held, root : float
-        H [m^1.5], and the root of the depth at which the slip ends [m^0.5], 0 where all of the contact slides.
+        H [m^1.5], and the root of the depth at which the slip ends [m^0.5], 0 where all of the
+        contact slides.
     depth, displacement, integral : float
         Of the rim now [m], [m], [m^1.5].
     """
     front = root * root
     point = 0 if root == 0.0 else curve.top[BELOW] + 1
-    put_rim(curve, point, front, displacement - direction * (depth - front), direction * ((2.0 / 3.0) * front * root - held))
+    put_rim(
+        curve,
+        point,
+        front,
+        displacement - direction * (depth - front),
+        direction * ((2.0 / 3.0) * front * root - held),
+    )
     add_rim(curve, depth, displacement, integral)

@@ -13,7 +13,9 @@ from vibroimpact.dynamics.oblique.statement import Oblique
 from vibroimpact.dynamics.problem import Problem
 
 
-def oblique_history(problem: Problem, leg: Leg, lost: float, time: Floats, lies_from: float) -> dict[str, Floats]:
+def oblique_history(
+    problem: Problem, leg: Leg, lost: float, time: Floats, lies_from: float
+) -> dict[str, Floats]:
     """Return columns of the motion along the plate at times within a leg.
 
     Parameters
@@ -32,7 +34,8 @@ def oblique_history(problem: Problem, leg: Leg, lost: float, time: Floats, lies_
     Returns
     -------
     dict of str to array
-        The columns of `OBLIQUE_HISTORY_COLUMNS` (T,), and what the motion adds to "kinetic_J" and "potential_J".
+        The columns of `OBLIQUE_HISTORY_COLUMNS` (T,), and what the motion adds to "kinetic_J" and
+        "potential_J".
     """
     assert problem.oblique is not None
     moving = _of_leg(leg, lost, time, lies_from)
@@ -46,19 +49,30 @@ Moving = tuple[State, Floats, Floats]
 
 
 def _of_leg(leg: Leg, lost: float, time: Floats, lies_from: float) -> Moving:
-    """Return the motion at times within a leg, up to where the sphere lies; `lost`: energy that friction took before it [J]."""
+    """Return the motion at times within a leg, up to where the sphere lies; `lost`:
+    energy that friction took before it [J].
+    """
     assert leg.oblique is not None
     sphere, start = leg.oblique
     touch, time, lies = float(leg.flight_end[0]), np.minimum(time, lies_from), time >= lies_from
-    state, friction, taken = leg.flight.carry(sphere, start, np.minimum(time, touch)), np.zeros((2, len(time))), np.full(len(time), lost)
+    state, friction, taken = (
+        leg.flight.carry(sphere, start, np.minimum(time, touch)),
+        np.zeros((2, len(time))),
+        np.full(len(time), lost),
+    )
     state = State(state.position, state.velocity, start.spin + np.zeros(len(time)))
-    after = (time > touch) | lies  # an impulse has no duration: a sphere may lie from the time of touch on
+    # an impulse has no duration: a sphere may lie from the time of touch on
+    after = (time > touch) | lies
     if leg.oblique_contacts and after.any():
         ((_, contact),) = leg.oblique_contacts
         in_contact, force, lost_here = contact.at(time[after] - touch)
         parting = float(contact.duration[0])
         later = sphere.fly(in_contact, np.maximum(time[after] - touch - parting, 0.0))
-        for whole, part in zip((state.position, state.velocity, state.spin), (later.position, later.velocity, later.spin), strict=True):
+        for whole, part in zip(
+            (state.position, state.velocity, state.spin),
+            (later.position, later.velocity, later.spin),
+            strict=True,
+        ):
             whole[:, after] = part
         friction[:, after] = np.where(time[after] - touch < parting, force, 0.0)
         taken[after] += lost_here
@@ -66,17 +80,27 @@ def _of_leg(leg: Leg, lost: float, time: Floats, lies_from: float) -> Moving:
 
 
 def _lying(problem: Problem, leg: Leg, moving: Moving, elapsed: Floats) -> Moving:
-    """Return the motion of a sphere that lies on the plate for some times [s]; `moving`: when it came to lie, the same for all of them."""
+    """Return the motion of a sphere that lies on the plate for some times [s]; `moving`:
+    when it came to lie, the same for all of them.
+    """
     assert leg.oblique is not None
     assert problem.oblique is not None
-    (sphere, _), (states, _, taken), same = leg.oblique, moving, np.zeros(len(elapsed), dtype=np.intp)
+    (sphere, _), (states, _, taken), same = (
+        leg.oblique,
+        moving,
+        np.zeros(len(elapsed), dtype=np.intp),
+    )
     start, pressing = states.take(same[:1]), np.array([float(problem.net_gravity)])
-    lying = LyingSpheres(sphere, start, problem.oblique.friction, pressing, elapsed.max(keepdims=True))
+    lying = LyingSpheres(
+        sphere, start, problem.oblique.friction, pressing, elapsed.max(keepdims=True)
+    )
     state, friction = lying.at(same, elapsed)
     return state, friction, taken + energy_taken(sphere, start, state)
 
 
-def _columns(oblique: Oblique, leg: Leg, state: State, friction: Floats, taken: Floats) -> dict[str, Floats]:
+def _columns(
+    oblique: Oblique, leg: Leg, state: State, friction: Floats, taken: Floats
+) -> dict[str, Floats]:
     """Return the columns of a motion."""
     assert leg.oblique is not None
     sphere, _ = leg.oblique
@@ -84,4 +108,8 @@ def _columns(oblique: Oblique, leg: Leg, state: State, friction: Floats, taken: 
     place = np.array(oblique.position, dtype=float)[:, None]
     potential = -sphere.mass * (sphere.gravity * (state.position - place)).sum(axis=0)
     values = [*state.position, *state.velocity, *state.spin, *friction, rotation, taken]
-    return {**dict(zip(OBLIQUE_HISTORY_COLUMNS, values, strict=True)), "kinetic_J": kinetic, "potential_J": potential}
+    return {
+        **dict(zip(OBLIQUE_HISTORY_COLUMNS, values, strict=True)),
+        "kinetic_J": kinetic,
+        "potential_J": potential,
+    }

@@ -1,7 +1,9 @@
-"""The normal motion of contacts on a grid, which drives their friction: time and force as functions of a parameter.
+"""The normal motion of contacts on a grid, which drives their friction: time and force as functions
+of a parameter.
 
-The parameter rises nearly evenly through each part of a contact, slowly at its ends, so that the depth of the contact grows with its
-square. It counts the steps of the grid. The core writes it as it collocates contacts; those that it follows step by step are read here.
+The parameter rises nearly evenly through each part of a contact, slowly at its ends, so that the
+depth of the contact grows with its square. It counts the steps of the grid. The core writes it as
+it collocates contacts; those that it follows step by step are read here.
 """
 
 from __future__ import annotations
@@ -31,8 +33,9 @@ _NONE, _STEEP = 1e-6, 1e-2
 class NormalMotion:
     """The normal motion of B contacts at G points of a parameter.
 
-    `steps`: of the parameter (G - 1,), 1; a step of zero joins two parts, between which the others may jump. `rows`: time, pace, its slope,
-    force, its slope and impulse (B, 6, G), which the properties give (G, B).
+    `steps`: of the parameter (G - 1,), 1; a step of zero joins two parts, between which the others
+    may jump. `rows`: time, pace, its slope, force, its slope and impulse (B, 6, G), which the
+    properties give (G, B).
     """
 
     steps: Floats
@@ -77,24 +80,43 @@ class NormalMotion:
 
     @property
     def pressed(self) -> Floats:
-        """Impulse of the force so far [N s] (G, B), of which a force that pulls, as some laws have at the end, gives nothing back."""
+        """Impulse of the force so far [N s] (G, B), of which a force that pulls, as some
+        laws have at the end, gives nothing back.
+        """
         return np.asarray(np.maximum.accumulate(self.impulse, axis=0))
 
     def integrals(self, values: Floats, slopes: Floats) -> Floats:
-        """Return the integrals over time so far (G, B) of a quantity with these values, and slopes by the parameter."""
-        rate, bend, step = self.pace * values, self.pace_slope * values + self.pace * slopes, self.steps[:, None]
+        """Return the integrals over time so far (G, B) of a quantity with these values,
+        and slopes by the parameter.
+        """
+        rate, bend, step = (
+            self.pace * values,
+            self.pace_slope * values + self.pace * slopes,
+            self.steps[:, None],
+        )
         found = np.zeros_like(rate)
-        np.cumsum(step * (0.5 * (rate[1:] + rate[:-1]) + (bend[:-1] - bend[1:]) / 12.0), axis=0, out=found[1:])
+        np.cumsum(
+            step * (0.5 * (rate[1:] + rate[:-1]) + (bend[:-1] - bend[1:]) / 12.0),
+            axis=0,
+            out=found[1:],
+        )
         return found
 
 
-def normal_motions(normals: NormalRecords, encounter: Encounter) -> list[tuple[Drops, NormalMotion]]:
-    """Return the normal motion of contacts in groups that consist of the same parts, with the places of their drops."""
+def normal_motions(
+    normals: NormalRecords, encounter: Encounter
+) -> list[tuple[Drops, NormalMotion]]:
+    """Return the normal motion of contacts in groups that consist of the same parts, with
+    the places of their drops.
+    """
     motions: list[tuple[Drops, NormalMotion]] = []
     for shape in np.unique(normals.shapes).tolist():
         places = np.flatnonzero(normals.shapes == shape)
         if shape == 0:
-            motions.extend((np.array([place]), _followed(encounter.pick(np.array([place])), normals.steps)) for place in places.tolist())
+            motions.extend(
+                (np.array([place]), _followed(encounter.pick(np.array([place])), normals.steps))
+                for place in places.tolist()
+            )
             continue
         steps = _steps_of(_parts_of(shape, normals.steps))
         motions.append((places, NormalMotion(steps, _rows_of(normals, places, len(steps) + 1))))
@@ -111,7 +133,9 @@ def _parts_of(shape: int, steps: int) -> list[int]:
 
 
 def _steps_of(parts: Sequence[int]) -> Floats:
-    """Return the steps of the parameter (G - 1,) through parts with these numbers of steps, with a step of zero between them."""
+    """Return the steps of the parameter (G - 1,) through parts with these numbers of
+    steps, with a step of zero between them.
+    """
     return np.concatenate([one for steps in parts for one in ([0.0], np.ones(steps))][1:])
 
 
@@ -127,16 +151,23 @@ def _rows_of(normals: NormalRecords, places: Drops, points: int) -> Floats:
 
 
 def _joined(parts: list[Floats]) -> NormalMotion:
-    """Return the motion of one contact through parts (6, G) one after the other, with a step of zero between them."""
+    """Return the motion of one contact through parts (6, G) one after the other, with a
+    step of zero between them.
+    """
     for before, part in itertools.pairwise(parts):
         for row in (records.TIME, records.IMPULSE):
             part[row] += before[row, -1]
-    return NormalMotion(_steps_of([part.shape[1] - 1 for part in parts]), np.concatenate(parts, axis=1)[None])
+    return NormalMotion(
+        _steps_of([part.shape[1] - 1 for part in parts]), np.concatenate(parts, axis=1)[None]
+    )
 
 
 def _followed(encounter: Encounter, steps: int) -> NormalMotion:
-    """Return the normal motion of one drop as the core follows it, in parts between which the force is not smooth."""
-    from vibroimpact.dynamics.rigid.line_contact import RecordedContact  # a drop of impulses does not load the compiler
+    """Return the normal motion of one drop as the core follows it, in parts between which
+    the force is not smooth.
+    """
+    # a drop of impulses does not load the compiler
+    from vibroimpact.dynamics.rigid.line_contact import RecordedContact
 
     recorded = RecordedContact.of(encounter, _TOLERANCE)
     leaving = encounter.under(encounter.law.after_compression(np.array([recorded.contact.deepest])))
@@ -150,31 +181,52 @@ def _followed(encounter: Encounter, steps: int) -> NormalMotion:
     return _joined(parts)
 
 
-def _of_part(recorded: RecordedContact, encounter: Encounter, begin: float, length: float, steps: int) -> Floats:
-    """Return the rows of the normal motion in a part of a contact that the core followed (6, G); the time is a cosine of the parameter.
+def _of_part(
+    recorded: RecordedContact, encounter: Encounter, begin: float, length: float, steps: int
+) -> Floats:
+    """Return the rows of the normal motion in a part of a contact that the core followed (6, G);
+    the time is a cosine of the parameter.
 
     `begin`, `length`: of the part, since touch [s].
     """
     angle = np.linspace(0.0, np.pi, steps + 1)
     half, step = 0.5 * length, angle[1]
-    time, pace, bend = half * (1.0 - np.cos(angle)), step * half * np.sin(angle), step**2 * half * np.cos(angle)
+    time, pace, bend = (
+        half * (1.0 - np.cos(angle)),
+        step * half * np.sin(angle),
+        step**2 * half * np.cos(angle),
+    )
     delta, rate, _ = recorded.motion(begin + time)
     law, speed = encounter.law, encounter.approach_speed
     force = np.add(*law.forces(delta, rate, speed))
     aside = _ASIDE * length
     changes = aside * rate, aside * (encounter.gravity - force / encounter.mass)
     later, earlier = (
-        np.add(*law.forces(np.maximum(delta + sign * changes[0], encounter.floor), rate + sign * changes[1], speed)) for sign in (1.0, -1.0)
+        np.add(
+            *law.forces(
+                np.maximum(delta + sign * changes[0], encounter.floor),
+                rate + sign * changes[1],
+                speed,
+            )
+        )
+        for sign in (1.0, -1.0)
     )
     slope = (later - earlier) / (2.0 * aside) * pace
     if law.tension == "cut":
         slope, force = np.where(force > 0.0, slope, 0.0), np.maximum(force, 0.0)
-    impulse = encounter.mass * (encounter.gravity * time - (rate - rate[0]))  # what stops the bodies is the force
+    # what stops the bodies is the force
+    impulse = encounter.mass * (encounter.gravity * time - (rate - rate[0]))
     return np.array([time, pace, bend, np.maximum(force, 0.0), slope, impulse])
 
 
 def _is_steep_at_end(part: Floats) -> bool:
-    """Does the force pull at an end of a part, or begin or end there with a slope? The radius of the contact has an infinite one then."""
+    """Does the force pull at an end of a part, or begin or end there with a slope? The
+    radius of the contact has an infinite one then.
+    """
     steps = part.shape[1] - 1
-    force, slope, most = part[records.FORCE, [0, -1]], part[records.FORCE_SLOPE, [0, -1]] * steps, part[records.FORCE].max()
+    force, slope, most = (
+        part[records.FORCE, [0, -1]],
+        part[records.FORCE_SLOPE, [0, -1]] * steps,
+        part[records.FORCE].max(),
+    )
     return bool(((force <= _NONE * most) & (np.abs(slope) > _STEEP * most)).any())

@@ -1,4 +1,6 @@
-"""Contacts of rigid bodies in which rolling is resisted while friction is elastic, marched by the core."""
+"""Contacts of rigid bodies in which rolling is resisted while friction is elastic,
+marched by the core.
+"""
 
 from __future__ import annotations
 
@@ -17,19 +19,24 @@ from vibroimpact.dynamics.oblique.tangential_history import tangential_history
 from vibroimpact.dynamics.oblique.twisting import slowed_spins
 
 _PARTS = 16
-"""Steps in each of the normal motion's: spins after the contact are then within 1e-3 of the largest; where the slip turns it is 3e-4."""
+"""Steps in each of the normal motion's: spins after the contact are then within 1e-3 of
+the largest; where the slip turns it is 3e-4.
+"""
 
 _MOST_PARTS = 1024
 _MOST_TURNING = 0.2
-"""Angle by which the free oscillation of a contact that sticks turns in a step at most [rad], until there are `_MOST_PARTS`."""
+"""Angle by which the free oscillation of a contact that sticks turns in a step at most
+[rad], until there are `_MOST_PARTS`.
+"""
 
 
 @dataclass(frozen=True)
 class ResistedContact:
     """The motion along the plate during the contact of one drop; see `ContactAlong`.
 
-    `sphere`, `before`: the sphere, and its state at first touch. `time`: since then [s] (G,). `states`: then. `friction`: force on the
-    sphere [N] (2, G). `microslip`: energy lost while a part of the contact sticks [J] (1,).
+    `sphere`, `before`: the sphere, and its state at first touch. `time`: since then [s] (G,).
+    `states`: then. `friction`: force on the sphere [N] (2, G). `microslip`: energy lost while a
+    part of the contact sticks [J] (1,).
     """
 
     sphere: Sphere
@@ -54,19 +61,31 @@ class ResistedContact:
         return self
 
     def at(self, time: Floats) -> tuple[State, Floats, Floats]:
-        """Return states, friction on the sphere [N] (2, T) and energy taken [J] (T,), at times since first touch [s] (T,)."""
-        from scipy.interpolate import CubicHermiteSpline, PchipInterpolator  # a drop along the normal does not load it
+        """Return states, friction on the sphere [N] (2, T) and energy taken [J] (T,), at
+        times since first touch [s] (T,).
+        """
+        # a drop along the normal does not load it
+        from scipy.interpolate import CubicHermiteSpline, PchipInterpolator
 
         now = np.minimum(time, self.time[-1])
-        passed = np.flatnonzero(np.append(np.diff(self.time) > 0.0, True))  # of a force that jumps what comes after it
-        times, states, friction = self.time[passed], self.states.take(passed), self.friction[:, passed]
+        # of a force that jumps what comes after it
+        passed = np.flatnonzero(np.append(np.diff(self.time) > 0.0, True))
+        times, states, friction = (
+            self.time[passed],
+            self.states.take(passed),
+            self.friction[:, passed],
+        )
         path = CubicHermiteSpline(times, states.position, states.velocity, axis=1)
-        smooth = PchipInterpolator(times, np.concatenate([states.velocity, states.spin, friction]), axis=1)(now)
+        smooth = PchipInterpolator(
+            times, np.concatenate([states.velocity, states.spin, friction]), axis=1
+        )(now)
         state = State(path(now), smooth[:2], smooth[2:5])
         return state, smooth[5:], energy_taken(self.sphere, self.before, state)
 
 
-def resisted_contact(law: CompliantFriction, normal: NormalMotion, sphere: Sphere, before: State) -> ResistedContact:
+def resisted_contact(
+    law: CompliantFriction, normal: NormalMotion, sphere: Sphere, before: State
+) -> ResistedContact:
     """Return the motion of one drop along the plate during a contact in which rolling is resisted.
 
     Parameters
@@ -95,7 +114,9 @@ def resisted_contact(law: CompliantFriction, normal: NormalMotion, sphere: Spher
     velocities[0] = before.velocity[:, 0]
     turnings[0] = sphere.turning(before)[:, 0]
     history = tangential_history(law, float(force.max()))
-    march_resisted(rolling, history, time, force, impulse, velocities, turnings, frictions, moved, slid)
+    march_resisted(
+        rolling, history, time, force, impulse, velocities, turnings, frictions, moved, slid
+    )
     elapsed = np.diff(time)
     position = np.zeros_like(velocities)
     np.cumsum(0.5 * elapsed[:, None] * (velocities[1:] + velocities[:-1]), axis=0, out=position[1:])
@@ -119,25 +140,40 @@ def _parts(law: CompliantFriction, normal: NormalMotion, sphere: Sphere) -> int:
 
 
 def _refined(normal: NormalMotion, parts: int) -> tuple[Floats, Floats, Floats]:
-    """Return times [s], normal forces [N] and their impulses so far [N s] (G,) of one drop, with `parts` steps for each of the motion's."""
+    """Return times [s], normal forces [N] and their impulses so far [N s] (G,) of one
+    drop, with `parts` steps for each of the motion's.
+    """
     inside = normal.steps[:, None] > 0.0  # where two parts meet nothing lies between
 
     def at(values: Floats, slopes: Floats) -> Floats:
-        between = values_in_parts(np.ascontiguousarray(values[:, 0]), np.ascontiguousarray(slopes[:, 0]), parts)
+        between = values_in_parts(
+            np.ascontiguousarray(values[:, 0]), np.ascontiguousarray(slopes[:, 0]), parts
+        )
         return np.append(values[0, 0], np.where(inside, between, values[1:]).ravel())
 
     time = np.maximum.accumulate(at(normal.time, normal.pace))
     force = np.maximum(at(normal.force, normal.force_slope), 0.0)
-    bound = np.append(normal.pressed[:1, 0], np.repeat(normal.pressed[1:, 0], parts))  # by the end of each step of the motion
-    impulse = np.minimum(np.maximum.accumulate(at(normal.impulse, normal.pace * normal.force)), bound)
+    # by the end of each step of the motion
+    bound = np.append(normal.pressed[:1, 0], np.repeat(normal.pressed[1:, 0], parts))
+    impulse = np.minimum(
+        np.maximum.accumulate(at(normal.impulse, normal.pace * normal.force)), bound
+    )
     kept = np.append(True, (np.diff(time) > 0.0) | (np.diff(force) != 0.0))
     return time[kept], force[kept], impulse[kept]
 
 
 def _spins_about_normal(
-    law: CompliantFriction, time: Floats, force: Floats, friction: Floats, slip: Floats, sphere: Sphere, before: State
+    law: CompliantFriction,
+    time: Floats,
+    force: Floats,
+    friction: Floats,
+    slip: Floats,
+    sphere: Sphere,
+    before: State,
 ) -> Floats:
-    """Return the spins about the normal of one drop [rad/s] (G,), which twisting slows; they do not act on the motion along the plate."""
+    """Return the spins about the normal of one drop [rad/s] (G,), which twisting slows;
+    they do not act on the motion along the plate.
+    """
     if not before.spin[2].any():
         return np.zeros_like(time)
     moment = law.twisting_moment(force)

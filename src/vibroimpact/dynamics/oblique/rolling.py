@@ -1,22 +1,26 @@
 r"""Spheres that lie on the plate and slip, roll and twist on it.
 
-With the slip s of the contact point, of which the spin makes the part w, gravity :math:`g_n` along the normal and :math:`g` along the
-plate, the mass m and the moment of inertia I, the friction Q and the moment of rolling resistance M
+With the slip s of the contact point, of which the spin makes the part w, gravity :math:`g_n` along
+the normal and :math:`g` along the plate, the mass m and the moment of inertia I, the friction Q and
+the moment of rolling resistance M
 
 .. math:: \dot v = g + \frac{Q}{m},\qquad \dot w = \frac{R^2 Q + R M}{I},\qquad s = v + w
 
 .. math:: Q = -\mu m g_n \frac{s}{|s|},\qquad M = -\mu_r R\, m g_n \frac{w}{|w|}
 
 where s or w is zero, Q or M is what keeps it so, up to these values. A sphere that rolls thus has
-:math:`\dot v = \frac57 (g - \mu_r g_n v/|v|)`, and it stays at rest where the plate is less steep than :math:`\mu` and :math:`\mu_r`.
-Both are constant along a line, up to the next zero of s or w. The spin about the normal, which changes neither, is integrated afterwards
-(`twisting`). In all cases, with the effective mass :math:`m_t` of the tangential motion,
+:math:`\dot v = \frac57 (g - \mu_r g_n v/|v|)`, and it stays at rest where the plate is less steep
+than :math:`\mu` and :math:`\mu_r`.
+Both are constant along a line, up to the next zero of s or w. The spin about the normal, which
+changes neither, is integrated afterwards (`twisting`). In all cases, with the effective mass
+:math:`m_t` of the tangential motion,
 2/7 m of a solid sphere, and what the moment makes of the slip, :math:`\dot u = R M / I`,
 
 .. math:: v = v_0 + \Bigl(1 - \frac{m_t}{m}\Bigr) g t + \frac{m_t}{m} (s - s_0 - u)
 
-(K. L. Johnson, Contact Mechanics, 1985, section 8.1; the ball of billiards: G. Coriolis, 1835; the moment: J. Ai, J.-F. Chen,
-J. M. Rotter and J. Y. Ooi, Powder Technol. 206:269, 2011, constant directional torque).
+(K. L. Johnson, Contact Mechanics, 1985, section 8.1; the ball of billiards: G. Coriolis, 1835; the
+moment: J. Ai, J.-F. Chen, J. M. Rotter and J. Y. Ooi, Powder Technol. 206:269, 2011, constant
+directional torque).
 """
 
 from __future__ import annotations
@@ -39,15 +43,17 @@ _STOPPED = 1e-9  # of the slip and the spin at the start: what has ended, where 
 
 _TURNS = 3  # of false position, to where a centre turns back
 
-_TWIST_STEPS = 256  # of the spin about the normal, from each place where slip or spin begin or end to the next
+# of the spin about the normal, from each place where slip or spin begin or end to the next
+_TWIST_STEPS = 256
 
 
 @dataclass(frozen=True)
 class _Forces:
     """What acts on B spheres that lie on the plate.
 
-    `gravity`: acceleration along the plate [m/s^2] (2, B). `bound`, `resistance`: what sliding and rolling friction take at most from the
-    acceleration of the contact point [m/s^2] (B,). `share`: effective mass of the tangential motion over the mass (B,).
+    `gravity`: acceleration along the plate [m/s^2] (2, B). `bound`, `resistance`: what sliding and
+    rolling friction take at most from the acceleration of the contact point [m/s^2] (B,). `share`:
+    effective mass of the tangential motion over the mass (B,).
     """
 
     gravity: Floats
@@ -83,20 +89,41 @@ class LyingSpheres:
 
     >>> from vibroimpact.contact.friction.laws.coulomb import Coulomb
     >>> one = np.ones(1)
-    >>> ball, start = Sphere(one, one, 0.4 * one, np.zeros((2, 1))), State(np.zeros((2, 1)), np.array([[7.0], [0.0]]), np.zeros((3, 1)))
+    >>> ball, start = (
+    ...     Sphere(one, one, 0.4 * one, np.zeros((2, 1))),
+    ...     State(np.zeros((2, 1)), np.array([[7.0], [0.0]]), np.zeros((3, 1))),
+    ... )
     >>> lying = LyingSpheres(ball, start, Coulomb(coefficient=0.1), 9.81 * one, 10.0 * one)
     >>> state, _ = lying.at(np.array([0]), 10.0 * one)
     >>> state.velocity[0].round(12).tolist(), state.spin[1].round(12).tolist()
     ([5.0], [5.0])
     """
 
-    def __init__(self, sphere: Sphere, start: State, law: FrictionLaw | None, pressing: Floats, until: Floats) -> None:
-        self.sphere, self.start, self.until, self.share = sphere, start, until, sphere.tangential_mass / sphere.mass
+    def __init__(
+        self, sphere: Sphere, start: State, law: FrictionLaw | None, pressing: Floats, until: Floats
+    ) -> None:
+        self.sphere, self.start, self.until, self.share = (
+            sphere,
+            start,
+            until,
+            sphere.tangential_mass / sphere.mass,
+        )
         sliding, rolling = (0.0, 0.0) if law is None else (law.coefficient, law.rolling_coefficient)
-        self.slip, turning, share, none = sphere.slip(start), sphere.turning(start), self.share, 0.0 * until
+        self.slip, turning, share, none = (
+            sphere.slip(start),
+            sphere.turning(start),
+            self.share,
+            0.0 * until,
+        )
         bound, resistance = sliding * pressing / share, rolling * pressing * (1.0 - share) / share
-        forces = _Forces(np.broadcast_to(sphere.gravity, self.slip.shape), bound + none, resistance + none, share + none)
-        rounding = np.hypot(*self.slip) <= ACROSS * np.hypot(*turning)  # of a sphere that rolls: its direction says nothing
+        forces = _Forces(
+            np.broadcast_to(sphere.gravity, self.slip.shape),
+            bound + none,
+            resistance + none,
+            share + none,
+        )
+        # of a sphere that rolls: its direction says nothing
+        rounding = np.hypot(*self.slip) <= ACROSS * np.hypot(*turning)
         begin = np.where(rounding, 0.0, self.slip)
         self.phases = _straight(begin, turning, forces, until)
         self.curves = {
@@ -107,11 +134,21 @@ class LyingSpheres:
         if law is not None:
             load = sphere.mass * pressing
             slower = law.twisting_moment(load) / sphere.inertia
-            self.twists = {drop: self._twist(drop, law, load, slower) for drop in np.flatnonzero(start.spin[2] * slower).tolist()}
+            self.twists = {
+                drop: self._twist(drop, law, load, slower)
+                for drop in np.flatnonzero(start.spin[2] * slower).tolist()
+            }
 
     def at(self, drops: Drops, time: Floats) -> tuple[State, Floats]:
-        """Return the states of some spheres and the friction forces on them [N] (2, b) at times [s] (b,); one may be asked for often."""
-        sphere, start, slip, share = self.sphere.take(drops), self.start.take(drops), self.slip[:, drops], self.share[drops]
+        """Return the states of some spheres and the friction forces on them [N] (2, b) at
+        times [s] (b,); one may be asked for often.
+        """
+        sphere, start, slip, share = (
+            self.sphere.take(drops),
+            self.start.take(drops),
+            self.slip[:, drops],
+            self.share[drops],
+        )
         gravity, rows = sphere.gravity, _along_a_line(self.phases, drops, time)
         for drop, curve in self.curves.items():
             here = drops == drop
@@ -127,26 +164,42 @@ class LyingSpheres:
             step = np.searchsorted(times, time[here], side="right") - 1
             now_left = np.maximum(left[step] - rate[step] * (time[here] - times[step]), 0.0)
             twist[here] = np.sign(start.spin[2, here]) * (now_left - left[0])
-        return State(position, velocity, sphere.turned(pushed, turned, twist).spin), -sphere.tangential_mass * taken
+        return State(
+            position, velocity, sphere.turned(pushed, turned, twist).spin
+        ), -sphere.tangential_mass * taken
 
-    def _twist(self, drop: int, law: FrictionLaw, load: Floats, slower: Floats) -> tuple[Floats, ...]:
-        """Return times [s], the sizes of the spin of a sphere about the normal then [rad/s], and the rates at which it falls from there on.
+    def _twist(
+        self, drop: int, law: FrictionLaw, load: Floats, slower: Floats
+    ) -> tuple[Floats, ...]:
+        """Return times [s], the sizes of the spin of a sphere about the normal then [rad/s], and
+        the rates at which it falls from there on.
 
         `load`: normal forces [N]. `slower`: what full twisting takes from the spins [rad/s^2].
         """
-        begins = [begin for begin, _ in self.curves[drop].parts] if drop in self.curves else [phase.begin[drop] for phase in self.phases]
+        begins = (
+            [begin for begin, _ in self.curves[drop].parts]
+            if drop in self.curves
+            else [phase.begin[drop] for phase in self.phases]
+        )
         ends = np.unique([0.0, *begins, self.until[drop]])
-        parts = 0.5 * (1.0 - np.cos(np.linspace(0.0, np.pi, _TWIST_STEPS + 1)[:-1]))  # close to where the slip begins or ends
+        # close to where the slip begins or ends
+        parts = 0.5 * (1.0 - np.cos(np.linspace(0.0, np.pi, _TWIST_STEPS + 1)[:-1]))
         times = np.append((ends[:-1, None] + np.diff(ends)[:, None] * parts).ravel(), ends[-1])
         one = np.array([drop])
         state, friction = self.at(np.repeat(one, len(times)), times)
-        rubbed, slip = np.hypot(*friction)[:, None], np.hypot(*self.sphere.take(one).slip(state))[:, None]
+        rubbed, slip = (
+            np.hypot(*friction)[:, None],
+            np.hypot(*self.sphere.take(one).slip(state))[:, None],
+        )
         full = slower[one] * times[:, None]
-        left, lost = slowed_spins(law.take(one), self.start.spin[2, one], full, load[one] + 0.0 * full, rubbed, slip)
+        left, lost = slowed_spins(
+            law.take(one), self.start.spin[2, one], full, load[one] + 0.0 * full, rubbed, slip
+        )
         return times, left[:, 0], np.append(lost[:, 0] / np.diff(times), 0.0)
 
     def edge_time(self, half: Floats) -> Floats:
-        """Return the times at which the spheres leave the plate, as their centres first are beyond an edge [s] (B,); else their last times.
+        """Return the times at which the spheres leave the plate, as their centres first are beyond
+        an edge [s] (B,); else their last times.
 
         `half`: half the sides of the plate [m] (2, 1).
         """
@@ -156,7 +209,11 @@ class LyingSpheres:
             return np.asarray((np.abs(along) > length) | (np.abs(across) > width))
 
         stations = self._stations()
-        low, high, leaves = np.zeros_like(self.until), self.until.copy(), np.zeros(len(self.until), dtype=bool)
+        low, high, leaves = (
+            np.zeros_like(self.until),
+            self.until.copy(),
+            np.zeros(len(self.until), dtype=bool),
+        )
         for time, out in zip(stations, beside(stations), strict=True):
             low, high = np.where(leaves | out, low, time), np.where(out & ~leaves, time, high)
             leaves |= out
@@ -167,17 +224,30 @@ class LyingSpheres:
         return np.where(leaves, high, self.until)
 
     def _stations(self) -> Floats:
-        """Return times (K, B), in order, between which the centres move in one direction along each side of the plate."""
-        steps = np.repeat(self.until[None], 1 + max((len(curve.steps) for curve in self.curves.values()), default=0), axis=0)
+        """Return times (K, B), in order, between which the centres move in one direction
+        along each side of the plate.
+        """
+        steps = np.repeat(
+            self.until[None],
+            1 + max((len(curve.steps) for curve in self.curves.values()), default=0),
+            axis=0,
+        )
         for drop, curve in self.curves.items():
             steps[: len(curve.steps), drop] = curve.steps
         steps = np.sort(np.concatenate([[phase.begin for phase in self.phases], steps]), axis=0)
         found, speeds = [steps], self._centres(steps)[1]
         for axis in range(2):
             low, high, before, after = steps[:-1], steps[1:], speeds[axis, :-1], speeds[axis, 1:]
-            for _ in range(_TURNS):  # by false position: of a sphere that moves along a line the first one is exact
+            # by false position: of a sphere that moves along a line the first one is exact
+            for _ in range(_TURNS):
                 turns = before * after < 0.0
-                turn = np.where(turns, low + (high - low) * np.divide(before, before - after, out=np.ones_like(before), where=turns), high)
+                turn = np.where(
+                    turns,
+                    low
+                    + (high - low)
+                    * np.divide(before, before - after, out=np.ones_like(before), where=turns),
+                    high,
+                )
                 there = self._centres(turn)[1][axis]
                 ahead = there * before > 0.0
                 low, before = np.where(ahead, turn, low), np.where(ahead, there, before)
@@ -186,7 +256,9 @@ class LyingSpheres:
         return np.sort(np.concatenate(found), axis=0)
 
     def _centres(self, time: Floats) -> tuple[Floats, Floats]:
-        """Return places [m] and velocities [m/s] of all centres at times [s] (..., B): (2, ..., B)."""
+        """Return places [m] and velocities [m/s] of all centres at times [s] (..., B):
+        (2, ..., B).
+        """
         drops = np.broadcast_to(np.arange(len(self.until)), time.shape)
         state, _ = self.at(drops.ravel(), time.ravel())
         return state.position.reshape(2, *time.shape), state.velocity.reshape(2, *time.shape)
@@ -194,20 +266,26 @@ class LyingSpheres:
 
 def _across(one: Floats, other: Floats) -> Bools:
     """Return where two vectors do not lie along one line."""
-    return np.asarray(np.abs(one[0] * other[1] - one[1] * other[0]) > ACROSS * np.hypot(*one) * np.hypot(*other))
+    return np.asarray(
+        np.abs(one[0] * other[1] - one[1] * other[0]) > ACROSS * np.hypot(*one) * np.hypot(*other)
+    )
 
 
 def _turns(slip: Floats, turning: Floats, forces: _Forces) -> Bools:
-    """Return where gravity pulls across the slip, or the moment acts across one of both, so that directions turn."""
+    """Return where gravity pulls across the slip, or the moment acts across one of both,
+    so that directions turn.
+    """
     moment = (forces.resistance > 0.0) & (_across(slip, turning) | _across(forces.gravity, turning))
     return np.asarray(_across(slip, forces.gravity) | moment)
 
 
 class _Phase(NamedTuple):
-    """A part of the motion of spheres along a line, without a zero of the slip or the spin within it.
+    """A part of the motion of spheres along a line, without a zero of the slip or the spin within
+    it.
 
-    `begin`: of the part [s] (B,). `along`: the direction (2, B). Then, along it (B,): at its begin the way of the contact point, its slip,
-    and what the moment makes of both; the acceleration of the slip, what the moment adds to it, and what friction takes from it.
+    `begin`: of the part [s] (B,). `along`: the direction (2, B). Then, along it (B,): at its begin
+    the way of the contact point, its slip, and what the moment makes of both; the acceleration of
+    the slip, what the moment adds to it, and what friction takes from it.
     """
 
     begin: Floats
@@ -221,22 +299,46 @@ class _Phase(NamedTuple):
     taken: Floats
 
     def at(self, drops: Drops, time: Floats) -> Floats:
-        """Return the way of the contact point and its slip, what the moment makes of both, and what friction takes, at times (5, 2, b)."""
-        along, (begin, *parts) = self.along[:, drops], (part[drops] for part in (self.begin, *self[2:]))
+        """Return the way of the contact point and its slip, what the moment makes of
+        both, and what friction takes, at times (5, 2, b).
+        """
+        along, (begin, *parts) = (
+            self.along[:, drops],
+            (part[drops] for part in (self.begin, *self[2:])),
+        )
         way, slip, turned_way, turned, rate, turn, taken = parts
         step = time - begin
-        way, turned_way = way + (slip * step + 0.5 * rate * step**2), turned_way + (turned * step + 0.5 * turn * step**2)
-        return np.stack([way, slip + rate * step, turned_way, turned + turn * step, taken])[:, None] * along
+        way, turned_way = (
+            way + (slip * step + 0.5 * rate * step**2),
+            turned_way + (turned * step + 0.5 * turn * step**2),
+        )
+        return (
+            np.stack([way, slip + rate * step, turned_way, turned + turn * step, taken])[:, None]
+            * along
+        )
 
 
 def _straight(slip: Floats, turning: Floats, forces: _Forces, until: Floats) -> list[_Phase]:
-    """Return the motion of spheres along a line, from one zero of the slip or the spin to the next; arrays are (2, B)."""
+    """Return the motion of spheres along a line, from one zero of the slip or the spin to
+    the next; arrays are (2, B).
+    """
     speed, down, around = np.hypot(*slip), np.hypot(*forces.gravity), np.hypot(*turning)
     with np.errstate(divide="ignore", invalid="ignore"):
         along = np.where(around > 0.0, turning / around, 0.0)
-        along = np.where(speed > 0.0, slip / speed, np.where(down > 0.0, forces.gravity / down, along))
-    pull, spin, begin = (forces.gravity * along).sum(axis=0), (turning * along).sum(axis=0), np.zeros_like(until)
-    way, now, turned_way, turned = np.zeros_like(speed), speed, np.zeros_like(speed), np.zeros_like(speed)
+        along = np.where(
+            speed > 0.0, slip / speed, np.where(down > 0.0, forces.gravity / down, along)
+        )
+    pull, spin, begin = (
+        (forces.gravity * along).sum(axis=0),
+        (turning * along).sum(axis=0),
+        np.zeros_like(until),
+    )
+    way, now, turned_way, turned = (
+        np.zeros_like(speed),
+        speed,
+        np.zeros_like(speed),
+        np.zeros_like(speed),
+    )
     phases: list[_Phase] = []
     while True:
         rate, turn, taken = _rates(now, spin, pull, forces)
@@ -247,48 +349,74 @@ def _straight(slip: Floats, turning: Floats, forces: _Forces, until: Floats) -> 
         spin_rate = (1.0 - forces.share) * (rate - pull) + forces.share * turn
         with np.errstate(divide="ignore", invalid="ignore"):
             stop = np.where(now * rate < 0.0, -now / rate, np.inf)
-            settle = np.where((forces.resistance > 0.0) & (spin * spin_rate < 0.0), -spin / spin_rate, np.inf)
+            settle = np.where(
+                (forces.resistance > 0.0) & (spin * spin_rate < 0.0), -spin / spin_rate, np.inf
+            )
         step = np.minimum(np.maximum(left, 0.0), np.minimum(stop, settle))
         way = way + (now * step + 0.5 * rate * step**2)
         turned_way = turned_way + (turned * step + 0.5 * turn * step**2)
         turned = turned + turn * step
-        now, spin = np.where(step < stop, now + rate * step, 0.0), np.where(step < settle, spin + spin_rate * step, 0.0)
+        now, spin = (
+            np.where(step < stop, now + rate * step, 0.0),
+            np.where(step < settle, spin + spin_rate * step, 0.0),
+        )
         begin = np.minimum(begin + step, until)
 
 
 def _along_a_line(phases: Sequence[_Phase], drops: Drops, time: Floats) -> Floats:
-    """Return the rows of `_Phase.at` of some spheres at times [s] (b,), each in the last phase that has begun."""
+    """Return the rows of `_Phase.at` of some spheres at times [s] (b,), each in the last
+    phase that has begun.
+    """
     found = phases[0].at(drops, time)
     for phase in phases[1:]:
         found = np.where(time >= phase.begin[drops], phase.at(drops, time), found)
     return found
 
 
-def _rates(slip: Floats, turning: Floats, pull: Floats, forces: _Forces) -> tuple[Floats, Floats, Floats]:
-    """Return the accelerations of the slip along a line, what the moment adds to it, and what friction takes from it."""
+def _rates(
+    slip: Floats, turning: Floats, pull: Floats, forces: _Forces
+) -> tuple[Floats, Floats, Floats]:
+    """Return the accelerations of the slip along a line, what the moment adds to it, and
+    what friction takes from it.
+    """
     rubbed = forces.bound * np.sign(slip)
-    friction = np.where(slip != 0.0, rubbed, np.clip(pull / forces.share, -forces.bound, forces.bound))
+    friction = np.where(
+        slip != 0.0, rubbed, np.clip(pull / forces.share, -forces.bound, forces.bound)
+    )
     holding = (1.0 - forces.share) * friction  # the moment that leaves a sphere without spin
-    turn = np.where(turning != 0.0, -forces.resistance * np.sign(turning), np.clip(holding, -forces.resistance, forces.resistance))
+    turn = np.where(
+        turning != 0.0,
+        -forces.resistance * np.sign(turning),
+        np.clip(holding, -forces.resistance, forces.resistance),
+    )
     free = pull + turn
     # where the slip has ended it begins again, if friction can't hold it
     again = np.sign(free) * np.maximum(np.abs(free) - forces.bound, 0.0)
-    return np.where(slip != 0.0, free - rubbed, again), turn, np.where(slip != 0.0, rubbed, free - again)
+    return (
+        np.where(slip != 0.0, free - rubbed, again),
+        turn,
+        np.where(slip != 0.0, rubbed, free - again),
+    )
 
 
 class _Curve:
-    """The motion of one sphere whose directions turn, by integration from one zero of the slip or the spin to the next.
+    """The motion of one sphere whose directions turn, by integration from one zero of the slip or
+    the spin to the next.
 
-    `slip`, `turning`: at the start (2, 1). `until`: its end [s]. The rows of its state (rows, 2, T) are the first four of `_Phase.at`, two
-    where rolling is not resisted. `steps`: times of the integration [s]. `parts`: their begins [s], and the rows of `_Phase.at` at times
-    within them.
+    `slip`, `turning`: at the start (2, 1). `until`: its end [s]. The rows of its state (rows, 2, T)
+    are the first four of `_Phase.at`, two where rolling is not resisted. `steps`: times of the
+    integration [s]. `parts`: their begins [s], and the rows of `_Phase.at` at times within them.
     """
 
     def __init__(self, slip: Floats, turning: Floats, forces: _Forces, until: float) -> None:
         self.slip, self.turning, self.forces, self.gravity = slip, turning, forces, forces.gravity
-        self.bound, self.resistance, self.share = (float(part[0]) for part in (forces.bound, forces.resistance, forces.share))
+        self.bound, self.resistance, self.share = (
+            float(part[0]) for part in (forces.bound, forces.resistance, forces.share)
+        )
         self.resists = self.resistance > 0.0
-        self.least = _STOPPED * float((np.hypot(*slip) + (np.hypot(*turning) if self.resists else 0.0))[0])
+        self.least = _STOPPED * float(
+            (np.hypot(*slip) + (np.hypot(*turning) if self.resists else 0.0))[0]
+        )
         self.steps = np.zeros(1)
         self.parts: list[tuple[float, Callable[[Floats], Floats]]] = []
         self._follow(until)
@@ -307,8 +435,11 @@ class _Curve:
         time, rows = 0.0, np.zeros((4 if self.resists else 2, 2, 1))
         rows[1], slips = self.slip, self._goes_on(self.slip)
         while True:
-            turns = self.resists and self._goes_on(0.5 * self._spin(time, rows))  # not what has ended in the last part
-            slips = slips or (turns and float(np.hypot(*(self.gravity + self._turn(time, rows)))[0]) > self.bound)
+            # not what has ended in the last part
+            turns = self.resists and self._goes_on(0.5 * self._spin(time, rows))
+            slips = slips or (
+                turns and float(np.hypot(*(self.gravity + self._turn(time, rows)))[0]) > self.bound
+            )
             if not (slips or turns):
                 self.parts.append((time, self._straight_on(time, rows, until)))
                 return
@@ -327,16 +458,26 @@ class _Curve:
 
     def _spin(self, time: Floats | float, rows: Floats) -> Floats:
         """Return what the spin makes of the slip."""
-        return np.asarray(self.turning + (1.0 - self.share) * (rows[1] - self.slip - self.gravity * time) + self.share * rows[3])
+        return np.asarray(
+            self.turning
+            + (1.0 - self.share) * (rows[1] - self.slip - self.gravity * time)
+            + self.share * rows[3]
+        )
 
     def _turn(self, time: Floats | float, rows: Floats, held: bool = False) -> Floats:
-        """Return what the moment adds to the acceleration of the slip; `held`: so that the sphere stays without spin."""
+        """Return what the moment adds to the acceleration of the slip; `held`: so that
+        the sphere stays without spin.
+        """
         if held:
             return self._directed((1.0 - self.share) * self.bound, rows[1])
         return self._directed(-self.resistance, self._spin(time, rows))
 
-    def _integrate(self, begin: float, rows: Floats, until: float, slips: bool, turns: bool) -> tuple[float, Floats, bool]:
-        """Add a part to where slip or spin end, or the slip begins; return time and state there, and whether it slips then."""
+    def _integrate(
+        self, begin: float, rows: Floats, until: float, slips: bool, turns: bool
+    ) -> tuple[float, Floats, bool]:
+        """Add a part to where slip or spin end, or the slip begins; return time and state
+        there, and whether it slips then.
+        """
         from scipy.integrate import solve_ivp  # what moves along one line does not load it
 
         held = not turns and self.resistance >= (1.0 - self.share) * self.bound
@@ -344,14 +485,24 @@ class _Curve:
         def rates(time: float, flat: Floats) -> Floats:
             rows = flat.reshape(-1, 2, 1)
             if not self.resists:
-                return np.concatenate([rows[1], self.gravity - self._directed(self.bound, rows[1])]).ravel()
+                return np.concatenate(
+                    [rows[1], self.gravity - self._directed(self.bound, rows[1])]
+                ).ravel()
             turn = self._turn(time, rows, held)
-            rate = self.gravity + turn - self._directed(self.bound, rows[1]) if slips else np.zeros((2, 1))
+            rate = (
+                self.gravity + turn - self._directed(self.bound, rows[1])
+                if slips
+                else np.zeros((2, 1))
+            )
             return np.concatenate([rows[1], rate, rows[3], turn]).ravel()
 
         def changes(time: float, flat: Floats) -> float:
             rows = flat.reshape(-1, 2, 1)
-            left = np.hypot(*rows[1]) - self.least if slips else self.bound - np.hypot(*(self.gravity + self._turn(time, rows)))
+            left = (
+                np.hypot(*rows[1]) - self.least
+                if slips
+                else self.bound - np.hypot(*(self.gravity + self._turn(time, rows)))
+            )
             return float(left[0])
 
         def settles(time: float, flat: Floats) -> float:
@@ -360,18 +511,32 @@ class _Curve:
         ends = [changes, settles] if turns else [changes]
         for one in ends:
             one.terminal, one.direction = True, -1.0  # type: ignore[attr-defined]
-        # an error that is small beside what counts as ended, however slow the motion: else the end is stepped over to and fro for ever
-        settings = {"method": "DOP853", "rtol": 1e-11, "atol": 1e-5 * self.least, "dense_output": True}
+        # an error that is small beside what counts as ended, however slow the motion: else the end
+        # is stepped over to and fro for ever
+        settings = {
+            "method": "DOP853",
+            "rtol": 1e-11,
+            "atol": 1e-5 * self.least,
+            "dense_output": True,
+        }
         found = solve_ivp(rates, (begin, until), rows.ravel(), events=ends, **settings)
 
         def part(time: Floats) -> Floats:
             rows = found.sol(time).reshape(-1, 2, len(time))
-            taken = self._directed(self.bound, rows[1]) if slips else self.gravity + self._turn(time, rows)
+            taken = (
+                self._directed(self.bound, rows[1])
+                if slips
+                else self.gravity + self._turn(time, rows)
+            )
             return np.concatenate([rows, np.zeros((4 - len(rows), 2, len(time))), taken[None]])
 
         self.parts.append((begin, part))
         self.steps = np.append(self.steps, found.t)
-        return float(found.t[-1]), found.y[:, -1].reshape(-1, 2, 1), slips != bool(len(found.t_events[0]))
+        return (
+            float(found.t[-1]),
+            found.y[:, -1].reshape(-1, 2, 1),
+            slips != bool(len(found.t_events[0])),
+        )
 
     def _straight_on(self, begin: float, rows: Floats, until: float) -> Callable[[Floats], Floats]:
         """Return the rows from a time on when slip and spin have ended."""

@@ -14,7 +14,9 @@ _ROUNDING = 1e-5
 """Error of the rate of the depth at release, as a part of the largest."""
 
 
-def slide(law: FrictionLaw | None, normal: NormalMotion, slip: Floats, mass: Floats, pull: Floats) -> Sliding:
+def slide(
+    law: FrictionLaw | None, normal: NormalMotion, slip: Floats, mass: Floats, pull: Floats
+) -> Sliding:
     """Return the sliding of contacts.
 
     Parameters
@@ -34,15 +36,26 @@ def slide(law: FrictionLaw | None, normal: NormalMotion, slip: Floats, mass: Flo
         return _slide_compliant(law, normal, slip, mass, pull)
     free, none = slip + pull * normal.time, np.zeros_like(slip)
     if not isinstance(law, ImpulsiveFriction):
-        return Sliding(normal.time, free, slip * normal.time + 0.5 * pull * normal.time**2, np.zeros_like(free), none)
+        return Sliding(
+            normal.time,
+            free,
+            slip * normal.time + 0.5 * pull * normal.time**2,
+            np.zeros_like(free),
+            none,
+        )
     pressed = normal.pressed
     left = law.slip_after(free, pressed, pressed[-1], mass)
     force = law.force(left, normal.force)
-    return Sliding(normal.time, left, normal.integrals(left, normal.pace * (pull - force / mass)), force, none)
+    return Sliding(
+        normal.time, left, normal.integrals(left, normal.pace * (pull - force / mass)), force, none
+    )
 
 
-def _slide_compliant(law: CompliantFriction, normal: NormalMotion, slip: Floats, mass: Floats, pull: Floats) -> Sliding:
-    """Return the sliding of contacts under a law with tangential compliance, each followed by the core.
+def _slide_compliant(
+    law: CompliantFriction, normal: NormalMotion, slip: Floats, mass: Floats, pull: Floats
+) -> Sliding:
+    """Return the sliding of contacts under a law with tangential compliance, each followed by the
+    core.
 
     Parameters
     ----------
@@ -57,7 +70,8 @@ def _slide_compliant(law: CompliantFriction, normal: NormalMotion, slip: Floats,
     pull : array, shape (B,)
         Accelerations along the direction [m/s^2].
     """
-    from vibroimpact.dynamics.core.sliding_paths import slide_contacts  # a drop without such friction does not load the compiler
+    # a drop without such friction does not load the compiler
+    from vibroimpact.dynamics.core.sliding_paths import slide_contacts
 
     size = len(slip)
     points = len(normal.steps) + 1

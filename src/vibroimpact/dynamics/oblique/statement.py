@@ -21,7 +21,8 @@ def _are_numbers(value: Any) -> bool:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Oblique:
-    """Initial motion along the plate and spin, and the friction law; each value is a number, or an array with one a drop.
+    """Initial motion along the plate and spin, and the friction law; each value is a number, or an
+    array with one a drop.
 
     The axes x and y lie in the plate's upper surface, z is its normal, upwards.
 
@@ -38,10 +39,11 @@ class Oblique:
     friction : FrictionLaw, optional
         The friction law; none by default.
     size : tuple of two floats, optional
-        Length and width of the plate [m], beyond which the sphere falls off its edge; by default it never does.
+        Length and width of the plate [m], beyond which the sphere falls off its edge; by default it
+        never does.
     inertia_ratio : float or array, default 0.4
-        Moment of inertia over mass and square of the radius [-]; 0.4 of a solid sphere. Leave it out where the body of the sphere has
-        its own `inertia`.
+        Moment of inertia over mass and square of the radius [-]; 0.4 of a solid sphere. Leave it
+        out where the body of the sphere has its own `inertia`.
 
     Raises
     ------
@@ -68,27 +70,48 @@ class Oblique:
             if not isinstance(values, (tuple, list, np.ndarray)) or len(values) != count:
                 raise InputError(f"{name} of an oblique drop has {count} values, not {values!r}")
             if not all(_are_numbers(value) for value in values):
-                raise InputError(f"{name} of an oblique drop must be finite numbers in SI, not {values!r}")
+                raise InputError(
+                    f"{name} of an oblique drop must be finite numbers in SI, not {values!r}"
+                )
         if self.friction is not None and not isinstance(self.friction, FrictionLaw):
             raise InputError(
-                'friction must be a friction law with its parameters, such as vi.find_friction_law("coulomb")(coefficient=0.3), '
+                "friction must be a friction law with its parameters, such as "
+                'vi.find_friction_law("coulomb")(coefficient=0.3), '
                 f"not {self.friction!r}"
             )
         if not (_are_numbers(self.inertia_ratio) and np.all(np.asarray(self.inertia_ratio) > 0.0)):
-            raise InputError(f"inertia_ratio must be greater than 0 and finite, not {self.inertia_ratio!r}")
+            raise InputError(
+                f"inertia_ratio must be greater than 0 and finite, not {self.inertia_ratio!r}"
+            )
         if self.size is not None:
             pair = isinstance(self.size, (tuple, list, np.ndarray)) and len(self.size) == 2
-            if not (pair and all(np.ndim(side) == 0 and _are_numbers(side) and side > 0.0 for side in self.size)):
-                raise InputError(f"size is the length and the width of the plate, greater than 0 m and finite, not {self.size!r}")
-            if any(np.any(np.abs(at) > 0.5 * side) for at, side in zip(self.position, self.size, strict=True)):
+            if not (
+                pair
+                and all(
+                    np.ndim(side) == 0 and _are_numbers(side) and side > 0.0 for side in self.size
+                )
+            ):
                 raise InputError(
-                    "position lies outside the plate: from its centre the plate reaches half its length along x and half its width along y"
+                    "size is the length and the width of the plate, greater than 0 m and "
+                    f"finite, not {self.size!r}"
+                )
+            if any(
+                np.any(np.abs(at) > 0.5 * side)
+                for at, side in zip(self.position, self.size, strict=True)
+            ):
+                raise InputError(
+                    "position lies outside the plate: from its centre the plate reaches "
+                    "half its length along x and half its width along y"
                 )
 
     @property
     def values(self) -> list[Array]:
         """All values that may be arrays."""
-        law = [] if self.friction is None else [getattr(self.friction, item.name) for item in fields(self.friction)]
+        law = (
+            []
+            if self.friction is None
+            else [getattr(self.friction, item.name) for item in fields(self.friction)]
+        )
         return [*self.velocity, *self.spin, *self.position, *self.gravity, self.inertia_ratio, *law]
 
     @property
@@ -108,7 +131,10 @@ class Oblique:
 
         return replace(
             self,
-            **{name: tuple(one(value) for value in getattr(self, name)) for name in ("velocity", "spin", "position", "gravity")},
+            **{
+                name: tuple(one(value) for value in getattr(self, name))
+                for name in ("velocity", "spin", "position", "gravity")
+            },
             friction=None if self.friction is None else self.friction.take(drop),
             inertia_ratio=one(self.inertia_ratio),
         )

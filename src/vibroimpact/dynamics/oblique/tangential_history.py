@@ -17,7 +17,8 @@ def tangential_history(law: CompliantFriction, largest_force: float) -> Tangenti
     law : CompliantFriction
         Of one drop.
     largest_force : float
-        About the largest normal force that will come [N], in whose contact the springs of a row are close enough to each other.
+        About the largest normal force that will come [N], in whose contact the springs of a row are
+        close enough to each other.
 
     Examples
     --------
@@ -25,8 +26,14 @@ def tangential_history(law: CompliantFriction, largest_force: float) -> Tangenti
 
     >>> import vibroimpact as vi
     >>> from vibroimpact.dynamics.core.tangential_history import history_after
-    >>> moduli = {"effective_modulus": 60e9, "effective_shear_modulus": 50e9, "effective_radius": 0.01}
-    >>> spring = tangential_history(vi.find_friction_law("mindlin")(coefficient=0.1, **moduli), 100.0)
+    >>> moduli = {
+    ...     "effective_modulus": 60e9,
+    ...     "effective_shear_modulus": 50e9,
+    ...     "effective_radius": 0.01,
+    ... }
+    >>> spring = tangential_history(
+    ...     vi.find_friction_law("mindlin")(coefficient=0.1, **moduli), 100.0
+    ... )
     >>> for moved in (0.0, 1e-7, 1e-3):
     ...     spring = history_after(spring, 100.0, moved, 0.0)
     ...     print(round(float(spring.force[0]), 4))

@@ -2,7 +2,8 @@ r"""The spin about the normal of spheres in contact, which twisting friction slo
 
 .. math:: I \dot\omega = -M\, p\left(\frac{a |\omega|}{s}\right) \frac{\omega}{|\omega|}
 
-with the moment M of full twisting, and the part p of it that the slip s of the contact leaves (`FrictionLaw.twisting_part`).
+with the moment M of full twisting, and the part p of it that the slip s of the contact leaves
+(`FrictionLaw.twisting_part`).
 """
 
 from __future__ import annotations
@@ -13,8 +14,11 @@ from vibroimpact.arrays import Floats
 from vibroimpact.contact.friction.law import FrictionLaw
 
 
-def slowed_spins(law: FrictionLaw, spin: Floats, slower: Floats, force: Floats, friction: Floats, slip: Floats) -> tuple[Floats, Floats]:
-    """Return the sizes of B spins about the normal at G points of time [rad/s] (G, B), and what they lose from each to the next.
+def slowed_spins(
+    law: FrictionLaw, spin: Floats, slower: Floats, force: Floats, friction: Floats, slip: Floats
+) -> tuple[Floats, Floats]:
+    """Return the sizes of B spins about the normal at G points of time [rad/s] (G, B), and what
+    they lose from each to the next.
 
     By Heun's method; what is lost, (G - 1, B), is more than the spin where it ends on the way.
 

@@ -25,7 +25,8 @@ if TYPE_CHECKING:  # a drop of rigid bodies does not load what vibrates
 
 
 class RigidBodies:
-    """The bodies of B drops that do not vibrate: a sphere falls on a plate at rest. `Bodies` describes the methods.
+    """The bodies of B drops that do not vibrate: a sphere falls on a plate at rest. `Bodies`
+    describes the methods.
 
     Parameters
     ----------
@@ -41,8 +42,12 @@ class RigidBodies:
         self.left = np.full(size, np.nan)
         self.lying: list[RestMotion | None] = [None] * size
 
-    def next_touch(self, drops: Drops, flight: Flight, law: ContactLaw) -> tuple[Floats, Floats, Motions]:
-        """Return times of touch [s] from the parabolas of the flights, approach speeds [m/s], and no motions of bodies."""
+    def next_touch(
+        self, drops: Drops, flight: Flight, law: ContactLaw
+    ) -> tuple[Floats, Floats, Motions]:
+        """Return times of touch [s] from the parabolas of the flights, approach speeds
+        [m/s], and no motions of bodies.
+        """
         return *flight.touch(-law.touch_level if isinstance(law, CompliantLaw) else np.zeros(1)), ()
 
     def pass_flight(self, drops: Drops, motions: Motions, elapsed: Floats) -> None:
@@ -57,13 +62,20 @@ class RigidBodies:
         return velocity
 
     def collide(
-        self, drops: Drops, encounter: Encounter, place: tuple[Floats, Floats], limits: tuple[Floats, Floats], row: dict[str, Floats]
+        self,
+        drops: Drops,
+        encounter: Encounter,
+        place: tuple[Floats, Floats],
+        limits: tuple[Floats, Floats],
+        row: dict[str, Floats],
     ) -> tuple[Contact, Floats, Floats]:
         """Return the contact of drops from the solver of the run."""
         return self.solve_contact(encounter, drops)
 
     def slide(self, oblique: ObliqueMotion, leg: Leg, row: dict[str, Floats]) -> ObliqueContacts:
-        """Advance drops along the plate, driven by the normal motion of their contacts, which does not feel friction."""
+        """Advance drops along the plate, driven by the normal motion of their contacts,
+        which does not feel friction.
+        """
         assert leg.contact is not None
         assert leg.contact.normals is not None
         assert leg.encounter is not None
@@ -72,24 +84,36 @@ class RigidBodies:
         return oblique.collide(leg.contact_drops, motions, row)
 
     def falls_back(self, contact: Contact, law: CompliantLaw, gravity: Floats) -> Bools:
-        """Return which drops fall back into the indentation before they have risen to the touch level of the law."""
+        """Return which drops fall back into the indentation before they have risen to the
+        touch level of the law.
+        """
         overlap = np.maximum(contact.final_delta - law.touch_level, 0.0)
-        return np.asarray((contact.outcome != FAILED) & (contact.final_rate**2 < 2.0 * gravity * overlap))
+        return np.asarray(
+            (contact.outcome != FAILED) & (contact.final_rate**2 < 2.0 * gravity * overlap)
+        )
 
     def rests(self, drops: Drops, velocity: Floats, rest_speed: Floats) -> Bools:
         """Return which drops separate below the rest speed, or not at all."""
         return np.asarray((velocity < rest_speed) | (velocity == 0.0))
 
-    def static_state(self, drops: Drops, law: ContactLaw, weight: Floats, energy: Floats) -> dict[str, Floats]:
-        """Return the static indentation under the weight [N], its energy, and the rest of the energy."""
+    def static_state(
+        self, drops: Drops, law: ContactLaw, weight: Floats, energy: Floats
+    ) -> dict[str, Floats]:
+        """Return the static indentation under the weight [N], its energy, and the rest of
+        the energy.
+        """
         sag = stored = np.zeros(len(drops))
         if isinstance(law, CompliantLaw):
             sag = static_indentation(law, weight)
             stored = law.elastic_energy(sag)
         return {"sag": sag, "stored": stored, "written_off": energy - (stored - weight * sag)}
 
-    def follow(self, drops: Drops, elapsed: Floats, sag: Floats, stored: Floats) -> tuple[Floats, Floats, Floats]:
-        """Return the gap of the static indentation, no velocity, and the stored energy: rigid bodies lie still."""
+    def follow(
+        self, drops: Drops, elapsed: Floats, sag: Floats, stored: Floats
+    ) -> tuple[Floats, Floats, Floats]:
+        """Return the gap of the static indentation, no velocity, and the stored energy:
+        rigid bodies lie still.
+        """
         return -sag, np.zeros(len(drops)), stored
 
     def energies(self) -> dict[str, Floats]:

@@ -11,8 +11,11 @@ from vibroimpact.dynamics.rigid.timeline import Timeline
 from vibroimpact.dynamics.shaken.ride import RideSegment
 
 
-def rigid_history(problem: Problem, segments: Timeline, number: int, times: Floats, written_off: float) -> dict[str, Floats]:
-    """Return the columns of the motion along the normal, by their names, at times since the start of one segment [s] (T,).
+def rigid_history(
+    problem: Problem, segments: Timeline, number: int, times: Floats, written_off: float
+) -> dict[str, Floats]:
+    """Return the columns of the motion along the normal, by their names, at times since the start
+    of one segment [s] (T,).
 
     Parameters
     ----------
@@ -27,11 +30,16 @@ def rigid_history(problem: Problem, segments: Timeline, number: int, times: Floa
     written_off : float
         Energy that was written off when the sphere came to rest [J].
     """
-    segment, mass, gravity = segments[number], float(problem.sphere.mass), float(problem.net_gravity)
+    segment, mass, gravity = (
+        segments[number],
+        float(problem.sphere.mass),
+        float(problem.net_gravity),
+    )
     gap, velocity, force, stored, lost, plastic = segment.at(times)
     lost_before, plastic_before, drive_before = segments.spent[number]
     resting = isinstance(segment, RestSegment)
-    indents = not isinstance(segment, FlightSegment | RideSegment)  # a hard sphere that rides does not, and the plate moves under it
+    # a hard sphere that rides does not, and the plate moves under it
+    indents = not isinstance(segment, FlightSegment | RideSegment)
     found = {
         "time_s": segment.start + times,
         "position_m": float(problem.sphere.contact_offset) + gap,
@@ -48,7 +56,9 @@ def rigid_history(problem: Problem, segments: Timeline, number: int, times: Floa
     }
     if problem.motion is not None:
         place, surface_velocity, _ = problem.surface(found["time_s"])
-        drive = drive_before - (segment.drive_work(times) if isinstance(segment, RideSegment) else 0.0 * times)
+        drive = drive_before - (
+            segment.drive_work(times) if isinstance(segment, RideSegment) else 0.0 * times
+        )
         found |= {"surface_m": place, "surface_velocity_m_s": surface_velocity, "drive_J": drive}
     if isinstance(segment, FlightSegment):
         found["acceleration_m_s2"] = segment.flight.acceleration(segment.flight.start + times)

@@ -1,4 +1,6 @@
-"""Contacts of rigid bodies, solved by the core one drop after the other, and the motion within them."""
+"""Contacts of rigid bodies, solved by the core one drop after the other, and the motion
+within them.
+"""
 
 from __future__ import annotations
 
@@ -35,15 +37,20 @@ _ROOM = 200  # steps of a contact, at first
 _SEGMENTS = 2  # of a contact, at first
 _PARTS = 4  # of a step in a history
 _TIGHTEST = 1e-11  # a smaller tolerance is too close to rounding for collocation
-_LOOSEST = 1e-9  # at a larger one, which costs hardly less, the largest force would be less exact than it is taken to be
+# at a larger one, which costs hardly less, the largest force would be less exact than it is taken
+# to be
+_LOOSEST = 1e-9
 _NO_COMPLIANCE = np.zeros(7)
 _OF_STEP = 0.01  # of the tolerance: error of a step, of which a contact has some dozens
 _LEAST_ERROR = 1e-14
 _ON_CORNER = 1e-9  # of the duration
 
 
-def follow_contacts(encounter: Encounter, tolerance: float, friction_steps: int = 0) -> tuple[Contact, Floats, Floats]:
-    """Return the contacts of B drops, their largest forces [N], and the times of these since first touch [s].
+def follow_contacts(
+    encounter: Encounter, tolerance: float, friction_steps: int = 0
+) -> tuple[Contact, Floats, Floats]:
+    """Return the contacts of B drops, their largest forces [N], and the times of these since first
+    touch [s].
 
     Parameters
     ----------
@@ -56,23 +63,67 @@ def follow_contacts(encounter: Encounter, tolerance: float, friction_steps: int 
     """
     law, size = encounter.law, len(encounter.mass)
     collocates = _collocates(law, tolerance)
-    touches = np.array([encounter.mass, encounter.gravity, encounter.approach_speed, encounter.depth, encounter.speed_scale])
+    touches = np.array(
+        [
+            encounter.mass,
+            encounter.gravity,
+            encounter.approach_speed,
+            encounter.depth,
+            encounter.speed_scale,
+        ]
+    )
     rules = _rules(law, tolerance)
     contacts, solved, written = _room_for(size, friction_steps), 0, 0
     with coefficients_of(law, size) as coefficients:
-        known = rules, normal_grid(friction_steps), collocates, law_addresses(type(law)), coefficients, touches
+        known = (
+            rules,
+            normal_grid(friction_steps),
+            collocates,
+            law_addresses(type(law)),
+            coefficients,
+            touches,
+        )
         while True:
-            solved, written = follow_lines(_manner(encounter, 0, tolerance), *known, contacts, solved, written)
+            solved, written = follow_lines(
+                _manner(encounter, 0, tolerance), *known, contacts, solved, written
+            )
             if solved == size:
                 break
-            contacts = contacts._replace(motions=np.append(contacts.motions, np.empty_like(contacts.motions)))
-    duration, final_delta, final_rate, dissipated, deepest, time_of_deepest, peak_force, time_of_peak, plastic, stored = contacts.ends
+            contacts = contacts._replace(
+                motions=np.append(contacts.motions, np.empty_like(contacts.motions))
+            )
+    (
+        duration,
+        final_delta,
+        final_rate,
+        dissipated,
+        deepest,
+        time_of_deepest,
+        peak_force,
+        time_of_peak,
+        plastic,
+        stored,
+    ) = contacts.ends
     after = law.after_compression(deepest)
-    pieces = [Piece(np.arange(size), np.zeros(size), LineMotion(encounter, tolerance, "compression", time_of_deepest), law)]
+    pieces = [
+        Piece(
+            np.arange(size),
+            np.zeros(size),
+            LineMotion(encounter, tolerance, "compression", time_of_deepest),
+            law,
+        )
+    ]
     left = np.flatnonzero(duration > time_of_deepest)
     if left.size:
         spans = (duration - time_of_deepest)[left]
-        pieces.append(Piece(left, time_of_deepest[left], LineMotion(encounter.take(left), tolerance, "restitution", spans), after))
+        pieces.append(
+            Piece(
+                left,
+                time_of_deepest[left],
+                LineMotion(encounter.take(left), tolerance, "restitution", spans),
+                after,
+            )
+        )
     contact = Contact(
         pieces=pieces,
         outcome=_OUTCOMES[contacts.outcomes],
@@ -85,13 +136,16 @@ def follow_contacts(encounter: Encounter, tolerance: float, friction_steps: int 
         plastic=plastic,
         stored=stored,
         law=after,
-        normals=NormalRecords(friction_steps, contacts.shapes, contacts.begins, contacts.motions) if friction_steps else None,
+        normals=NormalRecords(friction_steps, contacts.shapes, contacts.begins, contacts.motions)
+        if friction_steps
+        else None,
     )
     return contact, peak_force, time_of_peak
 
 
 def release_rates(encounter: Encounter, tolerance: float) -> Floats:
-    """Return the indentation rates of B drops at the end of their contacts [m/s]: zero where they are captured, NaN where that failed.
+    """Return the indentation rates of B drops at the end of their contacts [m/s]: zero where they
+    are captured, NaN where that failed.
 
     A few are collocated in plain Python.
 
@@ -106,20 +160,38 @@ def release_rates(encounter: Encounter, tolerance: float) -> Floats:
     rates = np.full(size, np.nan)
     if size < FEW and _collocates(encounter.law, tolerance):
         with interpreted():
-            rates = np.array([_collocated_rate(encounter.pick(np.array([drop])), tolerance) for drop in range(size)])
+            rates = np.array(
+                [
+                    _collocated_rate(encounter.pick(np.array([drop])), tolerance)
+                    for drop in range(size)
+                ]
+            )
     left = np.flatnonzero(np.isnan(rates))
     if left.size:
         contact, *_ = follow_contacts(encounter.pick(left), tolerance)
-        rates[left] = np.where(contact.outcome == CAPTURED, 0.0, np.where(contact.outcome == FAILED, np.nan, contact.final_rate))
+        rates[left] = np.where(
+            contact.outcome == CAPTURED,
+            0.0,
+            np.where(contact.outcome == FAILED, np.nan, contact.final_rate),
+        )
     return rates
 
 
 def _collocated_rate(encounter: Encounter, tolerance: float) -> float:
-    """Return the indentation rate of one drop at the end of its contact [m/s]; NaN if it cannot be collocated."""
+    """Return the indentation rate of one drop at the end of its contact [m/s]; NaN if it
+    cannot be collocated.
+    """
     held, rules = encounter.law.take(0), _rules(encounter.law, tolerance)
-    law = law_at_touch(law_addresses(type(held)), law_coefficients(held), _NO_COMPLIANCE, float(encounter.approach_speed[0]))
+    law = law_at_touch(
+        law_addresses(type(held)),
+        law_coefficients(held),
+        _NO_COMPLIANCE,
+        float(encounter.approach_speed[0]),
+    )
     room = np.zeros((ROWS, rules.vectors.shape[2]))
-    solved, contact = collocate_contact(law, _manner(encounter, 0, tolerance), rules, normal_grid(0), room)
+    solved, contact = collocate_contact(
+        law, _manner(encounter, 0, tolerance), rules, normal_grid(0), room
+    )
     return float(contact.end.rate) if solved else np.nan
 
 
@@ -134,7 +206,9 @@ def _rules(law: CompliantLaw, tolerance: float) -> PhaseRules:
 
 
 def _room_for(size: int, friction_steps: int) -> records.LineContacts:
-    """Return room for the contacts of B drops, with normal motions that have some steps in each segment, if any."""
+    """Return room for the contacts of B drops, with normal motions that have some steps
+    in each segment, if any.
+    """
     moved = size if friction_steps else 0
     return records.LineContacts(
         outcomes=np.zeros(size, dtype=np.int64),
@@ -147,7 +221,8 @@ def _room_for(size: int, friction_steps: int) -> records.LineContacts:
 
 @dataclass(frozen=True)
 class LineMotion:
-    """The motion of b contacts in compression or restitution, which is computed again where it is read.
+    """The motion of b contacts in compression or restitution, which is computed again where it is
+    read.
 
     Parameters
     ----------
@@ -170,7 +245,12 @@ class LineMotion:
         """Return the motion of the drops under a mask."""
         if drops.all():
             return self
-        return LineMotion(self.encounter.pick(np.flatnonzero(drops)), self.tolerance, self.phase, self.duration[drops])
+        return LineMotion(
+            self.encounter.pick(np.flatnonzero(drops)),
+            self.tolerance,
+            self.phase,
+            self.duration[drops],
+        )
 
     @cached_property
     def recorded(self) -> RecordedContact:
@@ -180,7 +260,11 @@ class LineMotion:
     @property
     def begins_at(self) -> float:
         """Return the indentation at its start, of one drop [m]."""
-        return self.recorded.law.touch if self.phase == "compression" else self.recorded.contact.deepest
+        return (
+            self.recorded.law.touch
+            if self.phase == "compression"
+            else self.recorded.contact.deepest
+        )
 
     @property
     def begins(self) -> float:
@@ -188,14 +272,18 @@ class LineMotion:
         return 0.0 if self.phase == "compression" else self.recorded.contact.time_of_deepest
 
     def grid(self) -> Floats:
-        """Return times since the start at which the motion of one drop is well resolved [s]; that of the largest force is one of them."""
+        """Return times since the start at which the motion of one drop is well resolved
+        [s]; that of the largest force is one of them.
+        """
         times = self.recorded.times(self.phase == "restitution") - self.begins
         if self.phase == "compression":
             times = np.unique(np.append(times, self.recorded.contact.time_of_peak_force))
         return np.append(times[times < self.duration[0]], self.duration[0])
 
     def at(self, time: Floats, encounter: Encounter) -> tuple[Floats, Floats, Floats]:
-        """Return indentation [m], its rate [m/s] and the energy dissipated since the start [J] of one drop at times since then [s]."""
+        """Return indentation [m], its rate [m/s] and the energy dissipated since the
+        start [J] of one drop at times since then [s].
+        """
         delta, rate, lost = self.recorded.motion(self.begins + np.append(time, 0.0))
         return delta[:-1], rate[:-1], lost[:-1] - lost[-1]
 
@@ -226,7 +314,12 @@ class RecordedContact:
     def of(cls, encounter: Encounter, tolerance: float) -> RecordedContact:
         """Follow the contact of one drop again, and record its steps."""
         held = encounter.law.take(0)
-        law = law_at_touch(law_addresses(type(held)), law_coefficients(held), _NO_COMPLIANCE, float(encounter.approach_speed[0]))
+        law = law_at_touch(
+            law_addresses(type(held)),
+            law_coefficients(held),
+            _NO_COMPLIANCE,
+            float(encounter.approach_speed[0]),
+        )
         manner, room = _manner(encounter, 0, tolerance), _ROOM
         while True:
             steps = records.LineSteps(
@@ -249,16 +342,27 @@ class RecordedContact:
                 return cls(law, manner, kept, contact, held)
 
     def motion(self, times: Floats) -> Floats:
-        """Return indentation [m], its rate [m/s] and energy dissipated [J] (3, T) at times since touch [s]."""
+        """Return indentation [m], its rate [m/s] and energy dissipated [J] (3, T) at
+        times since touch [s].
+        """
         order = np.argsort(times, kind="stable")
         motion = np.empty((3, len(times)))
-        read_line(self.law, self.manner, self.contact.deepest, self.steps, np.ascontiguousarray(times[order]), motion)
+        read_line(
+            self.law,
+            self.manner,
+            self.contact.deepest,
+            self.steps,
+            np.ascontiguousarray(times[order]),
+            motion,
+        )
         found = np.empty_like(motion)
         found[:, order] = motion
         return found
 
     def times(self, after: bool) -> Floats:
-        """Return the times at which the contact is well resolved before, or after, its deepest point [s]."""
+        """Return the times at which the contact is well resolved before, or after, its
+        deepest point [s].
+        """
         times = np.empty((len(self.steps.length), _PARTS))
         time_line(self.law, self.manner, self.contact.deepest, self.steps, times)
         return np.asarray(times[self.steps.after == after].ravel())
@@ -266,9 +370,13 @@ class RecordedContact:
     def corners(self) -> Floats:
         """Return the times between which the force is smooth, from touch to the end [s]."""
         starts, variables, end = self.steps.begun[1:, 0], self.steps.variable, self.contact.end.time
-        within = starts[(variables[:-1] == BY_ROOT) | (variables[:-1] == FREE) | (variables[1:] == FREE)]
+        within = starts[
+            (variables[:-1] == BY_ROOT) | (variables[:-1] == FREE) | (variables[1:] == FREE)
+        ]
         times = np.unique(np.append(within, self.contact.time_of_deepest))
-        return np.concatenate([[0.0], times[(times > _ON_CORNER * end) & (times < (1.0 - _ON_CORNER) * end)], [end]])
+        return np.concatenate(
+            [[0.0], times[(times > _ON_CORNER * end) & (times < (1.0 - _ON_CORNER) * end)], [end]]
+        )
 
 
 def _manner(encounter: Encounter, drop: int, tolerance: float) -> records.LineManner:

@@ -1,4 +1,5 @@
-"""The history of one drop as a sequence of segments, each of which gives the motion at any time within it.
+"""The history of one drop as a sequence of segments, each of which gives the motion at any time
+within it.
 
 A segment counts time from its own start: a contact may be a billion times shorter than the run.
 """
@@ -16,8 +17,8 @@ from vibroimpact.dynamics.flight import Flight
 from vibroimpact.dynamics.shaken.ride import RideSegment
 
 Motion = tuple[Floats, Floats, Floats, Floats, Floats, Floats]
-"""Gap [m], upward velocity [m/s], contact force [N], stored energy [J], and energy lost in damping and in
-plastic deformation since the start [J]."""
+"""Gap [m], upward velocity [m/s], contact force [N], stored energy [J], and energy lost in damping
+and in plastic deformation since the start [J]."""
 
 
 class MotionInContact(Protocol):
@@ -35,7 +36,9 @@ class MotionInContact(Protocol):
         """Return times since the start at which it is well resolved [s]."""
 
     def at(self, time: Floats, encounter: Encounter) -> tuple[Floats, Floats, Floats]:
-        """Return indentation [m], its rate [m/s] and the energy dissipated since the start [J] at times since then [s]."""
+        """Return indentation [m], its rate [m/s] and the energy dissipated since the
+        start [J] at times since then [s].
+        """
 
 
 @dataclass(frozen=True)
@@ -83,7 +86,14 @@ class ContactSegment:
         force = elastic + dissipative
         if law.tension == "cut":
             force = np.maximum(force, 0.0)
-        return -delta, -velocity, force, law.elastic_energy(delta), lost, law.plastic_work(delta) - law.plastic_work(begun)
+        return (
+            -delta,
+            -velocity,
+            force,
+            law.elastic_energy(delta),
+            lost,
+            law.plastic_work(delta) - law.plastic_work(begun),
+        )
 
 
 @dataclass(frozen=True)
@@ -96,7 +106,9 @@ class RestSegment:
     weight: float
     stored: float
     points: int = 2
-    """Number of times at which it is well resolved: more where the sphere moves on along the plate."""
+    """Number of times at which it is well resolved: more where the sphere moves on along
+    the plate.
+    """
 
     def grid(self) -> Floats:
         """Return times since the start at which the segment is well resolved [s]."""
@@ -105,7 +117,14 @@ class RestSegment:
     def at(self, time: Floats) -> Motion:
         """Return the motion at times [s] since the start of the segment."""
         same = np.ones_like(time)
-        return -self.sag * same, 0.0 * same, self.weight * same, self.stored * same, 0.0 * same, 0.0 * same
+        return (
+            -self.sag * same,
+            0.0 * same,
+            self.weight * same,
+            self.stored * same,
+            0.0 * same,
+            0.0 * same,
+        )
 
 
 Segment = FlightSegment | ContactSegment | RestSegment | RideSegment

@@ -1,4 +1,6 @@
-"""The interface of contact solvers of rigid bodies, and the one that has the core solve each drop on its own."""
+"""The interface of contact solvers of rigid bodies, and the one that has the core solve
+each drop on its own.
+"""
 
 from __future__ import annotations
 
@@ -15,7 +17,9 @@ class SolvesContact(Protocol):
     """A solver of one contact of some drops of a run."""
 
     def __call__(self, encounter: Encounter, drops: Drops) -> tuple[Contact, Floats, Floats]:
-        """Return the contact, its largest force [N], and the time of that since first touch [s]; `drops` are indices in the run."""
+        """Return the contact, its largest force [N], and the time of that since first
+        touch [s]; `drops` are indices in the run.
+        """
         ...
 
 
@@ -24,7 +28,8 @@ def solver_for(problem: Problem) -> SolvesContact:
     steps = 0 if problem.oblique is None else friction_steps(problem.tolerance)
 
     def solve(encounter: Encounter, drops: Drops) -> tuple[Contact, Floats, Floats]:
-        from vibroimpact.dynamics.rigid.line_contact import follow_contacts  # a law without a force does not load the compiler
+        # a law without a force does not load the compiler
+        from vibroimpact.dynamics.rigid.line_contact import follow_contacts
 
         return follow_contacts(encounter, problem.tolerance, steps)
 

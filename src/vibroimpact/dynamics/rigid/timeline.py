@@ -10,13 +10,20 @@ import numpy as np
 
 from vibroimpact.arrays import Floats, Indices
 from vibroimpact.dynamics.leg import Leg
-from vibroimpact.dynamics.rigid.segments import ContactSegment, FlightSegment, MotionInContact, RestSegment, Segment
+from vibroimpact.dynamics.rigid.segments import (
+    ContactSegment,
+    FlightSegment,
+    MotionInContact,
+    RestSegment,
+    Segment,
+)
 from vibroimpact.dynamics.shaken.ride import RideSegment
 
 
 @dataclass(frozen=True, eq=False)
 class Timeline(Sequence[Segment]):
-    """Segments made lazily from the legs of a run, since those of a hundred thousand impacts would take 1 GB.
+    """Segments made lazily from the legs of a run, since those of a hundred thousand impacts would
+    take 1 GB.
 
     Parameters
     ----------
@@ -27,7 +34,8 @@ class Timeline(Sequence[Segment]):
     starts : array, shape (segments,)
         When each segment begins [s].
     spent : array, shape (segments, 3)
-        Energy lost before each in damping, in plastic deformation, and to the drive of the plate [J].
+        Energy lost before each in damping, in plastic deformation, and to the drive of the plate
+        [J].
     """
 
     legs: Sequence[Leg]
@@ -41,7 +49,9 @@ class Timeline(Sequence[Segment]):
         return len(self.starts)
 
     def leg_of(self, number: int) -> int:
-        """Return the number of the leg to which a segment belongs; what comes after them belongs to the last one."""
+        """Return the number of the leg to which a segment belongs; what comes after them
+        belongs to the last one.
+        """
         return min(int(np.searchsorted(self._firsts, number, side="right")), len(self.legs)) - 1
 
     @overload
@@ -63,7 +73,9 @@ class Timeline(Sequence[Segment]):
         return self._recent[leg][number - int(self._firsts[leg])]
 
 
-def timeline_of(legs: Sequence[Leg], rest: RestSegment | RideSegment | None, lost: Floats) -> Timeline:
+def timeline_of(
+    legs: Sequence[Leg], rest: RestSegment | RideSegment | None, lost: Floats
+) -> Timeline:
     """Return the history of one drop.
 
     Parameters
@@ -73,7 +85,8 @@ def timeline_of(legs: Sequence[Leg], rest: RestSegment | RideSegment | None, los
     rest : RestSegment, RideSegment or None
         What comes after them, if it comes to rest.
     lost : array, shape (impacts, 3)
-        Energy that each impact takes in damping, in plastic deformation, and minus the work of the drive of the plate [J].
+        Energy that each impact takes in damping, in plastic deformation, and minus the work of the
+        drive of the plate [J].
     """
     before = np.concatenate([np.zeros((1, 3)), np.cumsum(lost, axis=0)])
     starts: list[float] = []
@@ -89,7 +102,9 @@ def timeline_of(legs: Sequence[Leg], rest: RestSegment | RideSegment | None, los
             starts.append(segment.start)
             spent.append(so_far)
             if isinstance(segment, ContactSegment) and segment is not segments[-1]:
-                so_far = so_far + np.array([*(float(part[0]) for part in segment.at(segment.duration)[-2:]), 0.0])
+                so_far = so_far + np.array(
+                    [*(float(part[0]) for part in segment.at(segment.duration)[-2:]), 0.0]
+                )
     if rest is not None:
         firsts.append(len(starts))
         starts.append(rest.start)
@@ -109,7 +124,11 @@ def segments_of(leg: Leg) -> list[Segment]:
     for piece in leg.contact.pieces:
         begin = touch + float(piece.start[0])
         finish = begin + float(piece.motion.duration[0])
-        segments.append(ContactSegment(begin, finish, cast(MotionInContact, piece.motion), leg.encounter.under(piece.law)))
+        segments.append(
+            ContactSegment(
+                begin, finish, cast(MotionInContact, piece.motion), leg.encounter.under(piece.law)
+            )
+        )
     return segments
 
 

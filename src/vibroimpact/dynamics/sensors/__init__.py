@@ -1,1 +1,3 @@
-"""What sensors on the plate record: from the motion of its points through a measuring chain to samples."""
+"""What sensors on the plate record: from the motion of its points through a measuring
+chain to samples.
+"""

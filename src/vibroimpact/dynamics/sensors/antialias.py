@@ -1,11 +1,13 @@
 """Anti-alias filters of a sensor: a converter's linear-phase filter, an analogue low-pass, or none.
 
-"sigma-delta" is the decimation filter of a delta-sigma converter: a linear-phase low-pass of 66 sampling periods, here the ideal one at
-half the rate under J. F. Kaiser's window (Nonrecursive digital filter design using the I0-sinh window function, Proc. IEEE Int. Symp.
-Circuits and Systems, 1974): from 0 to 0.45 of the rate flat within 0.001 dB, from 0.55 of it on at least 100 dB down. Its delay of 33
-samples is compensated, so that a sample also depends a little on later times. "butterworth" is S. Butterworth's low-pass of order eight (On
-the theory of filter amplifiers, Experimental Wireless 7:536, 1930), causal and with its delay. "none" takes the values at the sampling
-instants, so that higher frequencies alias into the band.
+"sigma-delta" is the decimation filter of a delta-sigma converter: a linear-phase low-pass of 66
+sampling periods, here the ideal one at half the rate under J. F. Kaiser's window (Nonrecursive
+digital filter design using the I0-sinh window function, Proc. IEEE Int. Symp. Circuits and Systems,
+1974): from 0 to 0.45 of the rate flat within 0.001 dB, from 0.55 of it on at least 100 dB down. Its
+delay of 33 samples is compensated, so that a sample also depends a little on later times.
+"butterworth" is S. Butterworth's low-pass of order eight (On the theory of filter amplifiers,
+Experimental Wireless 7:536, 1930), causal and with its delay. "none" takes the values at the
+sampling instants, so that higher frequencies alias into the band.
 """
 
 from __future__ import annotations
@@ -23,13 +25,16 @@ HALF_LENGTH = 33
 """Half width of the converter's kernel in sampling periods."""
 FINENESS = 8
 """Points per sampling period of tables of the kernel and of its responses."""
-_KAISER = 10.4  # Kaiser's parameter: 102 dB, and with this length a transition band of a tenth of the rate
+# Kaiser's parameter: 102 dB, and with this length a transition band of a tenth of the rate
+_KAISER = 10.4
 _ORDER = 8
 
 
 @dataclass(frozen=True)
 class AntiAlias:
-    """An anti-alias filter: half width of its linear-phase kernel in samples, zero if it has none, and its pairs of poles."""
+    """An anti-alias filter: half width of its linear-phase kernel in samples, zero if it
+    has none, and its pairs of poles.
+    """
 
     half_length: int = 0
     sections: tuple[Section, ...] = ()
@@ -40,7 +45,10 @@ def antialias_of(sensor: Sensor) -> AntiAlias:
 
     Examples
     --------
-    >>> antialias_of(Sensor("a")).half_length, len(antialias_of(Sensor("a", filter="butterworth")).sections)
+    >>> (
+    ...     antialias_of(Sensor("a")).half_length,
+    ...     len(antialias_of(Sensor("a", filter="butterworth")).sections),
+    ... )
     (33, 4)
     """
     if sensor.filter == "sigma-delta":
@@ -51,7 +59,9 @@ def antialias_of(sensor: Sensor) -> AntiAlias:
 
 
 def butterworth(corner: float) -> tuple[Section, ...]:
-    """Return the pairs of poles of a Butterworth low-pass of order eight with a gain of 1 / sqrt(2) at the corner frequency [Hz]."""
+    """Return the pairs of poles of a Butterworth low-pass of order eight with a gain of 1
+    / sqrt(2) at the corner frequency [Hz].
+    """
     omega = 2.0 * math.pi * corner
     angles = (math.pi * (2.0 * number + 1.0) / (2.0 * _ORDER) for number in range(_ORDER // 2))
     return tuple((omega**2, 2.0 * omega * math.sin(angle)) for angle in angles)
@@ -62,7 +72,10 @@ def gain_at(sensor: Sensor, frequency: float) -> float:
 
     Examples
     --------
-    >>> round(gain_at(Sensor("a", filter="butterworth", corner=50.0), 50.0), 6), round(gain_at(Sensor("a"), 50.0), 4)
+    >>> (
+    ...     round(gain_at(Sensor("a", filter="butterworth", corner=50.0), 50.0), 6),
+    ...     round(gain_at(Sensor("a"), 50.0), 4),
+    ... )
     (0.707107, 1.0)
     """
     if sensor.filter == "butterworth":
@@ -82,22 +95,30 @@ def kernel(x: Floats) -> Floats:
     >>> round(float(kernel(x).sum() / 8), 5)  # unit gain at frequency zero
     1.0
     """
-    window = np.i0(_KAISER * np.sqrt(np.maximum(1.0 - (x / HALF_LENGTH) ** 2, 0.0))) / np.i0(_KAISER)
+    window = np.i0(_KAISER * np.sqrt(np.maximum(1.0 - (x / HALF_LENGTH) ** 2, 0.0))) / np.i0(
+        _KAISER
+    )
     return np.asarray(np.where(np.abs(x) <= HALF_LENGTH, np.sinc(x) * window, 0.0))
 
 
 def kernel_derivatives() -> Floats:
-    """Return the kernel and its first two derivatives per sampling period, (3, points), at `FINENESS` points per period."""
+    """Return the kernel and its first two derivatives per sampling period, (3, points),
+    at `FINENESS` points per period.
+    """
     points = 2 * HALF_LENGTH * FINENESS
     values = kernel(np.arange(-HALF_LENGTH * FINENESS, HALF_LENGTH * FINENESS + 1) / FINENESS)
     size = 2 * points  # zero padding against circular wrap-around
     spectrum, slope = np.fft.rfft(values, size), 2j * np.pi * np.fft.rfftfreq(size, 1.0 / FINENESS)
     slope[-1] = 0.0
-    return np.stack([values, *(np.fft.irfft(spectrum * slope**order, size)[: points + 1] for order in (1, 2))])
+    return np.stack(
+        [values, *(np.fft.irfft(spectrum * slope**order, size)[: points + 1] for order in (1, 2))]
+    )
 
 
 def parallel(sections: tuple[Section, ...]) -> list[tuple[Floats, Section]]:
-    """Return the partial fractions of a low-pass of pairs of poles: of each pair the numerator a + b s, (2,), and the pair."""
+    """Return the partial fractions of a low-pass of pairs of poles: of each pair the
+    numerator a + b s, (2,), and the pair.
+    """
     parts = []
     for number, (stiffness, damping) in enumerate(sections):
         poles = PolePairs(np.array([stiffness]), np.array([damping]))

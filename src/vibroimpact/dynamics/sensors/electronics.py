@@ -1,8 +1,10 @@
-r"""The electronics behind an instrument: an amplifier with its noise and the hum of the mains, and a converter.
+r"""The electronics behind an instrument: an amplifier with its noise and the hum of the mains, and
+a converter.
 
 .. math:: y = Q\bigl(g\,(x + n + h \cos(2 \pi f_m t + \theta))\bigr)
 
-with white noise n and the phase of the hum drawn from the seed, the gain g, and the converter's clipping and rounding Q.
+with white noise n and the phase of the hum drawn from the seed, the gain g, and the converter's
+clipping and rounding Q.
 """
 
 from __future__ import annotations
@@ -58,7 +60,8 @@ class Converter:
     Parameters
     ----------
     range : float
-        Largest magnitude that it reads, in the unit of the amplifier's output, > 0; beyond it the samples are clipped.
+        Largest magnitude that it reads, in the unit of the amplifier's output, > 0; beyond it the
+        samples are clipped.
     bits : int, optional
         Its width [-]: of 2 range in so many bits is a step; without it the samples are not rounded.
 
@@ -77,7 +80,9 @@ class Converter:
         return 0.0 if self.bits is None else math.ldexp(self.range, 1 - self.bits)
 
     def read(self, value: Floats) -> Floats:
-        """Return what it reads; the upper end of the range is a step below the lower one's magnitude, as of any two's complement."""
+        """Return what it reads; the upper end of the range is a step below the lower
+        one's magnitude, as of any two's complement.
+        """
         rounded = self.step * np.round(value / self.step) if self.step else value
         return np.clip(rounded, -self.range, self.range - self.step)
 
@@ -98,10 +103,14 @@ def amplified(amplifier: Amplifier, name: str, value: Floats, rate: float, passe
     passed : float
         Gain of the anti-alias filter at the frequency of the mains [-].
     """
-    drawn = np.random.default_rng([zlib.crc32(f"amplifier of {name}".encode()), *seeds(amplifier.seed)])
+    drawn = np.random.default_rng(
+        [zlib.crc32(f"amplifier of {name}".encode()), *seeds(amplifier.seed)]
+    )
     phase = drawn.uniform(0.0, 2.0 * math.pi)
     if amplifier.hum:
-        value = value + passed * amplifier.hum * np.cos(2.0 * math.pi * amplifier.mains / rate * np.arange(len(value)) + phase)
+        value = value + passed * amplifier.hum * np.cos(
+            2.0 * math.pi * amplifier.mains / rate * np.arange(len(value)) + phase
+        )
     if amplifier.noise:
         value = value + amplifier.noise * drawn.standard_normal(len(value))
     return amplifier.gain * value

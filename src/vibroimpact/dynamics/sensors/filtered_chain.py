@@ -1,11 +1,17 @@
-r"""A measuring chain with a converter's linear-phase filter, evaluated in closed form at the samples only.
+r"""A measuring chain with a converter's linear-phase filter, evaluated in closed form at the
+samples only.
 
-With the kernel h of the filter, of half width T, and the response k of the chain to an impulse of force, an output is
+With the kernel h of the filter, of half width T, and the response k of the chain to an impulse of
+force, an output is
 
-.. math:: y(t) = \int h(\sigma)\, x(t - \sigma)\, d\sigma = y_0(t) - \int_{t - T} K(t - \tau)\, F(\tau)\, d\tau,\qquad K = h * k
+.. math::
 
-where :math:`y_0` is the filtered free motion of the oscillators from their state at t - T, with one gain per oscillator. K is as smooth as
-the filter is narrow, however fast the modes and however sharp the contact, so one table of K serves for every contact.
+    y(t) = \int h(\sigma)\, x(t - \sigma)\, d\sigma = y_0(t) - \int_{t - T} K(t - \tau)\, F(\tau)\,
+    d\tau,\qquad K = h * k
+
+where :math:`y_0` is the filtered free motion of the oscillators from their state at t - T, with one
+gain per oscillator. K is as smooth as the filter is narrow, however fast the modes and however
+sharp the contact, so one table of K serves for every contact.
 """
 
 from __future__ import annotations
@@ -28,9 +34,13 @@ from vibroimpact.structures.lagrange_shares import STENCIL, lagrange_shares
 _ROWS = 64
 """Points of the table that are computed at once."""
 _MOST_RADIANS = 5000.0
-"""Largest phase of a mode between two points of the table that is resolved; faster modes are far above the band, and hardly respond."""
+"""Largest phase of a mode between two points of the table that is resolved; faster modes
+are far above the band, and hardly respond.
+"""
 _KEPT = 2_000_000
-"""Largest table of states, in numbers, that is cached for the next drop on the same plate: 16 MB."""
+"""Largest table of states, in numbers, that is cached for the next drop on the same
+plate: 16 MB.
+"""
 _WIDE = 1000
 """Number of impulse points from which on Fourier transforms are faster than sums."""
 
@@ -46,7 +56,8 @@ class FilteredChain:
     rate : float
         Samples per second [Hz].
     answers : array, shape (P, S, points)
-        Response to an impulse of minus the force at each port, `FINENESS` points per sample, from `HALF_LENGTH` samples before it on.
+        Response to an impulse of minus the force at each port, `FINENESS` points per sample, from
+        `HALF_LENGTH` samples before it on.
     """
 
     chain: MeasuringChain
@@ -55,15 +66,31 @@ class FilteredChain:
 
     @cached_property
     def outputs(self) -> Floats:
-        """Weights of displacements and velocities of the oscillators in the outputs `HALF_LENGTH` samples later, (2, S, n)."""
-        return self.chain.pairs.product(self.chain.outputs, filter_gains(self.chain.oscillators, self.rate))
+        """Weights of displacements and velocities of the oscillators in the outputs
+        `HALF_LENGTH` samples later, (2, S, n).
+        """
+        return self.chain.pairs.product(
+            self.chain.outputs, filter_gains(self.chain.oscillators, self.rate)
+        )
 
-    def add(self, values: Floats, port: int, times: Floats, impulses: Floats, last: int, origin: int = 0) -> None:
-        """Add the response to impulses at a port [N s] to `values` (S, samples) from sample `origin` on, for samples before `last`."""
+    def add(
+        self, values: Floats, port: int, times: Floats, impulses: Floats, last: int, origin: int = 0
+    ) -> None:
+        """Add the response to impulses at a port [N s] to `values` (S, samples) from
+        sample `origin` on, for samples before `last`.
+        """
         add_responses(values, self.answers[port], self.rate, times, -impulses, last, origin)
 
 
-def add_responses(values: Floats, whole: Floats, rate: float, times: Floats, impulses: Floats, last: int, origin: int = 0) -> None:
+def add_responses(
+    values: Floats,
+    whole: Floats,
+    rate: float,
+    times: Floats,
+    impulses: Floats,
+    last: int,
+    origin: int = 0,
+) -> None:
     """Add responses to impulses.
 
     Parameters
@@ -71,7 +98,8 @@ def add_responses(values: Floats, whole: Floats, rate: float, times: Floats, imp
     values : array, shape (S, samples)
         Samples, to which is added.
     whole : array, shape (S, points)
-        Responses to a unit impulse, `FINENESS` points per sample, from `HALF_LENGTH` samples before it on.
+        Responses to a unit impulse, `FINENESS` points per sample, from `HALF_LENGTH` samples before
+        it on.
     rate : float
         Samples per second [Hz].
     times, impulses : array, shape (n,)
@@ -83,11 +111,13 @@ def add_responses(values: Floats, whole: Floats, rate: float, times: Floats, imp
     """
     first, spread = _spread_on_grid(times * (rate * FINENESS), impulses)
     first, last, width = first - origin * FINENESS, last - origin, len(spread)
-    begin = max(0, -((HALF_LENGTH * FINENESS - first) // FINENESS))  # the first sample whose kernel reaches the impulses
+    # the first sample whose kernel reaches the impulses
+    begin = max(0, -((HALF_LENGTH * FINENESS - first) // FINENESS))
     end = min(last, values.shape[1])
     if end <= begin:
         return
-    at = begin * FINENESS - (first + width - 1) + HALF_LENGTH * FINENESS  # index of the last impulse point in the responses
+    # index of the last impulse point in the responses
+    at = begin * FINENESS - (first + width - 1) + HALF_LENGTH * FINENESS
     before, after = max(0, -at), (end - 1 - begin) * FINENESS + at + width - whole.shape[1]
     answers = np.pad(whole, ((0, 0), (before, max(0, after))))
     answers = answers[:, at + before : at + before + (end - 1 - begin) * FINENESS + width]
@@ -114,16 +144,22 @@ def filtered_chain(chain: MeasuringChain, rate: float, beyond: float) -> Filtere
     of_instrument = np.stack([chain.outputs[:, :, chain.modes :][:, :, one] for one in own], axis=1)
     _add_oscillators(answers, chain.plate, of_plate, rate, points + _rounded(more))
     # each port drives poles of its own, and all of these move alike
-    _add_oscillators(answers, chain.instrument.pick(own[0]), of_instrument, rate, points + _rounded(more))
+    _add_oscillators(
+        answers, chain.instrument.pick(own[0]), of_instrument, rate, points + _rounded(more)
+    )
     scaled = derivatives * rate ** np.arange(1.0, 4.0)[:, None]
     answers[:, :, :points] += chain.direct @ scaled
     return FilteredChain(chain, rate, answers)
 
 
-def _add_oscillators(answers: Floats, oscillators: Oscillators, weights: Floats, rate: float, count: int) -> None:
-    """Add outputs of oscillators to answers (P, S, points), by the weights of displacements and velocities in them, (2, P, S, n).
+def _add_oscillators(
+    answers: Floats, oscillators: Oscillators, weights: Floats, rate: float, count: int
+) -> None:
+    """Add outputs of oscillators to answers (P, S, points), by the weights of displacements and
+    velocities in them, (2, P, S, n).
 
-    Where they are few enough, the states at the first `count` points are kept, for longer responses of the same oscillators.
+    Where they are few enough, the states at the first `count` points are kept, for longer responses
+    of the same oscillators.
     """
     if not oscillators.number:
         return
@@ -138,12 +174,18 @@ def _add_oscillators(answers: Floats, oscillators: Oscillators, weights: Floats,
             answer[:, begin : begin + rows] += weight[:, which] @ states[which, :rows]
 
 
-def _states(frequencies: bytes, ratios: bytes, rate: float, count: int) -> Iterator[tuple[int, Floats]]:
-    """Yield the states (2 n, points), displacements then velocities, of oscillators of shape one driven by a converter's kernel.
+def _states(
+    frequencies: bytes, ratios: bytes, rate: float, count: int
+) -> Iterator[tuple[int, Floats]]:
+    """Yield the states (2 n, points), displacements then velocities, of oscillators of shape one
+    driven by a converter's kernel.
 
-    They are given at `FINENESS` points per sample from the beginning of the kernel on, in blocks with the index of the first point.
+    They are given at `FINENESS` points per sample from the beginning of the kernel on, in blocks
+    with the index of the first point.
     """
-    oscillators = Oscillators(np.frombuffer(frequencies), np.frombuffer(ratios), np.ones(len(frequencies) // 8))
+    oscillators = Oscillators(
+        np.frombuffer(frequencies), np.frombuffer(ratios), np.ones(len(frequencies) // 8)
+    )
     step, kernel_cells = 1.0 / (FINENESS * rate), 2 * HALF_LENGTH * FINENESS
     drives = _drives(oscillators, rate, step, kernel_cells)
     later = oscillators.transition(step * np.arange(1.0, _ROWS + 1.0))  # (2, 2, rows, n)
@@ -166,9 +208,18 @@ def _states(frequencies: bytes, ratios: bytes, rate: float, count: int) -> Itera
 
 
 @lru_cache(maxsize=8)
-def _kept_states(frequencies: bytes, ratios: bytes, rate: float, count: int) -> tuple[tuple[int, Floats]]:
+def _kept_states(
+    frequencies: bytes, ratios: bytes, rate: float, count: int
+) -> tuple[tuple[int, Floats]]:
     """Return `_states` in one block, cached for drops on the same plate."""
-    return ((0, np.concatenate([states for _, states in _states(frequencies, ratios, rate, count)], axis=1)),)
+    return (
+        (
+            0,
+            np.concatenate(
+                [states for _, states in _states(frequencies, ratios, rate, count)], axis=1
+            ),
+        ),
+    )
 
 
 def _rounded(number: int) -> int:
@@ -177,8 +228,12 @@ def _rounded(number: int) -> int:
 
 
 def filter_gains(oscillators: Oscillators, rate: float) -> Floats:
-    """Return the gains of a converter's filter for the free motion of oscillators, `HALF_LENGTH` samples later, (2, n)."""
-    return _gains(oscillators.angular_frequency.tobytes(), oscillators.damping_ratio.tobytes(), rate)
+    """Return the gains of a converter's filter for the free motion of oscillators,
+    `HALF_LENGTH` samples later, (2, n).
+    """
+    return _gains(
+        oscillators.angular_frequency.tobytes(), oscillators.damping_ratio.tobytes(), rate
+    )
 
 
 @lru_cache(maxsize=64)
@@ -186,11 +241,18 @@ def _gains(frequencies: bytes, ratios: bytes, rate: float) -> Floats:
     """Return `filter_gains`, cached."""
     *_, (_, states) = _states(frequencies, ratios, rate, 2 * HALF_LENGTH * FINENESS + 1)
     displacement, velocity = np.split(states[:, -1], 2)
-    return np.stack([velocity + 2.0 * np.frombuffer(ratios) * np.frombuffer(frequencies) * displacement, displacement])
+    return np.stack(
+        [
+            velocity + 2.0 * np.frombuffer(ratios) * np.frombuffer(frequencies) * displacement,
+            displacement,
+        ]
+    )
 
 
 def _correlate(answers: Floats, weights: Floats) -> Floats:
-    """Return the correlation of responses (S, points) with weights (w,) at every `FINENESS`-th point, (S, samples)."""
+    """Return the correlation of responses (S, points) with weights (w,) at every
+    `FINENESS`-th point, (S, samples).
+    """
     width, points = len(weights), answers.shape[1]
     if width < _WIDE:
         return np.asarray(sliding_window_view(answers, width, axis=1)[:, ::FINENESS] @ weights)
@@ -200,8 +262,12 @@ def _correlate(answers: Floats, weights: Floats) -> Floats:
 
 
 def _drives(oscillators: Oscillators, rate: float, step: float, cells: int) -> Floats:
-    """Return the increments of displacement and velocity of oscillators of shape one by the kernel in each of its cells, (cells, 2, n)."""
-    fastest = float((oscillators.angular_frequency * np.maximum(1.0, 2.0 * oscillators.damping_ratio)).max())
+    """Return the increments of displacement and velocity of oscillators of shape one by
+    the kernel in each of its cells, (cells, 2, n).
+    """
+    fastest = float(
+        (oscillators.angular_frequency * np.maximum(1.0, 2.0 * oscillators.damping_ratio)).max()
+    )
     x, weights = gauss_rule(min(fastest * step, _MOST_RADIANS))
     cosine, sine = oscillators.propagators(step * (1.0 - x))
     places = (np.arange(cells)[:, None] + x) / FINENESS - HALF_LENGTH
@@ -210,7 +276,9 @@ def _drives(oscillators: Oscillators, rate: float, step: float, cells: int) -> F
 
 
 def _spread_on_grid(places: Floats, amounts: Floats) -> tuple[int, Floats]:
-    """Return amounts at places spread over integer points, as the transpose of Lagrange interpolation: the first point, and the values."""
+    """Return amounts at places spread over integer points, as the transpose of Lagrange
+    interpolation: the first point, and the values.
+    """
     points, shares = lagrange_shares(places)
     first = int(points.min())
     shared = np.bincount((points - first).ravel(), weights=(shares * amounts[:, None]).ravel())

@@ -11,9 +11,11 @@ from vibroimpact.dynamics.vibrating.oscillators import Oscillators
 
 
 def next_octave(plate: Oscillators, shapes: Floats) -> tuple[Oscillators, Floats]:
-    """Return a model of the modes left out of the next octave, and their shapes at S points, from those kept, (S, modes).
+    """Return a model of the modes left out of the next octave, and their shapes at S points, from
+    those kept, (S, modes).
 
-    They are modelled on the last octave kept, at twice the frequencies; twice as many are assumed, as for the bending of a plate.
+    They are modelled on the last octave kept, at twice the frequencies; twice as many are assumed,
+    as for the bending of a plate.
     """
     last = np.flatnonzero(plate.angular_frequency > 0.5 * plate.angular_frequency.max())
     above = plate.pick(last)

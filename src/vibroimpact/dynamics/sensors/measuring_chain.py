@@ -1,12 +1,16 @@
-r"""The chain from the contact force to the output of a sensor, as one linear system: plate, mounted resonance, analogue filter.
+r"""The chain from the contact force to the output of a sensor, as one linear system: plate, mounted
+resonance, analogue filter.
 
-The plate is at rest before the first contact, so every sensor records the response to the contact force. The displacement of a point is
+The plate is at rest before the first contact, so every sensor records the response to the contact
+force. The displacement of a point is
 
 .. math:: u(t) = \sum_i \varphi_i\,q_i(t) - C\,F(t)
 
-with the static compliance C between the contact and that point of the modes that are not kept: these respond quasi-statically. A
-derivative of it is taken, and a resonance or a filter of pairs of poles follows. By partial fractions the chain is a sum over oscillators,
-those of the plate and one for each of these pairs, all driven by the contact force, plus terms in the force and its derivatives.
+with the static compliance C between the contact and that point of the modes that are not kept:
+these respond quasi-statically. A derivative of it is taken, and a resonance or a filter of pairs of
+poles follows. By partial fractions the chain is a sum over oscillators, those of the plate and one
+for each of these pairs, all driven by the contact force, plus terms in the force and its
+derivatives.
 """
 
 from __future__ import annotations
@@ -32,8 +36,8 @@ class MeasuringChain:
     Parameters
     ----------
     oscillators : Oscillators
-        The modes of the plate, then the pairs of poles of the instruments for each port, which its force alone drives, with shape 1; the
-        shapes have a row a port.
+        The modes of the plate, then the pairs of poles of the instruments for each port, which its
+        force alone drives, with shape 1; the shapes have a row a port.
     modes : int
         Number of modes of the plate among them.
     outputs : array, shape (2, S, n)
@@ -74,7 +78,11 @@ class MeasuringChain:
 
 
 def measuring_chain(
-    plate: Oscillators, shapes: Floats, compliance: Floats, orders: Sequence[int], sections: Sequence[Section]
+    plate: Oscillators,
+    shapes: Floats,
+    compliance: Floats,
+    orders: Sequence[int],
+    sections: Sequence[Section],
 ) -> MeasuringChain:
     """Return the chain of sensors with the same resonance and filter.
 
@@ -94,13 +102,26 @@ def measuring_chain(
     sections = _separate_poles(sections, plate)
     at_modes = PolePairs(plate.angular_frequency**2, plate.damping)
     passed = at_modes.low_pass(sections)
-    outputs = np.stack([shape * at_modes.product(at_modes.power(order), passed) for shape, order in zip(shapes, orders, strict=True)])
+    outputs = np.stack(
+        [
+            shape * at_modes.product(at_modes.power(order), passed)
+            for shape, order in zip(shapes, orders, strict=True)
+        ]
+    )
     direct = compliance[..., None] * np.array([_whole_part(order, sections) for order in orders])
     if not sections:
-        direct[:, :, 0] += np.where(np.asarray(orders) == 2, [shapes @ shape for shape in plate.shape], 0.0)
-    of_sections = [_section_weights(number, sections, plate, shapes, compliance, orders) for number in range(len(sections))]
-    instrument = np.concatenate([np.zeros((2, len(compliance), len(shapes), 0)), *of_sections], axis=-1)
-    by_port = instrument.swapaxes(1, 2).reshape(2, len(shapes), -1)  # those of a port are neighbours
+        direct[:, :, 0] += np.where(
+            np.asarray(orders) == 2, [shapes @ shape for shape in plate.shape], 0.0
+        )
+    of_sections = [
+        _section_weights(number, sections, plate, shapes, compliance, orders)
+        for number in range(len(sections))
+    ]
+    instrument = np.concatenate(
+        [np.zeros((2, len(compliance), len(shapes), 0)), *of_sections], axis=-1
+    )
+    # those of a port are neighbours
+    by_port = instrument.swapaxes(1, 2).reshape(2, len(shapes), -1)
     return MeasuringChain(
         _with_sections(plate, sections),
         plate.number,
@@ -113,7 +134,9 @@ def measuring_chain(
 
 
 def _whole_part(order: int, sections: Sequence[Section]) -> Floats:
-    """Return the polynomial in s that a derivative behind pairs of poles has beside partial fractions, lowest power first, (3,)."""
+    """Return the polynomial in s that a derivative behind pairs of poles has beside
+    partial fractions, lowest power first, (3,).
+    """
     whole = math.prod(stiffness for stiffness, _ in sections) * np.eye(order + 1)[0]
     for stiffness, damping in sections:
         whole, _ = np.polydiv(whole, [1.0, damping, stiffness])
@@ -126,44 +149,66 @@ def at_port(plate: Oscillators, port: int) -> Oscillators:
 
 
 def section_outputs(number: int, sections: Sequence[Section], orders: Sequence[int]) -> Floats:
-    """Return the outputs of one pair of poles driven by the motion of a point, as elements at these poles, (2, S, 1)."""
+    """Return the outputs of one pair of poles driven by the motion of a point, as
+    elements at these poles, (2, S, 1).
+    """
     stiffness, damping = sections[number]
     poles = PolePairs(np.array([stiffness]), np.array([damping]))
     passed = stiffness * poles.low_pass([*sections[:number], *sections[number + 1 :]])
     return np.stack([poles.product(poles.power(order), passed) for order in orders], axis=1)
 
 
-def point_receptance(section: Section, plate: Oscillators, shapes: Floats, compliance: Floats) -> Floats:
-    """Return the receptance of points to minus the force at the poles of a section, (2, S, 1), or (2, P, S, 1) of shapes with P rows.
+def point_receptance(
+    section: Section, plate: Oscillators, shapes: Floats, compliance: Floats
+) -> Floats:
+    """Return the receptance of points to minus the force at the poles of a section, (2, S, 1), or
+    (2, P, S, 1) of shapes with P rows.
 
     `compliance` is that of the modes left out, (S,) or (P, S).
     """
     stiffness, damping = section
     receptance = np.stack([plate.angular_frequency**2 - stiffness, plate.damping - damping])
-    at_poles = PolePairs(np.full(plate.number, stiffness), np.full(plate.number, damping)).inverse(receptance)
+    at_poles = PolePairs(np.full(plate.number, stiffness), np.full(plate.number, damping)).inverse(
+        receptance
+    )
     receptance_there = np.stack([(part * plate.shape) @ shapes.T for part in at_poles])
     receptance_there[0] += compliance
     return np.asarray(receptance_there[..., None])
 
 
 def _section_weights(
-    number: int, sections: Sequence[Section], plate: Oscillators, shapes: Floats, compliance: Floats, orders: Sequence[int]
+    number: int,
+    sections: Sequence[Section],
+    plate: Oscillators,
+    shapes: Floats,
+    compliance: Floats,
+    orders: Sequence[int],
 ) -> Floats:
-    """Return the weights of the motion of one pair of poles, driven at each port, in each output, (2, P, S, 1)."""
+    """Return the weights of the motion of one pair of poles, driven at each port, in each
+    output, (2, P, S, 1).
+    """
     stiffness, damping = sections[number]
     poles = PolePairs(np.array([stiffness]), np.array([damping]))
-    return poles.product(section_outputs(number, sections, orders), point_receptance(sections[number], plate, shapes, compliance))
+    return poles.product(
+        section_outputs(number, sections, orders),
+        point_receptance(sections[number], plate, shapes, compliance),
+    )
 
 
 def _separate_poles(sections: Sequence[Section], plate: Oscillators) -> list[Section]:
-    """Return pairs of poles, shifted slightly where they coincide with those of the plate or with each other."""
+    """Return pairs of poles, shifted slightly where they coincide with those of the plate
+    or with each other.
+    """
     found: list[Section] = []
     for stiffness, damping in sections:
         while True:
             others = PolePairs(
-                np.append(plate.angular_frequency**2, [one for one, _ in found]), np.append(plate.damping, [one for _, one in found])
+                np.append(plate.angular_frequency**2, [one for one, _ in found]),
+                np.append(plate.damping, [one for _, one in found]),
             )
-            near, slope = np.abs(others.quadratic(stiffness, damping)) < _POLE_DISTANCE * np.array([[stiffness], [math.sqrt(stiffness)]])
+            near, slope = np.abs(others.quadratic(stiffness, damping)) < _POLE_DISTANCE * np.array(
+                [[stiffness], [math.sqrt(stiffness)]]
+            )
             if not (near & slope).any():
                 break
             stiffness *= 1.0 + 3.0 * _POLE_DISTANCE

@@ -1,4 +1,6 @@
-"""Overload of an accelerometer: the signal beyond its range, and the effect of clipping on the samples."""
+"""Overload of an accelerometer: the signal beyond its range, and the effect of clipping
+on the samples.
+"""
 
 from __future__ import annotations
 
@@ -26,7 +28,8 @@ class Overload:
     rate : float
         Sampling rate of the excess [Hz]: an integer multiple of the sensor's rate.
     first : int
-        Number of its first sample, 0 at the start of the run; before it there is none. It is at a sample of the sensor.
+        Number of its first sample, 0 at the start of the run; before it there is none. It is at a
+        sample of the sensor.
     excess : array, shape (samples,)
         The signal beyond the range [m/s^2].
     peak : float
@@ -48,10 +51,18 @@ def finer_rate(rate: float, resonance: float | None) -> float:
 
 
 def overload(value: Floats, rate: float, first: int, end: float, limit: float) -> Overload:
-    """Return the excess of samples [m/s^2] over a limit, at a rate [Hz] from sample `first` on, of a run that ends at a time [s]."""
+    """Return the excess of samples [m/s^2] over a limit, at a rate [Hz] from sample
+    `first` on, of a run that ends at a time [s].
+    """
     excess = np.maximum(np.abs(value) - limit, 0.0) * np.sign(value)
     within = slice(max(-first, 0), max(sample_count(end, rate) - first, 0))
-    return Overload(rate, first, excess, float(np.abs(value[within]).max(initial=0.0)), float(np.count_nonzero(excess[within]) / rate))
+    return Overload(
+        rate,
+        first,
+        excess,
+        float(np.abs(value[within]).max(initial=0.0)),
+        float(np.count_nonzero(excess[within]) / rate),
+    )
 
 
 def clipped_part(found: Overload, antialias: AntiAlias, rate: float, count: int) -> Floats:
@@ -66,7 +77,8 @@ def clipped_part(found: Overload, antialias: AntiAlias, rate: float, count: int)
 
     taps = kernel(np.arange(-HALF_LENGTH * finer, HALF_LENGTH * finer + 1) / finer) / finer
     begin = cut[0] // finer  # the sample at or before the first excess
-    given = upfirdn(taps, found.excess[begin * finer : cut[-1] + 1], 1, finer)  # it begins `HALF_LENGTH` samples before `begin`
+    # it begins `HALF_LENGTH` samples before `begin`
+    given = upfirdn(taps, found.excess[begin * finer : cut[-1] + 1], 1, finer)
     first = found.first // finer + begin - HALF_LENGTH
     here = slice(max(first, 0), min(first + len(given), count))
     taken[here] = given[here.start - first : here.stop - first]
@@ -74,14 +86,18 @@ def clipped_part(found: Overload, antialias: AntiAlias, rate: float, count: int)
 
 
 def _through_poles(found: Overload, antialias: AntiAlias, finer: int, count: int) -> Floats:
-    """Return the contribution of the excess after pairs of poles, exact for an excess that is linear between its samples."""
+    """Return the contribution of the excess after pairs of poles, exact for an excess
+    that is linear between its samples.
+    """
     from scipy.signal import cont2discrete, lfilter
 
     cut = np.flatnonzero(found.excess)
     begin, end = cut[0], min(cut[-1] + 1 + RINGING * finer, len(found.excess))
     response = np.zeros(end)
     for (level, slope), (stiffness, damping) in parallel(antialias.sections):
-        numerator, denominator, _ = cont2discrete(([slope, level], [1.0, damping, stiffness]), 1.0 / found.rate, method="foh")
+        numerator, denominator, _ = cont2discrete(
+            ([slope, level], [1.0, damping, stiffness]), 1.0 / found.rate, method="foh"
+        )
         response[begin:] += lfilter(np.ravel(numerator), denominator, found.excess[begin:end])
     taken, samples, first = np.zeros(count), response[::finer], found.first // finer
     here = slice(max(first, 0), min(first + len(samples), count))

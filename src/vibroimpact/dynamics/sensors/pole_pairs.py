@@ -1,8 +1,11 @@
 r"""Transfer functions at the poles of linear oscillators, in real arithmetic for any damping.
 
-The free motion of an oscillator, :math:`\ddot q = -\omega^2 q - d\,\dot q`, is the exponential of the matrix A of its state
-:math:`(q, \dot q)`. The forced output of a linear system driven by that motion is the first row of :math:`f(A)\,(q, \dot q)^T`, with the
-system's transfer function f. Since :math:`A^2 = -\omega^2 - d A`, any :math:`f(A) = a + b A`, and the output is :math:`a q + b \dot q`.
+The free motion of an oscillator, :math:`\ddot q = -\omega^2 q - d\,\dot q`, is the exponential of
+the matrix A of its state
+:math:`(q, \dot q)`. The forced output of a linear system driven by that motion is the first row of
+:math:`f(A)\,(q, \dot q)^T`, with the
+system's transfer function f. Since :math:`A^2 = -\omega^2 - d A`, any :math:`f(A) = a + b A`, and
+the output is :math:`a q + b \dot q`.
 Elements (a, b) of n oscillators are arrays of shape (2, ..., n).
 """
 
@@ -35,7 +38,9 @@ class PolePairs:
         return np.stack([(one, none), (none, one), squared, cubed][order])
 
     def quadratic(self, stiffness: float, damping: float) -> Floats:
-        """Return the polynomial s^2 + damping s + stiffness of another oscillator at these poles, (2, n)."""
+        """Return the polynomial s^2 + damping s + stiffness of another oscillator at
+        these poles, (2, n).
+        """
         return np.stack([stiffness - self.stiffness, damping - self.damping])
 
     def product(self, one: Floats, other: Floats) -> Floats:
@@ -46,10 +51,15 @@ class PolePairs:
     def inverse(self, element: Floats) -> Floats:
         """Return the inverse of an element."""
         a, b = element
-        return np.asarray(np.stack([a - self.damping * b, -b]) / (a * a - self.damping * a * b + self.stiffness * b * b))
+        return np.asarray(
+            np.stack([a - self.damping * b, -b])
+            / (a * a - self.damping * a * b + self.stiffness * b * b)
+        )
 
     def low_pass(self, sections: Sequence[Section]) -> Floats:
-        """Return the low-pass of other pairs of poles (stiffness, damping) in series, with unit gain at frequency zero, (2, n)."""
+        """Return the low-pass of other pairs of poles (stiffness, damping) in series,
+        with unit gain at frequency zero, (2, n).
+        """
         passed = math.prod(stiffness for stiffness, _ in sections) * self.power(0)
         for section in sections:
             passed = self.product(passed, self.inverse(self.quadratic(*section)))

@@ -21,9 +21,10 @@ if TYPE_CHECKING:
 class Ports:
     """Ports of a plate, to each of which minus a force is an input.
 
-    `shapes`: displacement in each coordinate of the plate against the force at each port (ports, n) [kg^-1/2]. `residuals`: residual
-    compliances between each and the sensors, by their names (3,) [m/N]. `first`: the port of the normal force for each system of a run, by
-    its identity; those of friction, and of its moments, follow it.
+    `shapes`: displacement in each coordinate of the plate against the force at each port (ports, n)
+    [kg^-1/2]. `residuals`: residual compliances between each and the sensors, by their names (3,)
+    [m/N]. `first`: the port of the normal force for each system of a run, by its identity; those of
+    friction, and of its moments, follow it.
     """
 
     shapes: Floats
@@ -34,11 +35,18 @@ class Ports:
         """Return the port of the normal force of a system."""
         return self.first[id(system)]
 
-    def pulses(self, stretch: VibratingStretch, fastest: float, until: Floats | None = None) -> list[tuple[int, Pulses]]:
-        """Return the forces of a stretch as pulses, with their ports; arguments are those of `pulses`."""
+    def pulses(
+        self, stretch: VibratingStretch, fastest: float, until: Floats | None = None
+    ) -> list[tuple[int, Pulses]]:
+        """Return the forces of a stretch as pulses, with their ports; arguments are those
+        of `pulses`.
+        """
         port = self.of(stretch.system)
         forces = [stretch.force[0], *(() if stretch.rubbed is None else stretch.rubbed.force)]
-        return [(port + number, pulses(stretch, force, fastest, until)) for number, force in enumerate(forces)]
+        return [
+            (port + number, pulses(stretch, force, fastest, until))
+            for number, force in enumerate(forces)
+        ]
 
 
 def ports_of(segments: Sequence[VibratingSegment]) -> Ports:

@@ -1,4 +1,6 @@
-"""The contact force of a stretch as the input of linear systems: equivalent impulses by quadrature, and its time derivatives."""
+"""The contact force of a stretch as the input of linear systems: equivalent impulses by
+quadrature, and its time derivatives.
+"""
 
 from __future__ import annotations
 
@@ -20,7 +22,9 @@ _DEGREE = 16
 
 
 def gauss_rule(radians: float) -> tuple[Floats, Floats]:
-    """Return nodes on [0, 1] and weights of a rule that integrates oscillations of up to so many radians there."""
+    """Return nodes on [0, 1] and weights of a rule that integrates oscillations of up to
+    so many radians there.
+    """
     return _panels(max(1, math.ceil(radians / _TURN)))
 
 
@@ -42,8 +46,11 @@ Pulses = tuple[Floats, Floats]
 """Times [s] and impulses [N s]."""
 
 
-def pulses(stretch: VibratingStretch, force: Floats, fastest: float, until: Floats | None = None) -> Pulses:
-    """Return times since the start [s] and impulses [N s] that are equivalent to a force for a linear system.
+def pulses(
+    stretch: VibratingStretch, force: Floats, fastest: float, until: Floats | None = None
+) -> Pulses:
+    """Return times since the start [s] and impulses [N s] that are equivalent to a force for a
+    linear system.
 
     Parameters
     ----------
@@ -54,8 +61,8 @@ def pulses(stretch: VibratingStretch, force: Floats, fastest: float, until: Floa
     fastest : float
         Highest angular frequency to which the system responds [rad/s].
     until : array, shape (T,), optional
-        Ascending times since the start [s]: the results are then (T, nodes), of the force between each and the previous one, or the
-        start. By default they cover the whole stretch.
+        Ascending times since the start [s]: the results are then (T, nodes), of the force between
+        each and the previous one, or the start. By default they cover the whole stretch.
     """
     length, rule = stretch.length, stretch.rule
     if until is None and fastest * length < _SLOW:
@@ -73,14 +80,21 @@ def pulses(stretch: VibratingStretch, force: Floats, fastest: float, until: Floa
 
 
 def force_derivatives(stretch: VibratingStretch, times: Floats) -> Floats:
-    """Return the force [N] and its first and second derivative [N/s, N/s^2] at times since the start [s], (3, T).
+    """Return the force [N] and its first and second derivative [N/s, N/s^2] at times since the
+    start [s], (3, T).
 
-    At the instant of touch the derivatives are those before it, zero: the second derivative of a Hertzian force is unbounded just after it.
+    At the instant of touch the derivatives are those before it, zero: the second derivative of a
+    Hertzian force is unbounded just after it.
     """
     grid = 0.5 * (1.0 - np.cos(np.pi * (np.arange(_DEGREE + 1) + 0.5) / (_DEGREE + 1)))
-    coefficients = np.linalg.solve(legendre.legvander(2.0 * grid - 1.0, _DEGREE), stretch.contacts[0].force_at(grid))
+    coefficients = np.linalg.solve(
+        legendre.legvander(2.0 * grid - 1.0, _DEGREE), stretch.contacts[0].force_at(grid)
+    )
     x = stretch.rule.unmap_time(times / stretch.length)
-    value, first, second = (legendre.legval(2.0 * x - 1.0, legendre.legder(coefficients, order)) * 2.0**order for order in range(3))
+    value, first, second = (
+        legendre.legval(2.0 * x - 1.0, legendre.legder(coefficients, order)) * 2.0**order
+        for order in range(3)
+    )
     slope = stretch.length * _slope(stretch, x)
     still = slope <= 0.0
     slope = np.where(still, 1.0, slope)

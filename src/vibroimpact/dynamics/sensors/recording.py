@@ -21,7 +21,8 @@ class Signal:
     value : array, shape (samples,)
         Samples at `time`, in the unit of the sensor.
     uncertainty : float, default NaN
-        Estimated error by the modes left out, relative to the signal's rms value around the first contact.
+        Estimated error by the modes left out, relative to the signal's rms value around the first
+        contact.
     peak : float, default NaN
         The largest magnitude at an accelerometer before clipping [m/s^2].
     overload_time : float, default 0
@@ -44,7 +45,9 @@ class Signal:
 
     @property
     def time(self) -> Floats:
-        """Times of the samples since the start [s], recomputed on access, as they take as much memory as the values."""
+        """Times of the samples since the start [s], recomputed on access, as they take as
+        much memory as the values.
+        """
         return self.times(0, len(self.value))
 
     def times(self, first: int, last: int) -> Floats:
@@ -52,8 +55,11 @@ class Signal:
         return np.arange(first, min(last, len(self.value))) / self.sensor.rate
 
     def first_at(self, time: float) -> int:
-        """Return the number of the first sample that is not before a time [s]; the number of samples if there is none."""
-        about = min(max(int(time * self.sensor.rate) - 2, 0), len(self.value))  # may be off by rounding
+        """Return the number of the first sample that is not before a time [s]; the number
+        of samples if there is none.
+        """
+        # may be off by rounding
+        about = min(max(int(time * self.sensor.rate) - 2, 0), len(self.value))
         return about + int(np.searchsorted(self.times(about, about + 5), time))
 
     @property

@@ -6,7 +6,13 @@ from dataclasses import dataclass, replace
 
 from vibroimpact.dynamics.sensors.electronics import Amplifier, Converter, seeds
 from vibroimpact.dynamics.sensors.instruments.accelerometer import Accelerometer
-from vibroimpact.dynamics.sensors.instruments.instrument import MOTIONS, UNITS, Direction, Instrument, Quantity
+from vibroimpact.dynamics.sensors.instruments.instrument import (
+    MOTIONS,
+    UNITS,
+    Direction,
+    Instrument,
+    Quantity,
+)
 from vibroimpact.dynamics.sensors.instruments.microphone import Microphone
 from vibroimpact.dynamics.sensors.instruments.strain_gauge import StrainGauge
 from vibroimpact.dynamics.sensors.pole_pairs import Section
@@ -28,17 +34,21 @@ class Sensor:
     name : str
         Name of the point in the modes of the plate.
     quantity : str, default "acceleration"
-        "displacement" [m], "velocity" [m/s] or "acceleration" [m/s^2]; or what the instrument puts out.
+        "displacement" [m], "velocity" [m/s] or "acceleration" [m/s^2]; or what the instrument puts
+        out.
     direction : tuple of three floats, default (0, 0, 1)
         Unit vector of the measured component; upwards by default.
     rate : float, default 50e3
         Samples per second [Hz], > 0.
     instrument : Instrument, optional
-        The instrument, such as an `Accelerometer` or a `Geophone`; without one the signal is the motion of the point.
+        The instrument, such as an `Accelerometer` or a `Geophone`; without one the signal is the
+        motion of the point.
     filter : str, default "sigma-delta"
-        Anti-alias filter, against frequencies above half the rate: "sigma-delta", "butterworth" or "none"; see `antialias_of`.
+        Anti-alias filter, against frequencies above half the rate: "sigma-delta", "butterworth" or
+        "none"; see `antialias_of`.
     corner : float, optional
-        Frequency at which a Butterworth filter passes half of the power [Hz]; 0.4 of the rate by default.
+        Frequency at which a Butterworth filter passes half of the power [Hz]; 0.4 of the rate by
+        default.
     amplifier : Amplifier, optional
         The amplifier behind the instrument.
     converter : Converter, optional
@@ -47,14 +57,17 @@ class Sensor:
     Raises
     ------
     InputError
-        If the instrument puts out another quantity or has another filter, there is no such filter, it takes no corner, or the corner is not
-        below half the rate.
+        If the instrument puts out another quantity or has another filter, there is no such filter,
+        it takes no corner, or the corner is not below half the rate.
 
     Examples
     --------
     >>> import vibroimpact as vi
     >>> geophone = vi.Geophone(natural_frequency=10.0, sensitivity=30.0)
-    >>> vi.Sensor("a1", quantity="velocity", rate=20e3).unit, vi.Sensor("a2", quantity="voltage", instrument=geophone).unit
+    >>> (
+    ...     vi.Sensor("a1", quantity="velocity", rate=20e3).unit,
+    ...     vi.Sensor("a2", quantity="voltage", instrument=geophone).unit,
+    ... )
     ('m/s', 'V')
     """
 
@@ -70,21 +83,38 @@ class Sensor:
 
     def __post_init__(self) -> None:
         if self.instrument is not None and self.quantity != self.instrument.quantity:
-            words = f"the output of the instrument is {self.instrument.quantity}, and not {self.quantity}"
+            words = (
+                f"the output of the instrument is {self.instrument.quantity}, and not "
+                f"{self.quantity}"
+            )
             raise InputError(f'{words}; take quantity = "{self.instrument.quantity}"', "quantity")
         if self.filter not in FILTERS:
             known = ", ".join(f'"{name}"' for name in FILTERS)
-            raise InputError(f'there is no filter "{self.filter}"; there are {known}.{did_you_mean(self.filter, FILTERS)}', "filter")
+            raise InputError(
+                f'there is no filter "{self.filter}"; there are '
+                f"{known}.{did_you_mean(self.filter, FILTERS)}",
+                "filter",
+            )
         if isinstance(self.instrument, Microphone) and self.filter != "sigma-delta":
-            raise InputError('a microphone has the filter "sigma-delta"; leave out the filter', "filter")
+            raise InputError(
+                'a microphone has the filter "sigma-delta"; leave out the filter', "filter"
+            )
         if self.corner is not None and self.filter != "butterworth":
-            other = "" if isinstance(self.instrument, Microphone) else ', or take "butterworth"'  # a microphone has no other filter
-            raise InputError(f'the filter "{self.filter}" takes no corner; leave it out{other}', "corner")
+            # a microphone has no other filter
+            other = "" if isinstance(self.instrument, Microphone) else ', or take "butterworth"'
+            raise InputError(
+                f'the filter "{self.filter}" takes no corner; leave it out{other}', "corner"
+            )
         if self.corner is not None and self.corner >= 0.5 * self.rate:
             words = (
-                f"{self.corner:g} Hz is not allowed; it must be below half of the {self.rate:g} samples per second, since what is faster"
+                f"{self.corner:g} Hz is not allowed; it must be below half of the "
+                f"{self.rate:g} samples per second, since what is faster"
             )
-            raise InputError(f"{words} folds into the band; take {_CORNER * self.rate:g} Hz or less, or a higher rate", "corner")
+            raise InputError(
+                f"{words} folds into the band; take {_CORNER * self.rate:g} Hz "
+                "or less, or a higher rate",
+                "corner",
+            )
 
     @property
     def unit(self) -> str:
@@ -104,7 +134,11 @@ class Sensor:
     @property
     def components(self) -> Direction:
         """Weights of the three numbers that a mode has at the sensor: displacements, or strains."""
-        return self.direction if self.instrument is None else self.instrument.components(self.direction)
+        return (
+            self.direction
+            if self.instrument is None
+            else self.instrument.components(self.direction)
+        )
 
     @property
     def sees_strain(self) -> bool:
@@ -118,8 +152,14 @@ class Sensor:
 
     @property
     def passed(self) -> float:
-        """Highest frequency that its anti-alias filter passes [Hz]; without one, what the default Butterworth filter would pass."""
-        return _FLAT * self.rate if self.filter == "sigma-delta" else self.corner or _CORNER * self.rate
+        """Highest frequency that its anti-alias filter passes [Hz]; without one, what the
+        default Butterworth filter would pass.
+        """
+        return (
+            _FLAT * self.rate
+            if self.filter == "sigma-delta"
+            else self.corner or _CORNER * self.rate
+        )
 
     def of_drop(self, number: int) -> Sensor:
         """Return the sensor with noise and hum of its own for a drop of a study, by its number."""

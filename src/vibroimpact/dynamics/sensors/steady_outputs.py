@@ -1,8 +1,11 @@
 r"""What sensors read of the steady motion of a plate on supports that move.
 
-Each harmonic motion of the supports moves a point of the plate by a phasor C (`shaken/steady.py`), and for ever. It is the free motion of
-an undamped oscillator, :math:`q = \sin \omega t`, so that derivative, resonance and filter are transfer functions at its poles
-(`pole_pairs`): :math:`\mathrm{Im}\,C e^{i \omega t} = a q + b \dot q` with :math:`C = a + i \omega b`.
+Each harmonic motion of the supports moves a point of the plate by a phasor C (`shaken/steady.py`),
+and for ever. It is the free motion of
+an undamped oscillator, :math:`q = \sin \omega t`, so that derivative, resonance and filter are
+transfer functions at its poles
+(`pole_pairs`): :math:`\mathrm{Im}\,C e^{i \omega t} = a q + b \dot q` with :math:`C = a + i \omega
+b`.
 """
 
 from __future__ import annotations
@@ -35,7 +38,8 @@ def steady_outputs(
     samples: range,
     converted: bool,
 ) -> Floats:
-    """Return the outputs of sensors with the same resonance and filter in the steady motion, (S, samples).
+    """Return the outputs of sensors with the same resonance and filter in the steady motion, (S,
+    samples).
 
     Parameters
     ----------
@@ -66,13 +70,21 @@ def steady_outputs(
     ]
     outputs = np.stack([poles.product(one, passed) for one in moved], axis=1)
     values = np.zeros((len(sensors), len(samples)))
-    first = samples.start - (HALF_LENGTH if converted else 0)  # the gains of the filter are for its output so many samples later
+    # the gains of the filter are for its output so many samples later
+    first = samples.start - (HALF_LENGTH if converted else 0)
     blocks_of(oscillators, outputs, rate).sample(values, np.stack([still, omega]), first / rate)
     return values
 
 
 def _phasors(motion: PlateMotion, modes: ModalBasis | None, sensor: Sensor) -> Complex:
-    """Return the phasors of what a sensor sees (k,): its motion in space along its direction [m], or the strain [m/m]."""
+    """Return the phasors of what a sensor sees (k,): its motion in space along its
+    direction [m], or the strain [m/m].
+    """
     along = np.asarray(sensor.components)
-    supports = (0.0 if sensor.sees_strain else float(along @ motion.direction)) * motion.phasors  # which move the plate as a whole
-    return supports if modes is None else np.asarray(supports + modes.points[sensor.name] @ along @ steady_modes(motion, modes))
+    # which move the plate as a whole
+    supports = (0.0 if sensor.sees_strain else float(along @ motion.direction)) * motion.phasors
+    return (
+        supports
+        if modes is None
+        else np.asarray(supports + modes.points[sensor.name] @ along @ steady_modes(motion, modes))
+    )

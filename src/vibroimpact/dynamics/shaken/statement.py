@@ -16,7 +16,9 @@ _UNIT = 1e-9  # largest deviation of the length of a direction from one
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class PlateMotion:
-    r"""Prescribed motion of the supports of a plate along a direction: :math:`s(t) = \sum_k A_k \sin(2 \pi f_k t + \varphi_k)`.
+    r"""Prescribed motion of the supports of a plate along a direction.
+
+    :math:`s(t) = \sum_k A_k \sin(2 \pi f_k t + \varphi_k)`
 
     Parameters
     ----------
@@ -25,7 +27,8 @@ class PlateMotion:
     frequency : float or array, shape (k,)
         Their frequencies [Hz], > 0.
     phase : float or array, shape (k,), default 0
-        Their phases at the start [rad]; at 0 the plate passes its mean position along the direction.
+        Their phases at the start [rad]; at 0 the plate passes its mean position along the
+        direction.
     direction : tuple of three floats, default (0, 0, 1)
         Unit vector of the motion along x and y, in the plate, and its normal z.
 
@@ -37,7 +40,8 @@ class PlateMotion:
     Examples
     --------
     >>> table = PlateMotion(amplitude=2e-3, frequency=25.0)
-    >>> table.at(0.01).round(6).tolist()  # displacement, velocity and acceleration a quarter of a period later
+    >>> # displacement, velocity and acceleration a quarter of a period later
+    >>> table.at(0.01).round(6).tolist()
     [0.002, 0.0, -49.348022]
     """
 
@@ -53,21 +57,41 @@ class PlateMotion:
             ("phase", "", -np.inf),
         ):
             value = getattr(self, name)
-            if np.asarray(value).dtype.kind not in "iuf" or np.ndim(value) > 1 or not np.all(np.isfinite(value)):
-                raise InputError(f"{name} of the plate's motion must be a finite number in SI, or a row of them, not {value!r}")
+            if (
+                np.asarray(value).dtype.kind not in "iuf"
+                or np.ndim(value) > 1
+                or not np.all(np.isfinite(value))
+            ):
+                raise InputError(
+                    f"{name} of the plate's motion must be a finite number in SI, or a row "
+                    f"of them, not {value!r}"
+                )
             if not np.all(np.asarray(value) >= least):
                 raise InputError(f"{name} of the plate's motion must {words}")
         try:
             found = np.broadcast_arrays(
-                *(np.atleast_1d(np.asarray(part, dtype=float)) for part in (self.amplitude, self.frequency, self.phase))
+                *(
+                    np.atleast_1d(np.asarray(part, dtype=float))
+                    for part in (self.amplitude, self.frequency, self.phase)
+                )
             )
         except ValueError:
-            raise InputError("amplitude, frequency and phase of the plate's motion must agree in number, one for each harmonic") from None
+            raise InputError(
+                "amplitude, frequency and phase of the plate's motion must agree in number, "
+                "one for each harmonic"
+            ) from None
         for name, value in zip(("amplitude", "frequency", "phase"), found, strict=True):
             object.__setattr__(self, name, value)
         direction: Any = np.asarray(self.direction)
-        if direction.shape != (3,) or direction.dtype.kind not in "iuf" or not abs(np.linalg.norm(direction) - 1.0) <= _UNIT:
-            raise InputError(f"direction of the plate's motion must be a vector of length 1 along x, y and z, not {self.direction!r}")
+        if (
+            direction.shape != (3,)
+            or direction.dtype.kind not in "iuf"
+            or not abs(np.linalg.norm(direction) - 1.0) <= _UNIT
+        ):
+            raise InputError(
+                "direction of the plate's motion must be a vector of length 1 along x, y "
+                f"and z, not {self.direction!r}"
+            )
         object.__setattr__(self, "direction", tuple(direction.astype(float).tolist()))
 
     @cached_property
@@ -77,14 +101,26 @@ class PlateMotion:
 
     @cached_property
     def phasors(self) -> Complex:
-        """Complex amplitudes C [m] (k,) of the motion, the imaginary part of the sum of C exp(i omega t)."""
+        """Complex amplitudes C [m] (k,) of the motion, the imaginary part of the sum of C
+        exp(i omega t).
+        """
         return np.asarray(np.asarray(self.amplitude) * np.exp(1j * np.asarray(self.phase)))
 
     def at(self, time: Array, phasors: Complex | None = None) -> Floats:
-        """Return displacement [m], velocity [m/s] and acceleration [m/s^2] at times [s] (...), (3, ...).
+        """Return displacement [m], velocity [m/s] and acceleration [m/s^2] at times [s] (...), (3,
+        ...).
 
-        `phasors`: of another motion of these frequencies, (k,); by default those of the supports along the direction.
+        `phasors`: of another motion of these frequencies, (k,); by default those of the supports
+        along the direction.
         """
         omega = self.angular_frequency
-        turned = (self.phasors if phasors is None else phasors) * np.exp(1j * omega * np.asarray(time, dtype=float)[..., None])
-        return np.array([turned.imag.sum(axis=-1), (omega * turned.real).sum(axis=-1), -(omega**2 * turned.imag).sum(axis=-1)])
+        turned = (self.phasors if phasors is None else phasors) * np.exp(
+            1j * omega * np.asarray(time, dtype=float)[..., None]
+        )
+        return np.array(
+            [
+                turned.imag.sum(axis=-1),
+                (omega * turned.real).sum(axis=-1),
+                -(omega**2 * turned.imag).sum(axis=-1),
+            ]
+        )

@@ -1,11 +1,13 @@
 r"""Steady motion of a plate on supports that move.
 
-A mode i of unit modal mass, with the momentum :math:`\Gamma_i` per unit modal velocity along the motion of the supports, obeys
+A mode i of unit modal mass, with the momentum :math:`\Gamma_i` per unit modal velocity along the
+motion of the supports, obeys
 
 .. math:: \ddot q_i + 2 \zeta_i \omega_i \dot q_i + \omega_i^2 q_i = -\Gamma_i \ddot s
 
-in displacements relative to the supports (Craig and Kurdila, Fundamentals of Structural Dynamics, 2nd ed., section 9.2). The plate moves
-steadily when a drop begins; what impacts excite is the difference from that, as the equations are linear.
+in displacements relative to the supports (Craig and Kurdila, Fundamentals of Structural Dynamics,
+2nd ed., section 9.2). The plate moves steadily when a drop begins; what impacts excite is the
+difference from that, as the equations are linear.
 """
 
 from __future__ import annotations
@@ -21,8 +23,11 @@ if TYPE_CHECKING:
     from vibroimpact.structures.modal_model import ModalBasis  # which loads sparse matrices
 
 
-def steady_phasors(motion: PlateMotion, modes: ModalBasis | None, shapes: Floats | None = None) -> Complex:
-    """Return the phasors of the steady motion of a point of the plate along its normal [m] (k,), as `PlateMotion.at` takes them.
+def steady_phasors(
+    motion: PlateMotion, modes: ModalBasis | None, shapes: Floats | None = None
+) -> Complex:
+    """Return the phasors of the steady motion of a point of the plate along its normal [m] (k,), as
+    `PlateMotion.at` takes them.
 
     Parameters
     ----------
@@ -36,21 +41,37 @@ def steady_phasors(motion: PlateMotion, modes: ModalBasis | None, shapes: Floats
     supports = motion.direction[2] * motion.phasors
     if modes is None:
         return np.asarray(supports)
-    return np.asarray(supports + (modes.contact if shapes is None else shapes) @ steady_modes(motion, modes))
+    return np.asarray(
+        supports + (modes.contact if shapes is None else shapes) @ steady_modes(motion, modes)
+    )
 
 
 def steady_surface(motion: PlateMotion, modes: ModalBasis) -> Complex:
-    """Return the phasors of the steady motion of the contact point along x, y and the normal [m] (3, k), as `PlateMotion.at` takes them.
+    """Return the phasors of the steady motion of the contact point along x, y and the normal [m]
+    (3, k), as `PlateMotion.at` takes them.
 
     The modes must tell how they move it along the plate.
     """
     assert modes.along is not None
     shapes = np.column_stack([modes.along, modes.contact])
-    return np.asarray(np.outer(motion.direction, motion.phasors) + shapes.T @ steady_modes(motion, modes))
+    return np.asarray(
+        np.outer(motion.direction, motion.phasors) + shapes.T @ steady_modes(motion, modes)
+    )
 
 
 def steady_modes(motion: PlateMotion, modes: ModalBasis) -> Complex:
-    """Return the phasors of the modes in the steady motion, relative to the supports [kg^1/2 m] (modes, k)."""
+    """Return the phasors of the modes in the steady motion, relative to the supports
+    [kg^1/2 m] (modes, k).
+    """
     along = modes.participation @ np.array(motion.direction)
-    omega, ratio, driving = modes.angular_frequencies[:, None], modes.damping_ratios[:, None], motion.angular_frequency
-    return np.asarray(along[:, None] * driving**2 * motion.phasors / (omega**2 - driving**2 + 2j * ratio * omega * driving))
+    omega, ratio, driving = (
+        modes.angular_frequencies[:, None],
+        modes.damping_ratios[:, None],
+        motion.angular_frequency,
+    )
+    return np.asarray(
+        along[:, None]
+        * driving**2
+        * motion.phasors
+        / (omega**2 - driving**2 + 2j * ratio * omega * driving)
+    )

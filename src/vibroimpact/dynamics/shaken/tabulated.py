@@ -1,9 +1,12 @@
 r"""Tabulated motions of a plate as sums of harmonic ones, which pass through every sample.
 
-A displacement that is sampled at N + 1 equal steps over a time T is a sum of cosines :math:`c_k \cos(\pi k t/T)`, by the discrete cosine
-transform of the first kind. Their sum goes on evenly beyond both ends, where it would have a kink. Six harmonic motions of the frequencies
-:math:`(m + 1/2)/(2T)` take the slopes and the third derivatives there, so that the coefficients of a smooth record fall with the sixth
-power of k. They are those that leave least in the upper quarter of the frequencies.
+A displacement that is sampled at N + 1 equal steps over a time T is a sum of cosines :math:`c_k
+\cos(\pi k t/T)`, by the discrete cosine
+transform of the first kind. Their sum goes on evenly beyond both ends, where it would have a kink.
+Six harmonic motions of the frequencies
+:math:`(m + 1/2)/(2T)` take the slopes and the third derivatives there, so that the coefficients of
+a smooth record fall with the sixth power of k. They are those that leave least in the upper quarter
+of the frequencies.
 
 One period of a motion that repeats is a trigonometric polynomial.
 """
@@ -15,16 +18,21 @@ import numpy as np
 from vibroimpact.arrays import Floats
 from vibroimpact.dynamics.shaken.statement import PlateMotion
 
-_KEPT = 1e-6  # of the largest acceleration: what all harmonic motions that are left out may add up to
+# of the largest acceleration: what all harmonic motions that are left out may add up to
+_KEPT = 1e-6
 
 
 _SEEN = 10.0  # of the standard deviation of the noise: what is more is seen
 
 _HALVES = np.array([2, 4, 8])
-"""The m of the motions that take the slopes at the ends and the third derivatives there, and as many times more as N has 128ths."""
+"""The m of the motions that take the slopes at the ends and the third derivatives there,
+and as many times more as N has 128ths.
+"""
 
 
-def tabulated_motion(step: float, displacement: Floats, direction: tuple[float, float, float] = (0.0, 0.0, 1.0)) -> PlateMotion:
+def tabulated_motion(
+    step: float, displacement: Floats, direction: tuple[float, float, float] = (0.0, 0.0, 1.0)
+) -> PlateMotion:
     """Return a motion through samples of the displacement at equal steps, from its mean position.
 
     Parameters
@@ -49,11 +57,15 @@ def tabulated_motion(step: float, displacement: Floats, direction: tuple[float, 
     last = len(displacement) - 1
     length, time = step * last, step * np.arange(last + 1)
     halves, places = (_HALVES * (1 + last // 128) + 0.5) * np.pi / length, np.arange(last + 1)
-    # sines have a slope at the start alone, and cosines at the end alone; their means are made up for in pairs
+    # sines have a slope at the start alone, and cosines at the end alone; their means are made up
+    # for in pairs
     moving = np.concatenate([np.sin(halves[:, None] * time), np.cos(halves[:, None] * time)])
     means = np.concatenate([1.0 / halves, np.sin(halves * length) / halves])
     pairs = np.kron(np.eye(2), [[1.0, -1.0, 0.0], [0.0, 1.0, -1.0]]) / means
-    spectra, upper = dct(np.vstack([pairs @ moving, displacement]), 1, axis=1) / last, places > 3 * last // 4
+    spectra, upper = (
+        dct(np.vstack([pairs @ moving, displacement]), 1, axis=1) / last,
+        places > 3 * last // 4,
+    )
     # by least squares, without what is lost in the noise of the samples
     left, singular, right = np.linalg.svd(spectra[:-1, upper].T, full_matrices=False)
     seen = spectra[-1, upper] @ left
@@ -67,15 +79,19 @@ def tabulated_motion(step: float, displacement: Floats, direction: tuple[float, 
     return _motion(np.abs(size), frequency, phase, direction)
 
 
-def periodic_motion(step: float, displacement: Floats, direction: tuple[float, float, float] = (0.0, 0.0, 1.0)) -> PlateMotion:
-    """Return the motion through samples of one period of the displacement at equal steps, from its mean position.
+def periodic_motion(
+    step: float, displacement: Floats, direction: tuple[float, float, float] = (0.0, 0.0, 1.0)
+) -> PlateMotion:
+    """Return the motion through samples of one period of the displacement at equal steps, from its
+    mean position.
 
     It is the trigonometric polynomial of least degree through them.
 
     Parameters
     ----------
     step : float
-        Time between samples [s], the first of which is at time zero, and comes again one step after the last.
+        Time between samples [s], the first of which is at time zero, and comes again one step after
+        the last.
     displacement : array, shape (samples,)
         Displacement along the direction [m].
     direction : tuple of three floats, default (0, 0, 1)
@@ -85,7 +101,11 @@ def periodic_motion(step: float, displacement: Floats, direction: tuple[float, f
     --------
     >>> time = np.arange(100) * 0.001
     >>> motion = periodic_motion(0.001, 0.002 * np.sin(2.0 * np.pi * 30.0 * time + 0.5))
-    >>> motion.frequency.round(9).tolist(), motion.amplitude.round(9).tolist(), motion.phase.round(9).tolist()
+    >>> (
+    ...     motion.frequency.round(9).tolist(),
+    ...     motion.amplitude.round(9).tolist(),
+    ...     motion.phase.round(9).tolist(),
+    ... )
     ([30.0], [0.002], [0.5])
     """
     number = len(displacement)
@@ -95,18 +115,23 @@ def periodic_motion(step: float, displacement: Floats, direction: tuple[float, f
     return _motion(size, frequency, np.angle(spectrum) + 0.5 * np.pi, direction)
 
 
-def _motion(amplitude: Floats, frequency: Floats, phase: Floats, direction: tuple[float, float, float]) -> PlateMotion:
+def _motion(
+    amplitude: Floats, frequency: Floats, phase: Floats, direction: tuple[float, float, float]
+) -> PlateMotion:
     """Return a motion without those of its harmonic parts that hardly add to its acceleration."""
     acceleration = amplitude * frequency**2
     smallest = np.argsort(acceleration)
     kept = np.sort(smallest[np.cumsum(acceleration[smallest]) > _KEPT * acceleration.max()])
-    return PlateMotion(amplitude=amplitude[kept], frequency=frequency[kept], phase=phase[kept], direction=direction)
+    return PlateMotion(
+        amplitude=amplitude[kept], frequency=frequency[kept], phase=phase[kept], direction=direction
+    )
 
 
 def integrated_twice(step: float, acceleration: Floats) -> Floats:
     """Return the displacement [m] of samples of an acceleration at equal steps [s], (samples,).
 
-    The parabola that fits the displacement best is taken away: an accelerometer knows neither the velocity at the start nor its own zero.
+    The parabola that fits the displacement best is taken away: an accelerometer knows neither the
+    velocity at the start nor its own zero.
 
     Examples
     --------
@@ -123,14 +148,18 @@ def integrated_twice(step: float, acceleration: Floats) -> Floats:
 
 
 def integrated_twice_over_period(step: float, acceleration: Floats) -> Floats:
-    """Return the displacement [m] of samples of one period of an acceleration at equal steps [s], (samples,).
+    """Return the displacement [m] of samples of one period of an acceleration at equal steps [s],
+    (samples,).
 
-    The means of acceleration, velocity and displacement are taken for zero, as they are for a motion that stays where it is.
+    The means of acceleration, velocity and displacement are taken for zero, as they are for a
+    motion that stays where it is.
 
     Examples
     --------
     >>> time = np.arange(50) / 50.0
-    >>> found = integrated_twice_over_period(0.02, -((6.0 * np.pi) ** 2) * np.cos(6.0 * np.pi * time))
+    >>> found = integrated_twice_over_period(
+    ...     0.02, -((6.0 * np.pi) ** 2) * np.cos(6.0 * np.pi * time)
+    ... )
     >>> bool(np.allclose(found, np.cos(6.0 * np.pi * time)))
     True
     """

@@ -19,13 +19,16 @@ from vibroimpact.dynamics.vibrating.linear_system import LinearSystem, State
 from vibroimpact.dynamics.vibrating.local import LocalContact
 from vibroimpact.dynamics.vibrating.stretch import VibratingStretch
 
-_PEAK = 0.98  # of the largest nodal value: stretches whose nodal values stay below can't hold the peak
+# of the largest nodal value: stretches whose nodal values stay below can't hold the peak
+_PEAK = 0.98
 _NOTHING = 2e-15  # of the energy of the motion: less is a rounding error
 
 
 @dataclass(frozen=True)
 class ContactDefinition:
-    """A contact of a system: its law, the compliance in series, and whether each impact meets undeformed surfaces (`fresh_surface`)."""
+    """A contact of a system: its law, the compliance in series, and whether each impact
+    meets undeformed surfaces (`fresh_surface`).
+    """
 
     law: CompliantLaw
     series: QuasiStatic
@@ -40,10 +43,20 @@ class ContactPeak:
 
     def __init__(self) -> None:
         self.nodal_max = 0.0
-        self._candidates: list[tuple[float, float, VibratingStretch, Callable[[], tuple[float, float]]]] = []
+        self._candidates: list[
+            tuple[float, float, VibratingStretch, Callable[[], tuple[float, float]]]
+        ] = []
 
-    def add(self, nodal_max: float, start: float, stretch: VibratingStretch, peak: Callable[[], tuple[float, float]]) -> None:
-        """Add a stretch that starts at a time [s], with its largest nodal value; `peak` returns the x of the largest one, and that."""
+    def add(
+        self,
+        nodal_max: float,
+        start: float,
+        stretch: VibratingStretch,
+        peak: Callable[[], tuple[float, float]],
+    ) -> None:
+        """Add a stretch that starts at a time [s], with its largest nodal value; `peak`
+        returns the x of the largest one, and that.
+        """
         if nodal_max >= _PEAK * self.nodal_max:
             self._candidates.append((nodal_max, start, stretch, peak))
             self.nodal_max = max(self.nodal_max, nodal_max)
@@ -63,7 +76,8 @@ class ContactPeak:
 class Impact:
     """One impact of a contact, from touch to release.
 
-    `start`, `end` [s]; the latter is NaN until release. `closing_speed` [m/s]. `force` [N], `indentation` [m]: peaks. `impulse` [N s].
+    `start`, `end` [s]; the latter is NaN until release. `closing_speed` [m/s]. `force` [N],
+    `indentation` [m]: peaks. `impulse` [N s].
     """
 
     contact: int
@@ -78,16 +92,21 @@ class Impact:
 def locate_highest_peak(peaks: Sequence[ContactPeak]) -> tuple[float, float]:
     """Return the largest value of several peaks, and its time [s]."""
     nodal_max = _PEAK * max(peak.nodal_max for peak in peaks)
-    return max((peak.locate() for peak in peaks if peak.nodal_max >= nodal_max), key=lambda locate: locate[0])
+    return max(
+        (peak.locate() for peak in peaks if peak.nodal_max >= nodal_max),
+        key=lambda locate: locate[0],
+    )
 
 
 @dataclass
 class ActiveContact:
     """A contact whose surfaces overlap.
 
-    `mass`: effective mass of its motion [kg]. `delta`: indentation of its law [m]. `speed`, `span`: speed of its motion [m/s], and its
-    approximate duration [s]. `pushes`: whether its law acts; otherwise it recoils without a force. `fresh`: no stretch has been solved yet.
-    At the end of its last stretch: `force` [N], its rate of change `trend` [N/s], and `closing`, the rate of the approach [m/s].
+    `mass`: effective mass of its motion [kg]. `delta`: indentation of its law [m]. `speed`, `span`:
+    speed of its motion [m/s], and its approximate duration [s]. `pushes`: whether its law acts;
+    otherwise it recoils without a force. `fresh`: no stretch has been solved yet. At the end of its
+    last stretch: `force` [N], its rate of change `trend` [N/s], and `closing`, the rate of the
+    approach [m/s].
     """
 
     number: int
@@ -114,14 +133,22 @@ class ActiveContact:
 
     def law_indentation(self, system: LinearSystem, state: State) -> float:
         """Return the indentation of its law in a state [m]."""
-        return law_indentation(self.local.with_levels, self.overlap(system, state) + self.local.release_level)
+        return law_indentation(
+            self.local.with_levels, self.overlap(system, state) + self.local.release_level
+        )
 
     def plastic_work(self, system: LinearSystem, state: State) -> float:
         """Return the plastic work since the last update of the law's memory [J], in a state."""
-        return float(self.local.law.plastic_work(np.asarray(max(self.law_indentation(system, state), self.local.release_indentation))))
+        return float(
+            self.local.law.plastic_work(
+                np.asarray(max(self.law_indentation(system, state), self.local.release_indentation))
+            )
+        )
 
     def stored_energy_at(self, delta: float) -> float:
-        """Return the energy stored at an indentation of its law [J], with rounding errors set to zero."""
+        """Return the energy stored at an indentation of its law [J], with rounding errors
+        set to zero.
+        """
         held = float(self.local.energy_at_indentation(delta))
         return held if abs(held) > _NOTHING * self.energy else 0.0
 
@@ -129,14 +156,16 @@ class ActiveContact:
 def closing_speed(system: LinearSystem, state: State, number: int) -> float:
     """Return the closing speed of the surfaces of a contact [m/s], > 0.
 
-    It is the larger of the rates with and without the coordinates inside the contact: a surface may meet the other by its own vibration
-    while the centre hardly moves.
+    It is the larger of the rates with and without the coordinates inside the contact: a surface may
+    meet the other by its own vibration while the centre hardly moves.
     """
     return max(float(system.outer_rates(state)[number]), float(system.rates(state)[number]), 1e-300)
 
 
 def motion_speed(system: LinearSystem, number: int, law: CompliantLaw, closing: float) -> float:
-    """Return the speed scale of the motion in a contact [m/s]: the closing speed, or the speed that gravity adds at a soft touch."""
+    """Return the speed scale of the motion in a contact [m/s]: the closing speed, or the
+    speed that gravity adds at a soft touch.
+    """
     mass, gravity = float(system.mass[number]), max(float(system.gravity[number]), 0.0)
     if gravity and float(law.forces(closing**2 / gravity, 0.0, closing)[0]) >= mass * gravity:
         return closing  # the sphere sinks in by less than the height of a fall to this speed
@@ -144,12 +173,29 @@ def motion_speed(system: LinearSystem, number: int, law: CompliantLaw, closing: 
     return max(closing, float(np.sqrt(gravity * sag)))
 
 
-def record_peaks(impact: Impact, stretch: VibratingStretch, place: int, start: float, force: float, indentations: Floats) -> None:
+def record_peaks(
+    impact: Impact,
+    stretch: VibratingStretch,
+    place: int,
+    start: float,
+    force: float,
+    indentations: Floats,
+) -> None:
     """Add the peaks of force and indentation of one contact within a stretch to its impact.
 
-    `start`: time at which the stretch begins [s]. `force`: the largest at a node [N]. `indentations`: of the centre above, at the start and
-    the nodes [m] (N + 1,).
+    `start`: time at which the stretch begins [s]. `force`: the largest at a node [N].
+    `indentations`: of the centre above, at the start and the nodes [m] (N + 1,).
     """
     law = stretch.contacts[place].local.law
-    impact.force.add(force if law.tension == "kept" else max(force, 0.0), start, stretch, partial(stretch.peak_force, place))
-    impact.indentation.add(max(indentations[1:].tolist()), start, stretch, partial(peak_of, stretch.basis.basis, indentations))
+    impact.force.add(
+        force if law.tension == "kept" else max(force, 0.0),
+        start,
+        stretch,
+        partial(stretch.peak_force, place),
+    )
+    impact.indentation.add(
+        max(indentations[1:].tolist()),
+        start,
+        stretch,
+        partial(peak_of, stretch.basis.basis, indentations),
+    )

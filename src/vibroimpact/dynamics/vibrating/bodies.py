@@ -1,4 +1,6 @@
-"""Drops whose bodies vibrate: their linear systems, flights, contacts and rest, for the run of a batch of B drops."""
+"""Drops whose bodies vibrate: their linear systems, flights, contacts and rest, for the
+run of a batch of B drops.
+"""
 
 from __future__ import annotations
 
@@ -45,8 +47,8 @@ _MOST_PLACES = 8
 
 
 def system_of(problem: Problem, mass: float, gravity: float) -> LinearSystem:
-    """Return the linear system of a drop: the fall of the sphere, the rigid motions of the plate, the modes of both, the local element,
-    and the motion of a plate that is shaken.
+    """Return the linear system of a drop: the fall of the sphere, the rigid motions of the plate,
+    the modes of both, the local element, and the motion of a plate that is shaken.
 
     Parameters
     ----------
@@ -56,14 +58,31 @@ def system_of(problem: Problem, mass: float, gravity: float) -> LinearSystem:
         Of this drop [kg, m/s^2].
     """
     parts = [(np.zeros(1), np.zeros(1), np.array([mass**-0.5]))]
-    of_bodies = ((problem.plate.rigid, 1.0), (problem.sphere.modes, -1.0), (problem.plate.modes, 1.0))
-    parts += [(basis.angular_frequencies, basis.damping_ratios, sign * basis.contact) for basis, sign in of_bodies if basis]
+    of_bodies = (
+        (problem.plate.rigid, 1.0),
+        (problem.sphere.modes, -1.0),
+        (problem.plate.modes, 1.0),
+    )
+    parts += [
+        (basis.angular_frequencies, basis.damping_ratios, sign * basis.contact)
+        for basis, sign in of_bodies
+        if basis
+    ]
     driven, _, moved = driven_motion_of(problem)
     parts += [(driven, np.zeros_like(driven), _IMMOVABLE * mass**-0.5 * moved[2])]
     frequency, damping, shape = (np.concatenate(part) for part in zip(*parts, strict=True))
     of_rigid, of_sphere, of_plate = slices_of(problem)
-    load, inside, ground = np.zeros(len(shape)), np.zeros(len(shape), dtype=bool), np.zeros(len(shape), dtype=bool)
-    load[0], inside[of_sphere], ground[of_rigid], ground[of_plate] = gravity * mass**0.5, problem.sphere_inside, True, True
+    load, inside, ground = (
+        np.zeros(len(shape)),
+        np.zeros(len(shape), dtype=bool),
+        np.zeros(len(shape), dtype=bool),
+    )
+    load[0], inside[of_sphere], ground[of_rigid], ground[of_plate] = (
+        gravity * mass**0.5,
+        problem.sphere_inside,
+        True,
+        True,
+    )
     ground[of_plate.stop :] = True
     along = None
     if problem.oblique is not None and problem.oblique.friction is not None:
@@ -73,7 +92,9 @@ def system_of(problem: Problem, mass: float, gravity: float) -> LinearSystem:
                 assert basis.along is not None  # the problem has seen to it
                 along[:2, where] = basis.along.T
                 if basis.turning is not None:
-                    along[2:, where] = (basis.turning[:, [1, 0, 2]] * [-1.0, 1.0, 1.0]).T[: len(along) - 2]
+                    along[2:, where] = (basis.turning[:, [1, 0, 2]] * [-1.0, 1.0, 1.0]).T[
+                        : len(along) - 2
+                    ]
         along[:2, of_plate.stop :] = _IMMOVABLE * mass**-0.5 * moved[:2]
     local = [problem.local_element] if problem.local_element else []
     rate = np.array([stiffness / damping for stiffness, damping in local])
@@ -82,21 +103,36 @@ def system_of(problem: Problem, mass: float, gravity: float) -> LinearSystem:
     residuals = {} if problem.plate.modes is None else problem.plate.modes.residuals
     of_elements = (rate, mobility, contact)
     return LinearSystem(
-        frequency, damping, shape[None], np.zeros(1), load, inside, ground[None], *of_elements, along, residuals, len(driven)
+        frequency,
+        damping,
+        shape[None],
+        np.zeros(1),
+        load,
+        inside,
+        ground[None],
+        *of_elements,
+        along,
+        residuals,
+        len(driven),
     )
 
 
 def _moments_act(oblique: Oblique) -> bool:
     """Return whether rolling resistance or twisting friction acts on some of the drops."""
-    return oblique.friction is not None and bool(np.any(oblique.friction.rolling_coefficient) or np.any(oblique.spin[2]))
+    return oblique.friction is not None and bool(
+        np.any(oblique.friction.rolling_coefficient) or np.any(oblique.spin[2])
+    )
 
 
 _IMMOVABLE = 1e-10
-"""Shape of a driven coordinate over that of the sphere [-]: of a mass 1e20 times that of the sphere, which no contact disturbs."""
+"""Shape of a driven coordinate over that of the sphere [-]: of a mass 1e20 times that of
+the sphere, which no contact disturbs.
+"""
 
 
 def driven_motion_of(problem: Problem) -> tuple[Floats, Complex, Floats]:
-    """Return the harmonic motions that what drives a plate consists of, and what each adds to that of its surface at the contact point.
+    """Return the harmonic motions that what drives a plate consists of, and what each adds to that
+    of its surface at the contact point.
 
     Returns
     -------
@@ -105,8 +141,9 @@ def driven_motion_of(problem: Problem) -> tuple[Floats, Complex, Floats]:
     phasors : array of complex, shape (d,)
         Of the motions, times their shapes in metres.
     shape : array, shape (3, d)
-        Displacement of the surface along x, y and the normal by each. A rigid plate moves with its supports; an elastic one along its
-        normal, and in all directions, out of phase, where it is hit obliquely: by sine and cosine of each frequency.
+        Displacement of the surface along x, y and the normal by each. A rigid plate moves with its
+        supports; an elastic one along its normal, and in all directions, out of phase, where it is
+        hit obliquely: by sine and cosine of each frequency.
     """
     motion, modes = problem.motion, problem.plate.modes
     if motion is None or not problem.shaken:
@@ -117,11 +154,16 @@ def driven_motion_of(problem: Problem) -> tuple[Floats, Complex, Floats]:
     if problem.oblique is None:
         return omega, problem.surface_phasors, np.outer([0.0, 0.0, 1.0], ones)
     surface = steady_surface(motion, modes)
-    return np.tile(omega, 2), np.concatenate([ones, 1j * ones]), np.concatenate([surface.real, surface.imag], axis=1)
+    return (
+        np.tile(omega, 2),
+        np.concatenate([ones, 1j * ones]),
+        np.concatenate([surface.real, surface.imag], axis=1),
+    )
 
 
 def slices_of(problem: Problem) -> tuple[slice, slice, slice]:
-    """Return the slices of the plate's rigid motions, the sphere's modes and the plate's modes among the coordinates of a drop.
+    """Return the slices of the plate's rigid motions, the sphere's modes and the plate's modes
+    among the coordinates of a drop.
 
     The fall of the sphere is the first coordinate; driven coordinates come last.
     """
@@ -131,12 +173,16 @@ def slices_of(problem: Problem) -> tuple[slice, slice, slice]:
 
 
 def bases_of_plate(problem: Problem) -> list[ModalBasis]:
-    """Return the rigid motions of a plate that is not held, and its modes, in the order of its coordinates."""
+    """Return the rigid motions of a plate that is not held, and its modes, in the order
+    of its coordinates.
+    """
     return [basis for basis in (problem.plate.rigid, problem.plate.modes) if basis is not None]
 
 
 def centre_of(state: State, mass: Floats | float) -> tuple[Floats, Floats]:
-    """Return the depth of the sphere's centre below its position at touch [m], and its downward speed [m/s]."""
+    """Return the depth of the sphere's centre below its position at touch [m], and its
+    downward speed [m/s].
+    """
     root = np.sqrt(mass)
     return np.asarray(state.displacement[..., 0] / root), np.asarray(state.velocity[..., 0] / root)
 
@@ -147,20 +193,45 @@ def modes_of(body: Body) -> int:
 
 
 class VibratingBodies:
-    """The bodies of B drops of which some vibrate: one linear system per drop, with the modes in common. `Bodies` describes the methods.
+    """The bodies of B drops of which some vibrate: one linear system per drop, with the modes in
+    common. `Bodies` describes the methods.
 
     `oblique`: their motion along the plate, where they have any.
     """
 
-    def __init__(self, problem: Problem, mass: Floats, gravity: Floats, oblique: ObliqueMotion | None) -> None:
-        self.problem, self.mass, self.gravity, self.oblique, size = problem, mass, gravity, oblique, len(mass)
-        sensitive = problem.sensitivity and oblique is None and problem.air is None and problem.liquid is None
-        self.columns = tuple(name for name in VIBRATING_IMPACT_COLUMNS if sensitive or name != "sensitivity")
+    def __init__(
+        self, problem: Problem, mass: Floats, gravity: Floats, oblique: ObliqueMotion | None
+    ) -> None:
+        self.problem, self.mass, self.gravity, self.oblique, size = (
+            problem,
+            mass,
+            gravity,
+            oblique,
+            len(mass),
+        )
+        sensitive = (
+            problem.sensitivity
+            and oblique is None
+            and problem.air is None
+            and problem.liquid is None
+        )
+        self.columns = tuple(
+            name for name in VIBRATING_IMPACT_COLUMNS if sensitive or name != "sensitivity"
+        )
         pairs = list(zip(mass.tolist(), gravity.tolist(), strict=True))
         self.system = system_of(problem, *pairs[0])
-        distinct = {(mass, gravity): self.system.with_sphere(mass**-0.5, gravity * mass**0.5) for mass, gravity in set(pairs)}
-        self.systems, self.series = [distinct[pair] for pair in pairs], [problem.quasi_static] * size
-        self.displacement, self.velocity = np.zeros((size, self.system.number)), np.zeros((size, self.system.number))
+        distinct = {
+            (mass, gravity): self.system.with_sphere(mass**-0.5, gravity * mass**0.5)
+            for mass, gravity in set(pairs)
+        }
+        self.systems, self.series = (
+            [distinct[pair] for pair in pairs],
+            [problem.quasi_static] * size,
+        )
+        self.displacement, self.velocity = (
+            np.zeros((size, self.system.number)),
+            np.zeros((size, self.system.number)),
+        )
         if driven := self.system.driven:
             phasors = driven_motion_of(problem)[1] / (_IMMOVABLE * float(mass[0]) ** -0.5)
             self.displacement[:, -driven:], self.velocity[:, -driven:] = (
@@ -176,35 +247,65 @@ class VibratingBodies:
 
     def state(self, drop: int, gap: float, velocity: float) -> State:
         """Return the state of a drop whose sphere has a gap [m] and a velocity upwards [m/s]."""
-        state = State(*(part[drop].copy() for part in (self.displacement, self.velocity, self.local)))  # as these go on changing
+        # as these go on changing
+        state = State(
+            *(part[drop].copy() for part in (self.displacement, self.velocity, self.local))
+        )
         root = self.mass[drop] ** 0.5
         state.displacement[0], state.velocity[0] = -root * gap, -root * velocity
         return state
 
     def place(self, drop: int, state: State) -> None:
         """Store the state of a drop."""
-        self.displacement[drop], self.velocity[drop], self.local[drop] = state.displacement, state.velocity, state.local
+        self.displacement[drop], self.velocity[drop], self.local[drop] = (
+            state.displacement,
+            state.velocity,
+            state.local,
+        )
 
-    def next_touch(self, drops: Drops, flight: Flight, law: ContactLaw) -> tuple[Floats, Floats, Motions]:
-        """Return the times of the next touch [s], the approach speeds of the rigid bodies then [m/s], and the free motions of the drops."""
+    def next_touch(
+        self, drops: Drops, flight: Flight, law: ContactLaw
+    ) -> tuple[Floats, Floats, Motions]:
+        """Return the times of the next touch [s], the approach speeds of the rigid bodies
+        then [m/s], and the free motions of the drops.
+        """
         assert isinstance(law, CompliantLaw)  # the problem has seen to it
-        levels, guess = law.touch_level + np.zeros(len(drops)), flight.touch(np.zeros(1))[0] - flight.start
+        levels, guess = (
+            law.touch_level + np.zeros(len(drops)),
+            flight.touch(np.zeros(1))[0] - flight.start,
+        )
         flights = [flight.take(np.array([number])) for number in range(len(drops))]
-        found = [self._touch(*one) for one in zip(drops.tolist(), flights, levels.tolist(), guess.tolist(), strict=True)]
-        motions, elapsed = tuple(motion for motion, _ in found), np.array([time for _, time in found])
+        found = [
+            self._touch(*one)
+            for one in zip(drops.tolist(), flights, levels.tolist(), guess.tolist(), strict=True)
+        ]
+        motions, elapsed = (
+            tuple(motion for motion, _ in found),
+            np.array([time for _, time in found]),
+        )
         touch = flight.start + elapsed
         when = np.where(np.isfinite(elapsed), touch, flight.start)
         surface = self.problem.surface(when)[1]
         if self.problem.at_place is not None:
-            surface = np.array([self.places[drop].surface(time)[1] for drop, time in zip(drops, when, strict=True)])
+            surface = np.array(
+                [self.places[drop].surface(time)[1] for drop, time in zip(drops, when, strict=True)]
+            )
         return touch, -self._rigid_speed(drops, flight.at(when)[1] - surface), motions
 
     def _free(self, drop: int, flight: Flight) -> FreeMotion:
         """Return the free motion of a drop whose sphere is on a flight."""
-        return free_motion(self.systems[drop], self.state(drop, float(flight.gap[0]), float(flight.velocity[0])), flight)
+        return free_motion(
+            self.systems[drop],
+            self.state(drop, float(flight.gap[0]), float(flight.velocity[0])),
+            flight,
+        )
 
-    def _touch(self, drop: int, flight: Flight, level: float, guess: float) -> tuple[FreeMotion, float]:
-        """Return the free motion of a drop and the time until it touches [s], where it then is over the plate; `guess`: about that time."""
+    def _touch(
+        self, drop: int, flight: Flight, level: float, guess: float
+    ) -> tuple[FreeMotion, float]:
+        """Return the free motion of a drop and the time until it touches [s], where it
+        then is over the plate; `guess`: about that time.
+        """
         problem = self.problem
         if self.oblique is None or problem.at_place is None or problem.plate_at_place is None:
             motion = self._free(drop, flight)
@@ -212,9 +313,12 @@ class VibratingBodies:
         one = np.array([drop])
         time = guess
         place = self.oblique.place_on_plate(one, flight, flight.start + time)[:, 0]
-        for _ in range(_MOST_PLACES):  # the deflection of the plate where it falls changes the time a little, and that the place
+        # the deflection of the plate where it falls changes the time a little, and that the place
+        for _ in range(_MOST_PLACES):
             at = (float(place[0]), float(place[1]))
-            self._put_contact(drop, problem.on_plate(problem.plate_at_place(at), problem.quasi_static))
+            self._put_contact(
+                drop, problem.on_plate(problem.plate_at_place(at), problem.quasi_static)
+            )
             time = next_touch(self._free(drop, flight), level, np.inf)
             if not np.isfinite(time):
                 break
@@ -229,7 +333,9 @@ class VibratingBodies:
         """Let the contact of a drop be at another place on the plate, as a problem has it."""
         mass, gravity = float(self.mass[drop]), float(self.gravity[drop])
         # what drives the plate has its coordinates in common
-        system = system_of(there, float(self.mass[0]), float(self.gravity[0])).with_sphere(mass**-0.5, gravity * mass**0.5)
+        system = system_of(there, float(self.mass[0]), float(self.gravity[0])).with_sphere(
+            mass**-0.5, gravity * mass**0.5
+        )
         self.places[drop] = there
         self.systems[drop] = system
         self.series[drop] = there.quasi_static
@@ -242,38 +348,86 @@ class VibratingBodies:
             self.place(drop, state)
 
     def closing_speed(self, drops: Drops, speed: Floats, velocity: Floats) -> Floats:
-        """Return the closing speed of the surfaces, with the vibration outside the contact [m/s]."""
+        """Return the closing speed of the surfaces, with the vibration outside the
+        contact [m/s].
+        """
         states = (self.state(drop, 0.0, up) for drop, up in zip(drops, velocity, strict=True))
-        return np.array([float(self.systems[drop].outer_rates(state)[0]) for drop, state in zip(drops, states, strict=True)])
+        return np.array(
+            [
+                float(self.systems[drop].outer_rates(state)[0])
+                for drop, state in zip(drops, states, strict=True)
+            ]
+        )
 
     def rigid_speed(self, drops: Drops, velocity: Floats) -> Floats:
-        """Return the separation speed of the rigid motions [m/s], of sphere and plate, relative to what drives the plate."""
-        surface = [float(self.systems[drop].driven_motion(self.state(drop, 0.0, 0.0))[1]) for drop in drops]
+        """Return the separation speed of the rigid motions [m/s], of sphere and plate,
+        relative to what drives the plate.
+        """
+        surface = [
+            float(self.systems[drop].driven_motion(self.state(drop, 0.0, 0.0))[1]) for drop in drops
+        ]
         return self._rigid_speed(drops, velocity - np.array(surface))
 
     def _rigid_speed(self, drops: Drops, velocity: Floats) -> Floats:
         states = (self.state(drop, 0.0, up) for drop, up in zip(drops, velocity, strict=True))
-        return np.array([-float(self.systems[drop].rigid_motion(state)[1][0]) for drop, state in zip(drops, states, strict=True)])
+        return np.array(
+            [
+                -float(self.systems[drop].rigid_motion(state)[1][0])
+                for drop, state in zip(drops, states, strict=True)
+            ]
+        )
 
     def collide(
-        self, drops: Drops, encounter: Encounter, place: tuple[Floats, Floats], limits: tuple[Floats, Floats], row: dict[str, Floats]
+        self,
+        drops: Drops,
+        encounter: Encounter,
+        place: tuple[Floats, Floats],
+        limits: tuple[Floats, Floats],
+        row: dict[str, Floats],
     ) -> tuple[Contact, Floats, Floats]:
         """Take drops through their visits."""
         (gaps, velocities), (rest_speed, until) = place, limits
         starts, visits = [], []
         for number, drop in enumerate(drops):
             one, problem = encounter.take(np.array([number])), self.problem
-            # the duration of Hertz's contact goes with the 0.4th power of the mass; a free plate reduces the effective mass
+            # the duration of Hertz's contact goes with the 0.4th power of the mass; a free plate
+            # reduces the effective mass
             lighter = float(self.systems[drop].mass[0] / one.mass[0]) ** 0.4
-            start, pace = self.state(drop, gaps[number], velocities[number]), 3.0 * lighter * float(one.depth[0] / one.speed_scale[0])
-            rules = (problem.tolerance, pace, not problem.same_spot, float(rest_speed[number]), float(until[number]))
-            visits.append(follow_visit(self.systems[drop], one.law.take(0), self.series[drop], start, *rules, self.rubbing(drop, one)))
+            start, pace = (
+                self.state(drop, gaps[number], velocities[number]),
+                3.0 * lighter * float(one.depth[0] / one.speed_scale[0]),
+            )
+            rules = (
+                problem.tolerance,
+                pace,
+                not problem.same_spot,
+                float(rest_speed[number]),
+                float(until[number]),
+            )
+            visits.append(
+                follow_visit(
+                    self.systems[drop],
+                    one.law.take(0),
+                    self.series[drop],
+                    start,
+                    *rules,
+                    self.rubbing(drop, one),
+                )
+            )
             starts.append(start)
         for number, (drop, start, found) in enumerate(zip(drops, starts, visits, strict=True)):
             system = self.systems[drop]
-            before, after = (float(np.sum(system.energies(state), axis=0)[system.vibrating].sum()) for state in (start, found.state))
-            row["closing_speed_m_s"][drop], row["contacts"][drop] = encounter.approach_speed[number], found.contacts
-            row["energy_to_vibration_J"][drop] = after - before + found.lost[: system.number - system.driven].sum()
+            before, after = (
+                float(np.sum(system.energies(state), axis=0)[system.vibrating].sum())
+                for state in (start, found.state)
+            )
+            row["closing_speed_m_s"][drop], row["contacts"][drop] = (
+                encounter.approach_speed[number],
+                found.contacts,
+            )
+            row["energy_to_vibration_J"][drop] = (
+                after - before + found.lost[: system.number - system.driven].sum()
+            )
             if self.problem.motion is not None:
                 row["plate_work_J"][drop] = -found.lost[system.number - system.driven : -1].sum()
             if self.problem.motion is not None and self.problem.at_place is not None:
@@ -294,16 +448,25 @@ class VibratingBodies:
                 if found.outcome != RIDING:
                     self.lying[drop] = lying = bring_to_rest(equilibrium, found.state, found.stored)
                     self.left[drop] = lying.excess
-        force, when = (np.array([getattr(found, name) for found in visits]) for name in ("max_force", "time_of_max_force"))
+        force, when = (
+            np.array([getattr(found, name) for found in visits])
+            for name in ("max_force", "time_of_max_force")
+        )
         return contact_of(visits, encounter.law), force, when
 
     def rubbing(self, drop: int, encounter: Encounter) -> Rubbing:
         """Return the friction of a drop at first touch."""
-        law = None if self.oblique is None or self.oblique.law is None else self.oblique.law.take(drop)
+        law = (
+            None
+            if self.oblique is None or self.oblique.law is None
+            else self.oblique.law.take(drop)
+        )
         if self.oblique is None or not isinstance(law, CompliantFriction):
             return NO_RUBBING
         sphere, before = self.oblique.now(np.array([drop]))
-        largest = float(encounter.law.forces(encounter.depth, np.zeros(1), encounter.approach_speed)[0][0])
+        largest = float(
+            encounter.law.forces(encounter.depth, np.zeros(1), encounter.approach_speed)[0][0]
+        )
         along = self.systems[drop].along
         assert along is not None  # there is friction
         return rubbing_at_touch(law, largest, sphere, before, len(along))
@@ -321,14 +484,24 @@ class VibratingBodies:
         """Return which drops have come to rest."""
         return np.array([self.lying[drop] is not None for drop in drops], dtype=bool)
 
-    def static_state(self, drops: Drops, law: ContactLaw, weight: Floats, energy: Floats) -> dict[str, Floats]:
+    def static_state(
+        self, drops: Drops, law: ContactLaw, weight: Floats, energy: Floats
+    ) -> dict[str, Floats]:
         """Return `sag` [m], `stored` and `written_off` [J] of drops that have come to rest."""
         lying = [found for drop in drops if (found := self.lying[drop]) is not None]
-        rows = [(found.equilibrium.sag, found.equilibrium.stored, found.written_off) for found in lying]
-        return dict(zip(("sag", "stored", "written_off"), np.array(rows).reshape(-1, 3).T, strict=True))
+        rows = [
+            (found.equilibrium.sag, found.equilibrium.stored, found.written_off) for found in lying
+        ]
+        return dict(
+            zip(("sag", "stored", "written_off"), np.array(rows).reshape(-1, 3).T, strict=True)
+        )
 
-    def follow(self, drops: Drops, elapsed: Floats, sag: Floats, stored: Floats) -> tuple[Floats, Floats, Floats]:
-        """Advance drops at rest by their small oscillations; return gaps [m], upward velocities [m/s] and energies in the contacts [J]."""
+    def follow(
+        self, drops: Drops, elapsed: Floats, sag: Floats, stored: Floats
+    ) -> tuple[Floats, Floats, Floats]:
+        """Advance drops at rest by their small oscillations; return gaps [m], upward
+        velocities [m/s] and energies in the contacts [J].
+        """
         ends = np.zeros((len(drops), 3))
         for number, drop in enumerate(drops):
             lying, time = self.lying[drop], elapsed[number : number + 1]
@@ -341,13 +514,20 @@ class VibratingBodies:
         return ends[:, 0], ends[:, 1], ends[:, 2]
 
     def growth(self, leg: Leg) -> Floats:
-        """Return the growth of a small change of each drop by the impact of a leg [-], or nothing where it is not asked for."""
+        """Return the growth of a small change of each drop by the impact of a leg [-], or
+        nothing where it is not asked for.
+        """
         return np.zeros(0) if self.neighbours is None else self.neighbours.follow(leg)
 
     def energies(self) -> dict[str, Floats]:
-        """Return the entries of the energy balance [J], (B,), with separate ones for the local elements."""
+        """Return the entries of the energy balance [J], (B,), with separate ones for the
+        local elements.
+        """
         state = State(self.displacement, self.velocity, self.local)
-        (kinetic, strain), (rigid, sphere, plate) = self.system.energies(state), slices_of(self.problem)
+        (kinetic, strain), (rigid, sphere, plate) = (
+            self.system.energies(state),
+            slices_of(self.problem),
+        )
         return {
             "sphere_vibration_J": kinetic[:, sphere].sum(axis=1),
             "sphere_strain_J": strain[:, sphere].sum(axis=1),
@@ -357,7 +537,11 @@ class VibratingBodies:
             "plate_damping_J": self.lost[:, plate].sum(axis=1),
             "local_J": self.system.local_energy(state),
             "local_damping_J": self.lost[:, -1],
-            **({"drive_J": self.lost[:, -1 - driven : -1].sum(axis=1)} if (driven := self.system.driven) else {}),
+            **(
+                {"drive_J": self.lost[:, -1 - driven : -1].sum(axis=1)}
+                if (driven := self.system.driven)
+                else {}
+            ),
         }
 
 
@@ -368,10 +552,18 @@ def contact_of(visits: list[Visit], law: CompliantLaw) -> Contact:
         return np.array([getattr(found, name) for found in visits], dtype=float)
 
     pieces = [
-        Piece(np.array([drop]), np.array([part.start]), part.motion, law) for drop, found in enumerate(visits) for part in found.parts
+        Piece(np.array([drop]), np.array([part.start]), part.motion, law)
+        for drop, found in enumerate(visits)
+        for part in found.parts
     ]
-    ends = np.array([centre_of(found.state, float(found.system.shape[0, 0]) ** -2) for found in visits], dtype=float)
-    memories = {name: np.array([found.law.memories()[name] for found in visits], dtype=float) for name in law.memories()}
+    ends = np.array(
+        [centre_of(found.state, float(found.system.shape[0, 0]) ** -2) for found in visits],
+        dtype=float,
+    )
+    memories = {
+        name: np.array([found.law.memories()[name] for found in visits], dtype=float)
+        for name in law.memories()
+    }
     return Contact(
         pieces,
         gathered("outcome").astype(np.int8),

@@ -18,7 +18,12 @@ from vibroimpact.dynamics.vibrating.free_motion import FreePhase
 from vibroimpact.dynamics.vibrating.linear_system import FreeMotion, State
 from vibroimpact.dynamics.vibrating.local import LocalContact
 from vibroimpact.dynamics.vibrating.march import March, MotionPart
-from vibroimpact.dynamics.vibrating.radau_eigenbasis import NODES_PER_STRETCH, RadauEigenbasis, bases_of, radau_eigenbasis
+from vibroimpact.dynamics.vibrating.radau_eigenbasis import (
+    NODES_PER_STRETCH,
+    RadauEigenbasis,
+    bases_of,
+    radau_eigenbasis,
+)
 from vibroimpact.dynamics.vibrating.rubbing import RubbedStretch, RubbingState
 from vibroimpact.dynamics.vibrating.stretch import VibratingStretch
 from vibroimpact.dynamics.vibrating.stretch_end import with_separation_loss
@@ -28,7 +33,9 @@ _PARTS = 64
 
 @dataclass(frozen=True)
 class Limits:
-    """When a contact is left: at the time `until` [s] if the sphere rides, or after so many steps; `longest`: of a stretch [s]."""
+    """When a contact is left: at the time `until` [s] if the sphere rides, or after so
+    many steps; `longest`: of a stretch [s].
+    """
 
     until: float
     longest: float
@@ -38,7 +45,9 @@ class Limits:
 class CompiledContact:
     """The contact of a march with one contact, from touch on; `rubbing`: friction at touch."""
 
-    def __init__(self, march: March, active: ActiveContact, limits: Limits, rubbing: Rubbing) -> None:
+    def __init__(
+        self, march: March, active: ActiveContact, limits: Limits, rubbing: Rubbing
+    ) -> None:
         self.march = march
         self.active = active
         law = active.local.law
@@ -82,11 +91,20 @@ class CompiledContact:
         return self.progress.steps
 
     def follow(self) -> int:
-        """Follow the contact until something is to be decided; bring the march up to there, and return how it goes on."""
+        """Follow the contact until something is to be decided; bring the march up to
+        there, and return how it goes on.
+        """
         march, outcome = self.march, core.FULL
         while outcome == core.FULL:
             outcome, count, self.progress, self.state, self.law = core.follow_contact(
-                bases_of(self.root), self.view.bodies, self.manner, self.law, self.state, self.progress, march.lost, self.parts
+                bases_of(self.root),
+                self.view.bodies,
+                self.manner,
+                self.law,
+                self.state,
+                self.progress,
+                march.lost,
+                self.parts,
             )
             self._read(count)
         active, progress = self.active, self.progress
@@ -103,7 +121,9 @@ class CompiledContact:
         if parts.late_loss[0]:
             last = march.parts[-1]
             assert isinstance(last.motion, VibratingStretch)
-            march.parts[-1] = replace(last, motion=with_separation_loss(last.motion, 0, float(parts.late_loss[0])))
+            march.parts[-1] = replace(
+                last, motion=with_separation_loss(last.motion, 0, float(parts.late_loss[0]))
+            )
         for turned_at in parts.turned_at[: self.progress.memories + 1 - len(self.locals)].tolist():
             before = self.locals[-1]
             march.plastic += float(before.law.plastic_work(turned_at))
@@ -116,17 +136,29 @@ class CompiledContact:
             begun = State(written.displacement[part], written.velocity[part], written.local[part])
             if written.kind[part] == 0:
                 length = float(written.length[part])
-                march.parts.append(MotionPart(start, FreePhase(FreeMotion(march.system, begun), length, ((0, local),))))
+                march.parts.append(
+                    MotionPart(
+                        start, FreePhase(FreeMotion(march.system, begun), length, ((0, local),))
+                    )
+                )
                 continue
             stretch = self._stretch(written, part, local, begun)
             march.parts.append(MotionPart(start, stretch))
-            record_peaks(self.active.impact, stretch, 0, start, largest[part], written.indentation[part])
+            record_peaks(
+                self.active.impact, stretch, 0, start, largest[part], written.indentation[part]
+            )
             end = State(*self.state)
             if part + 1 < count:
-                end = State(written.displacement[part + 1], written.velocity[part + 1], written.local[part + 1])
+                end = State(
+                    written.displacement[part + 1],
+                    written.velocity[part + 1],
+                    written.local[part + 1],
+                )
             stretch.__dict__["end"] = end  # which it would compute anew
 
-    def _stretch(self, parts: Parts, part: int, local: LocalContact, begun: State) -> VibratingStretch:
+    def _stretch(
+        self, parts: Parts, part: int, local: LocalContact, begun: State
+    ) -> VibratingStretch:
         basis = radau_eigenbasis(MAPS[parts.time_map[part]], self.root)
         static = parts.static[part]
         history = ContactHistory(
@@ -145,18 +177,26 @@ class CompiledContact:
         )
         length = float(parts.length[part])
         rubbed = self._rubbed(parts, part, basis, length)
-        return VibratingStretch(self.view, basis, length, begun, (history,), float(parts.roughness[part]), rubbed)
+        return VibratingStretch(
+            self.view, basis, length, begun, (history,), float(parts.roughness[part]), rubbed
+        )
 
-    def _rubbed(self, parts: Parts, part: int, basis: RadauEigenbasis, length: float) -> RubbedStretch | None:
+    def _rubbed(
+        self, parts: Parts, part: int, basis: RadauEigenbasis, length: float
+    ) -> RubbedStretch | None:
         rubbing = self.progress.rubbing
         if not rubbing.directions:
             return None
         start, end = (RubbingState.of(numbers) for numbers in parts.rubbing[part])
-        return RubbedStretch(basis.rule, length, rubbing, start, end, parts.friction[part], parts.slip[part])
+        return RubbedStretch(
+            basis.rule, length, rubbing, start, end, parts.friction[part], parts.slip[part]
+        )
 
 
 def _room(number: int, elements: int, directions: int) -> Parts:
-    """Return room for parts of the motion of a system with so many coordinates, massless elements, and directions of friction."""
+    """Return room for parts of the motion of a system with so many coordinates, massless
+    elements, and directions of friction.
+    """
     nodes = NODES_PER_STRETCH
     return Parts(
         kind=np.zeros(_PARTS, dtype=np.int64),

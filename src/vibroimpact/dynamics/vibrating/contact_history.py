@@ -15,11 +15,12 @@ from vibroimpact.dynamics.vibrating.local import LocalContact
 class ContactHistory:
     """Forces and motion of one contact through a stretch.
 
-    `number`: number of the contact in the system. `static`, `dissipative`: parts of its force at the nodes [N] (N,). At the start and at
-    the nodes (N + 1,): `approach` of the surfaces [m], `rate` at the dashpot of the law and `closing`, the whole rate of the approach
-    [m/s], and `delta`, the indentation of the law [m].
-    `work`: increase of the energy stored by the law and of the plastic work [J]. `dissipated`: work of the dissipative force [J].
-    `separation_loss`: stored energy that is lost at the end, as when a sticking contact breaks [J].
+    `number`: number of the contact in the system. `static`, `dissipative`: parts of its force at
+    the nodes [N] (N,). At the start and at the nodes (N + 1,): `approach` of the surfaces [m],
+    `rate` at the dashpot of the law and `closing`, the whole rate of the approach [m/s], and
+    `delta`, the indentation of the law [m]. `work`: increase of the energy stored by the law and of
+    the plastic work [J]. `dissipated`: work of the dissipative force [J]. `separation_loss`: stored
+    energy that is lost at the end, as when a sticking contact breaks [J].
     """
 
     number: int
@@ -48,10 +49,14 @@ class ContactHistory:
     def law_force_at(self, x: Floats) -> Floats:
         """Return the force of the law before clipping [N] at x in [0, 1]."""
         weights = self.rule.weights(np.asarray(x, dtype=float)).T
-        static, dissipative = self.local.forces_at_indentation(weights @ self.delta, weights @ self.rate)
+        static, dissipative = self.local.forces_at_indentation(
+            weights @ self.delta, weights @ self.rate
+        )
         return np.asarray(static + dissipative)
 
     def force_at(self, x: Floats) -> Floats:
-        """Return the contact force [N] at x in [0, 1], clipped at zero where the law may not pull."""
+        """Return the contact force [N] at x in [0, 1], clipped at zero where the law may
+        not pull.
+        """
         force = self.law_force_at(x)
         return force if self.local.law.tension == "kept" else np.maximum(force, 0.0)

@@ -13,15 +13,18 @@ from vibroimpact.dynamics.core.contact_records import Bodies
 from vibroimpact.dynamics.core.records import Coordinates, Start, Surfaces
 from vibroimpact.dynamics.vibrating.linear_system import LinearSystem, State
 
-_RIGID_ROUNDING = 2e-15  # relative rounding error of the kinetic energy of the rigid motions that move the contacts
-_ROUNDING = 2e-14  # relative rounding error of the energy of the modes, which may far exceed that of a soft contact
+# relative rounding error of the kinetic energy of the rigid motions that move the contacts
+_RIGID_ROUNDING = 2e-15
+# relative rounding error of the energy of the modes, which may far exceed that of a soft contact
+_ROUNDING = 2e-14
 
 
 class ContactModes:
     """The modes and massless elements of a system, restricted to some of its contacts.
 
-    `rigid`: number of rigid motions, which are the first coordinates. `inside`: does a mode lie within the contacts? `shapes` (1 or 2, c,
-    m), `frequency_squared`, `damping` (m,), `rate` (k,), `incidence`, `mobility` (c, k): as in `core.records.Surfaces`.
+    `rigid`: number of rigid motions, which are the first coordinates. `inside`: does a mode lie
+    within the contacts? `shapes` (1 or 2, c, m), `frequency_squared`, `damping` (m,), `rate` (k,),
+    `incidence`, `mobility` (c, k): as in `core.records.Surfaces`.
     """
 
     def __init__(self, system: LinearSystem, contacts: Sequence[int]) -> None:
@@ -42,7 +45,8 @@ class ContactModes:
 class ContactView:
     """A linear system reduced to some of its contacts.
 
-    `modes`: its modes, which several systems may share. `surfaces`, `coordinates`: what the core computes with.
+    `modes`: its modes, which several systems may share. `surfaces`, `coordinates`: what the core
+    computes with.
     """
 
     def __init__(self, system: LinearSystem, contacts: Sequence[int], modes: ContactModes) -> None:
@@ -83,7 +87,9 @@ class ContactView:
             damping=system.damping,
             load=system.load,
             rigid_shapes=self.rigid_shapes,
-            driven_shapes=np.ascontiguousarray(system.shape[self.contacts][:, system.number - system.driven :]),
+            driven_shapes=np.ascontiguousarray(
+                system.shape[self.contacts][:, system.number - system.driven :]
+            ),
             rate=system.rate,
             mobility=system.mobility,
             rounding=np.where(system.rigid, _RIGID_ROUNDING * self.active_rigid, _ROUNDING),
@@ -91,16 +97,22 @@ class ContactView:
 
     @property
     def rubbed(self) -> ContactView:
-        """The system of a drop reduced to its contact and to the directions of friction at it; itself where there are none."""
+        """The system of a drop reduced to its contact and to the directions of friction
+        at it; itself where there are none.
+        """
         if self.system.along is None:
             return self
         return contact_view(self.system.rubbed, range(1 + len(self.system.along)))
 
     @cached_property
     def bodies(self) -> Bodies:
-        """The system as the core takes it, with the directions of friction as further contacts where there are any."""
+        """The system as the core takes it, with the directions of friction as further
+        contacts where there are any.
+        """
         system = self.system.record_of(self.contacts[0])
-        return Bodies(system, self.surfaces, self.coordinates, self.rubbed.surfaces, self.rubbed.coordinates)
+        return Bodies(
+            system, self.surfaces, self.coordinates, self.rubbed.surfaces, self.rubbed.coordinates
+        )
 
     @cached_property
     def without_load(self) -> ContactView:
@@ -116,7 +128,9 @@ class ContactView:
         speed = np.ascontiguousarray(state.velocity[modes.rigid :])
         outer_rate = self.rigid_shapes @ state.velocity[: modes.rigid] + modes.shapes[0] @ speed
         inner_rate = modes.shapes[1] @ speed if modes.inside else np.zeros_like(outer_rate)
-        moved = self.rigid_shapes @ state.displacement[: modes.rigid] + modes.shapes.sum(axis=0) @ place
+        moved = (
+            self.rigid_shapes @ state.displacement[: modes.rigid] + modes.shapes.sum(axis=0) @ place
+        )
         approach = self.offset + moved + modes.incidence @ state.local
         return Start(place, speed, state.local, approach, outer_rate, inner_rate)
 

@@ -16,7 +16,9 @@ ZERO_RATE = 1e-9  # of the speed of the motion: a slower approach counts as havi
 
 @dataclass(frozen=True)
 class OtherEvent:
-    """Event of a contact that is not part of a stretch: its function of the state, positive after the event, and the action it causes."""
+    """Event of a contact that is not part of a stretch: its function of the state,
+    positive after the event, and the action it causes.
+    """
 
     value: Callable[[State], Floats]
     act: Callable[[], object]

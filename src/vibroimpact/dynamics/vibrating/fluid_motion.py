@@ -14,7 +14,9 @@ from vibroimpact.dynamics.vibrating.linear_system import FreeMotion, LinearSyste
 
 @dataclass(frozen=True)
 class FluidMotion(FreeMotion):
-    """Motion without contact force in which the sphere, the first coordinate, flies through air or a liquid; `flight`: its flight alone."""
+    """Motion without contact force in which the sphere, the first coordinate, flies
+    through air or a liquid; `flight`: its flight alone.
+    """
 
     flight: FluidFlight
 
@@ -35,12 +37,16 @@ class FluidMotion(FreeMotion):
 
     def after(self, time: float) -> FluidMotion:
         """Return the motion from a time on [s]."""
-        return FluidMotion(self.system, self.state_after(time), self.flight.after(self._when(np.array(time))))
+        return FluidMotion(
+            self.system, self.state_after(time), self.flight.after(self._when(np.array(time)))
+        )
 
     def pull(self, time: float) -> float:
-        """Return a bound of the acceleration of the approach by what acts on the sphere [m/s^2], from a time on [s].
+        """Return a bound of the acceleration of the approach by what acts on the sphere [m/s^2],
+        from a time on [s].
 
-        A rising sphere is slowed less and less, at last by gravity, and a falling one is accelerated by less than that.
+        A rising sphere is slowed less and less, at last by gravity, and a falling one is
+        accelerated by less than that.
         """
         now = abs(float(self.flight.acceleration(self._when(np.array(time)))[0]))
         return max(float(self.system.gravity[0]), now)
@@ -50,5 +56,11 @@ class FluidMotion(FreeMotion):
 
 
 def free_motion(system: LinearSystem, state: State, flight: Flight) -> FreeMotion:
-    """Return the motion without contact force of a system whose sphere is on a flight, from the state at its start."""
-    return FluidMotion(system, state, flight) if isinstance(flight, FluidFlight) else FreeMotion(system, state)
+    """Return the motion without contact force of a system whose sphere is on a flight,
+    from the state at its start.
+    """
+    return (
+        FluidMotion(system, state, flight)
+        if isinstance(flight, FluidFlight)
+        else FreeMotion(system, state)
+    )

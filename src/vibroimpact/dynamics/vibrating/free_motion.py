@@ -1,4 +1,6 @@
-"""Force-free phase of a march: between two contacts, or inside an indentation once the law has stopped pushing."""
+"""Force-free phase of a march: between two contacts, or inside an indentation once the
+law has stopped pushing.
+"""
 
 from __future__ import annotations
 
@@ -15,8 +17,9 @@ from vibroimpact.dynamics.vibrating.local import LocalContact
 class FreePhase:
     """Free motion between two contacts, or inside an indentation once the law has stopped pushing.
 
-    `length` [s]. `recoiling`: contacts, with their numbers, whose surfaces still overlap without a force; the energy stored in their
-    indentation is lost as it recovers. Where it is empty, all surfaces are apart.
+    `length` [s]. `recoiling`: contacts, with their numbers, whose surfaces still overlap without a
+    force; the energy stored in their indentation is lost as it recovers. Where it is empty, all
+    surfaces are apart.
     """
 
     free: FreeMotion
@@ -42,7 +45,9 @@ class FreePhase:
         return self.free.state(time)
 
     def lost_by(self, time: Floats) -> Floats:
-        """Return the energy lost since the start [J] at times since then [s], (..., n + 1): in each coordinate; last, in the contacts."""
+        """Return the energy lost since the start [J] at times since then [s], (..., n +
+        1): in each coordinate; last, in the contacts.
+        """
         return self.lost_at(self.free.state(time))
 
     def lost_at(self, state: State) -> Floats:
@@ -53,7 +58,14 @@ class FreePhase:
         return lost
 
 
-def recoil_loss(system: LinearSystem, number: int, local: LocalContact, before: State, now: State) -> Floats:
-    """Return the stored energy that a recoiling contact has lost between a state and later ones [J]."""
-    begun, left = (local.elastic_energy(np.maximum(system.approach(at)[..., number], local.release_level)) for at in (before, now))
+def recoil_loss(
+    system: LinearSystem, number: int, local: LocalContact, before: State, now: State
+) -> Floats:
+    """Return the stored energy that a recoiling contact has lost between a state and
+    later ones [J].
+    """
+    begun, left = (
+        local.elastic_energy(np.maximum(system.approach(at)[..., number], local.release_level))
+        for at in (before, now)
+    )
     return np.asarray(begun - left)

@@ -1,19 +1,25 @@
 r"""The bodies between their contacts as one linear system, and its free motion in closed form.
 
-Every rigid motion and every vibration mode is a coordinate q of unit mass; a rigid motion has an angular frequency of zero. A massless
-local element, a spring parallel to a dashpot, may lie in series with a contact. A coordinate i changes the approach of the surfaces at
-contact c by its shape :math:`\chi_{ci}`. With the contact forces F and the load g on each coordinate,
+Every rigid motion and every vibration mode is a coordinate q of unit mass; a rigid motion has an
+angular frequency of zero. A massless local element, a spring parallel to a dashpot, may lie in
+series with a contact. A coordinate i changes the approach of the surfaces at
+contact c by its shape :math:`\chi_{ci}`. With the contact forces F and the load g on each
+coordinate,
 
-.. math:: y_c = y_{c0} + \sum_i \chi_{ci} q_i + \sum_k r_k,\qquad \dot r_k + \kappa_k r_k = -\mu_k F_c
+.. math::
+
+    y_c = y_{c0} + \sum_i \chi_{ci} q_i + \sum_k r_k,\qquad \dot r_k + \kappa_k r_k = -\mu_k F_c
 
 .. math:: \ddot q_i + 2 \zeta_i \omega_i \dot q_i + \omega_i^2 q_i = g_i - \sum_c \chi_{ci} F_{ci}
 
-where y is the approach of the surfaces, negative where there is a gap. A coordinate may lie *inside* the contacts of its body: it is then
-in series with the springs of the contact laws alone, :math:`F_{ci}` is the force of that spring, and the dashpot of the law spans it. For
-all other coordinates :math:`F_{ci} = F_c`.
+where y is the approach of the surfaces, negative where there is a gap. A coordinate may lie
+*inside* the contacts of its body: it is then in series with the springs of the contact laws alone,
+:math:`F_{ci}` is the force of that spring, and the dashpot of the law spans it. For all other
+coordinates :math:`F_{ci} = F_c`.
 
-The last coordinates may be *driven*: a prescribed harmonic motion of the body below is an undamped oscillator whose mass is so large, and
-whose shape is so small, that no contact disturbs it. Its energy says nothing and is not counted; what counts is the work of its drive.
+The last coordinates may be *driven*: a prescribed harmonic motion of the body below is an undamped
+oscillator whose mass is so large, and whose shape is so small, that no contact disturbs it. Its
+energy says nothing and is not counted; what counts is the work of its drive.
 """
 
 from __future__ import annotations
@@ -30,14 +36,16 @@ from vibroimpact.dynamics.core import records
 from vibroimpact.dynamics.core.flight import state_after
 from vibroimpact.dynamics.vibrating.oscillators import Oscillators
 
-_ALIKE = 1e-12  # of the sum of the magnitudes of the terms of an acceleration: smaller sums are rounding errors
+# of the sum of the magnitudes of the terms of an acceleration: smaller sums are rounding errors
+_ALIKE = 1e-12
 
 
 @dataclass(frozen=True)
 class State:
     """State of a linear system; arrays may have leading axes of times.
 
-    `displacement` and `velocity` of the coordinates (..., n); `local`, deformations of the massless elements (..., k) [m].
+    `displacement` and `velocity` of the coordinates (..., n); `local`, deformations of the massless
+    elements (..., k) [m].
     """
 
     displacement: Floats
@@ -56,7 +64,8 @@ class State:
 
 @dataclass(frozen=True)
 class LinearSystem(Oscillators):
-    """Coordinates of unit mass of bodies with contacts, and massless elements of a spring parallel to a dashpot.
+    """Coordinates of unit mass of bodies with contacts, and massless elements of a spring parallel
+    to a dashpot.
 
     Parameters
     ----------
@@ -67,18 +76,21 @@ class LinearSystem(Oscillators):
     offset : array, shape (contacts,)
         Approach of the surfaces where all coordinates are zero [m].
     load : array, shape (n,)
-        Acceleration of each coordinate by gravity [kg^1/2 m/s^2]; zero for modes, which are measured from their static equilibrium.
+        Acceleration of each coordinate by gravity [kg^1/2 m/s^2]; zero for modes, which are
+        measured from their static equilibrium.
     inside : array of bool, shape (n,)
         Which coordinates lie inside the contacts.
     below : array of bool, shape (contacts, n)
-        Which coordinates count in the indentation of each contact: of a drop those of the body below, of a system all.
+        Which coordinates count in the indentation of each contact: of a drop those of the body
+        below, of a system all.
     rate, mobility : array, shape (k,)
         Of the massless elements: stiffness over damping [1/s], and one over damping [m/(N s)].
     local_contact : array of int, shape (k,)
         The contact that each massless element is in series with.
     along : array, shape (2, n) or (5, n), optional
-        Displacement of the surface below along x and y at the only contact, by each coordinate [kg^-1/2], where there is friction; where
-        moments act, also its rotations about -y, x and z [kg^-1/2 m^-1].
+        Displacement of the surface below along x and y at the only contact, by each coordinate
+        [kg^-1/2], where there is friction; where moments act, also its rotations about -y, x and z
+        [kg^-1/2 m^-1].
     residuals : mapping of str to array, shape (3,)
         Residual compliances between the only contact and the sensors, by their names [m/N].
     driven : int, default 0
@@ -103,7 +115,9 @@ class LinearSystem(Oscillators):
 
     @cached_property
     def shared_modes(self) -> dict[tuple[int, ...], Any]:
-        """Cache of `ContactModes` for sets of contacts, by their numbers; shared by systems with the same modes."""
+        """Cache of `ContactModes` for sets of contacts, by their numbers; shared by
+        systems with the same modes.
+        """
         return {}
 
     @cached_property
@@ -135,7 +149,9 @@ class LinearSystem(Oscillators):
         return self._records[contact]
 
     def with_sphere(self, shape: float, load: float) -> LinearSystem:
-        """Return the same system with a sphere of another mass and weight, whose fall is the first coordinate."""
+        """Return the same system with a sphere of another mass and weight, whose fall is
+        the first coordinate.
+        """
         shapes, loads = self.shape.copy(), self.load.copy()
         shapes[:, 0], loads[0] = shape, load
         found = replace(self, shape=shapes, load=loads)
@@ -144,10 +160,15 @@ class LinearSystem(Oscillators):
 
     @cached_property
     def rubbed(self) -> LinearSystem:
-        """The same system with a further contact for each direction in which friction acts, and about which its moments do."""
+        """The same system with a further contact for each direction in which friction
+        acts, and about which its moments do.
+        """
         assert self.along is not None
         apart = np.concatenate([self.offset, np.zeros(len(self.along))])
-        shapes, below = np.concatenate([self.shape, -self.along]), np.repeat(self.below, 1 + len(self.along), axis=0)
+        shapes, below = (
+            np.concatenate([self.shape, -self.along]),
+            np.repeat(self.below, 1 + len(self.along), axis=0),
+        )
         return replace(self, shape=shapes, offset=apart, below=below, along=None)
 
     @cached_property
@@ -157,7 +178,9 @@ class LinearSystem(Oscillators):
 
     @property
     def ground(self) -> Bools:
-        """Mask of the coordinates of the body below, of a drop, without those that are driven (n,)."""
+        """Mask of the coordinates of the body below, of a drop, without those that are
+        driven (n,).
+        """
         return np.asarray(self.below[0] & (np.arange(self.number) < self.number - self.driven))
 
     @cached_property
@@ -177,7 +200,9 @@ class LinearSystem(Oscillators):
 
     @cached_property
     def indentation_shape(self) -> Floats:
-        """Shapes of the rigid motions and of the modes that count in the indentation, zero for the others (contacts, n)."""
+        """Shapes of the rigid motions and of the modes that count in the indentation,
+        zero for the others (contacts, n).
+        """
         return np.where(self.below | self.rigid, self.shape, 0.0)
 
     @cached_property
@@ -187,19 +212,25 @@ class LinearSystem(Oscillators):
 
     @cached_property
     def mass(self) -> Floats:
-        """Effective mass of the rigid motions at each contact [kg] (contacts,): of a free and a held body the mass of the free one."""
+        """Effective mass of the rigid motions at each contact [kg] (contacts,): of a free
+        and a held body the mass of the free one.
+        """
         return np.asarray(1.0 / (self.rigid_shape**2).sum(axis=1))
 
     @cached_property
     def gravity(self) -> Floats:
-        """Acceleration of the approach by gravity [m/s^2] (contacts,); exactly zero where both bodies fall alike."""
+        """Acceleration of the approach by gravity [m/s^2] (contacts,); exactly zero where
+        both bodies fall alike.
+        """
         parts = self.shape * self.load
         found = parts.sum(axis=1)
         return np.where(np.abs(found) > _ALIKE * np.abs(parts).sum(axis=1), found, 0.0)
 
     @cached_property
     def local_incidence(self) -> Floats:
-        """Incidence matrix: one where a massless element is in series with a contact (contacts, k)."""
+        """Incidence matrix: one where a massless element is in series with a contact
+        (contacts, k).
+        """
         return np.asarray(self.local_contact == np.arange(len(self.shape))[:, None], dtype=float)
 
     @cached_property
@@ -209,17 +240,28 @@ class LinearSystem(Oscillators):
 
     @cached_property
     def flexibility(self) -> Floats:
-        """Inverse of the squared angular frequency of each mode, zero for rigid motions [s^2] (n,)."""
-        return np.where(self.rigid, 0.0, 1.0 / np.where(self.rigid, 1.0, self.angular_frequency) ** 2)
+        """Inverse of the squared angular frequency of each mode, zero for rigid motions
+        [s^2] (n,).
+        """
+        return np.where(
+            self.rigid, 0.0, 1.0 / np.where(self.rigid, 1.0, self.angular_frequency) ** 2
+        )
 
     @cached_property
     def compliance(self) -> Floats:
         """Static compliance of modes and massless elements at each contact [m/N] (contacts,)."""
-        return np.asarray(self.shape**2 @ self.flexibility + self.local_incidence @ self.local_compliance)
+        return np.asarray(
+            self.shape**2 @ self.flexibility + self.local_incidence @ self.local_compliance
+        )
 
     def energies(self, state: State) -> tuple[Floats, Floats]:
-        """Return the kinetic and the strain energy of each coordinate [J], zero for driven ones; states may have leading axes."""
-        kinetic, strain = 0.5 * state.velocity**2, 0.5 * (self.angular_frequency * state.displacement) ** 2
+        """Return the kinetic and the strain energy of each coordinate [J], zero for
+        driven ones; states may have leading axes.
+        """
+        kinetic, strain = (
+            0.5 * state.velocity**2,
+            0.5 * (self.angular_frequency * state.displacement) ** 2,
+        )
         if self.driven:
             kinetic[..., -self.driven :] = strain[..., -self.driven :] = 0.0
         return kinetic, strain
@@ -229,42 +271,75 @@ class LinearSystem(Oscillators):
         return np.asarray(0.5 * (state.local**2 * self.rate / self.mobility).sum(axis=-1))
 
     def mechanical_energy(self, state: State) -> Floats:
-        """Return the kinetic, potential and strain energy [J], without the energy stored by the contact laws."""
+        """Return the kinetic, potential and strain energy [J], without the energy stored
+        by the contact laws.
+        """
         total = sum(part.sum(axis=-1) for part in self.energies(state))
         return np.asarray(total - state.displacement @ self.load + self.local_energy(state))
 
     def common_energy(self, state: State) -> Floats:
-        """Return the kinetic energy of rigid motions that do not change the first approach [J], as of two free bodies moving together."""
+        """Return the kinetic energy of rigid motions that do not change the first
+        approach [J], as of two free bodies moving together.
+        """
         if np.count_nonzero(self.rigid) == 1:
             return np.zeros(state.velocity.shape[:-1])
         along = state.velocity @ self.rigid_shape[0]
-        return np.asarray(0.5 * ((state.velocity[..., self.rigid] ** 2).sum(axis=-1) - self.mass[0] * along**2))
+        return np.asarray(
+            0.5 * ((state.velocity[..., self.rigid] ** 2).sum(axis=-1) - self.mass[0] * along**2)
+        )
 
     def approach(self, state: State) -> Floats:
-        """Return the approach of the surfaces [m], negative where there is a gap (..., contacts)."""
-        return np.asarray(self.offset + state.displacement @ self.shape.T + state.local @ self.local_incidence.T)
+        """Return the approach of the surfaces [m], negative where there is a gap (...,
+        contacts).
+        """
+        return np.asarray(
+            self.offset + state.displacement @ self.shape.T + state.local @ self.local_incidence.T
+        )
 
     def rates(self, state: State) -> Floats:
         """Return the rate of the approach without contact force [m/s] (..., contacts)."""
-        return np.asarray(state.velocity @ self.shape.T - (state.local * self.rate) @ self.local_incidence.T)
+        return np.asarray(
+            state.velocity @ self.shape.T - (state.local * self.rate) @ self.local_incidence.T
+        )
 
     def outer_rates(self, state: State) -> Floats:
-        """Return the rate at the dashpot of each contact law without contact force [m/s] (..., contacts)."""
-        return np.asarray(state.velocity @ self.outer_shape.T - (state.local * self.rate) @ self.local_incidence.T)
+        """Return the rate at the dashpot of each contact law without contact force [m/s]
+        (..., contacts).
+        """
+        return np.asarray(
+            state.velocity @ self.outer_shape.T - (state.local * self.rate) @ self.local_incidence.T
+        )
 
     def rigid_motion(self, state: State) -> tuple[Floats, Floats]:
-        """Return the contribution of the rigid motions, and of the offset, to the approach [m] and to its rate [m/s] (..., contacts)."""
-        return self.offset + state.displacement @ self.rigid_shape.T, state.velocity @ self.rigid_shape.T
+        """Return the contribution of the rigid motions, and of the offset, to the
+        approach [m] and to its rate [m/s] (..., contacts).
+        """
+        return (
+            self.offset + state.displacement @ self.rigid_shape.T,
+            state.velocity @ self.rigid_shape.T,
+        )
 
     def driven_motion(self, state: State) -> tuple[Floats, Floats, Floats]:
-        """Return what the driven coordinates contribute to the first approach [m], its rate [m/s] and its acceleration [m/s^2] (...)."""
+        """Return what the driven coordinates contribute to the first approach [m], its
+        rate [m/s] and its acceleration [m/s^2] (...).
+        """
         driven = slice(self.number - self.driven, None)
         shape, place = self.shape[0, driven], state.displacement[..., driven]
-        return place @ shape, state.velocity[..., driven] @ shape, -(place * self.angular_frequency[driven] ** 2) @ shape
+        return (
+            place @ shape,
+            state.velocity[..., driven] @ shape,
+            -(place * self.angular_frequency[driven] ** 2) @ shape,
+        )
 
     def accelerations(self, state: State, force: Floats) -> Floats:
-        """Return the accelerations of the coordinates outside the contacts, under contact forces [N] (T, contacts): (T, n)."""
-        unforced = self.load - self.damping * state.velocity - self.angular_frequency**2 * state.displacement
+        """Return the accelerations of the coordinates outside the contacts, under contact
+        forces [N] (T, contacts): (T, n).
+        """
+        unforced = (
+            self.load
+            - self.damping * state.velocity
+            - self.angular_frequency**2 * state.displacement
+        )
         return np.asarray(unforced - force @ self.outer_shape)
 
 
@@ -297,17 +372,23 @@ class FreeMotion:
         return FreeMotion(self.system, self.state_after(time))
 
     def lost_by(self, time: Floats) -> Floats:
-        """Return the energy lost since the start [J], (..., n + 1): in each coordinate, and last in the massless elements."""
+        """Return the energy lost since the start [J], (..., n + 1): in each coordinate,
+        and last in the massless elements.
+        """
         return self.lost_at(self.state(time))
 
     def lost_at(self, state: State) -> Floats:
         """Return the energy lost since the start [J] as in `lost_by`, at states of this motion."""
         system = self.system
-        coordinates = np.where(system.rigid, 0.0, sum(system.energies(self.start)) - sum(system.energies(state)))
+        coordinates = np.where(
+            system.rigid, 0.0, sum(system.energies(self.start)) - sum(system.energies(state))
+        )
         massless = system.local_energy(self.start) - system.local_energy(state)
         return np.concatenate([coordinates, massless[..., None]], axis=-1)
 
     def motion(self, time: Floats) -> tuple[Floats, Floats]:
-        """Return the approach of the surfaces [m] and its rate [m/s] at times since the start [s], (..., contacts)."""
+        """Return the approach of the surfaces [m] and its rate [m/s] at times since the
+        start [s], (..., contacts).
+        """
         state = self.state(time)
         return self.system.approach(state), self.system.rates(state)

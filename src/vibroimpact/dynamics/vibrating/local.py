@@ -27,9 +27,11 @@ _TABLE_ROWS = 200
 class LocalContact:
     r"""A contact law and the quasi-static compliance in series with it, for one impact.
 
-    The approach of the surfaces is :math:`y = \delta + s(F_s)`, with the indentation :math:`\delta` of the law and its static force
-    :math:`F_s`. The dissipative force acts parallel to both, at a rate of its own: a negative compliance, as the finite-size term of a
-    sphere has, would be unstable in series with a damped force.
+    The approach of the surfaces is :math:`y = \delta + s(F_s)`, with the indentation :math:`\delta`
+    of the law and its static force
+    :math:`F_s`. The dissipative force acts parallel to both, at a rate of its own: a negative
+    compliance, as the finite-size term of a sphere has, would be unstable in series with a damped
+    force.
 
     Parameters
     ----------
@@ -46,30 +48,46 @@ class LocalContact:
     approach_speed: float
 
     def forces(self, approach: Array, rate: Array) -> tuple[Array, Array]:
-        """Return the static and the dissipative force [N], before clipping, at the approach y [m] and its rate [m/s]."""
+        """Return the static and the dissipative force [N], before clipping, at the
+        approach y [m] and its rate [m/s].
+        """
         return self.law.forces(self.indentation_at(approach), rate, self.approach_speed)
 
     def __getstate__(self) -> dict[str, object]:
-        """Return what is pickled: not the addresses of machine code, which are those of this process."""
+        """Return what is pickled: not the addresses of machine code, which are those of
+        this process.
+        """
         return {"law": self.law, "series": self.series, "approach_speed": self.approach_speed}
 
     @cached_property
     def with_levels(self) -> Law:
-        """The law with the levels and the energy that follow from it and the compliance in series, as the core finds them."""
+        """The law with the levels and the energy that follow from it and the compliance
+        in series, as the core finds them.
+        """
         series = self.series
         numbers = np.array([series.linear, series.unit, *series.factors, series.force], dtype=float)
-        return core.law_at_touch(law_addresses(type(self.law)), law_coefficients(self.law), numbers, float(self.approach_speed))
+        return core.law_at_touch(
+            law_addresses(type(self.law)),
+            law_coefficients(self.law),
+            numbers,
+            float(self.approach_speed),
+        )
 
     @cached_property
     def record(self) -> Contacts:
         """The contact as the core takes it."""
         return core.contacts_of(self.with_levels, TENSIONS.index(self.law.tension))
 
-    # in terms of the indentation of the law ---------------------------------------------------------
+    # in terms of the indentation of the law
+    # ---------------------------------------------------------
 
     def forces_at_indentation(self, delta: Array, rate: Array) -> tuple[Array, Array]:
-        """Return the static and the dissipative force [N], before clipping, at an indentation of the law [m] and a rate [m/s]."""
-        return self.law.forces(np.maximum(delta, self.release_indentation), rate, self.approach_speed)
+        """Return the static and the dissipative force [N], before clipping, at an
+        indentation of the law [m] and a rate [m/s].
+        """
+        return self.law.forces(
+            np.maximum(delta, self.release_indentation), rate, self.approach_speed
+        )
 
     def approximate_indentation(self, approach: Array) -> Array:
         """Return the indentation of the law at an approach [m], interpolated in a table."""
@@ -78,22 +96,34 @@ class LocalContact:
         return np.interp(approach, *self._table(self._scale(approach)))
 
     def stiffness_at(self, delta: float) -> float:
-        """Return the static stiffness of the law and what is in series with it [N/m], at an indentation of the law [m]."""
+        """Return the static stiffness of the law and what is in series with it [N/m], at
+        an indentation of the law [m].
+        """
         delta = max(delta, self.release_indentation)
         step = _STEP * (abs(delta) + 1e-300)
         static, deeper = self._static(np.array([delta, delta + step])).tolist()
         stiffness = float(deeper - static) / step
-        return stiffness / (1.0 + float(self.series.linearised(static)[1]) * stiffness) if self.series else stiffness
+        return (
+            stiffness / (1.0 + float(self.series.linearised(static)[1]) * stiffness)
+            if self.series
+            else stiffness
+        )
 
     def energy_at_indentation(self, delta: Array) -> Array:
         """Return the energy stored since touch, at an indentation of the law [J]."""
         delta = np.maximum(delta, self.release_indentation)
         stored = self.law.elastic_energy(delta)
-        return stored + self.series.energy(self._static(delta)) - self.energy_of_jump if self.series else stored
+        return (
+            stored + self.series.energy(self._static(delta)) - self.energy_of_jump
+            if self.series
+            else stored
+        )
 
     def work_at_indentation(self, delta: Array) -> Array:
         """Return the sum of stored energy and plastic work at an indentation of the law [J]."""
-        return self.energy_at_indentation(delta) + self.law.plastic_work(np.maximum(delta, self.release_indentation))
+        return self.energy_at_indentation(delta) + self.law.plastic_work(
+            np.maximum(delta, self.release_indentation)
+        )
 
     def approach_at(self, delta: Array) -> Array:
         """Return the approach y [m] at an indentation of the law [m]."""
@@ -102,12 +132,17 @@ class LocalContact:
     def indentation_at(self, approach: Array) -> Array:
         """Return the indentation of the law [m] at an approach [m], by Newton's method.
 
-        NaN where no solution exists, as a negative compliance in series exceeds that of the law: the problem is ill-posed.
+        NaN where no solution exists, as a negative compliance in series exceeds that of the law:
+        the problem is ill-posed.
         """
         approach = np.asarray(approach, dtype=float)
         if not self.series:
             return approach
-        size, delta, slope = self._scale(approach), self.approximate_indentation(approach), np.ones_like(approach)
+        size, delta, slope = (
+            self._scale(approach),
+            self.approximate_indentation(approach),
+            np.ones_like(approach),
+        )
         step = _STEP * size
         offsets = np.array([0.0, step]).reshape((2,) + (1,) * approach.ndim)
         for _ in range(_MOST_ITERATIONS):
@@ -125,10 +160,15 @@ class LocalContact:
         return max(float(np.abs(approach).max()), -2.0 * self.release_indentation) + 1e-300
 
     def _table(self, size: float) -> tuple[Array, Array]:
-        """Return a cached table of approaches and indentations of the law, for approaches up to a size [m]."""
+        """Return a cached table of approaches and indentations of the law, for approaches
+        up to a size [m].
+        """
         reach = math.frexp(size)[1]
         if reach not in self._tables:
-            delta = self.release_indentation + 2.0 * math.ldexp(1.0, reach) * np.linspace(0.0, 1.0, _TABLE_ROWS) ** 2
+            delta = (
+                self.release_indentation
+                + 2.0 * math.ldexp(1.0, reach) * np.linspace(0.0, 1.0, _TABLE_ROWS) ** 2
+            )
             self._tables[reach] = np.maximum.accumulate(self.approach_at(delta)), delta
         return self._tables[reach]
 
@@ -142,13 +182,16 @@ class LocalContact:
         delta = np.asarray(delta, dtype=float)
         return self.law.forces(delta, np.zeros_like(delta), self.approach_speed)[0]
 
-    # levels and energies in terms of the approach ---------------------------------------------------
+    # levels and energies in terms of the approach
+    # ---------------------------------------------------
 
     @property
     def energy_of_jump(self) -> float:
-        """Energy that an adhesive law and the compliance in series store as they jump into contact, relative to the law alone [J], <= 0.
+        """Energy that an adhesive law and the compliance in series store as they jump into contact,
+        relative to the law alone [J], <= 0.
 
-        Energies are those since touch, as those of the law are, so that this one is a part of what is lost at release.
+        Energies are those since touch, as those of the law are, so that this one is a part of what
+        is lost at release.
         """
         return self.with_levels.jump
 
@@ -159,15 +202,21 @@ class LocalContact:
 
     @property
     def release_indentation(self) -> float:
-        """Indentation of the law at release [m]; with a compliance in series a sticking contact may snap off before the law releases."""
+        """Indentation of the law at release [m]; with a compliance in series a sticking
+        contact may snap off before the law releases.
+        """
         return self.with_levels.release
 
     def elastic_energy(self, approach: Array) -> Array:
-        """Return the energy stored since touch by the law and in series with it [J], at an approach [m]."""
+        """Return the energy stored since touch by the law and in series with it [J], at
+        an approach [m].
+        """
         return self.energy_at_indentation(self.indentation_at(approach))
 
     def plastic_work(self, approach: Array) -> Array:
-        """Return the plastic work since the last update of the law's memory [J], at an approach [m]."""
+        """Return the plastic work since the last update of the law's memory [J], at an
+        approach [m].
+        """
         return self.law.plastic_work(self.indentation_at(approach))
 
     def after_compression(self, deepest: float) -> LocalContact:
@@ -176,7 +225,11 @@ class LocalContact:
 
     def after_indentation(self, deepest: Array) -> LocalContact:
         """Return the contact after a largest indentation of the law of `deepest` [m]."""
-        return replace(self, law=self.law.after_compression(deepest)) if self.updates_memory(deepest) else self
+        return (
+            replace(self, law=self.law.after_compression(deepest))
+            if self.updates_memory(deepest)
+            else self
+        )
 
     def updates_memory(self, deepest: Array) -> bool:
         """Whether an indentation of the law of `deepest` [m] changes its memory."""

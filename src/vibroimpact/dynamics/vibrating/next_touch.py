@@ -1,4 +1,6 @@
-"""First touch of moving surfaces in free motion, and the time at which overlapping surfaces separate."""
+"""First touch of moving surfaces in free motion, and the time at which overlapping
+surfaces separate.
+"""
 
 from __future__ import annotations
 
@@ -15,14 +17,16 @@ _SAMPLES = np.linspace(0.0, 1.0, 33)[1:]
 
 
 def next_touch(motion: FreeMotion, level: float, until: float, contact: int = 0) -> float:
-    """Return when the indentation first rises to a level [s since the start]; infinite if not before `until`.
+    """Return when the indentation first rises to a level [s since the start]; infinite if not
+    before `until`.
 
     From an open gap no touch is stepped over.
 
     Parameters
     ----------
     motion : FreeMotion
-        Motion from a state on. Surfaces that overlap beyond the level, as in a dent that does not affect the next contact, separate first.
+        Motion from a state on. Surfaces that overlap beyond the level, as in a dent that does not
+        affect the next contact, separate first.
     level : float
         Indentation at which the surfaces touch [m].
     until : float
@@ -32,14 +36,20 @@ def next_touch(motion: FreeMotion, level: float, until: float, contact: int = 0)
     """
     if isinstance(motion, FluidMotion):
         return _next_touch_in_fluid(motion, level, until)
-    return float(touch.next_touch(motion.system.record_of(contact), motion.start.record, level, until))
+    return float(
+        touch.next_touch(motion.system.record_of(contact), motion.start.record, level, until)
+    )
 
 
 def time_to_separation(motion: FreeMotion, level: float, contact: int = 0) -> float:
-    """Return when surfaces that overlap beyond a level separate to it [s]; 0 if they do not overlap, infinite if they never separate."""
+    """Return when surfaces that overlap beyond a level separate to it [s]; 0 if they do
+    not overlap, infinite if they never separate.
+    """
     if isinstance(motion, FluidMotion):
         return _time_to_separation_in_fluid(motion, level)
-    return float(touch.time_to_separation(motion.system.record_of(contact), motion.start.record, level))
+    return float(
+        touch.time_to_separation(motion.system.record_of(contact), motion.start.record, level)
+    )
 
 
 # through a fluid, in which the sphere flies by steps that are not those of the core

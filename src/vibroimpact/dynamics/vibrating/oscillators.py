@@ -39,22 +39,31 @@ class Oscillators:
 
     def pick(self, which: Indices | Bools | slice) -> Oscillators:
         """Return a subset of the oscillators."""
-        return Oscillators(self.angular_frequency[which], self.damping_ratio[which], self.shape[..., which])
+        return Oscillators(
+            self.angular_frequency[which], self.damping_ratio[which], self.shape[..., which]
+        )
 
     def transition(self, time: Floats) -> Floats:
-        """Return the transition matrices of displacement and velocity of each over a free motion of some time [s], (2, 2, ..., n)."""
+        """Return the transition matrices of displacement and velocity of each over a free
+        motion of some time [s], (2, 2, ..., n).
+        """
         cosine, sine = self.propagators(time)
-        return np.array([[cosine, sine], [-(self.angular_frequency**2) * sine, cosine - self.damping * sine]])
+        return np.array(
+            [[cosine, sine], [-(self.angular_frequency**2) * sine, cosine - self.damping * sine]]
+        )
 
     def propagators(self, time: Floats) -> tuple[Floats, Floats]:
-        """Return the response C to a unit initial displacement and S to a unit initial velocity, after times [s] (...): (..., n) each.
+        """Return the response C to a unit initial displacement and S to a unit initial velocity,
+        after times [s] (...): (..., n) each.
 
-        Then q = C q0 + S v0, and the rates are C' = -omega^2 S and S' = C - 2 zeta omega S, for any damping ratio.
+        Then q = C q0 + S v0, and the rates are C' = -omega^2 S and S' = C - 2 zeta omega S, for any
+        damping ratio.
         """
         omega, ratio, t = self.angular_frequency, self.damping_ratio, np.asarray(time)[..., None]
         root = omega * np.sqrt(np.abs(1.0 - ratio * ratio))
         fade, phase, swings = np.exp(-ratio * omega * t), root * t, root > 0.0
-        # sine and cosine take most of the time; without a phase, of rigid motions and critical damping, they are known
+        # sine and cosine take most of the time; without a phase, of rigid motions and critical
+        # damping, they are known
         sine = np.sin(phase, where=swings, out=np.zeros_like(phase)) / np.where(swings, root, 1.0)
         sine = fade * np.where(swings, sine, t)
         cosine = fade * np.cos(phase, where=swings, out=np.ones_like(phase))
@@ -69,5 +78,7 @@ class Oscillators:
 
 def joined(parts: Sequence[Oscillators]) -> Oscillators:
     """Return the oscillators of several parts, in order."""
-    fields = zip(*((part.angular_frequency, part.damping_ratio, part.shape) for part in parts), strict=True)
+    fields = zip(
+        *((part.angular_frequency, part.damping_ratio, part.shape) for part in parts), strict=True
+    )
     return Oscillators(*(np.concatenate(values, axis=-1) for values in fields))

@@ -13,7 +13,8 @@ from vibroimpact.dynamics.collocation import Map, Rule, collocation_rule
 from vibroimpact.dynamics.core.records import MAPS, Bases, Basis
 
 NODES_PER_STRETCH = 12
-"""Nodes of a stretch: with more the eigenvectors of the integration matrix are too ill-conditioned, with fewer the stretches are too short.
+"""Nodes of a stretch: with more the eigenvectors of the integration matrix are too ill-conditioned,
+with fewer the stretches are too short.
 """
 
 
@@ -42,14 +43,18 @@ def radau_eigenbasis(time_map: Map, root: int) -> RadauEigenbasis:
     half = np.flatnonzero(values.imag >= 0.0)
     values = values[half].astype(np.complex128)
     paired = values.imag > 0.0
-    vectors = np.where(paired, 2.0, 1.0) * vectors[:, half]  # the sum of a conjugate pair is twice the real part of one
+    # the sum of a conjugate pair is twice the real part of one
+    vectors = np.where(paired, 2.0, 1.0) * vectors[:, half]
     parts = np.stack([vectors.real, -vectors.imag], axis=2)  # (N, H, 2)
     kept = np.stack([np.ones_like(paired), paired], axis=1)
     back = np.zeros((len(half), 2, NODES_PER_STRETCH))
-    back[kept] = np.linalg.inv(parts[:, kept])  # inverse of the real matrix, so that a round trip is exact to rounding
+    # inverse of the real matrix, so that a round trip is exact to rounding
+    back[kept] = np.linalg.inv(parts[:, kept])
     inverse = back[:, 0] + 1j * back[:, 1]
     ends = np.append(0.0, rule.nodes)
-    between = (ends[:-1, None] + np.diff(ends)[:, None] * np.arange(1, STEPS_BETWEEN + 1) / STEPS_BETWEEN).ravel()
+    between = (
+        ends[:-1, None] + np.diff(ends)[:, None] * np.arange(1, STEPS_BETWEEN + 1) / STEPS_BETWEEN
+    ).ravel()
     filters = (vectors.T[:, :, None] * inverse[:, None, :]).reshape(len(half), -1)
     basis = Basis(
         time=rule.time,

@@ -1,4 +1,6 @@
-"""Friction at the contact of a rigid sphere with a surface that moves, stated for the core and read back from it."""
+"""Friction at the contact of a rigid sphere with a surface that moves, stated for the
+core and read back from it.
+"""
 
 from __future__ import annotations
 
@@ -21,7 +23,9 @@ _DEFAULT_TOLERANCE = 1e-9
 _ORDER = 4  # of the error in the length of stretches, about
 
 
-def rubbing_at_touch(law: CompliantFriction, largest_force: float, sphere: Sphere, before: State, directions: int) -> Rubbing:
+def rubbing_at_touch(
+    law: CompliantFriction, largest_force: float, sphere: Sphere, before: State, directions: int
+) -> Rubbing:
     """Return the friction of one drop at first touch.
 
     Parameters
@@ -51,7 +55,9 @@ def rubbing_at_touch(law: CompliantFriction, largest_force: float, sphere: Spher
 
 def _no_rubbing() -> Rubbing:
     """Return the friction of a contact that has none."""
-    unused = TangentialHistory(False, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, np.zeros((2, 0)), np.zeros(2), 0.0)
+    unused = TangentialHistory(
+        False, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, np.zeros((2, 0)), np.zeros(2), 0.0
+    )
     return Rubbing(
         directions=0,
         rolling_coefficient=0.0,
@@ -79,8 +85,9 @@ NO_RUBBING = _no_rubbing()
 def longest_with_friction(tolerance: float) -> float:
     """Return the length of a stretch with friction at most, over the duration of a contact.
 
-    The surfaces begin and cease to slip within stretches, which the balance of energy does not show. At the default tolerance the
-    velocities along the plate after an impact are then known to 1e-4 of those before.
+    The surfaces begin and cease to slip within stretches, which the balance of energy does not
+    show. At the default tolerance the velocities along the plate after an impact are then known to
+    1e-4 of those before.
     """
     looser: float = (tolerance / _DEFAULT_TOLERANCE) ** (1.0 / _ORDER)
     return _LONGEST * looser
@@ -88,7 +95,9 @@ def longest_with_friction(tolerance: float) -> float:
 
 @dataclass(frozen=True)
 class RubbingState:
-    """Friction of one drop, and the motion of the contact point of its sphere, at an end of a stretch; as in `Rubbing`."""
+    """Friction of one drop, and the motion of the contact point of its sphere, at an end
+    of a stretch; as in `Rubbing`.
+    """
 
     velocity: Floats
     displacement: Floats
@@ -116,9 +125,10 @@ class RubbingState:
 class RubbedStretch:
     """Friction through a stretch of contact of a length [s].
 
-    `sphere`: what stays the same through the contact. `start`, `end`: at the ends. `force`: of friction, against the slip [N], and `slip`:
-    velocity of the contact point of the sphere past the surface [m/s], at the nodes (2, N); where moments act also these [N m], and the
-    spin past the surface [rad/s] (5, N).
+    `sphere`: what stays the same through the contact. `start`, `end`: at the ends. `force`: of
+    friction, against the slip [N], and `slip`: velocity of the contact point of the sphere past the
+    surface [m/s], at the nodes (2, N); where moments act also these [N m], and the spin past the
+    surface [rad/s] (5, N).
     """
 
     rule: Rule
@@ -130,7 +140,9 @@ class RubbedStretch:
     slip: Floats
 
     def at(self, time: Floats) -> tuple[Floats, Floats, Floats, Floats]:
-        """Return velocity and displacement of the contact point (2, T), friction (2 or 5, T) and energy taken (T,), at times [s] (T,)."""
+        """Return velocity and displacement of the contact point (2, T), friction (2 or 5,
+        T) and energy taken (T,), at times [s] (T,).
+        """
         rule, start, length = self.rule, self.start, self.length
         x = rule.unmap_time(time / length)
         integral, pull = length * rule.integral_to(x), self.sphere.pull[:, None]
@@ -138,17 +150,31 @@ class RubbedStretch:
         velocity = start.velocity[:, None] + pull * time - (integral @ slowed).T
         free = start.displacement[:, None] + (start.velocity[:, None] + 0.5 * pull * time) * time
         displacement = free - (integral @ (length * (rule.integral @ slowed))).T
-        begun = np.append(start.force, self.force[2:, 0])  # the moments begin about as at the first node
+        # the moments begin about as at the first node
+        begun = np.append(start.force, self.force[2:, 0])
         force = np.concatenate([begun[:, None], self.force], axis=1) @ rule.weights(x)
-        return velocity, displacement, force, start.work + integral @ (self.force * self.slip).sum(axis=0)
+        return (
+            velocity,
+            displacement,
+            force,
+            start.work + integral @ (self.force * self.slip).sum(axis=0),
+        )
 
     def turned(self, time: Floats) -> tuple[Floats, Floats]:
-        """Return what moments made of the spin [rad/s] (3, T), and of the displacement [m] (2, T), at times since the start [s] (T,)."""
+        """Return what moments made of the spin [rad/s] (3, T), and of the displacement
+        [m] (2, T), at times since the start [s] (T,).
+        """
         rule, start, length = self.rule, self.start, self.length
         radius, inertia = self.sphere.radius, self.sphere.inertia
-        turned, way = start.turned[:, None] + 0.0 * time, start.turned_way[:, None] + radius * start.turned[:2, None] * time
+        turned, way = (
+            start.turned[:, None] + 0.0 * time,
+            start.turned_way[:, None] + radius * start.turned[:2, None] * time,
+        )
         if len(self.force) == 2:
             return turned, way
-        integral, slowed = length * rule.integral_to(rule.unmap_time(time / length)), (self.force[2:] / inertia).T
+        integral, slowed = (
+            length * rule.integral_to(rule.unmap_time(time / length)),
+            (self.force[2:] / inertia).T,
+        )
         more = (integral @ (length * (rule.integral @ slowed[:, :2]))).T
         return turned - (integral @ slowed).T, way - radius * more

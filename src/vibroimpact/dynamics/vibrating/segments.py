@@ -1,4 +1,6 @@
-"""History of one drop whose bodies vibrate, as a sequence of segments that can be evaluated at any time within them."""
+"""History of one drop whose bodies vibrate, as a sequence of segments that can be
+evaluated at any time within them.
+"""
 
 from __future__ import annotations
 
@@ -19,14 +21,18 @@ if TYPE_CHECKING:
 
 _STRETCH_POINTS, _GAP_POINTS = 49, 25
 _FREE_POINTS, _LATER_POINTS, _PERIODS = 2001, 1001, 10.0
-"""Grid of a free motion: points in the first periods of the lowest mode, points in the remainder, and number of those periods."""
+"""Grid of a free motion: points in the first periods of the lowest mode, points in the
+remainder, and number of those periods.
+"""
 
 
 @dataclass(frozen=True)
 class VibratingSegment:
-    """A segment of the history of one drop: a flight, a stretch of contact, a gap between two contacts, or rest.
+    """A segment of the history of one drop: a flight, a stretch of contact, a gap between two
+    contacts, or rest.
 
-    `start`, `end` [s]. `lost_before`: energy lost before [J], (n + 2,): in each coordinate, in the contact, in plastic deformation.
+    `start`, `end` [s]. `lost_before`: energy lost before [J], (n + 2,): in each coordinate, in the
+    contact, in plastic deformation.
     """
 
     start: float
@@ -56,12 +62,16 @@ class VibratingSegment:
         """Times since the start that resolve the segment in a graph [s]."""
         span = self.end - self.start
         if isinstance(self.motion, VibratingStretch):
-            return np.asarray(span * self.motion.rule.map_time(np.linspace(0.0, 1.0, _STRETCH_POINTS)))
+            return np.asarray(
+                span * self.motion.rule.map_time(np.linspace(0.0, 1.0, _STRETCH_POINTS))
+            )
         if isinstance(self.motion, FreePhase):
             return np.linspace(0.0, span, _GAP_POINTS)
         lowest = float(self.system.angular_frequency[self.system.vibrating].min(initial=np.inf))
         early = min(span, _PERIODS * 2.0 * np.pi / lowest) if np.isfinite(lowest) else 0.0
-        return np.concatenate([np.linspace(0.0, early, _FREE_POINTS)[:-1], np.linspace(early, span, _LATER_POINTS)])
+        return np.concatenate(
+            [np.linspace(0.0, early, _FREE_POINTS)[:-1], np.linspace(early, span, _LATER_POINTS)]
+        )
 
     @property
     def lost_after(self) -> Floats:
@@ -70,16 +80,25 @@ class VibratingSegment:
             (contact,), lost = self.motion.contacts, self.motion.lost
             local = contact.local
             before, now = np.maximum(contact.approach[[0, -1]], local.release_level)
-            plastic = float(local.plastic_work(now) - local.plastic_work(before)) if local.law.yields else 0.0
+            plastic = (
+                float(local.plastic_work(now) - local.plastic_work(before))
+                if local.law.yields
+                else 0.0
+            )
             return np.asarray(self.lost_before + np.append(lost, plastic))
-        return np.asarray(self.lost_before + np.append(self.motion.lost_by(np.array([self.end - self.start]))[0], 0.0))
+        return np.asarray(
+            self.lost_before
+            + np.append(self.motion.lost_by(np.array([self.end - self.start]))[0], 0.0)
+        )
 
     def state(self, time: Floats) -> State:
         """Return the state at times since the start [s] (T,)."""
         return self.trajectory.state(time)
 
 
-def vibrating_timeline(legs: Sequence[Leg], lying: RestMotion | None, end: float) -> list[VibratingSegment]:
+def vibrating_timeline(
+    legs: Sequence[Leg], lying: RestMotion | None, end: float
+) -> list[VibratingSegment]:
     """Return the history of one drop as segments in order.
 
     Parameters
@@ -95,12 +114,16 @@ def vibrating_timeline(legs: Sequence[Leg], lying: RestMotion | None, end: float
     lost_before = np.zeros(legs[0].motions[0].system.number + 2)
     for leg in legs:
         touch = float(leg.flight_end[0])
-        segments.append(VibratingSegment(float(leg.flight.start[0]), touch, leg.motions[0], lost_before))
+        segments.append(
+            VibratingSegment(float(leg.flight.start[0]), touch, leg.motions[0], lost_before)
+        )
         lost_before = segments[-1].lost_after
         for piece in leg.contact.pieces if leg.contact is not None else ():
             begin = touch + float(piece.start[0])
             assert isinstance(piece.motion, (VibratingStretch, FreePhase))
-            segments.append(VibratingSegment(begin, begin + piece.motion.length, piece.motion, lost_before))
+            segments.append(
+                VibratingSegment(begin, begin + piece.motion.length, piece.motion, lost_before)
+            )
             lost_before = segments[-1].lost_after
     if lying is not None:
         segments.append(VibratingSegment(segments[-1].end, end, lying, lost_before))

@@ -29,8 +29,9 @@ _NO_GUESS = Nodes(np.zeros(0), np.zeros(0), np.zeros(0))
 class StretchAhead:
     """The next stretch of contacts that push.
 
-    `view`: the system, reduced to the contacts. `contacts`: their laws, and what is in series with them. `state`: at the start. `trend`:
-    about the rates of change of the forces then [N/s]. `manner`, `beginning`: as the core takes them.
+    `view`: the system, reduced to the contacts. `contacts`: their laws, and what is in series with
+    them. `state`: at the start. `trend`: about the rates of change of the forces then [N/s].
+    `manner`, `beginning`: as the core takes them.
     """
 
     view: ContactView
@@ -42,12 +43,22 @@ class StretchAhead:
 
     @classmethod
     def of(
-        cls, view: ContactView, contacts: Sequence[LocalContact], state: State, begun: Floats, trend: Floats, manner: Manner
+        cls,
+        view: ContactView,
+        contacts: Sequence[LocalContact],
+        state: State,
+        begun: Floats,
+        trend: Floats,
+        manner: Manner,
     ) -> StretchAhead:
-        """Return the stretch from a state on; `begun`: indentations of the laws then [m], approximately."""
+        """Return the stretch from a state on; `begun`: indentations of the laws then [m],
+        approximately.
+        """
         start, laws = view.start(state), contacts_of(contacts)
         rubbed = Rubbed(view.surfaces, start, NO_RUBBING)
-        beginning = Beginning(state.record, start, laws, begun_indentations(laws, start, begun), rubbed)
+        beginning = Beginning(
+            state.record, start, laws, begun_indentations(laws, start, begun), rubbed
+        )
         return cls(view, contacts, state, trend, manner, beginning)
 
     @property
@@ -59,20 +70,42 @@ class StretchAhead:
         """Return the stretch of a length [s] under a map of time, of `MAPS`."""
         basis = radau_eigenbasis(MAPS[time_map], self.root).basis
         given = Event(NO_EVENT, 0.0, length, 0)
-        return core.attempt(basis, self.view.bodies, self.manner, self.beginning, _NO_GUESS, self.trend, False, given)
+        return core.attempt(
+            basis,
+            self.view.bodies,
+            self.manner,
+            self.beginning,
+            _NO_GUESS,
+            self.trend,
+            False,
+            given,
+        )
 
     def up_to_event(self, tried: Attempt, time_map: int) -> tuple[bool, Attempt, int, Event]:
-        """Return whether the stretch is solved again up to its first event, the solution, its map of time, and the event."""
-        return core.up_to_event(bases_of(self.root), self.view.bodies, self.manner, self.beginning, tried, time_map)
+        """Return whether the stretch is solved again up to its first event, the solution,
+        its map of time, and the event.
+        """
+        return core.up_to_event(
+            bases_of(self.root), self.view.bodies, self.manner, self.beginning, tried, time_map
+        )
 
     def balance(self, tried: Attempt, time_map: int) -> Balance:
         """Return the motion through a solution, and whether it is resolved."""
-        return core.balance_of(radau_eigenbasis(MAPS[time_map], self.root).basis, self.view.bodies, self.manner, self.beginning, tried)
+        return core.balance_of(
+            radau_eigenbasis(MAPS[time_map], self.root).basis,
+            self.view.bodies,
+            self.manner,
+            self.beginning,
+            tried,
+        )
 
     def stretch(self, solved: Attempt, balance: Balance, time_map: int) -> VibratingStretch:
         """Return a solution with its histories."""
         basis = radau_eigenbasis(MAPS[time_map], self.root)
-        static, force = (values.reshape(len(self.contacts), -1) for values in (solved.nodes.static, solved.nodes.force))
+        static, force = (
+            values.reshape(len(self.contacts), -1)
+            for values in (solved.nodes.static, solved.nodes.force)
+        )
         motion = solved.contact
         histories = tuple(
             ContactHistory(
@@ -90,7 +123,10 @@ class StretchAhead:
             )
             for number, local in enumerate(self.contacts)
         )
-        stretch = VibratingStretch(self.view, basis, solved.length, self.state, histories, motion.roughness)
+        stretch = VibratingStretch(
+            self.view, basis, solved.length, self.state, histories, motion.roughness
+        )
         path = balance.path
-        stretch.__dict__["end"] = State(path.displacement, path.speed, path.local)  # which it would compute anew
+        # which it would compute anew
+        stretch.__dict__["end"] = State(path.displacement, path.speed, path.local)
         return stretch

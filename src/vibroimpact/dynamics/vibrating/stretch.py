@@ -1,4 +1,6 @@
-"""A solved stretch of contact: motion of the coordinates, contact forces, energy balance and error measures."""
+"""A solved stretch of contact: motion of the coordinates, contact forces, energy balance
+and error measures.
+"""
 
 from __future__ import annotations
 
@@ -22,14 +24,17 @@ from vibroimpact.dynamics.vibrating.radau_eigenbasis import RadauEigenbasis
 from vibroimpact.dynamics.vibrating.rubbing import RubbedStretch
 
 _KEPT = 64
-"""Number of stretches whose motion a thread keeps in memory, the last ones that were solved or read: those of a few impacts."""
+"""Number of stretches whose motion a thread keeps in memory, the last ones that were
+solved or read: those of a few impacts.
+"""
 
 
 class _Kept(threading.local):
     """The stretches whose motion a thread keeps, oldest first.
 
-    They are those of a thread, so that runs beside each other, as for windows of the live page, take nothing from one another. They are
-    not those of a run: responses that are held would then hold their motions, which is four times the memory.
+    They are those of a thread, so that runs beside each other, as for windows of the live page,
+    take nothing from one another. They are not those of a run: responses that are held would then
+    hold their motions, which is four times the memory.
     """
 
     def __init__(self) -> None:
@@ -42,10 +47,11 @@ _kept = _Kept()
 class StretchMotion(NamedTuple):
     """Motion of the coordinates through a stretch.
 
-    At the nodes: `accelerations` and `velocities` of the coordinates (N, n), and rates of the massless elements, `massless` (N, k). `end`:
-    the state at the end. `gain`: increase of the energy of coordinates and massless elements, without the contact laws, and `rounding`: its
-    rounding error [J]. `lost`: energy lost by the damping of each coordinate, and last in the massless elements [J] (n + 1,); of a driven
-    coordinate minus the work of its drive.
+    At the nodes: `accelerations` and `velocities` of the coordinates (N, n), and rates of the
+    massless elements, `massless` (N, k). `end`: the state at the end. `gain`: increase of the
+    energy of coordinates and massless elements, without the contact laws, and `rounding`: its
+    rounding error [J]. `lost`: energy lost by the damping of each coordinate, and last in the
+    massless elements [J] (n + 1,); of a driven coordinate minus the work of its drive.
     """
 
     accelerations: Floats
@@ -61,9 +67,10 @@ class StretchMotion(NamedTuple):
 class VibratingStretch:
     """A solved stretch of one system.
 
-    `view`: the system reduced to the contacts that push. `length` [s]. `start`: state at the start. `contacts`: histories of the contacts
-    that push. `roughness`: the last Legendre coefficients of the forces, relative to their scale; the error at the end is of the order of
-    its square. `rubbed`: friction, of a drop that has any.
+    `view`: the system reduced to the contacts that push. `length` [s]. `start`: state at the start.
+    `contacts`: histories of the contacts that push. `roughness`: the last Legendre coefficients of
+    the forces, relative to their scale; the error at the end is of the order of its square.
+    `rubbed`: friction, of a drop that has any.
     """
 
     view: ContactView
@@ -110,10 +117,14 @@ class VibratingStretch:
             static = np.concatenate([static, np.zeros_like(self.rubbed.force)])
         start = self.start.record
         bodies = (view.surfaces, view.coordinates)
-        path = stretch_path(self.basis.basis, *bodies, start, self.length, force.ravel(), static.ravel(), True)
+        path = stretch_path(
+            self.basis.basis, *bodies, start, self.length, force.ravel(), static.ravel(), True
+        )
         gain, rounding = path.energies.tolist()
         end = State(path.displacement, path.speed, path.local)
-        return StretchMotion(path.acceleration, path.velocity, path.massless.T, end, gain, rounding, path.lost)
+        return StretchMotion(
+            path.acceleration, path.velocity, path.massless.T, end, gain, rounding, path.lost
+        )
 
     @property
     def accelerations(self) -> Floats:
@@ -132,31 +143,48 @@ class VibratingStretch:
 
     def state(self, time: Floats) -> State:
         """Return the state at times since the start [s] (T,)."""
-        start, h, across, load = self.start, self.length, np.asarray(time)[:, None], self.system.load
+        start, h, across, load = (
+            self.start,
+            self.length,
+            np.asarray(time)[:, None],
+            self.system.load,
+        )
         integral = h * self.rule.integral_to(self._x(time))
         driven = self.accelerations - load  # gravity is integrated in closed form
         return State(
-            start.displacement + across * (start.velocity + 0.5 * across * load) + integral @ (h * (self.rule.integral @ driven)),
+            start.displacement
+            + across * (start.velocity + 0.5 * across * load)
+            + integral @ (h * (self.rule.integral @ driven)),
             start.velocity + across * load + integral @ driven,
             start.local + integral @ self.motion.massless,
         )
 
     def peak_force(self, contact: int = 0) -> tuple[float, float]:
-        """Return the x in [0, 1] at which the force of a contact is largest, and that force [N]; zero where it pulls and may not."""
+        """Return the x in [0, 1] at which the force of a contact is largest, and that
+        force [N]; zero where it pulls and may not.
+        """
         history = self.contacts[contact]
-        x, force = peak_of_force(self.basis.basis, history.local.record, history.delta, history.rate)
+        x, force = peak_of_force(
+            self.basis.basis, history.local.record, history.delta, history.rate
+        )
         return x, force if history.local.law.tension == "kept" else max(force, 0.0)
 
     def indentations(self, contact: int = 0) -> Floats:
-        """Return the approach of the centre above to the surface below at a contact [m], at the start and the nodes (N + 1,)."""
+        """Return the approach of the centre above to the surface below at a contact [m],
+        at the start and the nodes (N + 1,).
+        """
         number = self.contacts[contact].number
         shape = self.system.indentation_shape[number]
         begun = float(self.system.offset[number] + self.start.displacement @ shape)
-        return np.append(begun, begun + self.length * (self.rule.integral @ (self.velocities @ shape)))
+        return np.append(
+            begun, begun + self.length * (self.rule.integral @ (self.velocities @ shape))
+        )
 
     @cached_property
     def powers(self) -> Floats:
-        """Power lost at the nodes [W], (N, n + 1): in each coordinate, and last in the laws and the massless elements."""
+        """Power lost at the nodes [W], (N, n + 1): in each coordinate, and last in the
+        laws and the massless elements.
+        """
         system = self.system
         in_laws = sum(contact.power for contact in self.contacts)
         lost = in_laws + (self.motion.massless**2 / system.mobility).sum(axis=1)
@@ -177,18 +205,24 @@ class VibratingStretch:
         return lost
 
     def lost_by(self, time: Floats) -> Floats:
-        """Return the energy lost since the start [J] at times since then [s], (T, n + 1) as in `powers`."""
+        """Return the energy lost since the start [J] at times since then [s], (T, n + 1)
+        as in `powers`.
+        """
         return np.asarray(self.length * self.rule.integrate(self._x(time), self.powers))
 
     @property
     def trend(self) -> Floats:
-        """Rates of change of the forces at the end [N/s] (c,); zero after a "release", where they are not smooth in time."""
+        """Rates of change of the forces at the end [N/s] (c,); zero after a "release",
+        where they are not smooth in time.
+        """
         if self.rule.time_map == "release":
             return np.zeros(len(self.contacts))
         return np.asarray(self.force @ self.rule.end_slope / self.length)
 
     def keep(self) -> None:
-        """Keep the motion at the nodes in memory until others of this thread take its place; the state and the losses at the end stay."""
+        """Keep the motion at the nodes in memory until others of this thread take its
+        place; the state and the losses at the end stay.
+        """
         kept = _kept.stretches
         kept.append(weakref.ref(self))
         while len(kept) > _KEPT:

@@ -1,4 +1,6 @@
-"""End of a stretch of contact: solving it again up to an event of another contact, and choosing the length of the next one."""
+"""End of a stretch of contact: solving it again up to an event of another contact, and
+choosing the length of the next one.
+"""
 
 from __future__ import annotations
 
@@ -21,9 +23,14 @@ _MOST_CORRECTIONS = 8  # of the length of a stretch that ends at a zero of a fun
 
 
 def solve_to_zero(
-    ahead: StretchAhead, stretch: VibratingStretch, time_map: int, value: Callable[[State], Floats], near: float
+    ahead: StretchAhead,
+    stretch: VibratingStretch,
+    time_map: int,
+    value: Callable[[State], Floats],
+    near: float,
 ) -> VibratingStretch | None:
-    """Return a stretch solved again up to a zero of a function of the state, as at an event of another contact.
+    """Return a stretch solved again up to a zero of a function of the state, as at an event of
+    another contact.
 
     None if that fails, or if one of its own contacts has an event before.
 
@@ -41,7 +48,10 @@ def solve_to_zero(
         First x of `GRID` at which it is positive.
     """
     rule, full_length = stretch.rule, stretch.length
-    low, high = (full_length * float(rule.map_time(np.array([x]))[0]) for x in (max(near - GRID[1], 0.0), near))
+    low, high = (
+        full_length * float(rule.map_time(np.array([x]))[0])
+        for x in (max(near - GRID[1], 0.0), near)
+    )
     length = float(find_root(along_motion(stretch, value), np.array([low]), np.array([high]))[0])
     # Newton's method for the length, with the rate of the function by a finite difference
     for _ in range(_MOST_CORRECTIONS):
@@ -61,8 +71,19 @@ def solve_to_zero(
 
 
 def length_growth(stretch: VibratingStretch, tolerance: float) -> float:
-    """Return the ratio of the lengths of the next stretch and this one, 0.7 to 4, from the convergence of its Legendre coefficients."""
-    return float(min(max((_EASY * tolerance**0.5 / max(stretch.roughness, 1e-300)) ** (1.0 / NODES_PER_STRETCH), 0.7), 4.0))
+    """Return the ratio of the lengths of the next stretch and this one, 0.7 to 4, from
+    the convergence of its Legendre coefficients.
+    """
+    return float(
+        min(
+            max(
+                (_EASY * tolerance**0.5 / max(stretch.roughness, 1e-300))
+                ** (1.0 / NODES_PER_STRETCH),
+                0.7,
+            ),
+            4.0,
+        )
+    )
 
 
 def with_separation_loss(stretch: VibratingStretch, place: int, held: float) -> VibratingStretch:

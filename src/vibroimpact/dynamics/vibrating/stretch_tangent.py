@@ -1,4 +1,6 @@
-"""Propagation of a small difference of the state through stretches of contact, as the core computes it."""
+"""Propagation of a small difference of the state through stretches of contact, as the
+core computes it.
+"""
 
 from __future__ import annotations
 
@@ -16,18 +18,23 @@ from vibroimpact.dynamics.vibrating.stretch import VibratingStretch
 
 
 def propagate_difference(
-    stretches: Sequence[VibratingStretch], difference: State, variations: Sequence[tuple[LocalContact, float]]
+    stretches: Sequence[VibratingStretch],
+    difference: State,
+    variations: Sequence[tuple[LocalContact, float]],
 ) -> tuple[State, Floats]:
-    """Return the difference of the state at the end of stretches, and of the contact force at their nodes [N] (P, N).
+    """Return the difference of the state at the end of stretches, and of the contact force at their
+    nodes [N] (P, N).
 
     Parameters
     ----------
     stretches : sequence of VibratingStretch
         Solved stretches of one contact under one law, one after the other.
     difference : State
-        Difference of the state at their start between a neighbouring motion and that one, to first order.
+        Difference of the state at their start between a neighbouring motion and that one, to first
+        order.
     variations : sequence of (LocalContact, float)
-        Contacts with the law's closing speed or a memory varied, each with the factor by which the change of its force counts.
+        Contacts with the law's closing speed or a memory varied, each with the factor by which the
+        change of its force counts.
     """
     first = stretches[0]
     local = first.contacts[0].local
@@ -40,5 +47,12 @@ def propagate_difference(
     )
     laws = contacts_of([local, *(varied for varied, _ in variations)])
     weights = np.array([weight for _, weight in variations], dtype=float)
-    end, forces = propagate(bases_of(local.law.root), first.view.without_load.bodies, laws, weights, solved, difference.record)
+    end, forces = propagate(
+        bases_of(local.law.root),
+        first.view.without_load.bodies,
+        laws,
+        weights,
+        solved,
+        difference.record,
+    )
     return State(*end), forces

@@ -1,9 +1,11 @@
-"""A visit: the impact of a sphere on a surface, from first touch to the last release, where bodies vibrate.
+"""A visit: the impact of a sphere on a surface, from first touch to the last release, where bodies
+vibrate.
 
-The contact is integrated by a `March`. After separation the sphere is followed to the top of its flight: if the surfaces touch again
-before, the visit continues with another contact. It also continues where the sphere separates more slowly than the rest speed while the
-vibration could still lift it: it chatters and then rides, until it separates, no energy is left to lift it (`contact_equilibrium`), or a
-limit of stretches or time is reached.
+The contact is integrated by a `March`. After separation the sphere is followed to the top of its
+flight: if the surfaces touch again before, the visit continues with another contact. It also
+continues where the sphere separates more slowly than the rest speed while the vibration could still
+lift it: it chatters and then rides, until it separates, no energy is left to lift it
+(`contact_equilibrium`), or a limit of stretches or time is reached.
 """
 
 from __future__ import annotations
@@ -19,7 +21,12 @@ from vibroimpact.dynamics.contact import CAPTURED, FAILED, RELEASED, RIDING, SET
 from vibroimpact.dynamics.core import contact as core
 from vibroimpact.dynamics.core.rubbing import flown
 from vibroimpact.dynamics.core.rubbing_records import Rubbing
-from vibroimpact.dynamics.vibrating.active_contact import ContactDefinition, closing_speed, locate_highest_peak, motion_speed
+from vibroimpact.dynamics.vibrating.active_contact import (
+    ContactDefinition,
+    closing_speed,
+    locate_highest_peak,
+    motion_speed,
+)
 from vibroimpact.dynamics.vibrating.carried_oscillations import SteadyResponse, steady_response
 from vibroimpact.dynamics.vibrating.compiled_contact import CompiledContact, Limits
 from vibroimpact.dynamics.vibrating.contact_equilibrium import (
@@ -36,17 +43,20 @@ from vibroimpact.dynamics.vibrating.rubbing import NO_RUBBING, longest_with_fric
 from vibroimpact.dynamics.vibrating.stretch import VibratingStretch
 
 MOST_STEPS, MOST_STEPS_TO_A_TIME = 5_000, 20_000
-"""Largest number of stretches of contact in a visit, some ten seconds' work; and where the run has an end in time."""
+"""Largest number of stretches of contact in a visit, some ten seconds' work; and where
+the run has an end in time.
+"""
 
 
 @dataclass
 class Visit:
     """Result of a visit; `outcome` is RELEASED, SETTLED, CAPTURED, RIDING or FAILED.
 
-    `state`: at the end. `duration`: from first touch to last release [s]. `contacts`: number of contacts. `max_indentation`, `max_force`
-    and their times since first touch [m, N, s]. `lost` [J], (n + 1,): energy lost in each coordinate, and in the contact. `plastic`:
-    plastic work [J]. `law`: with its memory at the end. `stored`: energy left in the contact [J]. `local`: the contact in which the sphere
-    rests, if so.
+    `state`: at the end. `duration`: from first touch to last release [s]. `contacts`: number of
+    contacts. `max_indentation`, `max_force` and their times since first touch [m, N, s]. `lost`
+    [J], (n + 1,): energy lost in each coordinate, and in the contact. `plastic`: plastic work [J].
+    `law`: with its memory at the end. `stored`: energy left in the contact [J]. `local`: the
+    contact in which the sphere rests, if so.
     """
 
     system: LinearSystem
@@ -104,7 +114,13 @@ def follow_visit(
         Friction at first touch.
     """
     speed = motion_speed(system, 0, law, closing_speed(system, state, 0))
-    march = March(system, [ContactDefinition(law, series, fresh_surface)], state, tolerance, (speed, contact_duration))
+    march = March(
+        system,
+        [ContactDefinition(law, series, fresh_surface)],
+        state,
+        tolerance,
+        (speed, contact_duration),
+    )
     return _VisitMarch(march, rest_speed, until, rubbing).run()
 
 
@@ -114,13 +130,21 @@ class _VisitMarch:
     def __init__(self, march: March, rest_speed: float, until: float, rubbing: Rubbing) -> None:
         self.march, self.rest_speed, self.until, self.rubbing = march, rest_speed, until, rubbing
         self.system, self.gravity = march.system, float(march.system.gravity[0])
-        self.stretches, self.most_stretches = 0, MOST_STEPS if np.isinf(until) else MOST_STEPS_TO_A_TIME
-        self.separation_time, self.stored, self.longest = 0.0, 0.0, _period_along(march.system, march.state)
+        self.stretches, self.most_stretches = (
+            0,
+            MOST_STEPS if np.isinf(until) else MOST_STEPS_TO_A_TIME,
+        )
+        self.separation_time, self.stored, self.longest = (
+            0.0,
+            0.0,
+            _period_along(march.system, march.state),
+        )
         self.equilibrium: ContactEquilibrium | None = None
         self.response: SteadyResponse | None = None
         self.active = march.begin_contact(0)
 
-    # one contact after another ----------------------------------------------------------------------
+    # one contact after another
+    # ----------------------------------------------------------------------
 
     def run(self) -> Visit:
         """Return the visit."""
@@ -144,9 +168,14 @@ class _VisitMarch:
                 break
             contacts += 1
         local = self.active.local
-        if outcome == SETTLED and float(self.system.approach(march.state)[0]) <= float(self.next_law.touch_level):
+        if outcome == SETTLED and float(self.system.approach(march.state)[0]) <= float(
+            self.next_law.touch_level
+        ):
             local = replace(local, law=self.next_law)  # the next contact does not meet the dent
-        deepest, hardest = (locate_highest_peak([getattr(impact, name) for impact in march.impacts]) for name in ("indentation", "force"))
+        deepest, hardest = (
+            locate_highest_peak([getattr(impact, name) for impact in march.impacts])
+            for name in ("indentation", "force")
+        )
         return Visit(
             self.system,
             march.state,
@@ -163,7 +192,8 @@ class _VisitMarch:
             local,
         )
 
-    # one contact -----------------------------------------------------------------------------------
+    # one contact
+    # -----------------------------------------------------------------------------------
 
     def contact(self) -> int:
         """Follow one contact in the core; return its outcome."""
@@ -181,24 +211,32 @@ class _VisitMarch:
         self.stretches += contact.steps
         self.rubbing = contact.progress.rubbing
         if outcome != core.RELEASED:
-            return self.end_in_contact({core.CAPTURED: CAPTURED, core.RIDES: RIDING, core.TOO_STIFF: FAILED}[outcome])
+            return self.end_in_contact(
+                {core.CAPTURED: CAPTURED, core.RIDES: RIDING, core.TOO_STIFF: FAILED}[outcome]
+            )
         self.march.end_contact(self.active)
         return RELEASED
 
     def end_in_contact(self, outcome: int) -> int:
-        """End the visit in contact, with its stored energy; the law keeps its memory of how deep it has come."""
+        """End the visit in contact, with its stored energy; the law keeps its memory of
+        how deep it has come.
+        """
         if self.active.local.updates_memory(self.active.delta):
             self.march.update_memory(self.active)
         self.stored = float(self.active.local.energy_at_indentation(self.active.delta))
         return outcome
 
     def at_rest(self) -> bool:
-        """Whether the contact carries the weight, and the bound of its force excludes separation."""
+        """Whether the contact carries the weight, and the bound of its force excludes
+        separation.
+        """
         last, local = self.march.parts[-1].motion, self.active.local
         if not isinstance(last, VibratingStretch):
             return False
         force, driven = float(last.contacts[0].force[-1]), self.system.driven
-        if not driven and not near_equilibrium(self.system, self.march.state, force, self.active.overlap(self.system, self.march.state)):
+        if not driven and not near_equilibrium(
+            self.system, self.march.state, force, self.active.overlap(self.system, self.march.state)
+        ):
             return False
         if self.equilibrium is None or self.equilibrium.local.law is not local.law:
             self.equilibrium = ContactEquilibrium(self.system, local)
@@ -206,15 +244,21 @@ class _VisitMarch:
         if driven:
             if rides_for_good(self.equilibrium, self.march.state, force):
                 return True
-            return self.response is not None and self.response.carries_for_good(self.march.state, force)
+            return self.response is not None and self.response.carries_for_good(
+                self.march.state, force
+            )
         return self.equilibrium.linear and self.equilibrium.cannot_separate(self.march.state)
 
     @property
     def separation_speed(self) -> float:
         """Speed at which the centres move apart [m/s], or the sphere from what drives the plate."""
-        return -float(self.system.rigid_motion(self.march.state)[1][0] + self.system.driven_motion(self.march.state)[1])
+        return -float(
+            self.system.rigid_motion(self.march.state)[1][0]
+            + self.system.driven_motion(self.march.state)[1]
+        )
 
-    # apart -----------------------------------------------------------------------------------------
+    # apart
+    # -----------------------------------------------------------------------------------------
 
     @property
     def next_law(self) -> CompliantLaw:
@@ -222,19 +266,28 @@ class _VisitMarch:
         return self.march.next_laws[0]
 
     def touches_again(self, without_limit: bool) -> bool:
-        """Follow the free sphere to the top of its flight, or without limit; return whether the surfaces touch again before.
+        """Follow the free sphere to the top of its flight, or without limit; return whether the
+        surfaces touch again before.
 
-        Where the next contact meets undeformed surfaces, the visit continues at least until these have separated. Where the plate is
-        shaken, it continues as long as the surfaces meet more slowly than the rest speed: any faster touch is an impact of its own.
+        Where the next contact meets undeformed surfaces, the visit continues at least until these
+        have separated. Where the plate is shaken, it continues as long as the surfaces meet more
+        slowly than the rest speed: any faster touch is an impact of its own.
         """
         march, separation_speed, gravity = self.march, self.separation_speed, self.gravity
         free = FreeMotion(self.system, march.state)
         shaken = self.system.driven > 0
-        top = np.inf if separation_speed <= 0.0 or gravity == 0.0 or without_limit or shaken else separation_speed / gravity
+        top = (
+            np.inf
+            if separation_speed <= 0.0 or gravity == 0.0 or without_limit or shaken
+            else separation_speed / gravity
+        )
         law, next_law = self.active.local.law, self.next_law
         level = float(next_law.touch_level)
         parted = time_to_separation(free, level)
-        if law.release_level > level and (again := next_touch(free, float(law.release_level), parted)) < parted:
+        if (
+            law.release_level > level
+            and (again := next_touch(free, float(law.release_level), parted)) < parted
+        ):
             time = again  # before separation: into the same dent
         else:
             law = law if law.lasting else next_law
@@ -245,7 +298,11 @@ class _VisitMarch:
             return False
         if without_limit and separation_speed > 0.0 and time > self.until - march.time:
             return False  # after the end of the run
-        if shaken and separation_speed >= 0.0 and float(free.motion(np.array(time))[1][0]) >= self.rest_speed:
+        if (
+            shaken
+            and separation_speed >= 0.0
+            and float(free.motion(np.array(time))[1][0]) >= self.rest_speed
+        ):
             return False
         march.append_free(free, time)
         self.rubbing = flown(self.rubbing, time)
@@ -254,14 +311,18 @@ class _VisitMarch:
 
 
 def _period_along(system: LinearSystem, state: State) -> float:
-    """Return about the period with which the plate is moved along itself under friction [s]; infinite where it is not.
+    """Return about the period with which the plate is moved along itself under friction [s];
+    infinite where it is not.
 
-    Friction turns with the slip. A stretch of many periods would meet it at too few instants, and yet close its balance of energy.
+    Friction turns with the slip. A stretch of many periods would meet it at too few instants, and
+    yet close its balance of energy.
     """
     if system.along is None or not system.driven:
         return np.inf
     driven = slice(-system.driven, None)
     omega = system.angular_frequency[driven]
-    speeds = np.abs(system.along[:2, driven]) * np.hypot(state.velocity[driven], omega * state.displacement[driven])
+    speeds = np.abs(system.along[:2, driven]) * np.hypot(
+        state.velocity[driven], omega * state.displacement[driven]
+    )
     fastest, greatest = float(np.linalg.norm(speeds * omega)), float(np.linalg.norm(speeds))
     return 2.0 * np.pi * greatest / fastest if fastest > 0.0 else np.inf

@@ -41,11 +41,20 @@ def _commands(model: AdamsModel) -> Iterator[str]:
     contact, top = model.contact, f".{model.name}"
     ground, sphere = f"{top}.ground", f"{top}.sphere"
     names = Names(
-        f"{sphere}.cm", f"{ground}.spot", *(f"{top}.{name}" for name in ("touch", "approach_speed", "damping", "slip_x", "slip_y", "drag"))
+        f"{sphere}.cm",
+        f"{ground}.spot",
+        *(
+            f"{top}.{name}"
+            for name in ("touch", "approach_speed", "damping", "slip_x", "slip_y", "drag")
+        ),
     )
     yield from header_comments(model)
-    yield from _command("defaults units", length="mm", angle="deg", force="newton", mass="kg", time="sec")
-    yield from _command("defaults units", coordinate_system_type="cartesian", orientation_type="body313")
+    yield from _command(
+        "defaults units", length="mm", angle="deg", force="newton", mass="kg", time="sec"
+    )
+    yield from _command(
+        "defaults units", coordinate_system_type="cartesian", orientation_type="body313"
+    )
     yield from _command("model create", model_name=model.name)
     for material in model.materials:
         yield from _command(
@@ -67,11 +76,16 @@ def _commands(model: AdamsModel) -> Iterator[str]:
             diag_corner_coords=adams_numbers(model.plate),
         )
     yield from _command(
-        "part create rigid_body name_and_position", part_name=sphere, location=adams_numbers((x, y, z)), orientation=_UPRIGHT
+        "part create rigid_body name_and_position",
+        part_name=sphere,
+        location=adams_numbers((x, y, z)),
+        orientation=_UPRIGHT,
     )
     yield from _inside(sphere)
     yield from _marker(names.centre, (0.0, 0.0, 0.0))
-    moments = dict.fromkeys(("ixx", "iyy", "izz"), adams_number(model.inertia)) | dict.fromkeys(("ixy", "izx", "iyz"), "0.0")
+    moments = dict.fromkeys(("ixx", "iyy", "izz"), adams_number(model.inertia)) | dict.fromkeys(
+        ("ixy", "izx", "iyz"), "0.0"
+    )
     yield from _command(
         "part create rigid_body mass_properties",
         part_name=sphere,
@@ -81,12 +95,23 @@ def _commands(model: AdamsModel) -> Iterator[str]:
     )
     velocity = {"vz": adams_number(model.velocity)} if model.velocity else {}
     if model.motion is not None:
-        parts = (*model.motion.velocity, model.velocity, *(math.degrees(part) for part in model.motion.spin))
-        velocity = dict(zip(("vx", "vy", "vz", "wx", "wy", "wz"), map(adams_number, parts), strict=True))
+        parts = (
+            *model.motion.velocity,
+            model.velocity,
+            *(math.degrees(part) for part in model.motion.spin),
+        )
+        velocity = dict(
+            zip(("vx", "vy", "vz", "wx", "wy", "wz"), map(adams_number, parts), strict=True)
+        )
     if velocity:
         yield from _command("part create rigid_body initial_velocity", part_name=sphere, **velocity)
     scale = {f"{axis}_scale_factor": adams_number(2.0 * model.radius) for axis in "xyz"}
-    yield from _command("geometry create shape ellipsoid", ellipsoid_name=f"{sphere}.ball", center_marker=names.centre, **scale)
+    yield from _command(
+        "geometry create shape ellipsoid",
+        ellipsoid_name=f"{sphere}.ball",
+        center_marker=names.centre,
+        **scale,
+    )
     if contact.holds_speed:
         yield from _command(
             "executive_control create sensor",
@@ -101,7 +126,8 @@ def _commands(model: AdamsModel) -> Iterator[str]:
         yield from _variable(names.speed, contact.held_speed(names))
     if contact.varies:
         yield from _variable(names.damping, contact.damping_now(names))
-    # action only: along the z axis of marker J, on the part of marker I; the ground needs no reaction
+    # action only: along the z axis of marker J, on the part of marker I; the ground needs no
+    # reaction
     yield from _command(
         "force create direct single_component_force",
         single_component_force_name=f"{top}.contact",
@@ -112,7 +138,10 @@ def _commands(model: AdamsModel) -> Iterator[str]:
         function=_quoted(contact.force(names)),
     )
     yield from _friction(model, names)
-    gravity = {f"{axis}_component_gravity": adams_number(part) for axis, part in zip("xyz", model.pull, strict=True)}
+    gravity = {
+        f"{axis}_component_gravity": adams_number(part)
+        for axis, part in zip("xyz", model.pull, strict=True)
+    }
     yield from _command("force create body gravitational", gravity_field_name="gravity", **gravity)
     yield from _requests(model, names)
     yield from _command(
@@ -122,8 +151,12 @@ def _commands(model: AdamsModel) -> Iterator[str]:
         error_tolerance=adams_number(ACCURACY),
         hmax_time_step=adams_number(model.longest_step),
     )
-    run = f"SIMULATE/DYNAMICS, END={adams_number(model.end)}, DTOUT={adams_number(model.output_step)}"
-    yield from _command("simulation script create", sim_script_name=f"{top}.drop", solver_commands=f'"{run}"')
+    run = (
+        f"SIMULATE/DYNAMICS, END={adams_number(model.end)}, DTOUT={adams_number(model.output_step)}"
+    )
+    yield from _command(
+        "simulation script create", sim_script_name=f"{top}.drop", solver_commands=f'"{run}"'
+    )
 
 
 def _friction(model: AdamsModel, names: Names) -> Iterator[str]:
@@ -164,7 +197,9 @@ def _inside(part: str) -> Iterator[str]:
 
 
 def _marker(name: str, location: Sequence[float]) -> Iterator[str]:
-    return _command("marker create", marker_name=name, location=adams_numbers(location), orientation=_UPRIGHT)
+    return _command(
+        "marker create", marker_name=name, location=adams_numbers(location), orientation=_UPRIGHT
+    )
 
 
 def _variable(name: str, function: str) -> Iterator[str]:
@@ -172,7 +207,9 @@ def _variable(name: str, function: str) -> Iterator[str]:
 
 
 def _command(words: str, **parameters: str) -> Iterator[str]:
-    """Yield the lines of a command: one parameter per line, all but the last continued by an ampersand."""
+    """Yield the lines of a command: one parameter per line, all but the last continued by
+    an ampersand.
+    """
     lines = [line for name, value in parameters.items() for line in f"{name} = {value}".split("\n")]
     yield "!"
     yield f"{words}  &"
@@ -181,7 +218,9 @@ def _command(words: str, **parameters: str) -> Iterator[str]:
 
 
 def _quoted(function: str) -> str:
-    """Return a function as a series of quoted strings, one per line, which Adams View concatenates."""
+    """Return a function as a series of quoted strings, one per line, which Adams View
+    concatenates.
+    """
     *first, last = wrap_expression(function, LINE - 20)
     return ",\n".join([*(f'"{line} "' for line in first), f'"{last}"'])
 

@@ -17,8 +17,15 @@ def write(drop: Drop) -> dict[str, bytes]:
     InputError
         If the drop has no tables.
     """
-    texts = {name: _text(table) for name, table in tables_of(drop).items() if not name.startswith("sensors/")}
-    texts |= {f"sensors/{plain}": signal_csv(drop.signals[name]) for name, plain in plain_names(list(drop.signals)).items()}
+    texts = {
+        name: _text(table)
+        for name, table in tables_of(drop).items()
+        if not name.startswith("sensors/")
+    }
+    texts |= {
+        f"sensors/{plain}": signal_csv(drop.signals[name])
+        for name, plain in plain_names(list(drop.signals)).items()
+    }
     return {f"{name}.csv": text.encode() for name, text in texts.items()}
 
 
@@ -38,5 +45,7 @@ FORMAT = ExportFormat(
     files="impacts.csv, history.csv, and sensors/NAME.csv of each sensor",
     tested="read back with pandas 3.1, every digit the same",
     write=write,
-    notes=lambda drop: ["The tables contain the results of the drop, not its bodies and its contact law."],
+    notes=lambda drop: [
+        "The tables contain the results of the drop, not its bodies and its contact law."
+    ],
 )

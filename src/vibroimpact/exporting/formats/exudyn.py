@@ -1,4 +1,6 @@
-"""EXUDYN: a Python script with a point mass and a contact force as user function, exact for most laws."""
+"""EXUDYN: a Python script with a point mass and a contact force as user function, exact
+for most laws.
+"""
 
 from __future__ import annotations
 
@@ -19,7 +21,8 @@ from vibroimpact.exporting.rigid_drop import as_rigid
 from vibroimpact.files.plain_names import plain_words
 from vibroimpact.ranges import Range
 
-# damping factor D of the laws F = K delta^n (1 + D rate / approach), as a function of the requested restitution e
+# damping factor D of the laws F = K delta^n (1 + D rate / approach), as a function of the requested
+# restitution e
 _FACTORS = {
     "flores": "1.6 * (1.0 - e) / e",
     "gonthier": "(1.0 - e * e) / e",
@@ -33,9 +36,13 @@ _FACTORS = {
 }
 
 _DAMPING_RATIO = "ratio = -math.log(p.restitution) / math.hypot(math.pi, math.log(p.restitution))"
-_LINEAR = f"{_DAMPING_RATIO}\nreturn p.stiffness * delta + 2.0 * ratio * math.sqrt(p.stiffness * p.effective_mass) * rate"
+_LINEAR = (
+    f"{_DAMPING_RATIO}\nreturn p.stiffness * delta + 2.0 * ratio * math.sqrt(p.stiffness * "
+    "p.effective_mass) * rate"
+)
 
-# without adams-poisson: its force jumps at maximum compression, where an integrator with adaptive steps gets stuck
+# without adams-poisson: its force jumps at maximum compression, where an integrator with adaptive
+# steps gets stuck
 _FORCES = {
     "adams-impact": """\
 s = min(delta / p.full_damping_penetration, 1.0)
@@ -48,14 +55,16 @@ e = p.restitution
 ratio = 4.5 * math.sqrt(5.0) * (1.0 - e * e) / (e * (e * (9.0 * math.pi - 16.0) + 16.0))
 damping = 2.0 * ratio * math.sqrt(p.effective_mass * p.stiffness) * delta**0.25
 return p.stiffness * delta**1.5 + (damping * rate if rate > 0.0 else 0.0)""",
-    "kuwabara-kono": "return max(0.0, p.stiffness * (delta**1.5 + 1.5 * p.dissipation_time * math.sqrt(delta) * rate))",
+    "kuwabara-kono": "return max(0.0, p.stiffness * (delta**1.5 + 1.5 * p.dissipation_time * "
+    "math.sqrt(delta) * rate))",
     "linear-spring-dashpot": _LINEAR,
     "tsuji": f"""\
 {_DAMPING_RATIO}
 damping = math.sqrt(5.0 * p.effective_mass * p.stiffness) * ratio * delta**0.25
 return p.stiffness * delta**1.5 + damping * rate""",
     **{
-        name: f"e = p.restitution\nfactor = {factor}\nreturn p.stiffness * delta**p.exponent * (1.0 + factor * rate / approach)"
+        name: f"e = p.restitution\nfactor = {factor}\nreturn p.stiffness * delta**p.exponent * "
+        "(1.0 + factor * rate / approach)"
         for name, factor in _FACTORS.items()
     },
 }
@@ -80,28 +89,43 @@ def _force(law: ContactLaw) -> str:
 
 
 def _parameters(drop: Drop) -> str:
-    """Return the lines of the law's parameters: the values of each parameter, one for all impacts or one for each."""
+    """Return the lines of the law's parameters: the values of each parameter, one for all
+    impacts or one for each.
+    """
     rows = []
     for item in fields(drop.laws[0]):
         values = [getattr(law, item.name) for law in drop.laws]
         if values[0] is None or item.metadata["memory"]:
             continue
         given = [float(value) for value in values] if len(set(values)) > 1 else [float(values[0])]
-        rows.append(f'    "{item.name}": {given},  # {item.metadata["meaning"]}, {item.metadata["unit"] or "-"}')
+        rows.append(
+            f'    "{item.name}": {given},  # {item.metadata["meaning"]}, '
+            f"{item.metadata['unit'] or '-'}"
+        )
     return "\n".join(rows)
 
 
 def _function(drop: Drop) -> str:
-    """Return the line that evaluates a parameter as function of the approach speed, clipped to its range; "" if there is none."""
+    """Return the line that evaluates a parameter as function of the approach speed,
+    clipped to its range; "" if there is none.
+    """
     if drop.function is None:
         return ""
     name, polynomial = drop.function
-    terms = " + ".join(f"{value!r} * approach**{power}" for power, value in enumerate(map(float, polynomial.coefficients)))
-    allowed: Range = next(item for item in fields(drop.laws[0]) if item.name == name).metadata["range"]
+    terms = " + ".join(
+        f"{value!r} * approach**{power}"
+        for power, value in enumerate(map(float, polynomial.coefficients))
+    )
+    allowed: Range = next(item for item in fields(drop.laws[0]) if item.name == name).metadata[
+        "range"
+    ]
     low, high = float(allowed.clip(-math.inf)), float(allowed.clip(math.inf))
     inside = f"max({terms}, {low!r})" if math.isfinite(low) else terms
     inside = f"min({inside}, {high!r})" if math.isfinite(high) else inside
-    return f"    p.{name} = {inside}  # of the approach speed, fitted from {polynomial.slowest:.6g} to {polynomial.fastest:.6g} m/s\n"
+    return (
+        f"    p.{name} = {inside}  # of the approach speed, fitted from "
+        f"{polynomial.slowest:.6g} to {polynomial.fastest:.6g} m/s\n"
+    )
 
 
 def _friction(drop: Drop) -> FrictionLaw | None:
@@ -109,12 +133,16 @@ def _friction(drop: Drop) -> FrictionLaw | None:
 
 
 def _along_plate(drop: Drop) -> tuple[str, str]:
-    """Return the lines of the motion along the plate and the spin, and those that print them; none if there is no such motion."""
+    """Return the lines of the motion along the plate and the spin, and those that print
+    them; none if there is no such motion.
+    """
     if drop.oblique is None:
         return "", ""
     law, oblique = _friction(drop), drop.oblique
     coefficient = 0.0 if law is None else float(law.coefficient)
-    (x, y), (about_x, about_y, about_z) = (tuple(map(float, values)) for values in (oblique.velocity, oblique.spin))
+    (x, y), (about_x, about_y, about_z) = (
+        tuple(map(float, values)) for values in (oblique.velocity, oblique.spin)
+    )
     return (
         f'''
 from exudyn.itemInterface import NodeGenericODE2, ObjectGenericODE2
@@ -160,7 +188,8 @@ def _write(drop: Drop) -> Mapping[str, bytes]:
     body = "\n".join(f"    {line}" for line in _force(law).splitlines())
     duration, _ = first_contact(law, drop)
     objects, print_motion = _along_plate(drop)
-    # in the script a fall is integrated to the known time of first touch, and each contact separately, with steps of its scale
+    # in the script a fall is integrated to the known time of first touch, and each contact
+    # separately, with steps of its scale
     return {
         file_name(drop, "-exudyn.py"): f'''\
 """A sphere that falls on a plate, for EXUDYN 1.13 or later. Units: m, kg, s, N."""
@@ -284,7 +313,8 @@ FORMAT = ExportFormat(
     name="exudyn",
     program="EXUDYN",
     files="a Python script (.py)",
-    tested="run with EXUDYN 1.13.6, compared with vibroimpact's drops between rigid bodies, oblique ones too",
+    tested="run with EXUDYN 1.13.6, compared with vibroimpact's drops between rigid bodies, "
+    "oblique ones too",
     write=_write,
     notes=_notes,
     prepare=as_rigid,

@@ -32,7 +32,11 @@ from vibroimpact.exporting.program_friction import friction_in, friction_notes, 
 from vibroimpact.exporting.rigid_drop import as_rigid
 from vibroimpact.files.plain_names import plain_words
 
-_TANGENTIAL = {"mindlin": "mindlin", "mindlin-rescale": "mindlin_rescale", "mindlin-force": "mindlin/force"}
+_TANGENTIAL = {
+    "mindlin": "mindlin",
+    "mindlin-rescale": "mindlin_rescale",
+    "mindlin-force": "mindlin/force",
+}
 """Friction laws that LAMMPS has, and what it calls them."""
 _FRICTION = {**{name: name for name in _TANGENTIAL}, "mdr": "mindlin-rescale"}
 """The friction laws that can be written, and which stands for each."""
@@ -43,12 +47,16 @@ spin $(C_spin[1][1]:%.9g) $(C_spin[1][2]:%.9g) $(C_spin[1][3]:%.9g) rad/s"
 """
 
 _STEPS = 20_000
-"""Steps in the first contact: restitution and peak force are then accurate to 5e-5 (LAMMPS damps half a step late)."""
+"""Steps in the first contact: restitution and peak force are then accurate to 5e-5
+(LAMMPS damps half a step late).
+"""
 
 
 @dataclass(frozen=True)
 class _Normal:
-    """A law in LAMMPS: damping model, its coefficient, whether the force is clipped at zero, and whether it is the same law."""
+    """A law in LAMMPS: damping model, its coefficient, whether the force is clipped at
+    zero, and whether it is the same law.
+    """
 
     damping: str
     coefficient: float
@@ -57,7 +65,9 @@ class _Normal:
 
 
 def _normal(law: ContactLaw, drop: Drop, speed: float) -> _Normal:
-    """Return the damping model of a law; if LAMMPS lacks it, the nearest one with the same restitution at a speed."""
+    """Return the damping model of a law; if LAMMPS lacks it, the nearest one with the
+    same restitution at a speed.
+    """
     stiffness, exponent = linear_or_hertzian(drop, "LAMMPS")
     if isinstance(law, Hertz):
         return _Normal("velocity", 0.0, False, True)
@@ -68,20 +78,30 @@ def _normal(law: ContactLaw, drop: Drop, speed: float) -> _Normal:
         eta = 1.5 * stiffness * float(law.dissipation_time) / (drop.mass * math.sqrt(drop.radius))
         return _Normal("viscoelastic", eta, True, True)
     restitution = float(achieved_restitution(law, drop.mass, speed))
-    if isinstance(law, AdamsImpact):  # its dashpot is constant except over the penetration of full damping (typically 0.1 mm)
-        return _Normal("velocity", clipped_dashpot(stiffness, exponent, restitution, drop.mass, speed), True, False)
+    # its dashpot is constant except over the penetration of full damping (typically 0.1 mm)
+    if isinstance(law, AdamsImpact):
+        return _Normal(
+            "velocity",
+            clipped_dashpot(stiffness, exponent, restitution, drop.mass, speed),
+            True,
+            False,
+        )
     return _Normal("coeff_restitution", restitution, False, isinstance(law, Tsuji))
 
 
 def _normals(drop: Drop) -> list[_Normal]:
-    return [_normal(law, drop, speed) for law, speed in zip(laws_of_impacts(drop), approach_speeds(drop), strict=False)]
+    return [
+        _normal(law, drop, speed)
+        for law, speed in zip(laws_of_impacts(drop), approach_speeds(drop), strict=False)
+    ]
 
 
 def _friction(drop: Drop) -> FrictionLaw | None:
     law = friction_in(drop, "LAMMPS", _FRICTION)
     if law is not None and not drop.is_solid:
         raise InputError(
-            f"{drop.inertia:.4g} kg m^2 can't be written for LAMMPS, whose spheres turn like solid ones, with 2/5 of the mass times the "
+            f"{drop.inertia:.4g} kg m^2 can't be written for LAMMPS, whose spheres turn "
+            "like solid ones, with 2/5 of the mass times the "
             "square of the radius; a drop without friction can",
             "sphere.inertia",
         )
@@ -94,7 +114,9 @@ def _tangential(drop: Drop) -> str:
     if not isinstance(law, CompliantFriction):
         return "linear_nohistory 0.0 0.0"
     # LAMMPS multiplies by the radius of the contact
-    stiffness = spring_of_overlap(law, drop, *linear_or_hertzian(drop, "LAMMPS")) / math.sqrt(drop.radius)
+    stiffness = spring_of_overlap(law, drop, *linear_or_hertzian(drop, "LAMMPS")) / math.sqrt(
+        drop.radius
+    )
     return f"{_TANGENTIAL[law.name]} {stiffness!r} 0.0 {float(law.coefficient)!r}"
 
 
@@ -102,7 +124,9 @@ def _write(drop: Drop) -> Mapping[str, bytes]:
     laws, normals, speeds = laws_of_impacts(drop), _normals(drop), approach_speeds(drop)
     stiffness, exponent = linear_or_hertzian(drop, "LAMMPS")
     # the stiffness of "hertz" is multiplied by sqrt(R) in LAMMPS
-    model, spring = ("hooke", stiffness) if exponent == 1.0 else ("hertz", stiffness / math.sqrt(drop.radius))
+    model, spring = (
+        ("hooke", stiffness) if exponent == 1.0 else ("hertz", stiffness / math.sqrt(drop.radius))
+    )
     duration, _ = first_contact(laws[0], drop)
     coefficients = [normal.coefficient for normal in normals]
     coefficients += coefficients[-1:] * (len(speeds) - len(coefficients))
@@ -110,7 +134,9 @@ def _write(drop: Drop) -> Mapping[str, bytes]:
     # the box must contain the sphere at its largest height; along the plate it goes on periodically
     top = max(drop.height, drop.radius + max(speeds) ** 2 / (2.0 * drop.gravity)) + drop.radius
     oblique = drop.oblique or Oblique()
-    velocity, spin = (" ".join(repr(float(part)) for part in parts) for parts in (oblique.velocity, oblique.spin))
+    velocity, spin = (
+        " ".join(repr(float(part)) for part in parts) for parts in (oblique.velocity, oblique.spin)
+    )
     pull = (*map(float, oblique.gravity), -drop.gravity)
     density = float(mean_density(drop.mass, drop.radius))
     text = f"""\
@@ -180,23 +206,38 @@ def _notes(drop: Drop) -> list[str]:
     law, normals, speeds = laws_of_impacts(drop)[0], _normals(drop), approach_speeds(drop)
     notes = [*shared_notes(drop), *friction_notes(drop, "LAMMPS", _friction(drop))]
     if not drop.is_solid:
-        notes.append("LAMMPS has the moment of inertia of a solid sphere, which does not matter without friction.")
-    where = f"{speeds[0]:.6g} m/s, the speed of the first impact" if len(normals) == 1 else "the speed of each impact of this drop"
+        notes.append(
+            "LAMMPS has the moment of inertia of a solid sphere, which does not matter "
+            "without friction."
+        )
+    where = (
+        f"{speeds[0]:.6g} m/s, the speed of the first impact"
+        if len(normals) == 1
+        else "the speed of each impact of this drop"
+    )
     if not normals[0].exact:
         spring = "hooke" if linear_or_hertzian(drop, "LAMMPS")[1] == 1.0 else "hertz"
         notes.append(
-            f"LAMMPS has no {law.name}; its {spring} with damping {normals[0].damping} stands for it, so forces within the contact differ."
+            f"LAMMPS has no {law.name}; its {spring} with damping {normals[0].damping} "
+            "stands for it, so forces within the contact differ."
         )
         if normals[0].damping == "velocity":
             notes.append(f"Its restitution is the law's at {where}; at others it differs somewhat.")
     if isinstance(law, HuntCrossley) and law.dissipation is not None:
         notes.append(
-            f"Its restitution is the law's at {where}, and at others stays the same; that of the law rises to 1 where it slows down."
+            f"Its restitution is the law's at {where}, and at others stays the same; that "
+            "of the law rises to 1 where it slows down."
         )
     if _friction(drop) is not None and normals[0].coefficient and not normals[0].clipped:
-        notes.append("Where LAMMPS' normal force pulls, at the end of a contact, friction follows its magnitude.")
+        notes.append(
+            "Where LAMMPS' normal force pulls, at the end of a "
+            "contact, friction follows its magnitude."
+        )
     if len(normals) > 1:
-        notes.append("The damping changes from impact to impact in this one sphere's run; a wall has one value for all spheres at a time.")
+        notes.append(
+            "The damping changes from impact to impact in this one sphere's run; a wall has "
+            "one value for all spheres at a time."
+        )
     return notes
 
 
@@ -204,7 +245,8 @@ FORMAT = ExportFormat(
     name="lammps",
     program="LAMMPS, package GRANULAR",
     files="an input file (.in)",
-    tested="run with LAMMPS 22 Jul 2025, update 4, compared with vibroimpact's drops between rigid bodies, oblique ones too",
+    tested="run with LAMMPS 22 Jul 2025, update 4, compared with vibroimpact's drops between rigid "
+    "bodies, oblique ones too",
     write=_write,
     notes=_notes,
     prepare=as_rigid,

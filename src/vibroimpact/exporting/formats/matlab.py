@@ -21,7 +21,21 @@ from vibroimpact.files.plain_names import one_line, plain_names
 _LONGEST = 63
 """Largest length of a name in MATLAB."""
 _KEYWORDS = (
-    *("break", "case", "catch", "classdef", "continue", "else", "elseif", "end", "for", "function", "global", "if", "otherwise"),
+    *(
+        "break",
+        "case",
+        "catch",
+        "classdef",
+        "continue",
+        "else",
+        "elseif",
+        "end",
+        "for",
+        "function",
+        "global",
+        "if",
+        "otherwise",
+    ),
     *("parfor", "persistent", "return", "spmd", "switch", "try", "while"),
 )
 _HEADER = 116
@@ -40,12 +54,16 @@ def write(drop: Drop) -> dict[str, bytes]:
 
     tables = tables_of(drop)
     units: dict[str, Any] = {
-        name: {column: one.unit for column, one in tables[name].items()} for name in ("impacts", "history") if name in tables
+        name: {column: one.unit for column, one in tables[name].items()}
+        for name in ("impacts", "history")
+        if name in tables
     }
     found: dict[str, Any] = {name: _values(tables[name]) for name in units}
     legal = legal_names(list(drop.signals))
     plain = plain_names(list(drop.signals))
-    signals = {legal[name]: _signal(drop, name, tables[f"sensors/{plain[name]}"]) for name in drop.signals}
+    signals = {
+        legal[name]: _signal(drop, name, tables[f"sensors/{plain[name]}"]) for name in drop.signals
+    }
     if signals:
         found["signals"] = signals
     if drop.surface:
@@ -53,7 +71,13 @@ def write(drop: Drop) -> dict[str, bytes]:
         units["surface"] = {name: "s" if name == "time" else "m" for name in drop.surface}
     found["drop"], units["drop"] = _facts(drop)
     file = BytesIO()
-    savemat(file, {**found, "units": units}, long_field_names=True, oned_as="column", do_compression=True)
+    savemat(
+        file,
+        {**found, "units": units},
+        long_field_names=True,
+        oned_as="column",
+        do_compression=True,
+    )
     # replaces the header with the time of day, so that files are reproducible
     text = f"MATLAB 5.0 MAT-file, written by vibroimpact {__version__}".encode().ljust(_HEADER)
     return {file_name(drop, ".mat"): text + file.getvalue()[_HEADER:]}
@@ -68,7 +92,10 @@ def legal_names(names: list[str]) -> dict[str, str]:
     {'a1': 'a1', '2nd sensor': 's_2nd_sensor', 'end': 's_end', 'left/upper': 'left_upper'}
     """
     starts = (plain.replace("-", "_") for plain in plain_names(names).values())
-    legal = [start if re.match("[A-Za-z]", start) and start not in _KEYWORDS else f"s_{start}" for start in starts]
+    legal = [
+        start if re.match("[A-Za-z]", start) and start not in _KEYWORDS else f"s_{start}"
+        for start in starts
+    ]
     found: set[str] = set()
     numbers: dict[str, int] = {}
     for place, name in enumerate(legal):
@@ -115,7 +142,10 @@ def _facts(drop: Drop) -> tuple[dict[str, Any], dict[str, Any]]:
         "contact_law": (drop.laws[0].name, ""),
     }
     if drop.oblique is not None:
-        along = {name: np.array(getattr(drop.oblique, name), dtype=float) for name in ("velocity", "spin", "gravity")}
+        along = {
+            name: np.array(getattr(drop.oblique, name), dtype=float)
+            for name in ("velocity", "spin", "gravity")
+        }
         stated |= {
             "velocity_along_plate": (along["velocity"], "m/s"),
             "spin": (along["spin"], "rad/s"),
@@ -140,7 +170,10 @@ def _facts(drop: Drop) -> tuple[dict[str, Any], dict[str, Any]]:
         facts["friction"], units["friction"] = _parameters((drop.oblique.friction,))
     if drop.function is not None:
         name, function = drop.function
-        facts["function"] = {"parameter": name, "coefficients_lowest_power_first": np.array(function.coefficients)}
+        facts["function"] = {
+            "parameter": name,
+            "coefficients_lowest_power_first": np.array(function.coefficients),
+        }
     return facts, units
 
 
@@ -150,7 +183,10 @@ def _parameters(laws: Sequence[Parameters]) -> tuple[dict[str, Any], dict[str, s
     for item in fields(laws[0]):
         found = [getattr(one, item.name) for one in laws]
         if found[0] is not None and not item.metadata["memory"]:
-            values[item.name], units[item.name] = np.asarray(found), unit_of(item, getattr(laws[0], "exponent", 1))
+            values[item.name], units[item.name] = (
+                np.asarray(found),
+                unit_of(item, getattr(laws[0], "exponent", 1)),
+            )
     return values, units
 
 
@@ -158,7 +194,8 @@ FORMAT = ExportFormat(
     name="mat",
     program="MATLAB, GNU Octave",
     files="one file (.mat) of structs: impacts, history, signals, surface, drop and units",
-    tested="read back with scipy.io.loadmat of SciPy 1.17, values, names and units the same; not with MATLAB itself",
+    tested="read back with scipy.io.loadmat of SciPy 1.17, values, names and units the same; not "
+    "with MATLAB itself",
     write=write,
     notes=lambda drop: [
         f'The sensor "{one_line(name)}" is signals.{legal} in the file, a valid name in MATLAB.'

@@ -1,4 +1,6 @@
-"""MuJoCo: an MJCF model of a sphere above a plane; its soft contact is a linear spring and dashpot."""
+"""MuJoCo: an MJCF model of a sphere above a plane; its soft contact is a linear spring
+and dashpot.
+"""
 
 from __future__ import annotations
 
@@ -33,7 +35,9 @@ _IMPEDANCE = 0.9999
 
 
 def _linear(drop: Drop) -> AdamsImpact:
-    """Return the linear spring-dashpot without tension that has the restitution and duration of the drop's first contact."""
+    """Return the linear spring-dashpot without tension that has the restitution and
+    duration of the drop's first contact.
+    """
     law, speed = laws_of_impacts(drop)[0], approach_speeds(drop)[0]
     power_law_spring(law, "MuJoCo")
     restitution = float(achieved_restitution(law, drop.mass, speed))
@@ -42,7 +46,12 @@ def _linear(drop: Drop) -> AdamsImpact:
     def achieving(stiffness: float) -> AdamsImpact:
         dashpot = clipped_dashpot(stiffness, 1.0, restitution, drop.mass, speed)
         depth = speed * math.sqrt(drop.mass / stiffness)
-        return AdamsImpact(stiffness=stiffness, exponent=1.0, damping_max=dashpot, full_damping_penetration=1e-7 * depth)
+        return AdamsImpact(
+            stiffness=stiffness,
+            exponent=1.0,
+            damping_max=dashpot,
+            full_damping_penetration=1e-7 * depth,
+        )
 
     # the restitution fixes the damping ratio, so the duration is proportional to the period
     trial = drop.mass * (math.pi / duration) ** 2
@@ -51,7 +60,9 @@ def _linear(drop: Drop) -> AdamsImpact:
 
 @dataclass(frozen=True)
 class _Motion:
-    """How the sphere may move: its joint, coordinates and velocities at the start, gravity along the plate, and what is said of them."""
+    """How the sphere may move: its joint, coordinates and velocities at the start,
+    gravity along the plate, and what is said of them.
+    """
 
     joint: str
     place: str
@@ -65,11 +76,14 @@ def _motion(drop: Drop) -> _Motion:
     height, rising = float(drop.height), -float(drop.speed)
     if drop.oblique is None:
         joint = f'<joint name="height" type="slide" axis="0 0 1" ref="{height!r}"/>'
-        meaning = "The height of the sphere's centre above the plate is qpos[0], its velocity qvel[0]."
+        meaning = (
+            "The height of the sphere's centre above the plate is qpos[0], its velocity qvel[0]."
+        )
         return _Motion(joint, repr(height), repr(rising), "0 0", meaning)
     if drop.oblique.friction is not None:
         raise InputError(
-            f"{drop.oblique.friction.name} can't be written for MuJoCo, whose friction is viscous up to its cone, and changes the "
+            f"{drop.oblique.friction.name} can't be written for MuJoCo, whose friction is "
+            "viscous up to its cone, and changes the "
             "restitution of what slides; a drop without friction can be",
             "contact.friction",
         )
@@ -78,7 +92,8 @@ def _motion(drop: Drop) -> _Motion:
         _numbers(*drop.position, height, 1.0, 0.0, 0.0, 0.0),
         _numbers(*drop.oblique.velocity, rising, *drop.oblique.spin),
         _numbers(*drop.oblique.gravity),
-        "The position of the sphere's centre is qpos[0:3], its velocity qvel[0:3], its angular velocity in its own axes qvel[3:6].",
+        "The position of the sphere's centre is qpos[0:3], its velocity qvel[0:3], its "
+        "angular velocity in its own axes qvel[3:6].",
     )
 
 
@@ -132,12 +147,20 @@ def _notes(drop: Drop) -> list[str]:
     _, exponent = power_law_spring(laws[0], "MuJoCo")
     speed = approach_speeds(drop)[0]
     notes.append(
-        f"MuJoCo's contact is a linear spring and dashpot that does not pull; it stands for {laws[0].name} and has its restitution and "
+        "MuJoCo's contact is a linear spring and dashpot that does not pull; it stands "
+        f"for {laws[0].name} and has its restitution and "
         f"duration at {speed:.6g} m/s, the first impact; the course and the largest force differ."
     )
     if exponent != 1.0:
-        notes.append(f"The exponent {exponent:g} of the spring can't be represented, so durations at other speeds differ.")
-    changing = "; parameters that change from impact to impact can't be represented." if len(laws) > 1 else "."
+        notes.append(
+            f"The exponent {exponent:g} of the spring can't be represented, so durations "
+            "at other speeds differ."
+        )
+    changing = (
+        "; parameters that change from impact to impact can't be represented."
+        if len(laws) > 1
+        else "."
+    )
     notes.append("Its restitution is the same at every speed" + changing)
     return notes
 
@@ -146,8 +169,8 @@ FORMAT = ExportFormat(
     name="mujoco",
     program="MuJoCo",
     files="a model (.xml, MJCF)",
-    tested="run with MuJoCo 3.2.7 and 4.0.0, the first impact compared with vibroimpact's between rigid bodies, an oblique one without "
-    "friction too",
+    tested="run with MuJoCo 3.2.7 and 4.0.0, the first impact compared with vibroimpact's between "
+    "rigid bodies, an oblique one without friction too",
     write=_write,
     notes=_notes,
     prepare=as_rigid,

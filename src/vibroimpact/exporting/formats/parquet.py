@@ -19,7 +19,10 @@ def write(drop: Drop) -> dict[str, bytes]:
     InputError
         If the drop has no tables, or pyarrow is not installed.
     """
-    return {f"{name}.parquet": _bytes(table, one_line(drop.name)) for name, table in tables_of(drop).items()}
+    return {
+        f"{name}.parquet": _bytes(table, one_line(drop.name))
+        for name, table in tables_of(drop).items()
+    }
 
 
 def _bytes(table: Table, title: str) -> bytes:
@@ -27,11 +30,19 @@ def _bytes(table: Table, title: str) -> bytes:
         import pyarrow
         import pyarrow.parquet
     except ImportError:
-        raise InputError('Parquet needs pyarrow, which is not installed: pip install "vibroimpact[parquet]"') from None
-    arrays = [pyarrow.array(column.values, from_pandas=True) for column in table.values()]  # NaN becomes null
+        raise InputError(
+            'Parquet needs pyarrow, which is not installed: pip install "vibroimpact[parquet]"'
+        ) from None
+    # NaN becomes null
+    arrays = [pyarrow.array(column.values, from_pandas=True) for column in table.values()]
     metadata = [{"unit": column.unit, "long_name": column.meaning} for column in table.values()]
-    fields = [pyarrow.field(name, array.type, metadata=words) for name, array, words in zip(table, arrays, metadata, strict=True)]
-    result = pyarrow.Table.from_arrays(arrays, schema=pyarrow.schema(fields, metadata={"title": title}))
+    fields = [
+        pyarrow.field(name, array.type, metadata=words)
+        for name, array, words in zip(table, arrays, metadata, strict=True)
+    ]
+    result = pyarrow.Table.from_arrays(
+        arrays, schema=pyarrow.schema(fields, metadata={"title": title})
+    )
     file = BytesIO()
     pyarrow.parquet.write_table(result, file)
     return file.getvalue()

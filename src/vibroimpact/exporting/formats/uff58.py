@@ -1,4 +1,6 @@
-"""Universal file, dataset 58: signals, motion and force of the sphere as functions of time, for vibration-testing programs."""
+"""Universal file, dataset 58: signals, motion and force of the sphere as functions of
+time, for vibration-testing programs.
+"""
 
 from __future__ import annotations
 
@@ -23,7 +25,9 @@ from vibroimpact.files.plain_names import one_line, plain_words
 from vibroimpact.measurements.universal_file import SPHERE_FUNCTIONS
 
 _IN_CONTACT = 20
-"""Least number of history samples in the shortest contact: the peak of a half-sine is then accurate to 0.3 %."""
+"""Least number of history samples in the shortest contact: the peak of a half-sine is
+then accurate to 0.3 %.
+"""
 _MOST_SAMPLES = 2_000_000
 """Largest number of samples of the history."""
 _SPHERE, _FIRST_SENSOR = 1, 2  # nodes
@@ -33,7 +37,15 @@ _LINE = 80
 """Characters of a line of text."""
 _MOST_NAMED = 10
 """Largest number of sensors that a note names."""
-_QUANTITIES = {"displacement": 8, "velocity": 11, "acceleration": 12, "voltage": 1, "strain": 3, "pressure": 15, "force": 9}
+_QUANTITIES = {
+    "displacement": 8,
+    "velocity": 11,
+    "acceleration": 12,
+    "voltage": 1,
+    "strain": 3,
+    "pressure": 15,
+    "force": 9,
+}
 """Data types of dataset 58; 1 is "general", as voltage has none of its own."""
 _ALONG_PLATE = {"position": 8, "velocity": 11, "spin": 11, "friction": 13}
 
@@ -55,32 +67,43 @@ def write(drop: Drop) -> dict[str, bytes]:
     Raises
     ------
     InputError
-        If there is neither a sensor nor a history that can be sampled evenly, or pyuff is not installed.
+        If there is neither a sensor nor a history that can be sampled evenly, or pyuff is not
+        installed.
     """
     functions = [*_of_signals(drop), *_of_history(drop)]
     if not functions:
         raise InputError(
-            f'"{one_line(drop.name)}" has no sensor with two samples or more, and {_why_no_history(drop)}; there is nothing to write as '
-            "functions of time"
+            f'"{one_line(drop.name)}" has no sensor with two samples or more, and '
+            f"{_why_no_history(drop)}; there is nothing to write as functions of time"
         )
     try:
         import pyuff
     except ImportError:
-        raise InputError('universal files need pyuff, which is not installed: pip install "vibroimpact[uff]"') from None
+        raise InputError(
+            'universal files need pyuff, which is not installed: pip install "vibroimpact[uff]"'
+        ) from None
     with TemporaryDirectory() as folder, warnings.catch_warnings():  # pyuff writes only to files
-        warnings.simplefilter("ignore", ResourceWarning)  # pyuff does not close a file after binary data
+        # pyuff does not close a file after binary data
+        warnings.simplefilter("ignore", ResourceWarning)
         path = Path(folder, "drop.uff")
-        pyuff.UFF(str(path)).write_sets([_header(drop), _si(), *(_dataset(one, drop) for one in functions)], "overwrite")
+        pyuff.UFF(str(path)).write_sets(
+            [_header(drop), _si(), *(_dataset(one, drop) for one in functions)], "overwrite"
+        )
         return {file_name(drop, ".uff"): path.read_bytes()}
 
 
 def history_rate(drop: Drop) -> float | None:
     """Return the sampling rate of the history [Hz], which resolves the shortest contact.
 
-    An integer multiple of the rate of the fastest sensor; without sensors 1, 2 or 5 times a power of ten, so that the step is exact in
-    the few digits of the format. None if no contact has a positive duration, or there would be too many samples.
+    An integer multiple of the rate of the fastest sensor; without sensors 1, 2 or 5 times a power
+    of ten, so that the step is exact in the few digits of the format. None if no contact has a
+    positive duration, or there would be too many samples.
     """
-    durations = drop.impacts["duration_s"][drop.impacts["duration_s"] > 0.0] if drop.impacts else np.zeros(0)
+    durations = (
+        drop.impacts["duration_s"][drop.impacts["duration_s"] > 0.0]
+        if drop.impacts
+        else np.zeros(0)
+    )
     if not len(durations) or not len(drop.history.get("time_s", ())):
         return None
     needed = _IN_CONTACT / float(durations.min())
@@ -98,25 +121,45 @@ def _of_signals(drop: Drop) -> Iterator[_Function]:
         sensor = signal.sensor
         if len(signal.value) > 1:
             words = f"{sensor.quantity} of {plain_words(name)}"
-            yield _Function(words, node, _direction(sensor.direction), _QUANTITIES[sensor.quantity], sensor.unit, sensor.rate, signal.value)
+            yield _Function(
+                words,
+                node,
+                _direction(sensor.direction),
+                _QUANTITIES[sensor.quantity],
+                sensor.unit,
+                sensor.rate,
+                signal.value,
+            )
 
 
 def _of_history(drop: Drop) -> Iterator[_Function]:
     rate = history_rate(drop)
     if rate is None:
         return
-    motion = motion_at(drop.history, np.arange(int(drop.history["time_s"][-1] * rate * (1.0 + 1e-12)) + 1) / rate)
+    motion = motion_at(
+        drop.history, np.arange(int(drop.history["time_s"][-1] * rate * (1.0 + 1e-12)) + 1) / rate
+    )
     for name, (words, kind, unit) in SPHERE_FUNCTIONS.items():
         yield _Function(words, _SPHERE, _UP, kind, unit, rate, motion[name])
     for name, column in OBLIQUE_HISTORY_COLUMNS.items():
         if name in motion:
             what, axis, _ = name.split("_", 2)
             direction = "xyz".index(axis) + 1 + (_TURNING if what == "spin" else 0)
-            yield _Function(column.meaning, _SPHERE, direction, _ALONG_PLATE[what], column.unit, rate, motion[name])
+            yield _Function(
+                column.meaning,
+                _SPHERE,
+                direction,
+                _ALONG_PLATE[what],
+                column.unit,
+                rate,
+                motion[name],
+            )
 
 
 def _direction(along: tuple[float, float, float]) -> int:
-    """Return the number of the axis along a direction, negative for the opposite direction; 0 if it is not along an axis."""
+    """Return the number of the axis along a direction, negative for the opposite
+    direction; 0 if it is not along an axis.
+    """
     for axis, part in enumerate(along, 1):
         if abs(part) > 1.0 - 1e-9:
             return axis if part > 0.0 else -axis
@@ -124,8 +167,16 @@ def _direction(along: tuple[float, float, float]) -> int:
 
 
 def _header(drop: Drop) -> dict[str, Any]:
-    date = {f"{what}_{when}": "" for what in ("date", "time") for when in ("db_created", "db_saved", "file_written")}
-    words = {"model_name": plain_words(drop.name), "description": "a sphere that falls on a plate", "db_app": "vibroimpact"}
+    date = {
+        f"{what}_{when}": ""
+        for what in ("date", "time")
+        for when in ("db_created", "db_saved", "file_written")
+    }
+    words = {
+        "model_name": plain_words(drop.name),
+        "description": "a sphere that falls on a plate",
+        "db_app": "vibroimpact",
+    }
     return {"type": 151, **words, "program": f"vibroimpact {__version__}", **date}
 
 
@@ -135,7 +186,11 @@ def _si() -> dict[str, Any]:
 
 
 def _dataset(one: _Function, drop: Drop) -> dict[str, Any]:
-    labels = {"abscissa_axis_lab": "time", "abscissa_axis_units_lab": "s", "ordinate_axis_units_lab": one.unit}
+    labels = {
+        "abscissa_axis_lab": "time",
+        "abscissa_axis_units_lab": "s",
+        "ordinate_axis_units_lab": one.unit,
+    }
     return {
         "type": 58,
         "binary": 1,
@@ -164,26 +219,45 @@ def _why_no_history(drop: Drop) -> str:
         return "it has no history"
     if not drop.impacts or not np.any(drop.impacts["duration_s"] > 0.0):
         return "no contact in it has a duration that a rate could be chosen for"
-    return f"its history would take more than {_MOST_SAMPLES} samples, {_IN_CONTACT} in the shortest contact"
+    return (
+        f"its history would take more than {_MOST_SAMPLES} samples, {_IN_CONTACT} in the "
+        "shortest contact"
+    )
 
 
 def _notes(drop: Drop) -> list[str]:
     rate = history_rate(drop)
-    nodes = [f"{number} is the sensor {one_line(name)}" for number, name in enumerate(drop.signals, _FIRST_SENSOR)]
+    nodes = [
+        f"{number} is the sensor {one_line(name)}"
+        for number, name in enumerate(drop.signals, _FIRST_SENSOR)
+    ]
     nodes = nodes if len(nodes) <= _MOST_NAMED else [*nodes[: _MOST_NAMED - 1], "and so on"]
-    notes = [f"Node {_SPHERE} is the sphere" + "".join(f", {words}" for words in nodes) + "; directions are the plate's, +z upwards."]
+    notes = [
+        f"Node {_SPHERE} is the sphere"
+        + "".join(f", {words}" for words in nodes)
+        + "; directions are the plate's, +z upwards."
+    ]
     if rate is None:
         notes.append(f"The history is left out: {_why_no_history(drop)}.")
     else:
         words = f"The history is sampled at {rate:g} Hz, without a filter against aliasing"
         notes.append(f"{words}: at least {_IN_CONTACT} times in the shortest contact.")
-    slanting = [one_line(name) for name, signal in drop.signals.items() if not _direction(signal.sensor.direction)]
+    slanting = [
+        one_line(name)
+        for name, signal in drop.signals.items()
+        if not _direction(signal.sensor.direction)
+    ]
     if slanting:
-        notes.append(f"The direction of {', '.join(slanting)} lies along no axis; it is written as a scalar.")
+        notes.append(
+            f"The direction of {', '.join(slanting)} lies along no axis; it is written as a scalar."
+        )
     rates = {signal.sensor.rate for signal in drop.signals.values()} | ({rate} if rate else set())
     rough = sorted(one for one in rates if float(f"{1.0 / one:.5e}") != 1.0 / one)
     if rough:
-        notes.append(f"The time step of {', '.join(f'{one:g} Hz' for one in rough)} is rounded to the six digits that the format has.")
+        notes.append(
+            f"The time step of {', '.join(f'{one:g} Hz' for one in rough)} is rounded to "
+            "the six digits that the format has."
+        )
     return notes
 
 
@@ -191,7 +265,8 @@ FORMAT = ExportFormat(
     name="uff58",
     program="programs of vibration testing (Simcenter Testlab, ME'scope, pyuff, ...)",
     files="one universal file (.uff), datasets 151, 164 and binary 58",
-    tested="read back with pyuff 2.5, which also writes it, and by a reader in the tests; not with Simcenter Testlab or ME'scope",
+    tested="read back with pyuff 2.5, which also writes it, and by a reader in the tests; not with "
+    "Simcenter Testlab or ME'scope",
     write=write,
     notes=_notes,
 )

@@ -15,17 +15,22 @@ from vibroimpact.exporting.resample import motion_at
 from vibroimpact.files.plain_names import one_line
 
 Cells = tuple[NDArray[np.float32], NDArray[np.int32]]
-"""Points (points, 3) [m], and connectivity (cells, 4) of quadrilaterals, degenerate at the poles."""
+"""Points (points, 3) [m], and connectivity (cells, 4) of quadrilaterals, degenerate at
+the poles.
+"""
 
 _EVEN, _IMPACTS = 200, 20
-"""Number of equidistant frames, and of impacts whose first touch, maximum indentation and release are further frames."""
+"""Number of equidistant frames, and of impacts whose first touch, maximum indentation and
+release are further frames.
+"""
 _AROUND, _DOWN = 32, 16
 """Quadrilaterals of the sphere around its axis and from pole to pole."""
 _QUADRILATERAL, _BRICK = 9, 12
 
 
 def write(drop: Drop) -> dict[str, bytes]:
-    """Return `sphere.pvd` and `plate.pvd`, with one file per frame; a plate without deflection that stands still is `plate.vtu`.
+    """Return `sphere.pvd` and `plate.pvd`, with one file per frame; a plate without deflection that
+    stands still is `plate.vtu`.
 
     Raises
     ------
@@ -45,11 +50,15 @@ def write(drop: Drop) -> dict[str, bytes]:
     if drop.plate_size is None:
         return files
     boxes = [_box(drop.plate_size, at) for at in _plate_path(drop, times)]
-    return files | ({"plate.vtu": boxes[0]} if drop.motion is None else _series("plate", times, boxes))
+    return files | (
+        {"plate.vtu": boxes[0]} if drop.motion is None else _series("plate", times, boxes)
+    )
 
 
 def _sphere_path(drop: Drop) -> tuple[Floats, Floats]:
-    """Return the times of the frames [s], and how far the sphere's centre has moved along the plate, and its height [m] (frames, 3)."""
+    """Return the times of the frames [s], and how far the sphere's centre has moved along
+    the plate, and its height [m] (frames, 3).
+    """
     if drop.surface:
         times, height = drop.surface["time"], drop.surface["sphere_position"]
     else:
@@ -59,7 +68,9 @@ def _sphere_path(drop: Drop) -> tuple[Floats, Floats]:
     path[:, 2] = height
     if drop.oblique is not None:
         motion = motion_at(drop.history, times)
-        path[:, :2] = np.stack([motion["position_x_m"], motion["position_y_m"]], axis=1) - drop.position
+        path[:, :2] = (
+            np.stack([motion["position_x_m"], motion["position_y_m"]], axis=1) - drop.position
+        )
     return times, path
 
 
@@ -75,28 +86,42 @@ def _times(drop: Drop) -> Floats:
         raise InputError(f'"{one_line(drop.name)}" has no history; there is no motion to write')
     times = np.linspace(0.0, float(drop.history["time_s"][-1]), _EVEN)
     if drop.impacts:
-        touch, duration, deepest = (drop.impacts[name][:_IMPACTS] for name in ("time_s", "duration_s", "time_of_max_indentation_s"))
+        touch, duration, deepest = (
+            drop.impacts[name][:_IMPACTS]
+            for name in ("time_s", "duration_s", "time_of_max_indentation_s")
+        )
         events = np.concatenate([touch, touch + duration, deepest])
         times = np.union1d(times, events[(events >= 0.0) & (events <= times[-1])])  # without NaN
     return times
 
 
 def _series(name: str, times: Floats, texts: list[bytes]) -> dict[str, bytes]:
-    from vibroimpact.meshes.vtu_series import collection_text  # imported here, since it loads scipy.sparse
+    # imported here, since it loads scipy.sparse
+    from vibroimpact.meshes.vtu_series import collection_text
 
     files = {f"{name}/{name}_{number:03d}.vtu": text for number, text in enumerate(texts)}
     return {f"{name}.pvd": collection_text(times.tolist(), files).encode(), **files}
 
 
-def _text(points: NDArray[np.float32], cells: NDArray[np.int32], moved: NDArray[np.float32] | None = None) -> bytes:
+def _text(
+    points: NDArray[np.float32], cells: NDArray[np.int32], moved: NDArray[np.float32] | None = None
+) -> bytes:
     return _file(points, cells, _QUADRILATERAL, {} if moved is None else {"displacement_m": moved})
 
 
-def _file(points: NDArray[np.float32], cells: NDArray[np.int32], kind: int, values: dict[str, NDArray[np.float32]]) -> bytes:
-    from vibroimpact.meshes.write_vtu import grid_text, vtu_text  # imported here, since it loads scipy.sparse
+def _file(
+    points: NDArray[np.float32],
+    cells: NDArray[np.int32],
+    kind: int,
+    values: dict[str, NDArray[np.float32]],
+) -> bytes:
+    # imported here, since it loads scipy.sparse
+    from vibroimpact.meshes.write_vtu import grid_text, vtu_text
 
     ends = np.cumsum(np.full(len(cells), cells.shape[1], dtype=np.int32), dtype=np.int32)
-    return vtu_text(grid_text(points, cells.ravel(), ends, np.full(len(cells), kind, dtype=np.uint8)), values).encode()
+    return vtu_text(
+        grid_text(points, cells.ravel(), ends, np.full(len(cells), kind, dtype=np.uint8)), values
+    ).encode()
 
 
 def _sphere(drop: Drop) -> Cells:
@@ -104,16 +129,27 @@ def _sphere(drop: Drop) -> Cells:
     around = np.linspace(0.0, 2.0 * np.pi, _AROUND, endpoint=False)
     down = np.linspace(0.0, np.pi, _DOWN + 1)
     ring = np.stack([np.cos(around), np.sin(around), np.zeros(_AROUND)], axis=1)
-    unit = np.sin(down)[:, None, None] * ring + np.cos(down)[:, None, None] * np.array([0.0, 0.0, 1.0])
+    unit = np.sin(down)[:, None, None] * ring + np.cos(down)[:, None, None] * np.array(
+        [0.0, 0.0, 1.0]
+    )
     points = np.array([*drop.position, 0.0]) + drop.radius * unit.reshape(-1, 3)
-    row, column = (part.ravel() for part in np.meshgrid(np.arange(_DOWN), np.arange(_AROUND), indexing="ij"))
+    row, column = (
+        part.ravel() for part in np.meshgrid(np.arange(_DOWN), np.arange(_AROUND), indexing="ij")
+    )
     right = (column + 1) % _AROUND
-    corners = [row * _AROUND + column, (row + 1) * _AROUND + column, (row + 1) * _AROUND + right, row * _AROUND + right]
+    corners = [
+        row * _AROUND + column,
+        (row + 1) * _AROUND + column,
+        (row + 1) * _AROUND + right,
+        row * _AROUND + right,
+    ]
     return points.astype(np.float32), np.stack(corners, axis=1).astype(np.int32)
 
 
 def _surface(drop: Drop) -> tuple[NDArray[np.float32], NDArray[np.int32], Bools]:
-    """Return points and cells of the plate's upper surface at rest, and a mask of the grid points on the plate."""
+    """Return points and cells of the plate's upper surface at rest, and a mask of the
+    grid points on the plate.
+    """
     x, y = np.meshgrid(drop.surface["x"], drop.surface["y"])
     on_plate = np.isfinite(drop.surface["height"][0])
     number = np.cumsum(on_plate.ravel()).reshape(on_plate.shape) - 1
@@ -130,7 +166,9 @@ def _corners(grid: NDArray[np.generic]) -> Iterator[NDArray[np.generic]]:
 
 
 def _box(size: tuple[float, float, float], moved: Floats) -> bytes:
-    """Return a rigid plate as one brick that has moved (3,) [m]; at rest its upper surface is z = 0."""
+    """Return a rigid plate as one brick that has moved (3,) [m]; at rest its upper
+    surface is z = 0.
+    """
     corners = [(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5)]
     points = np.array([(x, y, z) for z in (-1.0, 0.0) for x, y in corners]) * np.array(size) + moved
     return _file(points.astype(np.float32), np.arange(8, dtype=np.int32)[None, :], _BRICK, {})
@@ -138,11 +176,17 @@ def _box(size: tuple[float, float, float], moved: Floats) -> bytes:
 
 def _notes(drop: Drop) -> list[str]:
     place = "at rest" if drop.motion is None else "in its mean position"
-    notes = [f"The sphere is drawn round, even where it deforms, at its true height above the plate {place} (z = 0)."]
+    notes = [
+        "The sphere is drawn round, even where it deforms, at its true height above the "
+        f"plate {place} (z = 0)."
+    ]
     if drop.oblique is not None:
         notes.append("It moves along the plate, and does not turn; its spin is in the history.")
     if drop.surface:
-        notes.append("The frames are those of the result folder, from shortly before the first touch on; plate.pvd is drawn flat:")
+        notes.append(
+            "The frames are those of the result folder, from shortly before the first touch "
+            "on; plate.pvd is drawn flat:"
+        )
         notes[-1] += " apply Warp By Vector to displacement_m, which is small."
     elif drop.plate_size is None:
         notes.append("The case gives no size of the plate, so the sphere is written alone.")
@@ -154,7 +198,8 @@ def _notes(drop: Drop) -> list[str]:
 FORMAT = ExportFormat(
     name="vtu",
     program="ParaView, VTK, PyVista",
-    files="sphere.pvd and plate.pvd with a .vtu file for each frame; a plate at rest without its deflection is plate.vtu",
+    files="sphere.pvd and plate.pvd with a .vtu file for each frame; a plate at rest without its "
+    "deflection is plate.vtu",
     tested="read back with meshio 5.3: points, cells and displacements the same",
     write=write,
     notes=_notes,

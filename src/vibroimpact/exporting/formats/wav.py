@@ -27,14 +27,24 @@ def write(drop: Drop) -> dict[str, bytes]:
         If there is no sensor, or WAV can't represent its rate or its length.
     """
     if not drop.signals:
-        elastic = "" if "plate" in drop.elastic else 'an elastic plate (plate.model = "elastic") and '
+        elastic = (
+            "" if "plate" in drop.elastic else 'an elastic plate (plate.model = "elastic") and '
+        )
         remedy = f"give the case {elastic}[[sensors]]"
-        raise InputError(f'"{one_line(drop.name)}" has no sensors, and a WAV file holds the signal of one; {remedy}')
-    return {f"{plain}.wav": _file(drop.signals[name]) for name, plain in plain_names(list(drop.signals)).items()}
+        raise InputError(
+            f'"{one_line(drop.name)}" has no sensors, and a WAV file holds the signal of '
+            f"one; {remedy}"
+        )
+    return {
+        f"{plain}.wav": _file(drop.signals[name])
+        for name, plain in plain_names(list(drop.signals)).items()
+    }
 
 
 def full_scale(signal: Signal) -> float:
-    """Return the value scaled to 1 in the file: the largest magnitude of the signal; 1 if the signal is zero throughout."""
+    """Return the value scaled to 1 in the file: the largest magnitude of the signal; 1 if
+    the signal is zero throughout.
+    """
     return float(np.abs(signal.value).max(initial=0.0)) or 1.0
 
 
@@ -44,16 +54,20 @@ def _file(signal: Signal) -> bytes:
     rate = round(signal.sensor.rate)
     if not 1 <= rate <= _HIGHEST_RATE:
         raise InputError(
-            f'{signal.sensor.rate:g} Hz of "{one_line(signal.sensor.name)}" is not allowed in a WAV file; it must be 1 to {_HIGHEST_RATE}'
+            f'{signal.sensor.rate:g} Hz of "{one_line(signal.sensor.name)}" is not allowed '
+            f"in a WAV file; it must be 1 to {_HIGHEST_RATE}"
         )
     if 4 * len(signal.value) > _MOST_BYTES:
         raise InputError(
-            f'the {len(signal.value)} samples of "{one_line(signal.sensor.name)}" do not fit into a WAV file, which holds 4 GB'
+            f'the {len(signal.value)} samples of "{one_line(signal.sensor.name)}" do not '
+            "fit into a WAV file, which holds 4 GB"
         )
     scale, file = full_scale(signal), BytesIO()
     wavfile.write(file, rate, (signal.value / scale).astype(np.float32))
     return _with_comment(
-        file.getvalue(), f"1.0 is {scale!r} {signal.sensor.unit} ({signal.sensor.quantity} of {one_line(signal.sensor.name)})"
+        file.getvalue(),
+        f"1.0 is {scale!r} {signal.sensor.unit} ({signal.sensor.quantity} of "
+        f"{one_line(signal.sensor.name)})",
     )
 
 
@@ -70,9 +84,15 @@ def _notes(drop: Drop) -> list[str]:
     notes = []
     for name, plain in plain_names(list(drop.signals)).items():
         sensor = drop.signals[name].sensor
-        notes.append(f"1.0 in {plain}.wav is {full_scale(drop.signals[name]):.9g} {sensor.unit}; the comment in the file says so too.")
+        notes.append(
+            f"1.0 in {plain}.wav is {full_scale(drop.signals[name]):.9g} {sensor.unit}; "
+            "the comment in the file says so too."
+        )
         if sensor.rate != round(sensor.rate):
-            notes.append(f"The header of {plain}.wav states {round(sensor.rate)} samples a second; the signal has {sensor.rate!r}.")
+            notes.append(
+                f"The header of {plain}.wav states {round(sensor.rate)} samples a second; "
+                f"the signal has {sensor.rate!r}."
+            )
         if sensor.rate > 192e3:
             notes.append(f"Players may not play the {sensor.rate:g} Hz of {plain}.wav.")
     return notes

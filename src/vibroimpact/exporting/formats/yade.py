@@ -42,7 +42,9 @@ _PRINT_MOTION = """\
 """
 
 _STEPS = 10_000
-"""Steps in the first contact: accuracy 1e-4 of restitution and peak force, gravity apart, which the damping is calibrated without."""
+"""Steps in the first contact: accuracy 1e-4 of restitution and peak force, gravity apart,
+which the damping is calibrated without.
+"""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -56,7 +58,9 @@ class _Clipped(Tsuji):
 
 
 def _damping(law: ContactLaw, drop: Drop, speed: float) -> float:
-    """Return the damping ratio betan of YADE's Mindlin law, or the dashpot of the linear law [N s/m], with the law's restitution."""
+    """Return the damping ratio betan of YADE's Mindlin law, or the dashpot of the linear
+    law [N s/m], with the law's restitution.
+    """
     stiffness, exponent = linear_or_hertzian(drop, "YADE")
     if isinstance(law, Hertz):
         return 0.0
@@ -65,7 +69,11 @@ def _damping(law: ContactLaw, drop: Drop, speed: float) -> float:
         return clipped_dashpot(stiffness, exponent, restitution, drop.mass, speed)
     clipped = _Clipped(stiffness=stiffness, restitution=restitution, effective_mass=drop.mass)
     # YADE refers the damping ratio to the tangent stiffness 3/2 K sqrt(delta)
-    return math.sqrt(5.0 / 6.0) * float(damping_ratio_from_restitution(law_achieving(clipped, restitution, drop.mass, speed).restitution))
+    return math.sqrt(5.0 / 6.0) * float(
+        damping_ratio_from_restitution(
+            law_achieving(clipped, restitution, drop.mass, speed).restitution
+        )
+    )
 
 
 def _linear(drop: Drop) -> bool:
@@ -77,7 +85,8 @@ def _friction(drop: Drop) -> FrictionLaw | None:
 
 
 def _poissons_ratio(drop: Drop) -> float:
-    """Return the Poisson's ratio with which YADE takes the tangential stiffness of the drop from the normal one.
+    """Return the Poisson's ratio with which YADE takes the tangential stiffness of the drop from
+    the normal one.
 
     For two equal spheres they have the ratio 3 (1 - nu) / (2 - nu) over the root of the overlap.
     """
@@ -86,14 +95,21 @@ def _poissons_ratio(drop: Drop) -> float:
         return float(drop.sphere_material.poissons_ratio)
     ratio = spring_of_overlap(law, drop, stiffness, exponent) / stiffness
     if exponent != 1.5 or ratio >= 2.0:
-        words = "can't be written for YADE unless the spring has the exponent 1.5, and a stiffness not far below Hertz's of the materials"
+        words = (
+            "can't be written for YADE unless the spring has the exponent 1.5, and a stiffness "
+            "not far below Hertz's of the materials"
+        )
         raise InputError(f"{law.name} {words}", "contact.friction")
     return (3.0 - 2.0 * ratio) / (3.0 - ratio)
 
 
 def _inertia(drop: Drop) -> str:
-    """Return the line that sets the moment of inertia of a sphere that is not solid, as which YADE takes it."""
-    return "" if drop.is_solid else f"ball.state.inertia = ({', '.join([repr(drop.inertia)] * 3)})\n"
+    """Return the line that sets the moment of inertia of a sphere that is not solid, as
+    which YADE takes it.
+    """
+    return (
+        "" if drop.is_solid else f"ball.state.inertia = ({', '.join([repr(drop.inertia)] * 3)})\n"
+    )
 
 
 def _write(drop: Drop) -> Mapping[str, bytes]:
@@ -103,14 +119,22 @@ def _write(drop: Drop) -> Mapping[str, bytes]:
     duration, _ = first_contact(laws[0], drop)
     oblique = drop.oblique or Oblique()
     pull = tuple(map(float, oblique.gravity))
-    along, spin = (", ".join(repr(float(part)) for part in parts) for parts in (oblique.velocity, oblique.spin))
+    along, spin = (
+        ", ".join(repr(float(part)) for part in parts) for parts in (oblique.velocity, oblique.spin)
+    )
     poisson, friction = _poissons_ratio(drop), _friction(drop)
     # YADE computes the mass from the density
     density = float(mean_density(drop.mass, drop.radius))
-    # YADE combines the properties of two bodies; sphere and wall get values whose combination is the contact's stiffness and damping
+    # YADE combines the properties of two bodies; sphere and wall get values whose combination is
+    # the contact's stiffness and damping
     if _linear(drop):
-        comment = "# springs and dashpots of sphere and wall are in series: each is twice the contact's"
-        material = f"ViscElMat(kn={2.0 * stiffness!r}, cn=2.0 * DAMPING[0], ks=0.0, cs=0.0, density={density!r}, frictionAngle=0.0)"
+        comment = (
+            "# springs and dashpots of sphere and wall are in series: each is twice the contact's"
+        )
+        material = (
+            f"ViscElMat(kn={2.0 * stiffness!r}, cn=2.0 * DAMPING[0], ks=0.0, cs=0.0, "
+            f"density={density!r}, frictionAngle=0.0)"
+        )
         physics, law = "Ip2_ViscElMat_ViscElMat_ViscElPhys()", "Law2_ScGeom_ViscElPhys_Basic()"
         new_damping = "material.cn = 2.0 * damping"
     else:
@@ -118,8 +142,14 @@ def _write(drop: Drop) -> Mapping[str, bytes]:
         youngs = 1.5 * stiffness * (1.0 - poisson**2) / math.sqrt(0.5 * drop.radius)
         wall = "# YADE takes a wall as a sphere of the same size, here of the same material"
         comment = f"{wall}: this modulus gives the contact's stiffness, {stiffness:.9g} N/m^1.5"
-        material = f"FrictMat(young={youngs!r}, poisson={poisson!r}, density={density!r}, frictionAngle={angle!r})"
-        physics, law = "Ip2_FrictMat_FrictMat_MindlinPhys(betan=DAMPING[0], betas=0.0)", "Law2_ScGeom_MindlinPhys_Mindlin()"
+        material = (
+            f"FrictMat(young={youngs!r}, poisson={poisson!r}, density={density!r}, "
+            f"frictionAngle={angle!r})"
+        )
+        physics, law = (
+            "Ip2_FrictMat_FrictMat_MindlinPhys(betan=DAMPING[0], betas=0.0)",
+            "Law2_ScGeom_MindlinPhys_Mindlin()",
+        )
         new_damping = "physics.betan = damping"
     return {
         file_name(drop, "-yade.py"): f'''\
@@ -186,7 +216,10 @@ def _notes(drop: Drop) -> list[str]:
     law, notes = drop.laws[0], [*shared_notes(drop), *friction_notes(drop, "YADE", _friction(drop))]
     if _friction(drop) is not None:
         part = 100.0 * float(drop.impacts["max_indentation_m"].max()) / drop.radius
-        notes.append(f"YADE's friction has the arm of the radius less the overlap, so that it changes the spin by up to {part:.2g} % less.")
+        notes.append(
+            "YADE's friction has the arm of the radius less the overlap, so that it "
+            f"changes the spin by up to {part:.2g} % less."
+        )
     if isinstance(law, Hertz):
         return notes
     name = "Law2_ScGeom_ViscElPhys_Basic" if _linear(drop) else "Law2_ScGeom_MindlinPhys_Mindlin"
@@ -194,11 +227,16 @@ def _notes(drop: Drop) -> list[str]:
     several = len(laws_of_impacts(drop)) > 1
     where = "the speed of each impact of this drop" if several else "the first impact's speed"
     notes.append(
-        f"YADE's {name} stands for {law.name}; it {'differs in that it never pulls' if own else 'has another damping'}, so forces within "
-        f"the contact differ. Its restitution is the law's at {where}, and with a given damping does not depend on the speed."
+        f"YADE's {name} stands for {law.name}; it "
+        f"{'differs in that it never pulls' if own else 'has another damping'}, so forces within "
+        f"the contact differ. Its restitution is the law's at {where}, and with a given "
+        "damping does not depend on the speed."
     )
     if several:
-        notes.append("The damping changes from impact to impact in this script; YADE's laws have one value for all contacts of a material.")
+        notes.append(
+            "The damping changes from impact to impact in this script; YADE's laws have one "
+            "value for all contacts of a material."
+        )
     return notes
 
 
@@ -206,7 +244,8 @@ FORMAT = ExportFormat(
     name="yade",
     program="YADE",
     files="a Python script (.py)",
-    tested="run with YADE 2023.02a, compared with vibroimpact's drops between rigid bodies, oblique ones too",
+    tested="run with YADE 2023.02a, compared with vibroimpact's drops between rigid bodies, "
+    "oblique ones too",
     write=_write,
     notes=_notes,
     prepare=as_rigid,

@@ -1,1 +1,3 @@
-"""The report of the reproduction: charts, Markdown and HTML pages, and the folder that holds them."""
+"""The report of the reproduction: charts, Markdown and HTML pages, and the folder that
+holds them.
+"""

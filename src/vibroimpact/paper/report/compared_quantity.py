@@ -50,7 +50,8 @@ class ComparedQuantity(NamedTuple):
 
 
 def comparison_sentence(shown: ComparedQuantity, kinds: tuple[int, ...], runs: Runs) -> str:
-    """Return the sentence that compares the values of each treatment with the printed ones, and names the nearest treatment.
+    """Return the sentence that compares the values of each treatment with the printed ones, and
+    names the nearest treatment.
 
     Parameters
     ----------
@@ -61,27 +62,45 @@ def comparison_sentence(shown: ComparedQuantity, kinds: tuple[int, ...], runs: R
     runs : Runs
         The simulations.
     """
-    computed = {treatment: [shown.value(runs.treated(kind, treatment)) for kind in kinds] for treatment in TREATMENTS}
-    printed_values = [printed(shown.printed.format(kind)) for kind in kinds] if shown.printed else []
+    computed = {
+        treatment: [shown.value(runs.treated(kind, treatment)) for kind in kinds]
+        for treatment in TREATMENTS
+    }
+    printed_values = (
+        [printed(shown.printed.format(kind)) for kind in kinds] if shown.printed else []
+    )
     everything = [value for values in computed.values() for value in values]
-    scale = multiple(shown.unit, everything if any(everything) else [one.value for one in printed_values])
+    scale = multiple(
+        shown.unit, everything if any(everything) else [one.value for one in printed_values]
+    )
 
     def listed(values: list[float]) -> str:
         return " and ".join(digits(value / scale.size) for value in values)
 
     of = " (Types 2 and 3)" if len(kinds) > 1 else ""
-    said = f"{shown.peak}{of}: " + ", ".join(f"{name} {listed(values)}" for name, values in computed.items()) + f" {scale.unit}"
+    said = (
+        f"{shown.peak}{of}: "
+        + ", ".join(f"{name} {listed(values)}" for name, values in computed.items())
+        + f" {scale.unit}"
+    )
     if not printed_values:
         return f"{said}; the paper prints none."
     paper = f"{listed([one.value for one in printed_values])} {scale.unit}"
     if printed_values[-1].relation == "<":
-        below = [name for name, values in computed.items() if np.all(np.array(values) < [one.value for one in printed_values])]
+        below = [
+            name
+            for name, values in computed.items()
+            if np.all(np.array(values) < [one.value for one in printed_values])
+        ]
         return f"{said}; the paper states below {paper}, and {_bound_clause(below)}."
     off = {name: values[-1] / printed_values[-1].value - 1.0 for name, values in computed.items()}
     nearest = min(off, key=lambda name: abs(off[name]))
     side = "above" if off[nearest] > 0.0 else "below"
     far = f"{digits(100.0 * abs(off[nearest]), 2)} % {side} it"
-    return f"{said}; printed {paper}. Nearest to that{' of Type 3' if of else ''} is the {nearest} treatment, {far}."
+    return (
+        f"{said}; printed {paper}. Nearest to that{' of Type 3' if of else ''} is the "
+        f"{nearest} treatment, {far}."
+    )
 
 
 def _bound_clause(names: list[str]) -> str:

@@ -1,4 +1,6 @@
-"""A quantity over time, beside printed values: a row of curves for each treatment, and each impact as a view."""
+"""A quantity over time, beside printed values: a row of curves for each treatment, and
+each impact as a view.
+"""
 
 from __future__ import annotations
 
@@ -16,7 +18,9 @@ from vibroimpact.paper.report.compared_quantity import ComparedQuantity
 from vibroimpact.paper.report.impact_views import impact_views, response_line
 
 _MARK_DISTANCE = 0.35
-"""Largest distance of a printed value from the curves at which it is shown, relative to their range."""
+"""Largest distance of a printed value from the curves at which it is shown, relative to
+their range.
+"""
 _LABEL_DISTANCE = 0.1
 """Distance below which printed values share a label, relative to the range shown."""
 
@@ -46,25 +50,35 @@ def comparison_rows(
     marks : mapping of str to float
         Printed values [SI], by what has them: a type, or "".
     window : callable
-        Function of an impact, counted from 0, that returns the times shown before and after its first touch [s].
+        Function of an impact, counted from 0, that returns the times shown before and after its
+        first touch [s].
     """
     responses = [line.response for lines in rows.values() for line in lines]
     views = impact_views(responses, window)
     time, value = Axis("Time", "s", views=views), Axis(shown.short, shown.unit)
     # a response that is in every row is drawn once
     several = dict.fromkeys(line for lines in rows.values() for line in lines)
-    curves = {line: response_line(shown.timeline, line.response, views, line.name, line.role) for line in several}
+    curves = {
+        line: response_line(shown.timeline, line.response, views, line.name, line.role)
+        for line in several
+    }
     levels = _levels(shown, marks, np.concatenate([curve.y for curve in curves.values()]))
     panels = []
     for title, lines in rows.items():
         drawn = [curves[line] for line in lines]
-        nothing = [Label(0.5, 0.4, "zero", corner=True)] if not any(np.any(curve.y) for curve in drawn) else []
+        nothing = (
+            [Label(0.5, 0.4, "zero", corner=True)]
+            if not any(np.any(curve.y) for curve in drawn)
+            else []
+        )
         panels.append((Panel(time, value, (*drawn, *levels, *nothing), title),))
     return tuple(panels)
 
 
 def _levels(shown: ComparedQuantity, marks: Mapping[str, float], values: Floats) -> list[Level]:
-    """Return the printed values that do not lie far from the curves, which they would flatten; neighbouring ones share a label."""
+    """Return the printed values that do not lie far from the curves, which they would
+    flatten; neighbouring ones share a label.
+    """
     low, high = float(np.nanmin(values)), float(np.nanmax(values))
     reach = _MARK_DISTANCE * (high - low) if high > low else np.inf
     found = [(sign * value, kind) for kind, value in marks.items() for sign in shown.signs]
@@ -78,7 +92,12 @@ def _levels(shown: ComparedQuantity, marks: Mapping[str, float], values: Floats)
             groups.append([one])
     # the highest of the neighbours has the label, which stands above it
     return [
-        Level(level, "printed", "dotted", label=_label([kind for _, kind in group]) if level == group[-1][0] else "")
+        Level(
+            level,
+            "printed",
+            "dotted",
+            label=_label([kind for _, kind in group]) if level == group[-1][0] else "",
+        )
         for group in groups
         for level, _ in group
     ]

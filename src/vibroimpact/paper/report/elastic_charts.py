@@ -1,4 +1,6 @@
-"""Figures 10 to 23: motion and energy of the sphere in Types 1, 2 and 3, and of the plate in Type 3, by treatment."""
+"""Figures 10 to 23: motion and energy of the sphere in Types 1, 2 and 3, and of the plate
+in Type 3, by treatment.
+"""
 
 from __future__ import annotations
 
@@ -34,7 +36,10 @@ _ROLES = ("under", "series 1", "series 2")
 
 
 def _fitted_note(runs: Runs) -> str:
-    return "The local element of the identified treatment is fitted to the force and rebound height printed for Type 2."
+    return (
+        "The local element of the identified treatment is fitted to the force and rebound "
+        "height printed for Type 2."
+    )
 
 
 def _figure_14_note(runs: Runs) -> str:
@@ -44,7 +49,9 @@ def _figure_14_note(runs: Runs) -> str:
 def _first_touch_note(runs: Runs) -> str:
     response = runs.treated(2, "consistent")
     released = digits(float(history_of(response)["potential_J"][0]), 5)
-    beyond = "the rest is the fall beyond it, by compression and, in Type 3, by deflection of the plate."
+    beyond = (
+        "the rest is the fall beyond it, by compression and, in Type 3, by deflection of the plate."
+    )
     return f"The fall to first touch releases {released} J; {beyond}"
 
 
@@ -52,7 +59,8 @@ def _strain_energy_note(runs: Runs) -> str:
     history = history_of(runs.treated(2, "consistent"))
     whole = text(float(np.max(history["sphere_strain_J"] + history["contact_elastic_J"])), "J", 3)
     return (
-        "Shown is what the modes hold, and in the identified treatment the local spring; the contact law holds the rest: "
+        "Shown is what the modes hold, and in the identified treatment the local spring; "
+        "the contact law holds the rest: "
         f"with it the strain energy of Type 2 is up to {whole} in the consistent treatment."
     )
 
@@ -159,7 +167,8 @@ SPHERE_ENERGY = (
 
 
 def sphere_chart(shown: ComparedQuantity, runs: Runs) -> Chart:
-    """Return the chart of a quantity of the sphere, with a row for each treatment; its motion also for the rigid sphere.
+    """Return the chart of a quantity of the sphere, with a row for each treatment; its motion also
+    for the rigid sphere.
 
     Parameters
     ----------
@@ -168,7 +177,11 @@ def sphere_chart(shown: ComparedQuantity, runs: Runs) -> Chart:
     runs : Runs
         The simulations.
     """
-    rigid = [ResponseLine("Type 1, both rigid", _ROLES[0], runs.response("type1-variable"))] if shown in SPHERE_MOTION else []
+    rigid = (
+        [ResponseLine("Type 1, both rigid", _ROLES[0], runs.response("type1-variable"))]
+        if shown in SPHERE_MOTION
+        else []
+    )
     rows = {
         treatment.capitalize(): [
             *rigid,
@@ -180,9 +193,20 @@ def sphere_chart(shown: ComparedQuantity, runs: Runs) -> Chart:
     responses = [line.response for row in rows.values() for line in row]
     names = {str(kind): shown.printed.format(kind) for kind in (1, 2, 3)}
     marks = {kind: printed(name).value for kind, name in names.items() if name in printed_values()}
-    panels = comparison_rows(shown, rows, marks, lambda impact: _window(_CONTACT_DURATIONS * longest_contact(responses, impact)))
+    panels = comparison_rows(
+        shown,
+        rows,
+        marks,
+        lambda impact: _window(_CONTACT_DURATIONS * longest_contact(responses, impact)),
+    )
     title = f"Figure {shown.number}: {shown.name}, Types {'1, 2 and 3' if rigid else '2 and 3'}"
-    caption = " ".join((comparison_sentence(shown, (2, 3), runs), *_type_1_words(shown, marks, runs), shown.note(runs)))
+    caption = " ".join(
+        (
+            comparison_sentence(shown, (2, 3), runs),
+            *_type_1_words(shown, marks, runs),
+            shown.note(runs),
+        )
+    )
     return Chart(f"fig{shown.number}", title, panels, caption, _SPHERE_ROW)
 
 
@@ -192,7 +216,9 @@ def _window(after: float) -> tuple[float, float]:
 
 
 def _type_1_words(shown: ComparedQuantity, marks: Mapping[str, float], runs: Runs) -> list[str]:
-    """Return the sentence on the computed and printed value of Type 1, in a list that is empty if none is printed."""
+    """Return the sentence on the computed and printed value of Type 1, in a list that is
+    empty if none is printed.
+    """
     if "1" not in marks:
         return []
     computed = text(shown.value(runs.response("type1-variable")), shown.unit)
@@ -209,27 +235,55 @@ def _last_impact_note(runs: Runs) -> str:
         response = runs.treated(3, treatment)
         history = history_of(response)
         since = history["time_s"] >= response.impacts["time_s"][-1]
-        found.append(f"{treatment} {text(largest(history['plate_acceleration_m_s2'][since]), 'm/s2', 3)}")
-    return f"In the fifth impact: {', '.join(found)}; printed: over {printed('plate.acceleration.5').text} m/s²."
+        found.append(
+            f"{treatment} {text(largest(history['plate_acceleration_m_s2'][since]), 'm/s2', 3)}"
+        )
+    return (
+        f"In the fifth impact: {', '.join(found)}; printed: over "
+        f"{printed('plate.acceleration.5').text} m/s²."
+    )
 
 
-def _plate_quantity(number: int, name: str, unit: str, history: str, printed_name: str, oscillates: bool) -> ComparedQuantity:
-    """Return a quantity of the plate; an oscillating one is printed as a magnitude, and marked on both sides of zero."""
+def _plate_quantity(
+    number: int, name: str, unit: str, history: str, printed_name: str, oscillates: bool
+) -> ComparedQuantity:
+    """Return a quantity of the plate; an oscillating one is printed as a magnitude, and
+    marked on both sides of zero.
+    """
     short = name.removeprefix("change of the ").removesuffix(" of the centre of mass").capitalize()
     timeline, signs = history_column(history), (-1, 1) if oscillates else (1,)
     return ComparedQuantity(
-        number, f"plate, {name}", short, unit, timeline, "Largest magnitude", largest_of(timeline), f"plate.{printed_name}", signs
+        number,
+        f"plate, {name}",
+        short,
+        unit,
+        timeline,
+        "Largest magnitude",
+        largest_of(timeline),
+        f"plate.{printed_name}",
+        signs,
     )
 
 
 PLATE_QUANTITIES = (
-    _plate_quantity(18, "displacement of the centre of mass", "m", "plate_displacement_m", "displacement", True),
-    _plate_quantity(19, "change of the potential energy", "J", "plate_potential_J", "potential_energy", True),
-    _plate_quantity(20, "velocity of the centre of mass", "m/s", "plate_velocity_m_s", "velocity", True),
-    _plate_quantity(21, "kinetic energy", "J", "plate_kinetic_J", "kinetic_energy", False),
-    _plate_quantity(22, "acceleration of the centre of mass", "m/s2", "plate_acceleration_m_s2", "acceleration", True)._replace(
-        note=_last_impact_note
+    _plate_quantity(
+        18, "displacement of the centre of mass", "m", "plate_displacement_m", "displacement", True
     ),
+    _plate_quantity(
+        19, "change of the potential energy", "J", "plate_potential_J", "potential_energy", True
+    ),
+    _plate_quantity(
+        20, "velocity of the centre of mass", "m/s", "plate_velocity_m_s", "velocity", True
+    ),
+    _plate_quantity(21, "kinetic energy", "J", "plate_kinetic_J", "kinetic_energy", False),
+    _plate_quantity(
+        22,
+        "acceleration of the centre of mass",
+        "m/s2",
+        "plate_acceleration_m_s2",
+        "acceleration",
+        True,
+    )._replace(note=_last_impact_note),
     _plate_quantity(23, "strain energy", "J", "plate_strain_J", "strain_energy", False),
 )
 
@@ -244,11 +298,16 @@ def plate_chart(shown: ComparedQuantity, runs: Runs) -> Chart:
     runs : Runs
         The simulations.
     """
-    lines = [ResponseLine(treatment, role, runs.treated(3, treatment)) for treatment, role in zip(TREATMENTS, _ROLES, strict=True)]
+    lines = [
+        ResponseLine(treatment, role, runs.treated(3, treatment))
+        for treatment, role in zip(TREATMENTS, _ROLES, strict=True)
+    ]
     modes = lines[0].response.problem.plate.modes
     assert modes is not None  # Type 3 has an elastic plate
     after = _PERIODS / float(modes.frequencies[0])
-    panels = comparison_rows(shown, {"": lines}, {"": printed(shown.printed).value}, lambda impact: _window(after))
+    panels = comparison_rows(
+        shown, {"": lines}, {"": printed(shown.printed).value}, lambda impact: _window(after)
+    )
     title = f"Figure {shown.number}: {shown.name}, Type 3"
     caption = " ".join(filter(None, (comparison_sentence(shown, (3,), runs), shown.note(runs))))
     return Chart(f"fig{shown.number}", title, panels, caption)

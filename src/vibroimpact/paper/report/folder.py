@@ -1,4 +1,6 @@
-"""The folder of a reproduction: parts, each written atomically with its chart, and the report on those available."""
+"""The folder of a reproduction: parts, each written atomically with its chart, and the
+report on those available.
+"""
 
 from __future__ import annotations
 
@@ -20,7 +22,13 @@ from vibroimpact.files.atomic_write import write_into
 from vibroimpact.files.check_sums import CHECK_SUMS, check_file, file_digest, read_sealed, sealed
 from vibroimpact.files.json_reading import read_json_table
 from vibroimpact.files.recover import recover
-from vibroimpact.paper.report.outline import PARTS, VALUE_COLUMNS, ReportPart, find_parts, render_part
+from vibroimpact.paper.report.outline import (
+    PARTS,
+    VALUE_COLUMNS,
+    ReportPart,
+    find_parts,
+    render_part,
+)
 from vibroimpact.paper.report.page import report_html, report_text
 from vibroimpact.paper.report_section import Kind, Verdict
 from vibroimpact.paper.runs import Runs
@@ -64,7 +72,8 @@ def reproduce_paper(
     Raises
     ------
     InputError
-        If a part is unknown, none is missing, or the folder holds something else or can't be written to.
+        If a part is unknown, none is missing, or the folder holds something else or can't be
+        written to.
 
     Examples
     --------
@@ -83,11 +92,18 @@ def reproduce_paper(
     elif only is None:
         only = missing_parts(folder) if exists else list(PARTS)
         if not only:
-            raise InputError(f"{folder}: all parts are there already; make some of them anew with --only, or all with --force")
+            raise InputError(
+                f"{folder}: all parts are there already; make some of them anew with "
+                "--only, or all with --force"
+            )
     parts = find_parts(only)
     if not exists:
         with new_folder(folder, force=force) as working:
-            summary = {"name": "the paper, reproduced", "version": __version__, "reproduction": True}
+            summary = {
+                "name": "the paper, reproduced",
+                "version": __version__,
+                "reproduction": True,
+            }
             (working / SUMMARY).write_text(json.dumps(summary) + "\n", encoding="utf-8")
     runs = Runs(tell)
     try:
@@ -106,12 +122,16 @@ def reproduce_paper(
 
 
 def missing_parts(directory: str | PathLike[str]) -> list[str]:
-    """Return the names of the parts that a folder lacks or has damaged, or that another version of this package wrote."""
+    """Return the names of the parts that a folder lacks or has damaged, or that another
+    version of this package wrote.
+    """
     return [name for name in PARTS if _version(Path(directory), name) != __version__]
 
 
 def _version(folder: Path, name: str) -> str | None:
-    """Return the version of the package that wrote a part; None if the part or its chart is missing or damaged."""
+    """Return the version of the package that wrote a part; None if the part or its chart
+    is missing or damaged.
+    """
     try:
         table = read_sealed(_file(folder, name))
         if _has_chart(table["text"]):
@@ -162,7 +182,9 @@ def read_parts(folder: Path) -> dict[str, dict[str, Any]]:
                 texts = {"title": str(table["title"]), "text": str(table["text"])}
                 found[name] = {**texts, "rows": rows, CHECK_SUMS: dict(table.get(CHECK_SUMS, {}))}
             except (OSError, ValueError, KeyError, TypeError):
-                raise InputError(f"{file}: the file is damaged; {_repair_hint(folder, name)}") from None
+                raise InputError(
+                    f"{file}: the file is damaged; {_repair_hint(folder, name)}"
+                ) from None
     return found
 
 
@@ -202,7 +224,10 @@ def read_charts(folder: Path, parts: Mapping[str, Mapping[str, Any]]) -> list[di
                 lacking.append(name)
     if lacking:
         others = f", and those of {', '.join(lacking[1:])}" if lacking[1:] else ""
-        raise InputError(f"{_chart_file(folder, lacking[0])}: the chart is missing or damaged{others}; {_repair_hint(folder, *lacking)}")
+        raise InputError(
+            f"{_chart_file(folder, lacking[0])}: the chart is missing or damaged{others}; "
+            f"{_repair_hint(folder, *lacking)}"
+        )
     return found
 
 
@@ -219,7 +244,10 @@ def _check_chart(folder: Path, name: str, part: Mapping[str, Any]) -> None:
 def _repair_hint(folder: Path, *names: str) -> str:
     """Return the command that writes parts again."""
     which = "it" if len(names) == 1 else "them"
-    return f"make {which} anew: vibroimpact reproduce -o {shlex.quote(str(folder))} --only {','.join(names)}"
+    return (
+        f"make {which} anew: vibroimpact reproduce -o {shlex.quote(str(folder))} --only "
+        f"{','.join(names)}"
+    )
 
 
 def is_reproduction(folder: Path) -> bool:
@@ -245,9 +273,15 @@ def _write_part(part: ReportPart, runs: Runs, folder: Path) -> None:
     def write(working: Path) -> None:
         for name in (_PARTS, FIGURES):
             (working / name).mkdir()
-        table: dict[str, Any] = {"version": __version__, "title": rendered.title, "text": rendered.text, "rows": rendered.rows}
+        table: dict[str, Any] = {
+            "version": __version__,
+            "title": rendered.title,
+            "text": rendered.text,
+            "rows": rendered.rows,
+        }
         if rendered.chart is not None:
-            from vibroimpact.charts.files import save_charts  # here, as it imports matplotlib, which `report` does without
+            # here, as it imports matplotlib, which `report` does without
+            from vibroimpact.charts.files import save_charts
 
             save_charts([rendered.chart], working / FIGURES)
             file = _chart_file(working, part.name)
@@ -258,4 +292,6 @@ def _write_part(part: ReportPart, runs: Runs, folder: Path) -> None:
     try:
         write_into(folder, write)
     except OSError as error:
-        raise InputError(f"{folder}: the part {part.name} can't be written: {error.strerror or error}") from None
+        raise InputError(
+            f"{folder}: the part {part.name} can't be written: {error.strerror or error}"
+        ) from None

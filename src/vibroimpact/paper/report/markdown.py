@@ -1,4 +1,6 @@
-"""Sections and charts of the reproduction as Markdown, the common source of the report and the page of the documentation."""
+"""Sections and charts of the reproduction as Markdown, the common source of the report
+and the page of the documentation.
+"""
 
 from __future__ import annotations
 
@@ -30,11 +32,14 @@ def section_text(section: ReportSection) -> str:
 def chart_text(chart: Chart, heading: bool = True) -> str:
     """Return a chart as Markdown: an optional heading, the image, and the caption."""
     title = f"### {escape_markdown(chart.title)}\n\n" if heading else ""
-    return f"{title}![{escape_markdown(chart.title)}]({FIGURES}/{chart.name}.png)\n\n{escape_markdown(chart.caption)}\n"
+    image = f"![{escape_markdown(chart.title)}]({FIGURES}/{chart.name}.png)"
+    return f"{title}{image}\n\n{escape_markdown(chart.caption)}\n"
 
 
 def rows_table(rows: Sequence[ComparedValue]) -> str:
-    """Return the table of printed and computed values; consecutive rows of one printed value show it once."""
+    """Return the table of printed and computed values; consecutive rows of one printed
+    value show it once.
+    """
     cells, before = [], None
     for row in rows:
         again = row.printed is before
@@ -52,7 +57,20 @@ def rows_table(rows: Sequence[ComparedValue]) -> str:
                 verdict_text(row),
             )
         )
-    return table(("What", "Where", "Printed", "Computed by", "Computed", "Difference", "Allowed", "Kind", "Verdict"), cells)
+    return table(
+        (
+            "What",
+            "Where",
+            "Printed",
+            "Computed by",
+            "Computed",
+            "Difference",
+            "Allowed",
+            "Kind",
+            "Verdict",
+        ),
+        cells,
+    )
 
 
 def printed_text(value: PrintedValue) -> str:
@@ -61,7 +79,10 @@ def printed_text(value: PrintedValue) -> str:
     Examples
     --------
     >>> from vibroimpact.paper.printed import printed
-    >>> [printed_text(printed(name)).replace("\u00a0", " ") for name in ("type1.rebound_height", "stiffness", "plate.energy_part")]
+    >>> [
+    ...     printed_text(printed(name)).replace("\u00a0", " ")
+    ...     for name in ("type1.rebound_height", "stiffness", "plate.energy_part")
+    ... ]
     ['2.41132 m', '5.1154524848·10⁸ N/m¹·⁵', '> 11 %']
     """
     number = value.text.replace("-", "\u2212")
@@ -72,13 +93,19 @@ def printed_text(value: PrintedValue) -> str:
 
 
 def computed_text(row: ComparedValue) -> str:
-    """Return the computed value with one digit more than printed, at least four, and at most `row.digits`."""
-    significant = len(re.sub(r"e.*", "", row.printed.text).replace(".", "").replace("-", "").lstrip("0"))
+    """Return the computed value with one digit more than printed, at least four, and at
+    most `row.digits`.
+    """
+    significant = len(
+        re.sub(r"e.*", "", row.printed.text).replace(".", "").replace("-", "").lstrip("0")
+    )
     return f"{digits(row.computed, min(max(significant + 1, 4), row.digits))}{_unit(row.printed)}"
 
 
 def difference_text(row: ComparedValue) -> str:
-    """Return the relative difference of the computed value in per cent; a dash for a printed bound."""
+    """Return the relative difference of the computed value in per cent; a dash for a
+    printed bound.
+    """
     if row.printed.relation != "=":
         return MISSING
     part = 100.0 * row.difference
@@ -92,7 +119,11 @@ def difference_text(row: ComparedValue) -> str:
 
 def allowed_text(row: ComparedValue) -> str:
     """Return the allowed relative difference in per cent; a dash for a printed bound."""
-    return f"±{_NO_BREAK}{digits(100.0 * row.allowed / abs(row.printed.value), 1)}{_NO_BREAK}%" if row.printed.relation == "=" else MISSING
+    return (
+        f"±{_NO_BREAK}{digits(100.0 * row.allowed / abs(row.printed.value), 1)}{_NO_BREAK}%"
+        if row.printed.relation == "="
+        else MISSING
+    )
 
 
 def verdict_text(row: ComparedValue) -> str:
@@ -112,11 +143,16 @@ def escape_markdown(text: str) -> str:
 
 
 def _unit(value: PrintedValue) -> str:
-    """Return the unit with no-break spaces, to follow its number; empty for dimensionless values."""
+    """Return the unit with no-break spaces, to follow its number; empty for dimensionless
+    values.
+    """
     unit = _UNITS.get(value.unit, value.unit)
     return _NO_BREAK + unit.replace(" ", _NO_BREAK) if unit else ""
 
 
 def table(headers: Sequence[str], cells: Iterable[Sequence[str]]) -> str:
     """Return a table as Markdown, with all cells escaped."""
-    return markdown_table([escape_markdown(header) for header in headers], ([escape_markdown(cell) for cell in line] for line in cells))
+    return markdown_table(
+        [escape_markdown(header) for header in headers],
+        ([escape_markdown(cell) for cell in line] for line in cells),
+    )

@@ -19,11 +19,14 @@ from vibroimpact.structures.surface import Faces, outer_faces
 _FINE = 6
 """Subdivisions of each side of a curved face."""
 _ABOVE = np.array([0.0, 0.0, 1.0])
-_ON_FACE = 1e-9  # value of a shape function at a generic point of a face, from which on its node belongs to the face
+# value of a shape function at a generic point of a face, from which on its node belongs to the face
+_ON_FACE = 1e-9
 
 
 class _Body(NamedTuple):
-    """A body of the model, and the printed sizes of its mesh: names of printed values, and of the objects that they count."""
+    """A body of the model, and the printed sizes of its mesh: names of printed values,
+    and of the objects that they count.
+    """
 
     name: str
     printed: tuple[tuple[str, str], ...]
@@ -34,7 +37,8 @@ _PLATE = _Body("plate", (("mesh.plate.elements", "elements"),))
 
 
 def mesh_chart(runs: Runs) -> Chart:
-    """Return a picture of the meshes of the bodies of Type 3, with their computed and printed sizes.
+    """Return a picture of the meshes of the bodies of Type 3, with their computed and printed
+    sizes.
 
     Parameters
     ----------
@@ -43,8 +47,16 @@ def mesh_chart(runs: Runs) -> Chart:
     """
     meshes = {body: runs.problem("type3").models[body.name].mesh for body in (_SPHERE, _PLATE)}
     panels = tuple(_panel(body, mesh) for body, mesh in meshes.items())
-    sizes = (f"the {body.name} {_size_text(mesh)} (printed: {_printed_size_text(body)})" for body, mesh in meshes.items())
-    return Chart("fig9", "Figure 9: the meshes", (panels,), f"The meshes used here: {'; '.join(sizes)}. Dots are nodes.")
+    sizes = (
+        f"the {body.name} {_size_text(mesh)} (printed: {_printed_size_text(body)})"
+        for body, mesh in meshes.items()
+    )
+    return Chart(
+        "fig9",
+        "Figure 9: the meshes",
+        (panels,),
+        f"The meshes used here: {'; '.join(sizes)}. Dots are nodes.",
+    )
 
 
 def _size_text(mesh: Mesh) -> str:
@@ -68,15 +80,22 @@ def _from_above(mesh: Mesh) -> tuple[Mark, ...]:
     """Return the marks of a flat, rectangular mesh of quadrilaterals."""
     (left, front), (right, back) = mesh.nodes[:, :2].min(axis=0), mesh.nodes[:, :2].max(axis=0)
     outline = Outline(np.array([left, right, right, left]), np.array([front, front, back, back]))
-    edges = [_surface(group, mesh.nodes[group.connectivity], _edges(1).reshape(-1, 2))[0] for group in outer_faces(mesh)]
+    edges = [
+        _surface(group, mesh.nodes[group.connectivity], _edges(1).reshape(-1, 2))[0]
+        for group in outer_faces(mesh)
+    ]
     lines = [_interrupted(places.reshape(-1, 2, 3)[..., :2]) for places in edges]
     return outline, _line(lines), _dots([mesh.nodes[:, :2]])
 
 
 def _from_aside(mesh: Mesh) -> tuple[Mark, ...]:
-    """Return the marks of the visible outer faces of a mesh, all quadrilaterals, which may be curved."""
+    """Return the marks of the visible outer faces of a mesh, all quadrilaterals, which
+    may be curved.
+    """
     corners = np.array([(0, 0), (1, 0), (1, 1), (0, 1)])
-    cells = np.array([(np.array([i, j]) + corners) / _FINE for i in range(_FINE) for j in range(_FINE)])
+    cells = np.array(
+        [(np.array([i, j]) + corners) / _FINE for i in range(_FINE) for j in range(_FINE)]
+    )
     pieces, light, lines, nodes = [], [], [], []
     for group in outer_faces(mesh):
         at = mesh.nodes[group.connectivity]
@@ -90,14 +109,23 @@ def _from_aside(mesh: Mesh) -> tuple[Mark, ...]:
         lines.append(_interrupted(projected(edge).reshape(-1, _FINE + 1, 2)))
         # only the shape functions of nodes on the face are nonzero at a generic point of it
         on_face = np.abs(group.shape_functions(np.array([[0.31, 0.43]]))[0][0]) > _ON_FACE
-        nodes.append(projected(at[visible.reshape(len(at), -1).all(axis=1)][:, on_face].reshape(-1, 3)))
+        nodes.append(
+            projected(at[visible.reshape(len(at), -1).all(axis=1)][:, on_face].reshape(-1, 3))
+        )
     return Facets(np.concatenate(pieces), np.concatenate(light)), _line(lines), _dots(nodes)
 
 
 def _edges(fine: int) -> Floats:
     """Return points along the four edges of a face in its local coordinates, (4, fine + 1, 2)."""
     step = np.linspace(0.0, 1.0, fine + 1)
-    return np.array([[(t, 0.0) for t in step], [(1.0, t) for t in step], [(t, 1.0) for t in step], [(0.0, t) for t in step]])
+    return np.array(
+        [
+            [(t, 0.0) for t in step],
+            [(1.0, t) for t in step],
+            [(t, 1.0) for t in step],
+            [(0.0, t) for t in step],
+        ]
+    )
 
 
 def _interrupted(lines: Floats) -> Floats:
@@ -116,8 +144,12 @@ def _dots(parts: list[Floats]) -> Points:
 
 
 def _surface(group: Faces, at: Floats, local: Floats) -> tuple[Floats, Floats]:
-    """Return points on each face and the unit normals there, (faces, points, 3), from node and local coordinates."""
+    """Return points on each face and the unit normals there, (faces, points, 3), from
+    node and local coordinates.
+    """
     values, slopes = group.shape_functions(local)
     along = np.einsum("qak,eki->aeqi", slopes, at)
     normal = np.cross(along[0], along[1])
-    return np.einsum("qk,eki->eqi", values, at), normal / np.linalg.norm(normal, axis=-1, keepdims=True)
+    return np.einsum("qk,eki->eqi", values, at), normal / np.linalg.norm(
+        normal, axis=-1, keepdims=True
+    )

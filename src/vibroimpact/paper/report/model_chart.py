@@ -26,7 +26,9 @@ Point = tuple[float, float, float]
 
 
 def model_chart() -> Chart:
-    """Return a sketch of the sphere above the plate on its four bars, in parallel projection, with the dimensions of the case of Type 3."""
+    """Return a sketch of the sphere above the plate on its four bars, in parallel
+    projection, with the dimensions of the case of Type 3.
+    """
     case = resolved_case(load_case("paper:type3"))
     length, width, thickness = case["plate"]["size"]
     support = case["plate"]["supports"][0]
@@ -39,15 +41,29 @@ def model_chart() -> Chart:
     marks += _plate(length, width, thickness)
     marks += _sphere(case["sphere"]["radius"], case["drop"]["height"])
     half, deep = 0.5 * length, 0.5 * width
-    marks += _dimension((-half, deep, 0.0), (half, deep, 0.0), (0.0, _OFFSET), _millimetres(length), "above")
-    marks += _dimension((-half, -deep, 0.0), (-half, deep, 0.0), (-_OFFSET, 0.0), _millimetres(width), "right")
+    marks += _dimension(
+        (-half, deep, 0.0), (half, deep, 0.0), (0.0, _OFFSET), _millimetres(length), "above"
+    )
+    marks += _dimension(
+        (-half, -deep, 0.0), (-half, deep, 0.0), (-_OFFSET, 0.0), _millimetres(width), "right"
+    )
     half, deep = 0.5 * along, 0.5 * across
-    marks += _dimension((-half, -deep, foot), (half, -deep, foot), (0.0, -1.8 * _OFFSET), _millimetres(along), "below")
-    marks += _dimension((half, -deep, foot), (half, deep, foot), (1.8 * _OFFSET, 0.0), _millimetres(across), "left")
+    marks += _dimension(
+        (-half, -deep, foot),
+        (half, -deep, foot),
+        (0.0, -1.8 * _OFFSET),
+        _millimetres(along),
+        "below",
+    )
+    marks += _dimension(
+        (half, -deep, foot), (half, deep, foot), (1.8 * _OFFSET, 0.0), _millimetres(across), "left"
+    )
     radius = _millimetres(support["radius"])
     caption = (
-        "To scale but for the drop. The paper gives neither radius nor length of the bars: their radius is drawn as the {radius} of the "
-        "patches that hold the elastic plate here. The rigid plate is fixed, so that they play no part. {properties}."
+        "To scale but for the drop. The paper gives neither radius nor length of the bars: "
+        "their radius is drawn as the {radius} of the "
+        "patches that hold the elastic plate here. The rigid plate is fixed, so that they "
+        "play no part. {properties}."
     ).format(radius=radius, properties="; ".join(_properties(case)))
     panel = Panel(Axis("x", "m"), Axis("z", "m"), tuple(marks), picture=True)
     return Chart("fig3", "Figure 3: the rigid model", ((panel,),), caption, 3.9)
@@ -72,7 +88,13 @@ def _bar(at: tuple[float, float], radius: float, top: float, foot: float) -> lis
 def _plate(length: float, width: float, thickness: float) -> list[Mark]:
     """Return the three visible faces of the plate with their edges, and its thickness."""
     upper, lower = (
-        np.array([(0.5 * x * length, 0.5 * y * width, z) for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1))]) for z in (0.0, -thickness)
+        np.array(
+            [
+                (0.5 * x * length, 0.5 * y * width, z)
+                for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1))
+            ]
+        )
+        for z in (0.0, -thickness)
     )
     top, front = projected(upper), projected(np.array([upper[0], upper[1], lower[1], lower[0]]))
     side = projected(np.array([upper[1], upper[2], lower[2], lower[1]]))
@@ -85,25 +107,41 @@ def _plate(length: float, width: float, thickness: float) -> list[Mark]:
 
 def _sphere(radius: float, drop: float) -> list[Mark]:
     """Return the sphere above the centre of the plate, with the height of its drop."""
-    (across, ground), (_, centre) = projected(np.array([(0.0, 0.0, 0.0), (0.0, 0.0, _DRAWN_DROP)])).tolist()
+    (across, ground), (_, centre) = projected(
+        np.array([(0.0, 0.0, 0.0), (0.0, 0.0, _DRAWN_DROP)])
+    ).tolist()
     beside = across + 2.6 * radius
-    leads = [np.array([(across, ground), (1.08 * beside, ground)]), _GAP, np.array([(across + radius, centre), (1.08 * beside, centre)])]
+    leads = [
+        np.array([(across, ground), (1.08 * beside, ground)]),
+        _GAP,
+        np.array([(across + radius, centre), (1.08 * beside, centre)]),
+    ]
     return [
         Line(np.array([across, across]), np.array([ground, centre]), role="reference"),
         Outline(across + radius * np.cos(_ROUND), centre + radius * np.sin(_ROUND), role="ball"),
         _line(leads, "muted"),
         Arrow((beside, ground), (beside, centre), both=True),
-        Label(beside, ground + 0.62 * (centre - ground), f"{text(drop, 'm', 1)}, not to scale", "left"),
+        Label(
+            beside, ground + 0.62 * (centre - ground), f"{text(drop, 'm', 1)}, not to scale", "left"
+        ),
         Label(across - radius, centre, f"radius {_millimetres(radius)}", "right"),
     ]
 
 
-def _dimension(start: Point, end: Point, aside: tuple[float, float], words: str, anchor: str) -> list[Mark]:
-    """Return a dimension between two points, offset along x and y, with the lines that lead to it."""
+def _dimension(
+    start: Point, end: Point, aside: tuple[float, float], words: str, anchor: str
+) -> list[Mark]:
+    """Return a dimension between two points, offset along x and y, with the lines that
+    lead to it.
+    """
     ends = np.array([start, end])
     shift = np.array([*aside, 0.0])
     first, last = projected(ends + shift).tolist()
-    leads = [part for near, far in zip(ends, ends + 1.15 * shift, strict=True) for part in (projected(np.array([near, far])), _GAP)]
+    leads = [
+        part
+        for near, far in zip(ends, ends + 1.15 * shift, strict=True)
+        for part in (projected(np.array([near, far])), _GAP)
+    ]
     middle = 0.5 * (first[0] + last[0]), 0.5 * (first[1] + last[1])
     arrow = Arrow((first[0], first[1]), (last[0], last[1]), both=True)
     return [_line(leads, "muted"), arrow, Label(*middle, words, anchor)]
@@ -122,6 +160,10 @@ def _properties(case: Mapping[str, Any]) -> list[str]:
     found: list[str] = []
     for body in ("sphere", "plate"):
         material = case[body]["material"]
-        stiff = f"E = {material['youngs_modulus'] / 1e9:g} GPa, \u03bd = {material['poissons_ratio']:g}"
-        found.append(f"{body.capitalize() if not found else body}: {material['density']:g} kg/m³, {stiff}")
+        stiff = (
+            f"E = {material['youngs_modulus'] / 1e9:g} GPa, \u03bd = {material['poissons_ratio']:g}"
+        )
+        found.append(
+            f"{body.capitalize() if not found else body}: {material['density']:g} kg/m³, {stiff}"
+        )
     return [*found, f"gravity: {case['drop']['gravity']:g} m/s²", "four bars, fixed to the ground"]

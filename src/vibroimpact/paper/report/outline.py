@@ -1,4 +1,6 @@
-"""The outline of the reproduction: its chapters and parts, and the rendering of a part as text, values and chart."""
+"""The outline of the reproduction: its chapters and parts, and the rendering of a part as
+text, values and chart.
+"""
 
 from __future__ import annotations
 
@@ -12,7 +14,13 @@ from vibroimpact.paper.conclusions import conclusions
 from vibroimpact.paper.elastic import section_5_1, section_5_2, section_5_3
 from vibroimpact.paper.inputs import corrections_section, section_3_1, section_4, table1
 from vibroimpact.paper.recovery import recovery_section
-from vibroimpact.paper.report.elastic_charts import PLATE_QUANTITIES, SPHERE_ENERGY, SPHERE_MOTION, plate_chart, sphere_chart
+from vibroimpact.paper.report.elastic_charts import (
+    PLATE_QUANTITIES,
+    SPHERE_ENERGY,
+    SPHERE_MOTION,
+    plate_chart,
+    sphere_chart,
+)
 from vibroimpact.paper.report.markdown import chart_text, section_text
 from vibroimpact.paper.report.mesh_chart import mesh_chart
 from vibroimpact.paper.report.model_chart import model_chart
@@ -50,7 +58,10 @@ PAPER_FIGURES: Mapping[str, Callable[[Runs], Chart]] = {
     "fig3": lambda runs: model_chart(),
     **{f"fig{figure.number}": partial(rigid_chart, figure) for figure in RIGID_FIGURES},
     "fig9": mesh_chart,
-    **{f"fig{quantity.number}": partial(sphere_chart, quantity) for quantity in (*SPHERE_MOTION, *SPHERE_ENERGY)},
+    **{
+        f"fig{quantity.number}": partial(sphere_chart, quantity)
+        for quantity in (*SPHERE_MOTION, *SPHERE_ENERGY)
+    },
     **{f"fig{quantity.number}": partial(plate_chart, quantity) for quantity in PLATE_QUANTITIES},
 }
 """Functions that return the charts of the paper's figures, by name and in its order."""
@@ -62,7 +73,11 @@ def _figures(first: int, last: int) -> tuple[ReportPart, ...]:
 
 
 CHAPTERS: dict[str, tuple[ReportPart, ...]] = {
-    "The inputs": (ReportPart("table1", table1), ReportPart("section3.1", section_3_1), *_figures(3, 3)),
+    "The inputs": (
+        ReportPart("table1", table1),
+        ReportPart("section3.1", section_3_1),
+        *_figures(3, 3),
+    ),
     "Type 1: repeated impacts of rigid bodies": (
         ReportPart("section3.2", section_3_2),
         *_figures(4, 8),
@@ -134,17 +149,25 @@ class RenderedPart(NamedTuple):
 def render_part(part: ReportPart, runs: Runs) -> RenderedPart:
     """Return a part, computed and rendered."""
     section = part.section(runs) if part.section is not None else None
-    chart = part.chart(runs) if part.chart is not None else None  # it computes what it shows: an error of it ends the reproduction
+    # it computes what it shows: an error of it ends the reproduction
+    chart = part.chart(runs) if part.chart is not None else None
     texts = [] if section is None else [section_text(section)]
     if chart is not None:
         texts.append(chart_text(chart, heading=section is None))
-    title = section.title if section is not None else chart.title if chart is not None else part.name
-    return RenderedPart(title, "\n".join(texts), [_values_row(part.name, row) for row in (section.rows if section else ())], chart)
+    title = (
+        section.title if section is not None else chart.title if chart is not None else part.name
+    )
+    return RenderedPart(
+        title,
+        "\n".join(texts),
+        [_values_row(part.name, row) for row in (section.rows if section else ())],
+        chart,
+    )
 
 
 VALUE_COLUMNS = (
-    "part", "name", "what", "place", "read", "unit", "relation", "printed", "by", "computed", "difference", "allowed", "verdict", "why",
-    "kind", "range_low", "range_high",
+    "part", "name", "what", "place", "read", "unit", "relation", "printed", "by", "computed",
+    "difference", "allowed", "verdict", "why", "kind", "range_low", "range_high",
 )  # fmt: skip
 """The columns of `values.csv`."""
 

@@ -1,4 +1,6 @@
-"""The chart of restitution and full-damping penetration: each piece of evidence as a line with a band, and the joint estimate."""
+"""The chart of restitution and full-damping penetration: each piece of evidence as a line
+with a band, and the joint estimate.
+"""
 
 from __future__ import annotations
 
@@ -12,11 +14,19 @@ from vibroimpact.charts.marks import Band, Level, Line, Mark, Points, Spans
 from vibroimpact.charts.palette import series
 from vibroimpact.paper.evidence import PENETRATIONS, RESTITUTIONS, Evidence
 from vibroimpact.paper.printed import printed
-from vibroimpact.paper.recovery import RecoveredParameters, implied_restitution, off_joint, penetration_bands, recover_parameters
+from vibroimpact.paper.recovery import (
+    RecoveredParameters,
+    implied_restitution,
+    off_joint,
+    penetration_bands,
+    recover_parameters,
+)
 from vibroimpact.paper.runs import Runs
 
 _ZOOM = (2.0e-4, 1.2e-7)
-"""Half-widths of the enlarged window around the joint estimate: restitution [-], penetration [m]."""
+"""Half-widths of the enlarged window around the joint estimate: restitution [-],
+penetration [m].
+"""
 
 _SEARCH_MARGIN = 20.0
 """Margin of the searched restitutions around the window, in half-widths of the band."""
@@ -32,7 +42,8 @@ class _Window(NamedTuple):
 
 
 def recovery_chart(runs: Runs) -> Chart:
-    """Return the chart of the restitution over the full-damping penetration that each printed number implies.
+    """Return the chart of the restitution over the full-damping penetration that each printed
+    number implies.
 
     Parameters
     ----------
@@ -42,12 +53,19 @@ def recovery_chart(runs: Runs) -> Chart:
     found = recover_parameters(runs)
     e, d = found.restitution, found.penetration
     given = printed("full_damping_penetration").value
-    close = _Window((e.value - _ZOOM[0], e.value + _ZOOM[0]), (d.value - _ZOOM[1], d.value + _ZOOM[1]))
+    close = _Window(
+        (e.value - _ZOOM[0], e.value + _ZOOM[0]), (d.value - _ZOOM[1], d.value + _ZOOM[1])
+    )
     searched = _Window(RESTITUTIONS, PENETRATIONS)
     joint = Points(np.array([d.value]), np.array([e.value]), "joint estimate", "mark")
     widths = np.array([e.value - e.deviation]), np.array([e.value + e.deviation])
     estimate: tuple[Mark, ...] = (
-        Points(np.array([found.round_values[1]]), np.array([found.round_values[0]]), "round values", "total"),
+        Points(
+            np.array([found.round_values[1]]),
+            np.array([found.round_values[0]]),
+            "round values",
+            "total",
+        ),
         Line(d.value + d.deviation * np.array([-1.0, 1.0]), np.full(2, e.value), role="matched"),
         Points(joint.x, joint.y, joint.name, joint.role, low=widths[0], high=widths[1]),
     )
@@ -57,16 +75,30 @@ def recovery_chart(runs: Runs) -> Chart:
         _panel(found, close, estimate, "Where they cross, enlarged"),
     )
     caption = (
-        "Each piece of evidence but Table 2 is a line in the plane of e_h and d_max, with a band as wide as rounding or its own scatter "
+        "Each piece of evidence but Table 2 is a line in the plane of e_h and d_max, with a "
+        "band as wide as rounding or its own scatter "
         f"allows, where it is not wider than the picture. {_caption(found)}"
     )
-    return Chart("recovery", "What the printed numbers imply: restitution and full-damping penetration", (panels,), caption, 3.4)
+    return Chart(
+        "recovery",
+        "What the printed numbers imply: restitution and full-damping penetration",
+        (panels,),
+        caption,
+        3.4,
+    )
 
 
-def _panel(found: RecoveredParameters, window: _Window, marks: tuple[Mark, ...], title: str) -> Panel:
+def _panel(
+    found: RecoveredParameters, window: _Window, marks: tuple[Mark, ...], title: str
+) -> Panel:
     log = window.penetrations[1] > 10.0 * window.penetrations[0]
     across = Axis("Full-damping penetration d_max", "m", log=log, range=window.penetrations)
-    return Panel(across, Axis("Restitution asked for, e_h", range=window.restitutions), (*_lines(found, window), *marks), title)
+    return Panel(
+        across,
+        Axis("Restitution asked for, e_h", range=window.restitutions),
+        (*_lines(found, window), *marks),
+        title,
+    )
 
 
 def _drawn_evidence(found: RecoveredParameters) -> list[Evidence]:
@@ -75,14 +107,19 @@ def _drawn_evidence(found: RecoveredParameters) -> list[Evidence]:
 
 
 def _caption(found: RecoveredParameters) -> str:
-    """Return the sentences on the distances of the joint estimate and of the printed penetration from the bands."""
+    """Return the sentences on the distances of the joint estimate and of the printed
+    penetration from the bands.
+    """
     off = [off_joint(found, one) for one in _drawn_evidence(found)]
     given = printed("full_damping_penetration").value
     met = penetration_bands(found, given)
     return (
-        f"The joint estimate, e_h = {found.restitution.value:.4f} and d_max = {1e6 * found.penetration.value:.2f} µm, lies in "
-        f"{sum(one <= 1.0 for one in off)} of the {len(off)} bands, and from no line farther than {max(off):.1f} times half the width of "
-        f"its band; the printed {1e6 * given:g} µm lies in {sum(met) or 'none'} of the {len(met)} bands that depend on d_max alone."
+        f"The joint estimate, e_h = {found.restitution.value:.4f} and d_max = "
+        f"{1e6 * found.penetration.value:.2f} µm, lies in "
+        f"{sum(one <= 1.0 for one in off)} of the {len(off)} bands, and from no line "
+        f"farther than {max(off):.1f} times half the width of "
+        f"its band; the printed {1e6 * given:g} µm lies in {sum(met) or 'none'} of the "
+        f"{len(met)} bands that depend on d_max alone."
     )
 
 
@@ -96,12 +133,16 @@ def _lines(found: RecoveredParameters, window: _Window) -> list[Mark]:
         role = series(number)
         if restitution_alone is None and penetration_alone is not None:
             value, half = penetration_alone.value, one.half_width * penetration_alone.deviation
-            bands.append(Spans(np.array([value - half]), np.array([value + half]), role=f"{role} band"))
+            bands.append(
+                Spans(np.array([value - half]), np.array([value + half]), role=f"{role} band")
+            )
             lines.append(Level(value, one.name, role, upright=True))
         elif restitution_alone is not None:
             half = one.half_width * restitution_alone.deviation
             searched = (low - _SEARCH_MARGIN * half, high + _SEARCH_MARGIN * half)
-            restitutions = np.linspace(max(RESTITUTIONS[0], searched[0]), min(RESTITUTIONS[1], searched[1]), _POINTS)
+            restitutions = np.linspace(
+                max(RESTITUTIONS[0], searched[0]), min(RESTITUTIONS[1], searched[1]), _POINTS
+            )
             line = implied_restitution(one, restitutions, penetrations)
             if half < 0.5 * (high - low):  # a wider band would only tint the background
                 bands.append(Band(penetrations, line - half, line + half, role=f"{role} band"))

@@ -1,4 +1,6 @@
-"""Figures 4 to 8: the rigid sphere on the rigid plate, by the theory and by Adams' IMPACT with constant and variable damping."""
+"""Figures 4 to 8: the rigid sphere on the rigid plate, by the theory and by Adams' IMPACT
+with constant and variable damping.
+"""
 
 from __future__ import annotations
 
@@ -37,7 +39,8 @@ class RigidFigure(NamedTuple):
     quantity, column, unit : str
         Quantity, its column of the history, and its SI unit.
     compared, peak : str
-        Column of the impact table in which the simulations are compared with the theory, and its description.
+        Column of the impact table in which the simulations are compared with the theory, and its
+        description.
     shown : tuple of str
         Names of the curves.
     notes : tuple of callables
@@ -55,7 +58,8 @@ class RigidFigure(NamedTuple):
 
 
 def rigid_chart(content: RigidFigure, runs: Runs) -> Chart:
-    """Return a figure of the rigid model: the whole run, and each contact as a view in which the first touches coincide.
+    """Return a figure of the rigid model: the whole run, and each contact as a view in which the
+    first touches coincide.
 
     Parameters
     ----------
@@ -72,11 +76,21 @@ def rigid_chart(content: RigidFigure, runs: Runs) -> Chart:
         return MARGIN * longest, (1.0 + MARGIN) * longest
 
     touch = float(several[0].problem.sphere.contact_offset)
-    views = impact_views(several, shown, touch, "From first touch") if content.column == "position_m" else impact_views(several, shown)
+    views = (
+        impact_views(several, shown, touch, "From first touch")
+        if content.column == "position_m"
+        else impact_views(several, shown)
+    )
     timeline = history_column(content.column)
-    lines = tuple(response_line(timeline, response, views, name, _ROLES[name]) for name, response in responses.items())
+    lines = tuple(
+        response_line(timeline, response, views, name, _ROLES[name])
+        for name, response in responses.items()
+    )
     panel = Panel(Axis("Time", "s", views=views), Axis(_axis_label(content), content.unit), lines)
-    title = f"Figure {content.number}: {content.quantity}, {', '.join(content.shown[:-1])} and {content.shown[-1]}"
+    title = (
+        f"Figure {content.number}: {content.quantity}, {', '.join(content.shown[:-1])} and "
+        f"{content.shown[-1]}"
+    )
     return Chart(f"fig{content.number}", title, ((panel,),), _caption(responses, content))
 
 
@@ -86,33 +100,59 @@ def _axis_label(content: RigidFigure) -> str:
 
 
 def _caption(responses: Responses, content: RigidFigure) -> str:
-    off = {name: _differences(responses, name, content.compared) for name in content.shown if name != THEORY}
-    said = " and ".join(f"{fixed(part.min(), 2)} to {fixed(part.max(), 2)} % with {name}" for name, part in off.items())
-    return " ".join((f"Beside the theory the {content.peak} differs by {said}.", *(note(responses) for note in content.notes)))
+    off = {
+        name: _differences(responses, name, content.compared)
+        for name in content.shown
+        if name != THEORY
+    }
+    said = " and ".join(
+        f"{fixed(part.min(), 2)} to {fixed(part.max(), 2)} % with {name}"
+        for name, part in off.items()
+    )
+    return " ".join(
+        (
+            f"Beside the theory the {content.peak} differs by {said}.",
+            *(note(responses) for note in content.notes),
+        )
+    )
 
 
 def _differences(responses: Responses, name: str, column: str) -> Floats:
     """Return the difference of a column from the theory for each impact [%]."""
-    return np.asarray(100.0 * (responses[name].impacts[column] / responses[THEORY].impacts[column] - 1.0))
+    return np.asarray(
+        100.0 * (responses[name].impacts[column] / responses[THEORY].impacts[column] - 1.0)
+    )
 
 
 def _last_impact_note(responses: Responses) -> str:
     """Return the sentence on the start of the last impact relative to the theory."""
     begins = {name: float(response.impacts["time_s"][-1]) for name, response in responses.items()}
     later = {name: time - begins[THEORY] for name, time in begins.items() if name != THEORY}
-    told = (f"{text(abs(time), 's', 2)} {'late' if time > 0.0 else 'early'} with {name}" for name, time in later.items())
+    told = (
+        f"{text(abs(time), 's', 2)} {'late' if time > 0.0 else 'early'} with {name}"
+        for name, time in later.items()
+    )
     return f"The last impact begins {' and '.join(told)}."
 
 
 def _fourth_rebound_note(responses: Responses) -> str:
     off = _differences(responses, CONSTANT, "rebound_height_m")[3]
     value = printed("constant.height_error.4")
-    return f"After the fourth impact the height differs by {fixed(off, 2)} %; the paper prints {value.text} % as its error."
+    return (
+        f"After the fourth impact the height differs by {fixed(off, 2)} %; the paper prints "
+        f"{value.text} % as its error."
+    )
 
 
 def _acceleration_note(responses: Responses) -> str:
-    first = (f"{digits(float(response.impacts['max_acceleration_m_s2'][0]))} m/s² ({name})" for name, response in responses.items())
-    return f"In the first impact it is {', '.join(first)}; the paper prints {printed('type1.max_acceleration').text} m/s²."
+    first = (
+        f"{digits(float(response.impacts['max_acceleration_m_s2'][0]))} m/s² ({name})"
+        for name, response in responses.items()
+    )
+    return (
+        f"In the first impact it is {', '.join(first)}; the paper prints "
+        f"{printed('type1.max_acceleration').text} m/s²."
+    )
 
 
 RIGID_FIGURES = (
@@ -126,9 +166,24 @@ RIGID_FIGURES = (
         (THEORY, CONSTANT),
         (_last_impact_note, _fourth_rebound_note),
     ),
-    RigidFigure(5, "position of the sphere's centre", "position_m", "m", "rebound_height_m", "rebound height", notes=(_last_impact_note,)),
+    RigidFigure(
+        5,
+        "position of the sphere's centre",
+        "position_m",
+        "m",
+        "rebound_height_m",
+        "rebound height",
+        notes=(_last_impact_note,),
+    ),
     RigidFigure(6, "contact force", "force_N", "N", "max_force_N", "largest force"),
-    RigidFigure(7, "velocity of the sphere's centre", "velocity_m_s", "m/s", "separation_speed_m_s", "speed of separation"),
+    RigidFigure(
+        7,
+        "velocity of the sphere's centre",
+        "velocity_m_s",
+        "m/s",
+        "separation_speed_m_s",
+        "speed of separation",
+    ),
     RigidFigure(
         8,
         "acceleration of the sphere's centre",

@@ -1,4 +1,6 @@
-"""The chart of the scatter of Table 2: ranges of the errors of sampled peaks, and the sampling of one contact."""
+"""The chart of the scatter of Table 2: ranges of the errors of sampled peaks, and the
+sampling of one contact.
+"""
 
 from __future__ import annotations
 
@@ -41,15 +43,25 @@ def sampling_chart(runs: Runs) -> Chart:
         The simulations.
     """
     step, spacing = output_step(), spacing_bound(runs)
-    # the contact drawn below has sampling instants for both errors, and the largest error on the printed grid
+    # the contact drawn below has sampling instants for both errors, and the largest error on the
+    # printed grid
     candidates = [
-        contact for contact in CONTACTS if not np.isnan([implied_instants(runs, quantity, *contact) for quantity in QUANTITIES]).any()
+        contact
+        for contact in CONTACTS
+        if not np.isnan(
+            [implied_instants(runs, quantity, *contact) for quantity in QUANTITIES]
+        ).any()
     ]
     damping, impact = max(candidates, key=lambda contact: grid_error(runs, step, "force", *contact))
-    rows = (tuple(_errors(runs, quantity, step, spacing) for quantity in QUANTITIES), (_contact(runs, damping, impact, step),))
+    rows = (
+        tuple(_errors(runs, quantity, step, spacing) for quantity in QUANTITIES),
+        (_contact(runs, damping, impact, step),),
+    )
     caption = (
-        f"The printed errors (dots) scatter about the exact ones (bars across) within what samples {1e6 * spacing:.0f} µs apart can "
-        f"give; samples {1e3 * step:.2f} ms apart can give almost anything. Below, one contact: the times at which compression and "
+        "The printed errors (dots) scatter about the exact ones (bars across) within what "
+        f"samples {1e6 * spacing:.0f} µs apart can "
+        f"give; samples {1e3 * step:.2f} ms apart can give almost anything. Below, one "
+        "contact: the times at which compression and "
         "force have the printed values, and the one sample that the printed output step puts there."
     )
     return Chart("sampling", "Table 2: what can be read off samples", rows, caption, 2.4)
@@ -58,41 +70,75 @@ def sampling_chart(runs: Runs) -> Chart:
 def _errors(runs: Runs, quantity: str, step: float, spacing: float) -> Panel:
     """Return the ten errors of a quantity: exact, printed, and the ranges of both spacings."""
     ranges = {
-        (damping, size): np.array([error_range(runs, size, quantity, damping, impact) for impact in IMPACTS])
+        (damping, size): np.array(
+            [error_range(runs, size, quantity, damping, impact) for impact in IMPACTS]
+        )
         for damping in DAMPINGS
         for size in (0.0, spacing, step)
     }
     ends = np.concatenate([ranges[damping, spacing] for damping in DAMPINGS])
     low, high = math.floor(ends.min()) - 1.0, math.ceil(ends.max()) + 1.0
-    places = {damping: np.array(IMPACTS) + side for damping, side in zip(DAMPINGS, (-_OFFSET, _OFFSET), strict=True)}
+    places = {
+        damping: np.array(IMPACTS) + side
+        for damping, side in zip(DAMPINGS, (-_OFFSET, _OFFSET), strict=True)
+    }
     marks: list[Mark] = []
     for damping, at in places.items():
         beyond = np.clip(ranges[damping, step], low - 1.0, high + 1.0)
-        marks.append(_bars(at, beyond, f"samples {1e3 * step:.2f} ms apart, beyond the picture", "body", _WIDTHS[0]))
+        marks.append(
+            _bars(
+                at,
+                beyond,
+                f"samples {1e3 * step:.2f} ms apart, beyond the picture",
+                "body",
+                _WIDTHS[0],
+            )
+        )
     for damping, at in places.items():
         name = f"samples {1e6 * spacing:.0f} µs apart, {damping} damping"
         marks.append(_bars(at, ranges[damping, spacing], name, _BARS[damping], _WIDTHS[1]))
     for damping, at in places.items():
         half, exact, gap = 0.5 * _WIDTHS[0], ranges[damping, 0.0][:, 0], np.full(len(at), np.nan)
-        marks.append(Line(np.column_stack([at - half, at + half, gap]).ravel(), np.column_stack([exact, exact, gap]).ravel(), "exact"))
+        marks.append(
+            Line(
+                np.column_stack([at - half, at + half, gap]).ravel(),
+                np.column_stack([exact, exact, gap]).ravel(),
+                "exact",
+            )
+        )
         texts = tuple(f"impact {impact}, {damping} damping" for impact in IMPACTS)
         values = np.array([table2_error(quantity, damping, impact).value for impact in IMPACTS])
         marks.append(Points(at, values, "printed", "matched", texts))
-    impacts = Axis("Impact", range=(0.5, len(IMPACTS) + 0.5), ticks=tuple(float(impact) for impact in IMPACTS))
-    return Panel(impacts, Axis("Below the theory's by", "%", range=(low, high)), tuple(marks), f"Largest {quantity}")
+    impacts = Axis(
+        "Impact", range=(0.5, len(IMPACTS) + 0.5), ticks=tuple(float(impact) for impact in IMPACTS)
+    )
+    return Panel(
+        impacts,
+        Axis("Below the theory's by", "%", range=(low, high)),
+        tuple(marks),
+        f"Largest {quantity}",
+    )
 
 
 def _bars(at: Floats, ranges: Floats, name: str, role: str, width: float) -> Bars:
-    return Bars(at, ranges[:, 1] - ranges[:, 0], name, role, width, base=np.ascontiguousarray(ranges[:, 0]))
+    return Bars(
+        at, ranges[:, 1] - ranges[:, 0], name, role, width, base=np.ascontiguousarray(ranges[:, 0])
+    )
 
 
 def _contact(runs: Runs, damping: str, impact: int, step: float) -> Panel:
-    """Return compression and force of one contact relative to the theory's peaks, with the instants at which they were sampled."""
+    """Return compression and force of one contact relative to the theory's peaks, with
+    the instants at which they were sampled.
+    """
     marks: list[Mark] = []
     for quantity, role in _CURVES.items():
-        simulation, theory = (contact_pulses(runs)[name, quantity, impact] for name in (damping, "theory"))
+        simulation, theory = (
+            contact_pulses(runs)[name, quantity, impact] for name in (damping, "theory")
+        )
         scale = 100.0 / theory.value
-        marks.append(Line(simulation.times, scale * simulation.values, f"{quantity} of the simulation", role))
+        marks.append(
+            Line(simulation.times, scale * simulation.values, f"{quantity} of the simulation", role)
+        )
         value = 100.0 - table2_error(quantity, damping, impact).value
         moments = np.array(implied_instants(runs, quantity, damping, impact))
         marks.append(Points(moments, np.full(len(moments), value), f"printed {quantity}", role))

@@ -10,14 +10,18 @@ LOWEST, HIGHEST = 0.05, 0.99
 """Restitutions between which bounces are sought."""
 
 _SLOWLY, _FURTHEST = 0.05, 3.0
-"""Standard deviation of the change of the logarithm of the restitution from a bounce to the next; the largest change, in these."""
+"""Standard deviation of the change of the logarithm of the restitution from a bounce to
+the next; the largest change, in these.
+"""
 
 
 def longest_chain(time: Floats, weight: Floats, tolerance: float) -> Indices:
     r"""Return the touches of the chain that explains most.
 
-    Of all chains :math:`t_0 < t_1 < \dots` whose factors :math:`e_n = (t_{n+2} - t_{n+1}) / (t_{n+1} - t_n)` lie between 0.05 and
-    0.99, it is the one with the largest sum of weights less half the squares of the changes of :math:`\ln e_n`, in standard deviations.
+    Of all chains :math:`t_0 < t_1 < \dots` whose factors :math:`e_n = (t_{n+2} - t_{n+1}) /
+    (t_{n+1} - t_n)` lie between 0.05 and
+    0.99, it is the one with the largest sum of weights less half the squares of the changes of
+    :math:`\ln e_n`, in standard deviations.
     It is found by dynamic programming over triples.
 
     Parameters
@@ -51,16 +55,27 @@ def longest_chain(time: Floats, weight: Floats, tolerance: float) -> Indices:
         # of the logarithm, by the times of its three touches
         first, second = 1.0 / apart[:, :, None], 1.0 / apart[None, :, :]
         jitter = tolerance * np.sqrt(first**2 + (first + second) ** 2 + second**2)
-    best = np.where(np.isfinite(log), weight[:, None, None] + weight[None, :, None] + weight[None, None, :], -np.inf)
+    best = np.where(
+        np.isfinite(log),
+        weight[:, None, None] + weight[None, :, None] + weight[None, None, :],
+        -np.inf,
+    )
     came = np.full((number, number, number), -1)
     for j in range(2, number):
         for i in range(1, j):
-            before, after = np.flatnonzero(best[:i, i, j] > -np.inf), j + np.flatnonzero(np.isfinite(log[i, j, j:]))
+            before, after = (
+                np.flatnonzero(best[:i, i, j] > -np.inf),
+                j + np.flatnonzero(np.isfinite(log[i, j, j:])),
+            )
             if not len(before) or not len(after):
                 continue
-            variance = _SLOWLY**2 + jitter[before, i, j][:, None] ** 2 + jitter[i, j, after][None] ** 2
+            variance = (
+                _SLOWLY**2 + jitter[before, i, j][:, None] ** 2 + jitter[i, j, after][None] ** 2
+            )
             change = (log[i, j, after][None] - log[before, i, j][:, None]) ** 2 / variance
-            score = np.where(change <= _FURTHEST**2, best[before, i, j][:, None] - 0.5 * change, -np.inf)
+            score = np.where(
+                change <= _FURTHEST**2, best[before, i, j][:, None] - 0.5 * change, -np.inf
+            )
             at = np.argmax(score, axis=0)
             top = score[at, np.arange(len(after))] + weight[after]
             better = top > best[i, j, after]

@@ -30,7 +30,9 @@ _OVERDRIVEN = 0.01
 """Part of clipped samples above which a record is refused."""
 
 _CHANCE = 0.1
-"""Expected number of such chains among as many touches at random times, from which on a chain is refused."""
+"""Expected number of such chains among as many touches at random times, from which on a
+chain is refused.
+"""
 
 _BETWEEN = 3
 """Bounces of which each other touch between them needs so many."""
@@ -50,7 +52,8 @@ class Bounces:
     time : array, shape (n,)
         When the ball touches, n >= 3 [s].
     deviation : array, shape (n,)
-        Standard deviations of these times, of differences between them, from noise and differences in sound [s].
+        Standard deviations of these times, of differences between them, from noise and differences
+        in sound [s].
     peak : array, shape (n,)
         The value of largest magnitude within 2 ms of each, in the unit of the record.
     others : array, shape (m,)
@@ -67,7 +70,14 @@ class Bounces:
     >>> import numpy as np
     >>> import vibroimpact as vi
     >>> microphone = vi.Record("microphone", np.zeros(48000), 48e3, "Pa")
-    >>> heard = vi.Bounces(microphone, np.array([0.0, 0.4, 0.72, 0.976]), np.full(4, 1e-5), np.ones(4), np.zeros(0), ())
+    >>> heard = vi.Bounces(
+    ...     microphone,
+    ...     np.array([0.0, 0.4, 0.72, 0.976]),
+    ...     np.full(4, 1e-5),
+    ...     np.ones(4),
+    ...     np.zeros(0),
+    ...     (),
+    ... )
     >>> heard.flight.round(3).tolist(), heard.restitution.round(3).tolist()
     ([0.4, 0.32, 0.256], [0.8, 0.8])
     """
@@ -83,12 +93,16 @@ class Bounces:
 
     @property
     def flight(self) -> Floats:
-        """Durations of the flights: times between successive touches, less that of a contact, (n - 1,) [s]."""
+        """Durations of the flights: times between successive touches, less that of a
+        contact, (n - 1,) [s].
+        """
         return np.diff(self.time) - self.contact
 
     @property
     def restitution(self) -> Floats:
-        r"""Restitution of each impact but the first and the last, :math:`e_n = T_n / T_{n-1}` of the flights, (n - 2,)."""
+        r"""Restitution of each impact but the first and the last, :math:`e_n = T_n /
+        T_{n-1}` of the flights, (n - 2,).
+        """
         return self.flight[1:] / self.flight[:-1]
 
     @property
@@ -112,17 +126,18 @@ class Bounces:
 def find_bounces(record: Record, contact: float = 0.0) -> Bounces:
     """Return the bounces of a ball in a record of sound, of a vibration or of a force.
 
-    Touches are sudden rises of the power above 500 Hz. Those are bounces whose intervals shrink by a factor that changes slowly; clicks,
-    second contacts and other noises are told as others. Bounces that are too quiet at the end, and what comes before the first that is
-    heard, may be missing. The times are refined by what the sounds have in common.
+    Touches are sudden rises of the power above 500 Hz. Those are bounces whose intervals shrink by
+    a factor that changes slowly; clicks, second contacts and other noises are told as others.
+    Bounces that are too quiet at the end, and what comes before the first that is heard, may be
+    missing. The times are refined by what the sounds have in common.
 
     Parameters
     ----------
     record : Record
         The record.
     contact : float, default 0
-        Duration of the contacts [s], if it is known; without it restitutions are too large by :math:`1 - e` times the contact over the
-        flight.
+        Duration of the contacts [s], if it is known; without it restitutions are too large by
+        :math:`1 - e` times the contact over the flight.
 
     Raises
     ------
@@ -136,8 +151,15 @@ def find_bounces(record: Record, contact: float = 0.0) -> Bounces:
     Examples
     --------
     >>> time = np.arange(48000) / 48e3
-    >>> def tap(at): return np.where(time >= at, np.exp(-(time - at).clip(0.0) / 1e-3) * np.sin(2e4 * (time - at)), 0.0)
-    >>> found = find_bounces(Record("microphone", tap(0.1) + tap(0.4) + tap(0.43) + tap(0.55) + tap(0.625), 48e3, "Pa"))
+    >>> def tap(at):
+    ...     return np.where(
+    ...         time >= at, np.exp(-(time - at).clip(0.0) / 1e-3) * np.sin(2e4 * (time - at)), 0.0
+    ...     )
+    >>> found = find_bounces(
+    ...     Record(
+    ...         "microphone", tap(0.1) + tap(0.4) + tap(0.43) + tap(0.55) + tap(0.625), 48e3, "Pa"
+    ...     )
+    ... )
     >>> found.restitution.round(4).tolist(), found.others.round(3).tolist()
     ([0.5, 0.5], [0.43])
     """
@@ -148,31 +170,54 @@ def find_bounces(record: Record, contact: float = 0.0) -> Bounces:
     heard = np.flatnonzero(~found.click)
     if len(heard) < 3:
         said = ("no touch is", "one touch is", "two touches are")[len(heard)]
-        raise InputError(f"{said} detected in it, and a restitution needs three: two times of flight")
+        raise InputError(
+            f"{said} detected in it, and a restitution needs three: two times of flight"
+        )
     time = found.sample / record.rate
-    chain = heard[longest_chain(time[heard], np.minimum(found.rise[heard] / found.threshold, _CLEAR), _JITTER)]
+    chain = heard[
+        longest_chain(time[heard], np.minimum(found.rise[heard] / found.threshold, _CLEAR), _JITTER)
+    ]
     if not len(chain):
-        words = f"the times between {len(heard)} touches do not decrease as those of bounces do, by factors of {LOWEST:g} to {HIGHEST:g}"
+        words = (
+            f"the times between {len(heard)} touches do not decrease as those of bounces do, "
+            f"by factors of {LOWEST:g} to {HIGHEST:g}"
+        )
         raise InputError(f"it holds no bounces: {words}")
     others = np.setdiff1d(np.arange(len(time)), chain)
     reasons = _reasons(found, time, chain, others)
     strange = time[others[[reason == _ELSE for reason in reasons]]]
     doubts += _chance_doubts(time[chain], strange, record.duration)
-    at, deviation = aligned(value, record.rate, found.sample[chain], record.blur, clipped_samples(record))
+    at, deviation = aligned(
+        value, record.rate, found.sample[chain], record.blur, clipped_samples(record)
+    )
     if not np.all(np.diff(at) > max(contact * record.rate, 0.0)):
-        raise InputError(f"the last bounces follow each other within {'the contact' if contact else 'their sounds'}; end the record sooner")
+        raise InputError(
+            "the last bounces follow each other within "
+            f"{'the contact' if contact else 'their sounds'}; end the record sooner"
+        )
     window = max(FEWEST, round(WINDOW * record.rate))
     sounds = [record.value[sample : sample + window] for sample in found.sample[chain]]
     peak = np.array([sound[np.argmax(np.abs(sound))] for sound in sounds])
     start, rate = record.start, record.rate
-    return Bounces(record, start + at / rate, deviation / rate, peak, start + time[others], reasons, doubts, contact)
+    return Bounces(
+        record,
+        start + at / rate,
+        deviation / rate,
+        peak,
+        start + time[others],
+        reasons,
+        doubts,
+        contact,
+    )
 
 
 _ELSE = "its time is not that of a bounce"
 
 
 def _checked(record: Record) -> tuple[str, ...]:
-    """Return doubts about a record in which bounces are to be sought; raise InputError if they can't be."""
+    """Return doubts about a record in which bounces are to be sought; raise InputError if
+    they can't be.
+    """
     value = record.value
     if not len(value):
         raise InputError("it has no samples")
@@ -182,27 +227,41 @@ def _checked(record: Record) -> tuple[str, ...]:
         raise InputError("it is silent: all samples are the same")
     shortest = 3 * max(FEWEST, round(WINDOW * record.rate))
     if len(value) < shortest:
-        raise InputError(f"it is too short: it has {len(value)} samples, and at {record.rate:g} Hz three touches take {shortest} at least")
+        raise InputError(
+            f"it is too short: it has {len(value)} samples, and at {record.rate:g} Hz "
+            f"three touches take {shortest} at least"
+        )
     clipped = float(record_table([record], ["clipped_part"])["clipped_part"][0])
     if clipped > _OVERDRIVEN:
         part = f"{100.0 * clipped:.2g} % of its samples are at its largest or lowest value"
         raise InputError(f"it is clipped: {part}; record it at a lower gain")
     if not clipped:
         return record.doubts
-    return (*record.doubts, f"{100.0 * clipped:.2g} % of the samples are clipped, at the largest or the lowest value")
+    return (
+        *record.doubts,
+        f"{100.0 * clipped:.2g} % of the samples are clipped, at the largest or the lowest value",
+    )
 
 
 def _reasons(found: Touches, time: Floats, chain: Indices, others: Indices) -> tuple[str, ...]:
     """Return why each of the others is no bounce."""
-    since = time[others] - time[chain][np.clip(np.searchsorted(time[chain], time[others]) - 1, 0, None)]
+    since = (
+        time[others] - time[chain][np.clip(np.searchsorted(time[chain], time[others]) - 1, 0, None)]
+    )
     return tuple(
-        "it is a click, of a few samples" if found.click[one] else "it is a second contact" if 0.0 < late <= _DOUBLE else _ELSE
+        "it is a click, of a few samples"
+        if found.click[one]
+        else "it is a second contact"
+        if 0.0 < late <= _DOUBLE
+        else _ELSE
         for one, late in zip(others, since, strict=True)
     )
 
 
 def _chance_doubts(chain: Floats, strange: Floats, duration: float) -> tuple[str, ...]:
-    """Return doubts whether a chain is one; raise InputError if touches at random times, or those of music, would have such chains too."""
+    """Return doubts whether a chain is one; raise InputError if touches at random times,
+    or those of music, would have such chains too.
+    """
     heard, why = len(chain) + len(strange), ""
     if len(chain) == 3:
         if not len(strange):
@@ -218,6 +277,9 @@ def _chance_doubts(chain: Floats, strange: Floats, duration: float) -> tuple[str
         elif _BETWEEN * np.count_nonzero((strange > chain[0]) & (strange < chain[-1])) > len(chain):
             why = "and too many lie between them"
     if why:
-        words = f"of its {heard} touches {len(chain)} at best have intervals that shrink as those of bounces, {why}"
+        words = (
+            f"of its {heard} touches {len(chain)} at best have intervals that shrink as those "
+            f"of bounces, {why}"
+        )
         raise InputError(f"it holds no series of bounces: {words}")
     return ()

@@ -17,10 +17,14 @@ FEWEST = 8
 """Least number of samples of that time."""
 
 _LOWEST, _ORDER = 500.0, 4
-"""Cut-off [Hz] and order of the filter that takes away hum: mains and their harmonics lie below, the sound of impacts above."""
+"""Cut-off [Hz] and order of the filter that takes away hum: mains and their harmonics lie
+below, the sound of impacts above.
+"""
 
 _ABOVE, _LEAST = 5.5, 1.0
-"""Least rise of the logarithm of the power: in standard deviations of its fluctuation, and of any signal."""
+"""Least rise of the logarithm of the power: in standard deviations of its fluctuation,
+and of any signal.
+"""
 
 _FLOOR = 1e-8
 """Power below which nothing is heard, as part of the largest."""
@@ -29,10 +33,14 @@ _FLOOR_OF_CODED = 1e-3
 """The same of sound that is coded with losses, where what is quieter is left out or added."""
 
 _QUIET = 1e-4
-"""Part of the mean power around a touch below which a change of the power is none: filters of recorders sound before a touch."""
+"""Part of the mean power around a touch below which a change of the power is none:
+filters of recorders sound before a touch.
+"""
 
 _CLICK, _PART = 3, 0.7
-"""Samples in a row that hold so much of the energy of a click, above that of the noise; the sound of a touch lasts longer."""
+"""Samples in a row that hold so much of the energy of a click, above that of the noise;
+the sound of a touch lasts longer.
+"""
 
 MOST = 80
 """Touches that are kept, the clearest ones."""
@@ -72,15 +80,17 @@ def without_hum(record: Record) -> Floats:
     """
     from scipy.signal import butter, sosfilt, sosfilt_zi
 
-    sections = butter(_ORDER, min(_LOWEST, record.rate / 8.0), "highpass", fs=record.rate, output="sos")
+    sections = butter(
+        _ORDER, min(_LOWEST, record.rate / 8.0), "highpass", fs=record.rate, output="sos"
+    )
     return np.asarray(sosfilt(sections, record.value, zi=sosfilt_zi(sections) * record.value[0])[0])
 
 
 def find_touches(value: Floats, rate: float, blur: float = 0.0) -> Touches:
     """Return the touches in samples from which hum is taken away.
 
-    The logarithm of the power over 2 ms after each sample is compared with that over 2 ms before. Its fluctuation, by which the threshold
-    is set, is that of noise, or of what sounds on.
+    The logarithm of the power over 2 ms after each sample is compared with that over 2 ms before.
+    Its fluctuation, by which the threshold is set, is that of noise, or of what sounds on.
 
     Parameters
     ----------
@@ -94,7 +104,12 @@ def find_touches(value: Floats, rate: float, blur: float = 0.0) -> Touches:
     Examples
     --------
     >>> time = np.arange(4800) / 48e3
-    >>> taps = sum(np.where(time >= at, np.exp(-(time - at).clip(0.0) / 2e-3) * np.sin(2e4 * (time - at)), 0.0) for at in (0.03, 0.06))
+    >>> taps = sum(
+    ...     np.where(
+    ...         time >= at, np.exp(-(time - at).clip(0.0) / 2e-3) * np.sin(2e4 * (time - at)), 0.0
+    ...     )
+    ...     for at in (0.03, 0.06)
+    ... )
     >>> (find_touches(taps, 48e3).sample / 48e3).round(3).tolist()
     [0.03, 0.06]
     """
@@ -122,12 +137,18 @@ def find_touches(value: Floats, rate: float, blur: float = 0.0) -> Touches:
 
 def _is_click(value: Floats, begin: int, window: int) -> bool:
     """Return whether a few samples hold what energy a touch adds."""
-    before, after = (value[max(first, 0) : first + window] ** 2 for first in (begin - window, begin))
-    return float(np.convolve(after, np.ones(_CLICK)).max()) > _PART * float(after.sum() - before.sum())
+    before, after = (
+        value[max(first, 0) : first + window] ** 2 for first in (begin - window, begin)
+    )
+    return float(np.convolve(after, np.ones(_CLICK)).max()) > _PART * float(
+        after.sum() - before.sum()
+    )
 
 
 def _begin(value: Floats, near: int, window: int) -> int:
-    """Return the sample near another at which the variance most likely changes (maximum likelihood of Gaussian samples)."""
+    """Return the sample near another at which the variance most likely changes (maximum
+    likelihood of Gaussian samples).
+    """
     first = near - window
     power = np.cumsum(value[first : near + 2 * window] ** 2)
     count = np.arange(1, len(power) + 1)

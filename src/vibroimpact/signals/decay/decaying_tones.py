@@ -1,12 +1,16 @@
 r"""Sums of decaying tones in a band of frequencies, fitted to the spectra of records.
 
-A tone :math:`2 \operatorname{Re}(c\,p^n)`, :math:`p = e^s`, of N samples has the discrete Fourier transform
+A tone :math:`2 \operatorname{Re}(c\,p^n)`, :math:`p = e^s`, of N samples has the discrete Fourier
+transform
 
-.. math:: X_k = c\,g(s) + \bar c\,g(\bar s), \qquad g(s) = \frac{1 - e^{s N}}{1 - e^{s - 2 \pi i k / N}}
+.. math::
 
-exactly, and white noise has independent values of one variance there, so that a fit to the bins of a band by least squares is that of the
-greatest likelihood. What tones outside the band leave in it is smooth, a polynomial in k. Amplitudes are eliminated (variable projection:
-Golub and Pereyra 1973, SIAM J. Numer. Anal. 10:413; its derivatives after Kaufman 1975, BIT 15:49).
+    X_k = c\,g(s) + \bar c\,g(\bar s), \qquad g(s) = \frac{1 - e^{s N}}{1 - e^{s - 2 \pi i k / N}}
+
+exactly, and white noise has independent values of one variance there, so that a fit to the bins of
+a band by least squares is that of the greatest likelihood. What tones outside the band leave in it
+is smooth, a polynomial in k. Amplitudes are eliminated (variable projection: Golub and Pereyra
+1973, SIAM J. Numer. Anal. 10:413; its derivatives after Kaufman 1975, BIT 15:49).
 """
 
 from __future__ import annotations
@@ -30,7 +34,9 @@ _MOST = 24
 _DECAYS = np.geomspace(0.5, 200.0, 7)
 """Decays over the record, in nepers, at which a further tone is sought."""
 _ROUNDS, _SAME = 6, 0.02
-"""Most fits, each with the noise that the one before left, and relative change of the ratios of channels that ends them."""
+"""Most fits, each with the noise that the one before left, and relative change of the
+ratios of channels that ends them.
+"""
 _LARGEST_STEPS = np.array([0.7, 3.0])
 """Largest change in a step: of the logarithm of the decay, and of the frequency in bins."""
 
@@ -59,7 +65,13 @@ class Tones:
 
     def part(self, which: NDArray[np.bool_]) -> Tones:
         """Return some of the tones."""
-        return Tones(self.decay[which], self.frequency[which], self.covariance[which], self.amplitude[which], self.noise)
+        return Tones(
+            self.decay[which],
+            self.frequency[which],
+            self.covariance[which],
+            self.amplitude[which],
+            self.noise,
+        )
 
 
 @dataclass(frozen=True)
@@ -88,7 +100,9 @@ class Spectra(ABC):
     @property
     @abstractmethod
     def unit(self) -> Floats:
-        """Standard deviation of real and imaginary part of each bin under noise of unit variance, (bins,)."""
+        """Standard deviation of real and imaginary part of each bin under noise of unit
+        variance, (bins,).
+        """
 
     @abstractmethod
     def transform(self, s: Complex) -> tuple[Complex, Complex]:
@@ -96,23 +110,33 @@ class Spectra(ABC):
 
     @abstractmethod
     def strongest(self, left: Complex) -> Floats:
-        """Return where a further tone tells most of what is left, (bins, S): the logarithm of its decay and its frequency in bins."""
+        """Return where a further tone tells most of what is left, (bins, S): the
+        logarithm of its decay and its frequency in bins.
+        """
 
     def weighed(self, tones: Tones) -> Self:
-        """Return the spectra with the noise of each bin as a fit of tones leaves it: that of white noise is the same for all."""
+        """Return the spectra with the noise of each bin as a fit of tones leaves it: that
+        of white noise is the same for all.
+        """
         return self
 
     def telling(self, tones: Floats, left: Complex, penalty: float) -> Floats:
-        """Return the tones, (n, 2), that tell more than a penalty where each channel has noise of its own; all, if all have the same."""
+        """Return the tones, (n, 2), that tell more than a penalty where each channel has
+        noise of its own; all, if all have the same.
+        """
         return tones
 
     def covariance(self, fit: Fit, model: Callable[[Floats], tuple[Floats, Floats]]) -> Floats:
-        """Return the covariance of the parameters of a fit: by its curvature, where the noise is as `unit` has it."""
+        """Return the covariance of the parameters of a fit: by its curvature, where the
+        noise is as `unit` has it.
+        """
         return fit.covariance
 
     @property
     def rows(self) -> Floats:
-        """Real and imaginary parts of each channel, (2 bins, S), of unit variance under noise of unit variance."""
+        """Real and imaginary parts of each channel, (2 bins, S), of unit variance under
+        noise of unit variance.
+        """
         return _parts(self.value.T / self.unit[:, None])
 
     def without(self, tones: Tones) -> Self:
@@ -137,7 +161,8 @@ class Spectra(ABC):
         return np.block([[powers, np.zeros_like(powers)], [np.zeros_like(powers), powers]])
 
     def columns(self, tones: Floats) -> tuple[Floats, Floats]:
-        """Return the columns of tones, (2 bins, n, 2), and their derivatives in both parameters, (2 bins, n, 2, 2).
+        """Return the columns of tones, (2 bins, n, 2), and their derivatives in both parameters, (2
+        bins, n, 2, 2).
 
         Parameters
         ----------
@@ -149,14 +174,21 @@ class Spectra(ABC):
         (upper, upper_slope), (lower, lower_slope) = (self.transform(one) for one in (s, s.conj()))
         columns = np.stack([upper + lower, 1j * (upper - lower)], axis=-1)
         rates = ((-decay, -decay), (1j * self.step, -1j * self.step))
-        slopes = [np.stack([a * upper_slope + b * lower_slope, 1j * (a * upper_slope - b * lower_slope)], axis=-1) for a, b in rates]
+        slopes = [
+            np.stack(
+                [a * upper_slope + b * lower_slope, 1j * (a * upper_slope - b * lower_slope)],
+                axis=-1,
+            )
+            for a, b in rates
+        ]
         unit = self.unit[:, None, None]
         return _parts(columns / unit), _parts(np.stack(slopes, axis=-1) / unit[..., None])
 
 
 @dataclass(frozen=True)
 class Bins(Spectra):
-    """Discrete Fourier transforms of records in a band, with angular frequencies in radians per sample.
+    """Discrete Fourier transforms of records in a band, with angular frequencies in radians per
+    sample.
 
     Parameters
     ----------
@@ -190,13 +222,21 @@ class Bins(Spectra):
         best, found = -1.0, np.zeros(2)
         for nepers in _DECAYS:
             decay = nepers / self.samples
-            shape = (1.0 - np.exp(-nepers - 1j * self.samples * offset)) / (1.0 - np.exp(-decay - 1j * offset))
+            shape = (1.0 - np.exp(-nepers - 1j * self.samples * offset)) / (
+                1.0 - np.exp(-decay - 1j * offset)
+            )
             energy = np.convolve(np.ones(number), np.abs(shape) ** 2)[number : 2 * number]
-            match = [np.abs(signal.fftconvolve(one, shape[::-1].conj())[number : 2 * number]) ** 2 for one in left.T]
+            match = [
+                np.abs(signal.fftconvolve(one, shape[::-1].conj())[number : 2 * number]) ** 2
+                for one in left.T
+            ]
             power = np.sum(match, axis=0) / energy
             place = int(np.argmax(power))
             if power[place] > best:
-                best, found = float(power[place]), np.array([np.log(decay), self.omega[place] / self.step])
+                best, found = (
+                    float(power[place]),
+                    np.array([np.log(decay), self.omega[place] / self.step]),
+                )
         return found
 
 
@@ -205,10 +245,11 @@ def _parts(value: Complex) -> Floats:
 
 
 def tones_in(bins: Spectra) -> Tones:
-    """Return the tones in a band: one after the other is added where the spectra that are left show it most, as long as it tells.
+    """Return the tones in a band: one after the other is added where the spectra that are left show
+    it most, as long as it tells.
 
-    A tone tells if it lowers the extended Bayesian information criterion, which counts its parameters and the bins where it may lie (Chen
-    and Chen 2008, Biometrika 95:759).
+    A tone tells if it lowers the extended Bayesian information criterion, which counts its
+    parameters and the bins where it may lie (Chen and Chen 2008, Biometrika 95:759).
     """
     rows, channels = bins.rows, len(bins.value)
     penalty = (2 + 2 * channels) * np.log(rows.size) + 2.0 * np.log(len(bins.omega))
@@ -219,13 +260,17 @@ def tones_in(bins: Spectra) -> Tones:
             break
         best = more
     number = len(bins.omega)
-    telling = bins.telling(best.tones, np.asarray(best.left[:number] + 1j * best.left[number:]), penalty)
+    telling = bins.telling(
+        best.tones, np.asarray(best.left[:number] + 1j * best.left[number:]), penalty
+    )
     return (best if len(telling) == len(best.tones) else _fit(bins, rows, telling)).found(bins)
 
 
 @dataclass(frozen=True)
 class _Fit:
-    """Tones, (n, 2), what they leave, (2 bins, S), the noise, (S,), their c (n, S) and covariance of the parameters (n, 2, 2)."""
+    """Tones, (n, 2), what they leave, (2 bins, S), the noise, (S,), their c (n, S) and
+    covariance of the parameters (n, 2, 2).
+    """
 
     tones: Floats
     left: Floats
@@ -251,7 +296,9 @@ class _Fit:
 
 
 def _fit(bins: Spectra, rows: Floats, start: Floats) -> _Fit:
-    """Return the fit of so many tones, from where they begin; the noise that weighs channels is that of the round before."""
+    """Return the fit of so many tones, from where they begin; the noise that weighs
+    channels is that of the round before.
+    """
     number, smooth = len(start), bins.smooth()
 
     def solved(tones: Floats) -> tuple[Floats, Floats, Floats, Floats]:
@@ -259,10 +306,19 @@ def _fit(bins: Spectra, rows: Floats, start: Floats) -> _Fit:
         design = np.concatenate([columns.reshape(len(rows), -1), smooth], axis=1)
         scale = np.linalg.norm(design, axis=0)
         basis, triangle = linalg.qr(design / scale, mode="economic", check_finite=False)
-        share = linalg.solve_triangular(triangle + 1e-14 * np.eye(len(triangle)), basis.T @ rows, check_finite=False)
-        return rows - basis @ (basis.T @ rows), (share / scale[:, None])[: 2 * number].reshape(number, 2, rows.shape[1]), basis, slopes
+        share = linalg.solve_triangular(
+            triangle + 1e-14 * np.eye(len(triangle)), basis.T @ rows, check_finite=False
+        )
+        return (
+            rows - basis @ (basis.T @ rows),
+            (share / scale[:, None])[: 2 * number].reshape(number, 2, rows.shape[1]),
+            basis,
+            slopes,
+        )
 
-    freedom = max(1.0 - (2.0 * number + smooth.shape[1] + 2.0 * number / rows.shape[1]) / len(rows), 0.1)
+    freedom = max(
+        1.0 - (2.0 * number + smooth.shape[1] + 2.0 * number / rows.shape[1]) / len(rows), 0.1
+    )
 
     def noise_of(left: Floats) -> Floats:
         return np.asarray(np.maximum(np.sqrt(np.mean(left**2, axis=0) / freedom), bins.floor))
@@ -290,6 +346,10 @@ def _fit(bins: Spectra, rows: Floats, start: Floats) -> _Fit:
 
 
 def _next(bins: Spectra, fit: _Fit) -> Floats:
-    """Return where a further tone tells most: the logarithm of its decay and its frequency in bins."""
+    """Return where a further tone tells most: the logarithm of its decay and its
+    frequency in bins.
+    """
     number = len(bins.omega)
-    return bins.strongest(np.asarray((fit.left[:number] + 1j * fit.left[number:]) / fit.noise, dtype=complex))
+    return bins.strongest(
+        np.asarray((fit.left[:number] + 1j * fit.left[number:]) / fit.noise, dtype=complex)
+    )

@@ -16,7 +16,9 @@ from vibroimpact.signals.estimate import Estimate
 from vibroimpact.signals.record import Record
 
 _WIDTH, _MARGIN = 2.0**0.5, 1.12
-"""Ratio of the ends of a band that is fitted at once, and how far beyond them tones are fitted too."""
+"""Ratio of the ends of a band that is fitted at once, and how far beyond them tones are
+fitted too.
+"""
 _CYCLES = 1000.0
 """Cycles of the lowest frequency of a band that are used of it."""
 _BINS = 32
@@ -51,7 +53,12 @@ class DecayMode:
     >>> import numpy as np
     >>> import vibroimpact as vi
     >>> time = np.arange(4000) / 10e3
-    >>> ringing = vi.Record("a", np.exp(-2.0 * np.pi * 400.0 * 0.01 * time) * np.sin(2.0 * np.pi * 400.0 * time), 10e3, "m/s2")
+    >>> ringing = vi.Record(
+    ...     "a",
+    ...     np.exp(-2.0 * np.pi * 400.0 * 0.01 * time) * np.sin(2.0 * np.pi * 400.0 * time),
+    ...     10e3,
+    ...     "m/s2",
+    ... )
     >>> (mode,) = vi.modes_in_decay([ringing], (300.0, 500.0))
     >>> round(mode.frequency.value, 1), round(mode.damping_ratio.value, 4)
     (400.0, 0.01)
@@ -69,8 +76,8 @@ def modes_in_decay(records: Sequence[Record], band: tuple[float, float]) -> tupl
     Parameters
     ----------
     records : sequence of Record
-        Records of one decay at several places, or of several decays of one structure: of one rate and one number of samples, while no force
-        acts.
+        Records of one decay at several places, or of several decays of one structure: of one rate
+        and one number of samples, while no force acts.
     band : tuple of two floats
         The band of frequencies [Hz].
 
@@ -82,20 +89,25 @@ def modes_in_decay(records: Sequence[Record], band: tuple[float, float]) -> tupl
     Raises
     ------
     InputError
-        If there are no records, they have different rates or lengths, a sample is not finite, one is constant, or the band does not lie
-        between zero and half the rate or is too narrow for records so short.
+        If there are no records, they have different rates or lengths, a sample is not finite, one
+        is constant, or the band does not lie between zero and half the rate or is too narrow for
+        records so short.
 
     Notes
     -----
-    Sums of decaying tones, whose frequencies and decays all records have in common, are fitted to the discrete Fourier transforms, half an
-    octave at a time, of at most 1000 cycles. In white noise this is the fit of greatest likelihood in the band; deviations are a tenth or
-    so above the Cramer-Rao bound of the whole record. Tones are added as long as the extended Bayesian information criterion falls.
-    Intervals are those of the fit; of a damping ratio those of its logarithm.
+    Sums of decaying tones, whose frequencies and decays all records have in common, are fitted to
+    the discrete Fourier transforms, half an octave at a time, of at most 1000 cycles. In white
+    noise this is the fit of greatest likelihood in the band; deviations are a tenth or so above the
+    Cramer-Rao bound of the whole record. Tones are added as long as the extended Bayesian
+    information criterion falls. Intervals are those of the fit; of a damping ratio those of its
+    logarithm.
 
     Examples
     --------
     >>> time = np.arange(8192) / 25.6e3
-    >>> tone = np.exp(-2.0 * np.pi * 0.01 * 400.0 * time) * np.sin(2.0 * np.pi * 400.0 * (1.0 - 0.01**2) ** 0.5 * time)
+    >>> tone = np.exp(-2.0 * np.pi * 0.01 * 400.0 * time) * np.sin(
+    ...     2.0 * np.pi * 400.0 * (1.0 - 0.01**2) ** 0.5 * time
+    ... )
     >>> (mode,) = modes_in_decay([Record("a1", tone, 25.6e3, "m/s^2")], (200.0, 800.0))
     >>> round(mode.frequency.value, 3), round(mode.damping_ratio.value, 6)
     (400.0, 0.01)
@@ -107,7 +119,10 @@ def modes_in_decay(records: Sequence[Record], band: tuple[float, float]) -> tupl
 
 
 def modes_in_bands(
-    band: tuple[float, float], bands: Sequence[tuple[float, float]], spectra: Sequence[Spectra], rate: float
+    band: tuple[float, float],
+    bands: Sequence[tuple[float, float]],
+    spectra: Sequence[Spectra],
+    rate: float,
 ) -> list[DecayMode]:
     """Return the modes in spectra, in the order of their frequencies.
 
@@ -120,12 +135,16 @@ def modes_in_bands(
     spectra : sequence of Spectra
         The spectra in each and in its margins.
     rate : float
-        Frequency of one turn per unit of time of the spectra [Hz]: the rate of samples, or 1 for radians per second.
+        Frequency of one turn per unit of time of the spectra [Hz]: the rate of samples, or 1 for
+        radians per second.
     """
     turn = 2.0 * np.pi / rate
     found = [tones_in(one) for one in spectra]
     # once more, without what the tones of other bands leave in each
-    own = [one.part((one.frequency >= turn * low) & (one.frequency < turn * high)) for (low, high), one in zip(bands, found, strict=True)]
+    own = [
+        one.part((one.frequency >= turn * low) & (one.frequency < turn * high))
+        for (low, high), one in zip(bands, found, strict=True)
+    ]
     alone = [_alone(one, [*own[:number], *own[number + 1 :]]) for number, one in enumerate(spectra)]
     found = [tones_in(one.weighed(tones)) for one, tones in zip(alone, found, strict=True)]
     modes: list[DecayMode] = []
@@ -134,14 +153,17 @@ def modes_in_bands(
         for mode in _modes(tones, rate):
             place = mode.frequency.value
             inside = low - resolution <= place < high + resolution and band[0] <= place <= band[1]
-            twice = place < low + 2.0 * resolution and abs(place - last) < resolution  # in the band below too
+            # in the band below too
+            twice = place < low + 2.0 * resolution and abs(place - last) < resolution
             if inside and not twice and mode.damping_ratio.value < _WIDEST:
                 modes.append(mode)
     return sorted(modes, key=lambda mode: mode.frequency.value)
 
 
 def _alone(bins: Spectra, others: Sequence[Tones]) -> Spectra:
-    """Return the spectra in a band without the tones of other bands that lie outside of its margins."""
+    """Return the spectra in a band without the tones of other bands that lie outside of
+    its margins.
+    """
     low, high = bins.omega[[0, -1]]
     for one in others:
         bins = bins.without(one.part((one.frequency < low) | (one.frequency > high)))
@@ -160,7 +182,9 @@ def _checked(records: Sequence[Record], band: tuple[float, float]) -> tuple[Floa
         raise InputError("there is no record; give at least one")
     rate, samples = records[0].rate, len(records[0].value)
     if any((one.rate, len(one.value)) != (rate, samples) for one in records):
-        raise InputError("the records have different rates or numbers of samples; give those of one acquisition")
+        raise InputError(
+            "the records have different rates or numbers of samples; give those of one acquisition"
+        )
     for one in records:
         if not np.isfinite(one.value).all():
             raise InputError(f"a sample of {shown(one.name)} is not a finite number")
@@ -171,17 +195,25 @@ def _checked(records: Sequence[Record], band: tuple[float, float]) -> tuple[Floa
     low, high = band
     if not 0.0 < low < high <= 0.5 * rate:
         raise InputError(
-            f"a band from {low:g} to {high:g} Hz is not allowed; its ends must rise, from above 0 to {0.5 * rate:g} Hz, half the rate"
+            f"a band from {low:g} to {high:g} Hz is not allowed; its ends must rise, from "
+            f"above 0 to {0.5 * rate:g} Hz, half the rate"
         )
     if (high - low) * samples < _BINS * rate:
         values = int((high - low) * samples / rate)
-        words = f"the spectrum has {values} values in a band of {high - low:g} Hz by a decay of {samples / rate:.3g} s"
-        raise InputError(f"{words}, and {_BINS} at least are needed; take a longer decay or a wider band")
+        words = (
+            f"the spectrum has {values} values in a band of {high - low:g} Hz by a decay of "
+            f"{samples / rate:.3g} s"
+        )
+        raise InputError(
+            f"{words}, and {_BINS} at least are needed; take a longer decay or a wider band"
+        )
     return np.stack([one.value for one in records]), rate
 
 
 def bands_in(band: tuple[float, float], duration: float) -> Iterator[tuple[float, float]]:
-    """Yield the bands that are fitted at once: half octaves, or wider ones where the record is short."""
+    """Yield the bands that are fitted at once: half octaves, or wider ones where the
+    record is short.
+    """
     low, end = band
     while low < end:
         least = _BINS / min(duration, _CYCLES / low)
@@ -203,13 +235,17 @@ def _bins(value: Floats, rate: float, low: float, high: float) -> Bins:
 
 
 def _modes(tones: Tones, rate: float) -> Iterator[DecayMode]:
-    for decay, frequency, covariance, amplitude in zip(tones.decay, tones.frequency, tones.covariance, tones.amplitude, strict=True):
+    for decay, frequency, covariance, amplitude in zip(
+        tones.decay, tones.frequency, tones.covariance, tones.amplitude, strict=True
+    ):
         size = float(np.hypot(decay, frequency))
         ratio = float(decay / size)
         # by the logarithm of the decay, and by the frequency
         of_size = np.array([decay * ratio, frequency / size])
         of_ratio = np.array([1.0, 0.0]) - of_size / size
-        deviations = [float(np.sqrt(max(one @ covariance @ one, 0.0))) for one in (of_size, of_ratio)]
+        deviations = [
+            float(np.sqrt(max(one @ covariance @ one, 0.0))) for one in (of_size, of_ratio)
+        ]
         scale = rate / (2.0 * np.pi)
         yield DecayMode(
             Estimate(scale * size, scale * deviations[0]),
@@ -231,4 +267,6 @@ def with_doubts(modes: Sequence[DecayMode], duration: float) -> Iterator[DecayMo
         used = min(duration, _CYCLES / places[number])
         width = max(1.0 / used, 2.0 * mode.damping_ratio.value * places[number])
         close = f"too close to the mode at {places[nearest]:.5g} Hz"
-        yield replace(mode, doubt=close if distance[nearest] < _APART * width else "too noisy, or too weak")
+        yield replace(
+            mode, doubt=close if distance[nearest] < _APART * width else "too noisy, or too weak"
+        )

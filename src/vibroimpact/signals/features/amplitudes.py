@@ -39,13 +39,32 @@ def _of(block: Block) -> Floats:
 
 FAMILY = Family(
     (
-        Feature(name="peak", meaning="largest magnitude", equation="max|x|", source=_TEXTBOOK, degree=1),
         Feature(
-            name="peak_to_peak", meaning="span of the samples", equation="max(x) - min(x)", source=_TEXTBOOK, degree=1, offset_free=True
+            name="peak", meaning="largest magnitude", equation="max|x|", source=_TEXTBOOK, degree=1
+        ),
+        Feature(
+            name="peak_to_peak",
+            meaning="span of the samples",
+            equation="max(x) - min(x)",
+            source=_TEXTBOOK,
+            degree=1,
+            offset_free=True,
         ),
         Feature(name="mean", meaning="mean", equation="mean(x)", source=_TEXTBOOK, degree=1),
-        Feature(name="mean_magnitude", meaning="mean of the magnitude", equation="mean|x|", source=_TEXTBOOK, degree=1),
-        Feature(name="rms", meaning="root of the mean square", equation="sqrt(mean(x^2))", source=_TEXTBOOK, degree=1),
+        Feature(
+            name="mean_magnitude",
+            meaning="mean of the magnitude",
+            equation="mean|x|",
+            source=_TEXTBOOK,
+            degree=1,
+        ),
+        Feature(
+            name="rms",
+            meaning="root of the mean square",
+            equation="sqrt(mean(x^2))",
+            source=_TEXTBOOK,
+            degree=1,
+        ),
         Feature(
             name="standard_deviation",
             meaning="root of the mean square about the mean",
@@ -55,11 +74,31 @@ FAMILY = Family(
             offset_free=True,
         ),
         Feature(
-            name="energy", meaning="integral of the square over time", equation="sum(x^2) / rate", source=_TEXTBOOK, unit="s", degree=2
+            name="energy",
+            meaning="integral of the square over time",
+            equation="sum(x^2) / rate",
+            source=_TEXTBOOK,
+            unit="s",
+            degree=2,
         ),
-        Feature(name="crest_factor", meaning="peak over rms", equation="max|x| / sqrt(mean(x^2))", source=_TEXTBOOK),
-        Feature(name="shape_factor", meaning="rms over the mean magnitude", equation="sqrt(mean(x^2)) / mean|x|", source=_FACTORS),
-        Feature(name="impulse_factor", meaning="peak over the mean magnitude", equation="max|x| / mean|x|", source=_FACTORS),
+        Feature(
+            name="crest_factor",
+            meaning="peak over rms",
+            equation="max|x| / sqrt(mean(x^2))",
+            source=_TEXTBOOK,
+        ),
+        Feature(
+            name="shape_factor",
+            meaning="rms over the mean magnitude",
+            equation="sqrt(mean(x^2)) / mean|x|",
+            source=_FACTORS,
+        ),
+        Feature(
+            name="impulse_factor",
+            meaning="peak over the mean magnitude",
+            equation="max|x| / mean|x|",
+            source=_FACTORS,
+        ),
         Feature(
             name="clearance_factor",
             meaning="peak over the squared mean root of the magnitude",

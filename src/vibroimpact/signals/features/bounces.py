@@ -1,4 +1,6 @@
-"""Packets and what they tell of bounces: number, impulses, ratio of peaks, time between, restitution."""
+"""Packets and what they tell of bounces: number, impulses, ratio of peaks, time between,
+restitution.
+"""
 
 from __future__ import annotations
 
@@ -11,14 +13,22 @@ from vibroimpact.signals.reasons import Reason
 
 
 def _of(block: Block) -> Floats:
-    signal, onset, peak, impulses = block.packets.signal, block.packets.onset, block.packets.peak, block.packets.impulses
+    signal, onset, peak, impulses = (
+        block.packets.signal,
+        block.packets.onset,
+        block.packets.peak,
+        block.packets.impulses,
+    )
     count = len(block.value)
     number = np.bincount(signal, minlength=count)
     # onset and peak of the first three packets of each signal
     order = np.arange(len(signal)) - np.repeat(np.cumsum(number) - number, number)
     times, peaks = np.full((2, count, 3), np.nan)
     early = order < 3
-    times[signal[early], order[early]], peaks[signal[early], order[early]] = onset[early], peak[early]
+    times[signal[early], order[early]], peaks[signal[early], order[early]] = (
+        onset[early],
+        peak[early],
+    )
     interval = np.diff(times, axis=1) / block.rate
     columns = (
         number,
@@ -30,12 +40,17 @@ def _of(block: Block) -> Floats:
     return np.stack(columns, axis=1)
 
 
-_PACKETS = "Wyss et al. 2016, Water Resour. Res. 52:7744; Chen et al. 2022, Earth Surf. Dynam. 10:279"
+_PACKETS = (
+    "Wyss et al. 2016, Water Resour. Res. 52:7744; Chen et al. 2022, Earth Surf. Dynam. 10:279"
+)
 
 FAMILY = Family(
     (
         Feature(
-            name="packets", meaning="number of packets of the envelope above the threshold", equation="count of packets", source=_PACKETS
+            name="packets",
+            meaning="number of packets of the envelope above the threshold",
+            equation="count of packets",
+            source=_PACKETS,
         ),
         Feature(
             name="impulses",
@@ -60,7 +75,8 @@ FAMILY = Family(
         ),
         Feature(
             name="bounce_restitution",
-            meaning="restitution of a ball that bounces up and down: ratio of the times between its impacts",
+            meaning="restitution of a ball that bounces up and down: ratio of the times between "
+            "its impacts",
             equation="(t3 - t2) / (t2 - t1)",
             source="Bernstein 1977, Am. J. Phys. 45:41",
             lacking=Reason.TWO_PACKETS,

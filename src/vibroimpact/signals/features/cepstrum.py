@@ -1,4 +1,5 @@
-"""Cepstral coefficients: the shape of the logarithmic spectrum, from coarse to fine, in bands of equal width.
+"""Cepstral coefficients: the shape of the logarithmic spectrum, from coarse to fine, in bands of
+equal width.
 
 Bands of the mel scale follow the ear; a plate has none, so that the bands are linear.
 """
@@ -28,7 +29,9 @@ def _of(block: Block) -> Floats:
 
 @lru_cache(maxsize=8)
 def _triangles(frequencies: int) -> Floats:
-    """Return triangular windows that overlap by half and fill the range from zero to half the rate, (frequencies, bands)."""
+    """Return triangular windows that overlap by half and fill the range from zero to half
+    the rate, (frequencies, bands).
+    """
     place = np.linspace(0.0, _BANDS + 1.0, frequencies)[:, None]
     return np.asarray(np.maximum(1.0 - np.abs(place - np.arange(1, _BANDS + 1)), 0.0))
 
@@ -38,8 +41,10 @@ FAMILY = Family(
         Feature(
             name=f"cepstrum_{number}",
             meaning=f"cepstral coefficient {number} of 20 linear bands",
-            equation=f"sqrt(2/20) sum(ln(E[b]/sum(P) + 1e-10) cos(pi {number} (b - 1/2) / 20), b = 1..20), E of triangular bands",
-            source="Davis & Mermelstein 1980, IEEE Trans. Acoust. Speech Signal Process. 28:357, with linear bands",
+            equation=f"sqrt(2/20) sum(ln(E[b]/sum(P) + 1e-10) cos(pi {number} (b - 1/2) / 20), b = "
+            "1..20), E of triangular bands",
+            source="Davis & Mermelstein 1980, IEEE Trans. Acoust. Speech Signal Process. 28:357, "
+            "with linear bands",
             least=_LEAST,
         )
         for number in range(1, _COEFFICIENTS + 1)

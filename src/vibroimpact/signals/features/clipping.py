@@ -1,4 +1,6 @@
-"""The part of a signal that is clipped: a converter that is overdriven repeats its largest value."""
+"""The part of a signal that is clipped: a converter that is overdriven repeats its
+largest value.
+"""
 
 from __future__ import annotations
 
@@ -11,7 +13,9 @@ from vibroimpact.signals.feature import Family, Feature
 _RUN = 3
 """Samples in a row that make a clipping: a sampled tone can touch its extreme twice."""
 _AT_REST = 1e-6
-"""Part of the largest magnitude up to which a signal rests: the level of a force between impacts is no end of a converter's range."""
+"""Part of the largest magnitude up to which a signal rests: the level of a force between
+impacts is no end of a converter's range.
+"""
 
 
 def _of(block: Block) -> Floats:
@@ -35,8 +39,10 @@ FAMILY = Family(
     (
         Feature(
             name="clipped_part",
-            meaning="part of the samples in runs of three or more at the largest positive or the most negative value",
-            equation="sum(x[i] = max(x) > 0 or x[i] = min(x) < 0, in runs of 3 and more) / samples, extremes of what was recorded",
+            meaning="part of the samples in runs of three or more at the largest positive or the "
+            "most negative value",
+            equation="sum(x[i] = max(x) > 0 or x[i] = min(x) < 0, in runs of 3 and more) / "
+            "samples, extremes of what was recorded",
             source="of this program",
         ),
     ),

@@ -21,14 +21,20 @@ def _of(block: Block) -> Floats:
     # the energy that is still to come, and where it has fallen to a part of all
     left = np.cumsum((block.value**2)[:, ::-1], axis=1)[:, ::-1]
     left = left / left[:, :1]
-    first_fall, last_fall = (_fall(left, 10.0 ** (level / 10.0)) for level in (_FIRST_DECIBELS, _LAST_DECIBELS))
-    decay = 2.0 * (last_fall - first_fall) / (np.log(10.0) / 10.0 * (_FIRST_DECIBELS - _LAST_DECIBELS))
+    first_fall, last_fall = (
+        _fall(left, 10.0 ** (level / 10.0)) for level in (_FIRST_DECIBELS, _LAST_DECIBELS)
+    )
+    decay = (
+        2.0 * (last_fall - first_fall) / (np.log(10.0) / 10.0 * (_FIRST_DECIBELS - _LAST_DECIBELS))
+    )
     centroid = (block.value**2) @ np.arange(block.samples) / block.square_sum - onset
     return np.stack([top - onset, last - onset, decay, centroid], axis=1) / block.rate
 
 
 def _fall(left: Floats, part: float) -> Floats:
-    """Return the sample, between samples by interpolation, at which what is left falls below a part; it ends at zero."""
+    """Return the sample, between samples by interpolation, at which what is left falls
+    below a part; it ends at zero.
+    """
     row = np.arange(len(left))
     after = np.count_nonzero(left >= part, axis=1)
     begin = left[row, np.maximum(after - 1, 0)]
@@ -59,7 +65,8 @@ FAMILY = Family(
         ),
         Feature(
             name="decay_time",
-            meaning="time constant of the amplitude, from the energy still to come between -5 and -25 dB",
+            meaning="time constant of the amplitude, from the energy still to come between -5 and "
+            "-25 dB",
             equation="2 (t(-25 dB) - t(-5 dB)) / ln(100), with the level of sum(x[j]^2, j >= i)",
             source="Schroeder 1965, J. Acoust. Soc. Am. 37:409; ISO 3382-1, T20",
             unit="s",

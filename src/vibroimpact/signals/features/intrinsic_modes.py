@@ -1,4 +1,6 @@
-"""Energies of intrinsic modes: oscillations of rising period that empirical mode decomposition takes off a signal."""
+"""Energies of intrinsic modes: oscillations of rising period that empirical mode
+decomposition takes off a signal.
+"""
 
 from __future__ import annotations
 
@@ -12,15 +14,18 @@ from vibroimpact.signals.feature import Family, Feature
 _MODES, _SIFTINGS = 4, 6
 _LEAST = 16
 _LEVEL = 1e-10
-"""Difference of neighbours, beside the largest magnitude of the signal, that counts as none: differences of cubics have rounding errors."""
+"""Difference of neighbours, beside the largest magnitude of the signal, that counts as
+none: differences of cubics have rounding errors.
+"""
 
 
 def intrinsic_modes(value: Floats, modes: int = _MODES, siftings: int = _SIFTINGS) -> Floats:
     """Return the first intrinsic modes of signals.
 
-    A sifting takes the mean of the cubics through the maxima and through the minima off the signal. What a fixed number of them leaves is
-    the first mode; it is taken off, and the rest has the next one. A rest without a maximum and a minimum has no mode. The cubics are
-    monotone between knots: the customary splines overshoot by orders of magnitude in the silence between two impacts.
+    A sifting takes the mean of the cubics through the maxima and through the minima off the signal.
+    What a fixed number of them leaves is the first mode; it is taken off, and the rest has the next
+    one. A rest without a maximum and a minimum has no mode. The cubics are monotone between knots:
+    the customary splines overshoot by orders of magnitude in the silence between two impacts.
 
     Parameters
     ----------
@@ -29,14 +34,19 @@ def intrinsic_modes(value: Floats, modes: int = _MODES, siftings: int = _SIFTING
     modes : int, default 4
         How many.
     siftings : int, default 6
-        Siftings of each mode; a fixed number makes the decomposition the same at every scale (Wu and Huang 2009).
+        Siftings of each mode; a fixed number makes the decomposition the same at every scale (Wu
+        and Huang 2009).
 
     Returns
     -------
     array, shape (modes, n, samples)
         The modes; zero where there is none.
     """
-    found, rest, least = np.zeros((modes, *value.shape)), value.copy(), _LEVEL * np.abs(value).max(axis=1)
+    found, rest, least = (
+        np.zeros((modes, *value.shape)),
+        value.copy(),
+        _LEVEL * np.abs(value).max(axis=1),
+    )
     left = np.arange(len(value))  # signals whose rest has a mode
     for mode in found:
         going, sifted = left, rest[left]
@@ -56,7 +66,9 @@ def intrinsic_modes(value: Floats, modes: int = _MODES, siftings: int = _SIFTING
 
 
 def _extrema(value: Floats, least: Floats) -> tuple[Indices, Indices]:
-    """Return places of maxima and minima in flattened signals, by steps above the least (n,); of equal neighbours the first."""
+    """Return places of maxima and minima in flattened signals, by steps above the least
+    (n,); of equal neighbours the first.
+    """
     step = np.zeros_like(value)  # the last one of a signal is none
     np.subtract(value[:, 1:], value[:, :-1], out=step[:, :-1])
     moving = np.flatnonzero(np.abs(step) > least[:, None])
@@ -84,8 +96,10 @@ FAMILY = Family(
         Feature(
             name=f"intrinsic_mode_{number}",
             meaning=f"energy of intrinsic mode {number} over that of the signal",
-            equation=f"sum(c[{number}]^2) / sum(x^2), c by {_SIFTINGS} siftings with monotone cubics",
-            source="Huang et al. 1998, Proc. R. Soc. A 454:903; Wu & Huang 2009, Adv. Adapt. Data Anal. 1:1",
+            equation=f"sum(c[{number}]^2) / sum(x^2), c by {_SIFTINGS} siftings with monotone "
+            "cubics",
+            source="Huang et al. 1998, Proc. R. Soc. A 454:903; Wu & Huang 2009, Adv. Adapt. Data "
+            "Anal. 1:1",
             least=_LEAST,
         )
         for number in range(1, _MODES + 1)

@@ -19,7 +19,9 @@ def _of(block: Block) -> Floats:
     square = centred * centred
     variance = square.mean(axis=1)
     third, fourth = np.einsum("ij,ij->i", square, centred), np.einsum("ij,ij->i", square, square)
-    return np.stack([third / block.samples / variance**1.5, fourth / block.samples / variance**2], axis=1)
+    return np.stack(
+        [third / block.samples / variance**1.5, fourth / block.samples / variance**2], axis=1
+    )
 
 
 _SOURCE = "Joanes & Gill 1998, J. R. Stat. Soc. D 47:183"

@@ -17,8 +17,12 @@ _LEAST = 2 ** (_BANDS + 2)  # two frequencies in the lowest band
 def _of(block: Block) -> Floats:
     total = block.power.sum(axis=1)
     half = block.rate / 2.0
-    edges = np.searchsorted(block.frequency, half / 2.0 ** np.arange(_BANDS + 1) * (1.0 + 1e-12), side="right")
-    bands = [block.power[:, low:high].sum(axis=1) / total for high, low in itertools.pairwise(edges)]
+    edges = np.searchsorted(
+        block.frequency, half / 2.0 ** np.arange(_BANDS + 1) * (1.0 + 1e-12), side="right"
+    )
+    bands = [
+        block.power[:, low:high].sum(axis=1) / total for high, low in itertools.pairwise(edges)
+    ]
     return np.stack(bands, axis=1)
 
 
@@ -28,7 +32,8 @@ FAMILY = Family(
             name=f"octave_band_{number}",
             meaning=f"part of the energy in octave {number} below half the rate",
             equation=f"sum(P, rate/{2 ** (number + 1)} < f <= rate/{2**number}) / sum(P)",
-            source="of this program: ratios of 2 down from half the rate, not standard octave bands",
+            source="of this program: ratios of 2 down from half the rate, not standard octave "
+            "bands",
             least=_LEAST,
         )
         for number in range(1, _BANDS + 1)

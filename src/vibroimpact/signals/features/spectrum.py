@@ -21,18 +21,25 @@ def _of(block: Block) -> Floats:
     centroid = part @ frequency
     bandwidth = np.sqrt(np.maximum(part @ frequency**2 - centroid**2, 0.0))
     reached = np.count_nonzero(np.cumsum(part, axis=1) < _ROLL_OFF, axis=1)
-    roll_off = np.where(np.isnan(centroid), np.nan, frequency[np.minimum(reached, len(frequency) - 1)])
+    roll_off = np.where(
+        np.isnan(centroid), np.nan, frequency[np.minimum(reached, len(frequency) - 1)]
+    )
     peak = np.where(np.isnan(centroid), np.nan, frequency[amplitude.argmax(axis=1)])
     logarithm = np.log(part + _TINY)
     flatness = np.exp(logarithm.mean(axis=1)) * len(frequency)
     entropy = np.maximum(-np.einsum("ij,ij->i", part, logarithm), 0.0) / np.log(len(frequency))
     amplitude_centroid = amplitude @ frequency / amplitude.sum(axis=1)
-    in_hertz = np.stack([centroid, amplitude_centroid, bandwidth, roll_off, peak, _cut_off(amplitude, frequency)], axis=1)
+    in_hertz = np.stack(
+        [centroid, amplitude_centroid, bandwidth, roll_off, peak, _cut_off(amplitude, frequency)],
+        axis=1,
+    )
     return np.concatenate([in_hertz * block.rate, np.stack([flatness, entropy], axis=1)], axis=1)
 
 
 def _cut_off(amplitude: Floats, frequency: Floats) -> Floats:
-    """Return the highest frequency at which the amplitude is 10 dB below its maximum, between the frequencies by its logarithm."""
+    """Return the highest frequency at which the amplitude is 10 dB below its maximum,
+    between the frequencies by its logarithm.
+    """
     row, level = np.arange(len(amplitude)), amplitude.max(axis=1, keepdims=True) / np.sqrt(10.0)
     last = amplitude.shape[1] - 1 - (amplitude >= level)[:, ::-1].argmax(axis=1)
     after = np.minimum(last + 1, len(frequency) - 1)
@@ -45,10 +52,17 @@ _PEETERS = "Peeters 2004, A large set of audio features, IRCAM, section 6.1, by 
 
 FAMILY = Family(
     (
-        Feature(name="spectral_centroid", meaning="mean frequency of the energy", equation="sum(f P) / sum(P)", source=_PEETERS, unit="Hz"),
+        Feature(
+            name="spectral_centroid",
+            meaning="mean frequency of the energy",
+            equation="sum(f P) / sum(P)",
+            source=_PEETERS,
+            unit="Hz",
+        ),
         Feature(
             name="amplitude_centroid",
-            meaning="mean frequency of the amplitude spectrum, the centroid frequency of bedload measurement",
+            meaning="mean frequency of the amplitude spectrum, the centroid frequency of bedload "
+            "measurement",
             equation="sum(f |X|) / sum|X|",
             source="Wyss et al. 2016, Water Resour. Res. 52:7744",
             unit="Hz",
@@ -64,15 +78,21 @@ FAMILY = Family(
             name="spectral_roll_off",
             meaning=f"frequency below which {_ROLL_OFF:.0%} of the energy lies".replace("%", " %"),
             equation=f"least f with sum(P up to f) >= {_ROLL_OFF:g} sum(P)",
-            source="Tzanetakis & Cook 2002, IEEE Trans. Speech Audio Process. 10:293, by the energy",
+            source="Tzanetakis & Cook 2002, IEEE Trans. Speech Audio Process. 10:293, by the "
+            "energy",
             unit="Hz",
         ),
         Feature(
-            name="peak_frequency", meaning="frequency of the largest amplitude", equation="argmax |X|", source="of this program", unit="Hz"
+            name="peak_frequency",
+            meaning="frequency of the largest amplitude",
+            equation="argmax |X|",
+            source="of this program",
+            unit="Hz",
         ),
         Feature(
             name="cut_off_10_dB",
-            meaning="highest frequency at which the amplitude is 10 dB below its maximum: 1.16 over the contact time, of Hertz's force",
+            meaning="highest frequency at which the amplitude is 10 dB below its maximum: 1.16 "
+            "over the contact time, of Hertz's force",
             equation="largest f with |X| = max|X| / sqrt(10)",
             source="ISO 7626-5, of hammers",
             unit="Hz",

@@ -1,4 +1,6 @@
-"""Energies of wavelet packets: the signal is halved into low and high frequencies, and each half again."""
+"""Energies of wavelet packets: the signal is halved into low and high frequencies, and
+each half again.
+"""
 
 from __future__ import annotations
 
@@ -31,8 +33,8 @@ _HIGH = tuple((-1) ** place * tap for place, tap in enumerate(reversed(_LOW)))
 def wavelet_packet_energies(value: Floats) -> Floats:
     """Return the energies of the eight wavelet packets of level 3, from low to high frequencies.
 
-    The transform is orthogonal, of the record as a period, with zeros up to a multiple of eight samples: the energies add up to the sum of
-    the squares of the samples.
+    The transform is orthogonal, of the record as a period, with zeros up to a multiple of eight
+    samples: the energies add up to the sum of the squares of the samples.
 
     Parameters
     ----------
@@ -53,7 +55,9 @@ def wavelet_packet_energies(value: Floats) -> Floats:
 
 
 def _filtered(value: Floats, taps: tuple[float, ...]) -> Floats:
-    """Return every second sample of the circular correlation of signals with a filter, from three samples before the first one on."""
+    """Return every second sample of the circular correlation of signals with a filter,
+    from three samples before the first one on.
+    """
     samples = value.shape[1]
     turned = value[:, np.arange(-3, samples + len(taps) - 4) % samples]
     found = taps[0] * turned[:, 0:samples:2]
@@ -64,18 +68,24 @@ def _filtered(value: Floats, taps: tuple[float, ...]) -> Floats:
 
 def _of(block: Block) -> Floats:
     part = wavelet_packet_energies(block.value) / block.square_sum[:, None]
-    entropy = -np.sum(part * np.log(np.maximum(part, np.finfo(float).tiny)), axis=1, keepdims=True) / np.log(_NODES)
+    entropy = -np.sum(
+        part * np.log(np.maximum(part, np.finfo(float).tiny)), axis=1, keepdims=True
+    ) / np.log(_NODES)
     return np.concatenate([part, np.maximum(entropy, 0.0)], axis=1)
 
 
-_SOURCE = "Coifman & Wickerhauser 1992, IEEE Trans. Inf. Theory 38:713; Daubechies 1988, Commun. Pure Appl. Math. 41:909"
+_SOURCE = (
+    "Coifman & Wickerhauser 1992, IEEE Trans. Inf. Theory 38:713; Daubechies 1988, Commun. Pure "
+    "Appl. Math. 41:909"
+)
 
 FAMILY = Family(
     (
         *(
             Feature(
                 name=f"wavelet_packet_{number}",
-                meaning=f"part of the energy in wavelet packet {number} of 8, from low to high frequencies",
+                meaning=f"part of the energy in wavelet packet {number} of 8, from low to high "
+                "frequencies",
                 equation=f"sum(c[{number}]^2) / sum(x^2), c of db4, level 3",
                 source=_SOURCE,
                 least=_NODES,

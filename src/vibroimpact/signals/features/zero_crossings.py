@@ -21,7 +21,8 @@ FAMILY = Family(
             name="zero_crossing_rate",
             meaning="changes of sign in a second; zero counts as positive",
             equation="sum((x[i] >= 0) != (x[i-1] >= 0)) rate / samples",
-            source="Rice 1944, Bell Syst. Tech. J. 23:282, of noise; Kedem 1986, Proc. IEEE 74:1477",
+            source="Rice 1944, Bell Syst. Tech. J. 23:282, of noise; Kedem 1986, Proc. IEEE "
+            "74:1477",
             unit="1/s",
         ),
     ),

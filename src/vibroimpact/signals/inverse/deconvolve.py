@@ -1,9 +1,11 @@
 r"""Regularised deconvolution: a force in time from records that are linear in it.
 
-The force is piecewise linear between nodes, zero at both ends, and smooth: its third differences are normal, of a common standard
-deviation, which may be larger by a factor where a contact begins and ends. Both that deviation and the estimate follow from the marginal
-likelihood of the records (D. J. C. MacKay, Bayesian interpolation, Neural Computation 4:415, 1992).
-A sign is not imposed: the contact laws of many programs pull before release, and where the records do not tell the force, the band says so.
+The force is piecewise linear between nodes, zero at both ends, and smooth: its third differences
+are normal, of a common standard deviation, which may be larger by a factor where a contact begins
+and ends. Both that deviation and the estimate follow from the marginal likelihood of the records
+(D. J. C. MacKay, Bayesian interpolation, Neural Computation 4:415, 1992). A sign is not imposed:
+the contact laws of many programs pull before release, and where the records do not tell the force,
+the band says so.
 """
 
 from __future__ import annotations
@@ -59,7 +61,8 @@ def deconvolve(matrix: Floats, record: Floats, roughness: Floats | None = None) 
     record : array, shape (samples,)
         The records, over the same.
     roughness : array, shape (nodes + 3,), optional
-        Relative standard deviations of the third differences, which lie half a step beside the nodes; ones by default.
+        Relative standard deviations of the third differences, which lie half a step beside the
+        nodes; ones by default.
 
     Examples
     --------
@@ -86,4 +89,9 @@ def deconvolve(matrix: Floats, record: Floats, roughness: Floats | None = None) 
     best = int(np.argmax(evidence))
     strength = float(strengths[best, 0])
     covariance = (vectors / (values + strength)) @ vectors.T
-    return Deconvolved(np.asarray(covariance @ told), np.asarray(covariance), strength / scale, float(evidence[best]))
+    return Deconvolved(
+        np.asarray(covariance @ told),
+        np.asarray(covariance),
+        strength / scale,
+        float(evidence[best]),
+    )

@@ -35,14 +35,19 @@ class Fit:
 
 
 def gauss_newton(
-    model: Callable[[Floats], tuple[Floats, Floats]], start: Floats, most: Floats, tolerance: float = 0.02, steps: int = 12
+    model: Callable[[Floats], tuple[Floats, Floats]],
+    start: Floats,
+    most: Floats,
+    tolerance: float = 0.02,
+    steps: int = 12,
 ) -> Fit:
     """Return parameters that make the sum of the squares of residuals least.
 
     Parameters
     ----------
     model : callable
-        Takes parameters (p,) and returns the residuals (n,), in their standard deviations, and their derivatives (n, p).
+        Takes parameters (p,) and returns the residuals (n,), in their standard deviations, and
+        their derivatives (n, p).
     start : array, shape (p,)
         Where to begin.
     most : array, shape (p,)
@@ -57,8 +62,12 @@ def gauss_newton(
     >>> x = np.linspace(0.0, 1.0, 20)
     >>> def decay(p):
     ...     shape = np.exp(-p[1] * x)
-    ...     return p[0] * shape - 3.0 * np.exp(-2.0 * x), np.stack([shape, -p[0] * x * shape], axis=1)
-    >>> gauss_newton(decay, np.array([1.0, 1.0]), np.array([9.0, 9.0]), 1e-9).parameters.round(6).tolist()
+    ...     return p[0] * shape - 3.0 * np.exp(-2.0 * x), np.stack(
+    ...         [shape, -p[0] * x * shape], axis=1
+    ...     )
+    >>> gauss_newton(decay, np.array([1.0, 1.0]), np.array([9.0, 9.0]), 1e-9).parameters.round(
+    ...     6
+    ... ).tolist()
     [3.0, 2.0]
     """
     parameters = np.asarray(start, dtype=float)
@@ -70,7 +79,8 @@ def gauss_newton(
         step /= max(1.0, float(np.max(np.abs(step) / most)))
         change = slopes @ step
         converged = bool(change @ change < tolerance**2 * len(step))
-        for _ in range(1 if converged else _HALVINGS):  # a part of a step that is small enough is not worth another model
+        # a part of a step that is small enough is not worth another model
+        for _ in range(1 if converged else _HALVINGS):
             tried = model(parameters + step)
             if tried[0] @ tried[0] < residual @ residual:
                 break
@@ -85,7 +95,12 @@ def gauss_newton(
 
 
 def _covariance(slopes: Floats) -> Floats:
-    """Return the inverse of the normal matrix, by columns scaled alike; zero for a parameter that the model does not depend on."""
+    """Return the inverse of the normal matrix, by columns scaled alike; zero for a
+    parameter that the model does not depend on.
+    """
     scale = np.linalg.norm(slopes, axis=0)
     scale = np.where(scale > 0.0, scale, 1.0)
-    return np.asarray(np.linalg.pinv((slopes / scale).T @ (slopes / scale), rcond=1e-13, hermitian=True) / np.outer(scale, scale))
+    return np.asarray(
+        np.linalg.pinv((slopes / scale).T @ (slopes / scale), rcond=1e-13, hermitian=True)
+        / np.outer(scale, scale)
+    )

@@ -1,7 +1,7 @@
 r"""The force of an elastic Hertzian impact, and the sphere behind its impulse and duration.
 
-A sphere of mass m that hits at the speed v and leaves with the restitution e gives the impulse :math:`J = m v (1 + e)` in the time
-(Johnson, Contact Mechanics, 1985, eq. 11.24)
+A sphere of mass m that hits at the speed v and leaves with the restitution e gives the impulse
+:math:`J = m v (1 + e)` in the time (Johnson, Contact Mechanics, 1985, eq. 11.24)
 
 .. math:: T = 2.87\left(\frac{m^2}{E^{*2} R\,v}\right)^{1/5}
 
@@ -25,7 +25,8 @@ _TIME = 2.868
 def hertz_pulse(time: Floats) -> Floats:
     r"""Return the force of an elastic Hertzian impact of unit impulse and unit duration.
 
-    With :math:`x = (\delta/\delta_{max})^{5/2}` the time since first touch is :math:`t/T = \frac12 I_x(2/5, 1/2)` up to the deepest point
+    With :math:`x = (\delta/\delta_{max})^{5/2}` the time since first touch is :math:`t/T = \frac12
+    I_x(2/5, 1/2)` up to the deepest point
     (Johnson, Contact Mechanics, 1985, eq. 11.23), and the force is proportional to :math:`x^{3/5}`.
 
     Parameters
@@ -36,7 +37,10 @@ def hertz_pulse(time: Floats) -> Floats:
     Examples
     --------
     >>> t = np.linspace(0.0, 1.0, 2001)
-    >>> round(float(np.trapezoid(hertz_pulse(t), t)), 6), round(float(hertz_pulse(np.array([0.5]))[0]), 4)
+    >>> (
+    ...     round(float(np.trapezoid(hertz_pulse(t), t)), 6),
+    ...     round(float(hertz_pulse(np.array([0.5]))[0]), 4),
+    ... )
     (1.0, 1.8395)
     """
     from scipy.special import beta, betaincinv
@@ -47,7 +51,8 @@ def hertz_pulse(time: Floats) -> Floats:
 
 
 def hertz_rise(part: Floats) -> tuple[Floats, Floats]:
-    """Return the time at which an elastic Hertzian force has risen to a part of its largest value, over the duration, and the derivative.
+    """Return the time at which an elastic Hertzian force has risen to a part of its largest value,
+    over the duration, and the derivative.
 
     Parameters
     ----------
@@ -69,7 +74,8 @@ def hertz_rise(part: Floats) -> tuple[Floats, Floats]:
 
 
 def hertz_impulses(duration: float) -> tuple[Floats, Floats]:
-    r"""Return times since first touch [s] and impulses, of sum one, that stand for a Hertzian pulse.
+    r"""Return times since first touch [s] and impulses, of sum one, that stand for a Hertzian
+    pulse.
 
     Parameters
     ----------
@@ -95,7 +101,9 @@ def _unit_impulses() -> tuple[Floats, Floats]:
     return times, impulses / impulses.sum()
 
 
-def sphere_of_pulse(impulse: float, duration: float, density: float, modulus: float, restitution: float) -> tuple[float, float]:
+def sphere_of_pulse(
+    impulse: float, duration: float, density: float, modulus: float, restitution: float
+) -> tuple[float, float]:
     """Return the radius [m] and the speed [m/s] of the sphere behind a Hertzian pulse.
 
     Parameters
@@ -115,9 +123,14 @@ def sphere_of_pulse(impulse: float, duration: float, density: float, modulus: fl
     --------
     >>> mass = 4.0 / 3.0 * np.pi * 0.02**3 * 2600.0
     >>> duration = 2.868 * (mass**2 / (20e9**2 * 0.02 * 3.0)) ** 0.2
-    >>> [round(float(value), 6) for value in sphere_of_pulse(mass * 3.0 * 1.6, duration, 2600.0, 20e9, 0.6)]
+    >>> [
+    ...     round(float(value), 6)
+    ...     for value in sphere_of_pulse(mass * 3.0 * 1.6, duration, 2600.0, 20e9, 0.6)
+    ... ]
     [0.02, 3.0]
     """
     weight = ball_volume(1.0) * density
-    radius = ((duration / _TIME) ** 5 * modulus**2 * impulse / ((1.0 + restitution) * weight**3)) ** 0.125
+    radius = (
+        (duration / _TIME) ** 5 * modulus**2 * impulse / ((1.0 + restitution) * weight**3)
+    ) ** 0.125
     return radius, impulse / ((1.0 + restitution) * weight * radius**3)

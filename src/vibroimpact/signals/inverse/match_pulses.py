@@ -1,8 +1,12 @@
-r"""The place of a pulse by least squares over a grid: impulse, duration and instant are eliminated at each place.
+r"""The place of a pulse by least squares over a grid: impulse, duration and instant are eliminated
+at each place.
 
-Where the record of a unit pulse at a place is :math:`\sum_i \varphi_i\,h_i`, the least misfit over the impulse J of records d is
+Where the record of a unit pulse at a place is :math:`\sum_i \varphi_i\,h_i`, the least misfit over
+the impulse J of records d is
 
-.. math:: |d|^2 - \frac{(\sum_i \varphi_i\,h_i \cdot d)^2}{\sum_{ij} \varphi_i \varphi_j\,h_i \cdot h_j}
+.. math::
+
+    |d|^2 - \frac{(\sum_i \varphi_i\,h_i \cdot d)^2}{\sum_{ij} \varphi_i \varphi_j\,h_i \cdot h_j}
 
 so that a place costs a quadratic form in its mode shapes, however long the records.
 """
@@ -18,7 +22,9 @@ from vibroimpact.arrays import Floats, Integers
 
 
 class Matched(NamedTuple):
-    """The best pulse at each place: misfit (places,), impulse [N s], duration [s] and number of the first touch."""
+    """The best pulse at each place: misfit (places,), impulse [N s], duration [s] and
+    number of the first touch.
+    """
 
     misfit: Floats
     impulse: Floats
@@ -42,7 +48,8 @@ def match_pulses(
     records : array, shape (n,)
         The samples of all records, over the standard deviations of their noise.
     responses : callable
-        Takes the duration [s] and the number of the first touch of a unit pulse and returns the records of it in each mode, (modes, n).
+        Takes the duration [s] and the number of the first touch of a unit pulse and returns the
+        records of it in each mode, (modes, n).
     durations : iterable of float
         Durations that are tried [s].
     touches : sequence of int
@@ -53,7 +60,13 @@ def match_pulses(
     A pulse on the first of two places, each of which moves in one mode:
 
     >>> records = np.array([0.0, 0.0, 3.0, 0.0])
-    >>> found = match_pulses(np.eye(2), records, lambda duration, touch: np.stack([np.eye(4)[touch], np.ones(4)]), [1.0], range(4))
+    >>> found = match_pulses(
+    ...     np.eye(2),
+    ...     records,
+    ...     lambda duration, touch: np.stack([np.eye(4)[touch], np.ones(4)]),
+    ...     [1.0],
+    ...     range(4),
+    ... )
     >>> found.misfit.tolist(), found.impulse.tolist(), float(found.touch[0])
     ([0.0, 6.75], [3.0, 0.75], 2.0)
     """
@@ -64,17 +77,21 @@ def match_pulses(
         # the energy of a pulse hardly depends on when it is
         power = np.einsum("pi,ij,pj->p", shapes, middle @ middle.T, shapes, optimize=True)
         for touch in touches:
-            along = np.maximum(shapes @ (responses(duration, touch) @ records), 0.0)  # a force pushes
+            # a force pushes
+            along = np.maximum(shapes @ (responses(duration, touch) @ records), 0.0)
             impulse = np.divide(along, power, out=np.zeros_like(along), where=power > 0.0)
             misfit = energy - along * impulse
             better = misfit < best.misfit
             found = (misfit, impulse, np.full(len(shapes), duration), np.full(len(shapes), touch))
-            best = Matched(*(np.where(better, new, old) for new, old in zip(found, best, strict=True)))
+            best = Matched(
+                *(np.where(better, new, old) for new, old in zip(found, best, strict=True))
+            )
     return best
 
 
 def local_minima(values: Floats) -> Integers:
-    """Return the places in a flattened grid (rows, columns) whose values are below those of their eight neighbours, the least first.
+    """Return the places in a flattened grid (rows, columns) whose values are below those of their
+    eight neighbours, the least first.
 
     Examples
     --------

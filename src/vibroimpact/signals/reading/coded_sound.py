@@ -1,6 +1,7 @@
 """Records from the sound files of phones, by PyAV (FFmpeg): M4A, MP3, Ogg and FLAC.
 
-The format is that of the name, and the file is handed over opened: nothing that a file refers to is opened besides it.
+The format is that of the name, and the file is handed over opened: nothing that a file refers to is
+opened besides it.
 """
 
 from __future__ import annotations
@@ -27,18 +28,27 @@ if TYPE_CHECKING:
 FORMATS = {".m4a": "mp4", ".mp3": "mp3", ".ogg": "ogg", ".opus": "ogg", ".flac": "flac"}
 """Endings of files with coded sound, and FFmpeg's names of their formats."""
 
-SOUND = FileKind("sound is read from WAV, M4A, MP3, Ogg, Opus and FLAC files", 1_000_000_000, "keep the part with the impacts")
+SOUND = FileKind(
+    "sound is read from WAV, M4A, MP3, Ogg, Opus and FLAC files",
+    1_000_000_000,
+    "keep the part with the impacts",
+)
 """Requirements on a file with coded sound."""
 
 _BLUR = 4e-3
-"""Time over which coders with losses spread what begins suddenly [s]: of a beat, up to 4 ms were measured (`test_coded_sound.py`)."""
+"""Time over which coders with losses spread what begins suddenly [s]: of a beat, up to 4
+ms were measured (`test_coded_sound.py`).
+"""
 
 _LONGEST = 6 * 3600.0
-"""Longest sound [s]: a block of silence takes a few bytes, so that the size of a file does not bound it."""
+"""Longest sound [s]: a block of silence takes a few bytes, so that the size of a file
+does not bound it.
+"""
 
 
 def coded_records(path: Path) -> Iterator[Record]:
-    """Yield the channels of a file with coded sound, with full scale as 1; a coding with losses is a doubt.
+    """Yield the channels of a file with coded sound, with full scale as 1; a coding with losses is
+    a doubt.
 
     Raises
     ------
@@ -58,8 +68,14 @@ def _records(file: FileIO, path: Path) -> Iterator[Record]:
         from av import logging
     except ImportError as error:
         if isinstance(error, ModuleNotFoundError) and error.name == "av":
-            raise InputError(f'sound in {path.suffix} needs PyAV, which is not installed: pip install "vibroimpact[audio]"') from None
-        fault = f"which can't be loaded ({shortened(str(error), 200)}); install it anew, or convert the file to WAV"
+            raise InputError(
+                f"sound in {path.suffix} needs PyAV, which is not installed: pip install "
+                '"vibroimpact[audio]"'
+            ) from None
+        fault = (
+            f"which can't be loaded ({shortened(str(error), 200)}); install it anew, or "
+            "convert the file to WAV"
+        )
         raise InputError(f"sound in {path.suffix} needs PyAV, {fault}") from None
     logging.set_level(None)  # what FFmpeg has to say is an error here, or of no account
     try:
@@ -74,10 +90,16 @@ def _records(file: FileIO, path: Path) -> Iterator[Record]:
     except UnicodeDecodeError:
         raise InputError(f"its labels are damaged; {SOUND.what}") from None
     except (av.FFmpegError, ValueError) as error:
-        raise InputError(f"it can't be read as its name says ({_cause(error)}); {SOUND.what}") from None
+        raise InputError(
+            f"it can't be read as its name says ({_cause(error)}); {SOUND.what}"
+        ) from None
     if not value.shape[1]:
         raise InputError("there are no samples in it")
-    coded = (_loss_doubt(stream),) if stream.codec_context.codec.lossy and not stream.codec_context.codec.lossless else ()
+    coded = (
+        (_loss_doubt(stream),)
+        if stream.codec_context.codec.lossy and not stream.codec_context.codec.lossless
+        else ()
+    )
     blur = _BLUR if coded else 0.0
     for number, channel in enumerate(value):
         name = path.stem if len(value) == 1 else f"{path.stem} {number + 1}"
@@ -85,19 +107,31 @@ def _records(file: FileIO, path: Path) -> Iterator[Record]:
 
 
 class _Opened:
-    """An opened file for FFmpeg, which seeks before the begin of files that are too short: there this stays at it."""
+    """An opened file for FFmpeg, which seeks before the begin of files that are too
+    short: there this stays at it.
+    """
 
     def __init__(self, file: FileIO) -> None:
         self.read, self.tell, self._file = file.read, file.tell, file
 
     def seek(self, offset: int, whence: int = SEEK_SET) -> int:
-        """Move to an offset [byte] from the begin, from here or from the end, and return where that is."""
-        origin = {SEEK_SET: 0, SEEK_CUR: self._file.tell(), SEEK_END: os.fstat(self._file.fileno()).st_size}[whence]
+        """Move to an offset [byte] from the begin, from here or from the end, and return
+        where that is.
+        """
+        origin = {
+            SEEK_SET: 0,
+            SEEK_CUR: self._file.tell(),
+            SEEK_END: os.fstat(self._file.fileno()).st_size,
+        }[whence]
         return self._file.seek(max(origin + offset, 0))
 
 
-def _samples(container: InputContainer, stream: AudioStream, rate: float) -> tuple[Floats, tuple[str, ...]]:
-    """Return the samples, (channels, samples), with full scale as 1, and a doubt where the file ends in a fault."""
+def _samples(
+    container: InputContainer, stream: AudioStream, rate: float
+) -> tuple[Floats, tuple[str, ...]]:
+    """Return the samples, (channels, samples), with full scale as 1, and a doubt where
+    the file ends in a fault.
+    """
     import av
 
     plain = av.AudioResampler(format="dblp")
@@ -110,15 +144,22 @@ def _samples(container: InputContainer, stream: AudioStream, rate: float) -> tup
             for block in plain.resample(frame):
                 samples += block.samples
                 if samples > _LONGEST * rate:
-                    raise InputError(f"it lasts longer than {_LONGEST / 3600.0:g} hours; {SOUND.smaller}")
+                    raise InputError(
+                        f"it lasts longer than {_LONGEST / 3600.0:g} hours; {SOUND.smaller}"
+                    )
                 if block.layout.nb_channels != channels or block.sample_rate != rate:
-                    raise InputError("its rate or its number of channels changes on the way; keep one part")
+                    raise InputError(
+                        "its rate or its number of channels changes on the way; keep one part"
+                    )
                 check_memory(16.0 * channels * samples, "its samples need", SOUND.smaller)
                 blocks.append(block.to_ndarray().astype(np.float64, copy=False))
     except av.FFmpegError as error:
         if not samples:
             raise
-        faults = (f"it is damaged, or cut off, {samples / rate:.4g} s after its start ({_cause(error)}); what comes after is left out",)
+        faults = (
+            f"it is damaged, or cut off, {samples / rate:.4g} s after its start "
+            f"({_cause(error)}); what comes after is left out",
+        )
     blocks += [block.to_ndarray().astype(np.float64, copy=False) for block in plain.resample(None)]
     return np.concatenate(blocks, axis=1), faults
 
@@ -132,7 +173,11 @@ def _loss_doubt(stream: AudioStream) -> str:
     bit_rate = stream.codec_context.bit_rate or stream.bit_rate
     size = f" at {bit_rate / 1000.0:.0f} kbit/s" if bit_rate else ""
     return (
-        f"its sound is coded with losses ({stream.codec_context.codec.canonical_name}{size}): what begins suddenly is spread over some "
-        "milliseconds, more at low rates of samples or bits, and what is not heard is left out; intervals of times of touches allow for "
-        f"{1e3 * _BLUR:g} ms of it, amplitudes, spectra and other features for none: record in WAV or FLAC where these count"
+        "its sound is coded with losses "
+        f"({stream.codec_context.codec.canonical_name}{size}): what begins suddenly is "
+        "spread over some "
+        "milliseconds, more at low rates of samples or bits, and what is not heard is left "
+        "out; intervals of times of touches allow for "
+        f"{1e3 * _BLUR:g} ms of it, amplitudes, spectra and other features for none: "
+        "record in WAV or FLAC where these count"
     )

@@ -1,4 +1,6 @@
-"""Sampling rate of a column of times, and samples at equal steps where the times are rounded or jitter."""
+"""Sampling rate of a column of times, and samples at equal steps where the times are
+rounded or jitter.
+"""
 
 from __future__ import annotations
 
@@ -11,11 +13,17 @@ from vibroimpact.arrays import Bools, Floats
 from vibroimpact.errors import InputError
 
 _LARGEST_SHIFT = 0.1
-"""Largest distance of a time from equal steps, as a part of a step: times are written with few digits."""
+"""Largest distance of a time from equal steps, as a part of a step: times are written
+with few digits.
+"""
 _LONGEST_STEP, _LARGEST_JITTER = 3.0, 0.5
-"""Longest step, and standard deviation of steps, over their median, of times that jitter; others are those of a history, or have gaps."""
+"""Longest step, and standard deviation of steps, over their median, of times that jitter;
+others are those of a history, or have gaps.
+"""
 _ROUNDED = 0.75
-"""Largest distance of rounded times from equal steps, in units of their last digit: a half, and what is uncertain of the steps."""
+"""Largest distance of rounded times from equal steps, in units of their last digit: a
+half, and what is uncertain of the steps.
+"""
 _WHOLE = 1e-3
 """Distance from a multiple of the last digit, as a part of it, that is none."""
 _MOST_DIGITS = 9
@@ -73,9 +81,14 @@ def rate_of(time: Floats, lines: Sequence[int] | None = None) -> float:
     if back.size:
         at = int(back[0])
         above = "the previous one" if lines is None else "the one above"
-        words = f"{_sample(at + 1, lines)} is {time[at] - time[at + 1]:.3g} s before {above}, at {time[at + 1]:.9g} s"
+        words = (
+            f"{_sample(at + 1, lines)} is {time[at] - time[at + 1]:.3g} s before {above}, at "
+            f"{time[at + 1]:.9g} s"
+        )
         several = "if the file has several records, one below the other, keep one of them"
-        raise InputError(f"the times do not rise: {words}; {_THEY_MUST if lines is None else several}")
+        raise InputError(
+            f"the times do not rise: {words}; {_THEY_MUST if lines is None else several}"
+        )
     if not (step > 0.0 and np.isfinite(step)):
         remedy = _THEY_MUST if lines is None else "write them with more digits"
         raise InputError(f"the times do not rise: all are {time[0]:.9g} s; {remedy}")
@@ -84,9 +97,13 @@ def rate_of(time: Floats, lines: Sequence[int] | None = None) -> float:
     if not shift[worst] <= _LARGEST_SHIFT:
         longest = int(np.argmax(np.diff(time))) + 1
         words = f"{_sample(worst, lines)} is {shift[worst]:.2g} steps off its place"
-        gap = f"the longest step, {time[longest] - time[longest - 1]:.4g} s, leads to {_sample(longest, lines)}"
+        gap = (
+            f"the longest step, {time[longest] - time[longest - 1]:.4g} s, leads to "
+            f"{_sample(longest, lines)}"
+        )
         raise InputError(
-            f"the times do not rise by equal steps: {words}, and {gap}; keep the part before or after it, or resample the record"
+            f"the times do not rise by equal steps: {words}, and {gap}; keep the part "
+            "before or after it, or resample the record"
         )
     return float(f"{1.0 / step:.12g}")  # the digits that times have
 
@@ -106,10 +123,14 @@ def is_regular(time: Floats) -> bool:
     return True
 
 
-def at_equal_steps(time: Floats, values: Sequence[Floats], lines: Sequence[int] | None = None) -> Sampled:
-    """Return channels at equal steps: as they are, if their times are or are only rounded; resampled, if they jitter.
+def at_equal_steps(
+    time: Floats, values: Sequence[Floats], lines: Sequence[int] | None = None
+) -> Sampled:
+    """Return channels at equal steps: as they are, if their times are or are only rounded;
+    resampled, if they jitter.
 
-    Samples that have the time of the one before and all its values are left out, where others have neither: a logger wrote them twice.
+    Samples that have the time of the one before and all its values are left out, where others have
+    neither: a logger wrote them twice.
 
     Parameters
     ----------
@@ -123,7 +144,8 @@ def at_equal_steps(time: Floats, values: Sequence[Floats], lines: Sequence[int] 
     Raises
     ------
     InputError
-        If there are fewer than two times, they do not rise, or their steps differ by more than jitter.
+        If there are fewer than two times, they do not rise, or their steps differ by more than
+        jitter.
 
     Examples
     --------
@@ -141,9 +163,13 @@ def at_equal_steps(time: Floats, values: Sequence[Floats], lines: Sequence[int] 
         twice, words = written_twice(time, values, lines)
         if words:
             kept = at_equal_steps(
-                time[~twice], [one[~twice] for one in values], None if lines is None else np.asarray(lines)[~twice].tolist()
+                time[~twice],
+                [one[~twice] for one in values],
+                None if lines is None else np.asarray(lines)[~twice].tolist(),
             )
-            return kept._replace(doubts=tuple(f"{words}; {doubt}" if doubt else words for doubt in kept.doubts))
+            return kept._replace(
+                doubts=tuple(f"{words}; {doubt}" if doubt else words for doubt in kept.doubts)
+            )
         if len(time) < _FEWEST:
             raise
         place = np.arange(len(time))
@@ -152,29 +178,48 @@ def at_equal_steps(time: Floats, values: Sequence[Floats], lines: Sequence[int] 
         multiple = (time - time[0]) / last_digit
         off = np.abs(time - begin - slope * place).max()
         is_rounded = (
-            np.abs(multiple - np.round(multiple)).max() < _WHOLE and off < _ROUNDED * last_digit and last_digit > slope * _LARGEST_SHIFT
+            np.abs(multiple - np.round(multiple)).max() < _WHOLE
+            and off < _ROUNDED * last_digit
+            and last_digit > slope * _LARGEST_SHIFT
         )
-        # of steps that are no multiple of the last digit, such as 2 and 3 of it, the least is not that digit
+        # of steps that are no multiple of the last digit, such as 2 and 3 of it, the least is not
+        # that digit
         if not is_rounded and (behind := behind_decimals(time)) is not None:
             is_rounded, last_digit = True, behind[1]
         if is_rounded:
-            words = f"its times are rounded to {last_digit:.3g} s, {last_digit / slope:.3g} steps; the equal steps behind them are taken"
+            words = (
+                f"its times are rounded to {last_digit:.3g} s, {last_digit / slope:.3g} steps; "
+                "the equal steps behind them are taken"
+            )
             unsure = 100.0 * last_digit / (time[-1] - time[0])
-            return Sampled(1.0 / slope, begin, list(values), (f"{words}, which are known to {unsure:.2g} %",) * len(values))
+            return Sampled(
+                1.0 / slope,
+                begin,
+                list(values),
+                (f"{words}, which are known to {unsure:.2g} %",) * len(values),
+            )
         if (rounded := _to_significant_digits(time, begin + slope * place)) is not None:
             digits, last_digit = rounded
-            words = f"its times are rounded to {digits} significant digits, up to {last_digit:.3g} s, {last_digit / slope:.3g} steps"
+            words = (
+                f"its times are rounded to {digits} significant digits, up to {last_digit:.3g} "
+                f"s, {last_digit / slope:.3g} steps"
+            )
             unsure = 100.0 * last_digit / (time[-1] - time[0])
             words += f"; the equal steps behind them are taken, which are known to {unsure:.2g} %"
             return Sampled(1.0 / slope, begin, list(values), (words,) * len(values))
         middle = float(np.median(step))
-        if not ((step > 0.0).all() and step.max() <= _LONGEST_STEP * middle and step.std() <= _LARGEST_JITTER * middle):
+        if not (
+            (step > 0.0).all()
+            and step.max() <= _LONGEST_STEP * middle
+            and step.std() <= _LARGEST_JITTER * middle
+        ):
             raise
     return _resampled(time, values)
 
 
 def behind_decimals(time: Floats) -> tuple[Floats, float] | None:
-    """Return the equal steps behind times that are rounded to some decimals, and the last of these [s]; None if they are not.
+    """Return the equal steps behind times that are rounded to some decimals, and the last of these
+    [s]; None if they are not.
 
     Examples
     --------
@@ -200,12 +245,16 @@ def behind_decimals(time: Floats) -> tuple[Floats, float] | None:
 
 
 def _to_significant_digits(time: Floats, regular: Floats) -> tuple[int, float] | None:
-    """Return to how many digits times are rounded, as programs do that write %.6g, and the largest step of this; None if they are not."""
+    """Return to how many digits times are rounded, as programs do that write %.6g, and
+    the largest step of this; None if they are not.
+    """
     power = np.floor(np.log10(np.where(time == 0.0, 1.0, np.abs(time))))
     for digits in range(2, _MOST_DIGITS + 1):
         last = 10.0 ** (power - digits + 1)
         if np.all(np.abs(time / last - np.round(time / last)) < _WHOLE):
-            is_rounded = np.abs(time - regular) <= np.maximum(_ROUNDED * last, _LARGEST_SHIFT * (regular[1] - regular[0]))
+            is_rounded = np.abs(time - regular) <= np.maximum(
+                _ROUNDED * last, _LARGEST_SHIFT * (regular[1] - regular[0])
+            )
             return (digits, float(last.max())) if np.all(is_rounded | (time == 0.0)) else None
     return None
 
@@ -215,13 +264,18 @@ def _sample(place: int, lines: Sequence[int] | None) -> str:
     return f"sample {place + 1}" if lines is None else f"sample {place + 1} (line {lines[place]})"
 
 
-def written_twice(time: Floats, values: Sequence[Floats], lines: Sequence[int] | None = None) -> tuple[Bools, str]:
+def written_twice(
+    time: Floats, values: Sequence[Floats], lines: Sequence[int] | None = None
+) -> tuple[Bools, str]:
     """Return which samples repeat the one before, and a sentence on them; "" if none does.
 
-    All samples that have the time of the one before must have its values, which are not all one; else their times are rounded.
+    All samples that have the time of the one before must have its values, which are not all one;
+    else their times are rounded.
     """
     same_time = np.append(False, np.diff(time) == 0.0)
-    same = np.append(False, np.logical_and.reduce([np.diff(one) == 0.0 for one in values])) & same_time
+    same = (
+        np.append(False, np.logical_and.reduce([np.diff(one) == 0.0 for one in values])) & same_time
+    )
     changes = any(np.any(np.diff(one)[~same_time[1:]] != 0.0) for one in values)
     if not (same.any() and changes and np.array_equal(same, same_time)):
         return np.zeros(len(time), dtype=bool), ""
@@ -229,11 +283,16 @@ def written_twice(time: Floats, values: Sequence[Floats], lines: Sequence[int] |
     have = "samples have" if count > 1 else "sample has"
     are = "they are" if count > 1 else "it is"
     first = _sample(int(np.argmax(same)), lines)
-    return same, f"{count} {have} time and value of the one before, the first is {first}: {are} left out"
+    return (
+        same,
+        f"{count} {have} time and value of the one before, the first is {first}: {are} left out",
+    )
 
 
 def _resampled(time: Floats, values: Sequence[Floats]) -> Sampled:
-    """Return channels by cubic splines at the mean step, with the difference from straight lines as what that may add."""
+    """Return channels by cubic splines at the mean step, with the difference from
+    straight lines as what that may add.
+    """
     from scipy.interpolate import CubicSpline
 
     count = len(time)
@@ -242,8 +301,18 @@ def _resampled(time: Floats, values: Sequence[Floats]) -> Sampled:
     doubts = []
     for one, value in zip(values, found, strict=True):
         size = float(np.std(one))
-        part = float(np.sqrt(np.mean((value - np.interp(new, time, one)) ** 2))) / size if size else 0.0
+        part = (
+            float(np.sqrt(np.mean((value - np.interp(new, time, one)) ** 2))) / size
+            if size
+            else 0.0
+        )
         jitter = 100.0 * float(np.std(np.diff(time))) * (count - 1) / (time[-1] - time[0])
-        words = f"its times jitter by {jitter:.2g} % of a step; it is resampled to equal steps, which adds an rms error of up to"
-        doubts.append(f"{words} {100.0 * part:.2g} % of its standard deviation, where its frequencies are below a third of the rate")
+        words = (
+            f"its times jitter by {jitter:.2g} % of a step; it is resampled to equal steps, "
+            "which adds an rms error of up to"
+        )
+        doubts.append(
+            f"{words} {100.0 * part:.2g} % of its standard deviation, where its "
+            "frequencies are below a third of the rate"
+        )
     return Sampled((count - 1) / float(time[-1] - time[0]), float(time[0]), found, tuple(doubts))

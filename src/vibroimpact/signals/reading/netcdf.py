@@ -1,4 +1,6 @@
-"""Records from NetCDF-4 files: the sensors of a result, or every variable whose last dimension is time at equal steps."""
+"""Records from NetCDF-4 files: the sensors of a result, or every variable whose last
+dimension is time at equal steps.
+"""
 
 from __future__ import annotations
 
@@ -22,7 +24,9 @@ from vibroimpact.signals.record import Record
 from vibroimpact.structures.free_memory import check_memory
 from vibroimpact.units.reading import to_si
 
-NETCDF = FileKind("a NetCDF file holds variables with a dimension of time", 1_000_000_000_000, "split it")
+NETCDF = FileKind(
+    "a NetCDF file holds variables with a dimension of time", 1_000_000_000_000, "split it"
+)
 """Requirements on a NetCDF file."""
 
 _COPIES = 3  # of samples, while they are converted
@@ -31,7 +35,8 @@ _AT_ONCE = 2**22
 
 
 def netcdf_records(path: Path) -> Iterator[Record]:
-    """Yield the signals of a NetCDF-4 file; of a variable with further dimensions one for each place in them, in their order.
+    """Yield the signals of a NetCDF-4 file; of a variable with further dimensions one for each
+    place in them, in their order.
 
     Raises
     ------
@@ -43,13 +48,19 @@ def netcdf_records(path: Path) -> Iterator[Record]:
     except InputError as error:
         raise with_path(path, error) from None
     if mark.startswith(b"CDF"):
-        raise InputError(f"{path}: this is a NetCDF file of the classic format; convert it to NetCDF-4: nccopy -k nc4 {path.name} new.nc")
+        raise InputError(
+            f"{path}: this is a NetCDF file of the classic format; convert it to NetCDF-4: "
+            f"nccopy -k nc4 {path.name} new.nc"
+        )
     try:
         check_hdf5(path, recorded_digest(path))
         with h5py.File(path, "r") as file:
             found = list(_signals(file))
             if not found:
-                raise InputError("there is no variable whose last dimension is a time at equal steps, with a unit of time such as s")
+                raise InputError(
+                    "there is no variable whose last dimension is a time at equal steps, "
+                    "with a unit of time such as s"
+                )
             for data, rate, start in found:
                 yield from _records(data, rate, start)
     except InputError as error:
@@ -57,23 +68,35 @@ def netcdf_records(path: Path) -> Iterator[Record]:
     except DamageError as error:
         raise with_path(path, InputError(str(error))) from None
     except Exception as error:  # of many types, by what is damaged
-        raise InputError(f"{path}: the NetCDF file can't be read ({' '.join(str(error).split())[:100] or type(error).__name__})") from None
+        raise InputError(
+            f"{path}: the NetCDF file can't be read "
+            f"({' '.join(str(error).split())[:100] or type(error).__name__})"
+        ) from None
 
 
 def _signals(file: h5py.File) -> Iterator[tuple[h5py.Dataset, float, float]]:
-    """Yield the variables with a time as their last dimension, with rate [Hz] and first time [s]."""
+    """Yield the variables with a time as their last dimension, with rate [Hz] and first
+    time [s].
+    """
     group = members(file).get("sensors", file)
     names: list[str] = []
     group.visit(names.append)  # returning None goes on
     for name in names:
         data = group[name]
-        if not isinstance(data, h5py.Dataset) or data.dtype.kind not in "fiu" or not data.ndim or data.is_scale:
+        if (
+            not isinstance(data, h5py.Dataset)
+            or data.dtype.kind not in "fiu"
+            or not data.ndim
+            or data.is_scale
+        ):
             continue
         for scale in data.dims[data.ndim - 1].values():
             second = _seconds(_text(scale.attrs.get("units", "")))
             if second is None or len(scale) < 2:
                 continue
-            check_memory(_COPIES * 8.0 * len(scale), f"the times of variable {name} need", NETCDF.smaller)
+            check_memory(
+                _COPIES * 8.0 * len(scale), f"the times of variable {name} need", NETCDF.smaller
+            )
             time = second * read_array(scale).astype(float)
             try:
                 said = data.attrs.get("rate_Hz", data.parent.attrs.get("rate_Hz"))
@@ -99,13 +122,19 @@ def _records(data: h5py.Dataset, rate: float, start: float) -> Iterator[Record]:
     except InputError as error:
         raise InputError(f"variable {name}: {error.message}") from None
     *outer, samples = data.shape
-    check_memory(_COPIES * 8.0 * max(samples * prod(outer[1:]), 1), f"the signals of variable {name} need", NETCDF.smaller)
+    check_memory(
+        _COPIES * 8.0 * max(samples * prod(outer[1:]), 1),
+        f"the signals of variable {name} need",
+        NETCDF.smaller,
+    )
     if not outer:
         yield Record(name, _to_its_end(factor * read_array(data).astype(float)), rate, unit, start)
         return
     step = max(1, _AT_ONCE // max(1, samples * prod(outer[1:])))
     for first in range(0, outer[0], step):
-        for value in factor * read_array(data, slice(first, first + step)).astype(float).reshape(-1, samples):
+        for value in factor * read_array(data, slice(first, first + step)).astype(float).reshape(
+            -1, samples
+        ):
             yield Record(name, _to_its_end(value), rate, unit, start)
 
 

@@ -37,5 +37,6 @@ def in_si(unit: str) -> tuple[float, str]:
             continue
     known = ", ".join(_QUANTITIES.values())
     raise InputError(
-        f"{shown(unit)} is no unit of a signal; known are {known} and their multiples, g, strain, and 1 or a.u. for a plain number"
+        f"{shown(unit)} is no unit of a signal; known are {known} and their multiples, g, "
+        "strain, and 1 or a.u. for a plain number"
     )

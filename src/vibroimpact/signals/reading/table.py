@@ -14,7 +14,12 @@ from vibroimpact.measurements.recorded_table import RecordedChannel, filled_in, 
 from vibroimpact.measurements.table_file import in_table
 from vibroimpact.measurements.table_layout import Layout
 from vibroimpact.shown import shown
-from vibroimpact.signals.reading.equal_steps import Sampled, at_equal_steps, is_regular, written_twice
+from vibroimpact.signals.reading.equal_steps import (
+    Sampled,
+    at_equal_steps,
+    is_regular,
+    written_twice,
+)
 from vibroimpact.signals.reading.si_units import in_si
 from vibroimpact.signals.record import Record
 
@@ -35,8 +40,8 @@ def table_records(path: Path, columns: str | None = None) -> Iterator[Record]:
     Raises
     ------
     InputError
-        If the file can't be read, there is no time, no other column, a unit is missing or unknown, samples are missing, or the times do not
-        rise by equal steps.
+        If the file can't be read, there is no time, no other column, a unit is missing or unknown,
+        samples are missing, or the times do not rise by equal steps.
     """
     doubts: list[str] = []
     for channel in recorded_channels(path, _unit_of, doubts, columns):
@@ -44,8 +49,18 @@ def table_records(path: Path, columns: str | None = None) -> Iterator[Record]:
             sampled, told = _sampled(channel)
         except InputError as error:
             raise in_table(path, error) from None
-        own = (f"{shown(channel.name)}: {doubt}" for doubt in (*channel.doubts, *told, *filter(None, sampled.doubts)))
-        yield Record(channel.name, sampled.values[0], sampled.rate, channel.unit, sampled.start, doubts=(*doubts, *own))
+        own = (
+            f"{shown(channel.name)}: {doubt}"
+            for doubt in (*channel.doubts, *told, *filter(None, sampled.doubts))
+        )
+        yield Record(
+            channel.name,
+            sampled.values[0],
+            sampled.rate,
+            channel.unit,
+            sampled.start,
+            doubts=(*doubts, *own),
+        )
 
 
 def _unit_of(layout: Layout, cell: str) -> tuple[float, str]:
@@ -53,11 +68,17 @@ def _unit_of(layout: Layout, cell: str) -> tuple[float, str]:
     name, unit = name_and_unit(cell)
     where = f"{layout.where}, column {shown(cell)}"
     if unit is None:
-        raise InputError(f"{where}: the unit is missing; {layout.with_unit(name, 'V')}, or 1 for a plain number; {layout.understood}")
+        raise InputError(
+            f"{where}: the unit is missing; {layout.with_unit(name, 'V')}, or 1 for a "
+            f"plain number; {layout.understood}"
+        )
     try:
         return in_si(unit)
     except InputError as error:
-        raise InputError(f"{where}: {error.message}; correct the unit, or state it by --columns (in a case the key columns)") from None
+        raise InputError(
+            f"{where}: {error.message}; correct the unit, or state it by --columns (in a "
+            "case the key columns)"
+        ) from None
 
 
 def _sampled(channel: RecordedChannel) -> tuple[Sampled, tuple[str, ...]]:
@@ -75,13 +96,16 @@ def _sampled(channel: RecordedChannel) -> tuple[Sampled, tuple[str, ...]]:
         time, value, doubt = filled_in(channel)
     except InputError as many:
         try:
-            return _at_equal_steps(channel, channel.time, channel.value), told  # of another rate, with times that jitter
+            # of another rate, with times that jitter
+            return _at_equal_steps(channel, channel.time, channel.value), told
         except InputError:
             raise many from None
     return _at_equal_steps(channel, time, value), (*told, doubt)
 
 
-def _at_equal_steps(channel: RecordedChannel, time: Floats, value: Floats, lines: Sequence[int] | None = None) -> Sampled:
+def _at_equal_steps(
+    channel: RecordedChannel, time: Floats, value: Floats, lines: Sequence[int] | None = None
+) -> Sampled:
     """Return samples at equal steps; errors name the column of the times."""
     try:
         return at_equal_steps(time, [value], lines)

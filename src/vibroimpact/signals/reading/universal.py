@@ -22,7 +22,8 @@ def universal_records(path: Path) -> Iterator[Record]:
     Raises
     ------
     InputError
-        If the file can't be read or has no function of time, or one has an unknown unit or unequal steps.
+        If the file can't be read or has no function of time, or one has an unknown unit or unequal
+        steps.
     """
     file = read_universal_file(path)
     if not file.functions:
@@ -35,7 +36,9 @@ def universal_records(path: Path) -> Iterator[Record]:
             factor, unit = _unit(one, file.factors)
             rate = rate_of(one.time)
         except InputError as error:
-            raise InputError(f"{path}, function {one.number} {shown(one.identification)}: {error.message}") from None
+            raise InputError(
+                f"{path}, function {one.number} {shown(one.identification)}: {error.message}"
+            ) from None
         yield Record(record_name(one), factor * one.values, rate, unit, float(one.time[0]))
 
 
@@ -45,7 +48,9 @@ def record_name(one: Function) -> str:
 
 
 def _unit(one: Function, factors: dict[str, float] | None) -> tuple[float, str]:
-    """Return factor and SI unit: by the label of the unit, else by the data type and dataset 164."""
+    """Return factor and SI unit: by the label of the unit, else by the data type and
+    dataset 164.
+    """
     if one.unit:
         return in_si(one.unit)
     if one.kind not in _KINDS:

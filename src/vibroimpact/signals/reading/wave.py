@@ -1,6 +1,8 @@
-"""Records from WAV files: integers of 8 to 64 bits as parts of full scale, and floating-point numbers as they are.
+"""Records from WAV files: integers of 8 to 64 bits as parts of full scale, and floating-point
+numbers as they are.
 
-The header is read first; the samples follow in blocks, for as many channels at once as need little memory.
+The header is read first; the samples follow in blocks, for as many channels at once as need little
+memory.
 """
 
 from __future__ import annotations
@@ -22,7 +24,9 @@ from vibroimpact.signals.reading.wave_header import FullScale, WaveHeader, read_
 from vibroimpact.signals.record import Record, checked_rate
 from vibroimpact.structures.free_memory import check_memory
 
-WAVE = FileKind("a WAV file begins with RIFF, RIFX or RF64", 4_300_000_000, "keep the part with the impacts")
+WAVE = FileKind(
+    "a WAV file begins with RIFF, RIFX or RF64", 4_300_000_000, "keep the part with the impacts"
+)
 """Requirements on a WAV file."""
 
 _BLOCK = 2**22
@@ -33,7 +37,8 @@ _TOGETHER = 2**28
 
 
 def wave_records(path: Path) -> Iterator[Record]:
-    """Yield the channels of a WAV file: full scale is 1, or the value that the comment of an exported file says.
+    """Yield the channels of a WAV file: full scale is 1, or the value that the comment of an
+    exported file says.
 
     Raises
     ------
@@ -54,7 +59,8 @@ def wave_records(path: Path) -> Iterator[Record]:
                 channels = range(first, min(first + together, header.channels))
                 for number, value in zip(channels, _samples(file, header, channels), strict=True):
                     title = name if header.channels == 1 else f"{name} {number + 1}"
-                    with np.errstate(over="ignore", invalid="ignore"):  # of floating-point numbers that are no sound
+                    # of floating-point numbers that are no sound
+                    with np.errstate(over="ignore", invalid="ignore"):
                         value *= factor
                     yield Record(title, value, float(header.rate), unit, doubts=doubts)
     except InputError as error:
@@ -72,14 +78,20 @@ def _scale(full_scale: FullScale | None, stem: str) -> tuple[float, str, str]:
     except ValueError:
         number = np.nan
     if not isfinite(number) or number == 0.0:
-        raise InputError(f"by its comment 1.0 is {shown(value)} {unit}; it must be a finite number other than 0, such as 2.5 {unit}")
+        raise InputError(
+            f"by its comment 1.0 is {shown(value)} {unit}; it must be a finite number "
+            f"other than 0, such as 2.5 {unit}"
+        )
     return factor * number, si_unit, name
 
 
 def _doubts(header: WaveHeader) -> tuple[str, ...]:
     if header.samples >= header.stated:
         return ()
-    words = f"it has {header.samples:,} of the {header.stated:,} samples of a channel that its header states"
+    words = (
+        f"it has {header.samples:,} of the {header.stated:,} samples of a "
+        "channel that its header states"
+    )
     return (f"the file is cut off, or its header is wrong: {words}",)
 
 
@@ -95,7 +107,9 @@ def _samples(file: FileIO, header: WaveHeader, channels: range) -> Floats:
         if len(raw) < number * frame:
             raise InputError("the file became shorter while it was read")
         block = np.frombuffer(raw, dtype=np.uint8).reshape(number, header.channels, header.width)
-        found[:, first : first + number] = _full_scale(block[:, channels.start : channels.stop], header).T
+        found[:, first : first + number] = _full_scale(
+            block[:, channels.start : channels.stop], header
+        ).T
     return found
 
 

@@ -1,4 +1,6 @@
-"""The header of a WAV file: its format, where its samples lie, and what its comment says; samples are not read for it."""
+"""The header of a WAV file: its format, where its samples lie, and what its comment says;
+samples are not read for it.
+"""
 
 from __future__ import annotations
 
@@ -12,12 +14,16 @@ from vibroimpact.errors import InputError
 
 _PCM, _FLOAT, _EXTENSIBLE = 1, 3, 0xFFFE
 _TAIL = bytes.fromhex("800000aa00389b71")
-"""End of the identifier of a format in an extensible header; before it stand its number, 0 and 16, in the order of the file."""
+"""End of the identifier of a format in an extensible header; before it stand its number,
+0 and 16, in the order of the file.
+"""
 
 _MOST_CHUNKS = 1000
 _LONGEST_LIST = 4000  # bytes of a comment that are looked at
 _UNKNOWN = 0xFFFFFFFF
-"""Length of the samples where the writer did not know it, or gives it as 64 bits in the chunk ds64."""
+"""Length of the samples where the writer did not know it, or gives it as 64 bits in the
+chunk ds64.
+"""
 
 _COMMENT = re.compile(rb"ICMT....1\.0 is (\S+) (\S+) \((?:.*? of )?(.*?)\)\0", re.DOTALL)
 """The comment of this program, which says what 1.0 is."""
@@ -107,7 +113,9 @@ def read_wave_header(file: FileIO) -> WaveHeader:
         elif name == b"data" and data is None:
             size = _data_size(size, long_size, length - start)
             data = (start, size)
-        elif name == b"LIST" and (found := _COMMENT.search(_at(file, start, min(size, _LONGEST_LIST)))):
+        elif name == b"LIST" and (
+            found := _COMMENT.search(_at(file, start, min(size, _LONGEST_LIST)))
+        ):
             full_scale = FullScale(*found.groups())
         place = start + size + size % 2
     if form is None or data is None:
@@ -133,11 +141,19 @@ def _format(content: bytes, order: str) -> _Format:
     if len(content) < 16:
         raise InputError(DAMAGED)
     tag, channels, rate, _, frame, bits = struct.unpack(f"{order}HHIIHH", content[:16])
-    if tag == _EXTENSIBLE and len(content) == 40 and content[28:] == struct.pack(f"{order}HH", 0, 16) + _TAIL:
+    if (
+        tag == _EXTENSIBLE
+        and len(content) == 40
+        and content[28:] == struct.pack(f"{order}HH", 0, 16) + _TAIL
+    ):
         (tag,) = struct.unpack(f"{order}I", content[24:28])
     width = frame // channels if channels else 0
     floating = tag == _FLOAT
-    fits = (width in (4, 8) and bits == 8 * width) if floating else (1 <= width <= 8 and 1 <= bits <= 8 * width)
+    fits = (
+        (width in (4, 8) and bits == 8 * width)
+        if floating
+        else (1 <= width <= 8 and 1 <= bits <= 8 * width)
+    )
     if tag not in (_PCM, _FLOAT) or not fits or frame != width * channels:
         raise InputError(DAMAGED)
     return _Format(rate, channels, width, floating)

@@ -19,7 +19,8 @@ _ELEMENTS = 8  # of the column, for an error of 1e-5 of its first bending freque
 
 @dataclass(frozen=True)
 class Bar(Support):
-    """Round elastic column, fixed to the ground; its top is a rigid disc attached to the lower side of the plate.
+    """Round elastic column, fixed to the ground; its top is a rigid disc attached to the lower side
+    of the plate.
 
     Parameters
     ----------
@@ -40,7 +41,10 @@ class Bar(Support):
     @property
     def description(self) -> str:
         """Short description for users."""
-        return f"bar of radius {self.radius:g} m and length {self.length:g} m at ({self.x:g}, {self.y:g}) m"
+        return (
+            f"bar of radius {self.radius:g} m and length {self.length:g} m at ({self.x:g}, "
+            f"{self.y:g}) m"
+        )
 
     @property
     def discs(self) -> Sequence[Disc]:
@@ -58,16 +62,27 @@ class Bar(Support):
         constraints.attach(nodes, self.radius, (dofs[-6:], top))
 
     def _rigid(self, top: Floats, centre: Floats) -> Floats:
-        """Return the rigid motions of the column about the centre of mass of the plate, (dofs, 6)."""
+        """Return the rigid motions of the column about the centre of mass of the plate,
+        (dofs, 6).
+        """
         motions = np.zeros((_ELEMENTS, 6, 6))
         motions[:, :3, :3] = motions[:, 3:, 3:] = np.eye(3)
-        at = top - centre - np.outer(self.length * (1.0 - np.arange(1, _ELEMENTS + 1) / _ELEMENTS), [0.0, 0.0, 1.0])
+        at = (
+            top
+            - centre
+            - np.outer(
+                self.length * (1.0 - np.arange(1, _ELEMENTS + 1) / _ELEMENTS), [0.0, 0.0, 1.0]
+            )
+        )
         motions[:, :3, 3:] = rotation_columns(*at.T)
         return motions.reshape(-1, 6)
 
 
-def column_matrices(radius: float, length: float, material: Material, elements: int) -> tuple[Floats, Floats]:
-    r"""Return stiffness and mass of a round column of Timoshenko beam elements, fixed at its lower end.
+def column_matrices(
+    radius: float, length: float, material: Material, elements: int
+) -> tuple[Floats, Floats]:
+    r"""Return stiffness and mass of a round column of Timoshenko beam elements, fixed at its lower
+    end.
 
     Parameters
     ----------
@@ -85,9 +100,9 @@ def column_matrices(radius: float, length: float, material: Material, elements: 
 
     Notes
     -----
-    Two-node beams with the exact static shape functions, consistent mass with rotary inertia (J. S. Przemieniecki, Theory of
-    Matrix Structural Analysis, 1968); shear coefficient 6 (1 + nu) / (7 + 6 nu) of a round section (G. R. Cowper, J. Appl.
-    Mech. 33:335, 1966).
+    Two-node beams with the exact static shape functions, consistent mass with rotary inertia (J. S.
+    Przemieniecki, Theory of Matrix Structural Analysis, 1968); shear coefficient 6 (1 + nu) / (7 +
+    6 nu) of a round section (G. R. Cowper, J. Appl. Mech. 33:335, 1966).
 
     Examples
     --------
@@ -101,14 +116,28 @@ def column_matrices(radius: float, length: float, material: Material, elements: 
     shear_modulus = modulus / (2.0 * (1.0 + ratio))
     area = np.pi * radius**2
     second = 0.25 * np.pi * radius**4
-    flexible = 12.0 * modulus * second / (shear_modulus * area * 6.0 * (1.0 + ratio) / (7.0 + 6.0 * ratio) * step**2)
+    flexible = (
+        12.0
+        * modulus
+        * second
+        / (shear_modulus * area * 6.0 * (1.0 + ratio) / (7.0 + 6.0 * ratio) * step**2)
+    )
     pair, share = np.array([[1.0, -1.0], [-1.0, 1.0]]), np.array([[2.0, 1.0], [1.0, 2.0]]) / 6.0
     stiffness, mass = np.zeros((2, 12, 12))
-    for dof, rigidity, inertia in ((2, modulus * area, area), (5, shear_modulus * 2.0 * second, 2.0 * second)):
+    for dof, rigidity, inertia in (
+        (2, modulus * area, area),
+        (5, shear_modulus * 2.0 * second, 2.0 * second),
+    ):
         both = np.ix_([dof, dof + 6], [dof, dof + 6])
-        stiffness[both], mass[both] = rigidity / step * pair, material.density * inertia * step * share
-    bend, heave = _bending(step, flexible, modulus * second, material.density * area, material.density * second)
-    for displacement, rotation, sign in ((0, 4, 1.0), (1, 3, -1.0)):  # w' is +theta_y for u, and -theta_x for v
+        stiffness[both], mass[both] = (
+            rigidity / step * pair,
+            material.density * inertia * step * share,
+        )
+    bend, heave = _bending(
+        step, flexible, modulus * second, material.density * area, material.density * second
+    )
+    # w' is +theta_y for u, and -theta_x for v
+    for displacement, rotation, sign in ((0, 4, 1.0), (1, 3, -1.0)):
         dofs = [displacement, rotation, displacement + 6, rotation + 6]
         turn = np.array([1.0, sign, 1.0, sign])
         stiffness[np.ix_(dofs, dofs)] += np.outer(turn, turn) * bend
@@ -120,9 +149,14 @@ def column_matrices(radius: float, length: float, material: Material, elements: 
     return whole[0, 6:, 6:], whole[1, 6:, 6:]
 
 
-def _bending(step: float, flexible: float, rigidity: float, line_mass: float, line_inertia: float) -> tuple[Floats, Floats]:
-    """Return the stiffness of one beam for deflection and slope at both ends, and its mass integrated from its shape functions."""
-    # Shape functions of deflection and slope at Gauss points; `flexible` is the ratio of shear to bending flexibility
+def _bending(
+    step: float, flexible: float, rigidity: float, line_mass: float, line_inertia: float
+) -> tuple[Floats, Floats]:
+    """Return the stiffness of one beam for deflection and slope at both ends, and its
+    mass integrated from its shape functions.
+    """
+    # Shape functions of deflection and slope at Gauss points; `flexible` is the ratio of shear to
+    # bending flexibility
     points, weights = np.polynomial.legendre.leggauss(4)
     s, weights = 0.5 * (points + 1.0), 0.5 * step * weights
     scale = 1.0 / (1.0 + flexible)
@@ -142,7 +176,10 @@ def _bending(step: float, flexible: float, rigidity: float, line_mass: float, li
             -2 * s + 3 * s**2 + flexible * s,
         ]
     )
-    mass = line_mass * (deflection * weights) @ deflection.T + line_inertia * (slope * weights) @ slope.T
+    mass = (
+        line_mass * (deflection * weights) @ deflection.T
+        + line_inertia * (slope * weights) @ slope.T
+    )
     # The stiffness is known in closed form
     a, b, c = 12.0 / step**3, 6.0 / step**2, 1.0 / step
     stiffness = (

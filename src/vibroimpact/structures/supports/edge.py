@@ -27,8 +27,9 @@ class Edge(Support):
     edge : str
         "x-min", "x-max", "y-min" or "y-max".
     condition : str
-        "clamped": all degrees of freedom are held. "simply-supported": displacements vertically and along the edge are held, and
-        rotation about the edge is free (the hard condition, that of Navier's solution); over the full height of a solid plate.
+        "clamped": all degrees of freedom are held. "simply-supported": displacements vertically and
+        along the edge are held, and rotation about the edge is free (the hard condition, that of
+        Navier's solution); over the full height of a solid plate.
     """
 
     edge: EdgeName
@@ -47,14 +48,24 @@ class Edge(Support):
         end = at.min() if self.edge.endswith("min") else at.max()
         nodes = np.flatnonzero(np.abs(at - end) <= _FLAT * np.ptp(at))
         if len(nodes) < 3:
-            raise InputError(f'the edge "{self.edge}" has only {len(nodes)} of the nodes of the mesh: that side of the body is not flat')
+            raise InputError(
+                f'the edge "{self.edge}" has only {len(nodes)} of the nodes of the mesh: '
+                "that side of the body is not flat"
+            )
         turning = [4 - across] if mesh.is_flat else []
-        axes = list(range(mesh.dofs_per_node)) if self.condition == "clamped" else [1 - across, 2, *turning]
+        axes = (
+            list(range(mesh.dofs_per_node))
+            if self.condition == "clamped"
+            else [1 - across, 2, *turning]
+        )
         constraints.hold(mesh.dofs_per_node * nodes[:, None] + np.array(axes))
-        # the end compliance in excess of plate theory is only noted, for the estimate of errors of frequencies
+        # the end compliance in excess of plate theory is only noted, for the estimate of errors of
+        # frequencies
         if mesh.is_flat and self.condition == "clamped" and constraints.structure.end_compliance:
             order = nodes[np.argsort(mesh.nodes[nodes, 1 - across])]
-            compliance = constraints.structure.end_compliance / _lengths(mesh.nodes[order, 1 - across])
+            compliance = constraints.structure.end_compliance / _lengths(
+                mesh.nodes[order, 1 - across]
+            )
             constraints.neglect(mesh.dofs_per_node * order + 3 + across, compliance)
 
 

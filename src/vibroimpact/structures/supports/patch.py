@@ -41,7 +41,10 @@ class Patch(Support):
 
     def hold(self, constraints: Constraints) -> None:
         """Hold the nodes within the patch."""
-        constraints.attach(nodes_within(constraints.structure, self.x, self.y, self.radius, "the patch"), self.radius)
+        constraints.attach(
+            nodes_within(constraints.structure, self.x, self.y, self.radius, "the patch"),
+            self.radius,
+        )
 
 
 @dataclass(frozen=True)
@@ -69,7 +72,10 @@ class RectangularPatch(Support):
     @property
     def lines(self) -> tuple[Sequence[float], Sequence[float]]:
         """The x and y [m] of its sides."""
-        return tuple((at - 0.5 * side, at + 0.5 * side) for at, side in ((self.x, self.length), (self.y, self.width)))  # type: ignore[return-value]
+        return tuple(
+            (at - 0.5 * side, at + 0.5 * side)
+            for at, side in ((self.x, self.length), (self.y, self.width))
+        )  # type: ignore[return-value]
 
     @property
     def rims(self) -> tuple[Sequence[float], Sequence[float]]:
@@ -84,9 +90,11 @@ class RectangularPatch(Support):
         room = 1e-6 * (high - low)
         if np.any(middle - half < low - room) or np.any(middle + half > high + room):
             raise InputError(
-                f"the {self.description} does not lie wholly on the plate, which reaches from {low[0]:g} to {high[0]:g} m along x and "
+                f"the {self.description} does not lie wholly on the plate, which reaches "
+                f"from {low[0]:g} to {high[0]:g} m along x and "
                 f"from {low[1]:g} to {high[1]:g} m along y"
             )
         constraints.attach(
-            nodes_within(constraints.structure, self.x, self.y, half, "the patch"), self.length * self.width / (self.length + self.width)
+            nodes_within(constraints.structure, self.x, self.y, half, "the patch"),
+            self.length * self.width / (self.length + self.width),
         )

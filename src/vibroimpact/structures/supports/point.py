@@ -16,15 +16,16 @@ from vibroimpact.structures.surface import surface_motion
 class Point(Support):
     """Point of the lower side held along some axes; the plate rotates freely about it.
 
-    It is for plate elements: with solid elements the stiffness at a point tends to zero in the limit of a fine mesh.
+    It is for plate elements: with solid elements the stiffness at a point tends to zero in the
+    limit of a fine mesh.
 
     Parameters
     ----------
     x, y : float
         Position [m].
     directions : str, default "z"
-        Axes along which the displacement is held. Several points that are also held along x and y stretch the plate in bending, as
-        they lie below its middle plane.
+        Axes along which the displacement is held. Several points that are also held along x and y
+        stretch the plate in bending, as they lie below its middle plane.
     """
 
     x: float
@@ -44,5 +45,11 @@ class Point(Support):
     def hold(self, constraints: Constraints) -> None:
         """Hold the point, by the shape functions of its element."""
         structure = constraints.structure
-        motion, _ = surface_motion(structure.mesh, np.array([[self.x, self.y]]), "lower", structure.thickness, self.description)
+        motion, _ = surface_motion(
+            structure.mesh,
+            np.array([[self.x, self.y]]),
+            "lower",
+            structure.thickness,
+            self.description,
+        )
         constraints.hold_motion(motion[["xyz".index(letter) for letter in self.directions]])

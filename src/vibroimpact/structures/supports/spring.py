@@ -14,7 +14,8 @@ from vibroimpact.structures.surface import surface_motion
 
 @dataclass(frozen=True)
 class Spring(Support):
-    """Spring between the lower side and the ground, distributed uniformly over a disc, or at a point.
+    """Spring between the lower side and the ground, distributed uniformly over a disc, or at a
+    point.
 
     Parameters
     ----------
@@ -45,8 +46,16 @@ class Spring(Support):
         """Add the stiffness of the spring, by the shape functions at the points of the disc."""
         places, weights = disc_rule(self.radius)
         structure = constraints.structure
-        motion, _ = surface_motion(structure.mesh, places + np.array([self.x, self.y]), "lower", structure.thickness, self.description)
-        stiffness = np.outer(weights, [self.horizontal_stiffness, self.horizontal_stiffness, self.stiffness]).ravel()
+        motion, _ = surface_motion(
+            structure.mesh,
+            places + np.array([self.x, self.y]),
+            "lower",
+            structure.thickness,
+            self.description,
+        )
+        stiffness = np.outer(
+            weights, [self.horizontal_stiffness, self.horizontal_stiffness, self.stiffness]
+        ).ravel()
         dofs = np.unique(motion.indices)
         local = motion[:, dofs].toarray()
         constraints.add_stiffness(dofs, local.T @ (stiffness[:, None] * local))

@@ -19,7 +19,9 @@ _RIGID = 6  # motions of a free body
 
 @dataclass(frozen=True)
 class Support:
-    """Base class of supports: frozen dataclasses, as their fields are part of the key of stored modes."""
+    """Base class of supports: frozen dataclasses, as their fields are part of the key of
+    stored modes.
+    """
 
     @property
     def description(self) -> str:
@@ -33,12 +35,16 @@ class Support:
 
     @property
     def lines(self) -> tuple[Sequence[float], Sequence[float]]:
-        """The x and y [m] of lines that are to be edges of elements of a generated mesh; none by default."""
+        """The x and y [m] of lines that are to be edges of elements of a generated mesh;
+        none by default.
+        """
         return (), ()
 
     @property
     def rims(self) -> tuple[Sequence[float], Sequence[float]]:
-        """Those lines that are rims of a held part of the lower face, where the strain is singular; none by default."""
+        """Those lines that are rims of a held part of the lower face, where the strain is
+        singular; none by default.
+        """
         return (), ()
 
     def hold(self, constraints: Constraints) -> None:
@@ -65,7 +71,9 @@ def held_by(structure: Structure, supports: Sequence[Support] = ()) -> HeldStruc
     >>> from vibroimpact.materials import find_material
     >>> from vibroimpact.structures.lattice import box_mesh
     >>> from vibroimpact.structures.structure import solid_structure
-    >>> held_by(solid_structure(box_mesh((1.0, 1.0, 1.0), (1, 1, 1)), find_material("rock-paper"))).rigid.shape
+    >>> held_by(
+    ...     solid_structure(box_mesh((1.0, 1.0, 1.0), (1, 1, 1)), find_material("rock-paper"))
+    ... ).rigid.shape
     (60, 6)
     """
     constraints = Constraints(structure)
@@ -83,12 +91,25 @@ def joint_remarks(held: HeldStructure, supports: Sequence[Support]) -> list[str]
         return []
     free = held_by(structure) if supports else held
     missing = _RIGID - len(free.rigid_coefficients)
-    words = f"the joints of the mesh file resist {missing} of the {_RIGID} rigid motions of the body, as supports do"
-    return [f"{words}: their equations are not those of bodies that move freely, or join nodes that are apart"] if missing else []
+    words = (
+        f"the joints of the mesh file resist {missing} of the {_RIGID} rigid motions of the "
+        "body, as supports do"
+    )
+    return (
+        [
+            f"{words}: their equations are not those of bodies that move freely, or join "
+            "nodes that are apart"
+        ]
+        if missing
+        else []
+    )
 
 
-def nodes_within(structure: Structure, x: float, y: float, reach: Floats | float, what: str) -> Integers:
-    """Return the nodes of the lower side within a radius, or within half the sides of a rectangle, around a point.
+def nodes_within(
+    structure: Structure, x: float, y: float, reach: Floats | float, what: str
+) -> Integers:
+    """Return the nodes of the lower side within a radius, or within half the sides of a rectangle,
+    around a point.
 
     Raises
     ------
@@ -98,11 +119,14 @@ def nodes_within(structure: Structure, x: float, y: float, reach: Floats | float
     lower = lower_nodes(structure.mesh)
     apart = structure.mesh.nodes[lower, :2] - [x, y]
     limit = np.asarray(reach) * (1.0 + 1e-9) + 1e-9 * np.ptp(structure.mesh.nodes[:, 0])
-    inside = np.hypot(*apart.T) <= limit if limit.ndim == 0 else (np.abs(apart) <= limit).all(axis=1)
+    inside = (
+        np.hypot(*apart.T) <= limit if limit.ndim == 0 else (np.abs(apart) <= limit).all(axis=1)
+    )
     if inside.sum() < 3:
         count = "no nodes" if not inside.any() else f"only {inside.sum()} of the nodes"
         raise InputError(
-            f"{what} at ({x:g}, {y:g}) m holds {count} on the lower side of the mesh, and needs three or more; "
+            f"{what} at ({x:g}, {y:g}) m holds {count} on the lower side of the mesh, and "
+            "needs three or more; "
             "move it, make it larger, or refine the mesh"
         )
     return lower[inside]

@@ -16,7 +16,10 @@ def size(asked: Asked) -> int:
         If no classes are given.
     """
     if asked.population is None:
-        raise InputError("they are missing; a population has classes, such as [sweep.classes.coal.over]", "classes")
+        raise InputError(
+            "they are missing; a population has classes, such as [sweep.classes.coal.over]",
+            "classes",
+        )
     return asked.samples
 
 
@@ -28,4 +31,10 @@ def plan(asked: Asked) -> Plan:
     return Plan("population", columns, False, labels)
 
 
-DESIGN = Design("population", "falls of rocks drawn from classes, one or more of each rock, on one or more plates", True, size, plan)
+DESIGN = Design(
+    "population",
+    "falls of rocks drawn from classes, one or more of each rock, on one or more plates",
+    True,
+    size,
+    plan,
+)

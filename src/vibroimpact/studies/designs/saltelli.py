@@ -20,16 +20,20 @@ def size(asked: Asked) -> int:
     """
     check_power_of_two(asked.samples, 2 + len(asked.axes))
     if len(asked.axes) < 2:
-        raise InputError("there is one key alone, so that everything depends on it; sweep two or more", "over")
+        raise InputError(
+            "there is one key alone, so that everything depends on it; sweep two or more", "over"
+        )
     return asked.samples * (2 + len(asked.axes))
 
 
 def plan(asked: Asked) -> Plan:
-    """Return the points: block A, block B, and for each axis block A with the values of B on that axis.
+    """Return the points: block A, block B, and for each axis block A with the values of B on that
+    axis.
 
     References
     ----------
-    Saltelli, A. et al. (2010). Variance based sensitivity analysis of model output. Comput. Phys. Commun. 181, 259-270.
+    Saltelli, A. et al. (2010). Variance based sensitivity analysis of model output. Comput. Phys.
+    Commun. 181, 259-270.
     """
     from scipy.stats import qmc
 
@@ -44,4 +48,10 @@ def plan(asked: Asked) -> Plan:
     return drawn_plan("saltelli", axes, np.concatenate(blocks))
 
 
-DESIGN = Design("saltelli", "the points for Sobol's indices: samples in each of 2 + keys blocks", True, size, plan)
+DESIGN = Design(
+    "saltelli",
+    "the points for Sobol's indices: samples in each of 2 + keys blocks",
+    True,
+    size,
+    plan,
+)

@@ -25,14 +25,22 @@ def check_power_of_two(samples: int, blocks: int = 1) -> None:
         allowed = 1 << ((MOST_DROPS // blocks).bit_length() - 1)
         below = 1 << (samples.bit_length() - 1)
         take = f"{below} or {2 * below}" if 2 * below <= allowed else f"{min(below, allowed)}"
-        raise InputError(f"{samples} is not a power of two, which the sequence needs to be balanced; take {take}", "samples")
+        raise InputError(
+            f"{samples} is not a power of two, which the sequence needs "
+            f"to be balanced; take {take}",
+            "samples",
+        )
 
 
 def plan(asked: Asked) -> Plan:
     """Return the points of the sequence."""
     from scipy.stats import qmc
 
-    return drawn_plan("sobol", asked.axes, qmc.Sobol(len(asked.axes), rng=generator(asked.seed)).random(asked.samples))
+    return drawn_plan(
+        "sobol",
+        asked.axes,
+        qmc.Sobol(len(asked.axes), rng=generator(asked.seed)).random(asked.samples),
+    )
 
 
 DESIGN = Design("sobol", "a Sobol sequence, evenly spread in all axes together", True, size, plan)

@@ -18,7 +18,9 @@ def size(asked: Asked) -> int:
     for key, axis in asked.axes.items():
         if axis.is_random:
             raise InputError(
-                'a distribution has no values in an order; take a list or a range, or design = "latin-hypercube"', f'over."{key}"'
+                "a distribution has no values in an order; take a list or a range, or "
+                'design = "latin-hypercube"',
+                f'over."{key}"',
             )
     counts = {key: len(axis) for key, axis in asked.axes.items()}
     if len(set(counts.values())) > 1:
@@ -33,4 +35,6 @@ def plan(asked: Asked) -> Plan:
     return Plan("zip", {key: axis.levels() for key, axis in asked.axes.items()}, False)
 
 
-DESIGN = Design("zip", "the first values together, then the second values, and so on", False, size, plan)
+DESIGN = Design(
+    "zip", "the first values together, then the second values, and so on", False, size, plan
+)

@@ -87,7 +87,10 @@ class StudyAxis:
 def study_axes(study: Study) -> list[StudyAxis]:
     """Return the axes of a study in order; the class of a population comes first."""
     named = {CLASS: study.labels[CLASS]} if CLASS in study.labels else {}
-    return [_axis(key, *study.meanings[key], _as_numbers(values)) for key, values in {**named, **study.coordinates}.items()]
+    return [
+        _axis(key, *study.meanings[key], _as_numbers(values))
+        for key, values in {**named, **study.coordinates}.items()
+    ]
 
 
 def _axis(key: str, unit: str, meaning: str, values: NDArray[Any]) -> StudyAxis:
@@ -108,11 +111,19 @@ def key_words(key: str, meaning: str) -> str:
 
     Examples
     --------
-    >>> key_words("sphere.radius", "radius"), key_words("plate.material.youngs_modulus", "Young's modulus")
+    >>> (
+    ...     key_words("sphere.radius", "radius"),
+    ...     key_words("plate.material.youngs_modulus", "Young's modulus"),
+    ... )
     ('radius of the sphere', "Young's modulus of the plate")
-    >>> key_words("contact.exponent", "force exponent n, 1.5 for a sphere"), key_words("plate.mesh.size", "plate.mesh.size")
+    >>> (
+    ...     key_words("contact.exponent", "force exponent n, 1.5 for a sphere"),
+    ...     key_words("plate.mesh.size", "plate.mesh.size"),
+    ... )
     ('force exponent n', 'size of the mesh of the plate')
-    >>> key_words("sensors.a1.accelerometer.noise", "standard deviation of the noise in its samples")
+    >>> key_words(
+    ...     "sensors.a1.accelerometer.noise", "standard deviation of the noise in its samples"
+    ... )
     'noise of the accelerometer of a1'
     """
     if key in _WORDS:
@@ -124,11 +135,16 @@ def key_words(key: str, meaning: str) -> str:
     if way == ["contact"] and meaning != key:
         return meaning.split(",")[0]
     name = meaning.split(" of ")[0] if way and way[-1] in _UNSAID and meaning != key else last
-    return " of the ".join(part.replace("_", " ") for part in (name, *(part for part in reversed(way) if part not in _UNSAID)))
+    return " of the ".join(
+        part.replace("_", " ")
+        for part in (name, *(part for part in reversed(way) if part not in _UNSAID))
+    )
 
 
 def _as_numbers(values: NDArray[Any]) -> NDArray[Any]:
-    """Return strings that are all numbers as numbers, as some datasets store integers as strings."""
+    """Return strings that are all numbers as numbers, as some datasets store integers as
+    strings.
+    """
     if values.dtype != object or not len(values):
         return values
     try:

@@ -1,4 +1,6 @@
-"""The data card of a population: what its signals are, how they were drawn, and how to divide them honestly."""
+"""The data card of a population: what its signals are, how they were drawn, and how to
+divide them honestly.
+"""
 
 from __future__ import annotations
 
@@ -18,12 +20,17 @@ from vibroimpact.units.display import digits
 
 CARD = "card.md"
 
-_ALIKE = "Falls of one rock are more similar to each other than falls of its class, and so are falls on one plate."
+_ALIKE = (
+    "Falls of one rock are more similar to each other than falls of its class, and "
+    "so are falls on one plate."
+)
 _BY_PLATE = "or by `plate` for an application to other plates than these"
 _ONE_PLATE = "for an application to another plate than this, falls on several plates are needed"
 _LIMITS = (
-    "The falls are computed: spheres, each of one material, fall on a plate that is, with its supports, damping and instruments, as the "
-    "study states. Irregular shapes, cracks, layers of fines, and other vibration of the plate are not included: expect a lower accuracy "
+    "The falls are computed: spheres, each of one material, fall on a plate that is, with "
+    "its supports, damping and instruments, as the "
+    "study states. Irregular shapes, cracks, layers of fines, and other vibration of the "
+    "plate are not included: expect a lower accuracy "
     "in the field than on these falls."
 )
 
@@ -40,17 +47,27 @@ def data_card(study: Study) -> str:
     kept = "Signals, values and labels" if signals else "Values and labels, without signals,"
     parts = [
         f"# {study.name[:1].upper() + study.name[1:]}",
-        f"{drops_text(study.size)} of {_counted(study, ROCK)} on {_counted(study, PLATE)}, computed by vibroimpact "
+        f"{drops_text(study.size)} of {_counted(study, ROCK)} on {_counted(study, PLATE)}, "
+        "computed by vibroimpact "
         f"{study.version}. {kept} are in `study.nc`; `study.toml` computes it again.",
         "## Classes",
         _table(["class", "falls", "rocks", "share of the rocks"], _classes(study)),
         "## Sampled keys",
-        "Keys of `plate` and `sensors` are drawn once a plate, those of `drop` once a fall, all others once a rock, each independently."
+        "Keys of `plate` and `sensors` are drawn once a plate, those of `drop` once a fall, "
+        "all others once a rock, each independently."
         + "".join(f" {words}." for words in _following(study)),
         _table(["key", "meaning", *_names(study)], _drawn(study)),
-        *(["## Signals", _table(["variable", "quantity", "unit", "samples", "rate [Hz]"], signals)] if signals else []),
+        *(
+            [
+                "## Signals",
+                _table(["variable", "quantity", "unit", "samples", "rate [Hz]"], signals),
+            ]
+            if signals
+            else []
+        ),
         "## Labels and groups",
-        f"`{CLASS}` is the class of the rock, `{ROCK}` and `{PLATE}` number what falls share. {_ALIKE} Split training and test data by "
+        f"`{CLASS}` is the class of the rock, `{ROCK}` and `{PLATE}` number what falls "
+        f"share. {_ALIKE} Split training and test data by "
         f"`{ROCK}`{_split(study)}; never by fall, and never by windows of one signal.",
         "## Limits",
         _LIMITS,
@@ -91,19 +108,29 @@ def _classes(study: Study) -> Iterator[Sequence[str]]:
 def _drawn(study: Study) -> Iterator[Sequence[str]]:
     for axis in study_axes(study):
         if axis.key != CLASS:
-            ranges = (StudyAxis(axis.key, axis.words, axis.unit, axis.values[study.labels[CLASS] == name]) for name in _names(study))
+            ranges = (
+                StudyAxis(axis.key, axis.words, axis.unit, axis.values[study.labels[CLASS] == name])
+                for name in _names(study)
+            )
             yield f"`{axis.key}`", axis.words, *map(range_text, ranges)
 
 
 def _following(study: Study) -> list[str]:
     """Return which keys follow another one, and for what their factors are drawn, in words."""
     sweep = study.table["sweep"]
-    groups = [("", sweep["over"]), *((f" of {name}", one["over"]) for name, one in sweep["classes"].items())]
+    groups = [
+        ("", sweep["over"]),
+        *((f" of {name}", one["over"]) for name, one in sweep["classes"].items()),
+    ]
     found = []
     for of_class, over in groups:
         for key, value in over.items():
             if isinstance(value, Mapping) and "of" in value:
-                drawn = f", with a factor that is drawn once a {value['each']}" if value.get("each") else ""
+                drawn = (
+                    f", with a factor that is drawn once a {value['each']}"
+                    if value.get("each")
+                    else ""
+                )
                 found.append(f"`{key}`{of_class} follows `{value['of']}`{drawn}")
     return found
 
@@ -111,17 +138,29 @@ def _following(study: Study) -> list[str]:
 def _signal(study: Study, variable: str) -> Sequence[str]:
     times = study.times(variable.removeprefix(SIGNAL))
     rate = f"{1.0 / (times[1] - times[0]):.10g}" if len(times) > 1 else ""
-    return f"`{variable}`", study.meanings[variable][1], study.meanings[variable][0], str(study.shapes[variable][-1]), rate
+    return (
+        f"`{variable}`",
+        study.meanings[variable][1],
+        study.meanings[variable][0],
+        str(study.shapes[variable][-1]),
+        rate,
+    )
 
 
 def _doubts(study: Study) -> Iterator[str]:
     """Yield what failed, and the limits of the theory that falls exceed."""
     for number, words in reasons(study):
-        yield f"* {drops_text(number)} failed and {'has no results' if number == 1 else 'have no results, such as'}: {words}."
+        yield (
+            f"* {drops_text(number)} failed and "
+            f"{'has no results' if number == 1 else 'have no results, such as'}: {words}."
+        )
     known: Mapping[str, Any] = limits()
     for limit, drops, *_ in study.doubts:
         title = known[limit].title if limit in known else limit
-        yield f"* {title}: beyond the limit in {drops:,} of {study.size:,} falls (listed in `doubts` of `study.nc`)."
+        yield (
+            f"* {title}: beyond the limit in {drops:,} of {study.size:,} falls (listed in "
+            "`doubts` of `study.nc`)."
+        )
 
 
 def _table(heads: Sequence[str], rows: Iterable[Sequence[str]]) -> str:

@@ -14,7 +14,12 @@ from vibroimpact.studies.report.curves import MOST_LINES, impact_curves, level_c
 from vibroimpact.studies.report.drops import drawn_groups
 from vibroimpact.studies.report.histograms import FEWEST, inputs_chart, outputs_chart
 from vibroimpact.studies.report.maps import maps_chart
-from vibroimpact.studies.report.outputs import Output, drawn_outputs, independent_drops, study_outputs
+from vibroimpact.studies.report.outputs import (
+    Output,
+    drawn_outputs,
+    independent_drops,
+    study_outputs,
+)
 from vibroimpact.studies.report.over_axes import MOST_AXES, over_axes_chart
 from vibroimpact.studies.report.restitution import restitution_chart
 from vibroimpact.studies.report.sensitivity import Sensitivity, sensitivity_of
@@ -28,7 +33,9 @@ _Maker = Callable[[], Chart | None]
 _MOST_RESULTS = 6  # of a chart of the sensitivity
 
 
-def study_charts(study: Study, outputs: list[Output] | None = None, found: Sensitivity | None = None) -> list[Chart]:
+def study_charts(
+    study: Study, outputs: list[Output] | None = None, found: Sensitivity | None = None
+) -> list[Chart]:
     """Return the charts of a study in the order of its report.
 
     Parameters
@@ -43,17 +50,21 @@ def study_charts(study: Study, outputs: list[Output] | None = None, found: Sensi
     Returns
     -------
     list of Chart
-        `curves` or `maps` of a grid; `inputs` and `outputs` of drawn points; of many keys one by the name of each result; `restitution`,
-        `slip_map` of oblique impacts that were kept, `sensitivity`, and one per sensor whose signals were kept. Left out is what has
-        nothing to show.
+        `curves` or `maps` of a grid; `inputs` and `outputs` of drawn points; of many keys one by
+        the name of each result; `restitution`, `slip_map` of oblique impacts that were kept,
+        `sensitivity`, and one per sensor whose signals were kept. Left out is what has nothing to
+        show.
 
     Examples
     --------
     >>> import tempfile
     >>> import vibroimpact as vi
     >>> case = {
-    ...     "sphere": {"radius": "25 mm", "material": "granite"}, "plate": {"material": "steel"}, "drop": {"height": 1.0},
-    ...     "contact": {"law": "flores", "restitution": 0.7}, "sweep": {"over": {"drop.height": [1.0, 2.0]}},
+    ...     "sphere": {"radius": "25 mm", "material": "granite"},
+    ...     "plate": {"material": "steel"},
+    ...     "drop": {"height": 1.0},
+    ...     "contact": {"law": "flores", "restitution": 0.7},
+    ...     "sweep": {"over": {"drop.height": [1.0, 2.0]}},
     ... }
     >>> with tempfile.TemporaryDirectory() as place:
     ...     study = vi.read_study(vi.run_sweep(vi.read_sweep(case), f"{place}/heights"))
@@ -64,25 +75,43 @@ def study_charts(study: Study, outputs: list[Output] | None = None, found: Sensi
         outputs = study_outputs(study)
         found = sensitivity_of(study, [one for one in outputs if one.is_informative])
     drawn = drawn_outputs(outputs)
-    axes = [axis for axis in study_axes(study) if (len(axis.values) > 1 if study.is_grid else axis.varies)]
+    axes = [
+        axis
+        for axis in study_axes(study)
+        if (len(axis.values) > 1 if study.is_grid else axis.varies)
+    ]
     makers: dict[str, _Maker] = {}
     if drawn and axes:
-        makers |= _of_grid(study, axes, drawn, found) if study.is_grid else _of_samples(study, axes, drawn)
-    makers |= {"restitution": partial(restitution_chart, study), "slip_map": partial(slip_chart, study)}
+        makers |= (
+            _of_grid(study, axes, drawn, found)
+            if study.is_grid
+            else _of_samples(study, axes, drawn)
+        )
+    makers |= {
+        "restitution": partial(restitution_chart, study),
+        "slip_map": partial(slip_chart, study),
+    }
     if found is not None:
         makers["sensitivity"] = partial(sensitivity_chart, study, found, drawn[:_MOST_RESULTS])
     return made_charts(makers | signal_makers(study))
 
 
-def _of_grid(study: Study, axes: list[StudyAxis], drawn: list[Output], found: Sensitivity | None) -> dict[str, _Maker]:
+def _of_grid(
+    study: Study, axes: list[StudyAxis], drawn: list[Output], found: Sensitivity | None
+) -> dict[str, _Maker]:
     if len(axes) == 1:
         return {"curves": partial(impact_curves, study, axes[0], drawn)}
     first, second = _two_axes(axes, drawn, found)
     # lines for names rather than numbers, and for the fewer levels
-    each = min((first, second), key=lambda axis: (len(axis.values) > MOST_LINES, axis.numeric, len(axis.values)))
+    each = min(
+        (first, second),
+        key=lambda axis: (len(axis.values) > MOST_LINES, axis.numeric, len(axis.values)),
+    )
     makers: dict[str, _Maker] = {}
     if len(each.values) <= MOST_LINES:
-        makers["curves"] = partial(level_curves, study, axes, drawn, second if each is first else first, each)
+        makers["curves"] = partial(
+            level_curves, study, axes, drawn, second if each is first else first, each
+        )
     else:
         makers["maps"] = partial(maps_chart, study, axes, drawn, first, second)
     return makers | (_over_axes(study, axes, drawn) if len(axes) > 2 else {})
@@ -105,8 +134,12 @@ def _over_axes(study: Study, axes: list[StudyAxis], drawn: list[Output]) -> dict
     return {output.name: partial(chart_of, output) for output in drawn}
 
 
-def _two_axes(axes: list[StudyAxis], drawn: list[Output], found: Sensitivity | None) -> tuple[StudyAxis, StudyAxis]:
-    """Return the two axes of the largest effect on the first result if known, else the first two."""
+def _two_axes(
+    axes: list[StudyAxis], drawn: list[Output], found: Sensitivity | None
+) -> tuple[StudyAxis, StudyAxis]:
+    """Return the two axes of the largest effect on the first result if known, else the
+    first two.
+    """
     strength = None if found is None else found.strength.get(drawn[0].name)
     if len(axes) == 2 or strength is None:
         return axes[0], axes[1]

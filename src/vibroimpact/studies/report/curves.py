@@ -1,4 +1,6 @@
-"""Charts of a grid as curves: the results over one axis, a line for each of the first impacts, or for each level of a second axis."""
+"""Charts of a grid as curves: the results over one axis, a line for each of the first
+impacts, or for each level of a second axis.
+"""
 
 from __future__ import annotations
 
@@ -29,7 +31,8 @@ _MOST_MARKED, _MOST = 40, 3000  # levels up to which points are marked, and draw
 
 
 def impact_curves(study: Study, axis: StudyAxis, outputs: list[Output]) -> Chart:
-    """Return the chart of results over the only axis, with one line per impact for the first impacts if impacts were kept.
+    """Return the chart of results over the only axis, with one line per impact for the first
+    impacts if impacts were kept.
 
     Parameters
     ----------
@@ -40,20 +43,39 @@ def impact_curves(study: Study, axis: StudyAxis, outputs: list[Output]) -> Chart
     outputs : list of Output
         The results to draw.
     """
-    order, across, number = ascending_order(axis, _MOST), key_axis(axis), min(_impacts_kept(study), _MOST_IMPACTS)
-    table = {one.name: on_grid(study, _column(study, one) or one.name)[order].reshape(len(order), -1) for one in outputs}
-    texts = [_texts_of_impact(study, outputs, table, order, impact, number) for impact in range(max(number, 1))]
+    order, across, number = (
+        ascending_order(axis, _MOST),
+        key_axis(axis),
+        min(_impacts_kept(study), _MOST_IMPACTS),
+    )
+    table = {
+        one.name: on_grid(study, _column(study, one) or one.name)[order].reshape(len(order), -1)
+        for one in outputs
+    }
+    texts = [
+        _texts_of_impact(study, outputs, table, order, impact, number)
+        for impact in range(max(number, 1))
+    ]
     panels = []
     for output in outputs:
         kept = range(min(table[output.name].shape[1], len(texts)))
         names = [f"impact {impact + 1}" if number > 1 else "" for impact in kept]
-        marks = [_curve(axis, order, table[output.name][:, impact], impact, names[impact], texts[impact]) for impact in kept]
+        marks = [
+            _curve(axis, order, table[output.name][:, impact], impact, names[impact], texts[impact])
+            for impact in kept
+        ]
         title = output.short if _column(study, output) else output.title
-        panels.append(Panel(across, result_axis(output, ""), tuple(marks), shortened(visible(title), 60)))
-    return Chart("curves", f"Over the {axis.words}", in_rows(panels), _impact_words(study, axis), HEIGHT)
+        panels.append(
+            Panel(across, result_axis(output, ""), tuple(marks), shortened(visible(title), 60))
+        )
+    return Chart(
+        "curves", f"Over the {axis.words}", in_rows(panels), _impact_words(study, axis), HEIGHT
+    )
 
 
-def level_curves(study: Study, axes: list[StudyAxis], outputs: list[Output], over: StudyAxis, each: StudyAxis) -> Chart:
+def level_curves(
+    study: Study, axes: list[StudyAxis], outputs: list[Output], over: StudyAxis, each: StudyAxis
+) -> Chart:
     """Return the chart of results over one axis of a grid, with a line for each level of another.
 
     Parameters
@@ -68,29 +90,52 @@ def level_curves(study: Study, axes: list[StudyAxis], outputs: list[Output], ove
         The axis along which they are drawn, and that of the lines.
     """
     order, levels, across = ascending_order(over, _MOST), ascending_order(each), key_axis(over)
-    names = [f"{each.words} {level_words(each, level)}" if each.numeric else level_words(each, level) for level in levels]
+    names = [
+        f"{each.words} {level_words(each, level)}" if each.numeric else level_words(each, level)
+        for level in levels
+    ]
     texts: list[tuple[str, ...]] = [()] * len(levels)
     if len(axes) == 2 and study.size <= MOST_DROPS:
-        told = np.array(drop_texts(study, results_of(study, outputs), drop_numbers(study)), dtype=object)
-        told = told.reshape([len(axis.values) for axis in axes]) if axes[0] is over else told.reshape([len(axis.values) for axis in axes]).T
+        told = np.array(
+            drop_texts(study, results_of(study, outputs), drop_numbers(study)), dtype=object
+        )
+        told = (
+            told.reshape([len(axis.values) for axis in axes])
+            if axes[0] is over
+            else told.reshape([len(axis.values) for axis in axes]).T
+        )
         texts = [tuple(told[order, level]) for level in levels]
     panels = []
     for output in outputs:
         values = on_two_axes(study, output.name, axes.index(over), axes.index(each))
         found = zip(levels, names, texts, strict=True)
-        marks = [_curve(over, order, values[order, level], line, name, words) for line, (level, name, words) in enumerate(found)]
-        panels.append(Panel(across, result_axis(output, ""), tuple(marks), shortened(visible(output.title), 60)))
+        marks = [
+            _curve(over, order, values[order, level], line, name, words)
+            for line, (level, name, words) in enumerate(found)
+        ]
+        panels.append(
+            Panel(
+                across, result_axis(output, ""), tuple(marks), shortened(visible(output.title), 60)
+            )
+        )
     words = (
         ""
         if len(axes) == 2
-        else " Two of the keys, those with the largest effect on the first result where it is known; lines are medians over the others."
+        else " Two of the keys, those with the largest effect on the first result where it is "
+        "known; lines are medians over the others."
     )
     caption = f"A line for each {each.words}.{words} {keys_told([over, each])}"
-    return Chart("curves", f"Over the {over.words}, for each {each.words}", in_rows(panels), caption, HEIGHT)
+    return Chart(
+        "curves", f"Over the {over.words}, for each {each.words}", in_rows(panels), caption, HEIGHT
+    )
 
 
-def _curve(axis: StudyAxis, order: Indices, values: Floats, line: int, name: str, texts: tuple[str, ...]) -> Mark:
-    """Return a line over the levels of an axis, or points over names, between which there is nothing."""
+def _curve(
+    axis: StudyAxis, order: Indices, values: Floats, line: int, name: str, texts: tuple[str, ...]
+) -> Mark:
+    """Return a line over the levels of an axis, or points over names, between which there
+    is nothing.
+    """
     across = places(axis, axis.values[order])
     if not axis.numeric:
         return Points(across, values, name, series(line), texts)
@@ -98,7 +143,12 @@ def _curve(axis: StudyAxis, order: Indices, values: Floats, line: int, name: str
 
 
 def _texts_of_impact(
-    study: Study, outputs: list[Output], table: dict[str, NDArray[Any]], order: Indices, impact: int, number: int
+    study: Study,
+    outputs: list[Output],
+    table: dict[str, NDArray[Any]],
+    order: Indices,
+    impact: int,
+    number: int,
 ) -> tuple[str, ...]:
     """Return what each drop is, with the results of one of its impacts."""
     if len(order) > MOST_DROPS:
@@ -106,9 +156,14 @@ def _texts_of_impact(
     told = {}
     for output in outputs:
         column, values = _column(study, output), table[output.name]
-        told[output.short if column else output.title] = (output.unit, values[:, min(impact, values.shape[1] - 1)])
+        told[output.short if column else output.title] = (
+            output.unit,
+            values[:, min(impact, values.shape[1] - 1)],
+        )
     numbers = drop_numbers(study)[order]  # of a grid of one axis with several levels
-    return drop_texts(study, told, numbers, np.full(len(numbers), impact + 1) if number > 1 else None)
+    return drop_texts(
+        study, told, numbers, np.full(len(numbers), impact + 1) if number > 1 else None
+    )
 
 
 def _impact_words(study: Study, axis: StudyAxis) -> str:
@@ -116,17 +171,33 @@ def _impact_words(study: Study, axis: StudyAxis) -> str:
     kept = _impacts_kept(study)
     words = f"Results over the {axis.words}"
     if not kept:
-        return f"{words}; single impacts were not kept; these are the peaks of each drop. {keys_told([axis])}"
+        return (
+            f"{words}; single impacts were not kept; these are the peaks of each drop. "
+            f"{keys_told([axis])}"
+        )
     of_many = f" (the first {_MOST_IMPACTS} of {kept})" if kept > _MOST_IMPACTS else ""
-    return f"{words}, a line an impact{of_many}. {keys_told([axis])}" if kept > 1 else f"{words}. {keys_told([axis])}"
+    return (
+        f"{words}, a line an impact{of_many}. {keys_told([axis])}"
+        if kept > 1
+        else f"{words}. {keys_told([axis])}"
+    )
 
 
 def _column(study: Study, output: Output) -> str:
-    """Return the column of the impact table from which a result is taken; "" if there is none or it was not kept."""
+    """Return the column of the impact table from which a result is taken; "" if there is
+    none or it was not kept.
+    """
     column = PEAK_TABLE[output.name].column if output.name in PEAK_TABLE else ""
     return column if column in study.shapes else ""
 
 
 def _impacts_kept(study: Study) -> int:
     """Return the number of impacts kept per drop; 0 if none."""
-    return max((study.shapes[peak.column][-1] for peak in PEAK_TABLE.values() if peak.column in study.shapes), default=0)
+    return max(
+        (
+            study.shapes[peak.column][-1]
+            for peak in PEAK_TABLE.values()
+            if peak.column in study.shapes
+        ),
+        default=0,
+    )

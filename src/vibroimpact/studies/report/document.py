@@ -6,12 +6,19 @@ from typing import Any
 
 from vibroimpact.studies.report.outputs import study_outputs
 from vibroimpact.studies.report.sensitivity import informative_sensitivity
-from vibroimpact.studies.report.tables import doubt_sentences, percentiles_rows, reasons, sensitivity_rows
+from vibroimpact.studies.report.tables import (
+    doubt_sentences,
+    percentiles_rows,
+    reasons,
+    sensitivity_rows,
+)
 from vibroimpact.studies.study import Study
 
 
 def study_document(study: Study) -> dict[str, Any]:
-    """Return the outcome of a study: the rows of `percentiles.csv` and `sensitivity.csv`, failures, exceeded limits and doubts."""
+    """Return the outcome of a study: the rows of `percentiles.csv` and `sensitivity.csv`,
+    failures, exceeded limits and doubts.
+    """
     outputs = study_outputs(study)
     found = informative_sensitivity(study, outputs)
     return {

@@ -1,4 +1,6 @@
-"""The drops that charts show one by one: what each of them is, by what they may be coloured, and where they lie on the axes."""
+"""The drops that charts show one by one: what each of them is, by what they may be
+coloured, and where they lie on the axes.
+"""
 
 from __future__ import annotations
 
@@ -65,11 +67,17 @@ def drawn_groups(study: Study, axes: list[StudyAxis], outputs: list[Output]) -> 
     """
     chosen = sampled_places(study, MOST_DROPS)
     numbers = drop_numbers(study, *chosen)
-    return grouped(study, axes, numbers, drop_texts(study, results_of(study, outputs, *chosen), numbers))
+    return grouped(
+        study, axes, numbers, drop_texts(study, results_of(study, outputs, *chosen), numbers)
+    )
 
 
 def grouped(
-    study: Study, axes: list[StudyAxis], numbers: Indices, texts: tuple[str, ...], others: Mapping[str, NDArray[Any]] | None = None
+    study: Study,
+    axes: list[StudyAxis],
+    numbers: Indices,
+    texts: tuple[str, ...],
+    others: Mapping[str, NDArray[Any]] | None = None,
 ) -> list[Group]:
     """Return drops as groups, one for each name of the first key of few names.
 
@@ -84,13 +92,26 @@ def grouped(
     texts : tuple of str
         What each of them is.
     others : mapping of str to array, optional
-        Other names by which they may be coloured; they are grouped by these if there is no key of names.
+        Other names by which they may be coloured; they are grouped by these if there is no key of
+        names.
     """
     values = {axis.key: values_at(study, axis, numbers) for axis in axes}
-    places_of = {axis.key: places(axis, values[axis.key]) + (_offsets(len(numbers)) if not axis.numeric else 0.0) for axis in axes}
-    keys = dict(others or {}) | {_key_label(axis): _key_values(axis, values[axis.key]) for axis in axes}
-    named = {_key_label(axis): [_short(name) for name in names_of(axis)] for axis in axes if not axis.numeric}
-    named |= {label: list(dict.fromkeys(column.tolist())) for label, column in (others or {}).items()}
+    places_of = {
+        axis.key: places(axis, values[axis.key])
+        + (_offsets(len(numbers)) if not axis.numeric else 0.0)
+        for axis in axes
+    }
+    keys = dict(others or {}) | {
+        _key_label(axis): _key_values(axis, values[axis.key]) for axis in axes
+    }
+    named = {
+        _key_label(axis): [_short(name) for name in names_of(axis)]
+        for axis in axes
+        if not axis.numeric
+    }
+    named |= {
+        label: list(dict.fromkeys(column.tolist())) for label, column in (others or {}).items()
+    }
     by = next((label for label, names in named.items() if 1 < len(names) <= SERIES), None)
     if by is None:
         return [Group("a drop", "mark", np.arange(len(numbers)), texts, keys, places_of)]
@@ -101,19 +122,36 @@ def grouped(
             continue
         own = {key: column[chosen] for key, column in keys.items()}
         where = {key: column[chosen] for key, column in places_of.items()}
-        found.append(Group(name, series(place), chosen, tuple(texts[one] for one in chosen.tolist()), own, where))
+        found.append(
+            Group(
+                name,
+                series(place),
+                chosen,
+                tuple(texts[one] for one in chosen.tolist()),
+                own,
+                where,
+            )
+        )
     return found
 
 
-def results_of(study: Study, outputs: list[Output], *chosen: slice) -> dict[str, tuple[str, Floats]]:
+def results_of(
+    study: Study, outputs: list[Output], *chosen: slice
+) -> dict[str, tuple[str, Floats]]:
     """Return the results of drops at slices along each dimension, by title: unit and values."""
-    return {output.title: (output.unit, read_output(study, output.name, *chosen)) for output in outputs}
+    return {
+        output.title: (output.unit, read_output(study, output.name, *chosen)) for output in outputs
+    }
 
 
 def drop_texts(
-    study: Study, results: Mapping[str, tuple[str, Floats]], numbers: Indices, impacts: Indices | None = None
+    study: Study,
+    results: Mapping[str, tuple[str, Floats]],
+    numbers: Indices,
+    impacts: Indices | None = None,
 ) -> tuple[str, ...]:
-    """Return what each drop is: its number, the values of its keys, results, and the command that runs it.
+    """Return what each drop is: its number, the values of its keys, results, and the command that
+    runs it.
 
     Parameters
     ----------
@@ -131,12 +169,23 @@ def drop_texts(
     more = [f"and {len(axes) - _MOST_KEYS} keys more"] if len(axes) > _MOST_KEYS else []
     cells = [
         [f"{title}: {text(value, unit)}" if value == value else "" for value in values.tolist()]
-        for title, (unit, values) in ((shortened(visible(title), 60), result) for title, result in results.items())
+        for title, (unit, values) in (
+            (shortened(visible(title), 60), result) for title, result in results.items()
+        )
     ]
-    heads = [""] * len(numbers) if impacts is None else [f", impact {impact}" for impact in impacts.tolist()]
+    heads = (
+        [""] * len(numbers)
+        if impacts is None
+        else [f", impact {impact}" for impact in impacts.tolist()]
+    )
     found = []
     for place, (number, head) in enumerate(zip(numbers.tolist(), heads, strict=True)):
-        lines = [f"drop {number}{head}", *(column[place] for column in told), *more, *(column[place] for column in cells)]
+        lines = [
+            f"drop {number}{head}",
+            *(column[place] for column in told),
+            *more,
+            *(column[place] for column in cells),
+        ]
         found.append("\n".join([line for line in lines if line] + [run_command(number)]))
     return tuple(found)
 
@@ -156,7 +205,13 @@ def values_at(study: Study, axis: StudyAxis, numbers: Indices) -> NDArray[Any]:
     """Return the values of a swept key in drops, by their numbers."""
     if not study.is_grid:
         return axis.values[numbers]
-    return np.asarray(axis.values[np.unravel_index(numbers, tuple(study.dimensions.values()))[list(study.dimensions).index(axis.key)]])
+    return np.asarray(
+        axis.values[
+            np.unravel_index(numbers, tuple(study.dimensions.values()))[
+                list(study.dimensions).index(axis.key)
+            ]
+        ]
+    )
 
 
 def _told(axis: StudyAxis, values: NDArray[Any]) -> list[str]:
@@ -182,5 +237,9 @@ def _short(name: Any) -> str:
 
 
 def _offsets(number: int) -> Floats:
-    """Return offsets that separate points of the same name: a deterministic sequence by the golden ratio."""
-    return np.asarray(0.5 * ((np.arange(number) * 0.6180339887498949) % 1.0 - 0.5), dtype=np.float64)
+    """Return offsets that separate points of the same name: a deterministic sequence by
+    the golden ratio.
+    """
+    return np.asarray(
+        0.5 * ((np.arange(number) * 0.6180339887498949) % 1.0 - 0.5), dtype=np.float64
+    )

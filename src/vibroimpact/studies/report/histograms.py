@@ -13,7 +13,14 @@ from vibroimpact.studies.report.axes import StudyAxis
 from vibroimpact.studies.report.labels import keys_told
 from vibroimpact.studies.report.outputs import Output, independent_drops, independent_values
 from vibroimpact.studies.report.panels import HEIGHT, in_rows
-from vibroimpact.studies.report.scales import is_log, is_spread_by_factors, key_axis, names_of, places, result_axis
+from vibroimpact.studies.report.scales import (
+    is_log,
+    is_spread_by_factors,
+    key_axis,
+    names_of,
+    places,
+    result_axis,
+)
 from vibroimpact.studies.study import Study
 
 FEWEST = 20
@@ -44,19 +51,37 @@ def outputs_chart(study: Study, outputs: list[Output]) -> Chart:
     for output in outputs:
         values = independent_values(study, output.name)
         low, _, middle, _, high = output.spread.percentiles
-        edges: list[Mark] = [Level(edge, "5 and 95 %", "mark line", upright=True) for edge in (low, high)]
-        marks = (_histogram(values[np.isfinite(values)], log=is_log(output)), *edges, Level(middle, "median", "main", upright=True))
+        edges: list[Mark] = [
+            Level(edge, "5 and 95 %", "mark line", upright=True) for edge in (low, high)
+        ]
+        marks = (
+            _histogram(values[np.isfinite(values)], log=is_log(output)),
+            *edges,
+            Level(middle, "median", "main", upright=True),
+        )
         panels.append(Panel(result_axis(output, output.title), Axis("Drops", integer=True), marks))
-    return Chart("outputs", "Distribution of the results", in_rows(panels), f"Histograms of the results{_of_what(study)}.", HEIGHT)
+    return Chart(
+        "outputs",
+        "Distribution of the results",
+        in_rows(panels),
+        f"Histograms of the results{_of_what(study)}.",
+        HEIGHT,
+    )
 
 
 def _of_what(study: Study) -> str:
-    return " in the blocks A and B, whose drops are independent" if study.design == "saltelli" else ""
+    return (
+        " in the blocks A and B, whose drops are independent" if study.design == "saltelli" else ""
+    )
 
 
 def _histogram(values: Floats, *, log: bool) -> Bars:
     number = int(np.clip(2.0 * np.cbrt(len(values)), 8, _MOST_BINS))
     low, high = float(values.min()), float(values.max())
-    edges = np.unique(np.geomspace(low, high, number + 1) if log and low > 0.0 else np.linspace(low, high, number + 1))
+    edges = np.unique(
+        np.geomspace(low, high, number + 1)
+        if log and low > 0.0
+        else np.linspace(low, high, number + 1)
+    )
     counts, _ = np.histogram(values, edges)
     return Bars(edges, counts.astype(float), role="pale")

@@ -1,4 +1,6 @@
-"""Text common to tables, captions and the terminal: values of an axis, labels, counts and percentages."""
+"""Text common to tables, captions and the terminal: values of an axis, labels, counts and
+percentages.
+"""
 
 from __future__ import annotations
 
@@ -23,7 +25,8 @@ def value_text(axis: StudyAxis, value: Any) -> str:
 
 
 def level_words(axis: StudyAxis, level: int) -> str:
-    """Return a level of an axis in the multiple of its unit that suits all of them, as short as it can be.
+    """Return a level of an axis in the multiple of its unit that suits all of them, as short as it
+    can be.
 
     Examples
     --------
@@ -38,14 +41,16 @@ def level_words(axis: StudyAxis, level: int) -> str:
 
 
 def keys_told(axes: Sequence[StudyAxis]) -> str:
-    """Return the sentence of a caption that names the keys in a case file of axes that are drawn in words.
+    """Return the sentence of a caption that names the keys in a case file of axes that are drawn in
+    words.
 
     Examples
     --------
     >>> keys_told([StudyAxis("sphere.radius", "radius of the sphere", "m", np.array([0.01, 0.02]))])
     'In the case: sphere.radius.'
     """
-    keys = [shortened(visible(axis.key), 60) for axis in axes if axis.key != CLASS]  # the class is a label, and no key
+    # the class is a label, and no key
+    keys = [shortened(visible(axis.key), 60) for axis in axes if axis.key != CLASS]
     return f"In the case: {', '.join(keys)}." if keys else ""
 
 
@@ -59,7 +64,9 @@ def range_text(axis: StudyAxis) -> str:
         return ", ".join(shortened(visible(str(name)), 40) for name in names[:6]) + more
     low, high = float(np.min(axis.values)), float(np.max(axis.values))
     scale = multiple(axis.unit, [low, high])
-    return f"{digits(low / scale.size)} to {digits(high / scale.size)}\u00a0{scale.unit}".rstrip("\u00a0")
+    return f"{digits(low / scale.size)} to {digits(high / scale.size)}\u00a0{scale.unit}".rstrip(
+        "\u00a0"
+    )
 
 
 def drops_text(number: int) -> str:

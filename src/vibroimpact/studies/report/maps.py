@@ -19,7 +19,9 @@ _MOST = 200  # maximum number of levels drawn along an axis, close to the resolu
 _MOST_TOLD = 4096  # maximum number of drops of which each cell tells which one it is
 
 
-def maps_chart(study: Study, axes: list[StudyAxis], outputs: list[Output], across: StudyAxis, up: StudyAxis) -> Chart:
+def maps_chart(
+    study: Study, axes: list[StudyAxis], outputs: list[Output], across: StudyAxis, up: StudyAxis
+) -> Chart:
     """Return the chart of maps of results over two axes of a grid.
 
     Parameters
@@ -39,19 +41,35 @@ def maps_chart(study: Study, axes: list[StudyAxis], outputs: list[Output], acros
     x, y = key_axis(across), key_axis(up)
     texts: tuple[str, ...] = ()
     if len(axes) == 2 and study.size <= _MOST_TOLD:
-        told = np.array(drop_texts(study, results_of(study, outputs), drop_numbers(study)), dtype=object)
+        told = np.array(
+            drop_texts(study, results_of(study, outputs), drop_numbers(study)), dtype=object
+        )
         told = told.reshape([len(axis.values) for axis in axes])
         texts = tuple((told.T if axes[0] is across else told)[np.ix_(rows, columns)].ravel())
     panels = []
     for output in outputs:
-        values = on_two_axes(study, output.name, axes.index(up), axes.index(across))[np.ix_(rows, columns)]
+        values = on_two_axes(study, output.name, axes.index(up), axes.index(across))[
+            np.ix_(rows, columns)
+        ]
         scale = result_axis(output, output.short)
-        cells = Map(places(across, across.values[columns]), places(up, up.values[rows]), values, scale, texts=texts)
+        cells = Map(
+            places(across, across.values[columns]),
+            places(up, up.values[rows]),
+            values,
+            scale,
+            texts=texts,
+        )
         panels.append(Panel(x, y, (cells,), shortened(visible(output.title), 60)))
     words = (
         ""
         if len(axes) == 2
-        else "Two of the keys, those with the largest effect on the first result where it is known; colours are medians over the others. "
+        else "Two of the keys, those with the largest effect on the first result where it is "
+        "known; colours are medians over the others. "
     )
-    caption = f"{words}Levels are at the middle of their cells; a cell without a colour has no value. {keys_told([across, up])}"
-    return Chart("maps", f"Over the {across.words} and the {up.words}", in_rows(panels), caption, HEIGHT)
+    caption = (
+        f"{words}Levels are at the middle of their cells; a cell without a colour has no "
+        f"value. {keys_told([across, up])}"
+    )
+    return Chart(
+        "maps", f"Over the {across.words} and the {up.words}", in_rows(panels), caption, HEIGHT
+    )

@@ -30,7 +30,8 @@ def plot_study(study: Study, name: str = "") -> go.Figure:
     study : Study
         The completed study.
     name : str
-        Name of the chart, such as "maps", "restitution" or "sensitivity"; by default the first chart of the report.
+        Name of the chart, such as "maps", "restitution" or "sensitivity"; by default the first
+        chart of the report.
 
     Returns
     -------
@@ -56,12 +57,15 @@ def plot_study(study: Study, name: str = "") -> go.Figure:
     if not charts:
         raise InputError("this study has no charts, as no result that they show varies")
     if name and name not in charts:
-        raise InputError(f"there is no chart {shown(name)} of this study; there are {choices(charts, str(name))}")
+        raise InputError(
+            f"there is no chart {shown(name)} of this study; there are {choices(charts, str(name))}"
+        )
     return plotly_figure(charts[name or next(iter(charts))])
 
 
 def study_html(study: Study) -> str:
-    """Return a short summary of a study as a piece of HTML without scripts: name, drops, swept keys and the distribution of the results.
+    """Return a short summary of a study as a piece of HTML without scripts: name, drops, swept keys
+    and the distribution of the results.
 
     Parameters
     ----------
@@ -79,7 +83,16 @@ def study_html(study: Study) -> str:
     >>> "drop.height" in html, "<script" in html
     (True, False)
     """
-    head = Markup("<p><strong>{}</strong><br>{}</p>").format(visible(study.name), counts_sentence(study))
+    head = Markup("<p><strong>{}</strong><br>{}</p>").format(
+        visible(study.name), counts_sentence(study)
+    )
     keys = ["Key", "", "Values"], axes_table(study, study_axes(study))[:_KEYS]
     results = percentiles_table(study_outputs(study, _RESULTS))
-    return str(Markup("\n").join([head, *(html_table(headers, rows) if rows else "" for headers, rows in (keys, results))]))
+    return str(
+        Markup("\n").join(
+            [
+                head,
+                *(html_table(headers, rows) if rows else "" for headers, rows in (keys, results)),
+            ]
+        )
+    )

@@ -62,7 +62,9 @@ class Output(NamedTuple):
 
 
 def output_names(study: Study) -> list[str]:
-    """Return the names of the scalar results, the most important first; sensors precede the results that are not drawn."""
+    """Return the names of the scalar results, the most important first; sensors precede
+    the results that are not drawn.
+    """
     drawn = [name for name, peak in PEAK_TABLE.items() if peak.is_drawn]
     others = [name for name, peak in PEAK_TABLE.items() if not peak.is_drawn]
     sensors = [name for name in study.shapes if name.endswith(SENSOR_PEAK)]
@@ -73,9 +75,21 @@ def study_outputs(study: Study, most: int | None = None) -> list[Output]:
     """Return the results, or the first `most` of them, with their statistics."""
     found = []
     for name in output_names(study)[:most]:
-        title = PEAK_TABLE[name].title if name in PEAK_TABLE else f"Largest reading of {name.removesuffix(SENSOR_PEAK)}"
+        title = (
+            PEAK_TABLE[name].title
+            if name in PEAK_TABLE
+            else f"Largest reading of {name.removesuffix(SENSOR_PEAK)}"
+        )
         short = PEAK_TABLE[name].short if name in PEAK_TABLE else title
-        found.append(Output(name, title, short, study.meanings[name][0], spread_of(independent_values(study, name))))
+        found.append(
+            Output(
+                name,
+                title,
+                short,
+                study.meanings[name][0],
+                spread_of(independent_values(study, name)),
+            )
+        )
     return found
 
 
@@ -88,13 +102,23 @@ def drawn_outputs(outputs: list[Output]) -> list[Output]:
 
 
 def independent_drops(study: Study) -> int:
-    """Return the number of leading drops that are independent of each other: blocks A and B in the design "saltelli", else all."""
-    return study.size if study.design != "saltelli" else 2 * (study.size // (2 + len(study.coordinates)))
+    """Return the number of leading drops that are independent of each other: blocks A and
+    B in the design "saltelli", else all.
+    """
+    return (
+        study.size
+        if study.design != "saltelli"
+        else 2 * (study.size // (2 + len(study.coordinates)))
+    )
 
 
 def independent_values(study: Study, name: str) -> NDArray[Any]:
     """Return a result in all independent drops, flat; NaN for failed drops."""
-    return read_output(study, name) if study.is_grid else read_output(study, name, slice(0, independent_drops(study)))
+    return (
+        read_output(study, name)
+        if study.is_grid
+        else read_output(study, name, slice(0, independent_drops(study)))
+    )
 
 
 def on_grid(study: Study, name: str) -> NDArray[Any]:
@@ -104,7 +128,8 @@ def on_grid(study: Study, name: str) -> NDArray[Any]:
 
 
 def on_two_axes(study: Study, name: str, first: int, second: int) -> Floats:
-    """Return the median of a result over all axes of a grid but two, with the levels of the first as rows and of the second as columns.
+    """Return the median of a result over all axes of a grid but two, with the levels of the first
+    as rows and of the second as columns.
 
     Parameters
     ----------
@@ -128,39 +153,52 @@ def on_two_axes(study: Study, name: str, first: int, second: int) -> Floats:
 
 
 def sampled_places(study: Study, most: int) -> tuple[slice, ...]:
-    """Return slices along each dimension that select a representative subset of the drops, without randomness.
+    """Return slices along each dimension that select a representative subset of the drops, without
+    randomness.
 
-    For sampled points these are the first ones, as the order is random and any leading part of a Sobol sequence is evenly distributed;
-    for other points they are equally spaced.
+    For sampled points these are the first ones, as the order is random and any leading part of a
+    Sobol sequence is evenly distributed; for other points they are equally spaced.
     """
     if study.design not in ("grid", "zip"):
         number = independent_drops(study)
         return (slice(0, number if number <= most else _at_most(most, study.design)),)
     lengths = list(study.dimensions.values())
     steps = [1] * len(lengths)
-    while prod(left := [ceil(length / step) for length, step in zip(lengths, steps, strict=True)]) > most:
+    while (
+        prod(left := [ceil(length / step) for length, step in zip(lengths, steps, strict=True)])
+        > most
+    ):
         steps[int(np.argmax(left))] += 1
     return tuple(slice(None, None, step) for step in steps)
 
 
 def drop_numbers(study: Study, *places: slice) -> Indices:
-    """Return the numbers in drops.csv of the drops at slices along each dimension, flat; without slices of all."""
+    """Return the numbers in drops.csv of the drops at slices along each dimension, flat;
+    without slices of all.
+    """
     if not places:
         return np.arange(study.size)
     if not study.is_grid:
         return np.arange(study.size)[places[0]]
     lengths = tuple(study.dimensions.values())
-    chosen = np.meshgrid(*(np.arange(length)[place] for length, place in zip(lengths, places, strict=True)), indexing="ij")
+    chosen = np.meshgrid(
+        *(np.arange(length)[place] for length, place in zip(lengths, places, strict=True)),
+        indexing="ij",
+    )
     return np.asarray(np.ravel_multi_index(tuple(chosen), lengths).ravel(), dtype=np.intp)
 
 
 def sampled_output(study: Study, name: str, most: int) -> Floats:
-    """Return a result in a representative subset of the drops, (drops, ...); NaN for failed drops."""
+    """Return a result in a representative subset of the drops, (drops, ...); NaN for
+    failed drops.
+    """
     return read_output(study, name, *sampled_places(study, most))
 
 
 def read_output(study: Study, name: str, *places: slice) -> Floats:
-    """Return a result for slices of the drops, flattened; NaN for failed drops, even if a partial result was stored."""
+    """Return a result for slices of the drops, flattened; NaN for failed drops, even if a
+    partial result was stored.
+    """
     found = study.values(name, *places)
     found = found.reshape(-1, *study.shapes[name][len(study.dimensions) :])
     if found.dtype != np.float64:
@@ -171,5 +209,7 @@ def read_output(study: Study, name: str, *places: slice) -> Floats:
 
 
 def _at_most(most: int, design: str) -> int:
-    """Return the number of leading drops to take: a power of two for a Sobol sequence, which is balanced then."""
+    """Return the number of leading drops to take: a power of two for a Sobol sequence,
+    which is balanced then.
+    """
     return most if design == "latin-hypercube" else 1 << (most.bit_length() - 1)

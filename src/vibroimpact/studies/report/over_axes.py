@@ -1,4 +1,6 @@
-"""Chart of a result over each key of a study with many: single drops, and the median and percentile band of all of them."""
+"""Chart of a result over each key of a study with many: single drops, and the median and
+percentile band of all of them.
+"""
 
 from __future__ import annotations
 
@@ -12,7 +14,13 @@ from vibroimpact.studies.percentiles import PERCENTILES
 from vibroimpact.studies.report.axes import StudyAxis
 from vibroimpact.studies.report.drops import MOST_DROPS, Group, values_at
 from vibroimpact.studies.report.labels import BAND, keys_told
-from vibroimpact.studies.report.outputs import Output, drop_numbers, independent_drops, sampled_output, sampled_places
+from vibroimpact.studies.report.outputs import (
+    Output,
+    drop_numbers,
+    independent_drops,
+    sampled_output,
+    sampled_places,
+)
 from vibroimpact.studies.report.panels import HEIGHT, in_rows
 from vibroimpact.studies.report.scales import key_axis, places, result_axis
 from vibroimpact.studies.study import Study
@@ -26,8 +34,11 @@ _FEWEST = 300  # drops from which on medians are drawn
 _PARTS = np.array([PERCENTILES[0], 50, PERCENTILES[-1]]) / 100.0
 
 
-def over_axes_chart(study: Study, axes: list[StudyAxis], output: Output, groups: list[Group]) -> Chart:
-    """Return the chart of a result over each axis: points of a subset of drops, and median and band of a larger one.
+def over_axes_chart(
+    study: Study, axes: list[StudyAxis], output: Output, groups: list[Group]
+) -> Chart:
+    """Return the chart of a result over each axis: points of a subset of drops, and median and band
+    of a larger one.
 
     Parameters
     ----------
@@ -54,11 +65,19 @@ def over_axes_chart(study: Study, axes: list[StudyAxis], output: Output, groups:
         if np.isfinite(values).any() and _has_band(study):
             marks = _with_band(marks, axis, places(axis, values_at(study, axis, numbers)), values)
         panels.append(Panel(key_axis(axis), up, tuple(marks)))
-    return Chart(output.name, shortened(visible(output.title), 60), in_rows(panels), _caption(study, axes), HEIGHT)
+    return Chart(
+        output.name,
+        shortened(visible(output.title), 60),
+        in_rows(panels),
+        _caption(study, axes),
+        HEIGHT,
+    )
 
 
 def _has_band(study: Study) -> bool:
-    """Return whether medians and bands are drawn: on a grid, where each level has many drops, and of enough points."""
+    """Return whether medians and bands are drawn: on a grid, where each level has many
+    drops, and of enough points.
+    """
     return study.is_grid or independent_drops(study) > _FEWEST
 
 
@@ -69,16 +88,24 @@ def _with_band(marks: list[Mark], axis: StudyAxis, where: Floats, values: Floats
     low, middle, high = bands.T
     if not axis.numeric:
         return [*marks, Points(middles, middle, f"median, {BAND}", "main", low=low, high=high)]
-    return [Band(middles, low, high, BAND, "band"), *marks, Line(middles, middle, "median", "main", marked=len(middles) <= _BINS)]
+    return [
+        Band(middles, low, high, BAND, "band"),
+        *marks,
+        Line(middles, middle, "median", "main", marked=len(middles) <= _BINS),
+    ]
 
 
 def _in_bins(where: Floats, values: Floats, axis: StudyAxis) -> tuple[Floats, Floats]:
-    """Return bin centres along an axis, with equal numbers of drops per bin, or its names or few levels, and the band in each bin."""
+    """Return bin centres along an axis, with equal numbers of drops per bin, or its names
+    or few levels, and the band in each bin.
+    """
     found = np.unique(where)
     if not axis.numeric or len(found) <= _BINS:  # a list of values: a bin would mix them
         return found, np.array([np.quantile(values[where == place], _PARTS) for place in found])
     order = np.argsort(where, kind="stable")
-    groups = [group for group in np.array_split(order, min(_BINS, len(order) // _FULL)) if len(group)]
+    groups = [
+        group for group in np.array_split(order, min(_BINS, len(order) // _FULL)) if len(group)
+    ]
     middles = np.array([float(np.median(where[group])) for group in groups])
     return middles, np.array([np.quantile(values[group], _PARTS) for group in groups])
 
@@ -87,7 +114,14 @@ def _caption(study: Study, axes: list[StudyAxis]) -> str:
     number = len(drop_numbers(study, *sampled_places(study, MOST_DROPS)))
     some = f"{number} of the drops" if number < independent_drops(study) else "All drops"
     blocks = " of the blocks A and B" if study.design == "saltelli" else ""
-    of_what = f"of drops with the same value, or of drops next to each other where a key has more than {_BINS} numbers"
-    band = f"; the line and the band are the median and {BAND} {of_what}" if _has_band(study) else ""
-    first = f" Drawn are the first {MOST_AXES} of {len(axes)} keys." if len(axes) > MOST_AXES else ""
+    of_what = (
+        "of drops with the same value, or of drops next to each other where a key has more "
+        f"than {_BINS} numbers"
+    )
+    band = (
+        f"; the line and the band are the median and {BAND} {of_what}" if _has_band(study) else ""
+    )
+    first = (
+        f" Drawn are the first {MOST_AXES} of {len(axes)} keys." if len(axes) > MOST_AXES else ""
+    )
     return f"{some}{blocks}, over each key{band}.{first} {keys_told(axes[:MOST_AXES])}"

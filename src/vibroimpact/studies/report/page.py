@@ -1,4 +1,6 @@
-"""Write the report of a study: tables of percentiles and sensitivity, and the page with its charts."""
+"""Write the report of a study: tables of percentiles and sensitivity, and the page with
+its charts.
+"""
 
 from __future__ import annotations
 
@@ -38,7 +40,8 @@ PAGE, SPREADS, SENSITIVITY = "report.html", "percentiles.csv", "sensitivity.csv"
 
 
 def write_study_report(study: Study, folder: Path) -> None:
-    """Write `percentiles.csv`, `sensitivity.csv` if there are sensitivities, `card.md` of a population, and `report.html`.
+    """Write `percentiles.csv`, `sensitivity.csv` if there are sensitivities, `card.md` of a
+    population, and `report.html`.
 
     All files are written to a temporary folder and then moved into place one by one.
 
@@ -71,7 +74,11 @@ def _write(study: Study, folder: Path) -> None:
 
 def _page(study: Study, outputs: list[Output], found: Sensitivity | None) -> str:
     charts = study_charts(study, outputs, found)
-    table = sensitivity_table(found, drawn_outputs(outputs)) if found is not None and found.rows else None
+    table = (
+        sensitivity_table(found, drawn_outputs(outputs))
+        if found is not None and found.rows
+        else None
+    )
     return render_page(
         __package__,
         charts,
@@ -84,16 +91,23 @@ def _page(study: Study, outputs: list[Output], found: Sensitivity | None) -> str
         counted_from=COUNTED_FROM,
         design=f"{study.design}: {find_design(study.design).meaning}",
         axes=axes_table(study, study_axes(study)),
-        reasons=[(f"{drops_text(number)}{', such as' if number > 1 else ''}", words) for number, words in reasons(study)],
+        reasons=[
+            (f"{drops_text(number)}{', such as' if number > 1 else ''}", words)
+            for number, words in reasons(study)
+        ],
         failures=failures_table(study) if study.failures else None,
         failed_drops=len(study.failures),
         spread_words=spread_words(study),
         percentiles=percentiles_table(outputs),
-        without=[one.title for one in outputs if not one.spread.drops and not one.is_sensor_reading],
+        without=[
+            one.title for one in outputs if not one.spread.drops and not one.is_sensor_reading
+        ],
         zero=[one.title for one in outputs if one.is_zero],
         sensitivity=table if table and table[1] else None,
         sensitivity_words=sensitivity_words(found) if table and found is not None else "",
-        without_effect=without_effect(found, drawn_outputs(outputs)) if table and found is not None else [],
+        without_effect=without_effect(found, drawn_outputs(outputs))
+        if table and found is not None
+        else [],
         notes=found.notes if found is not None else [],
         together=study.design == "zip",
         study=study_toml(study.table),

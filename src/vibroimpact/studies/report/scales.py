@@ -30,20 +30,34 @@ def key_axis(axis: StudyAxis) -> Axis:
 
     Examples
     --------
-    >>> key_axis(StudyAxis("sphere.radius", "radius of the sphere", "m", np.array([0.01, 0.02]))).label
+    >>> key_axis(
+    ...     StudyAxis("sphere.radius", "radius of the sphere", "m", np.array([0.01, 0.02]))
+    ... ).label
     'Radius of the sphere'
     """
     label = shortened(visible(sentence(axis.words)), 60)
     if axis.numeric:
-        return Axis(label, "" if axis.unit == "1" else axis.unit, log=is_spread_by_factors(axis.values))
+        return Axis(
+            label, "" if axis.unit == "1" else axis.unit, log=is_spread_by_factors(axis.values)
+        )
     names = names_of(axis)
     step = math.ceil(len(names) / _MOST_NAMES)
-    return Axis(label, names=tuple("" if place % step else shortened(visible(name), _LONGEST) for place, name in enumerate(names)))
+    return Axis(
+        label,
+        names=tuple(
+            "" if place % step else shortened(visible(name), _LONGEST)
+            for place, name in enumerate(names)
+        ),
+    )
 
 
 def result_axis(output: Output, label: str) -> Axis:
-    """Return the axis of a chart for a result, with a label: its title, its short one, or none where a panel has the title."""
-    return Axis(shortened(visible(label), 60), "" if output.unit == "1" else output.unit, log=is_log(output))
+    """Return the axis of a chart for a result, with a label: its title, its short one, or
+    none where a panel has the title.
+    """
+    return Axis(
+        shortened(visible(label), 60), "" if output.unit == "1" else output.unit, log=is_log(output)
+    )
 
 
 def is_log(output: Output) -> bool:
@@ -63,7 +77,9 @@ def names_of(axis: StudyAxis) -> list[str]:
 
 
 def places(axis: StudyAxis, values: NDArray[Any]) -> Floats:
-    """Return where values of a swept key lie on its axis: numbers where they are, names at 0, 1, 2 and so on."""
+    """Return where values of a swept key lie on its axis: numbers where they are, names
+    at 0, 1, 2 and so on.
+    """
     if axis.numeric:
         return np.asarray(values, dtype=float)
     where = {name: float(place) for place, name in enumerate(names_of(axis))}
@@ -71,7 +87,8 @@ def places(axis: StudyAxis, values: NDArray[Any]) -> Floats:
 
 
 def ascending_order(axis: StudyAxis, most: int | None = None) -> Indices:
-    """Return the indices that sort the levels of an axis, names by first occurrence; thinned evenly if there are more than `most`.
+    """Return the indices that sort the levels of an axis, names by first occurrence; thinned evenly
+    if there are more than `most`.
 
     Examples
     --------
@@ -84,15 +101,24 @@ def ascending_order(axis: StudyAxis, most: int | None = None) -> Indices:
 
 
 def is_spread_by_factors(values: NDArray[Any]) -> bool:
-    """Return whether levels, or sampled values, are closer to a geometric than to an arithmetic progression.
+    """Return whether levels, or sampled values, are closer to a geometric than to an arithmetic
+    progression.
 
     Examples
     --------
-    >>> [is_spread_by_factors(np.array(levels)) for levels in ([1.0, 2.0, 4.0], [1.0, 2.0, 3.0], [0.02, 0.04, 1.0], [1.0, 3.0])]
+    >>> [
+    ...     is_spread_by_factors(np.array(levels))
+    ...     for levels in ([1.0, 2.0, 4.0], [1.0, 2.0, 3.0], [0.02, 0.04, 1.0], [1.0, 3.0])
+    ... ]
     [True, False, True, False]
     """
     even = np.sort(np.asarray(values[:_LOOKED_AT], dtype=float))
-    if len(even) < 3 or not np.isfinite(even).all() or not even[0] > 0.0 or even[-1] < 3.0 * even[0]:
+    if (
+        len(even) < 3
+        or not np.isfinite(even).all()
+        or not even[0] > 0.0
+        or even[-1] < 3.0 * even[0]
+    ):
         return False
     by_steps, by_factors = _off_a_line(even), _off_a_line(np.log(even))
     return bool(by_factors < by_steps and (by_factors < 0.1 or even[-1] > 8.0 * even[0]))
@@ -100,4 +126,8 @@ def is_spread_by_factors(values: NDArray[Any]) -> bool:
 
 def _off_a_line(values: Floats) -> float:
     """Return the largest deviation of sorted values from equal steps, relative to their range."""
-    return float(np.abs((values - values[0]) / (values[-1] - values[0]) - np.linspace(0.0, 1.0, len(values))).max())
+    return float(
+        np.abs(
+            (values - values[0]) / (values[-1] - values[0]) - np.linspace(0.0, 1.0, len(values))
+        ).max()
+    )

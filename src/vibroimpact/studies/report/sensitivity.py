@@ -8,9 +8,20 @@ import numpy as np
 
 from vibroimpact.arrays import Floats
 from vibroimpact.studies.report.axes import StudyAxis, study_axes
-from vibroimpact.studies.report.outputs import Output, on_grid, read_output, sampled_output, sampled_places
+from vibroimpact.studies.report.outputs import (
+    Output,
+    on_grid,
+    read_output,
+    sampled_output,
+    sampled_places,
+)
 from vibroimpact.studies.report.scales import ascending_order
-from vibroimpact.studies.sensitivity import MOST_LEFT_OUT, one_at_a_time, rank_correlations, sobol_indices
+from vibroimpact.studies.sensitivity import (
+    MOST_LEFT_OUT,
+    one_at_a_time,
+    rank_correlations,
+    sobol_indices,
+)
 from vibroimpact.studies.study import Study
 
 SOBOL, RANKS, RANGES = "sobol", "ranks", "ranges"
@@ -32,7 +43,8 @@ class Sensitivity(NamedTuple):
     rows : dict of str to dict of str to array
         By name of the result the columns of the table, one value per key.
     strength : dict of str to array
-        By name of the result the effect of each key: total index, magnitude of the correlation, or relative range.
+        By name of the result the effect of each key: total index, magnitude of the correlation, or
+        relative range.
     notes : list of str
         Omissions, as sentences.
     """
@@ -45,7 +57,9 @@ class Sensitivity(NamedTuple):
 
 
 def sensitivity_of(study: Study, outputs: list[Output]) -> Sensitivity | None:
-    """Return the sensitivity of the given results that vary; None for the design "zip", or if no key or no result varies."""
+    """Return the sensitivity of the given results that vary; None for the design "zip",
+    or if no key or no result varies.
+    """
     axes = study_axes(study)
     varying = [axis for axis in axes if axis.varies]
     outputs = [one for one in outputs if one.spread.varies]
@@ -53,11 +67,17 @@ def sensitivity_of(study: Study, outputs: list[Output]) -> Sensitivity | None:
         return None
     if study.design == "saltelli":
         return _indices(study, axes, outputs)
-    return _ranges(study, [axis for axis in axes if len(axis.values) > 1], outputs) if study.is_grid else _ranks(study, varying, outputs)
+    return (
+        _ranges(study, [axis for axis in axes if len(axis.values) > 1], outputs)
+        if study.is_grid
+        else _ranks(study, varying, outputs)
+    )
 
 
 def informative_sensitivity(study: Study, outputs: list[Output]) -> Sensitivity | None:
-    """Return the sensitivity of the results that describe the response, as `sensitivity.csv` has it; None as `sensitivity_of`."""
+    """Return the sensitivity of the results that describe the response, as
+    `sensitivity.csv` has it; None as `sensitivity_of`.
+    """
     return sensitivity_of(study, [one for one in outputs if one.is_informative])
 
 
@@ -75,8 +95,13 @@ def _indices(study: Study, axes: list[StudyAxis], outputs: list[Output]) -> Sens
     points = min(block, _POINTS)
     for output in outputs:
         # failed drops are NaN, and their points are omitted
-        parts = [read_output(study, output.name, slice(first, first + points)) for first in range(0, study.size, block)]
-        found = sobol_indices(np.concatenate(parts), len(axes), int(study.table["sweep"].get("seed", 0)))
+        parts = [
+            read_output(study, output.name, slice(first, first + points))
+            for first in range(0, study.size, block)
+        ]
+        found = sobol_indices(
+            np.concatenate(parts), len(axes), int(study.table["sweep"].get("seed", 0))
+        )
         if found is None:
             refused.append(output.title)
             continue
@@ -92,21 +117,40 @@ def _indices(study: Study, axes: list[StudyAxis], outputs: list[Output]) -> Sens
             "points": np.full(len(axes), found.points),
         }
         strength[output.name] = found.total
-    notes = [f"Indices are those of the first {points} points of each block."] if points < block else []
+    notes = (
+        [f"Indices are those of the first {points} points of each block."] if points < block else []
+    )
     if refused:
         part = f"{100 * MOST_LEFT_OUT:g} % of the points"
-        words = f"more than {part} have a drop without a value, since it failed or has none; or the others are fewer than two, or equal"
+        words = (
+            f"more than {part} have a drop without a value, since it failed or has none; or "
+            "the others are fewer than two, or equal"
+        )
         notes.append(f"No indices of {', '.join(refused)}: {words}.")
     if partly:
         told = ", ".join(f"{number} of {title}" for title, number in partly.items())
-        notes.append(f"Points left out, since one of their drops has no value: {told}. The indices are computed from the others.")
-    return Sensitivity(SOBOL, [axis.key for axis in axes], rows, strength, notes) if rows or notes else None
+        notes.append(
+            f"Points left out, since one of their drops has no value: {told}. The indices "
+            "are computed from the others."
+        )
+    return (
+        Sensitivity(SOBOL, [axis.key for axis in axes], rows, strength, notes)
+        if rows or notes
+        else None
+    )
 
 
 def _ranks(study: Study, axes: list[StudyAxis], outputs: list[Output]) -> Sensitivity | None:
     named = [axis.key for axis in axes if not axis.numeric]
     numeric = [axis for axis in axes if axis.numeric]
-    notes = [f"{', '.join(named)}: names have no order, so that there is no rank correlation with them."] if named else []
+    notes = (
+        [
+            f"{', '.join(named)}: names have no order, so that there is no rank "
+            "correlation with them."
+        ]
+        if named
+        else []
+    )
     if not numeric:
         return Sensitivity(RANKS, [], {}, {}, notes)
     places = sampled_places(study, _RANKED)
@@ -131,7 +175,20 @@ def _ranges(study: Study, axes: list[StudyAxis], outputs: list[Output]) -> Sensi
             without.append(output.title)
             continue
         middle = np.full(len(axes), moved.middle)
-        rows[output.name] = {"lowest": moved.lowest, "at_the_middle": middle, "highest": moved.highest, "relative_range": moved.relative}
+        rows[output.name] = {
+            "lowest": moved.lowest,
+            "at_the_middle": middle,
+            "highest": moved.highest,
+            "relative_range": moved.relative,
+        }
         strength[output.name] = moved.relative
-    notes = [f"No range of {', '.join(without)}: the drop at the middle of the grid has no value."] if without else []
-    return Sensitivity(RANGES, [axis.key for axis in axes], rows, strength, notes) if rows or notes else None
+    notes = (
+        [f"No range of {', '.join(without)}: the drop at the middle of the grid has no value."]
+        if without
+        else []
+    )
+    return (
+        Sensitivity(RANGES, [axis.key for axis in axes], rows, strength, notes)
+        if rows or notes
+        else None
+    )

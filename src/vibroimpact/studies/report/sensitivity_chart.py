@@ -21,16 +21,23 @@ from vibroimpact.studies.study import Study
 
 _MOST_KEYS = 15
 _LETTERS = 34  # letters of a key beside the bars
-_LABELS = {SOBOL: ("Fraction of the variance", ""), RANKS: ("Rank correlation", ""), RANGES: ("From the middle", "%")}
+_LABELS = {
+    SOBOL: ("Fraction of the variance", ""),
+    RANKS: ("Rank correlation", ""),
+    RANGES: ("From the middle", "%"),
+}
 _WORDS = {
-    SOBOL: "Sobol's indices: fraction of the variance due to a key alone, and in total; the thin lines are 95 % intervals.",
+    SOBOL: "Sobol's indices: fraction of the variance due to a key alone, and in total; the thin "
+    "lines are 95 % intervals.",
     RANKS: "Spearman's rank correlation of results with keys that are numbers.",
-    RANGES: "Range of a result along one key, with the others at their middle level. Each panel has its own scale.",
+    RANGES: "Range of a result along one key, with the others at their middle level. Each panel "
+    "has its own scale.",
 }
 
 
 def sensitivity_chart(study: Study, found: Sensitivity, outputs: list[Output]) -> Chart | None:
-    """Return the chart of indices, correlations or ranges, one panel per result; None with fewer than two keys or no result.
+    """Return the chart of indices, correlations or ranges, one panel per result; None with fewer
+    than two keys or no result.
 
     Parameters
     ----------
@@ -45,29 +52,52 @@ def sensitivity_chart(study: Study, found: Sensitivity, outputs: list[Output]) -
     if not shown or len(found.keys) < 2:
         return None
     # sort the keys by their effect summed over all results, the largest at the top
-    order = np.argsort(np.nansum([found.strength[one.name] for one in shown], axis=0), kind="stable")[-_MOST_KEYS:]
+    order = np.argsort(
+        np.nansum([found.strength[one.name] for one in shown], axis=0), kind="stable"
+    )[-_MOST_KEYS:]
     axes = {axis.key: axis for axis in study_axes(study)}
     keys = [axes[found.keys[key]] for key in order]
     names = tuple(shortened(visible(sentence(axis.words)), 60) for axis in keys)
-    panels, common = [], Axis(*_LABELS[found.way], range=(-1.05, 1.05) if found.way == RANKS else None)
+    panels, common = (
+        [],
+        Axis(*_LABELS[found.way], range=(-1.05, 1.05) if found.way == RANKS else None),
+    )
     up = Axis(names=tuple(shortened(name, _LETTERS) for name in names))
     for output in shown:
-        across = Axis(*_LABELS[RANGES]) if found.way == RANGES else common  # ranges may differ widely between results
+        # ranges may differ widely between results
+        across = Axis(*_LABELS[RANGES]) if found.way == RANGES else common
         marks = (*_bars(found, output, order, names), Level(0.0, role="main", upright=True))
         panels.append(Panel(across, up, marks, shortened(visible(output.short), 40)))
-    cut = "" if len(found.keys) <= _MOST_KEYS else f" The {_MOST_KEYS} of {len(found.keys)} keys with the largest effects are drawn."
+    cut = (
+        ""
+        if len(found.keys) <= _MOST_KEYS
+        else f" The {_MOST_KEYS} of {len(found.keys)} keys with the largest effects are drawn."
+    )
     caption = f"{_WORDS[found.way]}{cut} {keys_told(keys[::-1])}"
     return Chart("sensitivity", "Sensitivity", in_rows(panels), caption, 0.7 + 0.28 * len(order))
 
 
-def _bars(found: Sensitivity, output: Output, order: Indices, names: tuple[str, ...]) -> tuple[Mark, ...]:
+def _bars(
+    found: Sensitivity, output: Output, order: Indices, names: tuple[str, ...]
+) -> tuple[Mark, ...]:
     """Return the bars of one result, one for each of the named keys."""
     lying = partial(Bars, lying=True, texts=names)
     row, places = found.rows[output.name], np.arange(float(len(order)))
     if found.way == SOBOL:
-        sides = ((0.18, "first_order", "alone (first order)", "detail"), (-0.18, "total", "in all (total)", "pale"))
+        sides = (
+            (0.18, "first_order", "alone (first order)", "detail"),
+            (-0.18, "total", "in all (total)", "pale"),
+        )
         return tuple(
-            lying(places + side, row[name][order], label, role, 0.34, low=row[f"{name}_low"][order], high=row[f"{name}_high"][order])
+            lying(
+                places + side,
+                row[name][order],
+                label,
+                role,
+                0.34,
+                low=row[f"{name}_low"][order],
+                high=row[f"{name}_high"][order],
+            )
             for side, name, label, role in sides
         )
     if found.way == RANKS:
@@ -75,5 +105,10 @@ def _bars(found: Sensitivity, output: Output, order: Indices, names: tuple[str, 
     middle = row["at_the_middle"][order]
     moved = [np.nan_to_num(row[name][order] - middle) for name in ("lowest", "highest")]
     # a result that is zero at the middle has no relative range
-    low, high = (100.0 * np.divide(one, np.abs(middle), out=np.zeros(len(order)), where=middle != 0.0) for one in moved)
-    return lying(places, high, "up to the highest", "detail"), lying(places, low, "down to the lowest", "lower")
+    low, high = (
+        100.0 * np.divide(one, np.abs(middle), out=np.zeros(len(order)), where=middle != 0.0)
+        for one in moved
+    )
+    return lying(places, high, "up to the highest", "detail"), lying(
+        places, low, "down to the lowest", "lower"
+    )

@@ -1,4 +1,6 @@
-"""Chart of the signals of a sensor in the drops of a study: percentile band and single signals, from first touch on."""
+"""Chart of the signals of a sensor in the drops of a study: percentile band and single
+signals, from first touch on.
+"""
 
 from __future__ import annotations
 
@@ -27,23 +29,34 @@ MOST = 2
 _BYTES = 30e6  # maximum memory of the evaluated signals
 _BEFORE = 0.05  # part of what is shown that lies before first touch
 _COLUMNS = 1200  # time intervals of the band
-_CLOSE, _FARTHER = 250, 8  # samples shown by the first view, and by each further one how many times more
+# samples shown by the first view, and by each further one how many times more
+_CLOSE, _FARTHER = 250, 8
 _FEW = 5
 _FINEST = 2500  # columns of a line that is drawn
 
 
 def signal_makers(study: Study) -> dict[str, Callable[[], Chart | None]]:
-    """Return what makes the charts of the signals of the first sensors, by the names of the charts."""
+    """Return what makes the charts of the signals of the first sensors, by the names of
+    the charts.
+    """
     sensors = [name.removeprefix(SIGNAL) for name in study.shapes if name.startswith(SIGNAL)]
-    names = {sensor: f"signal_{plain_name}" for sensor, plain_name in list(plain_names(sensors).items())[:MOST]}
+    names = {
+        sensor: f"signal_{plain_name}"
+        for sensor, plain_name in list(plain_names(sensors).items())[:MOST]
+    }
     return {name: partial(_signal_chart, study, sensor, name) for sensor, name in names.items()}
 
 
 def _signal_chart(study: Study, sensor: str, name: str) -> Chart | None:
-    """Return the chart of a sensor's signals: percentile band of its readings over time, and single signals; None without readings."""
+    """Return the chart of a sensor's signals: percentile band of its readings over time,
+    and single signals; None without readings.
+    """
     variable = f"{SIGNAL}{sensor}"
     most = max(_FEW, int(_BYTES / (8 * study.shapes[variable][-1])))
-    signals, numbers = sampled_output(study, variable, most), drop_numbers(study, *sampled_places(study, most))
+    signals, numbers = (
+        sampled_output(study, variable, most),
+        drop_numbers(study, *sampled_places(study, most)),
+    )
     touch = _first_touches(study, sensor, most)
     there = np.isfinite(signals).all(axis=1) & np.isfinite(touch)
     signals, numbers, touch = signals[there], numbers[there], touch[there]
@@ -55,18 +68,29 @@ def _signal_chart(study: Study, sensor: str, name: str) -> Chart | None:
     label = "Time since first touch" if touch.any() else "Time"
     unit, meaning = study.meanings[variable]
     reading = Axis(meaning.split(" that ")[0].capitalize(), unit)
-    band = Panel(Axis(label, "s"), reading, tuple(_band(signals, touch, step, before)), f"All readings in {drops_text(len(signals))}")
+    band = Panel(
+        Axis(label, "s"),
+        reading,
+        tuple(_band(signals, touch, step, before)),
+        f"All readings in {drops_text(len(signals))}",
+    )
     single = tuple(_single(signals, numbers, touch, times, before))
     lower = Panel(Axis(label, "s", views=_views(step, len(times))), reading, single, "Single drops")
     caption = (
-        "Above, all readings in short spans of the time since first touch, as long as half of the drops have readings. Below, single drops "
-        "aligned at first touch: those of the smallest and the largest peak, and up to three between."
+        "Above, all readings in short spans of the time since first touch, as long as half "
+        "of the drops have readings. Below, single drops "
+        "aligned at first touch: those of the smallest and the largest peak, "
+        "and up to three between."
     )
-    return Chart(name, f"Sensor {shortened(visible(sensor), 60)}", ((band,), (lower,)), caption, 2.6)
+    return Chart(
+        name, f"Sensor {shortened(visible(sensor), 60)}", ((band,), (lower,)), caption, 2.6
+    )
 
 
 def _first_touches(study: Study, sensor: str, most: int) -> Floats:
-    """Return the time of first touch of each drop since its first sample; zeros where the dataset does not have it."""
+    """Return the time of first touch of each drop since its first sample; zeros where the
+    dataset does not have it.
+    """
     start = f"{sensor}{SIGNAL_START}"
     if "first_time_s" in study.shapes and start in study.shapes:
         return sampled_output(study, "first_time_s", most) - sampled_output(study, start, most)
@@ -92,18 +116,28 @@ def _band(signals: Floats, touch: Floats, step: float, before: float) -> Iterato
         row[: len(part)] = part
     spans = np.array_split(np.arange(aligned.shape[1]), min(_COLUMNS, aligned.shape[1]))
     readings = (aligned[:, span].ravel() for span in spans)
-    parts = np.array([np.percentile(one[np.isfinite(one)], (0, 5, 50, 95, 100)) for one in readings])
+    parts = np.array(
+        [np.percentile(one[np.isfinite(one)], (0, 5, 50, 95, 100)) for one in readings]
+    )
     middle = step * np.array([span.mean() - ahead for span in spans])
     yield Band(middle, parts[:, 0], parts[:, 4], "all", "band")
     yield Band(middle, parts[:, 1], parts[:, 3], BAND, "inner band")
     yield Line(middle, parts[:, 2], "median")
 
 
-def _single(signals: Floats, numbers: Indices, touch: Floats, times: Floats, before: float) -> Iterator[Line]:
-    """Yield the signals with the smallest and the largest peak, and with some between, the largest below the others."""
+def _single(
+    signals: Floats, numbers: Indices, touch: Floats, times: Floats, before: float
+) -> Iterator[Line]:
+    """Yield the signals with the smallest and the largest peak, and with some between,
+    the largest below the others.
+    """
     by_peak = np.argsort(-np.abs(signals).max(axis=1), kind="stable")
     chosen = dict.fromkeys(by_peak[np.linspace(0, len(by_peak) - 1, _FEW).astype(int)].tolist())
-    peaks = {int(by_peak[0]): ", largest peak", int(by_peak[-1]): ", smallest peak"} if len(chosen) > 1 else {}
+    peaks = (
+        {int(by_peak[0]): ", largest peak", int(by_peak[-1]): ", smallest peak"}
+        if len(chosen) > 1
+        else {}
+    )
     for place, drop in enumerate(chosen):
         since = times - touch[drop]
         there = slice(int(np.searchsorted(since, -before)), None)
@@ -112,7 +146,9 @@ def _single(signals: Floats, numbers: Indices, touch: Floats, times: Floats, bef
 
 
 def _drawn(x: Floats, y: Floats) -> tuple[Floats, Floats]:
-    """Return the visible points of a signal, and all of its beginning, which the first views show."""
+    """Return the visible points of a signal, and all of its beginning, which the first
+    views show.
+    """
     kept = visible_points(len(x), lambda first, last: (x[first:last], y[first:last]), _FINEST)
     if kept is None:
         return x, y

@@ -21,19 +21,34 @@ from vibroimpact.studies.study import Study
 from vibroimpact.studies.swept_keys import case_at
 
 _COLUMNS = (*tuple(OBLIQUE_IMPACT_COLUMNS)[2:12], "approach_speed_m_s", "restitution_achieved")
-_OF_THE_CONTACT = ("sphere.radius", "sphere.mass", "sphere.inertia", "sphere.material", "plate.radius", "plate.material", "contact.")
+_OF_THE_CONTACT = (
+    "sphere.radius",
+    "sphere.mass",
+    "sphere.inertia",
+    "sphere.material",
+    "plate.radius",
+    "plate.material",
+    "contact.",
+)
 """Beginnings of the keys on which radius, moment of inertia, coefficient and moduli depend."""
 
 
 def slip_chart(study: Study) -> Chart | None:
-    """Return the dimensionless map of the first impacts; None if the study did not keep oblique impacts, or they have no friction.
+    """Return the dimensionless map of the first impacts; None if the study did not keep oblique
+    impacts, or they have no friction.
 
-    Nor is there one where the plate is moved, as the velocities of the impact table are not relative to it.
+    Nor is there one where the plate is moved, as the velocities of the impact table are not
+    relative to it.
     """
-    if study.table["plate"].get("motion") or any(name not in study.shapes or not study.shapes[name][-1] for name in _COLUMNS):
+    if study.table["plate"].get("motion") or any(
+        name not in study.shapes or not study.shapes[name][-1] for name in _COLUMNS
+    ):
         return None
     numbers = drop_numbers(study, *sampled_places(study, MOST_DROPS))
-    impacts = {name: sampled_output(study, name, MOST_DROPS).reshape(len(numbers), -1)[:, 0] for name in _COLUMNS}
+    impacts = {
+        name: sampled_output(study, name, MOST_DROPS).reshape(len(numbers), -1)[:, 0]
+        for name in _COLUMNS
+    }
     pairs = _pairs(study, numbers)
     with np.errstate(divide="ignore", invalid="ignore"):
         scale = pairs.coefficient * pairs.ratio * impacts["approach_speed_m_s"]
@@ -44,13 +59,31 @@ def slip_chart(study: Study) -> Chart | None:
     told = {"Slip before, ψ": ("1", before[there]), "Slip after, ψ": ("1", after[there])}
     axes = [axis for axis in study_axes(study) if axis.varies]
     groups = grouped(study, axes, numbers[there], drop_texts(study, told, numbers[there]))
-    marks = [Points(before[there][one.chosen], after[there][one.chosen], one.name, one.role, one.texts, one.keys) for one in groups]
-    restitution, ratio, inertia = impacts["restitution_achieved"][there], pairs.ratio[there], pairs.inertia_ratio[there]
-    return slip_map(marks, before[there], restitution, ratio, inertia, "The first impact of each drop a mark.")
+    marks = [
+        Points(
+            before[there][one.chosen],
+            after[there][one.chosen],
+            one.name,
+            one.role,
+            one.texts,
+            one.keys,
+        )
+        for one in groups
+    ]
+    restitution, ratio, inertia = (
+        impacts["restitution_achieved"][there],
+        pairs.ratio[there],
+        pairs.inertia_ratio[there],
+    )
+    return slip_map(
+        marks, before[there], restitution, ratio, inertia, "The first impact of each drop a mark."
+    )
 
 
 class _Pairs(NamedTuple):
-    """Radius [m] and moment of inertia (over m R^2) of the sphere, coefficient of friction and E*/G* of drops; NaN where not known."""
+    """Radius [m] and moment of inertia (over m R^2) of the sphere, coefficient of
+    friction and E*/G* of drops; NaN where not known.
+    """
 
     radius: Floats
     inertia_ratio: Floats
@@ -59,11 +92,19 @@ class _Pairs(NamedTuple):
 
 
 def _pairs(study: Study, numbers: Indices) -> _Pairs:
-    """Return what the contacts of drops are; each combination of the keys on which it depends is read once."""
+    """Return what the contacts of drops are; each combination of the keys on which it
+    depends is read once.
+    """
     table = {key: value for key, value in study.table.items() if key != "sweep"}
     first = {key: values[0] for key, values in study.coordinates.items()}
-    axes = [replace(axis, values=study.coordinates[axis.key]) for axis in study_axes(study) if axis.key.startswith(_OF_THE_CONTACT)]
-    rows = list(zip(*(values_at(study, axis, numbers).tolist() for axis in axes), strict=True)) or [()] * len(numbers)
+    axes = [
+        replace(axis, values=study.coordinates[axis.key])
+        for axis in study_axes(study)
+        if axis.key.startswith(_OF_THE_CONTACT)
+    ]
+    rows = list(zip(*(values_at(study, axis, numbers).tolist() for axis in axes), strict=True)) or [
+        ()
+    ] * len(numbers)
     found = {}
     for row in dict.fromkeys(rows):
         case = case_at(table, {**first, **dict(zip((axis.key for axis in axes), row, strict=True))})

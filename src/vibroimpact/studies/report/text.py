@@ -1,4 +1,6 @@
-"""Terminal summary of a completed study: number of drops, main results, and the key with the largest effect on each."""
+"""Terminal summary of a completed study: number of drops, main results, and the key with
+the largest effect on each.
+"""
 
 from __future__ import annotations
 
@@ -12,8 +14,19 @@ from vibroimpact.studies.report.axes import study_axes
 from vibroimpact.studies.report.labels import drops_text, percent, with_unit
 from vibroimpact.studies.report.outputs import study_outputs
 from vibroimpact.studies.report.restitution import restitution_sentence, summarize_restitution
-from vibroimpact.studies.report.sensitivity import RANKS, SOBOL, Sensitivity, sensitivity_of, strongest
-from vibroimpact.studies.report.tables import COUNTED_FROM, counts_sentence, doubt_sentences, reasons
+from vibroimpact.studies.report.sensitivity import (
+    RANKS,
+    SOBOL,
+    Sensitivity,
+    sensitivity_of,
+    strongest,
+)
+from vibroimpact.studies.report.tables import (
+    COUNTED_FROM,
+    counts_sentence,
+    doubt_sentences,
+    reasons,
+)
 from vibroimpact.studies.study import Study
 from vibroimpact.units.display import digits
 
@@ -28,14 +41,23 @@ def study_summary(study: Study, width: int) -> RenderableType:
     outputs = ([one for one in there if one.spread.varies] or there)[:_RESULTS]
     found = sensitivity_of(study, outputs)
     told = found if width >= _NARROW else None
-    columns = [TerminalColumn("result", [with_unit(one.title, one.scale.unit) for one in outputs], text=True)]
+    columns = [
+        TerminalColumn(
+            "result", [with_unit(one.title, one.scale.unit) for one in outputs], text=True
+        )
+    ]
     for part in _TOLD:
-        cells = [digits(one.spread.percentiles[PERCENTILES.index(part)] / one.scale.size) for one in outputs]
+        cells = [
+            digits(one.spread.percentiles[PERCENTILES.index(part)] / one.scale.size)
+            for one in outputs
+        ]
         columns.append(TerminalColumn(f"{part}\u00a0%", cells))
     if told is not None:
         named = told.way == RANKS and any(not axis.numeric for axis in study_axes(study))
         heading = "most sensitive, of numeric keys, to" if named else "most sensitive to"
-        columns.append(TerminalColumn(heading, [_strongest(told, one.name) for one in outputs], text=True))
+        columns.append(
+            TerminalColumn(heading, [_strongest(told, one.name) for one in outputs], text=True)
+        )
     why = [
         Text(f" {drops_text(number)}{', such as' if number > 1 else ''}: {words}", style="yellow")
         for number, words in reasons(study)[:_REASONS]
@@ -53,11 +75,19 @@ def study_summary(study: Study, width: int) -> RenderableType:
 
 
 def _strongest(found: Sensitivity, output: str) -> str:
-    """Return the key with the largest effect on a result, with its magnitude; "" if undetermined."""
+    """Return the key with the largest effect on a result, with its magnitude; "" if
+    undetermined.
+    """
     key = strongest(found, output)
     if key is None:
         return ""
     place = found.keys.index(key)
     if found.way == RANKS:
-        return f"{key} (rank correlation {digits(float(found.rows[output]['rank_correlation'][place]), 2)})"
-    return f"{key} ({'index' if found.way == SOBOL else 'range'} {percent(float(found.strength[output][place]))})"
+        return (
+            f"{key} (rank correlation "
+            f"{digits(float(found.rows[output]['rank_correlation'][place]), 2)})"
+        )
+    return (
+        f"{key} ({'index' if found.way == SOBOL else 'range'} "
+        f"{percent(float(found.strength[output][place]))})"
+    )

@@ -20,8 +20,8 @@ class Coulomb(ImpulsiveFriction):
 
     Notes
     -----
-    The friction does not reverse the slip: nothing stores energy. A solid sphere that falls without spin on a plate that does not
-    move is left with 5/7 of its tangential velocity if the slip ends.
+    The friction does not reverse the slip: nothing stores energy. A solid sphere that falls without
+    spin on a plate that does not move is left with 5/7 of its tangential velocity if the slip ends.
 
     References
     ----------
@@ -40,7 +40,9 @@ class Coulomb(ImpulsiveFriction):
 
     def slip_after(self, slip: Floats, impulse: Floats, whole: Floats, mass: Floats) -> Floats:
         """Return the slip that friction has left; see `ImpulsiveFriction`."""
-        return np.asarray(slip - np.sign(slip) * np.minimum(np.abs(slip), self.coefficient * impulse / mass))
+        return np.asarray(
+            slip - np.sign(slip) * np.minimum(np.abs(slip), self.coefficient * impulse / mass)
+        )
 
     def force(self, slip: Floats, normal_force: Floats) -> Floats:
         """Return the force of sliding where it slips [N]."""

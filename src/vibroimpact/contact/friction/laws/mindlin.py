@@ -17,8 +17,9 @@ class Mindlin(CompliantFriction):
 
     Notes
     -----
-    The stiffness is that of a contact without slip. As the contact shrinks, the spring gives back less than it was given, and the energy is
-    lost. LAMMPS calls it `mindlin`; `mindlin-rescale` and `mindlin-force` are its variants.
+    The stiffness is that of a contact without slip. As the contact shrinks, the spring gives back
+    less than it was given, and the energy is lost. LAMMPS calls it `mindlin`; `mindlin-rescale` and
+    `mindlin-force` are its variants.
 
     References
     ----------
@@ -26,7 +27,12 @@ class Mindlin(CompliantFriction):
 
     Examples
     --------
-    >>> Mindlin(coefficient=0.1, effective_modulus=60e9, effective_shear_modulus=50e9, effective_radius=2.5e-3).name
+    >>> Mindlin(
+    ...     coefficient=0.1,
+    ...     effective_modulus=60e9,
+    ...     effective_shear_modulus=50e9,
+    ...     effective_radius=2.5e-3,
+    ... ).name
     'mindlin'
     """
 
@@ -41,7 +47,9 @@ class Mindlin(CompliantFriction):
 class MindlinRescale(Mindlin):
     r"""Mindlin's stiffness as a single spring, whose displacement shrinks with the contact.
 
-    .. math:: Q = 2 G^* a\, \xi,\qquad \dot\xi = \dot s + \xi\, \min(\dot a, 0) / a,\qquad Q \le \mu F
+    .. math::
+
+        Q = 2 G^* a\, \xi,\qquad \dot\xi = \dot s + \xi\, \min(\dot a, 0) / a,\qquad Q \le \mu F
 
     Notes
     -----
@@ -49,18 +57,26 @@ class MindlinRescale(Mindlin):
 
     References
     ----------
-    Thornton, C., Cummins, S. J. and Cleary, P. W. (2013). An investigation of the comparative behaviour of alternative contact force
-    models during inelastic collisions. Powder Technol. 233, 30-46.
+    Thornton, C., Cummins, S. J. and Cleary, P. W. (2013). An investigation of the comparative
+    behaviour of alternative contact force models during inelastic collisions. Powder Technol. 233,
+    30-46.
 
     Examples
     --------
-    >>> MindlinRescale(coefficient=0.1, effective_modulus=60e9, effective_shear_modulus=50e9, effective_radius=2.5e-3).stretching
+    >>> MindlinRescale(
+    ...     coefficient=0.1,
+    ...     effective_modulus=60e9,
+    ...     effective_shear_modulus=50e9,
+    ...     effective_radius=2.5e-3,
+    ... ).stretching
     (1, 2)
     """
 
     name = "mindlin-rescale"
     equation = "Q = 2 G* a xi, xi shrinks with a, at most mu F"
-    source = "Thornton, Cummins & Cleary 2013, Powder Technol. 233:30; LAMMPS, granular: mindlin_rescale"
+    source = (
+        "Thornton, Cummins & Cleary 2013, Powder Technol. 233:30; LAMMPS, granular: mindlin_rescale"
+    )
     stretching = (1, 2)
 
 
@@ -76,11 +92,17 @@ class MindlinForce(Mindlin):
 
     References
     ----------
-    Mindlin, R. D. and Deresiewicz, H. (1953). Elastic spheres in contact under varying oblique forces. J. Appl. Mech. 20, 327-344.
+    Mindlin, R. D. and Deresiewicz, H. (1953). Elastic spheres in contact under varying oblique
+    forces. J. Appl. Mech. 20, 327-344.
 
     Examples
     --------
-    >>> MindlinForce(coefficient=0.1, effective_modulus=60e9, effective_shear_modulus=50e9, effective_radius=2.5e-3).name
+    >>> MindlinForce(
+    ...     coefficient=0.1,
+    ...     effective_modulus=60e9,
+    ...     effective_shear_modulus=50e9,
+    ...     effective_radius=2.5e-3,
+    ... ).name
     'mindlin-force'
     """
 

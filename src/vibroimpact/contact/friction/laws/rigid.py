@@ -13,9 +13,13 @@ from vibroimpact.contact.parameters import parameter
 
 @dataclass(frozen=True, kw_only=True)
 class Rigid(ImpulsiveFriction):
-    r"""A coefficient of restitution of the slip, where the friction suffices, else sliding (Walton 1993).
+    r"""A coefficient of restitution of the slip, where the friction suffices, else sliding (Walton
+    1993).
 
-    .. math:: v_s' = -\beta_0 v_s \quad\text{or, if that takes more than}\ \mu J,\quad v_s' = v_s - \mu J / m_t
+    .. math::
+
+        v_s' = -\beta_0 v_s \quad\text{or, if that takes more than}\ \mu J,\quad v_s' = v_s - \mu J
+        / m_t
 
     with J the normal impulse and :math:`m_t` the effective mass of the tangential motion.
 
@@ -25,8 +29,8 @@ class Rigid(ImpulsiveFriction):
 
     References
     ----------
-    Walton, O. R. (1993). Numerical simulation of inelastic, frictional particle-particle interactions. In: Particulate Two-Phase Flow,
-    ed. M. C. Roco, Butterworth-Heinemann, 884-911.
+    Walton, O. R. (1993). Numerical simulation of inelastic, frictional particle-particle
+    interactions. In: Particulate Two-Phase Flow, ed. M. C. Roco, Butterworth-Heinemann, 884-911.
 
     Examples
     --------
@@ -36,7 +40,11 @@ class Rigid(ImpulsiveFriction):
     """
 
     slip_restitution: Array = parameter(
-        "restitution of the slip, beta0", detail=r"Restitution of the slip :math:`\beta_0`.", default=0.0, at_least=-1, at_most=1
+        "restitution of the slip, beta0",
+        detail=r"Restitution of the slip :math:`\beta_0`.",
+        default=0.0,
+        at_least=-1,
+        at_most=1,
     )
 
     name = "rigid"
@@ -44,6 +52,10 @@ class Rigid(ImpulsiveFriction):
     source = "Walton 1993, in Particulate Two-Phase Flow, p. 884"
 
     def slip_after(self, slip: Floats, impulse: Floats, whole: Floats, mass: Floats) -> Floats:
-        """Return the slip of first touch, and after the whole impulse what friction has made of it; see `ImpulsiveFriction`."""
-        change = np.minimum((1.0 + self.slip_restitution) * np.abs(slip), self.coefficient * whole / mass)
+        """Return the slip of first touch, and after the whole impulse what friction has
+        made of it; see `ImpulsiveFriction`.
+        """
+        change = np.minimum(
+            (1.0 + self.slip_restitution) * np.abs(slip), self.coefficient * whole / mass
+        )
         return np.where(impulse >= whole, slip - np.sign(slip) * change, slip)

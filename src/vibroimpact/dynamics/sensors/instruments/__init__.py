@@ -1,1 +1,3 @@
-"""Instruments on the plate, one a file: what of the plate each sees, and the linear system and the gain behind it."""
+"""Instruments on the plate, one a file: what of the plate each sees, and the linear
+system and the gain behind it.
+"""

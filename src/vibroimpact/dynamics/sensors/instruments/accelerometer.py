@@ -20,7 +20,8 @@ class Accelerometer:
     damping_ratio : float, default 0.02
         Of that resonance [-].
     range : float, optional
-        Largest magnitude of its output [m/s^2], at which it is clipped before the anti-alias filter.
+        Largest magnitude of its output [m/s^2], at which it is clipped before the anti-alias
+        filter.
     noise : float, default 0
         Standard deviation of white noise in its samples [m/s^2]; the same in every run of one seed.
     resolution : float, optional

@@ -1,11 +1,14 @@
-r"""A geophone: a coil on a spring in the field of a magnet, whose voltage follows the velocity of the case above the natural frequency.
+r"""A geophone: a coil on a spring in the field of a magnet, whose voltage follows the velocity of
+the case above the natural frequency.
 
 The voltage over the velocity of the case is
 
 .. math:: \frac{V}{v} = \frac{S\,s^2}{s^2 + 2 \zeta \omega_0 s + \omega_0^2}
 
-with the sensitivity S (E. Wielandt, Seismic sensors and their calibration, in: P. Bormann, ed., New Manual of Seismological
-Observatory Practice, 2002, chapter 5). It is :math:`S / \omega_0^2` times the third derivative of the displacement behind a pair of poles.
+with the sensitivity S (E. Wielandt, Seismic sensors and their calibration, in: P. Bormann, ed., New
+Manual of Seismological
+Observatory Practice, 2002, chapter 5). It is :math:`S / \omega_0^2` times the third derivative of
+the displacement behind a pair of poles.
 """
 
 from __future__ import annotations
@@ -30,7 +33,8 @@ class Geophone:
     damping_ratio : float, default 0.6
         Of the coil on its spring, with its shunt [-], > 0.
     low_pass : float, optional
-        Corner of a Butterworth low-pass of order two behind it [Hz], > 0: of its circuit, or in place of its inductance.
+        Corner of a Butterworth low-pass of order two behind it [Hz], > 0: of its circuit, or in
+        place of its inductance.
 
     Examples
     --------
@@ -56,7 +60,9 @@ class Geophone:
 
     @property
     def gain(self) -> float:
-        """Voltage over the third derivative of the displacement, below the natural frequency [V s^3/m]."""
+        """Voltage over the third derivative of the displacement, below the natural
+        frequency [V s^3/m].
+        """
         return self.sensitivity / self.sections[0][0]
 
     @property

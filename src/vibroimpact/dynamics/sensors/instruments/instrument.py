@@ -1,4 +1,6 @@
-"""What an instrument tells the chain behind the plate's motion, and the quantities that samples are of."""
+"""What an instrument tells the chain behind the plate's motion, and the quantities that
+samples are of.
+"""
 
 from __future__ import annotations
 
@@ -6,7 +8,9 @@ from typing import Literal, Protocol
 
 from vibroimpact.dynamics.sensors.pole_pairs import Section
 
-Quantity = Literal["acceleration", "velocity", "displacement", "voltage", "strain", "pressure", "force"]
+Quantity = Literal[
+    "acceleration", "velocity", "displacement", "voltage", "strain", "pressure", "force"
+]
 UNITS: dict[Quantity, str] = {
     "acceleration": "m/s2",
     "velocity": "m/s",
@@ -23,7 +27,9 @@ Direction = tuple[float, float, float]
 
 
 class Instrument(Protocol):
-    r"""A transducer: :math:`y = g\,s^n \prod_k \frac{k_k}{s^2 + d_k s + k_k}\,u` of the displacement or strain u that it sees."""
+    r"""A transducer: :math:`y = g\,s^n \prod_k \frac{k_k}{s^2 + d_k s + k_k}\,u` of the
+    displacement or strain u that it sees.
+    """
 
     @property
     def quantity(self) -> Quantity:
@@ -43,7 +49,11 @@ class Instrument(Protocol):
 
     @property
     def steepness(self) -> float:
-        """Power of the frequency by which u grows in modes of the same deflection, for the effect of the modes left out."""
+        """Power of the frequency by which u grows in modes of the same deflection, for
+        the effect of the modes left out.
+        """
 
     def components(self, direction: Direction) -> Direction:
-        """Return the weights in u of the three numbers that a mode has where it is, for its direction."""
+        """Return the weights in u of the three numbers that a mode has where it is, for
+        its direction.
+        """
