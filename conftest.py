@@ -84,7 +84,7 @@ def folders_of_examples(
     if not isinstance(item, DoctestItem) or not _says(item, '"falls"', '"recognised"'):
         return
     import vibroimpact.recognition.recognise as recognition
-    from knocks import write_knocks
+    from knock_data import write_knocks
     from vibroimpact.recognition.folder import save_recognition
 
     folder = tmp_path_factory.mktemp("recognition")

@@ -25,7 +25,7 @@ import time
 import numpy as np
 
 import vibroimpact as vi
-from vibroimpact.cases.elastic.bodies import elastic_bodies
+from vibroimpact.cases.elastic.elastic_bodies import elastic_bodies
 from vibroimpact.dynamics.sensors.overload import finer_rate
 from vibroimpact.structures.recipe import modal_model_of
 from vibroimpact.structures.static_compliance import static_compliance

@@ -18,8 +18,8 @@ from scipy.special import betaincinv
 import vibroimpact as vi
 from vibroimpact.dynamics.vibrating.active_contact import ContactDefinition
 from vibroimpact.dynamics.vibrating.free_motion import FreePhase
-from vibroimpact.dynamics.vibrating.march import March
 from vibroimpact.dynamics.vibrating.stretch import VibratingStretch
+from vibroimpact.dynamics.vibrating.time_marching import TimeMarching
 from vibroimpact.structures.modal_model import ModalBasis
 
 BLUE, RED, GREY = "#0b4f8a", "#b3400e", "#6b6b6b"
@@ -49,12 +49,12 @@ def plate(modes: int) -> ModalBasis:
     return ModalBasis(frequencies[first], np.full(modes, 0.01), shape, np.zeros((modes, 3)), at)
 
 
-def marched(system: vi.System, duration: float) -> March:
+def marched(system: vi.System, duration: float) -> TimeMarching:
     """Return what `vi.simulate_system` keeps of a run: its stretches and flights, one
     after another.
     """
     linear, start = system.linear()
-    march = March(
+    march = TimeMarching(
         linear,
         [
             ContactDefinition(one.law, one.series, not one.same_spot)
@@ -187,7 +187,7 @@ def draw_root() -> None:
     figure.savefig("how-root.png", dpi=130)
 
 
-def event_after(march: March, index: int) -> str:
+def event_after(march: TimeMarching, index: int) -> str:
     """Return the event that ended a piece of the run of one contact; "" if none did."""
     piece, follows = march.parts[index], [*march.parts, None][index + 1]
     pushes = follows is not None and isinstance(follows.motion, VibratingStretch)
@@ -205,7 +205,7 @@ def event_after(march: March, index: int) -> str:
     )
 
 
-def draw_contact(march: March) -> None:
+def draw_contact(march: TimeMarching) -> None:
     """Draw the force of the contact with its stretches, nodes and events."""
     figure, axis = plt.subplots(figsize=(8.2, 3.6), layout="constrained")
     count, last = 0, 0.0
@@ -253,7 +253,7 @@ def draw_contact(march: March) -> None:
     figure.savefig("how-contact.png", dpi=130)
 
 
-def draw_ledger(march: March) -> None:
+def draw_ledger(march: TimeMarching) -> None:
     """Draw where the energy is over time."""
     of, times, rows, gone = march.system, [], [], 0.0
     elastic = next(

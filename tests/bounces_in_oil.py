@@ -8,7 +8,7 @@ import numpy as np
 from scipy.optimize import least_squares
 
 import vibroimpact as vi
-from vibroimpact.bodies.rigid import rigid_plate, rigid_sphere
+from vibroimpact.bodies.rigid_bodies import rigid_plate, rigid_sphere
 
 DIAMETER, OIL_DENSITY, VISCOSITY = 0.003, 935.0, 1.070e-5 * 935.0
 SPHERE_DENSITY = 8.342 * OIL_DENSITY

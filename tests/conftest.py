@@ -45,7 +45,7 @@ def tiny_models(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder with a small data set in `data`, and a model of each classifier that was
     trained on it.
     """
-    from recognised import write_tiny_models
+    from trained_models import write_tiny_models
 
     return write_tiny_models(tmp_path_factory.mktemp("tiny"))
 

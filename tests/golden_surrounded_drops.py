@@ -46,7 +46,7 @@ SLOPING: dict[str, Any] = {"velocity": (0.2, 0.0), "gravity": (3.0, 0.0)}
 def surrounded_drops() -> dict[str, Made]:
     """Return drops by name, each as a function that makes it."""
     return {
-        **_rubbing_drops(),
+        **_surface_friction_drops(),
         **_drops_under_all_laws(),
         **_drops_in_air(),
         **_drops_in_liquids(),
@@ -82,7 +82,7 @@ def _plate() -> ModalBasis:
     return replace(modes, along=along)
 
 
-def _rubbing_drops() -> dict[str, Made]:
+def _surface_friction_drops() -> dict[str, Made]:
     damped = HuntCrossley(stiffness=STIFFNESS, restitution=0.3)
     resisted = _oblique("coulomb", SLIDING, rolling_coefficient=0.05)
     made: dict[str, Made] = {
@@ -98,7 +98,7 @@ def _rubbing_drops() -> dict[str, Made]:
             LOSSY, oblique=_oblique(name, {"velocity": (np.linspace(-1.0, 2.0, 6), 0.1)})
         )
         if issubclass(kind, CompliantFriction):
-            made |= _rubbing_drops_on_what_yields(name)
+            made |= _surface_friction_drops_on_what_yields(name)
         else:
             # a tangential spring and rolling resistance together: rigid and yielding bodies do not
             # agree, so that nothing is kept of it
@@ -131,7 +131,7 @@ def _rubbing_drops() -> dict[str, Made]:
     }
 
 
-def _rubbing_drops_on_what_yields(name: str) -> dict[str, Made]:
+def _surface_friction_drops_on_what_yields(name: str) -> dict[str, Made]:
     soft = QuasiStatic(linear=2e-9)
     return {
         f"sliding on a plate, {name}": lambda: _drop(

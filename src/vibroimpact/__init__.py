@@ -16,14 +16,14 @@ from typing import TYPE_CHECKING, Any
 from vibroimpact._version import __version__
 
 if TYPE_CHECKING:
+    from vibroimpact.bayes_error.bound import Bound as Bound
+    from vibroimpact.bayes_error.bound import bound_of as bound_of
+    from vibroimpact.bayes_error.charts import bound_charts as bound_charts
+    from vibroimpact.bayes_error.folder import save_bound as save_bound
+    from vibroimpact.bayes_error.observations import Channel as Channel
     from vibroimpact.bodies.body import Body as Body
-    from vibroimpact.bodies.rigid import rigid_plate as rigid_plate
-    from vibroimpact.bodies.rigid import rigid_sphere as rigid_sphere
-    from vibroimpact.bounds.bound import Bound as Bound
-    from vibroimpact.bounds.bound import bound_of as bound_of
-    from vibroimpact.bounds.charts import bound_charts as bound_charts
-    from vibroimpact.bounds.folder import save_bound as save_bound
-    from vibroimpact.bounds.observations import Channel as Channel
+    from vibroimpact.bodies.rigid_bodies import rigid_plate as rigid_plate
+    from vibroimpact.bodies.rigid_bodies import rigid_sphere as rigid_sphere
     from vibroimpact.calibration.bounce_record import impacts_in_bounces as impacts_in_bounces
     from vibroimpact.calibration.bounces.charts import bounce_charts as bounce_charts
     from vibroimpact.calibration.bounces.folder import save_rebounds as save_rebounds
@@ -63,10 +63,6 @@ if TYPE_CHECKING:
     from vibroimpact.charts.files import save_charts as save_charts
     from vibroimpact.charts.matplotlib import matplotlib_figure as matplotlib_figure
     from vibroimpact.charts.notebook import plotly_figure as plotly_figure
-    from vibroimpact.comparison.charts import comparison_charts as comparison_charts
-    from vibroimpact.comparison.comparison import Comparison as Comparison
-    from vibroimpact.comparison.comparison import compare_laws as compare_laws
-    from vibroimpact.comparison.folder import save_comparison as save_comparison
     from vibroimpact.contact.friction.law import FrictionLaw as FrictionLaw
     from vibroimpact.contact.law import ContactLaw as ContactLaw
     from vibroimpact.contact.quasi_static import QuasiStatic as QuasiStatic
@@ -76,18 +72,6 @@ if TYPE_CHECKING:
     from vibroimpact.contact.registry import friction_laws as friction_laws
     from vibroimpact.contact.speed_function import SpeedFunction as SpeedFunction
     from vibroimpact.contact.speed_function import SpeedTable as SpeedTable
-    from vibroimpact.correlation.charts import correlation_charts as correlation_charts
-    from vibroimpact.correlation.correlate import Correlation as Correlation
-    from vibroimpact.correlation.correlate import correlate as correlate
-    from vibroimpact.correlation.folder import save_correlation as save_correlation
-    from vibroimpact.correlation.mode_pairs import ModePair as ModePair
-    from vibroimpact.correlation.responses.charts import response_charts as response_charts
-    from vibroimpact.correlation.responses.compare import correlate_responses as correlate_responses
-    from vibroimpact.correlation.responses.compare import responses_of_case as responses_of_case
-    from vibroimpact.correlation.responses.folder import (
-        save_response_correlation as save_response_correlation,
-    )
-    from vibroimpact.correlation.responses.result import ResponseCorrelation as ResponseCorrelation
     from vibroimpact.dynamics.air import Air as Air
     from vibroimpact.dynamics.liquid import Liquid as Liquid
     from vibroimpact.dynamics.local_element import identify_local_element as identify_local_element
@@ -133,7 +117,11 @@ if TYPE_CHECKING:
     from vibroimpact.identification.identify import identify as identify
     from vibroimpact.identification.identify import identify_force as identify_force
     from vibroimpact.identification.setup import SetupErrors as SetupErrors
-    from vibroimpact.laws.curves import law_chart as law_chart
+    from vibroimpact.law_comparison.charts import comparison_charts as comparison_charts
+    from vibroimpact.law_comparison.comparison import Comparison as Comparison
+    from vibroimpact.law_comparison.comparison import compare_laws as compare_laws
+    from vibroimpact.law_comparison.folder import save_comparison as save_comparison
+    from vibroimpact.law_sheets.curves import law_chart as law_chart
     from vibroimpact.materials import Material as Material
     from vibroimpact.materials import find_material as find_material
     from vibroimpact.materials import material_library as material_library
@@ -156,7 +144,7 @@ if TYPE_CHECKING:
     from vibroimpact.recognition.recognise import recognise as recognise
     from vibroimpact.recognition.recogniser import Recogniser as Recogniser
     from vibroimpact.recognition.recogniser import load_recogniser as load_recogniser
-    from vibroimpact.remake import remake_report as remake_report
+    from vibroimpact.regenerate import remake_report as remake_report
     from vibroimpact.results.folder import read_result as read_result
     from vibroimpact.results.result import Result as Result
     from vibroimpact.results.result import result_of as result_of
@@ -198,6 +186,22 @@ if TYPE_CHECKING:
     from vibroimpact.studies.study import Study as Study
     from vibroimpact.studies.study import read_study as read_study
     from vibroimpact.studies.sweep import Sweep as Sweep
+    from vibroimpact.test_analysis.charts import correlation_charts as correlation_charts
+    from vibroimpact.test_analysis.correlate import Correlation as Correlation
+    from vibroimpact.test_analysis.correlate import correlate as correlate
+    from vibroimpact.test_analysis.folder import save_correlation as save_correlation
+    from vibroimpact.test_analysis.mode_pairs import ModePair as ModePair
+    from vibroimpact.test_analysis.responses.charts import response_charts as response_charts
+    from vibroimpact.test_analysis.responses.compare import (
+        correlate_responses as correlate_responses,
+    )
+    from vibroimpact.test_analysis.responses.compare import responses_of_case as responses_of_case
+    from vibroimpact.test_analysis.responses.folder import (
+        save_response_correlation as save_response_correlation,
+    )
+    from vibroimpact.test_analysis.responses.result import (
+        ResponseCorrelation as ResponseCorrelation,
+    )
     from vibroimpact.units.reading import convert_units as convert_units
     from vibroimpact.units.reading import to_si as to_si
 
@@ -209,15 +213,15 @@ _HOME = {
     "BodyModes": "cases.elastic.modes",
     "BodyMotion": "dynamics.simulate_system",
     "Bounces": "signals.bounces.find",
-    "Bound": "bounds.bound",
+    "Bound": "bayes_error.bound",
     "Calibration": "calibration.calibration",
     "Case": "cases.case",
-    "Channel": "bounds.observations",
-    "Comparison": "comparison.comparison",
+    "Channel": "bayes_error.observations",
+    "Comparison": "law_comparison.comparison",
     "ComputationError": "errors",
     "ContactLaw": "contact.law",
     "Converter": "dynamics.sensors.electronics",
-    "Correlation": "correlation.correlate",
+    "Correlation": "test_analysis.correlate",
     "DecayMode": "signals.decay.find",
     "DegreeOfFreedom": "signals.frequency_response",
     "FeatureTable": "signals.feature_table",
@@ -234,7 +238,7 @@ _HOME = {
     "Mesh": "structures.mesh",
     "Microphone": "dynamics.sensors.instruments.microphone",
     "ModalBasis": "structures.modal_model",
-    "ModePair": "correlation.mode_pairs",
+    "ModePair": "test_analysis.mode_pairs",
     "MovingBody": "dynamics.system",
     "Oblique": "dynamics.oblique.statement",
     "ObliqueImpacts": "calibration.friction.measured",
@@ -252,7 +256,7 @@ _HOME = {
     "Record": "signals.record",
     "RecordTable": "signals.record_table",
     "Response": "dynamics.response",
-    "ResponseCorrelation": "correlation.responses.result",
+    "ResponseCorrelation": "test_analysis.responses.result",
     "Restitutions": "calibration.restitutions.restitutions",
     "Result": "results.result",
     "Sensor": "dynamics.sensors.sensor",
@@ -270,8 +274,8 @@ _HOME = {
     "achieved_restitution": "dynamics.restitution",
     "apply_recogniser": "recognition.apply",
     "bounce_charts": "calibration.bounces.charts",
-    "bound_charts": "bounds.charts",
-    "bound_of": "bounds.bound",
+    "bound_charts": "bayes_error.charts",
+    "bound_of": "bayes_error.bound",
     "calibrate": "calibration.calibrate",
     "calibrate_case": "calibration.calibrate_case",
     "calibrate_friction": "calibration.friction.calibrate",
@@ -279,14 +283,14 @@ _HOME = {
     "calibration_charts": "calibration.charts",
     "case_schema": "cases.case",
     "case_template": "cases.template",
-    "compare_laws": "comparison.comparison",
-    "comparison_charts": "comparison.charts",
+    "compare_laws": "law_comparison.comparison",
+    "comparison_charts": "law_comparison.charts",
     "compute_modes": "cases.elastic.modes",
     "contact_laws": "contact.registry",
     "convert_units": "units.reading",
-    "correlate": "correlation.correlate",
-    "correlate_responses": "correlation.responses.compare",
-    "correlation_charts": "correlation.charts",
+    "correlate": "test_analysis.correlate",
+    "correlate_responses": "test_analysis.responses.compare",
+    "correlation_charts": "test_analysis.charts",
     "export_formats": "exporting.export_format",
     "export_result": "exporting.export_result",
     "feature_table": "signals.feature_table",
@@ -309,7 +313,7 @@ _HOME = {
     "impacts_in_position": "calibration.position_record",
     "integrated_restitution": "dynamics.restitution",
     "law_achieving": "dynamics.restitution",
-    "law_chart": "laws.curves",
+    "law_chart": "law_sheets.curves",
     "law_parameter": "calibration.tunables",
     "load_calibration": "calibration.calibrate_case",
     "load_case": "cases.reader",
@@ -342,28 +346,28 @@ _HOME = {
     "recognise": "recognition.recognise",
     "recognition_charts": "recognition.charts",
     "record_table": "signals.record_table",
-    "remake_report": "remake",
+    "remake_report": "regenerate",
     "reproduce_paper": "paper.report.folder",
-    "response_charts": "correlation.responses.charts",
-    "responses_of_case": "correlation.responses.compare",
+    "response_charts": "test_analysis.responses.charts",
+    "responses_of_case": "test_analysis.responses.compare",
     "result_html": "runs.notebook",
     "result_of": "results.result",
-    "rigid_plate": "bodies.rigid",
-    "rigid_sphere": "bodies.rigid",
+    "rigid_plate": "bodies.rigid_bodies",
+    "rigid_sphere": "bodies.rigid_bodies",
     "run_charts": "runs.charts",
     "run_sweep": "studies.run_sweep",
-    "save_bound": "bounds.folder",
+    "save_bound": "bayes_error.folder",
     "save_calibration": "calibration.folder",
     "save_charts": "charts.files",
-    "save_comparison": "comparison.folder",
-    "save_correlation": "correlation.folder",
+    "save_comparison": "law_comparison.folder",
+    "save_correlation": "test_analysis.folder",
     "save_figures": "figures",
     "save_identification": "identification.folder",
     "save_modes": "modes.folder",
     "save_rebounds": "calibration.bounces.folder",
     "save_recognised": "recognition.apply",
     "save_recognition": "recognition.folder",
-    "save_response_correlation": "correlation.responses.folder",
+    "save_response_correlation": "test_analysis.responses.folder",
     "save_restitutions": "calibration.restitutions.folder",
     "save_result": "runs.save",
     "shipped_cases": "cases.reader",

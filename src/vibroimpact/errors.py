@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from difflib import get_close_matches
 from itertools import accumulate, islice
 
-from vibroimpact.shown import shortened, visible
+from vibroimpact.quoting import shortened, visible
 
 _LONGEST_WORD = 100
 _LARGEST_COUNT = 200  # faults that are formatted; a hundred thousand would take long

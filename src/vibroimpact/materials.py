@@ -13,8 +13,8 @@ from typing import Any
 import numpy as np
 
 from vibroimpact.errors import InputError, did_you_mean
+from vibroimpact.quoting import quoted
 from vibroimpact.ranges import Range
-from vibroimpact.shown import shown
 
 _RANGES = {
     "density": Range(above=0),
@@ -172,7 +172,7 @@ def find_material(name: str) -> Material:
             "or give its numbers: { density = ..., youngs_modulus = ..., poissons_ratio = ... }"
         )
         raise InputError(
-            f'there is no material {shown(name)} in the library; "vibroimpact materials" '
+            f'there is no material {quoted(name)} in the library; "vibroimpact materials" '
             f"lists them, {remedy}.{_meant(name)}"
         )
     return library[name]

@@ -11,7 +11,7 @@ from types import ModuleType
 from typing import TypeVar
 
 from vibroimpact.errors import InputError, choices
-from vibroimpact.shown import shown
+from vibroimpact.quoting import quoted
 
 Found = TypeVar("Found")
 
@@ -58,6 +58,6 @@ def find_named(kind: str, name: str, known: Mapping[str, Found], command: str = 
     """
     if name not in known:
         raise InputError(
-            f"there is no {kind} {shown(name)}; there are {choices(known, name, command)}"
+            f"there is no {kind} {quoted(name)}; there are {choices(known, name, command)}"
         )
     return known[name]

@@ -12,11 +12,11 @@ import pytest
 import vibroimpact as vi
 from agreement import TOLD
 from golden import PROBLEMS
-from stated import says
+from stated_numbers import says
 from support import plain_case
 from vibroimpact.cases.limit import limits
-from vibroimpact.cases.limits import modes_left_out
-from vibroimpact.cases.limits.finite_sphere import force_lacking
+from vibroimpact.cases.validity import modes_left_out
+from vibroimpact.cases.validity.finite_sphere import force_lacking
 from vibroimpact.dynamics.energy import CLOSURE_LIMIT, CLOSURE_USUAL
 
 README = "README.md"

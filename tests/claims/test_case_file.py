@@ -13,7 +13,7 @@ from typing import Any
 import pytest
 
 import vibroimpact as vi
-from stated import ROOT, says
+from stated_numbers import ROOT, says
 from vibroimpact.bodies.elastic import plate_recipe
 from vibroimpact.calibration.section import CalibrateSection
 from vibroimpact.cases.build import resolved_case
@@ -21,7 +21,7 @@ from vibroimpact.cases.doubts import doubts
 from vibroimpact.cases.expected import expected_of
 from vibroimpact.cases.fields import elastic_body, quantities, size_limits
 from vibroimpact.cases.limit import limits
-from vibroimpact.cases.rigid import touch_speed
+from vibroimpact.cases.rigid_problem import touch_speed
 from vibroimpact.cli import main
 from vibroimpact.dynamics.problem import MOST_IMPACTS
 from vibroimpact.materials import find_material
@@ -158,7 +158,7 @@ def test_default_of_a_margin() -> None:
 
 
 def test_limits_of_size() -> None:
-    """Each limit itself is tested in tests/unit/test_hostile_input.py."""
+    """Each limit itself is tested in tests/unit/results/test_hostile_input.py."""
     most = size_limits
     says(
         PAGE,

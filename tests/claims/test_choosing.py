@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 
 import vibroimpact as vi
-from stated import ROOT, says
-from vibroimpact.cases.limits.modes_left_out import _TRUNCATED
+from stated_numbers import ROOT, says
+from vibroimpact.cases.validity.modes_left_out import _TRUNCATED
 from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.contact.laws.meyer import Meyer
 from vibroimpact.contact.laws.storakers import Storakers

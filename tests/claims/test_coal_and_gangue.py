@@ -11,12 +11,12 @@ import pytest
 from scipy.stats import norm
 
 import vibroimpact as vi
-from stated import page_text, says
-from vibroimpact.bounds.bayes_error import BayesError, bayes_error
-from vibroimpact.bounds.bound import BANDWIDTHS, SIGNAL_TO_NOISE, Bound, least_error
-from vibroimpact.bounds.falls import Falls, falls_of_sweep
-from vibroimpact.bounds.observations import Channel, measurable
-from vibroimpact.bounds.tables import error_words
+from stated_numbers import page_text, says
+from vibroimpact.bayes_error.bound import BANDWIDTHS, SIGNAL_TO_NOISE, Bound, least_error
+from vibroimpact.bayes_error.error_estimate import BayesError, bayes_error
+from vibroimpact.bayes_error.falls import Falls, falls_of_sweep
+from vibroimpact.bayes_error.observations import Channel, measurable
+from vibroimpact.bayes_error.tables import error_words
 from vibroimpact.signals.inverse.hertz_pulse import hertz_pulse
 
 GUIDE = "docs/guides/coal-from-rock.md"

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from math import erf, sqrt
 
-from stated import says
-from vibroimpact.laws.text import SPEED
+from stated_numbers import says
+from vibroimpact.law_sheets.text import SPEED
 from vibroimpact.signals.estimate import Estimate
 
 PAGE = "docs/command-line.md"

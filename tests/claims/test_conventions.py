@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import vibroimpact as vi
-from stated import says
+from stated_numbers import says
 
 PAGE = "docs/conventions.md"
 

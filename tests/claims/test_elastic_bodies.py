@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from stated import says
+from stated_numbers import says
 from vibroimpact.bodies.elastic import plate_recipe
 from vibroimpact.cases.elastic import modes
 from vibroimpact.materials import find_material

@@ -15,11 +15,11 @@ from matplotlib.figure import Figure
 
 import vibroimpact as vi
 from oracles.three_dimensional_plate import PMMA, STEEL, Plate, drop
-from stated import ROOT, says
+from stated_numbers import ROOT, says
 from support import plain_case
 from vibroimpact.cases import sensor_doubts
 from vibroimpact.cases.fields.size_limits import MOST_ITEMS
-from vibroimpact.cases.limits import modes_left_out, plate_mesh, plate_waves, small_contact
+from vibroimpact.cases.validity import modes_left_out, plate_mesh, plate_waves, small_contact
 from vibroimpact.dynamics.sensors import antialias
 from vibroimpact.dynamics.vibrating import visit
 from vibroimpact.structures.plate_waves import bending_factor

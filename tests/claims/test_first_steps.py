@@ -8,11 +8,11 @@ from typing import Any
 import pytest
 
 import vibroimpact as vi
-from stated import ROOT, says
+from stated_numbers import ROOT, says
 from support import blocks
 from vibroimpact.cases.conditions import Conditions
 from vibroimpact.cases.limit import numbers_of
-from vibroimpact.cases.limits.plate_mesh import plate_mesh_error
+from vibroimpact.cases.validity.plate_mesh import plate_mesh_error
 
 PAGE = "docs/first-steps.md"
 (CASE,) = (tomllib.loads(block) for block in blocks(PAGE, "toml"))

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 import vibroimpact as vi
-from stated import says
+from stated_numbers import says
 from support import blocks, example
 from vibroimpact.cases.conditions import Conditions
 from vibroimpact.cases.limit import numbers_of

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 import vibroimpact as vi
-from stated import says
+from stated_numbers import says
 from support import blocks, example, names_of_page
-from vibroimpact.cases.limits.relaxation import LIMITS as RELAXATION
-from vibroimpact.cases.limits.strength import demands
+from vibroimpact.cases.validity.relaxation import LIMITS as RELAXATION
+from vibroimpact.cases.validity.strength import demands
 
 PAGE = "docs/guides/restitution-in-dem.md"
 ASKED = (0.9, 0.7, 0.5)

@@ -7,11 +7,11 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import vibroimpact as vi
-from stated import says
+from stated_numbers import says
 from support import example, names_of_page
 from vibroimpact.cases.conditions import Conditions
 from vibroimpact.cases.limit import numbers_of
-from vibroimpact.cases.limits.modes_left_out import _TRUNCATED
+from vibroimpact.cases.validity.modes_left_out import _TRUNCATED
 
 PAGE = "docs/guides/plate-thickness.md"
 PICTURES = example("pictures_of_guides")

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import vibroimpact as vi
-from stated import says
+from stated_numbers import says
 from support import example
 from vibroimpact.cases.conditions import Conditions
 from vibroimpact.cases.limit import numbers_of

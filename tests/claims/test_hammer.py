@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 import vibroimpact as vi
-from hammered import RATE, a_case, hammered, records
-from stated import ROOT, says
+from hammer_test import RATE, a_case, hammered, records
+from stated_numbers import ROOT, says
 from vibroimpact.signals.decay import find
 from vibroimpact.signals.estimate import Estimate
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from stated import NUMBER, ROOT, says
+from stated_numbers import NUMBER, ROOT, says
 
 PAGE = "docs/how-it-works.md"
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from stated import says
+from stated_numbers import says
 from vibroimpact.identification import doubts, polarity
 
 PAGE = "docs/identification.md"

@@ -7,14 +7,14 @@ from __future__ import annotations
 import numpy as np
 
 import vibroimpact as vi
-from stated import says
+from stated_numbers import says
 from support import plain_case
 from vibroimpact.cases import sensor_doubts
 from vibroimpact.cases.elastic import modes
 from vibroimpact.cases.limit import limits
-from vibroimpact.cases.limits import edge, fast_flight, modes_left_out
-from vibroimpact.cases.limits.adhesion import WORK_OF_ADHESION
-from vibroimpact.cases.limits.finite_sphere import force_lacking
+from vibroimpact.cases.validity import edge, fast_flight, modes_left_out
+from vibroimpact.cases.validity.adhesion import WORK_OF_ADHESION
+from vibroimpact.cases.validity.finite_sphere import force_lacking
 from vibroimpact.dynamics.air import AIR_DENSITY
 from vibroimpact.dynamics.change_by_impact import RELATIVE_CHANGE
 from vibroimpact.dynamics.fluid import HIGHEST_REYNOLDS

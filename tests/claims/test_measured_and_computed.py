@@ -27,7 +27,7 @@ from oblique_measured import (
     tangential_restitution,
 )
 from river_plate import amplitudes, class_limit
-from stated import says
+from stated_numbers import says
 
 PAGE = "docs/guides/measured-and-computed.md"
 

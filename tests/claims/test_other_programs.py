@@ -16,8 +16,8 @@ from matplotlib.figure import Figure
 from PIL import Image
 
 import vibroimpact as vi
-from stated import ROOT, says
-from told import MASS, RADIUS, ROCK, STEEL, told, told_case
+from exported_drops import MASS, RADIUS, ROCK, STEEL, told, told_case
+from stated_numbers import ROOT, says
 from vibroimpact.contact.law import ContactLaw
 from vibroimpact.contact.pair import ContactPair, effective_modulus
 from vibroimpact.contact.registry import contact_laws

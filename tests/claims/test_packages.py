@@ -6,7 +6,7 @@ import re
 import tomllib
 from pathlib import Path
 
-from stated import says
+from stated_numbers import says
 from vibroimpact.compiler.code_store import LARGEST
 
 PAGE = "docs/packages.md"

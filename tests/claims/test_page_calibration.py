@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import vibroimpact as vi
-from heard import heard
+from ball_records import heard
 from oblique_measured import (
     ALL,
     ALUMINA,
@@ -21,7 +21,7 @@ from oblique_measured import (
     SLIPPING,
     fitted_friction,
 )
-from stated import says
+from stated_numbers import says
 from support import blocks, module_at, plain_case
 from vibroimpact.calibration import bounce_record, force_record, position_record
 from vibroimpact.calibration.calibrated_drops import MOST_IMPACTS
@@ -89,7 +89,7 @@ def test_impacts_that_are_matched() -> None:
 @pytest.mark.slow
 def test_drifting_forces() -> None:
     """The records of the test of that name, counted."""
-    drifts = module_at("tests/unit/test_force_drift.py")
+    drifts = module_at("tests/unit/calibration/test_force_drift.py")
     contact = {"law": "adams-impact", "damping_max": 200.0}
     response = vi.simulate(
         vi.read_case(plain_case(contact=contact, drop={"height": 1.0}, run={"impacts": 3}))
@@ -143,7 +143,7 @@ def test_zero_of_a_record_of_positions() -> None:
 
 @pytest.mark.slow
 def test_intervals_of_records_of_positions() -> None:
-    zeros = module_at("tests/unit/test_position_zero.py")
+    zeros = module_at("tests/unit/calibration/test_position_zero.py")
     inside = 100.0 * float(np.mean(np.abs(zeros.deviates()) <= 1.96))
     says(
         PAGE,
@@ -173,7 +173,7 @@ def test_how_bounces_are_found() -> None:
 @pytest.mark.slow
 def test_intervals_of_bounces() -> None:
     """The records of the test of bounces, counted."""
-    bounces = module_at("tests/unit/test_bounces.py")
+    bounces = module_at("tests/unit/calibration/test_bounces.py")
     off, wide, level = [], [], []
     for seed in range(100):
         condition = bounces.CONDITIONS[seed // 5 % 5]

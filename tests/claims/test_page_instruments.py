@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import vibroimpact as vi
-from stated import ROOT, says
+from stated_numbers import ROOT, says
 from support import blocks
 from vibroimpact.cases.sensor_doubts import _LOW
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import vibroimpact as vi
-from stated import says
+from stated_numbers import says
 from vibroimpact.arrays import Floats
 from vibroimpact.dynamics.core.tangential_history import SPRINGS
 

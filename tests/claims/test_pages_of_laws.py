@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import vibroimpact as vi
-from stated import ROOT, page_text, says
+from stated_numbers import ROOT, page_text, says
 from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.contact.laws.adams_impact import AdamsImpact
 from vibroimpact.contact.laws.tsuji import Tsuji

@@ -9,7 +9,7 @@ import re
 from functools import cache
 
 import vibroimpact as vi
-from stated import ROOT, says
+from stated_numbers import ROOT, says
 from vibroimpact.paper.printed import printed
 from vibroimpact.paper.report.outline import PARTS, render_part
 from vibroimpact.paper.report.page import range_widths

@@ -12,8 +12,8 @@ import pytest
 import tomli_w
 
 import vibroimpact as vi
-from stated import says
-from told import told_case
+from exported_drops import told_case
+from stated_numbers import says
 from verification.test_vs_peers import run
 from vibroimpact.cases.build import resolved_case
 from vibroimpact.exporting.drop import Drop

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import vibroimpact as vi
-from knocks import BAYES_ERROR, write_knocks
-from stated import says
+from knock_data import BAYES_ERROR, write_knocks
+from stated_numbers import says
 from vibroimpact.recognition.bound import SURE
 from vibroimpact.recognition.few_groups import FINE
 from vibroimpact.recognition.folds import FEW, FOLDS

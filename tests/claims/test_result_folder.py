@@ -12,7 +12,7 @@ import pytest
 from PIL import Image
 
 import vibroimpact as vi
-from stated import ROOT, says
+from stated_numbers import ROOT, says
 from vibroimpact.dynamics.change_by_impact import RELATIVE_CHANGE
 from vibroimpact.dynamics.energy import CLOSURE_LIMIT
 from vibroimpact.files.hdf5 import FORMAT

@@ -7,7 +7,7 @@ import pytest
 
 import vibroimpact as vi
 from river_plate import amplitudes, class_limit
-from stated import says
+from stated_numbers import says
 from vibroimpact.cases.reader import load_table
 from vibroimpact.runs.case_document import case_document
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from stated import says
+from stated_numbers import says
 from vibroimpact.measurements import recorded_table
 from vibroimpact.signals import baseline, registry
 from vibroimpact.signals.bounces import touches

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from stated import says
+from stated_numbers import says
 
 PAGE = "docs/guides/adams-damping.md"
 

@@ -6,9 +6,9 @@ import re
 from pathlib import Path
 
 import vibroimpact as vi
-from stated import ROOT, page_text, says
+from stated_numbers import ROOT, page_text, says
 from vibroimpact.app.draft import _POINTS, _TOLERANCE
-from vibroimpact.app.limits import (
+from vibroimpact.app.served_cases import (
     LONGEST_RUN,
     MOST_IMPACTS,
     MOST_MEMORY,

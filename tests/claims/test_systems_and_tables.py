@@ -5,8 +5,8 @@ from __future__ import annotations
 from math import hypot, pi
 
 import vibroimpact as vi
-from stated import says
-from vibroimpact.cases.motion import _FEWEST, _MOST
+from stated_numbers import says
+from vibroimpact.cases.plate_motion import _FEWEST, _MOST
 
 SYSTEMS = "docs/systems.md"
 SHAKEN = "docs/shaken.md"

@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 
 import vibroimpact as vi
+from exported_drops import MASS, RADIUS, STIFFNESS, told
 from support import one_in
-from told import MASS, RADIUS, STIFFNESS, told
 from vibroimpact.compiled import scalar
 from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.contact.laws.lankarani_nikravesh import LankaraniNikravesh

@@ -10,7 +10,15 @@ from typing import Any, get_args
 import numpy as np
 import pytest
 
-from drawn import NODE, in_a_page, in_pages, in_python, missing, points_of_plotly, points_of_print
+from drawn_points import (
+    NODE,
+    in_a_page,
+    in_pages,
+    in_python,
+    missing,
+    points_of_plotly,
+    points_of_print,
+)
 from support import one_in
 from vibroimpact.arrays import Floats
 from vibroimpact.charts.axis import Axis, View

@@ -20,8 +20,8 @@ from vibroimpact.calibration.calibrate_case import read_calibration
 from vibroimpact.cases.build import resolved_case
 from vibroimpact.cases.pair import contact_pair
 from vibroimpact.cases.reader import load_table, shipped_cases
-from vibroimpact.cases.slips.find import slips, swept_slips
-from vibroimpact.cases.slips.hertz_estimate import HertzEstimate
+from vibroimpact.cases.wrong_units.detect import slips, swept_slips
+from vibroimpact.cases.wrong_units.hertz_estimate import HertzEstimate
 from vibroimpact.studies.read_sweep import read_sweep
 
 ROOT = Path(__file__).parents[2]

@@ -10,7 +10,7 @@ from importlib import import_module
 import pytest
 
 import vibroimpact as vi
-from attack import attack, number, seed
+from hostile_runs import attack, number, seed
 from mutations import elastic_cases
 from seeds import Table
 from vibroimpact.cases.costs import describe_costs
@@ -24,7 +24,7 @@ def run_unless_told(table: Table) -> None:
 
 @pytest.mark.slow
 def test_hostile_elastic_cases_run_or_are_told() -> None:
-    import_module("vibroimpact.cases.elastic.bodies")  # once, and not in each process
+    import_module("vibroimpact.cases.elastic.elastic_bodies")  # once, and not in each process
     cases = list(elastic_cases(number(40), seed(4)))
     # each in a process of its own: modes are remembered there
     outcomes = [attack(run_unless_told, [case])[0] for case in cases]

@@ -10,8 +10,8 @@ from typing import Any
 
 import pytest
 
-from attack import failures, number, seed
-from decks import named, said
+from deck_values import named, said
+from hostile_runs import failures, number, seed
 from vibroimpact.exporting.export_format import export_formats, find_export_format
 
 PIECES = [

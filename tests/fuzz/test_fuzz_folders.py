@@ -17,11 +17,11 @@ from typing import Any, NamedTuple
 import pytest
 
 import vibroimpact as vi
-from attack import failures, number, seed
 from folder_mutations import damage_folder
-from hammered import TABLE
+from hammer_test import TABLE
+from hostile_runs import failures, number, seed
 from support import plain_case
-from vibroimpact.bounds.falls import falls_of_study
+from vibroimpact.bayes_error.falls import falls_of_study
 from vibroimpact.calibration.calibrate_case import calibrate_case, read_calibration
 from vibroimpact.calibration.folder import save_calibration
 from vibroimpact.exporting.load_drop import load_drop

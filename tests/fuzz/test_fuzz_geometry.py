@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 import vibroimpact as vi
-from attack import failures, number, seed
+from hostile_runs import failures, number, seed
 from vibroimpact.meshes.geometry import mesh_geometry
 from vibroimpact.meshes.mesh_file import read_mesh
 

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 import vibroimpact as vi
-from attack import failures, number, seed
+from hostile_runs import failures, number, seed
 from support import plain_case
 from vibroimpact.meshes.mesh_file import read_mesh
 from vibroimpact.runs.case_explained import case_explained

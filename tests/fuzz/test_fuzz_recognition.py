@@ -13,8 +13,7 @@ import numpy as np
 import pytest
 
 import vibroimpact as vi
-from attack import failures, number, seed
-from recognised import CLASSIFIERS
+from hostile_runs import failures, number, seed
 from recognition_mutations import (
     CARD_CHANGES,
     DATASET_CHANGES,
@@ -25,6 +24,7 @@ from recognition_mutations import (
     damage_graph,
     hostiles,
 )
+from trained_models import CLASSIFIERS
 from vibroimpact.recognition.input_faults import check_signals
 from vibroimpact.recognition.signal_features import features_of
 

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-import attack
+import hostile_runs
 import vibroimpact as vi
 from mutations import damaged_bytes
 
@@ -169,14 +169,14 @@ def universal_file(choose: random.Random) -> bytes:
 def test_damaged_records(
     name: str, make: Callable[[random.Random], bytes], few: int, tmp_path: Path
 ) -> None:
-    choose = random.Random(attack.seed(58 + few))
+    choose = random.Random(hostile_runs.seed(58 + few))
 
     def read(content: bytes) -> None:
         (tmp_path / name).write_bytes(content)
         vi.record_table(vi.read_records(tmp_path / name), ["rms", "peak", "clipped_part"])
 
-    whole = [make(choose) for _ in range(attack.number(few))]
+    whole = [make(choose) for _ in range(hostile_runs.number(few))]
     files = [
         damaged_bytes(content, choose) if choose.random() < 0.5 else content for content in whole
     ]
-    assert attack.failures(read, files) == ""
+    assert hostile_runs.failures(read, files) == ""

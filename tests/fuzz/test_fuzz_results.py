@@ -18,7 +18,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import pytest
 
-import attack
+import hostile_runs
 import vibroimpact as vi
 from support import plain_case
 from vibroimpact.dynamics.sensors.recording import Signal
@@ -104,7 +104,7 @@ def damages(files: list[str], few: int, seed: int) -> list[Damage]:
         Damage(file, kind, draw.getrandbits(32))
         for file in files
         for kind in ("bit", "bytes", "zeros", "torn", "text")
-        for _ in range(attack.number(few))
+        for _ in range(hostile_runs.number(few))
         if kind != "text" or file.endswith((".json", ".toml"))
     ]
 
@@ -126,8 +126,9 @@ def check(
 def no_failures(read: Callable[[Path], Any], folder: Path, files: list[str], few: int) -> None:
     expected = mark(read(folder))
     copy = folder.with_name("copy")
-    found = attack.failures(
-        partial(check, read, folder, copy, expected), damages(files, few, seed=attack.seed(18))
+    found = hostile_runs.failures(
+        partial(check, read, folder, copy, expected),
+        damages(files, few, seed=hostile_runs.seed(18)),
     )
     assert not found, found
 

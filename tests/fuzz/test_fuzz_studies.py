@@ -7,7 +7,7 @@ from __future__ import annotations
 from test_fuzz_cases import shown
 
 import vibroimpact as vi
-from attack import failures, number, seed
+from hostile_runs import failures, number, seed
 from mutations import studies
 from seeds import Table
 from vibroimpact.runs.case_explained import case_explained

@@ -16,7 +16,7 @@ import pytest
 import pyuff
 
 import vibroimpact as vi
-from attack import failures, number, seed
+from hostile_runs import failures, number, seed
 from support import plain_case
 from vibroimpact.calibration.calibrate_case import read_calibration
 from vibroimpact.calibration.targets import target_of

@@ -17,7 +17,7 @@ import tomli_w
 from test_fuzz_cases import check
 
 import vibroimpact as vi
-from attack import failures, number, seed
+from hostile_runs import failures, number, seed
 from seeds import Table
 from substitutions import (
     MISSING,

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import random
 
-from attack import failures, number, seed
+from hostile_runs import failures, number, seed
 from vibroimpact.errors import InputError
 from vibroimpact.units.reading import convert_units, dimension_of, parse_quantity, to_si
 

@@ -11,8 +11,13 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from access import assert_headings_are_in_order, faint_texts, names_of_controls, scrolls_sideways
 from live_page import ELASTIC, LONG_NAMES, RIGID, open_live, row, settle, shown, type_value
+from page_access import (
+    assert_headings_are_in_order,
+    faint_texts,
+    names_of_controls,
+    scrolls_sideways,
+)
 from plotted import names, show
 
 if TYPE_CHECKING:

@@ -16,8 +16,13 @@ import pytest
 from PIL import Image
 
 import vibroimpact as vi
-from access import assert_headings_are_in_order, faint_texts, names_of_controls, scrolls_sideways
 from live_page import LONG_NAMES
+from page_access import (
+    assert_headings_are_in_order,
+    faint_texts,
+    names_of_controls,
+    scrolls_sideways,
+)
 from plotted import (
     COLUMNS,
     ROWS,

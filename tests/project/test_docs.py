@@ -20,12 +20,12 @@ import pytest
 import tomli_w
 from scipy.io import wavfile
 
-import hammered
+import hammer_test
 import vibroimpact as vi
-from heard import heard
+from ball_records import heard
 from identifying import a_case as an_impact_case
 from identifying import an_impact, records_of
-from responding import by_pyuff
+from thin_plate_responses import by_pyuff
 from vibroimpact.cases.build import resolved_case
 from vibroimpact.cli import main
 from vibroimpact.dynamics.columns import IMPACT_COLUMNS
@@ -65,8 +65,8 @@ NOT_RUN = {
     "make test": "CI runs it",
     "vibroimpact run paper:type1-theory -o theory --json | jq "
     "'.impacts[0].max_force_N'": "tests/contract/test_json.py reads it",
-    "vibroimpact --install-completion": "changes the settings of a shell; tests/unit/test_completion.py tries it",
-    "vibroimpact --show-completion": "tests/unit/test_completion.py tries it",
+    "vibroimpact --install-completion": "changes the settings of a shell; tests/unit/cli/test_completion.py tries it",
+    "vibroimpact --show-completion": "tests/unit/cli/test_completion.py tries it",
     "python3 -m venv .venv": "installs; tests/project/test_packaging.py tries the package",
     "source .venv/bin/activate": "changes the shell",
     "python -m pip install .": "installs; tests/project/test_packaging.py tries the package",
@@ -282,15 +282,15 @@ def write_recorded_impacts(folder: Path) -> None:
         folder / "records.csv",
         {"time [s]": np.arange(len(records[0].value)) / records[0].rate, **sensors},
     )
-    (folder / "plate.toml").write_text(tomli_w.dumps(hammered.TABLE))
-    force, value = hammered.hammered()
-    taps = {f"{record.name} [m/s^2]": record.value for record in hammered.records(value)}
+    (folder / "plate.toml").write_text(tomli_w.dumps(hammer_test.TABLE))
+    force, value = hammer_test.hammered()
+    taps = {f"{record.name} [m/s^2]": record.value for record in hammer_test.records(value)}
     write_table(
         folder / "taps.csv",
-        {"time [s]": np.arange(len(force)) / hammered.RATE, "force [N]": force, **taps},
+        {"time [s]": np.arange(len(force)) / hammer_test.RATE, "force [N]": force, **taps},
     )
     frequency = np.arange(200.0, 3000.0)
-    of_case = vi.responses_of_case(hammered.a_case(), frequency)
+    of_case = vi.responses_of_case(hammer_test.a_case(), frequency)
     by_pyuff(
         folder / "responses.uff",
         *(

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 import vibroimpact as vi
-from vibroimpact.laws.pages import law_pages, write_law_pages
+from vibroimpact.law_sheets.pages import law_pages, write_law_pages
 
 DOCS = Path(__file__).parents[2] / "docs"
 LAWS = [

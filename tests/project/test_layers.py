@@ -13,7 +13,7 @@ PACKAGE = Path(vibroimpact.__file__).parent
 
 # from the ground up; a module may import its own room and what is below
 LAYERS = [
-    {"shown", "_version"},
+    {"quoting", "_version"},
     {"errors", "arrays"},
     {"ranges", "registry", "resolved_case"},
     {"files"},
@@ -36,11 +36,11 @@ LAYERS = [
     # what people do, each whole
     {"modes"},
     {"runs"},
-    {"comparison", "calibration", "studies", "laws", "identification"},
-    {"bounds", "correlation"},
+    {"law_comparison", "calibration", "studies", "law_sheets", "identification"},
+    {"bayes_error", "test_analysis"},
     {"recognition"},
     {"exporting", "paper"},
-    {"remake", "figures"},
+    {"regenerate", "figures"},
     {"app"},
     {"cli"},
     {"__main__", "__init__"},

@@ -18,11 +18,11 @@ import tomli_w
 import typer.main
 
 import vibroimpact as vi
-from guard import Guard
-from hammered import PLATE, RATE, TABLE, hammered
-from recognised import CLASSIFIERS
+from hammer_test import PLATE, RATE, TABLE, hammered
+from network_guard import Guard
 from studies import coal_on_steel
 from support import plain_case
+from trained_models import CLASSIFIERS
 from vibroimpact.cli import app
 from vibroimpact.recognition.onnx_runtime import SWITCH
 from vibroimpact.structures.store import PLACE

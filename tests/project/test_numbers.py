@@ -13,7 +13,7 @@ from itertools import chain
 
 import pytest
 
-from stated import NUMBER, ROOT, pattern
+from stated_numbers import NUMBER, ROOT, pattern
 
 CLAIMS = ROOT / "tests" / "claims"
 GENERATED = {"docs/reproduction.md", "docs/validation.md"}

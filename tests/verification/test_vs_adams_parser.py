@@ -20,7 +20,7 @@ from oracles.adams_dataset import read_dataset, read_solver_commands
 from oracles.adams_functions import Refused, Scope, State, parse_function
 from support import one_in
 from vibroimpact.bodies.body import Body
-from vibroimpact.bodies.rigid import rigid_plate
+from vibroimpact.bodies.rigid_bodies import rigid_plate
 from vibroimpact.contact.hysteretic import HystereticLaw
 from vibroimpact.contact.law import ContactLaw
 from vibroimpact.contact.laws.adams_impact import AdamsImpact

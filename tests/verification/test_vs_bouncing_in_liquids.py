@@ -35,7 +35,7 @@ from bounces_in_oil import (
     speed_at_touch,
 )
 from oracles.bouncing_in_air import Medium, bounces, clift_gauvin
-from vibroimpact.bodies.rigid import rigid_plate, rigid_sphere
+from vibroimpact.bodies.rigid_bodies import rigid_plate, rigid_sphere
 from vibroimpact.dynamics.liquid import CRITICAL_STOKES, restitution_kept
 
 AGAINST = Against(

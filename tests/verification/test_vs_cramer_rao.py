@@ -18,9 +18,9 @@ from scipy.stats import norm
 import vibroimpact as vi
 from agreement import Against, Agrees
 from support import one_in
-from vibroimpact.bounds.bayes_error import bayes_error
-from vibroimpact.bounds.falls import falls_of_sweep
-from vibroimpact.bounds.pulse_information import pulse_uncertainty
+from vibroimpact.bayes_error.error_estimate import bayes_error
+from vibroimpact.bayes_error.falls import falls_of_sweep
+from vibroimpact.bayes_error.pulse_information import pulse_uncertainty
 from vibroimpact.signals.inverse.hertz_pulse import hertz_pulse
 
 AGAINST = Against(

@@ -11,7 +11,7 @@ from scipy.integrate import solve_ivp
 import vibroimpact as vi
 from agreement import Against, Agrees
 from support import plain_case
-from vibroimpact.cases.limits.air_drag import drag_coefficient, drag_loss
+from vibroimpact.cases.validity.air_drag import drag_coefficient, drag_loss
 from vibroimpact.results.result import result_of
 
 AGAINST = Against(

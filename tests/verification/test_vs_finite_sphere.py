@@ -20,7 +20,7 @@ import vibroimpact as vi
 from agreement import Against, Agrees
 from oracles.axisymmetric_contact import impact, static_approach
 from support import plain_case
-from vibroimpact.cases.limits.finite_sphere import force_lacking
+from vibroimpact.cases.validity.finite_sphere import force_lacking
 
 AGAINST = Against(
     "finite-element analysis of an elastic sphere on a rigid plane",

@@ -17,7 +17,7 @@ from agreement import Against, Agrees
 from turning_history import by_turning_points
 from vibroimpact.dynamics.core.tangential_history import history_after
 from vibroimpact.dynamics.oblique.tangential_history import tangential_history
-from vibroimpact.dynamics.vibrating.bodies import slices_of
+from vibroimpact.dynamics.vibrating.vibrating_bodies import slices_of
 from vibroimpact.structures.modal_model import ModalBasis
 
 AGAINST = Against(
@@ -345,8 +345,8 @@ def test_momentum_of_a_free_plate_that_moments_turn(
     rigid = problem.plate.rigid
     assert rigid is not None
     assert rigid.turning is not None
-    assert response.legs is not None
-    contact = response.legs[0].contact
+    assert response.bounces is not None
+    contact = response.bounces[0].contact
     assert contact is not None
     end = contact.pieces[-1].motion.end  # type: ignore[union-attr]
     speed = end.velocity[slices_of(problem)[0]]
@@ -424,8 +424,8 @@ def test_momentum_of_a_free_plate(agrees: Agrees, place: tuple[float, float], la
     rigid = problem.plate.rigid
     assert rigid is not None
     assert rigid.along is not None
-    assert response.legs is not None
-    contact = response.legs[0].contact
+    assert response.bounces is not None
+    contact = response.bounces[0].contact
     assert contact is not None
     end = contact.pieces[-1].motion.end  # type: ignore[union-attr]
     speed = end.velocity[slices_of(problem)[0]]

@@ -13,7 +13,7 @@ from scipy.optimize import brentq, minimize_scalar
 import vibroimpact as vi
 from agreement import Against, Agrees
 from support import plain_case
-from vibroimpact.cases.limits.adhesion import WORK_OF_ADHESION, sticking_speed
+from vibroimpact.cases.validity.adhesion import WORK_OF_ADHESION, sticking_speed
 from vibroimpact.contact.laws.jkr import JKR
 from vibroimpact.contact.quasi_static import QuasiStatic
 

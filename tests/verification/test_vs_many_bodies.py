@@ -12,8 +12,8 @@ import pytest
 
 import vibroimpact as vi
 from agreement import Against, Agrees
-from moving import HERTZ, free_beam, modes_at, row_of_balls
 from oracles.moving_bodies import integrate
+from random_systems import HERTZ, free_beam, modes_at, row_of_balls
 from support import one_in
 from vibrating import drop_on
 from vibroimpact.contact.law import CompliantLaw

@@ -12,10 +12,10 @@ import pytest
 import vibroimpact as vi
 from agreement import Against, Agrees
 from vibrating import STIFFNESS, drop_on, random_modes
-from vibroimpact.comparison.comparison import Comparison, comparison_table
 from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.contact.laws.hertz import Hertz
 from vibroimpact.contact.laws.lankarani_nikravesh import LankaraniNikravesh
+from vibroimpact.law_comparison.comparison import Comparison, comparison_table
 from vibroimpact.results.result import Result, result_of
 from vibroimpact.runs.captions import caption
 from vibroimpact.runs.tables import impact_table, ledger_table

@@ -16,8 +16,8 @@ import pytest
 
 import vibroimpact as vi
 from agreement import Against, Agrees
-from moving import row_of_balls
 from oracles.moving_bodies import integrate
+from random_systems import row_of_balls
 from support import one_in
 from vibroimpact.contact.laws.hertz import Hertz
 

@@ -18,7 +18,7 @@ import pytest
 
 import vibroimpact as vi
 from agreement import Against, Agrees
-from told import MASS, RADIUS, ROCK, STEEL, STIFFNESS, told, told_case
+from exported_drops import MASS, RADIUS, ROCK, STEEL, STIFFNESS, told, told_case
 from vibroimpact.contact.law import ContactLaw
 from vibroimpact.contact.pair import ContactPair, effective_modulus, effective_shear_modulus
 from vibroimpact.contact.registry import contact_laws, find_friction_law

@@ -8,7 +8,7 @@ import pytest
 
 from agreement import Against, Agrees
 from oracles.quarter_space import image_factor
-from vibroimpact.cases.limits.edge import softening
+from vibroimpact.cases.validity.edge import softening
 
 AGAINST = Against(
     "finite-element analysis of an elastic quarter space",

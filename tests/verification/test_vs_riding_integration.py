@@ -14,8 +14,8 @@ import pytest
 
 import vibroimpact as vi
 from agreement import Against, Agrees
+from balls_at_rest import at_rest, random_drop, random_held_drop
 from oracles.riding_integration import largest_gaps
-from resting import at_rest, random_drop, random_held_drop
 from vibrating import drop_on, modes_of, oracle
 from vibroimpact.contact.laws.lankarani_nikravesh import LankaraniNikravesh
 

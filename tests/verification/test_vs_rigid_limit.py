@@ -104,7 +104,10 @@ def test_stiff_modes_cost_nothing(law: ContactLaw) -> None:
     for factor, damping in ((1e2, 1.0), (1e4, 0.0), (1e4, 1.0), (1e6, 0.0), (1e6, 1.0)):
         response = misses(law, factor, damping, True)[1]
         pieces = [
-            piece.motion for leg in response.legs if leg.contact for piece in leg.contact.pieces
+            piece.motion
+            for bounce in response.bounces
+            if bounce.contact
+            for piece in bounce.contact.pieces
         ]
         counts.append(sum(isinstance(motion, VibratingStretch) for motion in pieces))
     assert max(counts) <= 1.5 * min(counts)

@@ -16,7 +16,7 @@ import pytest
 
 import vibroimpact as vi
 from agreement import Against, Agrees
-from vibroimpact.cases.limits.plate_mesh import plate_mesh_error
+from vibroimpact.cases.validity.plate_mesh import plate_mesh_error
 
 AGAINST = Against(
     "same plate with elements of three thicknesses",

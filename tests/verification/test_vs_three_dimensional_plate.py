@@ -33,7 +33,7 @@ from oracles.three_dimensional_plate import (
     layer,
     thickness_modes,
 )
-from vibroimpact.cases.limits.plate_waves import plate_theory_error
+from vibroimpact.cases.validity.plate_waves import plate_theory_error
 from vibroimpact.structures.plate_waves import (
     bending_error,
     bending_factor,

@@ -6,7 +6,7 @@ import pytest
 
 from agreement import Against, Agrees
 from oracles.von_karman import stiffening as exact
-from vibroimpact.cases.limits.deflection import LIMITS, stiffening
+from vibroimpact.cases.validity.deflection import LIMITS, stiffening
 
 AGAINST = Against(
     "von Kármán equations of circular plates, numerical solution (SciPy)",

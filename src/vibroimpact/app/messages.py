@@ -42,7 +42,7 @@ from typing import Any, Literal, NamedTuple
 
 from vibroimpact.errors import InputError
 from vibroimpact.files.json_reading import parse_json
-from vibroimpact.shown import shown
+from vibroimpact.quoting import quoted
 
 LONGEST = 200_000
 """Largest size of a message from a window [bytes]."""
@@ -100,10 +100,10 @@ def read_message(text: str | bytes) -> Message:
         raise InputError(f"a message is a table with a type: {', '.join(_KEYS)}")
     kind, number = found.pop("type"), found.pop("number", 0)
     if type(number) is not int or not 0 <= number < 2**53:
-        raise InputError(f"{shown(number)} is not the number of a message")
+        raise InputError(f"{quoted(number)} is not the number of a message")
     for key, value in found.items():
         if key not in _KEYS[kind]:
-            raise InputError(f"a message of type {kind} has no {shown(key)}")
+            raise InputError(f"a message of type {kind} has no {quoted(key)}")
         if not isinstance(value, _KINDS[key][0]):
             raise InputError(f"{key} of a message must be {_KINDS[key][1]}")
     if kind == "open" and len(found) != 1:

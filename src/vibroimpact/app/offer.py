@@ -12,8 +12,8 @@ from vibroimpact.app.messages import LONGEST
 from vibroimpact.cases.reader import shipped_cases
 from vibroimpact.contact.law import unit_of
 from vibroimpact.contact.registry import contact_laws, friction_laws
-from vibroimpact.laws.plain_math import plain_text
-from vibroimpact.laws.text import law_text
+from vibroimpact.law_sheets.plain_math import plain_text
+from vibroimpact.law_sheets.text import law_text
 from vibroimpact.materials import material_library
 from vibroimpact.report.page import palette
 from vibroimpact.units.display import multiple

@@ -9,9 +9,9 @@ from collections.abc import Awaitable, Callable, Mapping
 from threading import Event
 from typing import Any
 
-from vibroimpact.app.limits import without_other_work
 from vibroimpact.app.messages import Message, read_message
 from vibroimpact.app.offer import offer
+from vibroimpact.app.served_cases import without_other_work
 from vibroimpact.app.state import MODES, State, Tell, state_of
 from vibroimpact.cases.reader import load_table, parse_case, shipped_cases
 from vibroimpact.charts.pack import pack
@@ -19,9 +19,9 @@ from vibroimpact.compiler.notice import heard_by
 from vibroimpact.errors import ComputationError, InputError, choices
 from vibroimpact.files.hdf5 import short_reason
 from vibroimpact.files.plain_names import identifier, plain_names
+from vibroimpact.quoting import quoted
 from vibroimpact.results.csv_files import signal_csv
 from vibroimpact.runs.page import run_page
-from vibroimpact.shown import shown
 
 Send = Callable[[bytes], Awaitable[None]]
 """Function that brings a message to the window."""
@@ -216,7 +216,8 @@ def _opened(message: Message) -> dict[str, Any]:
     # a source is never the path of a file
     if source is not None and source not in (known := shipped_cases()):
         raise InputError(
-            f"there is no shipped case {shown(source)}; there are {choices(known, source, 'cases')}"
+            f"there is no shipped case {quoted(source)}; there are "
+            f"{choices(known, source, 'cases')}"
         )
     table = parse_case(message.content["text"]) if source is None else load_table(source)
     table, left_out = without_other_work(table)

@@ -9,8 +9,8 @@ import numpy as np
 import tomli_w
 
 from vibroimpact.app.draft import draft_of, drafted
-from vibroimpact.app.limits import check_bounds, check_table
 from vibroimpact.app.messages import Detail
+from vibroimpact.app.served_cases import check_bounds, check_table
 from vibroimpact.cases.reader import read_case
 from vibroimpact.charts.made import drawn, made_charts
 from vibroimpact.charts.plotly import plotly_chart

@@ -16,7 +16,7 @@ from vibroimpact.calibration.observations import Observations
 from vibroimpact.calibration.restitution_limit import measured_restitutions
 from vibroimpact.cases.case import Case
 from vibroimpact.cases.pair import sphere_density
-from vibroimpact.cases.rigid import fluid_of, touch_speed
+from vibroimpact.cases.rigid_problem import fluid_of, touch_speed
 from vibroimpact.dynamics.air import Air
 from vibroimpact.dynamics.fluid import Fluid
 from vibroimpact.dynamics.liquid import Liquid

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from typing import NamedTuple
 
 from vibroimpact.errors import InputError, choices
-from vibroimpact.shown import shown
+from vibroimpact.quoting import quoted
 
 
 class MatchableQuantity(NamedTuple):
@@ -66,7 +66,7 @@ def check_weights(weights: Mapping[str, float]) -> None:
     for name, weight in weights.items():
         if name not in known:
             raise InputError(
-                f"{shown(name)} can't be matched; there are {choices(known, name)}", "match"
+                f"{quoted(name)} can't be matched; there are {choices(known, name)}", "match"
             )
         if not 0.0 < weight < math.inf:
             raise InputError(

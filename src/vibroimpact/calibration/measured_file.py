@@ -32,7 +32,7 @@ from vibroimpact.calibration.position_record import impacts_in_position
 from vibroimpact.calibration.section import FileTarget
 from vibroimpact.cases.case import Case
 from vibroimpact.cases.pair import contact_pair
-from vibroimpact.cases.rigid import mass_of_sphere
+from vibroimpact.cases.rigid_problem import mass_of_sphere
 from vibroimpact.contact.power_law import HERTZ_TIME
 from vibroimpact.errors import InputError
 from vibroimpact.measurements.header_cells import name_and_unit

@@ -15,8 +15,8 @@ from vibroimpact.cases.fields.section import Section, read_table
 from vibroimpact.cases.fields.size_limits import FileName, Name, at_most
 from vibroimpact.errors import InputError, did_you_mean
 from vibroimpact.files.reading import FileKind, beginning, with_path
+from vibroimpact.quoting import quoted
 from vibroimpact.ranges import Range
-from vibroimpact.shown import shown
 
 MOST_SPEEDS = 10_000
 FRICTION = "friction."
@@ -171,7 +171,7 @@ def _read_target(value: Any) -> Any:
         return read_table(FileTarget, {"file": value})
     if not isinstance(value, dict):
         raise InputError(
-            f"{shown(value)} is not allowed; it must be a table with one of law, "
+            f"{quoted(value)} is not allowed; it must be a table with one of law, "
             f"{', '.join(_KEYS)}, or the name of a file"
         )
     if "law" in value:
@@ -194,7 +194,7 @@ def _read_match(value: Any) -> Any:
     if not isinstance(value, dict):
         known = ", ".join((*MATCHABLE, *ALONG_PLATE))
         raise InputError(
-            f"{shown(value)} is not allowed; it must be one of {known}, or a "
+            f"{quoted(value)} is not allowed; it must be one of {known}, or a "
             "table of them with weights"
         )
     wrong = next(
@@ -207,7 +207,7 @@ def _read_match(value: Any) -> Any:
     )
     if wrong is not None:
         raise InputError(
-            f"{shown(wrong)} is not allowed; the weights must be numbers, such as {{ "
+            f"{quoted(wrong)} is not allowed; the weights must be numbers, such as {{ "
             f"separation_speed = 1, max_force = 0.5 }}"
         )
     weights = {str(name): float(weight) for name, weight in value.items()}

@@ -24,7 +24,7 @@ from vibroimpact.calibration.section import (
 )
 from vibroimpact.cases.case import Case
 from vibroimpact.cases.fields.contact import ContactSection
-from vibroimpact.cases.rigid import by_speed_of, contact_laws_of, touch_speed
+from vibroimpact.cases.rigid_problem import by_speed_of, contact_laws_of, touch_speed
 from vibroimpact.contact.laws.newton import Newton
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.errors import InputError

@@ -14,10 +14,10 @@ from vibroimpact.cases.fields.elastic_body import BroughtMeshTable
 from vibroimpact.cases.fields.instruments import AT_REST, INSTRUMENTS
 from vibroimpact.cases.fields.item_labels import item_label
 from vibroimpact.cases.fields.material import material_table
-from vibroimpact.cases.motion import motion_length
 from vibroimpact.cases.oblique import friction_law_of, oblique_keys
 from vibroimpact.cases.pair import is_free_sphere, sphere_density
-from vibroimpact.cases.rigid import (
+from vibroimpact.cases.plate_motion import motion_length
+from vibroimpact.cases.rigid_problem import (
     PLATE_FALLS,
     by_speed_of,
     contact_laws_of,
@@ -127,7 +127,7 @@ def check_case(case: CaseTable) -> None:
         )
     check_positions(case)
     if elastic_names(case):
-        from vibroimpact.cases.elastic.bodies import elastic_bodies  # imports scipy.sparse
+        from vibroimpact.cases.elastic.elastic_bodies import elastic_bodies  # imports scipy.sparse
 
         elastic_bodies(case)
 
@@ -371,7 +371,7 @@ def _body(case: CaseTable, name: Literal["sphere", "plate"]) -> dict[str, Any]:
         }
         found |= {"supports": "free"} if name == "plate" and is_free_sphere(case) else {}
     else:
-        from vibroimpact.cases.elastic.bodies import elastic_table  # imports scipy.sparse
+        from vibroimpact.cases.elastic.elastic_bodies import elastic_table  # imports scipy.sparse
 
         found |= elastic_table(case, name)
     if "size" in found:

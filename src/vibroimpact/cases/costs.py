@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from vibroimpact.cases.fields.section import derived
 from vibroimpact.cases.pair import contact_pair
-from vibroimpact.cases.rigid import (
+from vibroimpact.cases.rigid_problem import (
     contact_laws_of,
     deforms,
     elastic_names,
@@ -208,7 +208,7 @@ def _signal_costs(case: Case) -> Iterator[Cost]:
 def _mode_costs(case: Case) -> Iterator[Cost]:
     if not elastic_names(case):
         return
-    from vibroimpact.cases.elastic.bodies import elastic_bodies  # imports scipy.sparse
+    from vibroimpact.cases.elastic.elastic_bodies import elastic_bodies  # imports scipy.sparse
     from vibroimpact.structures.mode_count import modes_expected
     from vibroimpact.structures.recipe import ImportedMesh, model_key
     from vibroimpact.structures.store import has_model

@@ -8,7 +8,7 @@ from collections.abc import Container
 
 from vibroimpact.cases.conditions import Conditions, DropSummary
 from vibroimpact.cases.limit import limits, numbers_of
-from vibroimpact.cases.slips.find import slips
+from vibroimpact.cases.wrong_units.detect import slips
 from vibroimpact.resolved_case import ResolvedCase
 
 

@@ -11,11 +11,11 @@ import numpy as np
 
 from vibroimpact.cases.conditions import DropSummary
 from vibroimpact.cases.pair import contact_pair
-from vibroimpact.cases.rigid import contact_laws_of, in_liquid, touch_speed
+from vibroimpact.cases.rigid_problem import contact_laws_of, in_liquid, touch_speed
 from vibroimpact.compiled import interpreted
 from vibroimpact.contact.law import CompliantLaw, ContactLaw
 from vibroimpact.contact.power_law import HERTZ_TIME
-from vibroimpact.dynamics.encounter import encounter_of
+from vibroimpact.dynamics.impact_conditions import impact_conditions_of
 from vibroimpact.dynamics.restitution import achieved_restitution, law_achieving
 from vibroimpact.errors import InputError
 
@@ -37,12 +37,12 @@ def expected_of(case: Case) -> DropSummary:
         return DropSummary(speed=speed)
     one = np.ones(1)
     with interpreted():
-        encounter = encounter_of(
+        conditions = impact_conditions_of(
             law, contact_pair(case).effective_mass * one, case.drop.gravity * one, speed * one
         )
-    depth = float(encounter.depth[0])
+    depth = float(conditions.depth[0])
     force = float(
-        np.asarray(law.forces(encounter.depth, 0.0 * one, encounter.approach_speed)[0])[0]
+        np.asarray(law.forces(conditions.depth, 0.0 * one, conditions.approach_speed)[0])[0]
     )
     return DropSummary(force, depth, HERTZ_TIME * depth / speed, speed, _deflection(case, speed))
 

@@ -15,7 +15,7 @@ from vibroimpact.cases.fields.friction import check_friction_law
 from vibroimpact.cases.fields.liquid import LiquidTable
 from vibroimpact.cases.fields.local import LocalSection, MeasuredImpact
 from vibroimpact.cases.fields.material import InlineMaterial, material_table
-from vibroimpact.cases.fields.motion import MotionTable
+from vibroimpact.cases.fields.plate_motion import MotionTable
 from vibroimpact.cases.fields.quantities import Quantity, quantity_among, quantity_of
 from vibroimpact.cases.schema import SECTIONS
 from vibroimpact.cases.sensor_keys import holds_sensor_keys, named_sensor, sensor_keys, split_key
@@ -23,8 +23,8 @@ from vibroimpact.contact.law import unit_of
 from vibroimpact.contact.registry import find_contact_law, friction_laws
 from vibroimpact.errors import InputError, choices, did_you_mean
 from vibroimpact.materials import find_material
+from vibroimpact.quoting import quoted
 from vibroimpact.ranges import Range
-from vibroimpact.shown import shown
 
 _PLACES = {
     "position": ("x", "y"),
@@ -189,7 +189,7 @@ def with_values(
             holder = inside
             if not isinstance(inside, dict):
                 raise InputError(
-                    f"{shown(inside)} is not a table, so that it has no {part}",
+                    f"{quoted(inside)} is not a table, so that it has no {part}",
                     ".".join(way[:number]),
                 )
             missing: Any = (
@@ -202,7 +202,7 @@ def with_values(
                 written = material_table(find_material(inside))
                 if isinstance(written, str):
                     raise InputError(
-                        f"{shown(inside)} has no numbers that could be {done}", ".".join(way)
+                        f"{quoted(inside)} has no numbers that could be {done}", ".".join(way)
                     )
                 inside = holder[part] = {
                     name: number for name, number in written.items() if name != "name"
@@ -216,7 +216,7 @@ def with_values(
         if isinstance(inside, list) and last in names:
             if len(inside) != len(names):
                 raise InputError(
-                    f"{shown(inside)} does not have the right number of values; it takes "
+                    f"{quoted(inside)} does not have the right number of values; it takes "
                     f"{', '.join(names)}",
                     ".".join(way),
                 )
@@ -227,13 +227,13 @@ def with_values(
             inside[last] = value
         elif names:
             raise InputError(
-                f"{shown(inside)} has no {last} that could be {done}; give a list of "
+                f"{quoted(inside)} has no {last} that could be {done}; give a list of "
                 f"{', '.join(names)}",
                 ".".join(way),
             )
         else:
             raise InputError(
-                f"{shown(inside)} is not a table, so that it has no {last}", ".".join(way)
+                f"{quoted(inside)} is not a table, so that it has no {last}", ".".join(way)
             )
     return found
 

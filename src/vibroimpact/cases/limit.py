@@ -19,7 +19,7 @@ from vibroimpact.registry import modules_in
 class Limit:
     """A limit of the theory, which is checked for each drop.
 
-    It is registered by being in `LIMITS` of a module of `vibroimpact.cases.limits`.
+    It is registered by being in `LIMITS` of a module of `vibroimpact.cases.validity`.
 
     Parameters
     ----------
@@ -63,7 +63,7 @@ def limits() -> Mapping[str, Limit]:
     >>> limits()["air_drag"].threshold
     0.01
     """
-    found = [one for module in modules_in("vibroimpact.cases.limits") for one in module.LIMITS]
+    found = [one for module in modules_in("vibroimpact.cases.validity") for one in module.LIMITS]
     return {one.name: one for one in sorted(found, key=lambda one: one.name)}
 
 

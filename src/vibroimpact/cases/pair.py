@@ -11,7 +11,7 @@ import numpy as np
 from vibroimpact.arrays import Array
 from vibroimpact.bodies.ball import mean_density
 from vibroimpact.bodies.body import Body
-from vibroimpact.bodies.rigid import rigid_sphere
+from vibroimpact.bodies.rigid_bodies import rigid_sphere
 from vibroimpact.cases.fields.section import derived
 from vibroimpact.contact.pair import ContactPair, effective_modulus, effective_shear_modulus
 

@@ -21,7 +21,7 @@ from vibroimpact.cases.fields.size_limits import MOST_BYTES, check_bounds, check
 from vibroimpact.cases.keys import with_values
 from vibroimpact.errors import InputError, choices
 from vibroimpact.files.reading import FileKind, read_text
-from vibroimpact.shown import shortened, shown
+from vibroimpact.quoting import quoted, shortened
 
 Read = TypeVar("Read")
 
@@ -279,7 +279,7 @@ def _shipped(name: str) -> str:
     """Return the text of a shipped case."""
     if name not in (known := _names()):
         raise InputError(
-            f"there is no shipped case {shown(name)}; there are {choices(known, name, 'cases')}"
+            f"there is no shipped case {quoted(name)}; there are {choices(known, name, 'cases')}"
         )
     return (
         files("vibroimpact")

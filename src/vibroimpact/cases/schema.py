@@ -38,12 +38,12 @@ from vibroimpact.cases.fields.instruments import (
     read_in_unit,
 )
 from vibroimpact.cases.fields.material import MaterialField
-from vibroimpact.cases.fields.motion import MotionTable
+from vibroimpact.cases.fields.plate_motion import MotionTable
 from vibroimpact.cases.fields.quantities import Quantity, UncertainQuantity
 from vibroimpact.cases.fields.section import Section, check_alternatives
 from vibroimpact.cases.fields.size_limits import MOST_ITEMS, Name, at_most
 from vibroimpact.cases.fields.supports import SupportsField
-from vibroimpact.cases.slips.lengths import likely_lengths
+from vibroimpact.cases.wrong_units.lengths import likely_lengths
 from vibroimpact.dynamics.air import AIR_DENSITY
 from vibroimpact.dynamics.problem import MOST_IMPACTS, STANDARD_GRAVITY
 from vibroimpact.dynamics.sensors.instruments.accelerometer import Accelerometer
@@ -54,8 +54,8 @@ from vibroimpact.dynamics.sensors.instruments.strain_gauge import StrainGauge
 from vibroimpact.dynamics.sensors.sensor import FILTERS, Sensor
 from vibroimpact.errors import InputError, did_you_mean
 from vibroimpact.materials import RIGID
+from vibroimpact.quoting import quoted
 from vibroimpact.ranges import Range
-from vibroimpact.shown import shown
 from vibroimpact.studies.section import SweepSection
 
 _RIGHT_ANGLE = 0.5 * math.pi
@@ -283,7 +283,7 @@ def _read_impacts(value: Any) -> Any:
     if value is None or value == "all" or (type(value) is int and 1 <= value <= MOST_IMPACTS):
         return value
     raise InputError(
-        f"{shown(value)} is not allowed; it must be a whole number from 1 to "
+        f"{quoted(value)} is not allowed; it must be a whole number from 1 to "
         f'{MOST_IMPACTS}, or "all" to continue until rest'
     )
 
@@ -307,7 +307,8 @@ def _one_of(names: Collection[str]) -> BeforeValidator:
             return value
         known = ", ".join(f'"{name}"' for name in names)
         raise InputError(
-            f"{shown(value)} is not allowed; it must be one of {known}.{did_you_mean(value, names)}"
+            f"{quoted(value)} is not allowed; it must be one of "
+            f"{known}.{did_you_mean(value, names)}"
         )
 
     return BeforeValidator(read)
@@ -533,7 +534,7 @@ SECTIONS: dict[str, type[Section]] = {
 
 def _whole_number(given: Any) -> Any:
     if isinstance(given, bool):  # true equals 1 in Python
-        raise InputError(f"{shown(given)} is no version; write 1")
+        raise InputError(f"{quoted(given)} is no version; write 1")
     return given
 
 
@@ -603,7 +604,7 @@ class CaseTable(Section):
         )
         if twice is not None:
             raise InputError(
-                f"two sensors are called {shown(twice)}; each needs a name of its own", "sensors"
+                f"two sensors are called {quoted(twice)}; each needs a name of its own", "sensors"
             )
         for sensor in self.sensors:
             if sensor.microphone is not None and sensor.microphone.air_density is None:

@@ -13,7 +13,7 @@ from vibroimpact.cases.fields.quantities import Quantity, quantity_of
 from vibroimpact.cases.fields.section import Section, read_table
 from vibroimpact.cases.schema import SensorSection
 from vibroimpact.errors import InputError, choices
-from vibroimpact.shown import shown
+from vibroimpact.quoting import quoted
 
 _NUMBERS = {
     "position": {part: Quantity("m", f"place of the sensor, {part}") for part in "xy"},
@@ -144,7 +144,7 @@ def named_sensor(sensors: Any, name: str) -> dict[str, Any]:
         return entries[names.index(name)]
     names = [known for known in names if known]
     words = f"there are {choices(names, name)}" if names else "the case has none with a name"
-    raise InputError(f"there is no sensor called {shown(name)}; {words}")
+    raise InputError(f"there is no sensor called {quoted(name)}; {words}")
 
 
 def _fields(info: FieldInfo) -> dict[str, FieldInfo]:

@@ -18,7 +18,7 @@ from vibroimpact.charts.made import warn_of_lost
 from vibroimpact.charts.matplotlib import matplotlib_figure
 from vibroimpact.charts.print_style import print_style
 from vibroimpact.errors import InputError, choices
-from vibroimpact.shown import shown
+from vibroimpact.quoting import quoted
 
 _DPI = 200
 
@@ -100,7 +100,7 @@ def check_formats(formats: Sequence[str]) -> None:
     for name in formats:
         if name not in FORMATS:
             known = f"there are {choices(FORMATS, name)}"
-            raise InputError(f"there are no figures of the format {shown(name)}; {known}")
+            raise InputError(f"there are no figures of the format {quoted(name)}; {known}")
     if not formats:
         raise InputError(f"name a format of the figures: {', '.join(FORMATS)}")
 

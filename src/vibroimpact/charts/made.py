@@ -11,7 +11,7 @@ from typing import Any
 from vibroimpact.charts.axis import Axis
 from vibroimpact.charts.chart import Chart, Panel
 from vibroimpact.errors import ChartWarning
-from vibroimpact.shown import shortened, visible
+from vibroimpact.quoting import shortened, visible
 
 _LONGEST_REASON = 200
 _HEIGHT = 0.6

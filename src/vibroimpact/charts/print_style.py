@@ -11,7 +11,7 @@ from typing import Any
 
 import matplotlib as mpl
 
-from vibroimpact.shown import shortened, visible
+from vibroimpact.quoting import shortened, visible
 
 _FILE = Path(__file__).with_name("print.mplstyle")
 

@@ -27,7 +27,7 @@ from vibroimpact.cli import serve as serve  # isort: skip
 from vibroimpact.cli.completion import PROGRAM, concerns_completion, whole_words
 from vibroimpact.cli.shared import app, fail, never_fail_to_print, note_warnings
 from vibroimpact.errors import LONGEST_LINE, ComputationError, InputError
-from vibroimpact.shown import shortened, visible
+from vibroimpact.quoting import shortened, visible
 
 __all__ = ["app", "main"]
 

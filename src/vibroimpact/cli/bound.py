@@ -63,10 +63,10 @@ def bound(
     The scatter of the amplitude is assumed; its share in the error is shown. The falls of a study
     are computed on its plate as a rigid body; those of a data set are read from it.
     """
-    from vibroimpact.bounds.bound import bound_of
-    from vibroimpact.bounds.folder import bound_document, save_bound
-    from vibroimpact.bounds.observations import Channel
-    from vibroimpact.bounds.text import bound_summary
+    from vibroimpact.bayes_error.bound import bound_of
+    from vibroimpact.bayes_error.folder import bound_document, save_bound
+    from vibroimpact.bayes_error.observations import Channel
+    from vibroimpact.bayes_error.text import bound_summary
     from vibroimpact.report.progress import patient_progress
     from vibroimpact.results.folder import check_free
     from vibroimpact.studies.read_sweep import load_sweep

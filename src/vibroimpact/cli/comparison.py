@@ -70,10 +70,10 @@ def compare(
     liquid stay under each law.
     """
     from vibroimpact.cases.reader import load_case
-    from vibroimpact.comparison.comparison import compare_laws
-    from vibroimpact.comparison.document import comparison_document
-    from vibroimpact.comparison.folder import save_comparison
-    from vibroimpact.comparison.text import comparison_summary
+    from vibroimpact.law_comparison.comparison import compare_laws
+    from vibroimpact.law_comparison.document import comparison_document
+    from vibroimpact.law_comparison.folder import save_comparison
+    from vibroimpact.law_comparison.text import comparison_summary
     from vibroimpact.report.progress import patient_progress
     from vibroimpact.results.folder import check_free
 

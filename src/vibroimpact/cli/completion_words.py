@@ -16,11 +16,11 @@ from vibroimpact.cases.case import case_schema
 from vibroimpact.cases.keys import quantity_keys
 from vibroimpact.cli.completion import WORDS
 from vibroimpact.contact.registry import contact_laws
-from vibroimpact.correlation.compared_kind import KINDS
 from vibroimpact.exporting.export_format import export_formats
 from vibroimpact.materials import RIGID, material_library
 from vibroimpact.paper.report.outline import PARTS
 from vibroimpact.signals.registry import features
+from vibroimpact.test_analysis.compared_kind import KINDS
 
 Schema = Mapping[str, Any]
 

@@ -28,7 +28,7 @@ from vibroimpact.cli.shared import (
     stem,
 )
 from vibroimpact.errors import InputError, did_you_mean
-from vibroimpact.shown import shown
+from vibroimpact.quoting import quoted
 
 if TYPE_CHECKING:
     from vibroimpact.cases.case import Case
@@ -106,14 +106,14 @@ def correlate(
     the case, and so are the modes that are fitted to them.
     """
     from vibroimpact.cases.reader import load_case
-    from vibroimpact.correlation.compared_kind import compared_kind
-    from vibroimpact.correlation.correlate import correlate as correlated
-    from vibroimpact.correlation.document import summary_of_correlation
-    from vibroimpact.correlation.folder import save_correlation
-    from vibroimpact.correlation.text import correlation_summary
     from vibroimpact.report.progress import patient_progress
     from vibroimpact.results.folder import check_free
     from vibroimpact.signals.read_records import read_records
+    from vibroimpact.test_analysis.compared_kind import compared_kind
+    from vibroimpact.test_analysis.correlate import correlate as correlated
+    from vibroimpact.test_analysis.document import summary_of_correlation
+    from vibroimpact.test_analysis.folder import save_correlation
+    from vibroimpact.test_analysis.text import correlation_summary
 
     found = load_case(case, settings_of(changes))
     target = Path(f"{stem(case)}-correlated") if output is None else output
@@ -173,12 +173,12 @@ def _correlate_responses(
     as_json: bool,
 ) -> None:
     """Compare measured frequency responses with those of a case."""
-    from vibroimpact.correlation.responses.compare import correlate_responses
-    from vibroimpact.correlation.responses.document import summary_of_responses
-    from vibroimpact.correlation.responses.folder import save_response_correlation
-    from vibroimpact.correlation.responses.text import response_summary
     from vibroimpact.report.progress import patient_progress
     from vibroimpact.signals.reading.universal_responses import read_responses
+    from vibroimpact.test_analysis.responses.compare import correlate_responses
+    from vibroimpact.test_analysis.responses.document import summary_of_responses
+    from vibroimpact.test_analysis.responses.folder import save_response_correlation
+    from vibroimpact.test_analysis.responses.text import response_summary
 
     responses = [response for path in paths for response in read_responses(path)]
     with exit_on_interrupt():
@@ -208,9 +208,9 @@ def _force_among(records: list[Record], name: str) -> Record:
     named = [record for record in records if is_named(record, name)]
     if len(named) != 1:
         names = list(dict.fromkeys(record.name for record in records))
-        there = f"the records are {', '.join(map(shown, names))}.{did_you_mean(name, names)}"
+        there = f"the records are {', '.join(map(quoted, names))}.{did_you_mean(name, names)}"
         raise InputError(
-            f"--hammer {shown(name)}: there "
+            f"--hammer {quoted(name)}: there "
             f"{'are several channels' if named else 'is no channel'} of this name; {there}"
         )
     return named[0]

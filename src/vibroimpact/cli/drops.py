@@ -218,13 +218,13 @@ def modes(
     from vibroimpact.cases.elastic.modes import compute_modes
     from vibroimpact.cases.reader import load_case, prefix_errors
     from vibroimpact.cli.measured_modes import measured_modes, modes_beside_table
-    from vibroimpact.correlation.measured.text import compared_summary
     from vibroimpact.measurements.universal_file import is_universal
     from vibroimpact.modes.document import modes_document
     from vibroimpact.modes.folder import save_modes
     from vibroimpact.modes.text import modes_summary
     from vibroimpact.report.progress import patient_progress
     from vibroimpact.results.folder import check_free
+    from vibroimpact.test_analysis.measured.text import compared_summary
 
     target = Path(f"{stem(case)}-modes") if output is None else output
     if Path(case).is_file() and is_universal(case):
@@ -266,7 +266,7 @@ def report(
     directory: Annotated[Path, typer.Argument(metavar="DIR", help="A result folder.")],
 ) -> None:
     """Regenerate the report of a result folder."""
-    from vibroimpact.remake import remake_report
+    from vibroimpact.regenerate import remake_report
 
     say(f"wrote {remake_report(directory) / 'report.html'}")
 

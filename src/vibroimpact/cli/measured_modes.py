@@ -17,10 +17,10 @@ def measured_modes(
     paths: Sequence[Path], target: Path, *, figures: bool, force: bool, as_json: bool
 ) -> None:
     """Print and write the modes in the frequency responses of universal files."""
-    from vibroimpact.correlation.measured.document import summary_of_measured
-    from vibroimpact.correlation.measured.folder import save_measured_modes
-    from vibroimpact.correlation.measured.modes_of_file import modes_of_files
-    from vibroimpact.correlation.measured.text import measured_summary
+    from vibroimpact.test_analysis.measured.document import summary_of_measured
+    from vibroimpact.test_analysis.measured.folder import save_measured_modes
+    from vibroimpact.test_analysis.measured.modes_of_file import modes_of_files
+    from vibroimpact.test_analysis.measured.text import measured_summary
 
     name = stem(str(paths[0]))
     with exit_on_interrupt():
@@ -38,7 +38,7 @@ def measured_modes(
 
 def modes_beside_table(bodies: Mapping[str, BodyModes], paths: Sequence[Path]) -> MeasuredTable:
     """Return measured modes beside those of the plate of a case."""
-    from vibroimpact.correlation.measured.document import compared_table
-    from vibroimpact.correlation.measured.modes_of_file import modes_beside
+    from vibroimpact.test_analysis.measured.document import compared_table
+    from vibroimpact.test_analysis.measured.modes_of_file import modes_beside
 
     return compared_table(modes_beside(bodies["plate"].basis if "plate" in bodies else None, paths))

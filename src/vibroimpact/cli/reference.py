@@ -136,8 +136,8 @@ def laws(
     contact law are drawn.
     """
     from vibroimpact.contact.registry import find_contact_law, friction_laws
-    from vibroimpact.laws.document import law_document, laws_document
-    from vibroimpact.laws.sheet import law_sheet, law_table
+    from vibroimpact.law_sheets.document import law_document, laws_document
+    from vibroimpact.law_sheets.sheet import law_sheet, law_table
 
     if name is None:
         if output is not None:
@@ -150,12 +150,12 @@ def laws(
             f"{name} is a friction law, and curves are drawn of contact laws only", "-o"
         )
     if output is not None:
-        from vibroimpact.laws.curves import check_picture
+        from vibroimpact.law_sheets.curves import check_picture
 
         check_picture(output, force=force)  # fail before anything is printed or drawn
     show(lambda: law_document(law), lambda: law_sheet(name), as_json=as_json)
     if output is not None:
-        from vibroimpact.laws.curves import save_law_picture
+        from vibroimpact.law_sheets.curves import save_law_picture
 
         say(f"\nwrote {save_law_picture(name, output)}", err=as_json)
 

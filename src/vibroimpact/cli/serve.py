@@ -63,7 +63,7 @@ def _fragment_of(case: str | None) -> str:
     if case is None:
         return ""
     from vibroimpact.app.address import fragment_of
-    from vibroimpact.app.limits import check_table, without_other_work
+    from vibroimpact.app.served_cases import check_table, without_other_work
     from vibroimpact.cases.reader import load_case, load_table, prefix_errors
 
     load_case(case)

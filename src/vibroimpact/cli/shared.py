@@ -19,7 +19,7 @@ import typer
 
 from vibroimpact.cli.completion import complete_case, complete_change
 from vibroimpact.errors import ChartWarning, InputError, SlowLawWarning, lines_of
-from vibroimpact.shown import visible
+from vibroimpact.quoting import visible
 
 if TYPE_CHECKING:
     from rich.console import Console, RenderableType

@@ -24,7 +24,7 @@ from vibroimpact.cli.shared import (
     stem,
 )
 from vibroimpact.errors import InputError
-from vibroimpact.shown import shown
+from vibroimpact.quoting import quoted
 
 if TYPE_CHECKING:
     from vibroimpact.studies.sweep import Sweep
@@ -304,7 +304,7 @@ def _check_confirmed(study: str, found: Sweep, *, yes: bool) -> None:
             f"the results would take about {found.bytes / 1e9:.3g} GB, more than "
             f"{MOST_BYTES_UNCONFIRMED / 1e9:g} GB"
         )
-        keep = shown(list(found.section.keep))
+        keep = quoted(list(found.section.keep))
         raise InputError(
             f"{study}: {words}; confirm that they are wanted with --yes, or keep less: "
             f"sweep.keep is {keep}"

@@ -6,7 +6,7 @@ import numpy as np
 
 from vibroimpact.arrays import Drops, Floats
 from vibroimpact.dynamics.energy import CLOSURE_LIMIT, WRITE_OFF_LIMIT, close_ledger
-from vibroimpact.dynamics.oblique.motion import ObliqueMotion
+from vibroimpact.dynamics.oblique.oblique_motion import ObliqueMotion
 from vibroimpact.dynamics.outcome import OUTCOMES, Outcome
 from vibroimpact.dynamics.response import Response
 from vibroimpact.dynamics.rest import Rest

@@ -20,7 +20,7 @@ def first_touch(problem: Problem) -> float:
     Examples
     --------
     >>> from vibroimpact.bodies.body import Body
-    >>> from vibroimpact.bodies.rigid import rigid_plate
+    >>> from vibroimpact.bodies.rigid_bodies import rigid_plate
     >>> from vibroimpact.contact.laws.newton import Newton
     >>> drop = Problem(
     ...     sphere=Body(mass=1.0, contact_offset=0.1),

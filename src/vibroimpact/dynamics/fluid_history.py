@@ -7,8 +7,8 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from vibroimpact.arrays import Floats
+from vibroimpact.dynamics.bounce import Bounce
 from vibroimpact.dynamics.flight_in_fluid import FluidFlight
-from vibroimpact.dynamics.leg import Leg
 from vibroimpact.dynamics.problem import Problem
 
 _VELOCITIES = ("velocity_m_s", "velocity_x_m_s", "velocity_y_m_s")
@@ -17,7 +17,7 @@ MOTION = ("velocity_m_s", "kinetic_J")
 
 
 def fluid_history(
-    problem: Problem, legs: Sequence[Leg], time: Floats, motion: Mapping[str, Floats]
+    problem: Problem, bounces: Sequence[Bounce], time: Floats, motion: Mapping[str, Floats]
 ) -> dict[str, Floats]:
     """Return the kinetic energy with that of the liquid that moves along, and what the fluid has
     taken, of one drop [J] (T,).
@@ -26,14 +26,14 @@ def fluid_history(
     ----------
     problem : Problem
         The drop.
-    legs : sequence of Leg
+    bounces : sequence of Bounce
         Its flights and contacts.
     time : array, shape (T,)
         Times since the start of the run [s].
     motion : mapping of str to array
         The other columns then.
     """
-    fluid, mass, begin = problem.fluid, float(problem.sphere.mass), legs[0].flight
+    fluid, mass, begin = problem.fluid, float(problem.sphere.mass), bounces[0].flight
     assert fluid is not None
     assert isinstance(begin, FluidFlight)
     moving = 0.5 * mass * (float(problem.flight_inertia) - 1.0)  # of the liquid
@@ -43,26 +43,30 @@ def fluid_history(
     at_start = moving * float(begin.velocity[0] ** 2 + (begin.along[0] ** 2).sum())
     return {
         "kinetic_J": motion["kinetic_J"] + along,
-        f"{fluid.key}_J": _given(legs, mass, time) + at_start - along,
+        f"{fluid.key}_J": _given(bounces, mass, time) + at_start - along,
     }
 
 
-def _given(legs: Sequence[Leg], mass: float, time: Floats) -> Floats:
+def _given(bounces: Sequence[Bounce], mass: float, time: Floats) -> Floats:
     """Return the energy that a sphere of a mass [kg] has given to the fluid by times [J]
     (T,), from its flights.
     """
     begin = np.maximum(
-        np.searchsorted([float(leg.flight.start[0]) for leg in legs], time, side="right") - 1, 0
+        np.searchsorted([float(bounce.flight.start[0]) for bounce in bounces], time, side="right")
+        - 1,
+        0,
     )
     found, before = np.zeros(len(time)), 0.0
-    for number, leg in enumerate(legs):
-        if isinstance(leg.flight, FluidFlight):
+    for number, bounce in enumerate(bounces):
+        if isinstance(bounce.flight, FluidFlight):
             here = begin == number
             if here.any():
                 found[here] = (
                     before
                     + mass
-                    * leg.flight.given(np.minimum(time[here], leg.flight_end[0])[:, None])[:, 0]
+                    * bounce.flight.given(np.minimum(time[here], bounce.flight_end[0])[:, None])[
+                        :, 0
+                    ]
                 )
-            before += mass * float(leg.flight.given(leg.flight_end)[0])
+            before += mass * float(bounce.flight.given(bounce.flight_end)[0])
     return found

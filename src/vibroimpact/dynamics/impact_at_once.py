@@ -10,36 +10,36 @@ import numpy as np
 
 from vibroimpact.arrays import Floats
 from vibroimpact.contact.law import InstantaneousLaw
-from vibroimpact.dynamics.leg import Leg
+from vibroimpact.dynamics.bounce import Bounce
 from vibroimpact.dynamics.outcome import Outcome
 from vibroimpact.dynamics.run_state import RunState
 
 
 def collide_at_once(
     run: RunState,
-    leg: Leg,
+    bounce: Bounce,
     law: InstantaneousLaw,
     touch: Floats,
     speed: Floats,
     row: dict[str, Floats],
-) -> tuple[Leg, Floats]:
-    """Let the drops of a leg rebound at their touches, write their row, and return the leg and the
-    energy lost [J].
+) -> tuple[Bounce, Floats]:
+    """Let the drops of a bounce rebound at their touches, write their row, and return the bounce
+    and the energy lost [J].
 
     Parameters
     ----------
     run : RunState
         The run of the drops.
-    leg : Leg
+    bounce : Bounce
         Their flights.
     law : InstantaneousLaw
         Of these impacts.
     touch, speed : array, shape (b,)
-        Times [s] and approach speeds [m/s] of `leg.contact_drops`.
+        Times [s] and approach speeds [m/s] of `bounce.contact_drops`.
     row : dict of str to array
         The row of the impact table.
     """
-    drops = leg.contact_drops
+    drops = bounce.contact_drops
     place, velocity, _ = run.problem.surface(touch)
     separation = law.separation_speed(speed, run.mass[drops])
     run.time[drops] = touch
@@ -54,31 +54,31 @@ def collide_at_once(
         contacts, work_of_friction = run.oblique.collide_at_once(
             drops, touch, run.mass[drops] * (speed + separation), row
         )
-        leg = replace(leg, oblique_contacts=contacts)
+        bounce = replace(bounce, oblique_contacts=contacts)
     if not run.problem.shaken:
-        return leg, lost
-    return _ride(run, leg, touch, speed, (lost, work_of_friction), row)
+        return bounce, lost
+    return _ride(run, bounce, touch, speed, (lost, work_of_friction), row)
 
 
 def _ride(
     run: RunState,
-    leg: Leg,
+    bounce: Bounce,
     touch: Floats,
     speed: Floats,
     energies: tuple[Floats, Floats],
     row: dict[str, Floats],
-) -> tuple[Leg, Floats]:
-    """Let drops that hardly rebound from a shaken plate ride on it; return the leg with the rides,
-    and the energy lost [J].
+) -> tuple[Bounce, Floats]:
+    """Let drops that hardly rebound from a shaken plate ride on it; return the bounce with the
+    rides, and the energy lost [J].
 
     `energies`: lost in the impact without what is lost as they come to ride, and the work of
     friction by the plate [J]. A sphere that moves along the plate is not followed any further where
     it rides.
     """
-    from vibroimpact.dynamics.shaken.bodies import ShakenBodies
+    from vibroimpact.dynamics.shaken.shaken_bodies import ShakenBodies
 
     assert isinstance(run.bodies, ShakenBodies)
-    drops = leg.contact_drops
+    drops = bounce.contact_drops
     lost, work_of_friction = energies
     separation = row["separation_speed_m_s"][drops]
     ride = run.bodies.ride(drops, touch, separation, run.rest_speed[drops])
@@ -96,4 +96,4 @@ def _ride(
     carried = drops[rides]
     run.time[carried] = end[rides]
     run.gap[carried], run.velocity[carried], _ = ride.surface(end[rides])
-    return replace(leg, ride=ride), lost + np.where(rides, 0.5 * ride.mass * separation**2, 0.0)
+    return replace(bounce, ride=ride), lost + np.where(rides, 0.5 * ride.mass * separation**2, 0.0)

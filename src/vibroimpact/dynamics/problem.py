@@ -127,7 +127,7 @@ class Problem:
 
     Examples
     --------
-    >>> from vibroimpact.bodies.rigid import rigid_plate
+    >>> from vibroimpact.bodies.rigid_bodies import rigid_plate
     >>> from vibroimpact.contact.laws.newton import Newton
     >>> ball = Body(mass=1.0, contact_offset=0.1)
     >>> Problem(
@@ -276,7 +276,7 @@ class Problem:
                 "inertia of the sphere"
             )
         if self.oblique is not None and self.vibrates:
-            self._check_rubbing(self.oblique)
+            self._check_surface_friction(self.oblique)
         if (
             self.oblique is not None
             and isinstance(self.oblique.friction, CompliantFriction)
@@ -305,7 +305,7 @@ class Problem:
                 f"a batch has one axis with at least one drop, not the shape {self.shape}"
             )
 
-    def _check_rubbing(self, oblique: Oblique) -> None:
+    def _check_surface_friction(self, oblique: Oblique) -> None:
         """Check that bodies that deform can move along each other.
 
         Raises

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from vibroimpact.arrays import Floats
+from vibroimpact.dynamics.bounce import Bounce
 from vibroimpact.dynamics.columns import (
     FLUID_HISTORY_COLUMNS,
     HISTORY_COLUMNS,
@@ -26,7 +27,6 @@ from vibroimpact.dynamics.end_in_words import end_in_words
 from vibroimpact.dynamics.energy import why_failed
 from vibroimpact.dynamics.fluid_history import MOTION, fluid_history
 from vibroimpact.dynamics.history_grid import points_kept, thinned
-from vibroimpact.dynamics.leg import Leg
 from vibroimpact.dynamics.oblique.history import oblique_history
 from vibroimpact.dynamics.outcome import Outcome
 from vibroimpact.dynamics.problem import Problem
@@ -72,7 +72,7 @@ class Response:
     rest : Rest
         State of the drops that have come to rest. `rest.left` is what they, and those that ride,
         have left in vibration [J], (B,).
-    legs : sequence of Leg, optional
+    bounces : sequence of Bounce, optional
         Flights and contacts, from which histories are read; None where none are kept, as by
         `tabulate`.
 
@@ -96,7 +96,7 @@ class Response:
     outcomes: tuple[Outcome, ...]
     end_time: Floats
     rest: Rest
-    legs: Sequence[Leg] | None
+    bounces: Sequence[Bounce] | None
 
     def __len__(self) -> int:
         """Return the number of drops."""
@@ -128,8 +128,8 @@ class Response:
             self.end_time[index : index + 1],
             self.rest.take(index),
             None
-            if self.legs is None
-            else tuple(small for leg in self.legs if (small := leg.of(index)) is not None),
+            if self.bounces is None
+            else tuple(small for bounce in self.bounces if (small := bounce.of(index)) is not None),
         )
 
     def squeezed(self) -> Response:
@@ -280,7 +280,7 @@ class Response:
             "sphere" and "plate", (T, modes) [kg^1/2 m]; times a mode's shape they are
             displacements, of a plate relative to its supports.
         """
-        from vibroimpact.dynamics.vibrating.bodies import slices_of
+        from vibroimpact.dynamics.vibrating.vibrating_bodies import slices_of
 
         flat = np.atleast_1d(np.asarray(times, dtype=float))
         starts, segments = self._starts, self._segments
@@ -365,7 +365,7 @@ class Response:
         return self._result.plot(name)
 
     def _repr_html_(self) -> str | None:
-        one = self.problem.shape == () and self.legs is not None
+        one = self.problem.shape == () and self.bounces is not None
         return self._result._repr_html_() if one else None
 
     @cached_property
@@ -407,22 +407,24 @@ class Response:
                 vibrating_history(problem, segments[number], times, of_bodies),
                 isinstance(segments[number].motion, RestMotion),
             )
-        if self.legs is not None and problem.oblique is not None:
+        if self.bounces is not None and problem.oblique is not None:
             start = segments[number].start
             flown = np.searchsorted(
-                [float(leg.flight.start[0]) for leg in self.legs], start, side="right"
+                [float(bounce.flight.start[0]) for bounce in self.bounces], start, side="right"
             )
-            leg = segments.leg_of(number) if isinstance(segments, Timeline) else int(flown) - 1
-            lost = float(self.impacts["friction_lost_J"][:leg].sum())
+            bounce = (
+                segments.bounce_of(number) if isinstance(segments, Timeline) else int(flown) - 1
+            )
+            lost = float(self.impacts["friction_lost_J"][:bounce].sum())
             along = oblique_history(
-                problem, self.legs[leg], lost, start + times, start if resting else np.inf
+                problem, self.bounces[bounce], lost, start + times, start if resting else np.inf
             )
             found |= {
                 name: values + found[name] if name in found else values
                 for name, values in along.items()
             }
-        if self.legs is not None and problem.fluid is not None:
-            found |= fluid_history(problem, self.legs, segments[number].start + times, found)
+        if self.bounces is not None and problem.fluid is not None:
+            found |= fluid_history(problem, self.bounces, segments[number].start + times, found)
         return {name: found[name] for name in columns}
 
     @cached_property
@@ -432,24 +434,24 @@ class Response:
             raise InputError(
                 "a history belongs to one drop: ask response.drop(0), response.drop(1), ..."
             )
-        if self.legs is None:
+        if self.bounces is None:
             raise InputError("tabulate keeps no histories; ask simulate")
         end = float(self.end_time[0])
         if self.problem.vibrates:
             from vibroimpact.dynamics.vibrating.segments import vibrating_timeline
 
-            return vibrating_timeline(self.legs, self.rest.lying[0], end)
+            return vibrating_timeline(self.bounces, self.rest.lying[0], end)
         plastic = self.impacts["plastic_work_J"]
         rest: RestSegment | RideSegment | None = None
-        ride, work = self.legs[-1].ride, self.impacts.get("plate_work_J", np.zeros(len(plastic)))
+        ride, work = self.bounces[-1].ride, self.impacts.get("plate_work_J", np.zeros(len(plastic)))
         if self.outcomes[0].at_rest and ride is not None:
-            begin = end_of(self.legs[-1])
+            begin = end_of(self.bounces[-1])
             rest = RideSegment(begin, end, ride, begin)
         elif self.outcomes[0].at_rest:
             weight = float(self.problem.sphere.mass) * float(self.problem.net_gravity)
             points = 2 if self.problem.oblique is None else 97
             rest = RestSegment(
-                end_of(self.legs[-1]),
+                end_of(self.bounces[-1]),
                 end,
                 float(self.rest.sag[0]),
                 weight,
@@ -457,7 +459,7 @@ class Response:
                 points,
             )
         return timeline_of(
-            self.legs,
+            self.bounces,
             rest,
             np.stack([self.impacts["energy_lost_J"] - plastic, plastic, -work], axis=1),
         )

@@ -15,7 +15,7 @@ from vibroimpact.arrays import Array
 from vibroimpact.compiled import interpreted
 from vibroimpact.contact.law import CompliantLaw, ContactLaw, InstantaneousLaw
 from vibroimpact.contact.roots import solve_monotonic
-from vibroimpact.dynamics.encounter import encounter_of
+from vibroimpact.dynamics.impact_conditions import impact_conditions_of
 from vibroimpact.dynamics.rigid.line_contact import FEW, release_rates
 from vibroimpact.dynamics.tolerance import check_tolerance
 from vibroimpact.errors import ComputationError, InputError
@@ -132,9 +132,9 @@ def _by_integration(law: ContactLaw, mass: Array, speed: Array, tolerance: float
         {name: np.broadcast_to(value, shape).ravel() for name, value in arrays.items()}
     )
     with interpreted() if len(masses) < FEW else nullcontext():
-        encounter = encounter_of(flat, masses, np.zeros(len(masses)), speeds)
+        conditions = impact_conditions_of(flat, masses, np.zeros(len(masses)), speeds)
     with np.errstate(all="ignore"):  # Newton iterates may overflow
-        return np.abs(release_rates(encounter, tolerance) / speeds).reshape(shape)[()]
+        return np.abs(release_rates(conditions, tolerance) / speeds).reshape(shape)[()]
 
 
 def law_achieving(law: Law, restitution: Array, mass: Array, speed: Array) -> Law:

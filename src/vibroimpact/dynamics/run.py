@@ -8,12 +8,12 @@ import numpy as np
 
 from vibroimpact.arrays import Bools, Drops, Floats
 from vibroimpact.contact.law import CompliantLaw, ContactLaw, InstantaneousLaw
+from vibroimpact.dynamics.bounce import Bounce
 from vibroimpact.dynamics.contact import CAPTURED, FAILED, RIDING, Contact
-from vibroimpact.dynamics.encounter import Encounter, encounter_of
 from vibroimpact.dynamics.flight_in_fluid import FluidFlight
 from vibroimpact.dynamics.impact_at_once import collide_at_once
-from vibroimpact.dynamics.leg import Leg
-from vibroimpact.dynamics.oblique.motion import ObliqueMotion
+from vibroimpact.dynamics.impact_conditions import ImpactConditions, impact_conditions_of
+from vibroimpact.dynamics.oblique.oblique_motion import ObliqueMotion
 from vibroimpact.dynamics.outcome import Outcome
 from vibroimpact.dynamics.problem import MOST_IMPACTS, Problem
 from vibroimpact.dynamics.rigid.solve_contact import SolvesContact
@@ -44,9 +44,9 @@ class Run(RunState):
             done = max(done, float(np.nanmin(np.clip(slowed, 0.0, 1.0), initial=1.0)))
         return done
 
-    def advance(self) -> Leg:
+    def advance(self) -> Bounce:
         """Advance all moving drops to their next touch and through one contact, and
-        return both as a leg.
+        return both as a bounce.
         """
         drops = np.flatnonzero(self.moving)
         flight = self.flights(drops)
@@ -54,59 +54,62 @@ class Run(RunState):
         stopped, stop_time, outcome = first_stops(self.stop_rules, drops, flight, touch)
         self.end(drops[stopped], outcome[stopped], stop_time[stopped])
         touches = ~stopped
-        leg = Leg(
+        bounce = Bounce(
             drops, flight, np.where(stopped, stop_time, touch), drops[touches], motions=motions
         )
-        leg = self.fly(leg)
+        bounce = self.fly(bounce)
         if touches.any():
-            leg = self.collide(leg, touch[touches], speed[touches])
+            bounce = self.collide(bounce, touch[touches], speed[touches])
         if isinstance(flight, FluidFlight):
-            self.give_to_fluid(leg, flight, touches)
-        growth = self.bodies.growth(leg)
+            self.give_to_fluid(bounce, flight, touches)
+        growth = self.bodies.growth(bounce)
         if growth.size:
-            self.rows.last["sensitivity"][leg.contact_drops] = growth
-        return leg
+            self.rows.last["sensitivity"][bounce.contact_drops] = growth
+        return bounce
 
-    def fly(self, leg: Leg) -> Leg:
-        """Advance drops to the end of their flights, and return the leg with their motion
+    def fly(self, bounce: Bounce) -> Bounce:
+        """Advance drops to the end of their flights, and return the bounce with their motion
         along the plate.
         """
-        drops, flight = leg.drops, leg.flight
-        self.bodies.pass_flight(drops, leg.motions, leg.flight_end - flight.start)
+        drops, flight = bounce.drops, bounce.flight
+        self.bodies.pass_flight(drops, bounce.motions, bounce.flight_end - flight.start)
         if self.oblique is not None:
-            leg = replace(leg, oblique=self.oblique.now(drops))
-            self.oblique.fly(drops, flight, leg.flight_end)
-        self.gap[drops], self.velocity[drops] = flight.at(leg.flight_end)
-        self.time[drops] = leg.flight_end
+            bounce = replace(bounce, oblique=self.oblique.now(drops))
+            self.oblique.fly(drops, flight, bounce.flight_end)
+        self.gap[drops], self.velocity[drops] = flight.at(bounce.flight_end)
+        self.time[drops] = bounce.flight_end
         self.ahead = None
-        return leg
+        return bounce
 
-    def give_to_fluid(self, leg: Leg, flight: FluidFlight, touches: Bools) -> None:
+    def give_to_fluid(self, bounce: Bounce, flight: FluidFlight, touches: Bools) -> None:
         """Account for the energy that drops gave to a fluid in their flights."""
         assert self.problem.fluid is not None
-        mass = self.mass[leg.drops]
-        self.to_fluid[leg.drops] += mass * flight.given(leg.flight_end)
+        mass = self.mass[bounce.drops]
+        self.to_fluid[bounce.drops] += mass * flight.given(bounce.flight_end)
         if touches.any():
-            lost = mass * flight.lost(leg.flight_end)
-            self.rows.last[f"{self.problem.fluid.key}_lost_J"][leg.contact_drops] = lost[touches]
+            lost = mass * flight.lost(bounce.flight_end)
+            self.rows.last[f"{self.problem.fluid.key}_lost_J"][bounce.contact_drops] = lost[touches]
 
-    def collide(self, leg: Leg, touch: Floats, speed: Floats) -> Leg:
-        """Solve the contact of drops, write the row of the impact table, and return the leg with
+    def collide(self, bounce: Bounce, touch: Floats, speed: Floats) -> Bounce:
+        """Solve the contact of drops, write the row of the impact table, and return the bounce with
         the contact.
 
-        `touch` [s], `speed` [m/s]: of the approach, of `leg.contact_drops`.
+        `touch` [s], `speed` [m/s]: of the approach, of `bounce.contact_drops`.
         """
-        drops = leg.contact_drops
+        drops = bounce.contact_drops
         law = self.law_at(drops, speed)
         row = self.rows.add()
         self.write_touch(drops, law, touch, speed, row)
         if isinstance(law, InstantaneousLaw):
-            leg, lost = collide_at_once(self, leg, law, touch, speed, row)
+            bounce, lost = collide_at_once(self, bounce, law, touch, speed, row)
         else:
             assert isinstance(law, CompliantLaw)
             closing = self.bodies.closing_speed(drops, speed, self.velocity[drops])
-            leg, lost = self.solve_contact(
-                leg, encounter_of(law, self.mass[drops], self.gravity[drops], closing), touch, row
+            bounce, lost = self.solve_contact(
+                bounce,
+                impact_conditions_of(law, self.mass[drops], self.gravity[drops], closing),
+                touch,
+                row,
             )
             lost += row["plastic_work_J"][drops]
             law = self.problem.law_at(self.law(drops), speed)  # with its memory of this impact
@@ -120,7 +123,7 @@ class Run(RunState):
         self.stop_resting(
             drops[moving], law if moving.all() else law.take(np.flatnonzero(moving)), row
         )
-        return leg
+        return bounce
 
     def write_touch(
         self, drops: Drops, law: ContactLaw, touch: Floats, speed: Floats, row: dict[str, Floats]
@@ -178,14 +181,14 @@ class Run(RunState):
             self.memories[name][gone] = self.spread(fresh[name])[gone]
 
     def solve_contact(
-        self, leg: Leg, encounter: Encounter, touch: Floats, row: dict[str, Floats]
-    ) -> tuple[Leg, Floats]:
-        """Return the leg with the contact of drops, and the energy lost in it [J]."""
-        drops = leg.contact_drops
+        self, bounce: Bounce, conditions: ImpactConditions, touch: Floats, row: dict[str, Floats]
+    ) -> tuple[Bounce, Floats]:
+        """Return the bounce with the contact of drops, and the energy lost in it [J]."""
+        drops = bounce.contact_drops
         until = (np.inf if self.problem.duration is None else self.problem.duration) - touch
         place = self.gap[drops], self.velocity[drops]
         contact, force, time_of_force = self.bodies.collide(
-            drops, encounter, place, (self.rest_speed[drops], until), row
+            drops, conditions, place, (self.rest_speed[drops], until), row
         )
         self.deepest[drops] = np.maximum(self.deepest[drops], contact.max_delta)
         self.time[drops] = touch + contact.duration
@@ -202,13 +205,13 @@ class Run(RunState):
         row["max_force_N"][drops] = force
         row["time_of_max_force_s"][drops] = touch + time_of_force
         row["max_acceleration_m_s2"][drops] = np.maximum(
-            force / encounter.mass - encounter.gravity, encounter.gravity
+            force / conditions.mass - conditions.gravity, conditions.gravity
         )
         stays = self.release(drops, contact, row)
-        leg = replace(leg, contact=contact, encounter=encounter)
+        bounce = replace(bounce, contact=contact, conditions=conditions)
         if self.oblique is not None:
-            leg = replace(leg, oblique_contacts=self.bodies.slide(self.oblique, leg, row))
-        return leg, contact.dissipated + np.where(stays, 0.0, contact.stored)
+            bounce = replace(bounce, oblique_contacts=self.bodies.slide(self.oblique, bounce, row))
+        return bounce, contact.dissipated + np.where(stays, 0.0, contact.stored)
 
     def release(self, drops: Drops, contact: Contact, row: dict[str, Floats]) -> Bools:
         """Write the separation of drops after a contact, end the runs of those that do

@@ -10,7 +10,6 @@ from vibroimpact.arrays import Drops, Floats, Integers
 from vibroimpact.bodies.ball import mean_density
 from vibroimpact.contact.law import CompliantLaw, ContactLaw
 from vibroimpact.contact.static import static_indentation
-from vibroimpact.dynamics.bodies import Bodies
 from vibroimpact.dynamics.columns import (
     CARRIED_IMPACT_COLUMNS,
     OBLIQUE_IMPACT_COLUMNS,
@@ -19,11 +18,12 @@ from vibroimpact.dynamics.columns import (
 from vibroimpact.dynamics.flight import Flight
 from vibroimpact.dynamics.flight_in_fluid import FluidFlight
 from vibroimpact.dynamics.impact_rows import ImpactRows
-from vibroimpact.dynamics.oblique.motion import ObliqueMotion
+from vibroimpact.dynamics.oblique.oblique_motion import ObliqueMotion
 from vibroimpact.dynamics.outcome import Outcome
 from vibroimpact.dynamics.problem import Problem
-from vibroimpact.dynamics.rigid.bodies import RigidBodies
+from vibroimpact.dynamics.rigid.rigid_bodies import RigidBodies
 from vibroimpact.dynamics.rigid.solve_contact import SolvesContact
+from vibroimpact.dynamics.run_bodies import Bodies
 
 _APART = 4e-15  # of the amplitude of a shaken plate: the rounding error of its place
 
@@ -100,11 +100,11 @@ class RunState:
         """Return the bodies of the problem."""
         # a drop of rigid bodies does not load what vibrates
         if self.problem.vibrates:
-            from vibroimpact.dynamics.vibrating.bodies import VibratingBodies
+            from vibroimpact.dynamics.vibrating.vibrating_bodies import VibratingBodies
 
             return VibratingBodies(self.problem, self.mass, self.gravity, self.oblique)
         if self.problem.shaken:
-            from vibroimpact.dynamics.shaken.bodies import ShakenBodies
+            from vibroimpact.dynamics.shaken.shaken_bodies import ShakenBodies
 
             return ShakenBodies(self.problem, self.mass, self.gravity, solve_contact)
         return RigidBodies(self.size, solve_contact)

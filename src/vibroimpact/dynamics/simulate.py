@@ -7,8 +7,8 @@ from dataclasses import replace
 
 import numpy as np
 
+from vibroimpact.dynamics.bounce import Bounce
 from vibroimpact.dynamics.end_of_run import response_of
-from vibroimpact.dynamics.leg import Leg
 from vibroimpact.dynamics.outcome import Outcome
 from vibroimpact.dynamics.packed_list import PackedList
 from vibroimpact.dynamics.problem import StatesProblem
@@ -49,7 +49,7 @@ def simulate(problem: StatesProblem, progress: Callable[[float], None] | None = 
     Examples
     --------
     >>> from vibroimpact.bodies.body import Body
-    >>> from vibroimpact.bodies.rigid import rigid_plate
+    >>> from vibroimpact.bodies.rigid_bodies import rigid_plate
     >>> from vibroimpact.contact.laws.newton import Newton
     >>> from vibroimpact.dynamics.problem import Problem
     >>> problem = Problem(
@@ -70,14 +70,14 @@ def simulate(problem: StatesProblem, progress: Callable[[float], None] | None = 
     # Newton iterates may overflow; results that are not finite are detected and retried
     with np.errstate(all="ignore"):
         run = Run(stated, solver_for(stated))
-        legs: PackedList[Leg] | list[Leg] = []
+        bounces: PackedList[Bounce] | list[Bounce] = []
         if stated.shape == () and not stated.vibrates:
-            legs = PackedList[Leg](PlateMotion)
+            bounces = PackedList[Bounce](PlateMotion)
         while run.moving.any():
-            legs.append(run.advance())
+            bounces.append(run.advance())
             if progress is not None:
                 progress(run.fraction_done())
-        response = replace(response_of(run), legs=legs)
+        response = replace(response_of(run), bounces=bounces)
     if stated.shape == ():
         response = response.squeezed()
     if response.problem.shape == () and response.outcomes[0] is Outcome.FAILED:

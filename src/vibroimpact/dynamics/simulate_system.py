@@ -17,8 +17,8 @@ from vibroimpact.dynamics.system import MovingBody, System
 from vibroimpact.dynamics.vibrating.active_contact import ContactDefinition
 from vibroimpact.dynamics.vibrating.free_motion import FreePhase
 from vibroimpact.dynamics.vibrating.linear_system import LinearSystem, State
-from vibroimpact.dynamics.vibrating.march import March
 from vibroimpact.dynamics.vibrating.stretch import VibratingStretch
+from vibroimpact.dynamics.vibrating.time_marching import TimeMarching
 from vibroimpact.errors import ComputationError, InputError
 
 _LONGEST = 1e9  # seconds
@@ -110,7 +110,7 @@ class SystemResponse:
     impacts: dict[str, NDArray[Any]]
     energy: dict[str, float]
     end_time: float
-    _march: March
+    _march: TimeMarching
 
     def __repr__(self) -> str:
         return f"<SystemResponse: {len(self.impacts['time_s'])} impacts in {self.end_time:g} s>"
@@ -287,7 +287,7 @@ def simulate_system(
             "start, and gravity, if there is any, does not "
             "bring the bodies of a contact together; give a body a velocity, or hold one"
         )
-    march = March(
+    march = TimeMarching(
         linear,
         [
             ContactDefinition(one.law, one.series, not one.same_spot)
@@ -322,7 +322,7 @@ def simulate_system(
     return SystemResponse(system, columns, energy, duration, march)
 
 
-def _ledger(linear: LinearSystem, start: State, march: March) -> dict[str, float]:
+def _ledger(linear: LinearSystem, start: State, march: TimeMarching) -> dict[str, float]:
     """Return the energy balance at the end of a run [J]."""
     kinetic, strain = (float(part.sum()) for part in linear.energies(march.state))
     begun, potential = (

@@ -13,7 +13,7 @@ import numpy as np
 
 from vibroimpact.arrays import Bools, Drops, Floats, Integers
 from vibroimpact.dynamics.flight import Flight
-from vibroimpact.dynamics.oblique.motion import ObliqueMotion
+from vibroimpact.dynamics.oblique.oblique_motion import ObliqueMotion
 from vibroimpact.dynamics.outcome import Outcome
 from vibroimpact.dynamics.problem import MOST_IMPACTS
 from vibroimpact.dynamics.run_state import RunState

@@ -11,7 +11,7 @@ from functools import cache
 import numpy as np
 
 from vibroimpact.arrays import Floats
-from vibroimpact.bodies.rigid import rigid_plate
+from vibroimpact.bodies.rigid_bodies import rigid_plate
 from vibroimpact.contact.kelvin_voigt import KelvinVoigtLaw
 from vibroimpact.contact.law import ContactLaw
 from vibroimpact.contact.laws.adams_impact import AdamsImpact

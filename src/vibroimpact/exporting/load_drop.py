@@ -8,10 +8,10 @@ from typing import Any
 
 from vibroimpact.calibration.file_contents import CALIBRATION
 from vibroimpact.cases.case import Case
-from vibroimpact.cases.motion import motion_of
 from vibroimpact.cases.oblique import normal_motion_of, oblique_of
+from vibroimpact.cases.plate_motion import motion_of
 from vibroimpact.cases.reader import load_case, read_case
-from vibroimpact.cases.rigid import (
+from vibroimpact.cases.rigid_problem import (
     by_speed_of,
     deforms,
     elastic_names,

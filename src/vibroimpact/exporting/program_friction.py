@@ -10,7 +10,7 @@ from dataclasses import fields, replace
 
 import numpy as np
 
-from vibroimpact.bodies.rigid import rigid_plate
+from vibroimpact.bodies.rigid_bodies import rigid_plate
 from vibroimpact.contact.friction.law import CompliantFriction, FrictionLaw
 from vibroimpact.contact.laws.hertz import Hertz
 from vibroimpact.contact.pair import hertz_stiffness

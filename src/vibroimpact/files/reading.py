@@ -16,7 +16,7 @@ from os import PathLike
 from typing import NamedTuple
 
 from vibroimpact.errors import InputError
-from vibroimpact.shown import shortened
+from vibroimpact.quoting import shortened
 
 _BLOCK = 4_000_000
 """Bytes per read."""

@@ -15,7 +15,7 @@ from vibroimpact.identification.measured import Measured
 from vibroimpact.identification.plate import Place, Plate
 from vibroimpact.identification.pulses import Candidate
 from vibroimpact.identification.sphere import SphereFit, fit_sphere
-from vibroimpact.shown import shown
+from vibroimpact.quoting import quoted
 from vibroimpact.units.display import digits
 
 _WIDE = {"sensor_place": 0.01, "gain": 0.1, "thickness": 0.02, "resonance": 0.1}
@@ -121,21 +121,21 @@ def _differences(free: SphereFit, sensors: list[str], exponent: float) -> Iterat
         off = float(np.hypot(*setup.moved[number]))
         if off > max(_LEAST["sensor_place"], _SURE * math.hypot(x[number], y[number])):
             yield Cause(
-                f"{shown(name)} lies about {digits(1e3 * off, 2)} mm from its place in the case",
+                f"{quoted(name)} lies about {digits(1e3 * off, 2)} mm from its place in the case",
                 "sensor_place",
                 off,
             )
         if abs(more[number]) > max(_LEAST["gain"], _SURE * float(spread[number])):
             beside = " beside the others" if len(sensors) > 1 else ""
             yield Cause(
-                f"{shown(name)} reads {_percent(float(more[number]))} than it should{beside}",
+                f"{quoted(name)} reads {_percent(float(more[number]))} than it should{beside}",
                 "gain",
                 abs(float(more[number])),
             )
         off = float(setup.resonance[number])
         if abs(off) > max(_LEAST["resonance"], _SURE * resonance[number]):
             yield Cause(
-                f"{shown(name)} has a mounted resonance {_percent(off)} than in the case",
+                f"{quoted(name)} has a mounted resonance {_percent(off)} than in the case",
                 "resonance",
                 abs(off),
             )

@@ -11,7 +11,7 @@ from vibroimpact.charts.chart import Chart, Panel
 from vibroimpact.charts.made import made_charts
 from vibroimpact.charts.marks import Band, Line, Map, Points
 from vibroimpact.identification.identify import Identification
-from vibroimpact.shown import shortened, visible
+from vibroimpact.quoting import shortened, visible
 from vibroimpact.signals.estimate import Estimate
 
 _HEIGHT = 3.2

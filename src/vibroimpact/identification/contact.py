@@ -12,7 +12,7 @@ import numpy as np
 
 from vibroimpact.arrays import Floats
 from vibroimpact.cases.pair import resized
-from vibroimpact.cases.rigid import rigid_problem
+from vibroimpact.cases.rigid_problem import rigid_problem
 from vibroimpact.cases.schema import CaseTable
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.response import Response

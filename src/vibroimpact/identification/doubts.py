@@ -13,7 +13,7 @@ from vibroimpact.identification.measured import Measured, rms_of
 from vibroimpact.identification.plate import Place, Plate
 from vibroimpact.identification.pulses import Search
 from vibroimpact.identification.sphere import SphereFit
-from vibroimpact.shown import shown
+from vibroimpact.quoting import quoted
 from vibroimpact.units.display import digits
 
 _LEFT = 1.3
@@ -114,13 +114,13 @@ def _of_records(measured: Measured) -> Iterator[str]:
     ):
         if number := int(np.count_nonzero(~heard)):
             words = (
-                f"the record {shown(sensor.name)} is clipped: {number} of its "
+                f"the record {quoted(sensor.name)} is clipped: {number} of its "
                 "samples lie at its extremes"
             )
             yield f"{words}; they are left out, and what lies beside them is taken as right"
         if polarity < 0.0:
             words = (
-                f"the record {shown(sensor.name)} is inverted: with the opposite sign a force "
+                f"the record {quoted(sensor.name)} is inverted: with the opposite sign a force "
                 "explains the records much better"
             )
             yield (

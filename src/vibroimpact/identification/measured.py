@@ -11,7 +11,7 @@ from vibroimpact.arrays import Bools, Floats
 from vibroimpact.dynamics.sensors.antialias import HALF_LENGTH
 from vibroimpact.dynamics.sensors.sensor import Sensor
 from vibroimpact.errors import InputError, did_you_mean
-from vibroimpact.shown import shown
+from vibroimpact.quoting import quoted
 from vibroimpact.signals.baseline import without_baseline
 from vibroimpact.signals.clipped import clipped_samples
 from vibroimpact.signals.one_record import is_named
@@ -174,7 +174,7 @@ def sensors_of(sensors: Sequence[Sensor], records: Sequence[Record]) -> tuple[Se
         )
         if name is None:
             there = ", ".join(f'"{name}"' for name in known)
-            words = f"the case has no sensor {shown(record.name)}; it has {there}"
+            words = f"the case has no sensor {quoted(record.name)}; it has {there}"
             first = next(iter(known.values()))
             if record.source.lower().endswith(".csv"):
                 words += (
@@ -183,7 +183,7 @@ def sensors_of(sensors: Sequence[Sensor], records: Sequence[Record]) -> tuple[Se
                 )
             raise InputError(f"{words}.{did_you_mean(record.name, known)}")
         if name in chosen:
-            raise InputError(f"there are two records {shown(name)}; give those of one fall")
+            raise InputError(f"there are two records {quoted(name)}; give those of one fall")
         _check(record, known[name])
         chosen[name] = known[name]
     if not chosen:
@@ -219,12 +219,12 @@ def _check(record: Record, sensor: Sensor) -> None:
     if record.unit.replace("^", "") != sensor.unit and (record.unit, sensor.unit) != _STRAIN:
         given = f"in {record.unit}" if record.unit else "without a unit"
         raise InputError(
-            f"the record {shown(record.name)} is {given}, and the sensor of that name "
+            f"the record {quoted(record.name)} is {given}, and the sensor of that name "
             f"reads {sensor.unit}"
         )
     if abs(record.rate / sensor.rate - 1.0) > _SAME:
         words = (
-            f"the record {shown(record.name)} has {record.rate:.10g} samples per second, and "
+            f"the record {quoted(record.name)} has {record.rate:.10g} samples per second, and "
             f"the sensor of that name {sensor.rate:.10g}"
         )
         raise InputError(
@@ -232,9 +232,11 @@ def _check(record: Record, sensor: Sensor) -> None:
             "filter that the record has"
         )
     if not np.isfinite(record.value).all():
-        raise InputError(f"the record {shown(record.name)} has samples that are not finite numbers")
+        raise InputError(
+            f"the record {quoted(record.name)} has samples that are not finite numbers"
+        )
     if not len(record.value) or np.ptp(record.value) == 0.0:
         raise InputError(
-            f"the record {shown(record.name)} "
+            f"the record {quoted(record.name)} "
             f"{'is constant' if len(record.value) else 'has no samples'}; it shows no impact"
         )

@@ -12,8 +12,8 @@ from scipy.stats.qmc import Halton
 
 from vibroimpact.arrays import Floats
 from vibroimpact.cases.build import check_case, problem_of
-from vibroimpact.cases.elastic.bodies import elastic_bodies
 from vibroimpact.cases.elastic.coupling import at_place, treatment_of
+from vibroimpact.cases.elastic.elastic_bodies import elastic_bodies
 from vibroimpact.cases.fields.elastic_body import BroughtMeshTable
 from vibroimpact.cases.oblique import oblique_keys
 from vibroimpact.cases.schema import CaseTable
@@ -24,7 +24,7 @@ from vibroimpact.dynamics.sensors.place_responses import (
     unit_responses,
 )
 from vibroimpact.dynamics.sensors.sensor import Sensor
-from vibroimpact.dynamics.vibrating.bodies import bases_of_plate
+from vibroimpact.dynamics.vibrating.vibrating_bodies import bases_of_plate
 from vibroimpact.errors import InputError
 from vibroimpact.identification.setup import Setup, SetupErrors, stretched, with_resonance
 from vibroimpact.structures.modal_model import ModalBasis, rigid_basis

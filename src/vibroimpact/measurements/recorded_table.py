@@ -16,7 +16,7 @@ from vibroimpact.measurements.header_cells import is_time, name_and_unit
 from vibroimpact.measurements.table_file import Cells, factor_to_si, in_table, read_cells
 from vibroimpact.measurements.table_layout import Layout
 from vibroimpact.measurements.table_lines import Clock
-from vibroimpact.shown import shown
+from vibroimpact.quoting import quoted
 
 _LONGEST_GAP = 3
 """Largest number of samples in a row that are filled in where they are missing."""
@@ -144,7 +144,7 @@ def filled_in(channel: RecordedChannel) -> tuple[Floats, Floats, str]:
     """
     from scipy.interpolate import CubicSpline
 
-    count, where = len(channel.missing), f"line {channel.missing[0]}, column {shown(channel.cell)}"
+    count, where = len(channel.missing), f"line {channel.missing[0]}, column {quoted(channel.cell)}"
     time = np.concatenate([channel.time, channel.missing_time])
     order = np.argsort(time, kind="stable")
     time = time[order]
@@ -219,7 +219,7 @@ def _channel(
         len(value),
     )
     is_there = ~np.isnan(value)
-    where = f"column {shown(cell)}"
+    where = f"column {quoted(cell)}"
     if not is_there.any():
         raise InputError(
             f"{where}: there is no number in it; delete the column, {cells.layout.remedy}"
@@ -237,7 +237,7 @@ def _channel(
     lines = np.asarray(cells.lines)
     value, doubts = _in_range(value[is_there], where)
     granted = (cells.layout.doubts[place],) if place in cells.layout.doubts else ()
-    times_from = "" if time_at is None else f"column {shown(cells.layout.header[time_at])}: "
+    times_from = "" if time_at is None else f"column {quoted(cells.layout.header[time_at])}: "
     where_missing = tuple(lines[missing].tolist())
     told = (*granted, *doubts)
     return RecordedChannel(

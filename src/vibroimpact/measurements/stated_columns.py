@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from vibroimpact.errors import InputError
 from vibroimpact.measurements.header_cells import is_time, name_and_unit
-from vibroimpact.shown import shortened, shown
+from vibroimpact.quoting import quoted, shortened
 from vibroimpact.units.quantity_text import number_and_unit
 from vibroimpact.units.reading import to_si
 
@@ -63,20 +63,20 @@ def stated_columns(text: str) -> StatedColumns:
             cells.append("")
         elif not name or (sign and not unit):
             words = (
-                f"{shown(entry.strip())} is no column; state NAME=UNIT for each, and - for one "
+                f"{quoted(entry.strip())} is no column; state NAME=UNIT for each, and - for one "
                 'that is left out: "time=s,-,force=N"'
             )
-            raise InputError(f"{STATED} {shown(text)}: {words}")
+            raise InputError(f"{STATED} {quoted(text)}: {words}")
         else:
             cells.append(f"{name} [{unit}]" if sign else name)
     if not any(cells):
         raise InputError(
-            f"{STATED} {shown(text)}: it names no column; state NAME=UNIT for each, such "
+            f"{STATED} {quoted(text)}: it names no column; state NAME=UNIT for each, such "
             'as "time=s,force=N"'
         )
     if rate is not None and any(is_time(*name_and_unit(cell)) for cell in cells if cell):
         raise InputError(
-            f"{STATED} {shown(text)}: the rate follows from the column of times; leave "
+            f"{STATED} {quoted(text)}: the rate follows from the column of times; leave "
             "rate out, or - for that column"
         )
     return StatedColumns(tuple(cells), rate)

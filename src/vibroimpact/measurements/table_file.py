@@ -20,7 +20,7 @@ from vibroimpact.measurements.cell_numbers import SCPI, is_either, number_in
 from vibroimpact.measurements.header_cells import name_and_unit
 from vibroimpact.measurements.table_layout import Layout, table_layout
 from vibroimpact.measurements.table_lines import fields_of, filled
-from vibroimpact.shown import shortened, shown
+from vibroimpact.quoting import quoted, shortened
 from vibroimpact.units.reading import to_si
 from vibroimpact.units.spelling import plain_factor
 
@@ -256,7 +256,7 @@ class _DecimalPoint:
         if self.comma and self.either[0]:
             at, cell = self.either
             words = (
-                f"{shown(cell.strip())} has a point, and a number in line {self.comma} a "
+                f"{quoted(cell.strip())} has a point, and a number in line {self.comma} a "
                 "comma: either may group digits"
             )
             raise InputError(
@@ -321,7 +321,7 @@ def factor_to_si(layout: Layout, cell: str, unit: str | None, wanted: str) -> fl
     InputError
         If it has no unit, or one of another quantity.
     """
-    where = f"{layout.where}, column {shown(cell)}"
+    where = f"{layout.where}, column {quoted(cell)}"
     if not wanted:
         factor = plain_factor(unit or "")
         if factor is None:
@@ -334,7 +334,7 @@ def factor_to_si(layout: Layout, cell: str, unit: str | None, wanted: str) -> fl
         return to_si(f"1 {unit}", wanted)
     except InputError as error:
         # without the 1 before the unit, and without the hint how to write a number
-        given, one = shown(unit, 80), shown(f"1 {unit}", 80)
+        given, one = quoted(unit, 80), quoted(f"1 {unit}", 80)
         words = (
             error.message.partition(" (a number in ")[0]
             .replace(f"{given} in {one}", given)
@@ -357,11 +357,11 @@ def _number(
     except ValueError:
         hint = f"; {_EITHER}" if is_either(text) else ""
         raise InputError(
-            f"line {line}, column {shown(column)}: {shown(text.strip())} is not a number{hint}"
+            f"line {line}, column {quoted(column)}: {quoted(text.strip())} is not a number{hint}"
         ) from None
     if -_LARGEST_NUMBER < value < _LARGEST_NUMBER:
         return value
-    where = f"line {line}, column {shown(column)}"
+    where = f"line {line}, column {quoted(column)}"
     if place >= len(row):
         return without(
             nan,
@@ -372,7 +372,7 @@ def _number(
     if isnan(coded) or isinf(coded):
         return without(coded, f"{where}: {_what_is_there(text.strip(), value, coded)}")
     raise InputError(
-        f"{where}: {shown(text.strip())} is not a measurement; it must be less than 1e30 in size"
+        f"{where}: {quoted(text.strip())} is not a measurement; it must be less than 1e30 in size"
     )
 
 
@@ -384,14 +384,14 @@ def _what_is_there(text: str, value: float, coded: float) -> str:
         return "the cell is empty"
     if not (isnan(value) or isinf(value)):
         return (
-            f"{shown(text)} stands for a sample that is "
+            f"{quoted(text)} stands for a sample that is "
             f"{'missing' if isnan(coded) else 'over the range'} (SCPI)"
         )
     try:
         float(text)
     except ValueError:
-        return f"{shown(text)} is {'no number' if isnan(value) else 'over the range'}"
-    return f"{shown(text)} is not finite"
+        return f"{quoted(text)} is {'no number' if isnan(value) else 'over the range'}"
+    return f"{quoted(text)} is not finite"
 
 
 _EITHER = (

@@ -33,7 +33,7 @@ from vibroimpact.measurements.table_lines import (
     is_row,
     mark_of,
 )
-from vibroimpact.shown import shortened
+from vibroimpact.quoting import shortened
 
 _MOST_COLUMNS = 1000
 _MARK_WORDS = {"\t": "tabs", ";": "semicolons", ",": "commas", None: "blanks"}

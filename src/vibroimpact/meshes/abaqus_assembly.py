@@ -11,7 +11,7 @@ import numpy as np
 from vibroimpact.arrays import Floats
 from vibroimpact.meshes.abaqus_blocks import Block
 from vibroimpact.meshes.text_files import TextLine, parse_integer, parse_real
-from vibroimpact.shown import shown
+from vibroimpact.quoting import quoted
 
 SPAN = 1_000_000_000_000
 """Numbers of nodes and elements that each instance has for itself."""
@@ -119,7 +119,7 @@ def flattened(found: Iterable[Block]) -> Iterator[Block]:
             last_part = block.line
             if _key(block, "NAME") in parts:
                 raise block.line.wrong(
-                    f"a part of the name {shown(block.parameters.get('NAME', ''))} was "
+                    f"a part of the name {quoted(block.parameters.get('NAME', ''))} was "
                     "given before; each needs its own"
                 )
             part = parts[_key(block, "NAME")] = []
@@ -157,7 +157,7 @@ def _blocks_of(block: Block, parts: dict[str, list[Block]]) -> list[Block]:
     name = _key(block, "PART")
     if name not in parts:
         raise block.line.wrong(
-            f"the instance is of the part {shown(block.parameters.get('PART', ''))}, which "
+            f"the instance is of the part {quoted(block.parameters.get('PART', ''))}, which "
             "is not in the file before it"
         )
     return parts[name]
@@ -170,7 +170,7 @@ def _placed(block: Block, instances: dict[str, _Instance]) -> _Instance:
     name = block.parameters.get("NAME", "")
     if not name or name.upper() in instances:
         raise block.line.wrong(
-            f"the instance has no name of its own, but {shown(name)}; every instance must have one"
+            f"the instance has no name of its own, but {quoted(name)}; every instance must have one"
         )
     if len(instances) >= _MOST_INSTANCES:
         raise block.line.wrong(
@@ -248,7 +248,7 @@ def _of_assembly(block: Block, instances: dict[str, _Instance], own: _Instance) 
     of = block.parameters.get("INSTANCE")
     if of is not None and of.upper() not in instances:
         raise block.line.wrong(
-            f"there is no instance {shown(of)} before this line; it must be one of the assembly"
+            f"there is no instance {quoted(of)} before this line; it must be one of the assembly"
         )
     home = own if of is None else instances[of.upper()]
 

@@ -15,7 +15,7 @@ from vibroimpact.errors import InputError
 from vibroimpact.files.reading import FileKind, beginning, with_path
 from vibroimpact.meshes.geometry_process import MARK
 from vibroimpact.meshes.read_gmsh import read_gmsh
-from vibroimpact.shown import shortened
+from vibroimpact.quoting import shortened
 from vibroimpact.structures.mesh import Mesh
 
 STEP, BREP = (".step", ".stp"), (".brep",)

@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Collection, Iterable, Iterator
 
 from vibroimpact.meshes.text_files import TextLine
-from vibroimpact.shown import shown
+from vibroimpact.quoting import quoted
 
 
 class GmshSection:
@@ -91,7 +91,7 @@ def sections(
         if section is None:
             if not text.startswith("$"):
                 raise line.wrong(
-                    f"{shown(text)} stands outside a section; a mesh file of Gmsh has "
+                    f"{quoted(text)} stands outside a section; a mesh file of Gmsh has "
                     "sections from $Name to $EndName"
                 )
             name, section = text[1:], GmshSection(line)
@@ -107,5 +107,5 @@ def sections(
             section.body.append(line)
     if section is not None:
         cause = "the file is cut short, or its format is none of 2, 4.0 and 4.1"
-        raise section.line.wrong(f"{shown('$' + name)} has no {shown('$End' + name)}; {cause}")
+        raise section.line.wrong(f"{quoted('$' + name)} has no {quoted('$End' + name)}; {cause}")
     return found

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from typing import NamedTuple
 
 from vibroimpact.meshes.parsed_mesh import FLUID_ELEMENTS
-from vibroimpact.shown import shown
+from vibroimpact.quoting import quoted
 
 _MOST_NAMES = 5
 
@@ -85,7 +85,7 @@ def remarks_of(counts: Mapping[str, int]) -> tuple[str, ...]:
     found = []
     for names, effect in _EFFECTS:
         present = [
-            f"{shown(name)[1:-1]} ({count})"
+            f"{quoted(name)[1:-1]} ({count})"
             for name, count in counts.items()
             if names.fullmatch(name)
         ]

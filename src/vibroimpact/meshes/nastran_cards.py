@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
 from vibroimpact.meshes.text_files import TextLine, parse_integer, parse_real
-from vibroimpact.shown import shown
+from vibroimpact.quoting import quoted
 
 _EXPONENT = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+))(?:[dD]([+-]?\d+)|([+-]\d+))")
 _INCLUDE = re.compile(
@@ -80,8 +80,8 @@ def cards(lines: Iterable[TextLine]) -> Iterator[Card]:
                 )
             if (name := head.lstrip("+*").strip()) and goes_on and name.upper() != goes_on.upper():
                 raise line.wrong(
-                    f"{shown(name)} does not go on with the card before it, which asks for "
-                    f"{shown(goes_on)}; it must follow its card"
+                    f"{quoted(name)} does not go on with the card before it, which asks for "
+                    f"{quoted(goes_on)}; it must follow its card"
                 )
             card.fields.extend(fields)
         elif head[0] == "=":
@@ -131,7 +131,7 @@ class _Repeated:
         count = _COUNT.fullmatch(head)
         if count is None and head != "=":
             raise line.wrong(
-                f'{shown(head)} is no repetition; it must be "=", or "=(n)" after a line '
+                f'{quoted(head)} is no repetition; it must be "=", or "=(n)" after a line '
                 'of "=" and "*(x)"'
             )
         if count is None:
@@ -144,7 +144,7 @@ class _Repeated:
             return
         if not self._steps:
             raise line.wrong(
-                f"{shown(head)} repeats steps, and the line before has none; it must have "
+                f"{quoted(head)} repeats steps, and the line before has none; it must have "
                 '"*(x)" in a field'
             )
         fields = before.fields

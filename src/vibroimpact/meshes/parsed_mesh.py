@@ -17,7 +17,7 @@ from vibroimpact.meshes.node_order import to_ours
 from vibroimpact.meshes.selection import Selection
 from vibroimpact.meshes.text_files import TextLine
 from vibroimpact.meshes.tied_surfaces import MeshSurface, Tie, tied_nodes
-from vibroimpact.shown import shortened, shown
+from vibroimpact.quoting import quoted, shortened
 from vibroimpact.structures.element_kinds import ELEMENT_KINDS
 from vibroimpact.structures.geometry import renumbered_by_volume
 from vibroimpact.structures.joints import AXES
@@ -188,7 +188,7 @@ class Parts:
         self._leave_out_fluids()
         if not self._elements:
             left_out = ", ".join(
-                f"{shown(name)[1:-1]} ({count})" for name, count in self.skipped.most_common(5)
+                f"{quoted(name)[1:-1]} ({count})" for name, count in self.skipped.most_common(5)
             )
             raise InputError(
                 f"{self.path}: the file has no solid element; a mesh is of tetrahedra, "

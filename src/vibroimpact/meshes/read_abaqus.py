@@ -22,7 +22,7 @@ from vibroimpact.meshes.text_files import (
     parse_real,
     read_lines_with_includes,
 )
-from vibroimpact.shown import shown
+from vibroimpact.quoting import quoted
 from vibroimpact.structures.element_kinds import ELEMENT_KINDS
 from vibroimpact.structures.mesh import Mesh
 
@@ -200,11 +200,11 @@ class _Reader:
             if _OTHER_SOLID.match(given):
                 if solid is not None and solid[1] in _KINDS:
                     raise block.line.wrong(
-                        f"{shown(given)} in the assembly is a solid element that is not "
+                        f"{quoted(given)} in the assembly is a solid element that is not "
                         "read; it must be in a part or an instance"
                     )
                 raise block.line.wrong(
-                    f"{shown(given)} is an element that is not read; solid elements must be "
+                    f"{quoted(given)} is an element that is not read; solid elements must be "
                     "C3D4, C3D5, C3D6, C3D8, C3D10, C3D13, C3D15, C3D20 or C3D27, also with "
                     "letters behind, as C3D8R"
                 )
@@ -293,7 +293,7 @@ class _Reader:
         if found is None:
             suggestion = self._suggestion(kind, name)
             raise line.wrong(
-                f"{shown(name)} is neither a number nor a *{kind} before this line; it "
+                f"{quoted(name)} is neither a number nor a *{kind} before this line; it "
                 f"must be one of them.{suggestion}"
             )
         return found
@@ -303,7 +303,7 @@ class _Reader:
         found = self._set_of("ELSET", name)
         if found is None:
             raise line.wrong(
-                f"the file has no element set {shown(name)}, of which the section "
+                f"the file has no element set {quoted(name)}, of which the section "
                 f"is.{self._suggestion('ELSET', name)}"
             )
         return found

@@ -12,7 +12,7 @@ from vibroimpact.meshes.gmsh_sections import GmshSection, sections
 from vibroimpact.meshes.node_order import GMSH
 from vibroimpact.meshes.parsed_mesh import Parts
 from vibroimpact.meshes.text_files import MESH, TextLine, parse_integer, parse_real, read_lines
-from vibroimpact.shown import shown
+from vibroimpact.quoting import quoted
 from vibroimpact.structures.element_kinds import ELEMENT_KINDS
 from vibroimpact.structures.mesh import Mesh
 
@@ -106,7 +106,7 @@ class _Reader:
         self.version = words[0]
         if not _VERSIONS.fullmatch(self.version):
             raise line.wrong(
-                f"the version {shown(self.version)} is not read; it must be 2, 4.0 or 4.1 "
+                f"the version {quoted(self.version)} is not read; it must be 2, 4.0 or 4.1 "
                 "(in Gmsh the option Mesh.MshFileVersion)"
             )
         if "PhysicalNames" in found:

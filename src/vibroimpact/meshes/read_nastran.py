@@ -20,7 +20,7 @@ from vibroimpact.meshes.node_order import NASTRAN
 from vibroimpact.meshes.parsed_mesh import Parts
 from vibroimpact.meshes.selection import Selection
 from vibroimpact.meshes.text_files import TextLine, parse_integer, read_lines_with_includes
-from vibroimpact.shown import shown
+from vibroimpact.quoting import quoted
 from vibroimpact.structures.mesh import Mesh
 
 _KINDS = {
@@ -115,7 +115,7 @@ def _read_card(card: Card, parts: Parts, grids: NastranGrids, held: Counter[str]
         _read_solid(card, parts)
     elif name.startswith(_OTHER_SOLIDS):
         raise line.wrong(
-            f"{shown(name)} is a solid element that is not read; the elements must be "
+            f"{quoted(name)} is a solid element that is not read; the elements must be "
             "CTETRA, CPYRAM, CPENTA or CHEXA"
         )
     elif name.startswith("INCLUDE"):

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from vibroimpact.errors import InputError
 from vibroimpact.files.reading import FileKind, read_text_bytes, with_path
-from vibroimpact.shown import shortened, shown
+from vibroimpact.quoting import quoted, shortened
 
 MESH = FileKind(
     "a mesh is a file of nodes and elements, in plain text (UTF-8 or Latin-1)",
@@ -104,7 +104,7 @@ def _included_lines(line: TextLine, name: str, root: Path, seen: set[Path]) -> l
             f"the file to include can't be read: {getattr(error, 'strerror', None) or error}"
         ) from None
     if place in seen:
-        raise line.wrong(f"{shown(name)} is included a second time; a file may be included once")
+        raise line.wrong(f"{quoted(name)} is included a second time; a file may be included once")
     seen.add(place)
     return lines
 
@@ -120,7 +120,7 @@ def parse_integer(text: str, line: TextLine, what: str) -> int:
     text = text.strip()
     if not (text.isascii() and text.isdigit() and len(text) <= 18):
         raise line.wrong(
-            f"{shown(text)} is not {what}; it must be a whole number of at "
+            f"{quoted(text)} is not {what}; it must be a whole number of at "
             "most 18 digits, without a sign"
         )
     return int(text)
@@ -140,5 +140,5 @@ def parse_real(text: str, line: TextLine, what: str = "a coordinate") -> float:
         return float(text)
     except ValueError:
         raise line.wrong(
-            f"{shown(text.strip())} is not {what}; it must be a number such as 0.25 or 2.5e-3"
+            f"{quoted(text.strip())} is not {what}; it must be a number such as 0.25 or 2.5e-3"
         ) from None

@@ -13,7 +13,7 @@ from vibroimpact.arrays import Floats, Integers
 from vibroimpact.meshes.links import Equation
 from vibroimpact.meshes.selection import Selection
 from vibroimpact.meshes.text_files import TextLine
-from vibroimpact.shown import shown
+from vibroimpact.quoting import quoted
 from vibroimpact.structures.joints import AXES
 from vibroimpact.structures.mesh import Mesh
 from vibroimpact.structures.nearest_face import nearest_places
@@ -97,7 +97,7 @@ def tied_nodes(
     found = TiedNodes([], mesh.nodes.copy(), [])
     tied = np.zeros(len(mesh.nodes), dtype=bool)
     for tie in ties:
-        names = " to ".join(shown(name)[1:-1] for name in tie.names)
+        names = " to ".join(quoted(name)[1:-1] for name in tie.names)
         leader = _faces(mesh, tie.leader, elements)
         followers = np.union1d(
             _nodes_of(_faces(mesh, tie.follower, elements)), tie.follower.nodes.places(numbers)

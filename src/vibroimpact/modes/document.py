@@ -9,7 +9,7 @@ from typing import Any
 
 from vibroimpact._version import __version__
 from vibroimpact.cases.case import Case
-from vibroimpact.cases.elastic.bodies import elastic_bodies
+from vibroimpact.cases.elastic.elastic_bodies import elastic_bodies
 from vibroimpact.cases.elastic.meshes import meshes_of
 from vibroimpact.cases.elastic.modes import BodyModes
 from vibroimpact.results.peaks import known_errors

@@ -14,8 +14,8 @@ from vibroimpact.charts.marks import Label, Line, Map, Mark, Outline, Points
 from vibroimpact.charts.outlines import AT_REST, on_supports
 from vibroimpact.modes.supports import support_outlines
 from vibroimpact.modes.titles import mode_title
+from vibroimpact.quoting import visible
 from vibroimpact.results.surface_grid import SurfaceGrid, surface_grid
-from vibroimpact.shown import visible
 from vibroimpact.structures.outline import outline
 from vibroimpact.structures.supports.edge import Edge
 from vibroimpact.structures.surface import place_of

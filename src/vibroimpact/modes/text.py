@@ -8,7 +8,7 @@ from rich.console import Group, RenderableType
 from rich.text import Text
 
 from vibroimpact.cases.case import Case
-from vibroimpact.cases.elastic.bodies import elastic_bodies
+from vibroimpact.cases.elastic.elastic_bodies import elastic_bodies
 from vibroimpact.cases.elastic.modes import BodyModes
 from vibroimpact.modes.document import mesh_facts
 from vibroimpact.modes.tables import ROWS, body_facts, mode_table, rows_left_out, supports_text

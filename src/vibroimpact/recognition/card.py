@@ -9,8 +9,8 @@ from typing import Any
 from vibroimpact.errors import InputError
 from vibroimpact.files.check_sums import CHECK_SUMS
 from vibroimpact.files.reading import FileKind
+from vibroimpact.quoting import quoted
 from vibroimpact.recognition.labelled_signals import GROUPS
-from vibroimpact.shown import shown
 
 FORMAT = "vibroimpact model 1"
 CARD_FILE = FileKind(
@@ -61,9 +61,11 @@ def _check_format(card: Mapping[str, Any]) -> None:
     if form is None:
         raise InputError("the card has no format; train the model anew")
     if form != FORMAT:
-        by = f" by vibroimpact {shown(card['version']).strip(chr(34))}" if "version" in card else ""
+        by = (
+            f" by vibroimpact {quoted(card['version']).strip(chr(34))}" if "version" in card else ""
+        )
         raise InputError(
-            f"the model was saved in the format {shown(form)}{by}; this version reads "
+            f"the model was saved in the format {quoted(form)}{by}; this version reads "
             f'"{FORMAT}": train it anew'
         )
 
@@ -90,7 +92,7 @@ def _check_rates(name: str, rates: Any) -> None:
 
 def _wrong(key: str, value: Any, what: str) -> InputError:
     return InputError(
-        f"{shown(key).strip(chr(34))} of the card is {shown(value)}; it must be {what}"
+        f"{quoted(key).strip(chr(34))} of the card is {quoted(value)}; it must be {what}"
     )
 
 

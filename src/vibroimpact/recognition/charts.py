@@ -11,9 +11,9 @@ from vibroimpact.charts.chart import Chart, Panel
 from vibroimpact.charts.made import made_charts
 from vibroimpact.charts.marks import Bars, Level, Line, Map, Mark, Points
 from vibroimpact.charts.palette import series
+from vibroimpact.quoting import shortened, visible
 from vibroimpact.recognition.recognise import Recognition
 from vibroimpact.recognition.scores import Score
-from vibroimpact.shown import shortened, visible
 
 _HEIGHT = 3.6
 _MOST_FEATURES = 20

@@ -15,10 +15,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vibroimpact.errors import InputError
+from vibroimpact.quoting import quoted
 from vibroimpact.recognition.extra import needs_extra
 from vibroimpact.recognition.graph_classifiers import CLASSIFIERS, Attributes, one_of, with_length
 from vibroimpact.recognition.graph_size import check_size
-from vibroimpact.shown import shown
 
 ROWS = 4096
 """Signals that a graph is given at once."""
@@ -76,7 +76,7 @@ def check_graph(data: bytes, features: int, classes: int) -> None:
         shapes = _shapes_of(node, known, constants, features, classes)
         for name, shape in zip(node.output, shapes, strict=False):
             if name in known:
-                raise InputError(f"the graph gives {shown(name)} twice; train the model anew")
+                raise InputError(f"the graph gives {quoted(name)} twice; train the model anew")
             known[name] = shape
             columns += -(-prod(shape) // ROWS)
         if columns > _MOST_COLUMNS:
@@ -102,7 +102,7 @@ def _constants(initializers: Sequence[Any]) -> dict[str, NDArray[Any]]:
 
     found: dict[str, NDArray[Any]] = {}
     for tensor in initializers:
-        name = shown(tensor.name)
+        name = quoted(tensor.name)
         if tensor.data_location == TensorProto.EXTERNAL or tensor.external_data:
             raise InputError(
                 f"the constant {name} of the graph lies in another file; train the model anew"
@@ -165,12 +165,12 @@ def _attributes(node: Any) -> Attributes:
         field = _KINDS.get(attribute.type)
         if attribute.name in found:
             raise InputError(
-                f"{_name(node)} of the graph has two attributes {shown(attribute.name)}; "
+                f"{_name(node)} of the graph has two attributes {quoted(attribute.name)}; "
                 "train the model anew"
             )
         if field is None or attribute.ref_attr_name:
             words = (
-                f"{_name(node)} of the graph has an attribute {shown(attribute.name)} that is "
+                f"{_name(node)} of the graph has an attribute {quoted(attribute.name)} that is "
                 "no number or text"
             )
             raise InputError(f"{words}; train the model anew")
@@ -197,7 +197,7 @@ def _shapes_of(
     missing = [given for given in node.input if given not in known]
     if missing:
         raise InputError(
-            f"{name} of the graph takes {shown(missing[0])}, which nothing before it "
+            f"{name} of the graph takes {quoted(missing[0])}, which nothing before it "
             "gives; train the model anew"
         )
     inputs = [known[given] for given in node.input]
@@ -222,8 +222,8 @@ def _shapes_of(
 
 
 def _name(node: Any) -> str:
-    domain = f" of {shown(node.domain)}" if node.domain not in _DOMAINS else ""
-    return f"the operator {shown(node.op_type)}{domain}"
+    domain = f" of {quoted(node.domain)}" if node.domain not in _DOMAINS else ""
+    return f"the operator {quoted(node.op_type)}{domain}"
 
 
 # shapes of the results of operators

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from vibroimpact.arrays import Indices
 from vibroimpact.errors import InputError
-from vibroimpact.shown import shown
+from vibroimpact.quoting import quoted
 
 Attributes = dict[str, Any]
 Shapes = list[tuple[int, ...]]
@@ -52,14 +52,14 @@ def with_length(
 def one_of(attributes: Attributes, key: str, allowed: Collection[Any]) -> None:
     """Raise InputError unless an attribute is missing or one of the allowed values."""
     if key in attributes and attributes[key] not in allowed:
-        raise InputError(f"has {shown(attributes[key])} as {key}")
+        raise InputError(f"has {quoted(attributes[key])} as {key}")
 
 
 def _only(attributes: Attributes, *keys: str) -> None:
     unknown = sorted(attributes.keys() - set(keys))
     if unknown:
         raise InputError(
-            f"has the attribute {shown(unknown[0])}, which it does not have in "
+            f"has the attribute {quoted(unknown[0])}, which it does not have in "
             "a model of this program"
         )
 

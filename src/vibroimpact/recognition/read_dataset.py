@@ -16,17 +16,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vibroimpact.arrays import Floats, Indices
-from vibroimpact.bounds.bound import SEEN_AT_BEST, least_error
-from vibroimpact.bounds.falls import falls_of_study
+from vibroimpact.bayes_error.bound import SEEN_AT_BEST, least_error
+from vibroimpact.bayes_error.falls import falls_of_study
 from vibroimpact.errors import InputError
 from vibroimpact.files.check_sums import DamageError, file_digest, read_sealed, recorded_digest
 from vibroimpact.files.damaged_part import check_hdf5
 from vibroimpact.files.hdf5 import attribute, members, read_array, short_reason
 from vibroimpact.files.plain_names import one_line
 from vibroimpact.files.reading import with_path
+from vibroimpact.quoting import quoted
 from vibroimpact.recognition.labelled_signals import GROUPS, LabelledSignals, SensorSignals
 from vibroimpact.results.folder import SUMMARY
-from vibroimpact.shown import shown
 from vibroimpact.studies.study import read_study
 from vibroimpact.studies.study_folder import DATASET as STUDY
 from vibroimpact.studies.study_folder import is_study
@@ -106,7 +106,7 @@ def _faults_of(path: Path) -> Iterator[None]:
 
 def _read(file: h5py.File, path: Path, most: int | None, group: str, seed: int) -> LabelledSignals:
     if path.name != STUDY and (form := attribute(file, "format", "")) != FORMAT:
-        raise InputError(f'the attribute "format" is {shown(form)}; this version reads "{FORMAT}"')
+        raise InputError(f'the attribute "format" is {quoted(form)}; this version reads "{FORMAT}"')
     variables = members(file)
     signals = _signals(variables)
     count = len(next(iter(signals.values())))
@@ -216,7 +216,7 @@ def _whole_numbers(name: str, values: NDArray[Any]) -> Indices:
     )
     if len(wrong):
         raise InputError(
-            f"{name} of signal {wrong[0]} is {shown(values[wrong[0]].item())}; "
+            f"{name} of signal {wrong[0]} is {quoted(values[wrong[0]].item())}; "
             "it must be a whole number"
         )
     return values.astype(np.intp)
@@ -249,13 +249,13 @@ def _classes(
         type(flag) in (int, float) and isfinite(flag) and flag == int(flag) for flag in flags
     ) or len(set(flags)) < len(flags):
         raise InputError(
-            f"flag_values of the variable class is {shown(flags)}; it must be a list of "
+            f"flag_values of the variable class is {quoted(flags)}; it must be a list of "
             "different whole numbers"
         )
     names = tuple(meanings.split()) if isinstance(meanings, str) else ()
     if not names or len(set(names)) < len(names) or not all(map(str.isprintable, names)):
         raise InputError(
-            f"flag_meanings of the variable class is {shown(meanings)}; it must be "
+            f"flag_meanings of the variable class is {quoted(meanings)}; it must be "
             "different names, separated by blanks"
         )
     if len(flags) != len(names):
@@ -284,11 +284,11 @@ def _rate_and_unit(data: h5py.Dataset, sensor: str) -> tuple[float, str]:
         )
     if type(rate) not in (int, float) or not 0.0 < rate < np.inf:
         raise InputError(
-            f"rate_Hz of signal_{sensor} is {shown(rate)}; it must be "
+            f"rate_Hz of signal_{sensor} is {quoted(rate)}; it must be "
             "a number greater than 0, in Hz"
         )
     if not isinstance(unit, str):
-        raise InputError(f"units of signal_{sensor} is {shown(unit)}; it must be a text")
+        raise InputError(f"units of signal_{sensor} is {quoted(unit)}; it must be a text")
     return float(rate), one_line(unit)
 
 
@@ -357,6 +357,6 @@ def _bayes_error(path: Path) -> float | None:
         return None
     if not isinstance(value, int | float) or isinstance(value, bool) or not 0.0 <= value < 1.0:
         raise InputError(
-            f"{summary}: bayes_error is {shown(value)}; it must be a number from 0 to below 1"
+            f"{summary}: bayes_error is {quoted(value)}; it must be a number from 0 to below 1"
         )
     return float(value)

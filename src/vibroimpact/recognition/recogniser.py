@@ -27,6 +27,7 @@ from vibroimpact.files.check_sums import (
     sealed,
 )
 from vibroimpact.files.reading import FileKind, read_bytes, with_path
+from vibroimpact.quoting import quoted, shortened, visible
 from vibroimpact.recognition.card import CARD_FILE, check_card
 from vibroimpact.recognition.extra import needs_extra
 from vibroimpact.recognition.fraction import Estimate, Rates, estimate_fraction
@@ -34,7 +35,6 @@ from vibroimpact.recognition.graph_check import ROWS, check_graph
 from vibroimpact.recognition.labelled_signals import LabelledSignals
 from vibroimpact.recognition.onnx_runtime import silent_onnxruntime
 from vibroimpact.recognition.signal_features import by_name, features_of
-from vibroimpact.shown import shortened, shown, visible
 
 FOLDER, CARD, GRAPH = "model", "card.json", "model.onnx"
 _GRAPH_FILE = FileKind(
@@ -94,7 +94,7 @@ class Recogniser:
         for sensor, trained in self.card["sensors"].items():
             if sensor not in signals.sensors:
                 raise InputError(
-                    f"the model was trained on the sensor {shown(sensor)}, which these "
+                    f"the model was trained on the sensor {quoted(sensor)}, which these "
                     "signals do not have"
                 )
             one = signals.sensors[sensor]
@@ -225,7 +225,7 @@ def _probabilities(values: Floats) -> Floats:
         )
     if not right.all():  # a comparison with NaN is not right either
         first = int(np.flatnonzero(~right)[0])
-        what = shown([float(f"{value:.4g}") for value in values[first]])
+        what = quoted([float(f"{value:.4g}") for value in values[first]])
         raise InputError(
             f"the model gives {what} for a signal; probabilities are from 0 to 1, and add "
             "up to 1: train it anew"

@@ -16,8 +16,8 @@ from scipy.stats import rankdata
 
 from vibroimpact.arrays import Floats, Indices
 from vibroimpact.dynamics.sensors.antialias import HALF_LENGTH
+from vibroimpact.quoting import quoted
 from vibroimpact.recognition.labelled_signals import LabelledSignals, SensorSignals, lengths
-from vibroimpact.shown import shown
 from vibroimpact.units.display import digits
 
 _RATE = 0.01
@@ -96,7 +96,7 @@ def recorder_leaks(
                 "from what falls"
             )
             found.append(
-                f"leak of the recorder at {shown(sensor)}: {words}: record all {group}s alike"
+                f"leak of the recorder at {quoted(sensor)}: {words}: record all {group}s alike"
             )
     return found + _too_few(classes, groups, group)
 

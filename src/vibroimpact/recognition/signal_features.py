@@ -11,9 +11,9 @@ import numpy as np
 
 from vibroimpact.arrays import Floats
 from vibroimpact.errors import InputError
+from vibroimpact.quoting import quoted
 from vibroimpact.recognition.input_faults import DURATION
 from vibroimpact.recognition.labelled_signals import LabelledSignals, SensorSignals, lengths
-from vibroimpact.shown import shown
 from vibroimpact.signals.baseline import is_large
 from vibroimpact.signals.feature_table import feature_table
 
@@ -99,7 +99,7 @@ def baseline_doubts(signals: LabelledSignals) -> list[str]:
             )
             drifting = f" and drifts of up to {drift:.4g}{unit}" if is_large(drift, offset) else ""
             words = (
-                f"from {large.sum():,} of {len(large):,} signals of {shown(sensor)} baselines "
+                f"from {large.sum():,} of {len(large):,} signals of {quoted(sensor)} baselines "
                 f"with offsets of up to {offset:.4g}{unit}"
             )
             words += f"{drifting} were removed, more than a tenth of their peaks"

@@ -10,8 +10,8 @@ from rich.console import Console, ConsoleOptions, RenderableType
 from rich.segment import Segment
 from rich.text import Text
 
+from vibroimpact.quoting import visible
 from vibroimpact.report.encodable import encodable
-from vibroimpact.shown import visible
 
 
 class TerminalConsole(Console):

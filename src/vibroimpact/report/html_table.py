@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 
 from markupsafe import Markup
 
-from vibroimpact.shown import visible
+from vibroimpact.quoting import visible
 
 
 def html_table(

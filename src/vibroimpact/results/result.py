@@ -17,9 +17,9 @@ from vibroimpact._version import __version__
 from vibroimpact.arrays import Floats
 from vibroimpact.cases.conditions import DropSummary
 from vibroimpact.cases.doubts import doubts
-from vibroimpact.cases.limits.plate_mesh import plate_mesh_error
-from vibroimpact.cases.limits.plate_waves import plate_theory_error
 from vibroimpact.cases.sensor_doubts import sensor_doubts
+from vibroimpact.cases.validity.plate_mesh import plate_mesh_error
+from vibroimpact.cases.validity.plate_waves import plate_theory_error
 from vibroimpact.dynamics.change_by_impact import RELATIVE_CHANGE, change_by_impact
 from vibroimpact.dynamics.response import Response
 from vibroimpact.dynamics.sensors.recording import Signal

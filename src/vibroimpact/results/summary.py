@@ -6,8 +6,8 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-from vibroimpact.cases.limits.plate_mesh import PLATE_MESH_COMPLIANCE
-from vibroimpact.cases.limits.plate_waves import PLATE_THEORY_INERTIA
+from vibroimpact.cases.validity.plate_mesh import PLATE_MESH_COMPLIANCE
+from vibroimpact.cases.validity.plate_waves import PLATE_THEORY_INERTIA
 from vibroimpact.results.csv_files import impact_rows
 from vibroimpact.results.peaks import FREQUENCIES
 from vibroimpact.results.result import Result

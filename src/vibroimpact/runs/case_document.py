@@ -11,7 +11,12 @@ from vibroimpact.cases.costs import describe_costs
 from vibroimpact.cases.doubts import doubts
 from vibroimpact.cases.expected import expected_of, first_restitution
 from vibroimpact.cases.pair import contact_pair
-from vibroimpact.cases.rigid import contact_laws_of, elastic_names, mass_of_sphere, touch_speed
+from vibroimpact.cases.rigid_problem import (
+    contact_laws_of,
+    elastic_names,
+    mass_of_sphere,
+    touch_speed,
+)
 
 
 def case_document(case: Case, aside: Container[str] = ()) -> dict[str, Any]:

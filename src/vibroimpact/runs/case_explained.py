@@ -17,10 +17,10 @@ from vibroimpact.cases.expected import expected_of, first_restitution
 from vibroimpact.cases.fields.fluid import fluid_words
 from vibroimpact.cases.fields.instruments import INSTRUMENTS, AccelerometerTable
 from vibroimpact.cases.fields.quantities import quantity_of
-from vibroimpact.cases.motion import motion_length
 from vibroimpact.cases.oblique import friction_law_of, is_oblique
 from vibroimpact.cases.pair import ball_of, contact_pair, is_free_sphere, sphere_density
-from vibroimpact.cases.rigid import (
+from vibroimpact.cases.plate_motion import motion_length
+from vibroimpact.cases.rigid_problem import (
     by_speed_of,
     contact_laws_of,
     deforms,

@@ -9,10 +9,10 @@ from vibroimpact.charts.axis import Axis
 from vibroimpact.charts.chart import Chart, Panel
 from vibroimpact.charts.marks import Label, Line, Map, Mark, Outline, Points
 from vibroimpact.charts.outlines import AT_REST, on_supports
+from vibroimpact.quoting import shortened, visible
 from vibroimpact.results.deflection import Deflection
 from vibroimpact.results.result import Result
 from vibroimpact.runs.supports import Extent, plate_extent, support_outlines
-from vibroimpact.shown import shortened, visible
 from vibroimpact.units.display import digits, multiple, text
 
 _COLUMNS, _ROWS = 3, 2

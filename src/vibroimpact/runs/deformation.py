@@ -6,8 +6,8 @@ from __future__ import annotations
 
 import math
 
-from vibroimpact.cases.limits.plate_mesh import plate_mesh_error
-from vibroimpact.cases.limits.plate_waves import plate_theory_error
+from vibroimpact.cases.validity.plate_mesh import plate_mesh_error
+from vibroimpact.cases.validity.plate_waves import plate_theory_error
 from vibroimpact.results.result import Result
 from vibroimpact.units.display import digits, fixed, text
 

@@ -9,6 +9,7 @@ from markupsafe import Markup
 from vibroimpact.charts.made import made_charts
 from vibroimpact.charts.notebook import plotly_figure
 from vibroimpact.errors import InputError, choices
+from vibroimpact.quoting import quoted, visible
 from vibroimpact.report.html_table import html_table
 from vibroimpact.results.result import Result
 from vibroimpact.runs.captions import sensor_caption
@@ -16,7 +17,6 @@ from vibroimpact.runs.charts import run_charts
 from vibroimpact.runs.sensor_charts import sensor_chart
 from vibroimpact.runs.setup import setup_chart
 from vibroimpact.runs.tables import impact_table
-from vibroimpact.shown import shown, visible
 
 if TYPE_CHECKING:
     import plotly.graph_objects as go
@@ -69,7 +69,7 @@ def plot_result(result: Result, name: str = "position") -> go.Figure:
     if name not in charts:
         known = [*(chart for chart in charts if not chart.startswith("sensor_")), *sensors]
         raise InputError(
-            f"there is no chart {shown(name)} of this run; there are {choices(known, str(name))}"
+            f"there is no chart {quoted(name)} of this run; there are {choices(known, str(name))}"
         )
     return plotly_figure(charts[name])
 

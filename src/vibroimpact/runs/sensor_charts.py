@@ -12,12 +12,12 @@ from vibroimpact.charts.axis import Axis
 from vibroimpact.charts.chart import Chart, Panel
 from vibroimpact.charts.marks import Level, Line, Rug
 from vibroimpact.files.plain_names import plain_names
+from vibroimpact.quoting import shortened, visible
 from vibroimpact.resolved_case import ResolvedSensor
 from vibroimpact.results.result import Result
 from vibroimpact.runs.chart_data import drawn_signal, spans_of_contact
 from vibroimpact.runs.spectrum import amplitude_spectrum, first_response
 from vibroimpact.runs.vibration_charts import plate_time
-from vibroimpact.shown import shortened, visible
 from vibroimpact.units.display import digits, largest, multiple
 
 MOST = 8

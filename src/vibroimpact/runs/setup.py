@@ -16,6 +16,7 @@ from vibroimpact.charts.marks import Arrow, Label, Line, Mark, Outline
 from vibroimpact.contact.law import unit_of
 from vibroimpact.contact.registry import contact_laws, friction_laws
 from vibroimpact.contact.speed_function import of_table
+from vibroimpact.quoting import shortened, visible
 from vibroimpact.results.result import Result
 from vibroimpact.runs.below import body_below, level_below
 from vibroimpact.runs.chart_data import touch_height
@@ -27,7 +28,6 @@ from vibroimpact.runs.supports import (
     support_words,
     supports_from_the_side,
 )
-from vibroimpact.shown import shortened, visible
 from vibroimpact.units.display import digits, multiple
 
 _TURN = np.linspace(0.0, 2.0 * np.pi, 61)

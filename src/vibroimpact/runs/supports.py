@@ -13,9 +13,9 @@ import numpy as np
 from vibroimpact.arrays import Floats
 from vibroimpact.charts.marks import Line, Mark, Outline
 from vibroimpact.charts.outlines import THIN, disc, rectangle, strip
+from vibroimpact.quoting import shortened, visible
 from vibroimpact.resolved_case import ResolvedCase
 from vibroimpact.results.result import Result
-from vibroimpact.shown import shortened, visible
 
 _EDGES = ("x-min", "x-max", "y-min", "y-max")
 _DEPTH = 0.07

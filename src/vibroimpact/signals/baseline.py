@@ -17,7 +17,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from vibroimpact.arrays import Bools, Floats
-from vibroimpact.shown import shown
+from vibroimpact.quoting import quoted
 from vibroimpact.signals.record import Record, Removed
 
 _LEAST = 128
@@ -176,7 +176,7 @@ def without_baseline(record: Record) -> Record:
         )
         words = (
             f"an offset of {removed.offset:.4g}{unit}{drift} was removed from "
-            f"{shown(record.name)}, {part}"
+            f"{quoted(record.name)}, {part}"
         )
         doubts += (
             f"{words}: check that the channel rests at zero, and that it is not what you measure",

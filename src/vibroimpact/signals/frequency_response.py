@@ -8,7 +8,7 @@ import numpy as np
 
 from vibroimpact.arrays import Complex, Floats
 from vibroimpact.errors import InputError
-from vibroimpact.shown import shown
+from vibroimpact.quoting import quoted
 
 RESPONSE_UNITS = ("m/s2/N", "m/s/N", "m/N", "V/N", "1/N")
 """Units of frequency responses, in SI: of accelerations, velocities, displacements,
@@ -112,7 +112,7 @@ class FrequencyResponse:
             np.asarray(self.frequency, dtype=float),
             np.asarray(self.value, dtype=complex),
         )
-        name = shown(self.name)
+        name = quoted(self.name)
         if frequency.ndim != 1 or frequency.shape != value.shape or len(frequency) < 2:
             raise InputError(
                 f"the frequency response {name} has frequencies of the shape "
@@ -135,7 +135,7 @@ class FrequencyResponse:
             )
         if self.unit not in ("", *RESPONSE_UNITS):
             raise InputError(
-                f"{shown(self.unit)} is no unit of a frequency response; there are "
+                f"{quoted(self.unit)} is no unit of a frequency response; there are "
                 f'{", ".join(RESPONSE_UNITS)}, and "" for one not known'
             )
         if self.coherence is not None:

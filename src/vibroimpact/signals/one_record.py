@@ -8,7 +8,7 @@ from os import PathLike
 from vibroimpact.errors import InputError, did_you_mean
 from vibroimpact.files.reading import with_path
 from vibroimpact.measurements.header_cells import name_and_unit
-from vibroimpact.shown import shown
+from vibroimpact.quoting import quoted
 from vibroimpact.signals.read_records import read_records
 from vibroimpact.signals.record import Record
 
@@ -63,7 +63,7 @@ def one_record(
         raise with_path(
             path,
             InputError(
-                f"there is no channel {shown(channel)}; {there}" if channel is not None else there
+                f"there is no channel {quoted(channel)}; {there}" if channel is not None else there
             ),
         )
     if len(found) > 1:
@@ -77,7 +77,7 @@ def one_record(
             f"it has several channels, {_listed(every)}; name one by --channel (in "
             "a case the key channel)"
         )
-        one = f"several signals have the name {shown(every[0])}; take a file with one of them"
+        one = f"several signals have the name {quoted(every[0])}; take a file with one of them"
         raise with_path(path, InputError(several if len(every) > 1 else one))
     return found[0]
 
@@ -99,6 +99,6 @@ def is_named(record: Record, channel: str) -> bool:
 
 
 def _listed(names: list[str]) -> str:
-    return ", ".join(shown(name) for name in names[:_TOLD]) + (
+    return ", ".join(quoted(name) for name in names[:_TOLD]) + (
         " and more" if len(names) > _TOLD else ""
     )

@@ -8,7 +8,7 @@ import numpy as np
 
 from vibroimpact.arrays import Floats
 from vibroimpact.errors import InputError
-from vibroimpact.shown import shown
+from vibroimpact.quoting import quoted
 from vibroimpact.signals.baseline import without_baseline
 from vibroimpact.signals.packets import find_packets
 from vibroimpact.signals.record import Record
@@ -109,9 +109,10 @@ def onset_time(record: Record, threshold: float | None = None) -> float:
     if not len(packets.onset):
         if threshold is None:
             what = "is zero throughout" if len(record.value) else "has no samples"
-            raise InputError(f"{shown(record.name)} {what}; it has no onset")
+            raise InputError(f"{quoted(record.name)} {what}; it has no onset")
         unit = "" if record.unit in ("", "1") else f" {record.unit}"
         raise InputError(
-            f"the envelope of {shown(record.name)} stays below {threshold:g}{unit}; it has no onset"
+            f"the envelope of {quoted(record.name)} stays below "
+            f"{threshold:g}{unit}; it has no onset"
         )
     return record.start + float(packets.onset[0]) / record.rate

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from vibroimpact.arrays import Floats
 from vibroimpact.errors import InputError
-from vibroimpact.shown import shown
+from vibroimpact.quoting import quoted
 
 
 class Removed(NamedTuple):
@@ -75,7 +75,7 @@ class Record:
         value = real_numbers(self.value).astype(np.float64, copy=False)
         if value.ndim != 1:
             raise InputError(
-                f"the samples of {shown(self.name)} have {value.ndim} dimensions; a record has one"
+                f"the samples of {quoted(self.name)} have {value.ndim} dimensions; a record has one"
             )
         object.__setattr__(self, "value", value)
         object.__setattr__(self, "rate", checked_rate(self.rate))
@@ -122,5 +122,5 @@ def checked_rate(rate: float) -> float:
         If it is not a finite number above 0.
     """
     if not isinstance(rate, (int, float, np.integer, np.floating)) or not 0.0 < rate < np.inf:
-        raise InputError(f"the rate is {shown(rate)}; it must be a finite number of Hz above 0")
+        raise InputError(f"the rate is {quoted(rate)}; it must be a finite number of Hz above 0")
     return float(rate)

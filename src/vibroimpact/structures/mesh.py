@@ -12,7 +12,7 @@ import numpy as np
 from vibroimpact.arrays import Floats, Integers
 from vibroimpact.errors import InputError, did_you_mean
 from vibroimpact.materials import Material
-from vibroimpact.shown import shown
+from vibroimpact.quoting import quoted
 from vibroimpact.structures.element_kinds import ELEMENT_KINDS, ElementKind
 from vibroimpact.structures.stated_materials import StatedMaterials
 
@@ -174,4 +174,4 @@ def _material_text(one: Material) -> str:
     numbers = (
         f"{one.density:.4g} kg/m3, {1e-9 * one.youngs_modulus:.4g} GPa, {one.poissons_ratio:.3g}"
     )
-    return f"{shown(one.name)[1:-1]} ({numbers})" if one.name else f"({numbers})"
+    return f"{quoted(one.name)[1:-1]} ({numbers})" if one.name else f"({numbers})"

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from vibroimpact.arrays import Indices
 from vibroimpact.cases.case import Case
 from vibroimpact.cases.oblique import is_oblique
-from vibroimpact.cases.rigid import deforms, rigid_problem
+from vibroimpact.cases.rigid_problem import deforms, rigid_problem
 from vibroimpact.dynamics.first_touch import first_touch
 from vibroimpact.dynamics.outcome import Outcome
 from vibroimpact.dynamics.problem import Problem
@@ -195,7 +195,7 @@ def _side_by_side(study: _Study, places: Indices) -> Iterator[_Part]:
                 yield _failed(place, error)
         if any(map(deforms, cases.values())):
             # imports the finite-element code
-            from vibroimpact.cases.elastic.neighbours import solve_together
+            from vibroimpact.cases.elastic.shared_statics import solve_together
 
             solve_together(cases.values())
         for place, case in cases.items():

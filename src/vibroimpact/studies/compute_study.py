@@ -17,7 +17,7 @@ import numpy as np
 
 from vibroimpact._version import __version__
 from vibroimpact.cases.elastic.coupling import carried_modes
-from vibroimpact.cases.rigid import impact_limit
+from vibroimpact.cases.rigid_problem import impact_limit
 from vibroimpact.errors import ComputationError, InputError
 from vibroimpact.files.check_sums import sealed
 from vibroimpact.results.folder import SUMMARY, new_folder

@@ -16,9 +16,9 @@ from vibroimpact.cases.case import Case
 from vibroimpact.cases.conditions import Conditions, DropSummary
 from vibroimpact.cases.keys import with_values
 from vibroimpact.cases.limit import limits, numbers_of
-from vibroimpact.cases.limits.plate_mesh import plate_mesh_error
-from vibroimpact.cases.limits.plate_waves import plate_theory_error
-from vibroimpact.cases.rigid import by_speed_of
+from vibroimpact.cases.rigid_problem import by_speed_of
+from vibroimpact.cases.validity.plate_mesh import plate_mesh_error
+from vibroimpact.cases.validity.plate_waves import plate_theory_error
 from vibroimpact.contact.law import ContactLaw
 from vibroimpact.dynamics.bending import largest_bending
 from vibroimpact.dynamics.change_by_impact import change_by_impact

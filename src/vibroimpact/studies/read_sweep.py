@@ -18,7 +18,7 @@ from vibroimpact.cases.keys import check_laws, find_quantity, holds_keys, with_v
 from vibroimpact.cases.reader import load_table, prefix_errors
 from vibroimpact.dynamics.columns import ALL_IMPACT_COLUMNS
 from vibroimpact.errors import InputError, listed
-from vibroimpact.shown import shortened, shown
+from vibroimpact.quoting import quoted, shortened
 from vibroimpact.studies.axes import Axis, Listed, Normal, Values
 from vibroimpact.studies.design import MOST_DROPS, find_design
 from vibroimpact.studies.drop_variables import OUTCOME, PEAKS
@@ -100,7 +100,7 @@ def read_sweep(table: Mapping[str, Any]) -> Sweep:
     6
     """
     if not isinstance(table, Mapping):
-        raise InputError(f"a study is a table, as a TOML file holds it, not {shown(table)}")
+        raise InputError(f"a study is a table, as a TOML file holds it, not {quoted(table)}")
     check_bounds(table)
     base = {key: value for key, value in table.items() if key != "sweep"}
     if "sweep" not in table:
@@ -111,7 +111,7 @@ def read_sweep(table: Mapping[str, Any]) -> Sweep:
         )
     if not isinstance(table["sweep"], dict):
         raise InputError(
-            f"{shown(table['sweep'])} is not a table; it takes {listed(keys_of(SweepSection))}",
+            f"{quoted(table['sweep'])} is not a table; it takes {listed(keys_of(SweepSection))}",
             "sweep",
         )
     check_laws(base)
@@ -200,7 +200,7 @@ def _followed(base: Mapping[str, Any], key: Any) -> Quantity | None:
     """Return the quantity of the key that another one follows."""
     if not isinstance(key, str):
         raise InputError(
-            f'{shown(key)} is not a text; it is the key that is followed, such as "sphere.radius"',
+            f'{quoted(key)} is not a text; it is the key that is followed, such as "sphere.radius"',
             "of",
         )
     try:
@@ -356,4 +356,4 @@ def _remedy(axis: Axis) -> str:
 
 def _level(value: Any) -> str:
     """Return a value of a swept key for a message."""
-    return f"{value:g}" if isinstance(value, float) else shown(value)
+    return f"{value:g}" if isinstance(value, float) else quoted(value)

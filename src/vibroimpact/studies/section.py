@@ -14,8 +14,8 @@ from vibroimpact.cases.fields.size_limits import FileName, Name
 from vibroimpact.errors import InputError, did_you_mean
 from vibroimpact.measurements.header_cells import name_and_unit
 from vibroimpact.measurements.table_file import TableFile, read_table_file
+from vibroimpact.quoting import quoted
 from vibroimpact.ranges import Range
-from vibroimpact.shown import shown
 from vibroimpact.studies.axes import Axis, Listed, Normal, Spaced
 from vibroimpact.studies.design import MOST_DROPS, designs, find_design
 from vibroimpact.studies.scaled import Each, Scaled
@@ -26,7 +26,9 @@ _Levels = Annotated[int, Field(ge=2, le=MOST_DROPS, strict=True)]
 
 def _read_design(value: Any) -> str:
     if not isinstance(value, str):
-        raise InputError(f"{shown(value)} is not allowed; it must be one of {', '.join(designs())}")
+        raise InputError(
+            f"{quoted(value)} is not allowed; it must be one of {', '.join(designs())}"
+        )
     return find_design(value).name
 
 
@@ -189,7 +191,7 @@ def read_axis(value: Any, quantity: Quantity | None, otherwise: str = _DEPENDENC
     if quantity is None:
         raise InputError("this key holds no quantity, so that it takes a list of values alone")
     if not isinstance(value, Mapping):
-        raise InputError(f"{shown(value)} is not allowed; it must be {_ASKED}{otherwise}")
+        raise InputError(f"{quoted(value)} is not allowed; it must be {_ASKED}{otherwise}")
     if "file" in value:
         return _columns(read_table(ColumnTable, value), quantity)
     if "distribution" in value:
@@ -197,7 +199,7 @@ def read_axis(value: Any, quantity: Quantity | None, otherwise: str = _DEPENDENC
         if not isinstance(kind, str) or kind not in _DISTRIBUTIONS:
             hint = did_you_mean(str(kind), _DISTRIBUTIONS)
             raise InputError(
-                f"{shown(kind)} is not allowed; it must be one of "
+                f"{quoted(kind)} is not allowed; it must be one of "
                 f"{', '.join(_DISTRIBUTIONS)}.{hint}",
                 "distribution",
             )
@@ -208,7 +210,7 @@ def read_axis(value: Any, quantity: Quantity | None, otherwise: str = _DEPENDENC
             else _spaced(table, quantity, is_random=True)
         )
     if "from" not in value and "to" not in value:
-        raise InputError(f"{shown(value)} has no values; it must be {_ASKED}{otherwise}")
+        raise InputError(f"{quoted(value)} has no values; it must be {_ASKED}{otherwise}")
     return _spaced(read_table(RangeTable, value), quantity, is_random=False)
 
 

@@ -51,7 +51,7 @@ def with_arrays(case: Case, arrays: Mapping[str, Values]) -> Case:
     Examples
     --------
     >>> import numpy as np
-    >>> from vibroimpact.cases.rigid import rigid_problem
+    >>> from vibroimpact.cases.rigid_problem import rigid_problem
     >>> from vibroimpact.cases.reader import load_case
     >>> case = with_arrays(
     ...     load_case("paper:type1-theory"), {"drop.height": np.array([1.0, 2.0, 4.0])}

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from vibroimpact.cases.build import resolved_case
 from vibroimpact.cases.case import Case
-from vibroimpact.cases.slips.find import slips, swept_slips
+from vibroimpact.cases.wrong_units.detect import slips, swept_slips
 from vibroimpact.errors import InputError
 from vibroimpact.resolved_case import ResolvedCase
 from vibroimpact.studies.sweep import Sweep

@@ -13,7 +13,7 @@ from functools import cache, lru_cache
 from typing import TYPE_CHECKING, Any
 
 from vibroimpact.errors import InputError
-from vibroimpact.shown import shortened, shown
+from vibroimpact.quoting import quoted, shortened
 from vibroimpact.units.grammar import is_unit
 from vibroimpact.units.quantity_text import comma_remedy, has_comma, number_and_unit
 from vibroimpact.units.spelling import by_gravity, plain_factor, spelled
@@ -134,7 +134,7 @@ def to_si(value: float | str, unit: str = "") -> float:
     """
     unit = spelled(unit)
     if isinstance(value, bool) or not isinstance(value, (int, float, str)):
-        raise InputError(f"{shown(value)} is not {_wanted(unit)}")
+        raise InputError(f"{quoted(value)} is not {_wanted(unit)}")
     if isinstance(value, str):
         return _finite(_parse(value, unit), value)
     try:
@@ -159,7 +159,7 @@ def parse_quantity(text: str) -> tuple[float, str]:
     parts = _split(text)
     if parts is None or not parts[1]:
         raise InputError(
-            f'{shown(text, 80)} is not a number with a unit, such as "5.115e8 N/m^1.5"'
+            f'{quoted(text, 80)} is not a number with a unit, such as "5.115e8 N/m^1.5"'
         )
     return _finite(parts[0], text), parts[1]
 
@@ -198,7 +198,7 @@ def convert_units(value: float, unit: str, to: str) -> float:
         have, want = _by_gravity(unit, to) or (have, want)
     if have.dimensionality != want.dimensionality:
         both = " and ".join(
-            f"{shown(name)} is {_dimension_words(one)}" for name, one in ((unit, have), (to, want))
+            f"{quoted(name)} is {_dimension_words(one)}" for name, one in ((unit, have), (to, want))
         )
         raise InputError(f"{both}; one can't be converted to the other")
     try:
@@ -316,7 +316,7 @@ def _known_unit(text: str) -> pint.Unit:
         return unit
     except Exception as error:  # pint raises many kinds for a unit that it can't read
         raise InputError(
-            f'{shown(text, 80)} is not a unit that is known; write it as "N/mm^1.5", "N '
+            f'{quoted(text, 80)} is not a unit that is known; write it as "N/mm^1.5", "N '
             's/m" or "kg/s"'
         ) from error
 
@@ -324,19 +324,19 @@ def _known_unit(text: str) -> pint.Unit:
 def _parse(text: str, unit: str) -> float:
     parts = _split(text, unit)
     if parts is None:
-        raise InputError(f"{shown(text, 80)} is not {_wanted(unit)}")
+        raise InputError(f"{quoted(text, 80)} is not {_wanted(unit)}")
     number, given = parts
     if not unit:
         if given:
             digits = f"{_finite(number * _plain_factor(given), text):.15g}"
             raise InputError(
-                f"{shown(text, 80)} has a unit, but a plain number is wanted: write {digits}"
+                f"{quoted(text, 80)} has a unit, but a plain number is wanted: write {digits}"
             )
         return number
     if not given:
         digits = f"{_finite(number, text):.15g}"
         raise InputError(
-            f"{shown(text, 80)} has no unit: write {digits} (it is then in {unit}) or "
+            f"{quoted(text, 80)} has no unit: write {digits} (it is then in {unit}) or "
             f'"{digits} {unit}"'
         )
     return number * _factor(given, unit, text)
@@ -365,7 +365,9 @@ def _split(text: str, unit: str | None = None) -> tuple[float, str] | None:
     """
     parts = number_and_unit(text)
     if parts is None and has_comma(text):
-        raise InputError(f"{shown(text, 80)} has a comma in its number; {comma_remedy(text, unit)}")
+        raise InputError(
+            f"{quoted(text, 80)} has a comma in its number; {comma_remedy(text, unit)}"
+        )
     return parts
 
 
@@ -407,12 +409,12 @@ def _converted(given: str, unit: str, text: str) -> float:
             else ["number without a dimension"]
         )
         raise InputError(
-            f"{shown(text, 80)} is {_either(kinds) or 'another kind of quantity'}; "
+            f"{quoted(text, 80)} is {_either(kinds) or 'another kind of quantity'}; "
             f"expected {_wanted(unit)}"
         ) from None
     except Exception as error:  # pint raises many kinds for a unit that it can't read
         raise InputError(
-            f"{shown(given, 80)} in {shown(text, 80)} is not a unit that is known; "
+            f"{quoted(given, 80)} in {quoted(text, 80)} is not a unit that is known; "
             f"expected {_wanted(unit)}"
         ) from error
 

@@ -8,7 +8,7 @@ import re
 from typing import Any
 
 from vibroimpact.errors import InputError
-from vibroimpact.shown import shown
+from vibroimpact.quoting import quoted
 from vibroimpact.units.quantity_text import number_and_unit
 from vibroimpact.units.reading import to_si
 
@@ -124,10 +124,10 @@ string such as "25 mm")
             else to_si(deviation, unit)
         )
     except InputError as error:
-        raise InputError(f"the standard deviation in {shown(value, 80)}: {error}") from None
+        raise InputError(f"the standard deviation in {quoted(value, 80)}: {error}") from None
     if spread < 0.0:
         raise InputError(
-            f"the standard deviation in {shown(value, 80)} is negative; it must be at least 0"
+            f"the standard deviation in {quoted(value, 80)} is negative; it must be at least 0"
         )
     return Written(number, spread, value.strip())
 

@@ -19,18 +19,18 @@ import numpy as np
 
 from vibroimpact.arrays import Floats
 from vibroimpact.bodies.body import Body
-from vibroimpact.bodies.rigid import rigid_sphere
+from vibroimpact.bodies.rigid_bodies import rigid_sphere
 from vibroimpact.cases.elastic.modes import BodyModes, compute_modes, contact_place
 from vibroimpact.cases.elastic.residuals import residual_keys, with_residuals
 from vibroimpact.cases.fields.local import MeasuredImpact
-from vibroimpact.cases.limits.plate_mesh import PLATE_MESH_COMPLIANCE
-from vibroimpact.cases.limits.plate_waves import PLATE_THEORY_INERTIA
 from vibroimpact.cases.pair import contact_pair, is_free_sphere
-from vibroimpact.cases.rigid import PLATE_FALLS, contact_laws_of, elastic_names, touch_speed
+from vibroimpact.cases.rigid_problem import PLATE_FALLS, contact_laws_of, elastic_names, touch_speed
+from vibroimpact.cases.validity.plate_mesh import PLATE_MESH_COMPLIANCE
+from vibroimpact.cases.validity.plate_waves import PLATE_THEORY_INERTIA
 from vibroimpact.compiled import interpreted
 from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.contact.quasi_static import QuasiStatic
-from vibroimpact.dynamics.encounter import encounter_of
+from vibroimpact.dynamics.impact_conditions import impact_conditions_of
 from vibroimpact.dynamics.local_element import identify_local_element, local_element_deviations
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.simulate import simulate
@@ -291,7 +291,7 @@ def _first_contact(case: CaseTable) -> tuple[CompliantLaw, float]:
         for value in (contact_pair(case).effective_mass, case.drop.gravity, touch_speed(case))
     )
     with interpreted():
-        return law, float(encounter_of(law, mass, gravity, speed).depth[0])
+        return law, float(impact_conditions_of(law, mass, gravity, speed).depth[0])
 
 
 def _contact_radius(case: CaseTable) -> float:

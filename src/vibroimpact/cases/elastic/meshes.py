@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.sparse import csr_array
 
-from vibroimpact.cases.elastic.bodies import elastic_bodies
+from vibroimpact.cases.elastic.elastic_bodies import elastic_bodies
 from vibroimpact.cases.fields.item_labels import item_label
 from vibroimpact.errors import InputError
 from vibroimpact.structures.geometry import check_mesh, mass_properties

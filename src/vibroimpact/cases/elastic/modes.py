@@ -11,7 +11,7 @@ import numpy as np
 
 from vibroimpact.bodies.ball import ball_volume
 from vibroimpact.bodies.elastic import ElasticBody
-from vibroimpact.cases.elastic.bodies import elastic_bodies
+from vibroimpact.cases.elastic.elastic_bodies import elastic_bodies
 from vibroimpact.cases.elastic.meshes import meshes_of
 from vibroimpact.cases.limit import two_digits
 from vibroimpact.errors import InputError

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from vibroimpact.cases.fields.elastic_body import BroughtMeshTable
 from vibroimpact.cases.fields.item_labels import item_label
-from vibroimpact.cases.slips.lengths import likely_lengths
+from vibroimpact.cases.wrong_units.lengths import likely_lengths
 from vibroimpact.errors import InputError
 from vibroimpact.structures.rectangle import CLOSEST
 

@@ -10,8 +10,8 @@ from vibroimpact.cases.fields.quantities import quantity_schema, read_quantity
 from vibroimpact.cases.fields.size_limits import check_count
 from vibroimpact.contact.speed_function import BySpeed, SpeedFunction, SpeedTable
 from vibroimpact.errors import InputError, choices
+from vibroimpact.quoting import quoted
 from vibroimpact.ranges import Range
-from vibroimpact.shown import shown
 
 _TABLE, _POLYNOMIAL = ("speed", "value"), ("polynomial", "from", "to")
 _MOST_SPEEDS, _MOST_COEFFICIENTS = 1000, 10
@@ -39,7 +39,7 @@ def read_by_speed(given: Mapping[str, Any], unit: str, allowed: Range) -> BySpee
     for key in given:
         if key not in keys:
             raise InputError(
-                f"unknown key {shown(key)}; a function of the approach speed is {_FORMS}. "
+                f"unknown key {quoted(key)}; a function of the approach speed is {_FORMS}. "
                 f"It takes {choices(keys, str(key))}"
             )
     for key in keys:
@@ -80,7 +80,7 @@ def _polynomial(given: Mapping[str, Any], unit: str, allowed: Range) -> SpeedFun
 
 def _numbers(given: Any, name: str, unit: str, allowed: Range, most: int) -> tuple[float, ...]:
     if not isinstance(given, list) or not given:
-        raise InputError(f"{name} is {shown(given)}; it must be a list of numbers")
+        raise InputError(f"{name} is {quoted(given)}; it must be a list of numbers")
     check_count(len(given), most, "numbers")
     return tuple(read_quantity(item, unit, allowed) for item in given)
 

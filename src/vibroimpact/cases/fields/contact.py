@@ -16,7 +16,7 @@ from vibroimpact.contact.law import ContactLaw, unit_of
 from vibroimpact.contact.registry import contact_laws, find_contact_law
 from vibroimpact.contact.speed_function import BySpeed, SpeedFunction, SpeedTable
 from vibroimpact.errors import InputError, choices, listed
-from vibroimpact.shown import shown
+from vibroimpact.quoting import quoted
 
 Parameter: TypeAlias = float | tuple[float, ...] | BySpeed
 """The value of a parameter of a contact law: a number, one per impact, or a function of
@@ -60,7 +60,7 @@ def read_contact(value: Any) -> ContactSection:
         if key not in known:
             every = [*known, *LocalSection.model_fields, "friction"]
             raise InputError(
-                f"unknown key {shown(key)}; {law.name} takes {choices(every, key, 'schema')}", key
+                f"unknown key {quoted(key)}; {law.name} takes {choices(every, key, 'schema')}", key
             )
         unit, allowed = unit_of(known[key], exponent), known[key].metadata["range"]
         try:
@@ -119,14 +119,14 @@ def law_of(value: Any) -> type[ContactLaw]:
     known_laws = listed(contact_laws(), command="laws")
     if not isinstance(value, dict):
         raise InputError(
-            f"{shown(value)} is not a table with the name of a law and its parameters; "
+            f"{quoted(value)} is not a table with the name of a law and its parameters; "
             f"there are {known_laws}"
         )
     if "law" not in value:
         raise InputError(f'it needs law = "...", one of {known_laws}')
     if not isinstance(value["law"], str):
         raise InputError(
-            f"{shown(value['law'])} is not the name of a law; there are {known_laws}", "law"
+            f"{quoted(value['law'])} is not the name of a law; there are {known_laws}", "law"
         )
     try:
         return find_contact_law(value["law"])

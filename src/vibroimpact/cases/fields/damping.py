@@ -9,8 +9,8 @@ from pydantic import BeforeValidator
 from vibroimpact.cases.fields.json_schema import JsonSchema
 from vibroimpact.cases.fields.quantities import read_quantity
 from vibroimpact.errors import InputError, did_you_mean
+from vibroimpact.quoting import quoted
 from vibroimpact.ranges import Range
-from vibroimpact.shown import shown
 from vibroimpact.structures.damping import (
     AdamsDefault,
     ConstantRatio,
@@ -38,14 +38,14 @@ def _read_damping(value: Any) -> Any:
     if isinstance(value, str):
         if value != ADAMS:
             raise InputError(
-                f"{shown(value)} is not allowed; it must be "
+                f"{quoted(value)} is not allowed; it must be "
                 f"{_ALLOWED}.{did_you_mean(value, (ADAMS, MATERIAL))}"
             )
         return AdamsDefault()
     if isinstance(value, dict):
         return _read_table(value)
     if isinstance(value, bool) or not isinstance(value, (int, float)):
-        raise InputError(f"{shown(value)} is not allowed; it must be {_ALLOWED}")
+        raise InputError(f"{quoted(value)} is not allowed; it must be {_ALLOWED}")
     _NOT_NEGATIVE.check(value)
     return ConstantRatio(float(value))
 

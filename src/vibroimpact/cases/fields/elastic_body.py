@@ -15,7 +15,7 @@ import numpy as np
 from pydantic import BeforeValidator, Field, model_validator
 
 from vibroimpact.bodies.ball import mean_density
-from vibroimpact.bodies.rigid import rigid_sphere
+from vibroimpact.bodies.rigid_bodies import rigid_sphere
 from vibroimpact.cases.fields.json_schema import JsonSchema
 from vibroimpact.cases.fields.material import MaterialField, material_table
 from vibroimpact.cases.fields.quantities import Quantity
@@ -25,8 +25,8 @@ from vibroimpact.errors import InputError
 from vibroimpact.files.reading import with_path
 from vibroimpact.materials import RIGID
 from vibroimpact.meshes.mesh_digest import mesh_digest
+from vibroimpact.quoting import quoted
 from vibroimpact.ranges import Range
-from vibroimpact.shown import shown
 
 # not imported at run time, as a case with rigid bodies does not need scipy.sparse
 if TYPE_CHECKING:
@@ -231,7 +231,7 @@ def _mesh_field(kind: type[Section]) -> Any:
             return read_table(BroughtMeshTable, {"file": value})
         if isinstance(value, dict):
             return read_table(BroughtMeshTable if "file" in value else kind, value)
-        raise InputError(f"{shown(value)} is neither the name of a file nor a table")
+        raise InputError(f"{quoted(value)} is neither the name of a file nor a table")
 
     def json_schema() -> dict[str, Any]:
         return {

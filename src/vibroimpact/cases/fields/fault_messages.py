@@ -14,7 +14,7 @@ from vibroimpact.cases.fields.json_schema import JsonSchema
 from vibroimpact.cases.fields.known_keys import field_at, keys_of, parts_of, section_at
 from vibroimpact.cases.fields.quantities import Quantity
 from vibroimpact.errors import choices, did_you_mean, listed
-from vibroimpact.shown import shown
+from vibroimpact.quoting import quoted
 
 _NO_SUCH_TYPE = ("string_type", "tuple_type", "list_type", "literal_error", "bool_type")
 """Errors of an alternative that takes another type of value."""
@@ -132,7 +132,7 @@ class _Fault:
             yield path, self._message()
 
     def _message(self) -> str:
-        given = shown(self.value)
+        given = quoted(self.value)
         if self.kind == "extra_forbidden":
             return self._unknown_key()
         if self.kind == "missing":
@@ -176,7 +176,7 @@ class _Fault:
         place = "a case" if self.of_case else "it"
         if name and self.of_case:
             place = f"[[{name}]]" if above[-1].isdigit() else f"[{name}]"
-        return f"unknown key {shown(key)}; {place} takes {choices(known, key, 'schema')}"
+        return f"unknown key {quoted(key)}; {place} takes {choices(known, key, 'schema')}"
 
 
 def _by_value(faults: Sequence[_Fault]) -> Iterator[_Fault]:

@@ -9,7 +9,7 @@ from typing import Any, TypeVar
 
 from vibroimpact.cases.fields.section import Section, read_table
 from vibroimpact.errors import InputError
-from vibroimpact.shown import shown
+from vibroimpact.quoting import quoted
 
 Table = TypeVar("Table", bound=Section)
 
@@ -31,7 +31,7 @@ def read_fluid(kind: type[Table], value: Any) -> Table | None:
     if isinstance(value, dict):
         return read_table(kind, value)
     raise InputError(
-        f"{shown(value)} is not allowed; it must be true, false, or a table with any of "
+        f"{quoted(value)} is not allowed; it must be true, false, or a table with any of "
         f"{', '.join(kind.model_fields)}"
     )
 

@@ -9,7 +9,7 @@ from typing import Any
 from vibroimpact.cases.fields.quantities import quantity_schema, read_quantity
 from vibroimpact.contact.registry import find_friction_law, friction_laws
 from vibroimpact.errors import InputError, choices, did_you_mean
-from vibroimpact.shown import shown
+from vibroimpact.quoting import quoted
 
 NO_FRICTION = "none"
 
@@ -44,7 +44,7 @@ def read_friction(value: Any) -> FrictionTable | None:
             continue
         if key not in known:
             raise InputError(
-                f"unknown key {shown(key)}; {value['law']} takes {choices(known, key)}",
+                f"unknown key {quoted(key)}; {value['law']} takes {choices(known, key)}",
                 f"friction.{key}",
             )
         try:
@@ -68,7 +68,7 @@ def check_friction_law(value: Any) -> None:
     known_laws = ", ".join(f'"{name}"' for name in names)  # "there are none" would be misread
     if not isinstance(value, dict):
         raise InputError(
-            f"{shown(value)} is not a table with the name of a friction "
+            f"{quoted(value)} is not a table with the name of a friction "
             f"law; there are {known_laws}",
             "friction",
         )
@@ -76,12 +76,12 @@ def check_friction_law(value: Any) -> None:
         raise InputError(f'it needs law = "...", one of {known_laws}', "friction")
     if not isinstance(value["law"], str):
         raise InputError(
-            f"{shown(value['law'])} is not the name of a friction law; there are {known_laws}",
+            f"{quoted(value['law'])} is not the name of a friction law; there are {known_laws}",
             "friction.law",
         )
     if value["law"] not in names:
         words = (
-            f"there is no friction law {shown(value['law'])}; there are "
+            f"there is no friction law {quoted(value['law'])}; there are "
             f"{known_laws}.{did_you_mean(value['law'], names)}"
         )
         raise InputError(words, "friction.law")

@@ -13,8 +13,8 @@ from vibroimpact.cases.fields.section import Section, read_inner_table
 from vibroimpact.cases.fields.size_limits import Name
 from vibroimpact.errors import InputError
 from vibroimpact.materials import RIGID, Material, find_material
+from vibroimpact.quoting import quoted
 from vibroimpact.ranges import Range
-from vibroimpact.shown import shown
 
 
 class InlineMaterial(Section):
@@ -46,7 +46,7 @@ def _read_material(value: Any) -> Material:
     if isinstance(value, dict):
         return Material(**read_inner_table(InlineMaterial, value).model_dump())
     raise InputError(
-        f"{shown(value)} is neither the name of a material nor a table with density, "
+        f"{quoted(value)} is neither the name of a material nor a table with density, "
         "youngs_modulus and poissons_ratio"
     )
 

@@ -10,8 +10,8 @@ from pydantic.fields import FieldInfo
 from pydantic_core import CoreSchema, core_schema
 
 from vibroimpact.errors import InputError, did_you_mean
+from vibroimpact.quoting import quoted
 from vibroimpact.ranges import Range
-from vibroimpact.shown import shown
 from vibroimpact.units.quantity_text import number_and_unit
 from vibroimpact.units.reading import to_si
 from vibroimpact.units.written import Written, has_deviation, read_written, without_deviation
@@ -40,7 +40,7 @@ def read_quantity(value: Any, unit: str, allowed: Range) -> float:
         words = (
             f"a standard deviation, for the intervals of a calibration, may stand at {keys} alone"
         )
-        raise InputError(f'{shown(value, 80)}: {words}; write "{without_deviation(value)}"')
+        raise InputError(f'{quoted(value, 80)}: {words}; write "{without_deviation(value)}"')
     try:
         number = to_si(value, unit)
     except InputError:
@@ -65,10 +65,10 @@ def _check(number: float, value: Any, unit: str, allowed: Range) -> None:
     if number and not SMALLEST <= abs(number) <= LARGEST:
         limits = f"from {SMALLEST:g} to {LARGEST:g} {unit}".rstrip()
         raise InputError(
-            f"{shown(value)} is beyond what can be computed; a magnitude that "
+            f"{quoted(value)} is beyond what can be computed; a magnitude that "
             f"is not 0 lies {limits}"
         )
-    allowed.check(number, unit, shown(value, 80))
+    allowed.check(number, unit, quoted(value, 80))
 
 
 @dataclass(frozen=True)
@@ -103,7 +103,7 @@ class Quantity:
         if value not in self.words:
             known = " or ".join(f'"{word}"' for word in self.words)
             words = (
-                f"{shown(value)} is not allowed; it must be {known}, or a {self.meaning} with "
+                f"{quoted(value)} is not allowed; it must be {known}, or a {self.meaning} with "
                 f"its unit [{self.unit}]"
             )
             raise InputError(f"{words}.{did_you_mean(value, self.words)}")

@@ -11,7 +11,7 @@ from pydantic import BaseModel, ConfigDict, ValidationError
 from vibroimpact.cases.fields.fault_messages import InvalidTable, fault_messages
 from vibroimpact.cases.fields.known_keys import keys_of
 from vibroimpact.errors import InputError, choices
-from vibroimpact.shown import shown
+from vibroimpact.quoting import quoted
 
 Value = TypeVar("Value")
 
@@ -99,7 +99,7 @@ def read_table(kind: type[Table], value: Mapping[str, Any]) -> Table:
     for key in value:
         if key not in known and key != "type":
             raise InputError(
-                f"unknown key {shown(key)}; it takes {choices(known, key, 'schema')}", key
+                f"unknown key {quoted(key)}; it takes {choices(known, key, 'schema')}", key
             )
     try:
         return kind.model_validate(dict(value))

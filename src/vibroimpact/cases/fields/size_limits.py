@@ -11,7 +11,7 @@ from typing import Annotated, Any
 from pydantic import AfterValidator, BeforeValidator
 
 from vibroimpact.errors import InputError
-from vibroimpact.shown import shown
+from vibroimpact.quoting import quoted
 
 MOST_BYTES = 1_000_000
 """Maximum size of a case file [bytes]."""
@@ -65,7 +65,7 @@ def check_text(text: str) -> None:
     ].lstrip().startswith("#"):
         line = text.count("\n", 0, found.start()) + 1
         raise InputError(
-            f"line {line}: {shown(found[0])} has more than {DEEPEST} parts joined by dots; "
+            f"line {line}: {quoted(found[0])} has more than {DEEPEST} parts joined by dots; "
             "a key may have so many at most, and a text or a comment too"
         )
 
@@ -140,7 +140,7 @@ def check_name(name: str) -> str:
         raise InputError(f"the name has {len(name)} characters; {LONGEST_NAME} are the most")
     if not name.replace("\u00a0", " ").isprintable():
         raise InputError(
-            f"{shown(name)} has characters that can't be shown; a name is one line of text"
+            f"{quoted(name)} has characters that can't be shown; a name is one line of text"
         )
     return name
 

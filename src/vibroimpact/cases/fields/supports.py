@@ -18,8 +18,8 @@ from vibroimpact.cases.fields.section import Section, check_alternatives, read_t
 from vibroimpact.cases.fields.size_limits import MOST_ITEMS, Name, check_count
 from vibroimpact.errors import InputError, choices, did_you_mean
 from vibroimpact.materials import RIGID, Material
+from vibroimpact.quoting import quoted
 from vibroimpact.ranges import Range
-from vibroimpact.shown import shown
 
 # not imported at run time, as a case with rigid bodies does not need scipy.sparse
 if TYPE_CHECKING:
@@ -238,7 +238,8 @@ def _read_supports(value: Any) -> Any:
     if isinstance(value, str):
         if value not in WORDS:
             raise InputError(
-                f"{shown(value)} is not allowed; it must be {_ALLOWED}.{did_you_mean(value, WORDS)}"
+                f"{quoted(value)} is not allowed; it must be "
+                f"{_ALLOWED}.{did_you_mean(value, WORDS)}"
             )
         return value
     if isinstance(value, dict):
@@ -254,7 +255,7 @@ def _read_supports(value: Any) -> Any:
                     error.message, ".".join(part for part in (str(number), error.key) if part)
                 ) from None
         return tuple(found)
-    raise InputError(f"{shown(value)} is not allowed; it must be {_ALLOWED}")
+    raise InputError(f"{quoted(value)} is not allowed; it must be {_ALLOWED}")
 
 
 def _read_support(value: Any) -> SupportTable:
@@ -266,10 +267,10 @@ def _read_support(value: Any) -> SupportTable:
     if not isinstance(name, str) or name not in _TABLES:
         if value in WORDS:
             raise InputError(
-                f"{shown(value)} stands alone, without a list: supports = {shown(value)}"
+                f"{quoted(value)} stands alone, without a list: supports = {quoted(value)}"
             )
         fault = (
-            f"there is no support of type {shown(name)}"
+            f"there is no support of type {quoted(name)}"
             if name is not None
             else "a support is a table with a type"
         )

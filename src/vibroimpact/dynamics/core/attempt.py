@@ -35,13 +35,6 @@ from vibroimpact.dynamics.core.records import (
     Surfaces,
     System,
 )
-from vibroimpact.dynamics.core.rubbing import (
-    first_friction,
-    free_motions,
-    rubbed_part,
-    under_friction,
-)
-from vibroimpact.dynamics.core.rubbing_records import Rubbed, Rubbing
 from vibroimpact.dynamics.core.stretch import (
     AT_LEVEL,
     AT_NO_FORCE,
@@ -51,6 +44,13 @@ from vibroimpact.dynamics.core.stretch import (
     first_guess,
     solve_stretch,
 )
+from vibroimpact.dynamics.core.surface_friction import (
+    first_friction,
+    free_motions,
+    sliding_part,
+    under_friction,
+)
+from vibroimpact.dynamics.core.surface_friction_records import SlidingSphere, SlidStretch
 
 _TINY = 1e-300
 _MOST_ATTEMPTS = 4  # solutions per stretch, until no earlier event is found
@@ -124,25 +124,30 @@ def surface_start(
 
 @compiled(
     lambda t: t.of(Beginning)(
-        t.of(Bodies), t.of(Law), t.of(Manner), t.of(State), t.of(Rubbing), t.real
+        t.of(Bodies), t.of(Law), t.of(Manner), t.of(State), t.of(SlidingSphere), t.real
     )
 )
 def beginning_of(
-    bodies: Bodies, law: Law, manner: Manner, state: State, rubbing: Rubbing, delta: float
+    bodies: Bodies,
+    law: Law,
+    manner: Manner,
+    state: State,
+    sphere: SlidingSphere,
+    delta: float,
 ) -> Beginning:
     """Return what a stretch of one contact begins with; `delta`: about the indentation of
     the law [m].
     """
     start = surface_start(bodies.system, bodies.surfaces, bodies.coordinates, state)
     along = start
-    if rubbing.directions:
+    if sphere.directions:
         along = surface_start(
             bodies.system, bodies.rubbed_surfaces, bodies.rubbed_coordinates, state
         )
     contacts = contacts_of(law, manner.tension)
-    rubbed = Rubbed(bodies.rubbed_surfaces, along, rubbing)
+    sliding = SlidStretch(bodies.rubbed_surfaces, along, sphere)
     return Beginning(
-        state, start, contacts, begun_indentations(contacts, start, np.array([delta])), rubbed
+        state, start, contacts, begun_indentations(contacts, start, np.array([delta])), sliding
     )
 
 
@@ -178,10 +183,10 @@ def attempt(
     start = beginning.start
     contacts = beginning.contacts
     begun = beginning.delta
-    rubbed = beginning.rubbed
+    sliding = beginning.sliding
     length = event.x
-    motions = free_motions(basis, surfaces, start, rubbed, length)
-    friction = first_friction(rubbed.rubbing, len(basis.time))
+    motions = free_motions(basis, surfaces, start, sliding, length)
+    friction = first_friction(sliding.sphere, len(basis.time))
     if not guessed:
         motion = under_friction(motions, friction.force)
         guess = first_guess(basis, surfaces, contacts, start, motion, begun, trend, length)
@@ -194,10 +199,10 @@ def attempt(
         ends = AT_TURN
     end = End(ends, event.level, event.contact)
     nodes, motions, friction, length, solved = solve_stretch(
-        basis, surfaces, contacts, start, rubbed, guess, motions, friction, length, end
+        basis, surfaces, contacts, start, sliding, guess, motions, friction, length, end
     )
     motion = under_friction(motions, friction.force)
-    part = rubbed_part(basis, motions, rubbed.rubbing, length, nodes.force, friction)
+    part = sliding_part(basis, motions, sliding.sphere, length, nodes.force, friction)
     contact = contact_histories(basis, surfaces, contacts, start, begun, nodes, motion, length)
     seen = Event(NO_EVENT, 0.0, np.inf, 0)
     if solved:
@@ -218,7 +223,7 @@ def balance_of(
     """
     histories = tried.contact
     nodes = tried.nodes
-    directions, number = tried.rubbed.force.shape
+    directions, number = tried.sliding.force.shape
     size = len(nodes.force)
     force = np.zeros(size + directions * number)
     static = np.zeros(size + directions * number)
@@ -227,7 +232,7 @@ def balance_of(
         static[node] = nodes.static[node]
     for direction in range(directions):
         for node in range(number):
-            force[size + direction * number + node] = tried.rubbed.force[direction, node]
+            force[size + direction * number + node] = tried.sliding.force[direction, node]
     surfaces = bodies.surfaces
     coordinates = bodies.coordinates
     if directions:
@@ -237,7 +242,7 @@ def balance_of(
         basis, surfaces, coordinates, beginning.state, tried.length, force, static, False
     )
     work = np.zeros(len(histories.dissipated))
-    imbalance = path.energies[0] - tried.rubbed.surface_work
+    imbalance = path.energies[0] - tried.sliding.surface_work
     for contact in range(len(work)):
         if tried.solved:
             law = law_of(beginning.contacts, contact)
@@ -249,7 +254,7 @@ def balance_of(
         imbalance += path.lost[coordinate]
     allowed = 0.06 * manner.tolerance * manner.energy
     smooth = histories.roughness * histories.roughness <= 0.1 * manner.tolerance
-    balanced = abs(imbalance) <= allowed + path.energies[1] and tried.rubbed.imbalance <= allowed
+    balanced = abs(imbalance) <= allowed + path.energies[1] and tried.sliding.imbalance <= allowed
     return Balance(path, work, tried.solved and smooth and balanced)
 
 

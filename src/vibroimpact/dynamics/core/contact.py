@@ -16,6 +16,7 @@ import numpy as np
 from vibroimpact.arrays import Floats
 from vibroimpact.compiled import compiled
 from vibroimpact.dynamics.core.attempt import beginning_of
+from vibroimpact.dynamics.core.coasting import end_of_coasting
 from vibroimpact.dynamics.core.contact_records import Begun, Bodies, Manner, Parts, Progress
 from vibroimpact.dynamics.core.events import (
     ENDS_AT_NO_FORCE,
@@ -29,10 +30,9 @@ from vibroimpact.dynamics.core.flight import approach_of, lost_in_flight, state_
 from vibroimpact.dynamics.core.law import law_after, law_indentation, stored_energy
 from vibroimpact.dynamics.core.next_stretch import end_of, next_stretch
 from vibroimpact.dynamics.core.parts import lose_at_end, write_next, write_part
-from vibroimpact.dynamics.core.recoil import end_of_recoil
 from vibroimpact.dynamics.core.records import Bases, Law, State, System
 from vibroimpact.dynamics.core.rest import is_captured, is_near_rest
-from vibroimpact.dynamics.core.rubbing import flown
+from vibroimpact.dynamics.core.surface_friction import flown
 from vibroimpact.dynamics.core.touch import time_to_separation
 
 RELEASED, CAPTURED, RIDES, TOO_STIFF, NEAR_REST, FULL = 0, 1, 2, 3, 4, 5
@@ -126,7 +126,7 @@ def follow_contact(
     memories = progress.memories
     largest_force = progress.largest_force
     deepest = progress.deepest
-    rubbing = progress.rubbing
+    sphere = progress.sphere
     elements = len(lost) - 1
     nodes = parts.force.shape[1]
     part = 0
@@ -136,7 +136,7 @@ def follow_contact(
     # two changes at most are made on the way
     while part < len(parts.start) and changes + 1 < len(parts.turned_at):
         if not pushes:  # recoil
-            length, separates = end_of_recoil(system, law, manner, state)
+            length, separates = end_of_coasting(system, law, manner, state)
             if not np.isfinite(length):
                 outcome = TOO_STIFF
                 break
@@ -157,7 +157,7 @@ def follow_contact(
             lost[elements] += held - left
             time += length
             state = after
-            rubbing = flown(rubbing, length)
+            sphere = flown(sphere, length)
             if separates:
                 outcome = RELEASED
                 break
@@ -196,18 +196,26 @@ def follow_contact(
             outcome = TOO_STIFF
             break
 
-        beginning = beginning_of(bodies, law, manner, state, rubbing, delta)
+        beginning = beginning_of(bodies, law, manner, state, sphere, delta)
         stretch = next_stretch(
             bases, bodies, manner, beginning, 0 if fresh else 1, min(next_length, longest), trend
         )
         if not stretch.accepted:
             next_length = 0.5 * min(next_length, stretch.event_time)
             continue
-        write_next(parts, part, bases, system, stretch, Begun(time, state, memories, rubbing), lost)
+        write_next(
+            parts,
+            part,
+            bases,
+            system,
+            stretch,
+            Begun(time, state, memories, sphere),
+            lost,
+        )
         end = end_of(bases, stretch)
         part += 1
         state = end.state
-        rubbing = end.rubbing
+        sphere = end.sphere
         time += end.length
         delta = end.delta
         force = end.force
@@ -258,6 +266,6 @@ def follow_contact(
         memories,
         largest_force,
         deepest,
-        rubbing,
+        sphere,
     )
     return outcome, part, now, state, law

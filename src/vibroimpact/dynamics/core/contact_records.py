@@ -26,7 +26,11 @@ from vibroimpact.dynamics.core.records import (
     System,
     Vector,
 )
-from vibroimpact.dynamics.core.rubbing_records import Rubbed, RubbedPart, Rubbing
+from vibroimpact.dynamics.core.surface_friction_records import (
+    SlidingPart,
+    SlidingSphere,
+    SlidStretch,
+)
 
 
 class Bodies(NamedTuple):
@@ -48,26 +52,26 @@ class Beginning(NamedTuple):
     """What a stretch of c contacts begins with: the state, also as that of the surfaces, the laws,
     and their indentations (c,) [m].
 
-    rubbed: the surfaces that rub.
+    sliding: the surfaces that rub.
     """
 
     state: State
     start: Start
     contacts: Contacts
     delta: Vector
-    rubbed: Rubbed
+    sliding: SlidStretch
 
 
 class Attempt(NamedTuple):
     """A stretch of contacts as Newton's method leaves it.
 
-    nodes, contact: its forces and histories. rubbed: what friction does. length [s]. solved: did
+    nodes, contact: its forces and histories. sliding: what friction does. length [s]. solved: did
     Newton's method converge? event: the first one within it.
     """
 
     nodes: Nodes
     contact: Histories
-    rubbed: RubbedPart
+    sliding: SlidingPart
     length: Real
     solved: Boolean
     event: Event
@@ -122,20 +126,20 @@ class Begun(NamedTuple):
     time: Real
     state: State
     memories: Integer
-    rubbing: Rubbing
+    sphere: SlidingSphere
 
 
 class StretchEnd(NamedTuple):
     """The end of a stretch of one contact.
 
-    length: of the stretch [s]. state, rubbing: then. delta: indentation of the law [m], force [N],
+    length: of the stretch [s]. state, sphere: then. delta: indentation of the law [m], force [N],
     its rate of change trend [N/s], and closing, the whole rate of the approach [m/s].
     largest_force: at a node [N]. roughness: as in `Histories`.
     """
 
     length: Real
     state: State
-    rubbing: Rubbing
+    sphere: SlidingSphere
     delta: Real
     force: Real
     trend: Real
@@ -172,7 +176,7 @@ class Progress(NamedTuple):
     indentation of the law [m], force [N], its rate of change trend [N/s], and closing, the whole
     rate of the approach [m/s]. fresh: no stretch has been solved yet. pushes: the law acts,
     otherwise the contact recoils. steps: stretches tried. memories: changes of the law's memory.
-    largest_force [N], deepest [m]: at a node. rubbing: friction.
+    largest_force [N], deepest [m]: at a node. sphere: friction.
     """
 
     time: Real
@@ -187,7 +191,7 @@ class Progress(NamedTuple):
     memories: Integer
     largest_force: Real
     deepest: Real
-    rubbing: Rubbing
+    sphere: SlidingSphere
 
 
 class Parts(NamedTuple):
@@ -200,8 +204,8 @@ class Parts(NamedTuple):
     [J]. indentation (P, N + 1): of the surface by the centre above [m]. turned_at (P,):
     indentations of the law at the changes of its memory [m]. late_loss (1,): stored energy lost at
     the end of the last part of the call before [J]. Of stretches with friction in F directions:
-    friction, slip (P, F, N), as in `RubbedPart`, and rubbing (P, 2, 13), the numbers of
-    `rubbing_records` at their starts and ends.
+    friction, slip (P, F, N), as in `SlidingPart`, and sphere (P, 2, 13), the numbers of
+    `surface_friction_records` at their starts and ends.
     """
 
     kind: Integers
@@ -227,4 +231,4 @@ class Parts(NamedTuple):
     late_loss: Vector
     friction: Cube
     slip: Cube
-    rubbing: Cube
+    sphere: Cube

@@ -74,7 +74,7 @@ def end_of(bases: Bases, stretch: NextStretch) -> StretchEnd:
     return StretchEnd(
         tried.length,
         State(path.displacement, path.speed, path.local),
-        tried.rubbed.end,
+        tried.sliding.end,
         tried.contact.delta[0, number],
         forces[number - 1],
         trend,

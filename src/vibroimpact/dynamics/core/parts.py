@@ -8,7 +8,7 @@ from vibroimpact.dynamics.core.attempt import basis_of
 from vibroimpact.dynamics.core.contact_records import Attempt, Balance, Begun, NextStretch, Parts
 from vibroimpact.dynamics.core.linear import product, write_layer, write_row
 from vibroimpact.dynamics.core.records import Bases, Basis, State, System
-from vibroimpact.dynamics.core.rubbing_records import (
+from vibroimpact.dynamics.core.surface_friction_records import (
     DISPLACEMENT_X,
     FORCE_X,
     MICROSLIP,
@@ -16,8 +16,8 @@ from vibroimpact.dynamics.core.rubbing_records import (
     TURNED_X,
     VELOCITY_X,
     WORK,
-    RubbedPart,
-    Rubbing,
+    SlidingPart,
+    SlidingSphere,
 )
 
 
@@ -73,7 +73,7 @@ def write_next(
         stretch.balance,
         begun.state,
     )
-    write_rubbed(parts, part, begun.rubbing, stretch.tried.rubbed)
+    write_sliding(parts, part, begun.sphere, stretch.tried.sliding)
     lost_on_path = stretch.balance.path.lost
     for coordinate in range(len(lost)):
         lost[coordinate] += lost_on_path[coordinate]
@@ -121,26 +121,26 @@ def write_stretch(
         parts.indentation[part, node + 1] = depth + solved.length * moved
 
 
-@compiled(lambda t: t.void(t.of(Parts), t.integer, t.of(Rubbing), t.of(RubbedPart)))
-def write_rubbed(parts: Parts, part: int, begun: Rubbing, rubbed: RubbedPart) -> None:
+@compiled(lambda t: t.void(t.of(Parts), t.integer, t.of(SlidingSphere), t.of(SlidingPart)))
+def write_sliding(parts: Parts, part: int, begun: SlidingSphere, sliding: SlidingPart) -> None:
     """Write what friction does through a stretch that begins in a state."""
     if begun.directions == 0:
         return
-    write_layer(parts.friction, part, rubbed.force)
-    write_layer(parts.slip, part, rubbed.slip)
-    write_rubbing(begun, parts.rubbing[part, 0])
-    write_rubbing(rubbed.end, parts.rubbing[part, 1])
+    write_layer(parts.friction, part, sliding.force)
+    write_layer(parts.slip, part, sliding.slip)
+    write_surface_friction(begun, parts.sphere[part, 0])
+    write_surface_friction(sliding.end, parts.sphere[part, 1])
 
 
-@compiled(lambda t: t.void(t.of(Rubbing), t.vector))
-def write_rubbing(rubbing: Rubbing, numbers: Floats) -> None:
-    """Write the numbers of `rubbing_records` that change through a contact."""
+@compiled(lambda t: t.void(t.of(SlidingSphere), t.vector))
+def write_surface_friction(sphere: SlidingSphere, numbers: Floats) -> None:
+    """Write the numbers of `surface_friction_records` that change through a contact."""
     for direction in range(2):
-        numbers[VELOCITY_X + direction] = rubbing.velocity[direction]
-        numbers[DISPLACEMENT_X + direction] = rubbing.displacement[direction]
-        numbers[FORCE_X + direction] = rubbing.force[direction]
-        numbers[TURNED_WAY_X + direction] = rubbing.turned_way[direction]
+        numbers[VELOCITY_X + direction] = sphere.velocity[direction]
+        numbers[DISPLACEMENT_X + direction] = sphere.displacement[direction]
+        numbers[FORCE_X + direction] = sphere.force[direction]
+        numbers[TURNED_WAY_X + direction] = sphere.turned_way[direction]
     for axis in range(3):
-        numbers[TURNED_X + axis] = rubbing.turned[axis]
-    numbers[WORK] = rubbing.work
-    numbers[MICROSLIP] = rubbing.microslip
+        numbers[TURNED_X + axis] = sphere.turned[axis]
+    numbers[WORK] = sphere.work
+    numbers[MICROSLIP] = sphere.microslip

@@ -183,8 +183,8 @@ def stick(
 )
 def slide(friction: Friction, start: NormalState, end: NormalState, before: SlipState) -> SlipState:
     """Return the motion at the end of a step in which all of a contact slides."""
-    rubbed = friction.stiffness * before.direction * (end.swept - start.swept)
-    velocity = before.velocity + friction.pull * (end.time - start.time) - rubbed
+    sliding = friction.stiffness * before.direction * (end.swept - start.swept)
+    velocity = before.velocity + friction.pull * (end.time - start.time) - sliding
     return moved(friction, start, end, before, velocity, before.direction * end.most)
 
 

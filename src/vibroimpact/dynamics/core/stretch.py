@@ -32,8 +32,8 @@ from vibroimpact.dynamics.core.records import (
     Start,
     Surfaces,
 )
-from vibroimpact.dynamics.core.rubbing import follow_friction, free_motions, under_friction
-from vibroimpact.dynamics.core.rubbing_records import FrictionAtNodes, Motions, Rubbed
+from vibroimpact.dynamics.core.surface_friction import follow_friction, free_motions, under_friction
+from vibroimpact.dynamics.core.surface_friction_records import FrictionAtNodes, Motions, SlidStretch
 
 GIVEN_LENGTH, AT_LEVEL, AT_NO_FORCE, AT_TURN = 0, 1, 2, 3
 """What ends a stretch: a given length; an indentation of a law; no force of a law; no
@@ -444,7 +444,7 @@ def is_converged(size: float, last_size: float) -> bool:
         t.of(Surfaces),
         t.of(Contacts),
         t.of(Start),
-        t.of(Rubbed),
+        t.of(SlidStretch),
         t.of(Nodes),
         t.of(Motions),
         t.of(FrictionAtNodes),
@@ -457,7 +457,7 @@ def solve_stretch(
     surfaces: Surfaces,
     contacts: Contacts,
     start: Start,
-    rubbed: Rubbed,
+    sliding: SlidStretch,
     guess: Nodes,
     motions: Motions,
     friction: FrictionAtNodes,
@@ -490,11 +490,11 @@ def solve_stretch(
         if not (well_posed and np.isfinite(size)):
             break
         if end.kind != GIVEN_LENGTH:
-            motions = free_motions(basis, surfaces, start, rubbed, length)
+            motions = free_motions(basis, surfaces, start, sliding, length)
             motion = motions.across
-        if rubbed.rubbing.directions:
+        if sliding.sphere.directions:
             before = friction
-            friction = follow_friction(basis, motions, rubbed, length, now.force, before)
+            friction = follow_friction(basis, motions, sliding, length, now.force, before)
             size = max(
                 size,
                 largest_change(friction.force, before.force)

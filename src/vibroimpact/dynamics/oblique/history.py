@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from vibroimpact.arrays import Floats
+from vibroimpact.dynamics.bounce import Bounce
 from vibroimpact.dynamics.columns import OBLIQUE_HISTORY_COLUMNS
-from vibroimpact.dynamics.leg import Leg
 from vibroimpact.dynamics.oblique.rolling import LyingSpheres
 from vibroimpact.dynamics.oblique.state import State, energy_taken
 from vibroimpact.dynamics.oblique.statement import Oblique
@@ -14,18 +14,18 @@ from vibroimpact.dynamics.problem import Problem
 
 
 def oblique_history(
-    problem: Problem, leg: Leg, lost: float, time: Floats, lies_from: float
+    problem: Problem, bounce: Bounce, lost: float, time: Floats, lies_from: float
 ) -> dict[str, Floats]:
-    """Return columns of the motion along the plate at times within a leg.
+    """Return columns of the motion along the plate at times within a bounce.
 
     Parameters
     ----------
     problem : Problem
         The problem of the drop.
-    leg : Leg
+    bounce : Bounce
         Its flight and contact, the last one for times after it.
     lost : float
-        Energy that friction took before the leg [J].
+        Energy that friction took before the bounce [J].
     time : array, shape (T,)
         Times since the start [s].
     lies_from : float
@@ -38,33 +38,33 @@ def oblique_history(
         "potential_J".
     """
     assert problem.oblique is not None
-    moving = _of_leg(leg, lost, time, lies_from)
+    moving = _of_bounce(bounce, lost, time, lies_from)
     if lies_from < np.inf:
-        moving = _lying(problem, leg, moving, np.maximum(time - lies_from, 0.0))
-    return _columns(problem.oblique, leg, *moving)
+        moving = _lying(problem, bounce, moving, np.maximum(time - lies_from, 0.0))
+    return _columns(problem.oblique, bounce, *moving)
 
 
 Moving = tuple[State, Floats, Floats]
 """States, friction forces [N] (2, T), and energy that friction took so far [J] (T,)."""
 
 
-def _of_leg(leg: Leg, lost: float, time: Floats, lies_from: float) -> Moving:
-    """Return the motion at times within a leg, up to where the sphere lies; `lost`:
+def _of_bounce(bounce: Bounce, lost: float, time: Floats, lies_from: float) -> Moving:
+    """Return the motion at times within a bounce, up to where the sphere lies; `lost`:
     energy that friction took before it [J].
     """
-    assert leg.oblique is not None
-    sphere, start = leg.oblique
-    touch, time, lies = float(leg.flight_end[0]), np.minimum(time, lies_from), time >= lies_from
+    assert bounce.oblique is not None
+    sphere, start = bounce.oblique
+    touch, time, lies = float(bounce.flight_end[0]), np.minimum(time, lies_from), time >= lies_from
     state, friction, taken = (
-        leg.flight.carry(sphere, start, np.minimum(time, touch)),
+        bounce.flight.carry(sphere, start, np.minimum(time, touch)),
         np.zeros((2, len(time))),
         np.full(len(time), lost),
     )
     state = State(state.position, state.velocity, start.spin + np.zeros(len(time)))
     # an impulse has no duration: a sphere may lie from the time of touch on
     after = (time > touch) | lies
-    if leg.oblique_contacts and after.any():
-        ((_, contact),) = leg.oblique_contacts
+    if bounce.oblique_contacts and after.any():
+        ((_, contact),) = bounce.oblique_contacts
         in_contact, force, lost_here = contact.at(time[after] - touch)
         parting = float(contact.duration[0])
         later = sphere.fly(in_contact, np.maximum(time[after] - touch - parting, 0.0))
@@ -79,14 +79,14 @@ def _of_leg(leg: Leg, lost: float, time: Floats, lies_from: float) -> Moving:
     return state, friction, taken
 
 
-def _lying(problem: Problem, leg: Leg, moving: Moving, elapsed: Floats) -> Moving:
+def _lying(problem: Problem, bounce: Bounce, moving: Moving, elapsed: Floats) -> Moving:
     """Return the motion of a sphere that lies on the plate for some times [s]; `moving`:
     when it came to lie, the same for all of them.
     """
-    assert leg.oblique is not None
+    assert bounce.oblique is not None
     assert problem.oblique is not None
     (sphere, _), (states, _, taken), same = (
-        leg.oblique,
+        bounce.oblique,
         moving,
         np.zeros(len(elapsed), dtype=np.intp),
     )
@@ -99,11 +99,11 @@ def _lying(problem: Problem, leg: Leg, moving: Moving, elapsed: Floats) -> Movin
 
 
 def _columns(
-    oblique: Oblique, leg: Leg, state: State, friction: Floats, taken: Floats
+    oblique: Oblique, bounce: Bounce, state: State, friction: Floats, taken: Floats
 ) -> dict[str, Floats]:
     """Return the columns of a motion."""
-    assert leg.oblique is not None
-    sphere, _ = leg.oblique
+    assert bounce.oblique is not None
+    sphere, _ = bounce.oblique
     kinetic, rotation = sphere.kinetic(state)
     place = np.array(oblique.position, dtype=float)[:, None]
     potential = -sphere.mass * (sphere.gravity * (state.position - place)).sum(axis=0)

@@ -18,7 +18,7 @@ import numpy as np
 from vibroimpact.arrays import Drops, Floats
 from vibroimpact.dynamics.contact import NormalRecords
 from vibroimpact.dynamics.core import normal_records as records
-from vibroimpact.dynamics.encounter import Encounter
+from vibroimpact.dynamics.impact_conditions import ImpactConditions
 
 if TYPE_CHECKING:
     from vibroimpact.dynamics.rigid.line_contact import RecordedContact
@@ -104,7 +104,7 @@ class NormalMotion:
 
 
 def normal_motions(
-    normals: NormalRecords, encounter: Encounter
+    normals: NormalRecords, conditions: ImpactConditions
 ) -> list[tuple[Drops, NormalMotion]]:
     """Return the normal motion of contacts in groups that consist of the same parts, with
     the places of their drops.
@@ -114,7 +114,7 @@ def normal_motions(
         places = np.flatnonzero(normals.shapes == shape)
         if shape == 0:
             motions.extend(
-                (np.array([place]), _followed(encounter.pick(np.array([place])), normals.steps))
+                (np.array([place]), _followed(conditions.pick(np.array([place])), normals.steps))
                 for place in places.tolist()
             )
             continue
@@ -162,18 +162,20 @@ def _joined(parts: list[Floats]) -> NormalMotion:
     )
 
 
-def _followed(encounter: Encounter, steps: int) -> NormalMotion:
+def _followed(conditions: ImpactConditions, steps: int) -> NormalMotion:
     """Return the normal motion of one drop as the core follows it, in parts between which
     the force is not smooth.
     """
     # a drop of impulses does not load the compiler
     from vibroimpact.dynamics.rigid.line_contact import RecordedContact
 
-    recorded = RecordedContact.of(encounter, _TOLERANCE)
-    leaving = encounter.under(encounter.law.after_compression(np.array([recorded.contact.deepest])))
+    recorded = RecordedContact.of(conditions, _TOLERANCE)
+    leaving = conditions.under(
+        conditions.law.after_compression(np.array([recorded.contact.deepest]))
+    )
     parts = []
     for begin, end in itertools.pairwise(recorded.corners().tolist()):
-        here = encounter if end <= recorded.contact.time_of_deepest else leaving
+        here = conditions if end <= recorded.contact.time_of_deepest else leaving
         part = _of_part(recorded, here, begin, end - begin, steps)
         if _is_steep_at_end(part):
             part = _of_part(recorded, here, begin, end - begin, records.MORE_STEPS * steps)
@@ -182,7 +184,7 @@ def _followed(encounter: Encounter, steps: int) -> NormalMotion:
 
 
 def _of_part(
-    recorded: RecordedContact, encounter: Encounter, begin: float, length: float, steps: int
+    recorded: RecordedContact, conditions: ImpactConditions, begin: float, length: float, steps: int
 ) -> Floats:
     """Return the rows of the normal motion in a part of a contact that the core followed (6, G);
     the time is a cosine of the parameter.
@@ -197,14 +199,14 @@ def _of_part(
         step**2 * half * np.cos(angle),
     )
     delta, rate, _ = recorded.motion(begin + time)
-    law, speed = encounter.law, encounter.approach_speed
+    law, speed = conditions.law, conditions.approach_speed
     force = np.add(*law.forces(delta, rate, speed))
     aside = _ASIDE * length
-    changes = aside * rate, aside * (encounter.gravity - force / encounter.mass)
+    changes = aside * rate, aside * (conditions.gravity - force / conditions.mass)
     later, earlier = (
         np.add(
             *law.forces(
-                np.maximum(delta + sign * changes[0], encounter.floor),
+                np.maximum(delta + sign * changes[0], conditions.floor),
                 rate + sign * changes[1],
                 speed,
             )
@@ -215,7 +217,7 @@ def _of_part(
     if law.tension == "cut":
         slope, force = np.where(force > 0.0, slope, 0.0), np.maximum(force, 0.0)
     # what stops the bodies is the force
-    impulse = encounter.mass * (encounter.gravity * time - (rate - rate[0]))
+    impulse = conditions.mass * (conditions.gravity * time - (rate - rate[0]))
     return np.array([time, pace, bend, np.maximum(force, 0.0), slope, impulse])
 
 

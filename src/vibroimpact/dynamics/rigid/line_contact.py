@@ -24,7 +24,7 @@ from vibroimpact.dynamics.core.normal_records import MOTION_ROWS
 from vibroimpact.dynamics.core.phase_contact import collocate_contact
 from vibroimpact.dynamics.core.phase_records import ROWS, PhaseRules
 from vibroimpact.dynamics.core.records import Law
-from vibroimpact.dynamics.encounter import Encounter
+from vibroimpact.dynamics.impact_conditions import ImpactConditions
 from vibroimpact.dynamics.law_coefficients import coefficients_of
 from vibroimpact.dynamics.rigid.phase_rules import normal_grid, phase_rules
 
@@ -47,29 +47,29 @@ _ON_CORNER = 1e-9  # of the duration
 
 
 def follow_contacts(
-    encounter: Encounter, tolerance: float, friction_steps: int = 0
+    conditions: ImpactConditions, tolerance: float, friction_steps: int = 0
 ) -> tuple[Contact, Floats, Floats]:
     """Return the contacts of B drops, their largest forces [N], and the times of these since first
     touch [s].
 
     Parameters
     ----------
-    encounter : Encounter
+    conditions : ImpactConditions
         The impact: law, mass, gravity, approach speed.
     tolerance : float
         Relative error allowed.
     friction_steps : int
         Of the normal motion in each segment of a contact, if it drives friction.
     """
-    law, size = encounter.law, len(encounter.mass)
+    law, size = conditions.law, len(conditions.mass)
     collocates = _collocates(law, tolerance)
     touches = np.array(
         [
-            encounter.mass,
-            encounter.gravity,
-            encounter.approach_speed,
-            encounter.depth,
-            encounter.speed_scale,
+            conditions.mass,
+            conditions.gravity,
+            conditions.approach_speed,
+            conditions.depth,
+            conditions.speed_scale,
         ]
     )
     rules = _rules(law, tolerance)
@@ -85,7 +85,7 @@ def follow_contacts(
         )
         while True:
             solved, written = follow_lines(
-                _manner(encounter, 0, tolerance), *known, contacts, solved, written
+                _manner(conditions, 0, tolerance), *known, contacts, solved, written
             )
             if solved == size:
                 break
@@ -109,7 +109,7 @@ def follow_contacts(
         Piece(
             np.arange(size),
             np.zeros(size),
-            LineMotion(encounter, tolerance, "compression", time_of_deepest),
+            LineMotion(conditions, tolerance, "compression", time_of_deepest),
             law,
         )
     ]
@@ -120,7 +120,7 @@ def follow_contacts(
             Piece(
                 left,
                 time_of_deepest[left],
-                LineMotion(encounter.take(left), tolerance, "restitution", spans),
+                LineMotion(conditions.take(left), tolerance, "restitution", spans),
                 after,
             )
         )
@@ -143,7 +143,7 @@ def follow_contacts(
     return contact, peak_force, time_of_peak
 
 
-def release_rates(encounter: Encounter, tolerance: float) -> Floats:
+def release_rates(conditions: ImpactConditions, tolerance: float) -> Floats:
     """Return the indentation rates of B drops at the end of their contacts [m/s]: zero where they
     are captured, NaN where that failed.
 
@@ -151,24 +151,24 @@ def release_rates(encounter: Encounter, tolerance: float) -> Floats:
 
     Parameters
     ----------
-    encounter : Encounter
+    conditions : ImpactConditions
         The impact.
     tolerance : float
         Relative error allowed.
     """
-    size = len(encounter.mass)
+    size = len(conditions.mass)
     rates = np.full(size, np.nan)
-    if size < FEW and _collocates(encounter.law, tolerance):
+    if size < FEW and _collocates(conditions.law, tolerance):
         with interpreted():
             rates = np.array(
                 [
-                    _collocated_rate(encounter.pick(np.array([drop])), tolerance)
+                    _collocated_rate(conditions.pick(np.array([drop])), tolerance)
                     for drop in range(size)
                 ]
             )
     left = np.flatnonzero(np.isnan(rates))
     if left.size:
-        contact, *_ = follow_contacts(encounter.pick(left), tolerance)
+        contact, *_ = follow_contacts(conditions.pick(left), tolerance)
         rates[left] = np.where(
             contact.outcome == CAPTURED,
             0.0,
@@ -177,20 +177,20 @@ def release_rates(encounter: Encounter, tolerance: float) -> Floats:
     return rates
 
 
-def _collocated_rate(encounter: Encounter, tolerance: float) -> float:
+def _collocated_rate(conditions: ImpactConditions, tolerance: float) -> float:
     """Return the indentation rate of one drop at the end of its contact [m/s]; NaN if it
     cannot be collocated.
     """
-    held, rules = encounter.law.take(0), _rules(encounter.law, tolerance)
+    held, rules = conditions.law.take(0), _rules(conditions.law, tolerance)
     law = law_at_touch(
         law_addresses(type(held)),
         law_coefficients(held),
         _NO_COMPLIANCE,
-        float(encounter.approach_speed[0]),
+        float(conditions.approach_speed[0]),
     )
     room = np.zeros((ROWS, rules.vectors.shape[2]))
     solved, contact = collocate_contact(
-        law, _manner(encounter, 0, tolerance), rules, normal_grid(0), room
+        law, _manner(conditions, 0, tolerance), rules, normal_grid(0), room
     )
     return float(contact.end.rate) if solved else np.nan
 
@@ -226,7 +226,7 @@ class LineMotion:
 
     Parameters
     ----------
-    encounter : Encounter
+    conditions : ImpactConditions
         The impact, with the law as it is at touch.
     tolerance : float
         Relative error allowed.
@@ -236,7 +236,7 @@ class LineMotion:
         Of this part [s].
     """
 
-    encounter: Encounter
+    conditions: ImpactConditions
     tolerance: float
     phase: Literal["compression", "restitution"]
     duration: Floats
@@ -246,7 +246,7 @@ class LineMotion:
         if drops.all():
             return self
         return LineMotion(
-            self.encounter.pick(np.flatnonzero(drops)),
+            self.conditions.pick(np.flatnonzero(drops)),
             self.tolerance,
             self.phase,
             self.duration[drops],
@@ -255,7 +255,7 @@ class LineMotion:
     @cached_property
     def recorded(self) -> RecordedContact:
         """The contact of one drop with its steps."""
-        return RecordedContact.of(self.encounter, self.tolerance)
+        return RecordedContact.of(self.conditions, self.tolerance)
 
     @property
     def begins_at(self) -> float:
@@ -280,7 +280,7 @@ class LineMotion:
             times = np.unique(np.append(times, self.recorded.contact.time_of_peak_force))
         return np.append(times[times < self.duration[0]], self.duration[0])
 
-    def at(self, time: Floats, encounter: Encounter) -> tuple[Floats, Floats, Floats]:
+    def at(self, time: Floats, conditions: ImpactConditions) -> tuple[Floats, Floats, Floats]:
         """Return indentation [m], its rate [m/s] and the energy dissipated since the
         start [J] of one drop at times since then [s].
         """
@@ -311,16 +311,16 @@ class RecordedContact:
     held: CompliantLaw
 
     @classmethod
-    def of(cls, encounter: Encounter, tolerance: float) -> RecordedContact:
+    def of(cls, conditions: ImpactConditions, tolerance: float) -> RecordedContact:
         """Follow the contact of one drop again, and record its steps."""
-        held = encounter.law.take(0)
+        held = conditions.law.take(0)
         law = law_at_touch(
             law_addresses(type(held)),
             law_coefficients(held),
             _NO_COMPLIANCE,
-            float(encounter.approach_speed[0]),
+            float(conditions.approach_speed[0]),
         )
-        manner, room = _manner(encounter, 0, tolerance), _ROOM
+        manner, room = _manner(conditions, 0, tolerance), _ROOM
         while True:
             steps = records.LineSteps(
                 variable=np.zeros(room, dtype=np.int64),
@@ -379,17 +379,17 @@ class RecordedContact:
         )
 
 
-def _manner(encounter: Encounter, drop: int, tolerance: float) -> records.LineManner:
-    """Return a drop of an encounter as the core takes it."""
-    law = encounter.law
+def _manner(conditions: ImpactConditions, drop: int, tolerance: float) -> records.LineManner:
+    """Return a drop of an conditions as the core takes it."""
+    law = conditions.law
     return records.LineManner(
         root=law.root,
         tension=TENSIONS.index(law.tension),
         contact_end=ENDS.index(law.contact_end),
-        mass=float(encounter.mass[drop]),
-        gravity=float(encounter.gravity[drop]),
-        depth=float(encounter.depth[drop]),
-        speed_scale=float(encounter.speed_scale[drop]),
+        mass=float(conditions.mass[drop]),
+        gravity=float(conditions.gravity[drop]),
+        depth=float(conditions.depth[drop]),
+        speed_scale=float(conditions.speed_scale[drop]),
         tolerance=max(_OF_STEP * tolerance, _LEAST_ERROR),
         most_steps=_MOST_STEPS,
     )

@@ -12,8 +12,8 @@ from typing import Protocol
 import numpy as np
 
 from vibroimpact.arrays import Floats
-from vibroimpact.dynamics.encounter import Encounter
 from vibroimpact.dynamics.flight import Flight
+from vibroimpact.dynamics.impact_conditions import ImpactConditions
 from vibroimpact.dynamics.shaken.ride import RideSegment
 
 Motion = tuple[Floats, Floats, Floats, Floats, Floats, Floats]
@@ -35,7 +35,7 @@ class MotionInContact(Protocol):
     def grid(self) -> Floats:
         """Return times since the start at which it is well resolved [s]."""
 
-    def at(self, time: Floats, encounter: Encounter) -> tuple[Floats, Floats, Floats]:
+    def at(self, time: Floats, conditions: ImpactConditions) -> tuple[Floats, Floats, Floats]:
         """Return indentation [m], its rate [m/s] and the energy dissipated since the
         start [J] at times since then [s].
         """
@@ -62,12 +62,12 @@ class FlightSegment:
 
 @dataclass(frozen=True)
 class ContactSegment:
-    """Compression or restitution of one drop, or a part of it, and its `Encounter`."""
+    """Compression or restitution of one drop, or a part of it, and its `ImpactConditions`."""
 
     start: float
     end: float
     motion: MotionInContact
-    encounter: Encounter
+    conditions: ImpactConditions
 
     @property
     def duration(self) -> Floats:
@@ -80,9 +80,9 @@ class ContactSegment:
 
     def at(self, time: Floats) -> Motion:
         """Return the motion at times [s] since the start of the segment."""
-        delta, velocity, lost = self.motion.at(time, self.encounter)
-        law, begun = self.encounter.law, np.array([self.motion.begins_at])
-        elastic, dissipative = law.forces(delta, velocity, self.encounter.approach_speed)
+        delta, velocity, lost = self.motion.at(time, self.conditions)
+        law, begun = self.conditions.law, np.array([self.motion.begins_at])
+        elastic, dissipative = law.forces(delta, velocity, self.conditions.approach_speed)
         force = elastic + dissipative
         if law.tension == "cut":
             force = np.maximum(force, 0.0)

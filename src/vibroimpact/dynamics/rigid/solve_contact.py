@@ -8,15 +8,17 @@ from typing import Protocol
 
 from vibroimpact.arrays import Drops, Floats
 from vibroimpact.dynamics.contact import Contact
-from vibroimpact.dynamics.encounter import Encounter
-from vibroimpact.dynamics.oblique.motion import friction_steps
+from vibroimpact.dynamics.impact_conditions import ImpactConditions
+from vibroimpact.dynamics.oblique.oblique_motion import friction_steps
 from vibroimpact.dynamics.problem import Problem
 
 
 class SolvesContact(Protocol):
     """A solver of one contact of some drops of a run."""
 
-    def __call__(self, encounter: Encounter, drops: Drops) -> tuple[Contact, Floats, Floats]:
+    def __call__(
+        self, conditions: ImpactConditions, drops: Drops
+    ) -> tuple[Contact, Floats, Floats]:
         """Return the contact, its largest force [N], and the time of that since first
         touch [s]; `drops` are indices in the run.
         """
@@ -27,10 +29,10 @@ def solver_for(problem: Problem) -> SolvesContact:
     """Return the solver of contacts of rigid bodies for the drops of a problem."""
     steps = 0 if problem.oblique is None else friction_steps(problem.tolerance)
 
-    def solve(encounter: Encounter, drops: Drops) -> tuple[Contact, Floats, Floats]:
+    def solve(conditions: ImpactConditions, drops: Drops) -> tuple[Contact, Floats, Floats]:
         # a law without a force does not load the compiler
         from vibroimpact.dynamics.rigid.line_contact import follow_contacts
 
-        return follow_contacts(encounter, problem.tolerance, steps)
+        return follow_contacts(conditions, problem.tolerance, steps)
 
     return solve

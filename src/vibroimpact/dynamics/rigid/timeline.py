@@ -9,7 +9,7 @@ from typing import cast, overload
 import numpy as np
 
 from vibroimpact.arrays import Floats, Indices
-from vibroimpact.dynamics.leg import Leg
+from vibroimpact.dynamics.bounce import Bounce
 from vibroimpact.dynamics.rigid.segments import (
     ContactSegment,
     FlightSegment,
@@ -22,12 +22,12 @@ from vibroimpact.dynamics.shaken.ride import RideSegment
 
 @dataclass(frozen=True, eq=False)
 class Timeline(Sequence[Segment]):
-    """Segments made lazily from the legs of a run, since those of a hundred thousand impacts would
-    take 1 GB.
+    """Segments made lazily from the bounces of a run, since those of a hundred thousand impacts
+    would take 1 GB.
 
     Parameters
     ----------
-    legs : sequence of Leg
+    bounces : sequence of Bounce
         The flights and contacts of one drop.
     rest : RestSegment, RideSegment or None
         What comes after them, if the drop comes to rest.
@@ -38,7 +38,7 @@ class Timeline(Sequence[Segment]):
         [J].
     """
 
-    legs: Sequence[Leg]
+    bounces: Sequence[Bounce]
     rest: RestSegment | RideSegment | None
     starts: Floats
     spent: Floats
@@ -48,11 +48,11 @@ class Timeline(Sequence[Segment]):
     def __len__(self) -> int:
         return len(self.starts)
 
-    def leg_of(self, number: int) -> int:
-        """Return the number of the leg to which a segment belongs; what comes after them
+    def bounce_of(self, number: int) -> int:
+        """Return the number of the bounce to which a segment belongs; what comes after them
         belongs to the last one.
         """
-        return min(int(np.searchsorted(self._firsts, number, side="right")), len(self.legs)) - 1
+        return min(int(np.searchsorted(self._firsts, number, side="right")), len(self.bounces)) - 1
 
     @overload
     def __getitem__(self, index: int) -> Segment: ...
@@ -64,23 +64,23 @@ class Timeline(Sequence[Segment]):
         if isinstance(index, slice):
             return [self[number] for number in range(*index.indices(len(self)))]
         number = range(len(self))[index]
-        leg = self.leg_of(number)
+        bounce = self.bounce_of(number)
         if self.rest is not None and number == len(self) - 1:
             return self.rest
-        if leg not in self._recent:  # segments are mostly read in order
+        if bounce not in self._recent:  # segments are mostly read in order
             self._recent.clear()
-            self._recent[leg] = segments_of(self.legs[leg])
-        return self._recent[leg][number - int(self._firsts[leg])]
+            self._recent[bounce] = segments_of(self.bounces[bounce])
+        return self._recent[bounce][number - int(self._firsts[bounce])]
 
 
 def timeline_of(
-    legs: Sequence[Leg], rest: RestSegment | RideSegment | None, lost: Floats
+    bounces: Sequence[Bounce], rest: RestSegment | RideSegment | None, lost: Floats
 ) -> Timeline:
     """Return the history of one drop.
 
     Parameters
     ----------
-    legs : sequence of Leg
+    bounces : sequence of Bounce
         Its flights and contacts.
     rest : RestSegment, RideSegment or None
         What comes after them, if it comes to rest.
@@ -92,10 +92,10 @@ def timeline_of(
     starts: list[float] = []
     spent: list[Floats] = []
     firsts = []
-    for number, leg in enumerate(legs):
+    for number, bounce in enumerate(bounces):
         firsts.append(len(starts))
         so_far = before[number]
-        segments = segments_of(leg)
+        segments = segments_of(bounce)
         for segment in segments:
             if isinstance(segment, RideSegment):
                 so_far = before[number + 1]
@@ -109,29 +109,32 @@ def timeline_of(
         firsts.append(len(starts))
         starts.append(rest.start)
         spent.append(before[-1])
-    return Timeline(legs, rest, np.array(starts), np.array(spent), np.array(firsts))
+    return Timeline(bounces, rest, np.array(starts), np.array(spent), np.array(firsts))
 
 
-def segments_of(leg: Leg) -> list[Segment]:
-    """Return the segments of a leg of one drop."""
-    touch = float(leg.flight_end[0])
-    segments: list[Segment] = [FlightSegment(float(leg.flight.start[0]), touch, leg.flight)]
-    if leg.ride is not None and touch < float(leg.ride.end[0]) < np.inf:
-        end = float(leg.ride.end[0])
-        segments.append(RideSegment(touch, end, leg.ride, end))
-    if leg.contact is None or leg.encounter is None:
+def segments_of(bounce: Bounce) -> list[Segment]:
+    """Return the segments of a bounce of one drop."""
+    touch = float(bounce.flight_end[0])
+    segments: list[Segment] = [FlightSegment(float(bounce.flight.start[0]), touch, bounce.flight)]
+    if bounce.ride is not None and touch < float(bounce.ride.end[0]) < np.inf:
+        end = float(bounce.ride.end[0])
+        segments.append(RideSegment(touch, end, bounce.ride, end))
+    if bounce.contact is None or bounce.conditions is None:
         return segments
-    for piece in leg.contact.pieces:
+    for piece in bounce.contact.pieces:
         begin = touch + float(piece.start[0])
         finish = begin + float(piece.motion.duration[0])
         segments.append(
             ContactSegment(
-                begin, finish, cast(MotionInContact, piece.motion), leg.encounter.under(piece.law)
+                begin,
+                finish,
+                cast(MotionInContact, piece.motion),
+                bounce.conditions.under(piece.law),
             )
         )
     return segments
 
 
-def end_of(leg: Leg) -> float:
-    """Return the end time of a leg of one drop [s]."""
-    return segments_of(leg)[-1].end
+def end_of(bounce: Bounce) -> float:
+    """Return the end time of a bounce of one drop [s]."""
+    return segments_of(bounce)[-1].end

@@ -23,8 +23,8 @@ from vibroimpact.dynamics.sensors.filtered_chain import add_responses, filtered_
 from vibroimpact.dynamics.sensors.instruments.microphone import Microphone
 from vibroimpact.dynamics.sensors.measuring_chain import MeasuringChain, measuring_chain
 from vibroimpact.dynamics.sensors.sensor import Sensor
-from vibroimpact.dynamics.vibrating.bodies import bases_of_plate
 from vibroimpact.dynamics.vibrating.oscillators import Oscillators
+from vibroimpact.dynamics.vibrating.vibrating_bodies import bases_of_plate
 from vibroimpact.errors import InputError
 
 _ROWS = 256

@@ -42,7 +42,7 @@ class Ports:
         of `pulses`.
         """
         port = self.of(stretch.system)
-        forces = [stretch.force[0], *(() if stretch.rubbed is None else stretch.rubbed.force)]
+        forces = [stretch.force[0], *(() if stretch.sliding is None else stretch.sliding.force)]
         return [
             (port + number, pulses(stretch, force, fastest, until))
             for number, force in enumerate(forces)

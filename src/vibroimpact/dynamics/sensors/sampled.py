@@ -459,8 +459,8 @@ def _in_contact(
     port = ports.of(stretch.system)
     moved -= chain.direct[port] @ force_derivatives(stretch, times)
     # there is no residual compliance to friction: its derivatives do not count
-    if stretch.rubbed is not None:
-        forces = stretch.rubbed.at(times)[2]
+    if stretch.sliding is not None:
+        forces = stretch.sliding.at(times)[2]
         moved -= np.einsum(
             "ps,pt->st", chain.direct[port + 1 : port + 1 + len(forces), :, 0], forces
         )

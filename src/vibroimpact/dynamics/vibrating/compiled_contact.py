@@ -10,23 +10,23 @@ from vibroimpact.dynamics.core import contact as core
 from vibroimpact.dynamics.core.contact_records import Manner, Parts, Progress
 from vibroimpact.dynamics.core.events import ENDS, TENSIONS
 from vibroimpact.dynamics.core.records import MAPS
-from vibroimpact.dynamics.core.rubbing_records import NUMBERS, Rubbing
+from vibroimpact.dynamics.core.surface_friction_records import NUMBERS, SlidingSphere
 from vibroimpact.dynamics.vibrating.active_contact import ActiveContact, record_peaks
 from vibroimpact.dynamics.vibrating.contact_history import ContactHistory
 from vibroimpact.dynamics.vibrating.contact_view import contact_view
 from vibroimpact.dynamics.vibrating.free_motion import FreePhase
 from vibroimpact.dynamics.vibrating.linear_system import FreeMotion, State
 from vibroimpact.dynamics.vibrating.local import LocalContact
-from vibroimpact.dynamics.vibrating.march import March, MotionPart
 from vibroimpact.dynamics.vibrating.radau_eigenbasis import (
     NODES_PER_STRETCH,
     RadauEigenbasis,
     bases_of,
     radau_eigenbasis,
 )
-from vibroimpact.dynamics.vibrating.rubbing import RubbedStretch, RubbingState
 from vibroimpact.dynamics.vibrating.stretch import VibratingStretch
 from vibroimpact.dynamics.vibrating.stretch_end import with_separation_loss
+from vibroimpact.dynamics.vibrating.surface_friction import SlidingState, SlidingStretch
+from vibroimpact.dynamics.vibrating.time_marching import MotionPart, TimeMarching
 
 _PARTS = 64
 
@@ -43,10 +43,14 @@ class Limits:
 
 
 class CompiledContact:
-    """The contact of a march with one contact, from touch on; `rubbing`: friction at touch."""
+    """The contact of a march with one contact, from touch on; `sphere`: friction at touch."""
 
     def __init__(
-        self, march: March, active: ActiveContact, limits: Limits, rubbing: Rubbing
+        self,
+        march: TimeMarching,
+        active: ActiveContact,
+        limits: Limits,
+        sphere: SlidingSphere,
     ) -> None:
         self.march = march
         self.active = active
@@ -79,10 +83,10 @@ class CompiledContact:
             memories=0,
             largest_force=0.0,
             deepest=0.0,
-            rubbing=rubbing,
+            sphere=sphere,
         )
         self.state = march.state.record
-        self.parts = _room(march.system.number, len(march.system.rate), rubbing.directions)
+        self.parts = _room(march.system.number, len(march.system.rate), sphere.directions)
         self.locals = [active.local]
 
     @property
@@ -176,20 +180,20 @@ class CompiledContact:
             separation_loss=float(parts.separation_loss[part]),
         )
         length = float(parts.length[part])
-        rubbed = self._rubbed(parts, part, basis, length)
+        sliding = self._rubbed(parts, part, basis, length)
         return VibratingStretch(
-            self.view, basis, length, begun, (history,), float(parts.roughness[part]), rubbed
+            self.view, basis, length, begun, (history,), float(parts.roughness[part]), sliding
         )
 
     def _rubbed(
         self, parts: Parts, part: int, basis: RadauEigenbasis, length: float
-    ) -> RubbedStretch | None:
-        rubbing = self.progress.rubbing
-        if not rubbing.directions:
+    ) -> SlidingStretch | None:
+        sphere = self.progress.sphere
+        if not sphere.directions:
             return None
-        start, end = (RubbingState.of(numbers) for numbers in parts.rubbing[part])
-        return RubbedStretch(
-            basis.rule, length, rubbing, start, end, parts.friction[part], parts.slip[part]
+        start, end = (SlidingState.of(numbers) for numbers in parts.sphere[part])
+        return SlidingStretch(
+            basis.rule, length, sphere, start, end, parts.friction[part], parts.slip[part]
         )
 
 
@@ -222,5 +226,5 @@ def _room(number: int, elements: int, directions: int) -> Parts:
         late_loss=np.zeros(1),
         friction=np.empty((_PARTS, directions, nodes)),
         slip=np.empty((_PARTS, directions, nodes)),
-        rubbing=np.empty((_PARTS, 2, NUMBERS)),
+        sphere=np.empty((_PARTS, 2, NUMBERS)),
     )

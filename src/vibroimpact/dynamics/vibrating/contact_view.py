@@ -96,13 +96,13 @@ class ContactView:
         )
 
     @property
-    def rubbed(self) -> ContactView:
+    def sliding(self) -> ContactView:
         """The system of a drop reduced to its contact and to the directions of friction
         at it; itself where there are none.
         """
         if self.system.along is None:
             return self
-        return contact_view(self.system.rubbed, range(1 + len(self.system.along)))
+        return contact_view(self.system.sliding, range(1 + len(self.system.along)))
 
     @cached_property
     def bodies(self) -> Bodies:
@@ -111,7 +111,7 @@ class ContactView:
         """
         system = self.system.record_of(self.contacts[0])
         return Bodies(
-            system, self.surfaces, self.coordinates, self.rubbed.surfaces, self.rubbed.coordinates
+            system, self.surfaces, self.coordinates, self.sliding.surfaces, self.sliding.coordinates
         )
 
     @cached_property

@@ -54,11 +54,11 @@ class FreePhase:
         """Return the energy lost since the start [J] as in `lost_by`, at states of this motion."""
         lost, system = self.free.lost_at(state), self.free.system
         for number, local in self.recoiling:
-            lost[..., -1] += recoil_loss(system, number, local, self.free.start, state)
+            lost[..., -1] += coasting_loss(system, number, local, self.free.start, state)
         return lost
 
 
-def recoil_loss(
+def coasting_loss(
     system: LinearSystem, number: int, local: LocalContact, before: State, now: State
 ) -> Floats:
     """Return the stored energy that a recoiling contact has lost between a state and

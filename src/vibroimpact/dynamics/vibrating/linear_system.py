@@ -159,7 +159,7 @@ class LinearSystem(Oscillators):
         return found
 
     @cached_property
-    def rubbed(self) -> LinearSystem:
+    def sliding(self) -> LinearSystem:
         """The same system with a further contact for each direction in which friction
         acts, and about which its moments do.
         """

@@ -17,7 +17,7 @@ from vibroimpact.dynamics.vibrating.rest_motion import RestMotion
 from vibroimpact.dynamics.vibrating.stretch import VibratingStretch
 
 if TYPE_CHECKING:
-    from vibroimpact.dynamics.leg import Leg
+    from vibroimpact.dynamics.bounce import Bounce
 
 _STRETCH_POINTS, _GAP_POINTS = 49, 25
 _FREE_POINTS, _LATER_POINTS, _PERIODS = 2001, 1001, 10.0
@@ -97,13 +97,13 @@ class VibratingSegment:
 
 
 def vibrating_timeline(
-    legs: Sequence[Leg], lying: RestMotion | None, end: float
+    bounces: Sequence[Bounce], lying: RestMotion | None, end: float
 ) -> list[VibratingSegment]:
     """Return the history of one drop as segments in order.
 
     Parameters
     ----------
-    legs : sequence of Leg
+    bounces : sequence of Bounce
         Its flights and visits.
     lying : RestMotion or None
         Its motion at rest, if it comes to rest.
@@ -111,14 +111,14 @@ def vibrating_timeline(
         End of the run [s].
     """
     segments: list[VibratingSegment] = []
-    lost_before = np.zeros(legs[0].motions[0].system.number + 2)
-    for leg in legs:
-        touch = float(leg.flight_end[0])
+    lost_before = np.zeros(bounces[0].motions[0].system.number + 2)
+    for bounce in bounces:
+        touch = float(bounce.flight_end[0])
         segments.append(
-            VibratingSegment(float(leg.flight.start[0]), touch, leg.motions[0], lost_before)
+            VibratingSegment(float(bounce.flight.start[0]), touch, bounce.motions[0], lost_before)
         )
         lost_before = segments[-1].lost_after
-        for piece in leg.contact.pieces if leg.contact is not None else ():
+        for piece in bounce.contact.pieces if bounce.contact is not None else ():
             begin = touch + float(piece.start[0])
             assert isinstance(piece.motion, (VibratingStretch, FreePhase))
             segments.append(

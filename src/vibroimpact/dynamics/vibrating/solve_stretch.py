@@ -12,15 +12,15 @@ from vibroimpact.dynamics.core import attempt as core
 from vibroimpact.dynamics.core.contact_records import Attempt, Balance, Beginning, Manner
 from vibroimpact.dynamics.core.events import NO_EVENT
 from vibroimpact.dynamics.core.records import MAPS, Event, Nodes
-from vibroimpact.dynamics.core.rubbing_records import Rubbed
 from vibroimpact.dynamics.core.stretch import begun_indentations
+from vibroimpact.dynamics.core.surface_friction_records import SlidStretch
 from vibroimpact.dynamics.vibrating.contact_history import ContactHistory
 from vibroimpact.dynamics.vibrating.contact_view import ContactView
 from vibroimpact.dynamics.vibrating.linear_system import State
 from vibroimpact.dynamics.vibrating.local import LocalContact, contacts_of
 from vibroimpact.dynamics.vibrating.radau_eigenbasis import bases_of, radau_eigenbasis
-from vibroimpact.dynamics.vibrating.rubbing import NO_RUBBING
 from vibroimpact.dynamics.vibrating.stretch import VibratingStretch
+from vibroimpact.dynamics.vibrating.surface_friction import NO_FRICTION
 
 _NO_GUESS = Nodes(np.zeros(0), np.zeros(0), np.zeros(0))
 
@@ -55,9 +55,9 @@ class StretchAhead:
         approximately.
         """
         start, laws = view.start(state), contacts_of(contacts)
-        rubbed = Rubbed(view.surfaces, start, NO_RUBBING)
+        sliding = SlidStretch(view.surfaces, start, NO_FRICTION)
         beginning = Beginning(
-            state.record, start, laws, begun_indentations(laws, start, begun), rubbed
+            state.record, start, laws, begun_indentations(laws, start, begun), sliding
         )
         return cls(view, contacts, state, trend, manner, beginning)
 

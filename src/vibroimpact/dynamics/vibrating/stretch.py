@@ -21,7 +21,7 @@ from vibroimpact.dynamics.vibrating.contact_history import ContactHistory
 from vibroimpact.dynamics.vibrating.contact_view import ContactView
 from vibroimpact.dynamics.vibrating.linear_system import LinearSystem, State
 from vibroimpact.dynamics.vibrating.radau_eigenbasis import RadauEigenbasis
-from vibroimpact.dynamics.vibrating.rubbing import RubbedStretch
+from vibroimpact.dynamics.vibrating.surface_friction import SlidingStretch
 
 _KEPT = 64
 """Number of stretches whose motion a thread keeps in memory, the last ones that were
@@ -70,7 +70,7 @@ class VibratingStretch:
     `view`: the system reduced to the contacts that push. `length` [s]. `start`: state at the start.
     `contacts`: histories of the contacts that push. `roughness`: the last Legendre coefficients of
     the forces, relative to their scale; the error at the end is of the order of its square.
-    `rubbed`: friction, of a drop that has any.
+    `sliding`: friction, of a drop that has any.
     """
 
     view: ContactView
@@ -79,7 +79,7 @@ class VibratingStretch:
     start: State
     contacts: tuple[ContactHistory, ...]
     roughness: float
-    rubbed: RubbedStretch | None = None
+    sliding: SlidingStretch | None = None
 
     @property
     def system(self) -> LinearSystem:
@@ -111,10 +111,10 @@ class VibratingStretch:
         self.keep()
         view, force = self.view, self.force
         static = np.stack([contact.static for contact in self.contacts])
-        if self.rubbed is not None:
-            view = view.rubbed
-            force = np.concatenate([force, self.rubbed.force])
-            static = np.concatenate([static, np.zeros_like(self.rubbed.force)])
+        if self.sliding is not None:
+            view = view.sliding
+            force = np.concatenate([force, self.sliding.force])
+            static = np.concatenate([static, np.zeros_like(self.sliding.force)])
         start = self.start.record
         bodies = (view.surfaces, view.coordinates)
         path = stretch_path(
@@ -192,8 +192,8 @@ class VibratingStretch:
         if system.driven:
             shapes = system.shape[self.view.contacts, -system.driven :]
             pushed = self.force.T @ shapes
-            if self.rubbed is not None and system.along is not None:
-                pushed -= self.rubbed.force.T @ system.along[:, -system.driven :]
+            if self.sliding is not None and system.along is not None:
+                pushed -= self.sliding.force.T @ system.along[:, -system.driven :]
             by_coordinate[:, -system.driven :] = -pushed * self.velocities[:, -system.driven :]
         return np.concatenate([by_coordinate, lost[:, None]], axis=1)
 

@@ -12,9 +12,9 @@ import numpy as np
 from vibroimpact.arrays import Floats
 from vibroimpact.contact.roots import find_root
 from vibroimpact.dynamics.core.events import NO_EVENT
+from vibroimpact.dynamics.vibrating.coasting import along_motion
 from vibroimpact.dynamics.vibrating.linear_system import State
 from vibroimpact.dynamics.vibrating.radau_eigenbasis import GRID, NODES_PER_STRETCH
-from vibroimpact.dynamics.vibrating.recoil import along_motion
 from vibroimpact.dynamics.vibrating.solve_stretch import StretchAhead
 from vibroimpact.dynamics.vibrating.stretch import VibratingStretch
 

@@ -29,9 +29,9 @@ from vibroimpact.paper.report.rigid_charts import RIGID_FIGURES, rigid_chart
 from vibroimpact.paper.report.sampling_chart import sampling_chart
 from vibroimpact.paper.report.unresolved_chart import unresolved_chart
 from vibroimpact.paper.report_section import ComparedValue, ReportSection, Verdict
-from vibroimpact.paper.rigid import damping_section, section_3_2, table2
 from vibroimpact.paper.runs import Runs
 from vibroimpact.paper.sampling import sampling_section
+from vibroimpact.paper.type1 import damping_section, section_3_2, table2
 from vibroimpact.paper.unresolved import unresolved_section
 from vibroimpact.registry import find_named
 

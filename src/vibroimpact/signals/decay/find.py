@@ -10,7 +10,7 @@ from scipy import fft
 
 from vibroimpact.arrays import Floats
 from vibroimpact.errors import InputError
-from vibroimpact.shown import shown
+from vibroimpact.quoting import quoted
 from vibroimpact.signals.decay.decaying_tones import Bins, Spectra, Tones, tones_in
 from vibroimpact.signals.estimate import Estimate
 from vibroimpact.signals.record import Record
@@ -187,11 +187,11 @@ def _checked(records: Sequence[Record], band: tuple[float, float]) -> tuple[Floa
         )
     for one in records:
         if not np.isfinite(one.value).all():
-            raise InputError(f"a sample of {shown(one.name)} is not a finite number")
+            raise InputError(f"a sample of {quoted(one.name)} is not a finite number")
         if samples == 0:
-            raise InputError(f"the record {shown(one.name)} has no samples")
+            raise InputError(f"the record {quoted(one.name)} has no samples")
         if np.ptp(one.value) == 0.0:
-            raise InputError(f"the record {shown(one.name)} is constant; nothing decays in it")
+            raise InputError(f"the record {quoted(one.name)} is constant; nothing decays in it")
     low, high = band
     if not 0.0 < low < high <= 0.5 * rate:
         raise InputError(

@@ -11,7 +11,7 @@ from scipy import optimize
 
 from vibroimpact.arrays import Complex, Floats
 from vibroimpact.errors import InputError
-from vibroimpact.shown import shown
+from vibroimpact.quoting import quoted
 from vibroimpact.signals.decay.decaying_tones import Spectra, Tones
 from vibroimpact.signals.decay.find import DecayMode, bands_in, modes_in_bands, with_doubts
 from vibroimpact.signals.frequency_response import FrequencyResponse
@@ -259,13 +259,13 @@ def common_lines(responses: Sequence[FrequencyResponse]) -> tuple[Floats, Comple
                 for each in (first, one)
             )
             words = (
-                f"{shown(first.name)} and {shown(one.name)} have different frequencies, "
+                f"{quoted(first.name)} and {quoted(one.name)} have different frequencies, "
                 f"{' and '.join(spans)}"
             )
             raise InputError(f"the responses {words}; give those of one measurement")
         if not one.value.any():
             raise InputError(
-                f"the frequency response {shown(one.name)} is zero throughout; leave it out"
+                f"the frequency response {quoted(one.name)} is zero throughout; leave it out"
             )
     return first.frequency, np.stack([one.value for one in responses])
 

@@ -17,7 +17,7 @@ import numpy as np
 from vibroimpact.arrays import Floats
 from vibroimpact.errors import InputError
 from vibroimpact.files.reading import FileKind, opened, with_path
-from vibroimpact.shown import shortened
+from vibroimpact.quoting import shortened
 from vibroimpact.signals.record import Record, checked_rate
 from vibroimpact.structures.free_memory import check_memory
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import lru_cache
 
 from vibroimpact.errors import InputError
-from vibroimpact.shown import shown
+from vibroimpact.quoting import quoted
 from vibroimpact.units.reading import to_si
 from vibroimpact.units.spelling import plain_factor
 
@@ -37,6 +37,6 @@ def in_si(unit: str) -> tuple[float, str]:
             continue
     known = ", ".join(_QUANTITIES.values())
     raise InputError(
-        f"{shown(unit)} is no unit of a signal; known are {known} and their multiples, g, "
+        f"{quoted(unit)} is no unit of a signal; known are {known} and their multiples, g, "
         "strain, and 1 or a.u. for a plain number"
     )

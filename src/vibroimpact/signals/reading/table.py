@@ -13,7 +13,7 @@ from vibroimpact.measurements.header_cells import name_and_unit
 from vibroimpact.measurements.recorded_table import RecordedChannel, filled_in, recorded_channels
 from vibroimpact.measurements.table_file import in_table
 from vibroimpact.measurements.table_layout import Layout
-from vibroimpact.shown import shown
+from vibroimpact.quoting import quoted
 from vibroimpact.signals.reading.equal_steps import (
     Sampled,
     at_equal_steps,
@@ -50,7 +50,7 @@ def table_records(path: Path, columns: str | None = None) -> Iterator[Record]:
         except InputError as error:
             raise in_table(path, error) from None
         own = (
-            f"{shown(channel.name)}: {doubt}"
+            f"{quoted(channel.name)}: {doubt}"
             for doubt in (*channel.doubts, *told, *filter(None, sampled.doubts))
         )
         yield Record(
@@ -66,7 +66,7 @@ def table_records(path: Path, columns: str | None = None) -> Iterator[Record]:
 def _unit_of(layout: Layout, cell: str) -> tuple[float, str]:
     """Return the factor to SI and the SI unit of a channel."""
     name, unit = name_and_unit(cell)
-    where = f"{layout.where}, column {shown(cell)}"
+    where = f"{layout.where}, column {quoted(cell)}"
     if unit is None:
         raise InputError(
             f"{where}: the unit is missing; {layout.with_unit(name, 'V')}, or 1 for a "

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from vibroimpact.errors import InputError
 from vibroimpact.measurements.universal_file import Function, read_universal_file
-from vibroimpact.shown import shown
+from vibroimpact.quoting import quoted
 from vibroimpact.signals.reading.equal_steps import rate_of
 from vibroimpact.signals.reading.si_units import in_si
 from vibroimpact.signals.record import Record
@@ -37,7 +37,7 @@ def universal_records(path: Path) -> Iterator[Record]:
             rate = rate_of(one.time)
         except InputError as error:
             raise InputError(
-                f"{path}, function {one.number} {shown(one.identification)}: {error.message}"
+                f"{path}, function {one.number} {quoted(one.identification)}: {error.message}"
             ) from None
         yield Record(record_name(one), factor * one.values, rate, unit, float(one.time[0]))
 

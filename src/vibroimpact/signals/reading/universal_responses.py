@@ -22,7 +22,7 @@ from vibroimpact.measurements.universal_file import (
     is_universal,
     read_universal_file,
 )
-from vibroimpact.shown import shown
+from vibroimpact.quoting import quoted
 from vibroimpact.signals.frequency_response import (
     RESPONSE_UNITS,
     DegreeOfFreedom,
@@ -114,7 +114,7 @@ def read_responses(path: str | PathLike[str]) -> tuple[FrequencyResponse, ...]:
         try:
             found.append(_response(one, coherences, file.factors, str(path)))
         except InputError as error:
-            faults.append(f"function {one.number} {shown(one.identification)}: {error.message}")
+            faults.append(f"function {one.number} {quoted(one.identification)}: {error.message}")
     if faults and not found:
         raise InputError.of_several(f"{path}, {fault}" for fault in faults)
     if not found:
@@ -183,7 +183,7 @@ def _unit(one: FunctionOfFrequency, factors: dict[str, float] | None) -> tuple[f
         if motion in _MOTIONS and unit != f"{_MOTIONS[motion]}/N":
             raise InputError(
                 f"its data type {motion} is in {_MOTIONS[motion]}, and its unit is "
-                f"{shown(above)}; correct one of them"
+                f"{quoted(above)}; correct one of them"
             )
         return factor, unit, ""
     if motion not in _MOTIONS:
@@ -225,7 +225,7 @@ def _labelled(above: str, below: str) -> tuple[float, str]:
             return to_si(f"1 {above}", name.replace("s2", "s^2")), name
         except InputError:
             continue
-    stated = f"{shown(above)} over {shown(below)}" if below else shown(above)
+    stated = f"{quoted(above)} over {quoted(below)}" if below else quoted(above)
     words = "write motion and force as labels of numerator and denominator, such as g and N"
     raise InputError(
         f"{stated} is no unit of a frequency response, such as {', '.join(RESPONSE_UNITS)}; {words}"

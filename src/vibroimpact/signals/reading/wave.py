@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from vibroimpact.arrays import Floats
 from vibroimpact.errors import InputError
 from vibroimpact.files.reading import FileKind, opened, with_path
-from vibroimpact.shown import shown
+from vibroimpact.quoting import quoted
 from vibroimpact.signals.reading.si_units import in_si
 from vibroimpact.signals.reading.wave_header import FullScale, WaveHeader, read_wave_header
 from vibroimpact.signals.record import Record, checked_rate
@@ -79,7 +79,7 @@ def _scale(full_scale: FullScale | None, stem: str) -> tuple[float, str, str]:
         number = np.nan
     if not isfinite(number) or number == 0.0:
         raise InputError(
-            f"by its comment 1.0 is {shown(value)} {unit}; it must be a finite number "
+            f"by its comment 1.0 is {quoted(value)} {unit}; it must be a finite number "
             f"other than 0, such as 2.5 {unit}"
         )
     return factor * number, si_unit, name

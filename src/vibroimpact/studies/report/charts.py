@@ -22,8 +22,8 @@ from vibroimpact.studies.report.outputs import (
 )
 from vibroimpact.studies.report.over_axes import MOST_AXES, over_axes_chart
 from vibroimpact.studies.report.restitution import restitution_chart
-from vibroimpact.studies.report.sensitivity import Sensitivity, sensitivity_of
 from vibroimpact.studies.report.sensitivity_chart import sensitivity_chart
+from vibroimpact.studies.report.sensitivity_table import Sensitivity, sensitivity_of
 from vibroimpact.studies.report.signals import signal_makers
 from vibroimpact.studies.report.slip_chart import slip_chart
 from vibroimpact.studies.study import Study

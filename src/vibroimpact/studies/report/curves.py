@@ -13,7 +13,7 @@ from vibroimpact.arrays import Floats, Indices
 from vibroimpact.charts.chart import Chart, Panel
 from vibroimpact.charts.marks import Line, Mark, Points
 from vibroimpact.charts.palette import series
-from vibroimpact.shown import shortened, visible
+from vibroimpact.quoting import shortened, visible
 from vibroimpact.studies.drop_variables import PEAK_TABLE
 from vibroimpact.studies.report.axes import StudyAxis
 from vibroimpact.studies.report.drops import MOST_DROPS, drop_texts, results_of

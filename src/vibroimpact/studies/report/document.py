@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from vibroimpact.studies.report.outputs import study_outputs
-from vibroimpact.studies.report.sensitivity import informative_sensitivity
+from vibroimpact.studies.report.sensitivity_table import informative_sensitivity
 from vibroimpact.studies.report.tables import (
     doubt_sentences,
     percentiles_rows,

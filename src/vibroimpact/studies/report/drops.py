@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from vibroimpact.arrays import Floats, Indices
 from vibroimpact.charts.palette import SERIES, series
-from vibroimpact.shown import shortened, visible
+from vibroimpact.quoting import shortened, visible
 from vibroimpact.studies.report.axes import StudyAxis, study_axes
 from vibroimpact.studies.report.labels import value_text, with_unit
 from vibroimpact.studies.report.outputs import Output, drop_numbers, read_output, sampled_places

@@ -8,7 +8,7 @@ from vibroimpact.arrays import Floats
 from vibroimpact.charts.axis import Axis
 from vibroimpact.charts.chart import Chart, Panel
 from vibroimpact.charts.marks import Bars, Level, Mark
-from vibroimpact.shown import shortened, visible
+from vibroimpact.quoting import shortened, visible
 from vibroimpact.studies.report.axes import StudyAxis
 from vibroimpact.studies.report.labels import keys_told
 from vibroimpact.studies.report.outputs import Output, independent_drops, independent_values

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from vibroimpact.shown import shortened, visible
+from vibroimpact.quoting import shortened, visible
 from vibroimpact.studies.percentiles import PERCENTILES
 from vibroimpact.studies.population import CLASS
 from vibroimpact.studies.report.axes import StudyAxis

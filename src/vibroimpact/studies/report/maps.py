@@ -6,7 +6,7 @@ import numpy as np
 
 from vibroimpact.charts.chart import Chart, Panel
 from vibroimpact.charts.marks import Map
-from vibroimpact.shown import shortened, visible
+from vibroimpact.quoting import shortened, visible
 from vibroimpact.studies.report.axes import StudyAxis
 from vibroimpact.studies.report.drops import drop_texts, results_of
 from vibroimpact.studies.report.labels import keys_told

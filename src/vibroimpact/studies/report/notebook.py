@@ -8,8 +8,8 @@ from markupsafe import Markup
 
 from vibroimpact.charts.notebook import plotly_figure
 from vibroimpact.errors import InputError, choices
+from vibroimpact.quoting import quoted, visible
 from vibroimpact.report.html_table import html_table
-from vibroimpact.shown import shown, visible
 from vibroimpact.studies.report.axes import study_axes
 from vibroimpact.studies.report.charts import study_charts
 from vibroimpact.studies.report.outputs import study_outputs
@@ -58,7 +58,8 @@ def plot_study(study: Study, name: str = "") -> go.Figure:
         raise InputError("this study has no charts, as no result that they show varies")
     if name and name not in charts:
         raise InputError(
-            f"there is no chart {shown(name)} of this study; there are {choices(charts, str(name))}"
+            f"there is no chart {quoted(name)} of this study; there are "
+            f"{choices(charts, str(name))}"
         )
     return plotly_figure(charts[name or next(iter(charts))])
 

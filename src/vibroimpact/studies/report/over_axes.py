@@ -9,7 +9,7 @@ import numpy as np
 from vibroimpact.arrays import Floats
 from vibroimpact.charts.chart import Chart, Panel
 from vibroimpact.charts.marks import Band, Line, Mark, Points
-from vibroimpact.shown import shortened, visible
+from vibroimpact.quoting import shortened, visible
 from vibroimpact.studies.percentiles import PERCENTILES
 from vibroimpact.studies.report.axes import StudyAxis
 from vibroimpact.studies.report.drops import MOST_DROPS, Group, values_at

@@ -16,7 +16,7 @@ from vibroimpact.studies.report.charts import study_charts
 from vibroimpact.studies.report.labels import drops_text
 from vibroimpact.studies.report.outputs import Output, drawn_outputs, study_outputs
 from vibroimpact.studies.report.restitution import restitution_sentence, summarize_restitution
-from vibroimpact.studies.report.sensitivity import Sensitivity, informative_sensitivity
+from vibroimpact.studies.report.sensitivity_table import Sensitivity, informative_sensitivity
 from vibroimpact.studies.report.tables import (
     COUNTED_FROM,
     PERCENTILE_COLUMNS,

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from vibroimpact.arrays import Floats, Indices
 from vibroimpact.charts.axis import Axis
-from vibroimpact.shown import shortened, visible
+from vibroimpact.quoting import shortened, visible
 from vibroimpact.studies.report.axes import StudyAxis
 from vibroimpact.studies.report.outputs import Output
 

@@ -10,13 +10,13 @@ from vibroimpact.arrays import Indices
 from vibroimpact.charts.axis import Axis
 from vibroimpact.charts.chart import Chart, Panel
 from vibroimpact.charts.marks import Bars, Level, Mark
-from vibroimpact.shown import shortened, visible
+from vibroimpact.quoting import shortened, visible
 from vibroimpact.studies.report.axes import study_axes
 from vibroimpact.studies.report.labels import keys_told
 from vibroimpact.studies.report.outputs import Output
 from vibroimpact.studies.report.panels import in_rows
 from vibroimpact.studies.report.scales import sentence
-from vibroimpact.studies.report.sensitivity import RANGES, RANKS, SOBOL, Sensitivity
+from vibroimpact.studies.report.sensitivity_table import RANGES, RANKS, SOBOL, Sensitivity
 from vibroimpact.studies.study import Study
 
 _MOST_KEYS = 15

@@ -16,7 +16,7 @@ from vibroimpact.charts.decimation import visible_points
 from vibroimpact.charts.marks import Band, Line
 from vibroimpact.charts.palette import series
 from vibroimpact.files.plain_names import plain_names
-from vibroimpact.shown import shortened, visible
+from vibroimpact.quoting import shortened, visible
 from vibroimpact.studies.drop_variables import SIGNAL, SIGNAL_START
 from vibroimpact.studies.report.labels import BAND, drops_text
 from vibroimpact.studies.report.outputs import drop_numbers, sampled_output, sampled_places

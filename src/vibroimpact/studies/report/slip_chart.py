@@ -9,7 +9,7 @@ import numpy as np
 
 from vibroimpact.arrays import Floats, Indices
 from vibroimpact.cases.oblique import friction_law_of
-from vibroimpact.cases.rigid import rigid_problem
+from vibroimpact.cases.rigid_problem import rigid_problem
 from vibroimpact.charts.chart import Chart
 from vibroimpact.charts.marks import Points
 from vibroimpact.dynamics.columns import OBLIQUE_IMPACT_COLUMNS

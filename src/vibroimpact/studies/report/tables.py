@@ -14,7 +14,7 @@ from vibroimpact.studies.percentiles import PERCENTILES
 from vibroimpact.studies.report.axes import StudyAxis, study_axes
 from vibroimpact.studies.report.labels import drops_text, percent, range_text, value_text
 from vibroimpact.studies.report.outputs import Output
-from vibroimpact.studies.report.sensitivity import RANKS, SOBOL, Sensitivity
+from vibroimpact.studies.report.sensitivity_table import RANKS, SOBOL, Sensitivity
 from vibroimpact.studies.study import Study
 from vibroimpact.studies.unit_slips import study_slips
 from vibroimpact.units.display import MISSING, digits, fixed

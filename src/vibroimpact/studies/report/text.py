@@ -14,7 +14,7 @@ from vibroimpact.studies.report.axes import study_axes
 from vibroimpact.studies.report.labels import drops_text, percent, with_unit
 from vibroimpact.studies.report.outputs import study_outputs
 from vibroimpact.studies.report.restitution import restitution_sentence, summarize_restitution
-from vibroimpact.studies.report.sensitivity import (
+from vibroimpact.studies.report.sensitivity_table import (
     RANKS,
     SOBOL,
     Sensitivity,

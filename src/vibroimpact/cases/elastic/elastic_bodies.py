@@ -1,0 +1,175 @@
+"""Elastic bodies of a case: their meshes, supports, reduction and damping."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any, Literal
+
+from vibroimpact.bodies.elastic import ElasticBody, plate_recipe, recipe_of, sphere_recipe
+from vibroimpact.cases.fields.damping import damping_of, damping_table
+from vibroimpact.cases.fields.elastic_body import (
+    BroughtMeshTable,
+    PlateMeshTable,
+    SphereMeshTable,
+    reduction_of,
+)
+from vibroimpact.cases.fields.section import derived
+from vibroimpact.cases.fields.supports import supports_of, supports_table
+from vibroimpact.cases.rigid_problem import elastic_names
+from vibroimpact.dynamics.sensors.antialias import FINENESS
+from vibroimpact.errors import InputError
+from vibroimpact.structures.recipe import ImportedMesh, Recipe, mesh_features
+from vibroimpact.structures.rectangle import rectangle_blocks
+from vibroimpact.structures.sound_paths import Listener
+from vibroimpact.structures.supports.support import Support
+from vibroimpact.structures.surface import Spot
+
+if TYPE_CHECKING:
+    from vibroimpact.cases.schema import CaseTable
+
+# default: no splitting, so that the number of elements is that of the case
+_UNSPLIT = {"splits": 0, "lower_splits": 0}
+
+
+@derived
+def elastic_bodies(case: CaseTable) -> dict[str, ElasticBody]:
+    """Return the elastic bodies of a case by name.
+
+    Raises
+    ------
+    InputError
+        If one can't be made; with its key.
+    """
+    return {name: _body(case, name) for name in elastic_names(case)}
+
+
+def _body(case: CaseTable, name: Literal["sphere", "plate"]) -> ElasticBody:
+    """Return an elastic body; errors carry the name of the body in their key."""
+    try:
+        return (_sphere if name == "sphere" else _plate)(case)
+    except InputError as error:
+        raise InputError(error.message, f"{name}.{error.key}".rstrip(".")) from None
+
+
+def elastic_table(case: CaseTable, name: Literal["sphere", "plate"]) -> dict[str, Any]:
+    """Return the resolved keys of an elastic body: mesh, reduction, modes, damping, and
+    supports of a plate.
+    """
+    section, body = getattr(case, name), elastic_bodies(case)[name]
+    shape, reduction = body.recipe.shape, body.recipe.reduction
+    damping = body.damping if section.damping is None else section.damping
+    table: dict[str, Any] = {"reduction": reduction.method, "damping": damping_table(damping)}
+    if reduction.modes:
+        table["modes"] = reduction.modes
+    if isinstance(shape, ImportedMesh):
+        table["mesh"] = section.mesh.table()
+    else:
+        table["mesh"] = {
+            key: value for key, value in vars(shape).items() if key not in ("radius", "size")
+        }
+    if name == "plate":
+        table["supports"] = supports_table(section.supports)
+        if not isinstance(shape, ImportedMesh):
+            table["element"] = section.element or "plate"
+    return table
+
+
+def _sphere(case: CaseTable) -> ElasticBody:
+    section, mesh = case.sphere, case.sphere.mesh
+    contact = mesh.contact if isinstance(mesh, BroughtMeshTable) else None
+    reduction = reduction_of("sphere", section, (contact, "lower"))
+    if isinstance(mesh, BroughtMeshTable):
+        recipe = recipe_of(mesh.brought(contact, "lower"), section.material, reduction)
+    else:
+        options = mesh.model_dump(exclude_none=True) if isinstance(mesh, SphereMeshTable) else {}
+        recipe = sphere_recipe(section.radius, section.material, reduction, **options)
+    return ElasticBody(
+        recipe, "lower", contact, damping_of(section.damping, section.material.loss_factor)
+    )
+
+
+def _plate(case: CaseTable) -> ElasticBody:
+    section = case.plate
+    contact: Spot = case.drop.position
+    if isinstance(section.mesh, BroughtMeshTable) and section.mesh.contact:
+        contact = section.mesh.contact
+    places = {
+        sensor.name: (sensor.position, sensor.face)
+        for sensor in case.sensors
+        if sensor.microphone is None
+    }
+    strained = {
+        sensor.name: places.pop(sensor.name)
+        for sensor in case.sensors
+        if sensor.instrument == "strain-gauge"
+    }
+    pressed = {
+        sensor.name: places.pop(sensor.name)
+        for sensor in case.sensors
+        if sensor.instrument == "force"
+    }
+    damping = damping_of(section.damping, section.material.loss_factor)
+    return ElasticBody(
+        _plate_recipe(case, contact),
+        "upper",
+        contact,
+        damping,
+        places,
+        strained,
+        _heard(case),
+        pressed,
+    )
+
+
+def _heard(case: CaseTable) -> dict[str, Listener]:
+    """Return where the microphones are, by the names of their sensors."""
+    return {
+        sensor.name: Listener(
+            sensor.position,
+            sensor.face,
+            sensor.microphone.distance,
+            sensor.microphone.speed_of_sound,
+            1.0 / (FINENESS * sensor.rate),
+        )
+        for sensor in case.sensors
+        if sensor.microphone is not None
+    }
+
+
+def _plate_recipe(case: CaseTable, contact: Spot) -> Recipe:
+    section, mesh = case.plate, case.plate.mesh
+    reduction = reduction_of("plate", section, (contact, "upper"))
+    supports = supports_of(section.supports)
+    if isinstance(mesh, BroughtMeshTable):
+        return recipe_of(mesh.brought(contact, "upper"), section.material, reduction, supports)
+    assert section.size is not None  # validated by the section
+    element = section.element or "plate"
+    options = (
+        mesh.model_dump(exclude_none=True, exclude={"elements"})
+        if isinstance(mesh, PlateMeshTable)
+        else {}
+    )
+    if isinstance(mesh, PlateMeshTable) and mesh.elements:
+        options = {**_mesh_options(section.size, mesh.elements, mesh.layers, supports), **options}
+    return plate_recipe(section.size, section.material, reduction, supports, element, **options)
+
+
+def _mesh_options(
+    size: tuple[float, float, float],
+    elements: int,
+    layers: int | None,
+    supports: tuple[Support, ...],
+) -> dict[str, Any]:
+    """Return the element size and the number of layers of a plate with about this many
+    elements, near-cubic if `layers` is None.
+    """
+    layers = layers or max(1, round(size[2] * (elements / math.prod(size)) ** (1.0 / 3.0)))
+    side = math.sqrt(size[0] * size[1] * layers / elements)
+    tried: dict[float, float] = {}
+    # the count scales as 1 / side^2, except for elements around patches and rounding
+    for _ in range(8):
+        blocks = rectangle_blocks(size[:2], side, 1, *mesh_features(supports))
+        count = layers * sum((block.shape[0] - 1) * (block.shape[1] - 1) for block in blocks)
+        tried[side] = abs(count - elements)
+        side *= math.sqrt(count / elements)
+    return {"element_size": min(tried, key=lambda one: tried[one]), "layers": layers, **_UNSPLIT}

@@ -1,0 +1,106 @@
+"""Recoil: a law has stopped pushing while the surfaces still overlap, and they move
+freely until they separate or it pushes again.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from vibroimpact.compiled import compiled, force_at
+from vibroimpact.dynamics.core.contact_records import Manner
+from vibroimpact.dynamics.core.flight import (
+    approach_of,
+    dashpot_rate,
+    flight_of,
+    flown,
+    state_after,
+)
+from vibroimpact.dynamics.core.law import law_indentation
+from vibroimpact.dynamics.core.records import Law, State, System
+
+_SAMPLES = 64
+_MOST_HORIZONS = 2_000  # each twice as long as the one before
+_MOST_SECANTS = 200
+_TIME_ROUNDING = 1e-13  # of the time of a recoil
+
+
+@compiled(lambda t: t.tuple(t.real, t.real)(t.of(System), t.of(Law), t.of(State)))
+def coasting_values(system: System, law: Law, state: State) -> tuple[float, float]:
+    """Return numbers that are positive where a recoiling contact has separated, and where
+    its law pushes again.
+    """
+    approach, _ = approach_of(system, state)
+    pushes = -1.0
+    if approach > law.release_level:
+        delta = law_indentation(law, approach)
+        static, dissipative = force_at(law.addresses[0])(
+            delta, dashpot_rate(system, state), law.speed, law.coefficients
+        )
+        pushes = static + dissipative
+    return law.release_level - approach, pushes
+
+
+@compiled(lambda t: t.real(t.of(System), t.of(Law), t.of(State), t.real, t.real, t.boolean))
+def change_between(
+    system: System, law: Law, state: State, low: float, high: float, separates: bool
+) -> float:
+    """Return when between two times [s] a recoiling contact separates, or else pushes again, to the
+    rounding of the time.
+
+    By the secant, with the value of an end that has stayed for two steps halved (the Illinois
+    method).
+    """
+    kind = 0 if separates else 1
+    low_value = coasting_values(system, law, state_after(system, state, low))[kind]
+    high_value = coasting_values(system, law, state_after(system, state, high))[kind]
+    side = 0
+    for _ in range(_MOST_SECANTS):
+        if not high - low > _TIME_ROUNDING * high:
+            break
+        middle = (
+            high - (high - low) * high_value / (high_value - low_value)
+            if low_value < 0.0
+            else 0.5 * (low + high)
+        )
+        middle = min(
+            max(middle, low + 0.25 * _TIME_ROUNDING * high), high - 0.25 * _TIME_ROUNDING * high
+        )
+        value = coasting_values(system, law, state_after(system, state, middle))[kind]
+        if value > 0.0:
+            high = middle
+            high_value = value
+            low_value *= 0.5 if side > 0 else 1.0
+            side = 1
+        else:
+            low = middle
+            low_value = value
+            high_value *= 0.5 if side < 0 else 1.0
+            side = -1
+    return high
+
+
+@compiled(lambda t: t.tuple(t.real, t.boolean)(t.of(System), t.of(Law), t.of(Manner), t.of(State)))
+def end_of_coasting(system: System, law: Law, manner: Manner, state: State) -> tuple[float, bool]:
+    """Return when a recoiling contact separates or pushes again [s from here], and
+    whether it separates.
+    """
+    approach, rate = approach_of(system, state)
+    above = max(approach - law.release_level, 0.0)
+    step = max(above / max(-rate, 1e-3 * manner.motion_speed), 1e-6 * manner.span)
+    begun = 0.0
+    now = state
+    for _ in range(_MOST_HORIZONS):
+        before = begun
+        flight = flight_of(system, step / _SAMPLES)
+        for sample in range(1, _SAMPLES + 1):
+            time = begun + step * sample / _SAMPLES
+            now = flown(system, now, flight)
+            parted, pushes = coasting_values(system, law, now)
+            if parted > 0.0 or pushes > 0.0:
+                return change_between(system, law, state, before, time, parted > 0.0), parted > 0.0
+            before = time
+        begun += step
+        step *= 2.0
+        if not np.isfinite(begun + step):
+            break
+    return np.inf, True

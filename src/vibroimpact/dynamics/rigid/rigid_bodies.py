@@ -1,0 +1,127 @@
+"""Free flight, contact and rest of B drops whose bodies do not vibrate."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from vibroimpact.arrays import Bools, Drops, Floats
+from vibroimpact.contact.law import CompliantLaw, ContactLaw
+from vibroimpact.contact.static import static_indentation
+from vibroimpact.dynamics.bounce import Bounce
+from vibroimpact.dynamics.columns import IMPACT_COLUMNS
+from vibroimpact.dynamics.contact import FAILED, Contact
+from vibroimpact.dynamics.flight import Flight
+from vibroimpact.dynamics.impact_conditions import ImpactConditions
+from vibroimpact.dynamics.oblique.normal_motion import normal_motions
+from vibroimpact.dynamics.oblique.oblique_motion import ObliqueMotion
+from vibroimpact.dynamics.oblique.state import ObliqueContacts
+from vibroimpact.dynamics.rigid.solve_contact import SolvesContact
+from vibroimpact.dynamics.run_bodies import Motions
+
+if TYPE_CHECKING:  # a drop of rigid bodies does not load what vibrates
+    from vibroimpact.dynamics.vibrating.rest_motion import RestMotion
+
+
+class RigidBodies:
+    """The bodies of B drops that do not vibrate: a sphere falls on a plate at rest. `Bodies`
+    describes the methods.
+
+    Parameters
+    ----------
+    size : int
+        Number of drops.
+    solve_contact : SolvesContact
+        Solver of their contacts.
+    """
+
+    def __init__(self, size: int, solve_contact: SolvesContact) -> None:
+        self.columns = tuple(IMPACT_COLUMNS)
+        self.solve_contact = solve_contact
+        self.left = np.full(size, np.nan)
+        self.lying: list[RestMotion | None] = [None] * size
+
+    def next_touch(
+        self, drops: Drops, flight: Flight, law: ContactLaw
+    ) -> tuple[Floats, Floats, Motions]:
+        """Return times of touch [s] from the parabolas of the flights, approach speeds
+        [m/s], and no motions of bodies.
+        """
+        return *flight.touch(-law.touch_level if isinstance(law, CompliantLaw) else np.zeros(1)), ()
+
+    def pass_flight(self, drops: Drops, motions: Motions, elapsed: Floats) -> None:
+        """Do nothing: rigid bodies have no state but that of the flight."""
+
+    def closing_speed(self, drops: Drops, speed: Floats, velocity: Floats) -> Floats:
+        """Return the speed of the rigid bodies."""
+        return speed
+
+    def rigid_speed(self, drops: Drops, velocity: Floats) -> Floats:
+        """Return the velocity of the spheres."""
+        return velocity
+
+    def collide(
+        self,
+        drops: Drops,
+        conditions: ImpactConditions,
+        place: tuple[Floats, Floats],
+        limits: tuple[Floats, Floats],
+        row: dict[str, Floats],
+    ) -> tuple[Contact, Floats, Floats]:
+        """Return the contact of drops from the solver of the run."""
+        return self.solve_contact(conditions, drops)
+
+    def slide(
+        self, oblique: ObliqueMotion, bounce: Bounce, row: dict[str, Floats]
+    ) -> ObliqueContacts:
+        """Advance drops along the plate, driven by the normal motion of their contacts,
+        which does not feel friction.
+        """
+        assert bounce.contact is not None
+        assert bounce.contact.normals is not None
+        assert bounce.conditions is not None
+        motions = normal_motions(bounce.contact.normals, bounce.conditions)
+        bounce.contact.normals = None  # no history reads them
+        return oblique.collide(bounce.contact_drops, motions, row)
+
+    def falls_back(self, contact: Contact, law: CompliantLaw, gravity: Floats) -> Bools:
+        """Return which drops fall back into the indentation before they have risen to the
+        touch level of the law.
+        """
+        overlap = np.maximum(contact.final_delta - law.touch_level, 0.0)
+        return np.asarray(
+            (contact.outcome != FAILED) & (contact.final_rate**2 < 2.0 * gravity * overlap)
+        )
+
+    def rests(self, drops: Drops, velocity: Floats, rest_speed: Floats) -> Bools:
+        """Return which drops separate below the rest speed, or not at all."""
+        return np.asarray((velocity < rest_speed) | (velocity == 0.0))
+
+    def static_state(
+        self, drops: Drops, law: ContactLaw, weight: Floats, energy: Floats
+    ) -> dict[str, Floats]:
+        """Return the static indentation under the weight [N], its energy, and the rest of
+        the energy.
+        """
+        sag = stored = np.zeros(len(drops))
+        if isinstance(law, CompliantLaw):
+            sag = static_indentation(law, weight)
+            stored = law.elastic_energy(sag)
+        return {"sag": sag, "stored": stored, "written_off": energy - (stored - weight * sag)}
+
+    def follow(
+        self, drops: Drops, elapsed: Floats, sag: Floats, stored: Floats
+    ) -> tuple[Floats, Floats, Floats]:
+        """Return the gap of the static indentation, no velocity, and the stored energy:
+        rigid bodies lie still.
+        """
+        return -sag, np.zeros(len(drops)), stored
+
+    def energies(self) -> dict[str, Floats]:
+        """Return no further entries."""
+        return {}
+
+    def growth(self, bounce: Bounce) -> Floats:
+        """Return nothing: the growth is followed where bodies vibrate."""
+        return np.zeros(0)

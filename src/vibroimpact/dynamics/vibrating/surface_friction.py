@@ -1,0 +1,180 @@
+"""Friction at the contact of a rigid sphere with a surface that moves, stated for the
+core and read back from it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from vibroimpact.arrays import Floats
+from vibroimpact.contact.friction.law import CompliantFriction
+from vibroimpact.dynamics.collocation import Rule
+from vibroimpact.dynamics.core import surface_friction_records as records
+from vibroimpact.dynamics.core.surface_friction_motions import slowing
+from vibroimpact.dynamics.core.surface_friction_records import SlidingSphere
+from vibroimpact.dynamics.core.tangential_history import TangentialHistory
+from vibroimpact.dynamics.oblique.state import Sphere, State
+from vibroimpact.dynamics.oblique.tangential_history import tangential_history
+
+_LONGEST = 0.03  # of the duration of a contact, at the default tolerance
+_DEFAULT_TOLERANCE = 1e-9
+_ORDER = 4  # of the error in the length of stretches, about
+
+
+def surface_friction_at_touch(
+    law: CompliantFriction, largest_force: float, sphere: Sphere, before: State, directions: int
+) -> SlidingSphere:
+    """Return the friction of one drop at first touch.
+
+    Parameters
+    ----------
+    law : CompliantFriction
+        Of one drop.
+    largest_force : float
+        About the largest normal force that will come [N].
+    sphere, before : Sphere, State
+        The sphere, and its motion along the plate.
+    directions : int
+        Of friction: 2, or 5 where moments act.
+    """
+    about_x, about_y, about_z = before.spin[:, 0]
+    return _no_surface_friction()._replace(
+        directions=directions,
+        rolling_coefficient=float(law.rolling_coefficient),
+        mass=float(sphere.tangential_mass[0]),
+        radius=float(sphere.radius[0]),
+        inertia=float(sphere.inertia[0]),
+        pull=sphere.gravity[:, 0].copy(),
+        velocity=sphere.slip(before)[:, 0].copy(),
+        spin=np.array([-about_y, about_x, about_z]),
+        history=tangential_history(law, largest_force),
+    )
+
+
+def _no_surface_friction() -> SlidingSphere:
+    """Return the friction of a contact that has none."""
+    unused = TangentialHistory(
+        False, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, np.zeros((2, 0)), np.zeros(2), 0.0
+    )
+    return SlidingSphere(
+        directions=0,
+        rolling_coefficient=0.0,
+        mass=1.0,
+        radius=1.0,
+        inertia=1.0,
+        pull=np.zeros(2),
+        velocity=np.zeros(2),
+        displacement=np.zeros(2),
+        spin=np.zeros(3),
+        force=np.zeros(2),
+        turned=np.zeros(3),
+        turned_way=np.zeros(2),
+        normal=0.0,
+        work=0.0,
+        microslip=0.0,
+        history=unused,
+    )
+
+
+NO_FRICTION = _no_surface_friction()
+"""Friction of a contact that has none."""
+
+
+def longest_with_friction(tolerance: float) -> float:
+    """Return the length of a stretch with friction at most, over the duration of a contact.
+
+    The surfaces begin and cease to slip within stretches, which the balance of energy does not
+    show. At the default tolerance the velocities along the plate after an impact are then known to
+    1e-4 of those before.
+    """
+    looser: float = (tolerance / _DEFAULT_TOLERANCE) ** (1.0 / _ORDER)
+    return _LONGEST * looser
+
+
+@dataclass(frozen=True)
+class SlidingState:
+    """Friction of one drop, and the motion of the contact point of its sphere, at an end
+    of a stretch; as in `SlidingSphere`.
+    """
+
+    velocity: Floats
+    displacement: Floats
+    force: Floats
+    turned: Floats
+    turned_way: Floats
+    work: float
+    microslip: float
+
+    @classmethod
+    def of(cls, numbers: Floats) -> SlidingState:
+        """Return the state of which the core has written the numbers (13,)."""
+        return cls(
+            velocity=numbers[records.VELOCITY_X : records.VELOCITY_Y + 1],
+            displacement=numbers[records.DISPLACEMENT_X : records.DISPLACEMENT_Y + 1],
+            force=numbers[records.FORCE_X : records.FORCE_Y + 1],
+            turned=numbers[records.TURNED_X : records.TURNED_Z + 1],
+            turned_way=numbers[records.TURNED_WAY_X : records.TURNED_WAY_Y + 1],
+            work=float(numbers[records.WORK]),
+            microslip=float(numbers[records.MICROSLIP]),
+        )
+
+
+@dataclass(frozen=True)
+class SlidingStretch:
+    """Friction through a stretch of contact of a length [s].
+
+    `sphere`: what stays the same through the contact. `start`, `end`: at the ends. `force`: of
+    friction, against the slip [N], and `slip`: velocity of the contact point of the sphere past the
+    surface [m/s], at the nodes (2, N); where moments act also these [N m], and the spin past the
+    surface [rad/s] (5, N).
+    """
+
+    rule: Rule
+    length: float
+    sphere: SlidingSphere
+    start: SlidingState
+    end: SlidingState
+    force: Floats
+    slip: Floats
+
+    def at(self, time: Floats) -> tuple[Floats, Floats, Floats, Floats]:
+        """Return velocity and displacement of the contact point (2, T), friction (2 or 5,
+        T) and energy taken (T,), at times [s] (T,).
+        """
+        rule, start, length = self.rule, self.start, self.length
+        x = rule.unmap_time(time / length)
+        integral, pull = length * rule.integral_to(x), self.sphere.pull[:, None]
+        slowed = slowing(self.sphere, np.ascontiguousarray(self.force)).T
+        velocity = start.velocity[:, None] + pull * time - (integral @ slowed).T
+        free = start.displacement[:, None] + (start.velocity[:, None] + 0.5 * pull * time) * time
+        displacement = free - (integral @ (length * (rule.integral @ slowed))).T
+        # the moments begin about as at the first node
+        begun = np.append(start.force, self.force[2:, 0])
+        force = np.concatenate([begun[:, None], self.force], axis=1) @ rule.weights(x)
+        return (
+            velocity,
+            displacement,
+            force,
+            start.work + integral @ (self.force * self.slip).sum(axis=0),
+        )
+
+    def turned(self, time: Floats) -> tuple[Floats, Floats]:
+        """Return what moments made of the spin [rad/s] (3, T), and of the displacement
+        [m] (2, T), at times since the start [s] (T,).
+        """
+        rule, start, length = self.rule, self.start, self.length
+        radius, inertia = self.sphere.radius, self.sphere.inertia
+        turned, way = (
+            start.turned[:, None] + 0.0 * time,
+            start.turned_way[:, None] + radius * start.turned[:2, None] * time,
+        )
+        if len(self.force) == 2:
+            return turned, way
+        integral, slowed = (
+            length * rule.integral_to(rule.unmap_time(time / length)),
+            (self.force[2:] / inertia).T,
+        )
+        more = (integral @ (length * (rule.integral @ slowed[:, :2]))).T
+        return turned - (integral @ slowed).T, way - radius * more

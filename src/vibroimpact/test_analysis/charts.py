@@ -1,0 +1,229 @@
+"""The charts of a correlation: records over their simulation, what is left, frequency
+responses, criteria and modes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import partial
+
+import numpy as np
+
+from vibroimpact.arrays import Complex, Floats
+from vibroimpact.charts.axis import Axis
+from vibroimpact.charts.chart import Chart, Panel
+from vibroimpact.charts.made import made_charts
+from vibroimpact.charts.marks import Bars, Line, Mark, Points, Rug
+from vibroimpact.quoting import shortened, visible
+from vibroimpact.test_analysis.correlate import Correlation
+from vibroimpact.test_analysis.criteria import Criteria
+from vibroimpact.test_analysis.document import what_frac_is_of
+from vibroimpact.test_analysis.octaves import FEW
+
+MOST = 8
+"""Number of records drawn; all are in the tables."""
+_HEIGHT = 2.8
+_BEGIN = 6e-3
+"""Time from the first touch on that is shown beside the whole [s]."""
+_LOOKS = (("measured", "main"), ("simulated", "fit"), ("residual", "mark line"))
+"""Names and roles of the lines of an overlay."""
+_DECADES = 4.0
+"""Decades below its peak down to which a response is shown."""
+
+
+def correlation_charts(found: Correlation) -> list[Chart]:
+    """Return the charts `overlay`, `responses`, `frac` and, if a damping was measured, `damping`.
+
+    Examples
+    --------
+    >>> import vibroimpact as vi
+    >>> plate = {
+    ...     "size": [0.3, 0.3, 0.02],
+    ...     "material": "steel",
+    ...     "model": "elastic",
+    ...     "modes": 10,
+    ...     "supports": "clamped",
+    ...     "damping": 0.01,
+    ... }
+    >>> case = vi.read_case(
+    ...     {
+    ...         "sphere": {"radius": 0.02, "material": "steel"},
+    ...         "plate": plate,
+    ...         "drop": {"speed": 1.0, "position": [0.02, 0.01]},
+    ...         "contact": {"law": "hertz"},
+    ...         "run": {"duration": 0.1},
+    ...         "sensors": [{"name": "a", "position": [0.1, 0.03], "rate": 20e3}],
+    ...     }
+    ... )
+    >>> record = vi.Record("a", vi.simulate(case).signals()["a"].value, 20e3, "m/s2")
+    >>> found = vi.correlate(case, [record], window=0.05)
+    >>> [chart.name for chart in vi.correlation_charts(found)]
+    ['overlay', 'responses', 'frac', 'damping']
+    """
+    makers = {
+        "overlay": partial(_overlay, found),
+        "responses": partial(_responses, found),
+        "frac": partial(frac_chart, found, what_frac_is_of(found)),
+    }
+    if any(pair.damping_measured for pair in found.modes):
+        makers["damping"] = partial(damping_chart, found, "the decay of the records")
+    return made_charts(makers)
+
+
+def those_drawn(number: int) -> str:
+    """Return, as the end of a caption, which of so many records are drawn; empty if all are."""
+    return f" The first {MOST} of {number} are drawn." if number > MOST else ""
+
+
+def _name(found: Criteria, number: int) -> str:
+    return shortened(visible(found.sensors[number].name), 40)
+
+
+def _overlay(found: Correlation) -> Chart:
+    begin, whole = Axis("Time since first touch", "s"), Axis("Time since first touch", "s")
+    rows: list[tuple[Panel, ...]] = []
+    early = found.time <= max(_BEGIN, float(found.time[0]) + _BEGIN)
+    for number, sensor in enumerate(found.sensors[:MOST]):
+        level = Axis(sensor.quantity.capitalize(), sensor.unit)
+        shown = (
+            (begin, early, "first part"),
+            (whole, slice(None), f"residual {100.0 * found.relative_residual[number]:.1f} % (rms)"),
+        )
+        panels = []
+        for axis, part, words in shown:
+            values = (
+                found.measured[number, part],
+                found.simulated[number, part],
+                found.residual[number, part],
+            )
+            lines = (
+                Line(found.time[part], value, name, role)
+                for value, (name, role) in zip(values, _LOOKS, strict=True)
+            )
+            panels.append(Panel(axis, level, tuple(lines), f"{_name(found, number)}: {words}"))
+        rows.append(tuple(panels))
+    caption = (
+        f"Records, aligned in time by their first {1e3 * found.aligned:.3g} ms, the "
+        "simulation, and the difference, within the band from "
+        f"{found.band[0]:.4g} to {found.band[1]:.4g} Hz.{those_drawn(len(found.sensors))}"
+    )
+    return Chart("overlay", "Records and simulation", tuple(rows), caption, _HEIGHT)
+
+
+def _responses(found: Correlation) -> Chart:
+    axis = Axis("Frequency", "Hz", range=found.band)
+    rows: list[tuple[Panel, ...]] = []
+    computed = np.array([pair.frequency for pair in found.modes if pair.number is not None])
+    quantity = "Magnitude" if found.hits else "Amplitude"
+    for number, sensor in enumerate(found.sensors[:MOST]):
+        lines, shown = magnitude_lines(
+            found.frequency, (found.measured_response[number], found.simulated_response[number])
+        )
+        scale = Axis(
+            quantity, f"{sensor.unit}/N" if found.hits else sensor.unit, log=True, range=shown
+        )
+        marks: tuple[Mark, ...] = (*lines, Rug(computed, "modes of the case"))
+        panels = [
+            Panel(axis, scale, marks, f"{_name(found, number)}: FRAC {found.frac[number]:.3f}")
+        ]
+        if found.coherence is not None:
+            level = Axis("Coherence", range=(0.0, 1.02))
+            panels.append(
+                Panel(
+                    axis,
+                    level,
+                    (Line(found.frequency, found.coherence[number], role="detail"),),
+                    "Coherence of force and record",
+                )
+            )
+        rows += [(panel,) for panel in panels]
+    what = (
+        "Frequency responses to the force (estimator H1)"
+        if found.hits
+        else "Spectra of record and simulation"
+    )
+    caption = (
+        f"{what}, with the same window and spectral leakage. Ticks mark the modes of the "
+        f"case.{those_drawn(len(found.sensors))}"
+    )
+    return Chart(
+        "responses",
+        "Frequency responses" if found.hits else "Spectra",
+        tuple(rows),
+        caption,
+        _HEIGHT,
+    )
+
+
+def magnitude_lines(
+    frequency: Floats, responses: Sequence[Complex], looks: Sequence[tuple[str, str]] = _LOOKS[:2]
+) -> tuple[list[Line], tuple[float, float] | None]:
+    """Return the lines of the magnitudes of responses, (bins,) each, and the range of their axis:
+    decades below the largest peak.
+
+    `looks`: names and roles of the lines.
+    """
+    sizes = [np.abs(one) for one in responses]
+    most = max(float(size.max(initial=0.0)) for size in sizes)
+    floor = 10.0**-_DECADES * most + 1e-300
+    lines = [
+        Line(frequency, np.maximum(size, 1e-3 * floor), name, role)
+        for size, (name, role) in zip(sizes, looks, strict=True)
+    ]
+    return lines, (floor, 2.0 * most) if most > 0.0 else None
+
+
+def frac_chart(found: Criteria, of: str) -> Chart:
+    """Return the chart of the criterion over octaves, of what is compared."""
+    names = tuple(f"{low:.4g} to {high:.4g} Hz" for low, high in found.octaves)
+    shown = found.octave_frac[:MOST]
+    width = 0.8 / len(shown)
+    marks = tuple(
+        Bars(
+            np.asarray(np.arange(len(names)) + (number - 0.5 * (len(shown) - 1)) * width),
+            np.nan_to_num(values),
+            _name(found, number),
+            f"series {number}",
+            width=width,
+        )
+        for number, values in enumerate(shown)
+    )
+    panel = Panel(Axis("Band", names=names), Axis("FRAC", range=(0.0, 1.0)), marks)
+    caption = (
+        f"Frequency response assurance criterion over each octave, of {of}. 1: equal except "
+        f"for a factor; 0: uncorrelated. An octave with fewer than {FEW} frequencies has "
+        f"no bar.{those_drawn(len(found.sensors))}"
+    )
+    return Chart("frac", "Frequency response assurance criterion", ((panel,),), caption, _HEIGHT)
+
+
+def damping_chart(found: Criteria, by: str) -> Chart:
+    """Return the chart of damping ratios, measured by something and of the case."""
+    measured = [
+        pair.measured
+        for pair in found.modes
+        if pair.measured is not None and not pair.measured.doubt
+    ]
+    intervals = np.array([mode.damping_ratio.interval for mode in measured])
+    places = np.array([mode.frequency.value for mode in measured])
+    ratios = np.array([mode.damping_ratio.value for mode in measured])
+    of_case = [pair for pair in found.modes if pair.number is not None]
+    computed = np.array([pair.damping_ratio for pair in of_case])
+    marks = (
+        Points(np.array([pair.frequency for pair in of_case]), computed, "case", "other mark"),
+        Points(
+            places,
+            ratios,
+            "measured, with 95 % interval",
+            "matched",
+            low=intervals[:, 0],
+            high=intervals[:, 1],
+        ),
+    )
+    # room for the marks of the largest
+    top = 1.1 * float(np.nanmax(np.append(computed, intervals)))
+    panel = Panel(
+        Axis("Frequency", "Hz", range=found.band), Axis("Damping ratio", range=(0.0, top)), marks
+    )
+    caption = f"Damping ratios estimated from {by}, and those of the case."
+    return Chart("damping", "Modal damping", ((panel,),), caption, _HEIGHT)

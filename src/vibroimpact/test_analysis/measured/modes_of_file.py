@@ -1,0 +1,127 @@
+"""The modes in the frequency responses of files, alone or beside those of the plate of a case."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from os import PathLike
+
+import numpy as np
+
+from vibroimpact.arrays import Complex, Floats
+from vibroimpact.errors import InputError
+from vibroimpact.signals.decay.find import DecayMode
+from vibroimpact.signals.decay.responses import common_lines, modes_in_responses
+from vibroimpact.signals.frequency_response import FrequencyResponse
+from vibroimpact.signals.reading.universal_responses import contents_of, read_responses
+from vibroimpact.structures.modal_model import ModalBasis
+from vibroimpact.test_analysis.mode_pairs import ModePair, paired
+from vibroimpact.test_analysis.responses.doubts import doubts_of_files, doubts_of_resolution
+from vibroimpact.test_analysis.shared_differences import shared_differences
+
+
+@dataclass(frozen=True, eq=False)
+class MeasuredModes:
+    """The modes in measured frequency responses.
+
+    Parameters
+    ----------
+    responses : tuple of FrequencyResponse
+        The responses.
+    frequency : array, shape (n,)
+        Their frequencies [Hz].
+    value : array of complex, shape (S, n)
+        Their values.
+    modes : tuple of ModePair
+        The modes, with those of a case where they were compared.
+    doubts : tuple of str
+        What is not sure, and why.
+    """
+
+    responses: tuple[FrequencyResponse, ...]
+    frequency: Floats
+    value: Complex
+    modes: tuple[ModePair, ...]
+    doubts: tuple[str, ...]
+
+
+def modes_of_files(paths: Sequence[str | PathLike[str]]) -> MeasuredModes:
+    """Return the modes in the frequency responses of universal files.
+
+    Raises
+    ------
+    InputError
+        If a file can't be read or has no frequency response, their frequencies differ, or there are
+        too few.
+    """
+    responses, frequency, value = _read(paths)
+    nan = float("nan")
+    found = modes_in_responses(responses)
+    pairs = tuple(ModePair(None, nan, nan, nan, mode, mode.doubt) for mode in found)
+    return MeasuredModes(responses, frequency, value, pairs, _doubts(responses, found, frequency))
+
+
+def modes_beside(basis: ModalBasis | None, paths: Sequence[str | PathLike[str]]) -> MeasuredModes:
+    """Return the modes in the frequency responses of universal files beside those of a plate,
+    whatever places they were measured at.
+
+    Modes are compared from half the lowest frequency of the plate to its highest.
+
+    Raises
+    ------
+    InputError
+        As `modes_of_files`, or if the plate has no modes or the responses end below them.
+    """
+    if basis is None:
+        raise InputError(
+            "only the modes of a plate are compared, and that of the case is rigid; give it "
+            'model = "elastic"',
+            "plate.model",
+        )
+    responses, frequency, value = _read(paths)
+    lowest, highest = float(basis.frequencies[0]), float(basis.frequencies[-1])
+    band = (
+        max(0.5 * lowest, float(frequency[0])),
+        min(max(highest, 1.5 * lowest), float(frequency[-1])),
+    )
+    if band[0] >= band[1] or lowest >= frequency[-1]:
+        words = f"the modes of the plate are from {lowest:.5g} to {highest:.5g} Hz"
+        raise InputError(
+            f"{words}, and the responses from {frequency[0]:.5g} to {frequency[-1]:.5g} "
+            "Hz; they have no mode in common"
+        )
+    found = modes_in_responses(responses, band)
+    pairs = paired(
+        basis.frequencies, basis.damping_ratios, np.ones(len(basis.frequencies)), found, band
+    )
+    doubts = (*_doubts(responses, found, frequency), *shared_differences(pairs).sentences)
+    return MeasuredModes(responses, frequency, value, pairs, doubts)
+
+
+def _read(
+    paths: Sequence[str | PathLike[str]],
+) -> tuple[tuple[FrequencyResponse, ...], Floats, Complex]:
+    responses = tuple(response for path in paths for response in read_responses(path))
+    return responses, *common_lines(responses)
+
+
+def _doubts(
+    responses: Sequence[FrequencyResponse], found: Sequence[DecayMode], frequency: Floats
+) -> tuple[str, ...]:
+    return (
+        *_of_records(responses),
+        *doubts_of_files(responses),
+        *doubts_of_resolution(found, frequency),
+    )
+
+
+def _of_records(responses: Sequence[FrequencyResponse]) -> Iterator[str]:
+    """Yield which files have records over time too."""
+    for source in dict.fromkeys(one.source for one in responses):
+        number = len(contents_of(source).records)
+        if number:
+            records = f"{number} record{'s' if number > 1 else ''} over time"
+            yield (
+                f"{source} also has {records}, which these modes are not from; correlate "
+                "--compare records compares them with a case"
+            )

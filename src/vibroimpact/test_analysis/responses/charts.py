@@ -1,0 +1,117 @@
+"""The charts of a correlation of frequency responses: magnitudes, phases and coherences,
+criteria and damping.
+"""
+
+from __future__ import annotations
+
+from functools import partial
+
+import numpy as np
+
+from vibroimpact.arrays import Complex, Floats
+from vibroimpact.charts.axis import Axis
+from vibroimpact.charts.chart import Chart, Panel
+from vibroimpact.charts.made import made_charts
+from vibroimpact.charts.marks import Line, Rug
+from vibroimpact.quoting import shortened, visible
+from vibroimpact.test_analysis.charts import (
+    MOST,
+    damping_chart,
+    frac_chart,
+    magnitude_lines,
+    those_drawn,
+)
+from vibroimpact.test_analysis.responses.document import WHAT_FRAC_IS_OF
+from vibroimpact.test_analysis.responses.result import ResponseCorrelation
+
+_LOOKS = (("measured", "main"), ("simulated", "fit"))
+"""Names and roles of the lines."""
+
+
+def response_charts(found: ResponseCorrelation) -> list[Chart]:
+    """Return the charts `responses`, `frac` and, if a damping was measured, `damping`.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import vibroimpact as vi
+    >>> plate = {
+    ...     "size": [0.3, 0.3, 0.02],
+    ...     "material": "steel",
+    ...     "model": "elastic",
+    ...     "modes": 10,
+    ...     "supports": "clamped",
+    ...     "damping": 0.01,
+    ... }
+    >>> case = vi.read_case(
+    ...     {
+    ...         "sphere": {"radius": 0.02, "material": "steel"},
+    ...         "plate": plate,
+    ...         "drop": {"speed": 1.0, "position": [0.02, 0.01]},
+    ...         "contact": {"law": "hertz"},
+    ...         "sensors": [{"name": "a", "position": [0.1, 0.03]}],
+    ...     }
+    ... )
+    >>> found = vi.correlate_responses(
+    ...     case, vi.responses_of_case(case, np.arange(500.0, 4000.0, 2.0))
+    ... )
+    >>> [chart.name for chart in vi.response_charts(found)]
+    ['responses', 'frac', 'damping']
+    """
+    makers = {
+        "responses": partial(_responses, found),
+        "frac": partial(frac_chart, found, WHAT_FRAC_IS_OF),
+    }
+    if any(pair.damping_measured for pair in found.modes):
+        makers["damping"] = partial(damping_chart, found, "the measured frequency responses")
+    return made_charts(makers)
+
+
+def _responses(found: ResponseCorrelation) -> Chart:
+    axis = Axis("Frequency", "Hz", range=found.band)
+    computed = np.array([pair.frequency for pair in found.modes if pair.number is not None])
+    turns = Axis("Phase", "°", range=(-190.0, 190.0))
+    rows: list[tuple[Panel, ...]] = []
+    for number, sensor in enumerate(found.sensors[:MOST]):
+        both = (found.measured_response[number], found.simulated_response[number])
+        magnitudes, shown = magnitude_lines(found.frequency, both)
+        scale = Axis("Magnitude", found.units[number], log=True, range=shown)
+        phases = [
+            Line(*_phase(found.frequency, one), name, role)
+            for one, (name, role) in zip(both, _LOOKS, strict=True)
+        ]
+        title = f"{shortened(visible(sensor.name), 40)}: FRAC {found.frac[number]:.3f}"
+        rows.append((Panel(axis, scale, (*magnitudes, Rug(computed, "modes of the case")), title),))
+        rows.append((Panel(axis, turns, tuple(phases), "Phase"),))
+        if found.coherence is not None and not np.isnan(found.coherence[number]).any():
+            level = Axis("Coherence", range=(0.0, 1.02))
+            rows.append(
+                (
+                    Panel(
+                        axis,
+                        level,
+                        (Line(found.frequency, found.coherence[number], role="detail"),),
+                        "Coherence",
+                    ),
+                )
+            )
+    place = visible(found.reference)
+    of = (
+        f"of the motion at {place} to forces at the sensors"
+        if found.reciprocal
+        else f"to a force at {place}"
+    )
+    caption = (
+        f"Measured frequency responses {of}, and those of the case. Ticks mark the modes of "
+        f"the case.{those_drawn(len(found.sensors))}"
+    )
+    return Chart("responses", "Frequency responses", tuple(rows), caption)
+
+
+def _phase(frequency: Floats, response: Complex) -> tuple[Floats, Floats]:
+    """Return the frequencies and the phases [°] of a line, which is interrupted where a
+    phase goes on at the other end of the axis.
+    """
+    phase = np.degrees(np.angle(response))
+    turns = np.flatnonzero(np.abs(np.diff(phase)) > 180.0) + 1
+    return np.insert(frequency, turns, frequency[turns]), np.insert(phase, turns, np.nan)
