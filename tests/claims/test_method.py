@@ -14,7 +14,7 @@ from vibroimpact.contact.laws.hertz import Hertz
 from vibroimpact.dynamics import air, liquid
 from vibroimpact.dynamics.core import phase_contact
 from vibroimpact.dynamics.rigid import line_contact
-from vibroimpact.dynamics.vibrating import visit
+from vibroimpact.dynamics.vibrating import elastic_impact
 
 PAGE = "docs/method.md"
 WATER, QUARTZ = vi.Liquid(), 2650.0
@@ -23,8 +23,8 @@ WATER, QUARTZ = vi.Liquid(), 2650.0
 def test_bounds() -> None:
     says(PAGE, "a restitution below {} or not at all", phase_contact._LEAST_RESTITUTION)
     says(PAGE, "all contacts below a tolerance of {}.", line_contact._TIGHTEST)
-    says(PAGE, "It is integrated for {} steps of contact", visit.MOST_STEPS)
-    says(PAGE, "up to that time with at most {};", visit.MOST_STEPS_TO_A_TIME)
+    says(PAGE, "It is integrated for {} steps of contact", elastic_impact.MOST_STEPS)
+    says(PAGE, "up to that time with at most {};", elastic_impact.MOST_STEPS_TO_A_TIME)
     says(PAGE, "more than {} % is refused", 100.0 * air._DENSEST)
 
 

@@ -763,8 +763,8 @@ def test_gravity_across_the_slip_turns_the_friction_of_an_impact(
     def rates(_: float, state: Floats) -> Floats:
         force = stiffness * max(state[0], 0.0) ** 1.5 / MASS
         point = state[2:4] + state[4:6]
-        sliding = -mu * force * point / np.sqrt(point @ point + 1e-14)
-        return np.concatenate([[state[1], -force], sliding + gravity, 2.5 * sliding])
+        friction = -mu * force * point / np.sqrt(point @ point + 1e-14)
+        return np.concatenate([[state[1], -force], friction + gravity, 2.5 * friction])
 
     start = [0.0, speed, slip, 0.0, 0.0, 0.0]
     found = solve_ivp(

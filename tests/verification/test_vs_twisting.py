@@ -145,9 +145,9 @@ def test_a_contact_that_sticks_has_an_upper_bound(ratio: float) -> None:
     """Friction and moment that Hertz's pressure has together lie within the ellipse, by
     no more than a third of the moment.
     """
-    sliding, moment = over_pressure(ratio)
+    friction, moment = over_pressure(ratio)
     law, force = friction(), np.array([100.0])
-    bound = law.twisting_part(force, 0.092 * sliding * force, np.ones(1), np.zeros(1))
+    bound = law.twisting_part(force, 0.092 * friction * force, np.ones(1), np.zeros(1))
     assert moment < FULL * float(bound[0]) < 4.0 / 3.0 * moment
 
 

@@ -160,10 +160,10 @@ def _energy(result: Result) -> str:
     lost = energy_text(result, "contact_dissipated_J", "plastic_work_J")
     words = f"Of {text(put_in, 'J')} put in, {lost} is lost in contact by the end."
     if "friction_J" in result.energy:
-        sliding = energy_text(result, "friction_J")
+        friction = energy_text(result, "friction_J")
         words = (
             f"Of {text(put_in, 'J')} put in, {lost} is lost in contact along the normal by the "
-            f"end, and {sliding} by friction."
+            f"end, and {friction} by friction."
         )
     words += _vibration(result)
     if result.energy.get("drive_J"):

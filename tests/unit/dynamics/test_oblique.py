@@ -15,7 +15,7 @@ from vibroimpact.arrays import Floats
 from vibroimpact.cases.keys import with_values
 from vibroimpact.contact.friction.law import CompliantFriction
 from vibroimpact.dynamics.columns import LEDGER, OBLIQUE_LEDGER, VIBRATION_LEDGER
-from vibroimpact.dynamics.oblique import motion, sliding
+from vibroimpact.dynamics.oblique import oblique_motion, sliding
 from vibroimpact.dynamics.oblique.normal_motion import NormalMotion
 from vibroimpact.dynamics.rigid import solve_contact
 from vibroimpact.runs.tables import ledger_table
@@ -394,7 +394,7 @@ def normal_motion_of(drops: vi.Problem) -> NormalMotion:
     heard: list[NormalMotion] = []
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(
-            motion,
+            oblique_motion,
             "slide",
             lambda law, normal, *others: (
                 heard.append(normal) or sliding.slide(law, normal, *others)
@@ -798,13 +798,13 @@ def test_sliding_takes_the_coefficient_of_the_normal_impulse(law: str) -> None:
         )
         for impacts in (vi.tabulate(drops).impacts, vi.simulate(drops).impacts):
             pushed = MASS * (2.0 + impacts["separation_speed_m_s"][:, 0])
-            sliding = (
+            pushed_along = (
                 MASS
                 * (impacts["approach_velocity_x_m_s"] - impacts["separation_velocity_x_m_s"])[:, 0]
             )
             least = 1.0 if law == "tsuji" else 1.0 - 1e-5  # whose end pulls
-            assert (sliding >= least * 0.3 * pushed).all()
-            assert (sliding <= (1.02 if law == "tsuji" else 1.0 + 1e-5) * 0.3 * pushed).all()
+            assert (pushed_along >= least * 0.3 * pushed).all()
+            assert (pushed_along <= (1.02 if law == "tsuji" else 1.0 + 1e-5) * 0.3 * pushed).all()
 
 
 @pytest.mark.parametrize("friction", ["mdr", "mindlin", "mindlin-rescale", "mindlin-force"])

@@ -22,7 +22,7 @@ from vibroimpact.contact.pair import ContactPair
 from vibroimpact.contact.quasi_static import QuasiStatic
 from vibroimpact.contact.registry import contact_laws
 from vibroimpact.dynamics.columns import LEDGER, VIBRATION_LEDGER
-from vibroimpact.dynamics.vibrating import visit
+from vibroimpact.dynamics.vibrating import elastic_impact
 from vibroimpact.dynamics.vibrating.contact_equilibrium import ContactEquilibrium
 from vibroimpact.dynamics.vibrating.linear_system import LinearSystem, State
 from vibroimpact.dynamics.vibrating.local import LocalContact
@@ -167,7 +167,7 @@ def test_a_ride_ends_at_the_duration() -> None:
 
 
 def test_a_ride_is_not_followed_for_ever(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(visit, "MOST_STEPS", 60)
+    monkeypatch.setattr(elastic_impact, "MOST_STEPS", 60)
     response = vi.simulate(HEAVY)
     assert response.outcomes == (vi.Outcome.RIDING,)
     assert not response.outcomes[0].at_rest

@@ -209,9 +209,13 @@ class ObliqueMotion:
         contact = ObliqueContact(
             sphere, before, direction, sliding, _twist(law, normal, sliding, sphere, before)
         )
-        sliding = sphere.tangential_mass * np.abs(sliding.slip[-1] - slip - pull * normal.time[-1])
+        friction_impulse = sphere.tangential_mass * np.abs(
+            sliding.slip[-1] - slip - pull * normal.time[-1]
+        )
         contact = contact.changed(_across(sphere, contact))
-        contact = contact.changed(_rolling(law, sphere, contact.end, normal.impulse[-1], sliding))
+        contact = contact.changed(
+            _rolling(law, sphere, contact.end, normal.impulse[-1], friction_impulse)
+        )
         after = contact.end
         self.finish(drops, after, energy_taken(sphere, before, after), sliding.microslip, row)
         return contact
@@ -237,11 +241,11 @@ class ObliqueMotion:
         if isinstance(self.law, ImpulsiveFriction):
             left = self.law.take(drops).slip_after(slip, impulse, impulse, sphere.tangential_mass)
         after = sphere.pushed(before, sphere.tangential_mass * (left - slip) * direction)
-        law, sliding = (
+        law, friction_impulse = (
             None if self.law is None else self.law.take(drops),
             sphere.tangential_mass * np.abs(left - slip),
         )
-        change = _rolling(law, sphere, after, impulse, sliding)
+        change = _rolling(law, sphere, after, impulse, friction_impulse)
         after = after if change is None else after.changed(change)
         lost, after = (
             energy_taken(sphere, before, after),
@@ -371,12 +375,13 @@ def _between(values: Floats) -> Floats:
 
 
 def _rolling(
-    law: FrictionLaw | None, sphere: Sphere, after: State, impulse: Floats, sliding: Floats
+    law: FrictionLaw | None, sphere: Sphere, after: State, impulse: Floats, friction_impulse: Floats
 ) -> State | None:
     """Return what rolling resistance changes in states after contacts; None if it does not act.
 
     Its moment acts at the end, against the spin that is left, with the whole normal impulse [N s].
-    What the impulse of friction so far, `sliding` [N s], has left of friction keeps the sphere
+    What the impulse of friction so far, `friction_impulse` [N s], has left of friction keeps the
+    sphere
     rolling, but where the contact point slips with the spin so fast that this made energy.
     """
     if law is None or not np.any(law.rolling_coefficient):
@@ -388,7 +393,9 @@ def _rolling(
     held = np.where(
         slips,
         0.0,
-        np.minimum((1.0 - share) * moment, np.maximum(law.coefficient * impulse - sliding, 0.0)),
+        np.minimum(
+            (1.0 - share) * moment, np.maximum(law.coefficient * impulse - friction_impulse, 0.0)
+        ),
     )
     turn = sphere.radius**2 / sphere.inertia
     slower = (moment - held) * turn

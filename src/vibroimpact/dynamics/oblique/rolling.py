@@ -187,13 +187,13 @@ class LyingSpheres:
         times = np.append((ends[:-1, None] + np.diff(ends)[:, None] * parts).ravel(), ends[-1])
         one = np.array([drop])
         state, friction = self.at(np.repeat(one, len(times)), times)
-        sliding, slip = (
+        friction, slip = (
             np.hypot(*friction)[:, None],
             np.hypot(*self.sphere.take(one).slip(state))[:, None],
         )
         full = slower[one] * times[:, None]
         left, lost = slowed_spins(
-            law.take(one), self.start.spin[2, one], full, load[one] + 0.0 * full, sliding, slip
+            law.take(one), self.start.spin[2, one], full, load[one] + 0.0 * full, friction, slip
         )
         return times, left[:, 0], np.append(lost[:, 0] / np.diff(times), 0.0)
 
@@ -379,9 +379,9 @@ def _rates(
     """Return the accelerations of the slip along a line, what the moment adds to it, and
     what friction takes from it.
     """
-    sliding = forces.bound * np.sign(slip)
+    sliding_friction = forces.bound * np.sign(slip)
     friction = np.where(
-        slip != 0.0, sliding, np.clip(pull / forces.share, -forces.bound, forces.bound)
+        slip != 0.0, sliding_friction, np.clip(pull / forces.share, -forces.bound, forces.bound)
     )
     holding = (1.0 - forces.share) * friction  # the moment that leaves a sphere without spin
     turn = np.where(
@@ -393,9 +393,9 @@ def _rates(
     # where the slip has ended it begins again, if friction can't hold it
     again = np.sign(free) * np.maximum(np.abs(free) - forces.bound, 0.0)
     return (
-        np.where(slip != 0.0, free - sliding, again),
+        np.where(slip != 0.0, free - sliding_friction, again),
         turn,
-        np.where(slip != 0.0, sliding, free - again),
+        np.where(slip != 0.0, sliding_friction, free - again),
     )
 
 
