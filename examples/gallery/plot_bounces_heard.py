@@ -54,7 +54,7 @@ assert len(bounces.others) == 3  # the clicks
 
 # %%
 # Restitution against speed, with intervals, and three fits: the chart of the report.
-record_chart, restitution_chart = vi.bounce_charts(rebounds)
+record_chart, restitution_chart = rebounds.report.charts
 vi.plotly_figure(restitution_chart)
 
 # %%

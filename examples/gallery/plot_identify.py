@@ -76,7 +76,7 @@ assert abs(found.estimates["max_force_N"].value / response.impacts["max_force_N"
 
 # %%
 # The records and the fit, as in the report.
-charts = {chart.name: chart for chart in vi.identification_charts(found)}
+charts = found.charts
 vi.plotly_figure(charts["records"])
 
 # %%

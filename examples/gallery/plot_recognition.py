@@ -83,7 +83,7 @@ for name in classifiers:
 # %%
 # Charts of the result show the confusion matrix, the effect of noise, the calibration and the
 # importance of features; this one shows the errors of all classifiers.
-charts = {chart.name: chart for chart in vi.recognition_charts(found)}
+charts = found.charts
 vi.plotly_figure(charts["scores"])
 
 # %%

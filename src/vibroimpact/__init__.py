@@ -18,15 +18,11 @@ from vibroimpact._version import __version__
 if TYPE_CHECKING:
     from vibroimpact.bayes_error.bound import Bound as Bound
     from vibroimpact.bayes_error.bound import bound_of as bound_of
-    from vibroimpact.bayes_error.charts import bound_charts as bound_charts
-    from vibroimpact.bayes_error.folder import save_bound as save_bound
     from vibroimpact.bayes_error.observations import Channel as Channel
     from vibroimpact.bodies.body import Body as Body
     from vibroimpact.bodies.rigid_bodies import rigid_plate as rigid_plate
     from vibroimpact.bodies.rigid_bodies import rigid_sphere as rigid_sphere
     from vibroimpact.calibration.bounce_record import impacts_in_bounces as impacts_in_bounces
-    from vibroimpact.calibration.bounces.charts import bounce_charts as bounce_charts
-    from vibroimpact.calibration.bounces.folder import save_rebounds as save_rebounds
     from vibroimpact.calibration.bounces.rebounds import Rebounds as Rebounds
     from vibroimpact.calibration.bounces.rebounds import rebounds_of as rebounds_of
     from vibroimpact.calibration.calibrate import calibrate as calibrate
@@ -45,7 +41,6 @@ if TYPE_CHECKING:
     from vibroimpact.calibration.friction.measured import ObliqueImpacts as ObliqueImpacts
     from vibroimpact.calibration.observations import Observations as Observations
     from vibroimpact.calibration.position_record import impacts_in_position as impacts_in_position
-    from vibroimpact.calibration.restitutions.folder import save_restitutions as save_restitutions
     from vibroimpact.calibration.restitutions.restitutions import Restitutions as Restitutions
     from vibroimpact.calibration.restitutions.restitutions import (
         read_restitutions as read_restitutions,
@@ -111,16 +106,12 @@ if TYPE_CHECKING:
     from vibroimpact.exporting.export_format import export_formats as export_formats
     from vibroimpact.exporting.export_result import export_result as export_result
     from vibroimpact.figures import save_figures as save_figures
-    from vibroimpact.identification.charts import identification_charts as identification_charts
-    from vibroimpact.identification.folder import save_identification as save_identification
     from vibroimpact.identification.identify import Identification as Identification
     from vibroimpact.identification.identify import identify as identify
     from vibroimpact.identification.identify import identify_force as identify_force
     from vibroimpact.identification.setup import SetupErrors as SetupErrors
-    from vibroimpact.law_comparison.charts import comparison_charts as comparison_charts
     from vibroimpact.law_comparison.comparison import Comparison as Comparison
     from vibroimpact.law_comparison.comparison import compare_laws as compare_laws
-    from vibroimpact.law_comparison.folder import save_comparison as save_comparison
     from vibroimpact.law_sheets.curves import law_chart as law_chart
     from vibroimpact.materials import Material as Material
     from vibroimpact.materials import find_material as find_material
@@ -134,9 +125,6 @@ if TYPE_CHECKING:
     from vibroimpact.paper.report.folder import reproduce_paper as reproduce_paper
     from vibroimpact.recognition.apply import Recognised as Recognised
     from vibroimpact.recognition.apply import apply_recogniser as apply_recogniser
-    from vibroimpact.recognition.apply import save_recognised as save_recognised
-    from vibroimpact.recognition.charts import recognition_charts as recognition_charts
-    from vibroimpact.recognition.folder import save_recognition as save_recognition
     from vibroimpact.recognition.labelled_signals import LabelledSignals as LabelledSignals
     from vibroimpact.recognition.labelled_signals import SensorSignals as SensorSignals
     from vibroimpact.recognition.read_dataset import read_labelled_signals as read_labelled_signals
@@ -186,19 +174,13 @@ if TYPE_CHECKING:
     from vibroimpact.studies.study import Study as Study
     from vibroimpact.studies.study import read_study as read_study
     from vibroimpact.studies.sweep import Sweep as Sweep
-    from vibroimpact.test_analysis.charts import correlation_charts as correlation_charts
     from vibroimpact.test_analysis.correlate import Correlation as Correlation
     from vibroimpact.test_analysis.correlate import correlate as correlate
-    from vibroimpact.test_analysis.folder import save_correlation as save_correlation
     from vibroimpact.test_analysis.mode_pairs import ModePair as ModePair
-    from vibroimpact.test_analysis.responses.charts import response_charts as response_charts
     from vibroimpact.test_analysis.responses.compare import (
         correlate_responses as correlate_responses,
     )
     from vibroimpact.test_analysis.responses.compare import responses_of_case as responses_of_case
-    from vibroimpact.test_analysis.responses.folder import (
-        save_response_correlation as save_response_correlation,
-    )
     from vibroimpact.test_analysis.responses.result import (
         ResponseCorrelation as ResponseCorrelation,
     )
@@ -273,8 +255,6 @@ _HOME = {
     "VibroimpactError": "errors",
     "achieved_restitution": "dynamics.restitution",
     "apply_recogniser": "recognition.apply",
-    "bounce_charts": "calibration.bounces.charts",
-    "bound_charts": "bayes_error.charts",
     "bound_of": "bayes_error.bound",
     "calibrate": "calibration.calibrate",
     "calibrate_case": "calibration.calibrate_case",
@@ -284,13 +264,11 @@ _HOME = {
     "case_schema": "cases.case",
     "case_template": "cases.template",
     "compare_laws": "law_comparison.comparison",
-    "comparison_charts": "law_comparison.charts",
     "compute_modes": "cases.elastic.modes",
     "contact_laws": "contact.registry",
     "convert_units": "units.reading",
     "correlate": "test_analysis.correlate",
     "correlate_responses": "test_analysis.responses.compare",
-    "correlation_charts": "test_analysis.charts",
     "export_formats": "exporting.export_format",
     "export_result": "exporting.export_result",
     "feature_table": "signals.feature_table",
@@ -304,7 +282,6 @@ _HOME = {
     "frac": "signals.frac",
     "friction_laws": "contact.registry",
     "from_onset": "signals.onset",
-    "identification_charts": "identification.charts",
     "identify": "identification.identify",
     "identify_force": "identification.identify",
     "identify_local_element": "dynamics.local_element",
@@ -344,11 +321,9 @@ _HOME = {
     "read_sweep": "studies.read_sweep",
     "rebounds_of": "calibration.bounces.rebounds",
     "recognise": "recognition.recognise",
-    "recognition_charts": "recognition.charts",
     "record_table": "signals.record_table",
     "remake_report": "regenerate",
     "reproduce_paper": "paper.report.folder",
-    "response_charts": "test_analysis.responses.charts",
     "responses_of_case": "test_analysis.responses.compare",
     "result_html": "runs.notebook",
     "result_of": "results.result",
@@ -356,19 +331,10 @@ _HOME = {
     "rigid_sphere": "bodies.rigid_bodies",
     "run_charts": "runs.charts",
     "run_sweep": "studies.run_sweep",
-    "save_bound": "bayes_error.folder",
     "save_calibration": "calibration.folder",
     "save_charts": "charts.files",
-    "save_comparison": "law_comparison.folder",
-    "save_correlation": "test_analysis.folder",
     "save_figures": "figures",
-    "save_identification": "identification.folder",
     "save_modes": "modes.folder",
-    "save_rebounds": "calibration.bounces.folder",
-    "save_recognised": "recognition.apply",
-    "save_recognition": "recognition.folder",
-    "save_response_correlation": "test_analysis.responses.folder",
-    "save_restitutions": "calibration.restitutions.folder",
     "save_result": "runs.save",
     "shipped_cases": "cases.reader",
     "simulate": "dynamics.simulate",

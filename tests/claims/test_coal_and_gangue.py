@@ -16,7 +16,7 @@ from vibroimpact.bayes_error.bound import BANDWIDTHS, SIGNAL_TO_NOISE, Bound, le
 from vibroimpact.bayes_error.error_estimate import BayesError, bayes_error
 from vibroimpact.bayes_error.falls import Falls, falls_of_sweep
 from vibroimpact.bayes_error.observations import Channel, measurable
-from vibroimpact.bayes_error.tables import error_words
+from vibroimpact.bayes_error.report import error_interval
 from vibroimpact.signals.inverse.hertz_pulse import hertz_pulse
 
 GUIDE = "docs/guides/coal-from-rock.md"
@@ -162,7 +162,7 @@ def test_the_printed_table_of_bounds() -> None:
     text = page_text(BOUNDS)
     for name in ("impulse", "contact time", "one impact", "one impact, place unknown"):
         assert (
-            f" {name} {error_words(bound.errors[name])} {error_words(bound.without_scatter[name])} "
+            f" {name} {error_interval(bound.errors[name])} {error_interval(bound.without_scatter[name])} "
             in text
         )
 

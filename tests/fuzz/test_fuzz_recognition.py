@@ -68,7 +68,7 @@ def apply_model(made: Path, damage: Callable[[Path, Hostile], None], hostile: Ho
     shutil.copytree(made / CLASSIFIERS[hostile.seed % len(CLASSIFIERS)], copy)
     damage(copy, hostile)
     found = vi.apply_recogniser(copy, read_once(made / "data"))
-    vi.save_recognised(found, made / "applied", force=True)
+    found.save(made / "applied", force=True)
     assert np.isfinite(found.probabilities).all(), "a probability is not a number"
     assert (found.probabilities >= 0.0).all(), "a probability is negative"
     np.testing.assert_allclose(found.probabilities.sum(axis=1), 1.0, atol=1e-3)

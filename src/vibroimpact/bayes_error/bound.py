@@ -14,6 +14,7 @@ from vibroimpact.bayes_error.error_estimate import BayesError, bayes_error
 from vibroimpact.bayes_error.falls import Falls, falls_of_study, falls_of_sweep
 from vibroimpact.bayes_error.observations import OBSERVATIONS, Channel, Observation, measurable
 from vibroimpact.errors import InputError
+from vibroimpact.report.reported import Reported
 from vibroimpact.studies.study import Study
 from vibroimpact.studies.sweep import Sweep
 
@@ -32,7 +33,7 @@ _TESTED, _TESTED_OF_MAP, _FALLS_OF_MAP = 2000, 500, 8000
 
 
 @dataclass(frozen=True, eq=False)
-class Bound:
+class Bound(Reported, reported_in="vibroimpact.bayes_error.report"):
     """The Bayes error of a population: the lowest error of a classifier that sees only the measured
     quantities, with the stated scatter.
 

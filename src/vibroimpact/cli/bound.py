@@ -14,10 +14,9 @@ from vibroimpact.cli.shared import (
     Force,
     Json,
     app,
-    console,
-    exit_on_interrupt,
+    progress_of,
     quantity_in,
-    show_folder,
+    save_and_show,
     stem,
 )
 from vibroimpact.errors import InputError
@@ -64,10 +63,7 @@ def bound(
     are computed on its plate as a rigid body; those of a data set are read from it.
     """
     from vibroimpact.bayes_error.bound import bound_of
-    from vibroimpact.bayes_error.folder import bound_document, save_bound
     from vibroimpact.bayes_error.observations import Channel
-    from vibroimpact.bayes_error.text import bound_summary
-    from vibroimpact.report.progress import patient_progress
     from vibroimpact.results.folder import check_free
     from vibroimpact.studies.read_sweep import load_sweep
     from vibroimpact.studies.study import read_study
@@ -84,15 +80,9 @@ def bound(
         raise InputError(
             f"{signal_to_noise:g} is not allowed; it must be from -60 to 200 dB", "--snr"
         )
-    screen = console(err=as_json)
-    with exit_on_interrupt(), patient_progress("Bayes error", screen) as progress:
-        found = (
-            read_study(population) if Path(population).is_dir() else load_sweep(population, samples)
-        )
-        known = bound_of(
-            found, Channel(bandwidth=band, signal_to_noise=signal_to_noise), progress=progress
-        )
-        folder = save_bound(known, target, force=force)
-    show_folder(
-        folder, lambda: bound_document(known), lambda: bound_summary(known), as_json=as_json
-    )
+    channel = Channel(bandwidth=band, signal_to_noise=signal_to_noise)
+    with progress_of("Bayes error", as_json=as_json) as progress:
+        is_study = Path(population).is_dir()
+        falls = read_study(population) if is_study else load_sweep(population, samples)
+        bound = bound_of(falls, channel, progress=progress)
+    save_and_show(bound, target, force=force, as_json=as_json)

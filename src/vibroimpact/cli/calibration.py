@@ -20,6 +20,7 @@ from vibroimpact.cli.shared import (
     console,
     exit_on_interrupt,
     note,
+    save_and_show,
     settings_of,
     show_folder,
     stem,
@@ -161,19 +162,10 @@ def _fit_table(
     file: Path, target: Path, columns: str | None, *, figures: bool, force: bool, as_json: bool
 ) -> None:
     """Fit the restitutions of a table over the approach speed, and print and write them."""
-    from vibroimpact.calibration.restitutions.document import restitution_document
-    from vibroimpact.calibration.restitutions.folder import save_restitutions
     from vibroimpact.calibration.restitutions.restitutions import read_restitutions
-    from vibroimpact.calibration.restitutions.text import restitution_summary
 
-    found = read_restitutions(file, columns=columns)
-    folder = save_restitutions(found, target, force=force, figures=("png",) if figures else ())
-    show_folder(
-        folder,
-        lambda: restitution_document(found),
-        lambda: restitution_summary(found),
-        as_json=as_json,
-    )
+    restitutions = read_restitutions(file, columns=columns)
+    save_and_show(restitutions, target, force=force, figures=figures, as_json=as_json)
 
 
 def _listen(
@@ -190,25 +182,20 @@ def _listen(
     as_json: bool,
 ) -> None:
     """Find the restitution of bounces in a record, and print and write it."""
-    from vibroimpact.calibration.bounces.document import bounce_document
-    from vibroimpact.calibration.bounces.folder import save_rebounds
     from vibroimpact.calibration.bounces.rebounds import rebounds_of
-    from vibroimpact.calibration.bounces.text import bounce_summary
     from vibroimpact.calibration.inputs import BRIEF
     from vibroimpact.files.reading import with_path
     from vibroimpact.signals.bounces.find import find_bounces
     from vibroimpact.signals.one_record import one_record
 
     with exit_on_interrupt():
-        lasts = BRIEF if contact is None else written_in("--contact", contact, "s")
+        contact_duration = BRIEF if contact is None else written_in("--contact", contact, "s")
         acceleration = None if gravity is None else written_in("--gravity", gravity, "m/s^2")
-        fallen = None if height is None else written_in("--height", height, "m")
+        drop_height = None if height is None else written_in("--height", height, "m")
         record = one_record(file, channel, columns)
         try:
-            found = rebounds_of(find_bounces(record, lasts), gravity=acceleration, height=fallen)
+            bounces = find_bounces(record, contact_duration)
+            rebounds = rebounds_of(bounces, gravity=acceleration, height=drop_height)
         except InputError as error:
             raise with_path(file, error) from None
-        folder = save_rebounds(found, target, force=force, figures=("png",) if figures else ())
-    show_folder(
-        folder, lambda: bounce_document(found), lambda: bounce_summary(found), as_json=as_json
-    )
+    save_and_show(rebounds, target, force=force, figures=figures, as_json=as_json)

@@ -14,11 +14,10 @@ from vibroimpact.cli.shared import (
     Force,
     Json,
     app,
-    console,
-    exit_on_interrupt,
     names_in,
+    progress_of,
+    save_and_show,
     settings_of,
-    show_folder,
     stem,
 )
 
@@ -71,31 +70,17 @@ def compare(
     """
     from vibroimpact.cases.reader import load_case
     from vibroimpact.law_comparison.comparison import compare_laws
-    from vibroimpact.law_comparison.document import comparison_document
-    from vibroimpact.law_comparison.folder import save_comparison
-    from vibroimpact.law_comparison.text import comparison_summary
-    from vibroimpact.report.progress import patient_progress
     from vibroimpact.results.folder import check_free
 
     found = load_case(case)
     target = Path(f"{stem(case)}-compared") if output is None else output
     check_free(target, force=force)
-    screen = console(err=as_json)
-    with exit_on_interrupt():
-        with patient_progress("comparing", screen) as progress:
-            comparison = compare_laws(
-                found,
-                names_in(laws),
-                settings_of(given, "restitution=0.7 or adams-impact.damping_max=180"),
-                achieving=achieving,
-                progress=progress,
-            )
-        folder = save_comparison(
-            comparison, target, force=force, figures=("png",) if figures else ()
+    with progress_of("comparing", as_json=as_json) as progress:
+        comparison = compare_laws(
+            found,
+            names_in(laws),
+            settings_of(given, "restitution=0.7 or adams-impact.damping_max=180"),
+            achieving=achieving,
+            progress=progress,
         )
-    show_folder(
-        folder,
-        lambda: comparison_document(comparison),
-        lambda: comparison_summary(comparison),
-        as_json=as_json,
-    )
+    save_and_show(comparison, target, force=force, figures=figures, as_json=as_json)

@@ -19,12 +19,11 @@ from vibroimpact.cli.shared import (
     Force,
     Json,
     app,
-    console,
-    exit_on_interrupt,
     pair_in,
+    progress_of,
     quantity_in,
+    save_and_show,
     settings_of,
-    show_folder,
     stem,
 )
 from vibroimpact.errors import InputError, did_you_mean
@@ -33,6 +32,8 @@ from vibroimpact.quoting import quoted
 if TYPE_CHECKING:
     from vibroimpact.cases.case import Case
     from vibroimpact.signals.record import Record
+    from vibroimpact.test_analysis.correlate import Correlation
+    from vibroimpact.test_analysis.responses.result import ResponseCorrelation
 
 
 @app.command()
@@ -106,93 +107,60 @@ def correlate(
     the case, and so are the modes that are fitted to them.
     """
     from vibroimpact.cases.reader import load_case
-    from vibroimpact.report.progress import patient_progress
     from vibroimpact.results.folder import check_free
     from vibroimpact.signals.read_records import read_records
     from vibroimpact.test_analysis.compared_kind import compared_kind
-    from vibroimpact.test_analysis.correlate import correlate as correlated
-    from vibroimpact.test_analysis.document import summary_of_correlation
-    from vibroimpact.test_analysis.folder import save_correlation
-    from vibroimpact.test_analysis.text import correlation_summary
+    from vibroimpact.test_analysis.correlate import correlate as correlate_records
 
-    found = load_case(case, settings_of(changes))
+    test_case = load_case(case, settings_of(changes))
     target = Path(f"{stem(case)}-correlated") if output is None else output
     check_free(target, force=force)
-    length = None if window is None else quantity_in("--window", window, "s")
-    ends = (
-        None
-        if band is None
-        else pair_in("--band", band, "Hz", "a lower and an upper frequency", "100 Hz, 5 kHz")
-    )
-    compared = compared_kind(records, compare, hammer, windowed=length is not None)
+    window_length = None if window is None else quantity_in("--window", window, "s")
+    band_ends = None
+    if band is not None:
+        band_ends = pair_in("--band", band, "Hz", "a lower and an upper frequency", "100 Hz, 5 kHz")
+    compared = compared_kind(records, compare, hammer, windowed=window_length is not None)
+    correlation: Correlation | ResponseCorrelation
     if compared.kind == "responses":
-        if length is not None:
+        if window_length is not None:
             raise InputError(
                 "frequency responses have no time; leave it out, or take a --band", "--window"
             )
-        _correlate_responses(
-            found,
-            records,
-            target,
-            hammer,
-            ends,
-            compared.remarks,
-            figures=figures,
-            force=force,
-            as_json=as_json,
-        )
-        return
-    heard = [record for path in records for record in read_records(path, columns)]
-    push = None if hammer is None else _force_among(heard, hammer)
-    with exit_on_interrupt():
-        with patient_progress("correlating", console(err=as_json)) as progress:
-            motions = [record for record in heard if record is not push]
-            told = correlated(
-                found, motions, force=push, window=length, band=ends, progress=progress
+        correlation = _correlated_responses(test_case, records, hammer, band_ends, as_json=as_json)
+    else:
+        measured = [record for path in records for record in read_records(path, columns)]
+        force_record = None if hammer is None else _force_among(measured, hammer)
+        motions = [record for record in measured if record is not force_record]
+        with progress_of("correlating", as_json=as_json) as progress:
+            correlation = correlate_records(
+                test_case,
+                motions,
+                force=force_record,
+                window=window_length,
+                band=band_ends,
+                progress=progress,
             )
-        told = replace(told, doubts=(*compared.remarks, *told.doubts))
-        folder = save_correlation(told, target, force=force, figures=("png",) if figures else ())
-    show_folder(
-        folder,
-        lambda: summary_of_correlation(told),
-        lambda: correlation_summary(told),
-        as_json=as_json,
-    )
+    correlation = replace(correlation, doubts=(*compared.remarks, *correlation.doubts))
+    save_and_show(correlation, target, force=force, figures=figures, as_json=as_json)
 
 
-def _correlate_responses(
+def _correlated_responses(
     case: Case,
     paths: list[Path],
-    target: Path,
     reference: str | None,
     band: tuple[float, float] | None,
-    remarks: tuple[str, ...],
     *,
-    figures: bool,
-    force: bool,
     as_json: bool,
-) -> None:
-    """Compare measured frequency responses with those of a case."""
-    from vibroimpact.report.progress import patient_progress
+) -> ResponseCorrelation:
+    """Return the comparison of measured frequency responses with those of a case."""
     from vibroimpact.signals.reading.universal_responses import read_responses
     from vibroimpact.test_analysis.responses.compare import correlate_responses
-    from vibroimpact.test_analysis.responses.document import summary_of_responses
-    from vibroimpact.test_analysis.responses.folder import save_response_correlation
-    from vibroimpact.test_analysis.responses.text import response_summary
 
     responses = [response for path in paths for response in read_responses(path)]
-    with exit_on_interrupt():
-        with patient_progress("correlating", console(err=as_json)) as progress:
-            told = correlate_responses(
-                case, responses, reference=reference, band=band, progress=progress
-            )
-        told = replace(told, doubts=(*remarks, *told.doubts))
-        folder = save_response_correlation(
-            told, target, force=force, figures=("png",) if figures else ()
+    with progress_of("correlating", as_json=as_json) as progress:
+        return correlate_responses(
+            case, responses, reference=reference, band=band, progress=progress
         )
-    show_folder(
-        folder, lambda: summary_of_responses(told), lambda: response_summary(told), as_json=as_json
-    )
 
 
 def _force_among(records: list[Record], name: str) -> Record:

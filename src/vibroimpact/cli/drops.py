@@ -221,10 +221,9 @@ def modes(
     from vibroimpact.measurements.universal_file import is_universal
     from vibroimpact.modes.document import modes_document
     from vibroimpact.modes.folder import save_modes
-    from vibroimpact.modes.text import modes_summary
+    from vibroimpact.modes.text import measured_summary, modes_summary
     from vibroimpact.report.progress import patient_progress
     from vibroimpact.results.folder import check_free
-    from vibroimpact.test_analysis.measured.text import compared_summary
 
     target = Path(f"{stem(case)}-modes") if output is None else output
     if Path(case).is_file() and is_universal(case):
@@ -252,7 +251,7 @@ def modes(
     )
     tables = [
         lambda: modes_summary(found, bodies),
-        *([] if beside is None else [lambda: compared_summary(beside)]),
+        *([] if beside is None else [lambda: measured_summary(beside)]),
     ]
     show(lambda: {"folder": str(folder), **document}, *tables, as_json=as_json)
     tables_written = (

@@ -17,12 +17,11 @@ from vibroimpact.cli.shared import (
     Force,
     Json,
     app,
-    console,
-    exit_on_interrupt,
     pair_in,
+    progress_of,
     quantity_in,
+    save_and_show,
     settings_of,
-    show_folder,
     stem,
 )
 
@@ -122,20 +121,18 @@ def identify(
     deviations.
     """
     from vibroimpact.cases.reader import load_case
-    from vibroimpact.identification.document import summary_of_identification
-    from vibroimpact.identification.folder import save_identification
-    from vibroimpact.identification.identify import identify as identified
+    from vibroimpact.identification.identify import identify as identify_impact
     from vibroimpact.identification.setup import SetupErrors
-    from vibroimpact.identification.text import identification_summary
-    from vibroimpact.report.progress import patient_progress
     from vibroimpact.results.folder import check_free
     from vibroimpact.signals.read_records import read_records
 
-    found = load_case(case, settings_of(changes))
+    plate_case = load_case(case, settings_of(changes))
     target = Path(f"{stem(case)}-identified") if output is None else output
     check_free(target, force=force)
-    where = None if place is None else pair_in("--place", place, "m", "x and y", "60 mm, 40 mm")
-    length = quantity_in("--window", window, "s")
+    position = None
+    if place is not None:
+        position = pair_in("--place", place, "m", "x and y", "60 mm, 40 mm")
+    window_length = quantity_in("--window", window, "s")
     errors = SetupErrors(
         quantity_in("--sensor-error", sensor_error, "m"),
         gain_error,
@@ -143,22 +140,15 @@ def identify(
         modulus_error,
         resonance_error,
     )
-    heard = [record for path in records for record in read_records(path, columns)]
-    with exit_on_interrupt():
-        with patient_progress("identifying", console(err=as_json)) as progress:
-            told = identified(
-                found,
-                heard,
-                place=where,
-                window=length,
-                frequency_error=frequency_error,
-                errors=errors,
-                progress=progress,
-            )
-        folder = save_identification(told, target, force=force, figures=("png",) if figures else ())
-    show_folder(
-        folder,
-        lambda: summary_of_identification(told),
-        lambda: identification_summary(told),
-        as_json=as_json,
-    )
+    measured = [record for path in records for record in read_records(path, columns)]
+    with progress_of("identifying", as_json=as_json) as progress:
+        identification = identify_impact(
+            plate_case,
+            measured,
+            place=position,
+            window=window_length,
+            frequency_error=frequency_error,
+            errors=errors,
+            progress=progress,
+        )
+    save_and_show(identification, target, force=force, figures=figures, as_json=as_json)

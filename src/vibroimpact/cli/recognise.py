@@ -18,8 +18,7 @@ from vibroimpact.cli.shared import (
     app,
     exit_on_interrupt,
     note,
-    say,
-    show,
+    save_and_show,
     stem,
 )
 from vibroimpact.errors import InputError
@@ -93,11 +92,8 @@ def recognise(
     Baselines and four classifiers are compared in a grouped and in a random split; the best one is
     saved, and --model applies it.
     """
-    from vibroimpact.recognition.apply import apply_recogniser, recognised_document, save_recognised
-    from vibroimpact.recognition.folder import save_recognition
+    from vibroimpact.recognition.apply import apply_recogniser
     from vibroimpact.recognition.recognise import recognise as recognise_signals
-    from vibroimpact.recognition.tables import summary_of_recognition
-    from vibroimpact.recognition.text import recognised_summary, recognition_summary
     from vibroimpact.results.folder import check_free
 
     name = stem(str(Path(dataset).parent if dataset.endswith(".nc") else Path(dataset)))
@@ -111,17 +107,11 @@ def recognise(
             )
     if model is not None:
         with exit_on_interrupt():
-            applied = apply_recogniser(model, dataset)
-            folder = save_recognised(applied, target, force=force)
-        show(
-            lambda: {"folder": str(folder), **recognised_document(applied)},
-            lambda: recognised_summary(applied),
-            as_json=as_json,
-        )
-        say(f"wrote {folder / 'predictions.csv'}", err=as_json)
+            recognised = apply_recogniser(model, dataset)
+        save_and_show(recognised, target, force=force, figures=figures, as_json=as_json)
         return
     with exit_on_interrupt():
-        done = recognise_signals(
+        recognition = recognise_signals(
             dataset,
             group=group,
             folds=folds,
@@ -130,13 +120,7 @@ def recognise(
             most=most,
             progress=_progress_lines(),
         )
-        folder = save_recognition(done, target, force=force, figures=("png",) if figures else ())
-    show(
-        lambda: {"folder": str(folder), **summary_of_recognition(done)},
-        lambda: recognition_summary(done),
-        as_json=as_json,
-    )
-    say(f"wrote {folder / 'report.html'} and {folder / 'model'}", err=as_json)
+    save_and_show(recognition, target, force=force, figures=figures, as_json=as_json)
 
 
 def _progress_lines() -> Callable[[str, int, int], None]:

@@ -24,6 +24,7 @@ from vibroimpact.quoting import visible
 if TYPE_CHECKING:
     from rich.console import Console, RenderableType
 
+    from vibroimpact.report.reported import Reported
     from vibroimpact.units.written import Written
 
 # heavy imports are inside the commands, so that --help is fast
@@ -188,6 +189,44 @@ def show_folder(
     """Print what a folder with a report holds, as `show` does, and that it was written."""
     show(lambda: {"folder": str(folder), **document()}, *tables, as_json=as_json)
     say(f"wrote {folder / 'report.html'}", err=as_json)
+
+
+def save_and_show(
+    finding: Reported, target: Path, *, force: bool, figures: bool = False, as_json: bool
+) -> None:
+    """Write the folder of a finding, and print its report; or its data as JSON.
+
+    Parameters
+    ----------
+    finding : Reported
+        The finding.
+    target : pathlib.Path
+        The folder to make.
+    force : bool
+        Whether an existing result folder is replaced.
+    figures : bool
+        Whether the charts are written as PNG too.
+    as_json : bool
+        Whether the data are printed, and nothing else on standard output.
+    """
+    from vibroimpact.report.save_report import save_report
+    from vibroimpact.report.terminal_report import terminal_report
+
+    with exit_on_interrupt():
+        report = finding.report
+        folder = save_report(report, target, force=force, figures=("png",) if figures else ())
+    show_folder(folder, lambda: report.document, lambda: terminal_report(report), as_json=as_json)
+
+
+@contextmanager
+def progress_of(activity: str, *, as_json: bool) -> Iterator[Callable[[float], None]]:
+    """Show the progress of what a command computes, and yield what is called with the fraction
+    done; Ctrl-C exits with the message that nothing was written.
+    """
+    from vibroimpact.report.progress import patient_progress
+
+    with exit_on_interrupt(), patient_progress(activity, console(err=as_json)) as progress:
+        yield progress
 
 
 def say(text: str, *, err: bool = False) -> None:

@@ -22,6 +22,7 @@ from vibroimpact.identification.polarity import upright
 from vibroimpact.identification.pulses import Search
 from vibroimpact.identification.setup import SetupErrors
 from vibroimpact.identification.sphere import SphereFit, fit_sphere
+from vibroimpact.report.reported import Reported
 from vibroimpact.signals.baseline import without_baseline
 from vibroimpact.signals.estimate import Estimate
 from vibroimpact.signals.record import Record
@@ -44,7 +45,7 @@ _VAGUE = 0.5
 
 
 @dataclass(frozen=True, eq=False)
-class Identification:
+class Identification(Reported, reported_in="vibroimpact.identification.report"):
     """An impact as it is identified from records of sensors.
 
     Parameters

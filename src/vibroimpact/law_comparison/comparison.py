@@ -1,4 +1,4 @@
-"""Comparison of one drop under several contact laws, and the texts and table that report it."""
+"""Comparison of one drop under several contact laws."""
 
 from __future__ import annotations
 
@@ -13,19 +13,17 @@ from vibroimpact.cases.case import Case
 from vibroimpact.cases.pair import contact_pair, sphere_density
 from vibroimpact.cases.rigid_problem import contact_laws_of, touch_speed
 from vibroimpact.contact.law import ContactLaw
-from vibroimpact.dynamics.columns import ALL_IMPACT_COLUMNS
 from vibroimpact.dynamics.restitution import achieved_restitution
 from vibroimpact.dynamics.simulate import simulate
 from vibroimpact.law_comparison.laws import cases_under
+from vibroimpact.report.reported import Reported
 from vibroimpact.results.result import Result, result_of
-from vibroimpact.runs.tables import formatted_column
-from vibroimpact.units.display import MISSING, text
 
 _SPEEDS = 61
 
 
 @dataclass(frozen=True)
-class Comparison:
+class Comparison(Reported, reported_in="vibroimpact.law_comparison.report"):
     """One drop with several contact laws.
 
     Parameters
@@ -123,100 +121,3 @@ def _around(case: Case, law: ContactLaw, speeds: Floats) -> ContactLaw:
         if table is None
         else table.liquid().around(law, speeds, case.sphere.radius, sphere_density(case.sphere))
     )
-
-
-_COLUMNS = ("max_indentation_m", "max_force_N", "duration_s", "rebound_height_m", "energy_lost_J")
-
-
-def comparison_title(comparison: Comparison) -> str:
-    """Return the title of a comparison, without the name of the case, which may mention a
-    law that is not compared.
-    """
-    number = len(comparison.results)
-    return f"One drop with {number} contact law{'' if number == 1 else 's'}"
-
-
-def comparison_subtitle(comparison: Comparison) -> str:
-    """Return the subtitle of a comparison: the case and its first approach speed."""
-    speeds = next(iter(comparison.results.values())).impacts["approach_speed_m_s"]
-    arrives = f", which arrives at {text(float(speeds[0]), 'm/s')}" if len(speeds) else ""
-    return f'The drop is that of the case "{comparison.name}"{arrives}.'
-
-
-def comparison_table(comparison: Comparison) -> tuple[list[tuple[str, str]], list[list[str]]]:
-    """Return headings with units, and a row for each law: required and achieved restitution, and
-    the first impact.
-
-    Columns in which no law has a value are left out.
-    """
-    headers = [
-        ("Law", ""),
-        ("Impacts", ""),
-        ("Restitution asked", ""),
-        ("Restitution achieved, first", ""),
-        ("achieved, last", ""),
-    ]
-    rows = []
-    for name, one in comparison.results.items():
-        some = [
-            _restitution(one, "restitution_asked", 0),
-            *(_restitution(one, "restitution_achieved", at) for at in (0, -1)),
-        ]
-        rows.append([name, str(len(one.impacts["impact"])), *some])
-    for name in _COLUMNS:
-        first = np.array(
-            [
-                one.impacts[name][0] if len(one.impacts[name]) else np.nan
-                for one in comparison.results.values()
-            ]
-        )
-        change = np.array(
-            [
-                one.change_by_impact[0] if len(one.impacts[name]) else 0.0
-                for one in comparison.results.values()
-            ]
-        )
-        unit, cells = formatted_column(name, first, change)
-        headers.append((ALL_IMPACT_COLUMNS[name].label, unit))
-        for row, cell in zip(rows, cells, strict=True):
-            row.append(cell)
-    known = [
-        column for column in range(len(headers)) if any(row[column] != MISSING for row in rows)
-    ]
-    return [headers[column] for column in known], [
-        [row[column] for column in known] for row in rows
-    ]
-
-
-def _restitution(result: Result, name: str, at: int) -> str:
-    """Return the restitution of the first or last impact, rounded to its significant digits."""
-    values = result.impacts[name]
-    return (
-        formatted_column(name, values, result.change_by_impact)[1][at] if len(values) else MISSING
-    )
-
-
-def comparison_doubts(comparison: Comparison) -> list[str]:
-    """Return the distinct doubts of all drops, each with the laws that it concerns."""
-    laws: dict[str, list[str]] = {}
-    for name, one in comparison.results.items():
-        for doubt in one.doubts:
-            laws.setdefault(doubt, []).append(name)
-    every = len(comparison.results)
-    return [
-        f"{'every law' if len(names) == every > 1 else ', '.join(names)}: {doubt}"
-        for doubt, names in laws.items()
-    ]
-
-
-def free_parameter_words(law: ContactLaw) -> str:
-    """Return the free parameter of a law with its value and unit, or "nothing to set" if
-    the law has none.
-    """
-    name = law.free_parameter
-    if name is None:
-        return "nothing to set"
-    unit = next(item for item in law.__dataclass_fields__.values() if item.name == name).metadata[
-        "unit"
-    ]
-    return f"{name} = {float(getattr(law, name)):.6g} {unit}".rstrip()

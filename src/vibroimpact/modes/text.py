@@ -11,7 +11,10 @@ from vibroimpact.cases.case import Case
 from vibroimpact.cases.elastic.elastic_bodies import elastic_bodies
 from vibroimpact.cases.elastic.modes import BodyModes
 from vibroimpact.modes.document import mesh_facts
+from vibroimpact.modes.measured_table import MeasuredTable
 from vibroimpact.modes.tables import ROWS, body_facts, mode_table, rows_left_out, supports_text
+from vibroimpact.report.report import table_of
+from vibroimpact.report.terminal_report import block_lines, warning_lines
 from vibroimpact.report.terminal_table import TerminalTable, facts, numbers, with_gap
 
 
@@ -72,3 +75,15 @@ def elastic_rows(case: Case) -> list[tuple[str, str]]:
         rows += [("  materials", mesh["materials"])] if mesh["materials"] else []
         rows += [("  of the file", remark) for remark in mesh["remarks"]]
     return rows
+
+
+def measured_summary(measured: MeasuredTable) -> RenderableType:
+    """Return measured modes beside those of a case, and the warnings about them, for the
+    terminal.
+    """
+    table = table_of(measured.headers, measured.cells, measured.texts)
+    return Group(
+        Text("\nmeasured modes", style="bold"),
+        *block_lines(table),
+        *warning_lines(measured.doubts),
+    )

@@ -5,27 +5,22 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from os import PathLike
-from pathlib import Path
-from typing import Any
 
 import numpy as np
 
-from vibroimpact._version import __version__
 from vibroimpact.arrays import Floats, Indices
 from vibroimpact.errors import InputError
-from vibroimpact.files.plain_names import one_line
 from vibroimpact.files.reading import with_path
 from vibroimpact.recognition.fraction import Estimate
 from vibroimpact.recognition.labelled_signals import LabelledSignals
 from vibroimpact.recognition.read_dataset import read_labelled_signals
 from vibroimpact.recognition.recogniser import Recogniser, doubts_of_version, load_recogniser
 from vibroimpact.recognition.signal_features import baseline_doubts
-from vibroimpact.results.csv_files import write_csv
-from vibroimpact.results.folder import new_folder, write_summary
+from vibroimpact.report.reported import Reported
 
 
 @dataclass(frozen=True, eq=False)
-class Recognised:
+class Recognised(Reported, reported_in="vibroimpact.recognition.applied_report"):
     """Signals with the classes predicted by a model.
 
     Parameters
@@ -134,72 +129,3 @@ def _accuracy(signals: LabelledSignals, guessed: list[str], names: tuple[str, ..
     truth = np.array([signals.class_names[one] for one in signals.classes])
     right = truth == np.array(guessed)
     return float(np.mean([right[truth == one].mean() for one in np.unique(truth)]))
-
-
-def recognised_document(found: Recognised) -> dict[str, Any]:
-    """Return the content of `summary.json` of recognised signals."""
-    return {
-        "name": found.name,
-        "version": __version__,
-        "recognised": {
-            "classifier": found.classifier,
-            "signals": len(found.probabilities),
-            "balanced_accuracy": found.accuracy,
-            "classes": {
-                name: {
-                    "counted": counted,
-                    "fraction": one.value,
-                    "fraction_low": one.low,
-                    "fraction_high": one.high,
-                }
-                for (name, one), counted in zip(found.fractions.items(), found.counted, strict=True)
-            },
-        },
-        "doubts": list(found.doubts),
-    }
-
-
-def save_recognised(
-    found: Recognised, directory: str | PathLike[str], *, force: bool = False
-) -> Path:
-    """Write `predictions.csv`, a row a signal with the probability of each class, and
-    `summary.json`, atomically.
-
-    Signals are numbered as they are in the file, from 0.
-
-    Parameters
-    ----------
-    found : Recognised
-        The signals with their classes.
-    directory : path
-        The folder to create.
-    force : bool, default False
-        Replace an existing result folder.
-
-    Raises
-    ------
-    InputError
-        If the folder exists and may not be replaced, or it can't be written to.
-
-    Examples
-    --------
-    >>> from tempfile import TemporaryDirectory
-    >>> import vibroimpact as vi
-    >>> with TemporaryDirectory() as folder:
-    ...     place = vi.save_recognised(
-    ...         vi.apply_recogniser("recognised", "falls"), f"{folder}/counted"
-    ...     )
-    ...     sorted(file.name for file in place.iterdir())
-    ['predictions.csv', 'summary.json']
-    """
-    columns = [f"probability_{one_line(name)}" for name in found.class_names]
-    guessed = [found.class_names[one] for one in found.probabilities.argmax(axis=1)]
-    places = range(len(guessed)) if found.places is None else found.places.tolist()
-    with new_folder(directory, force=force) as folder:
-        rows = (
-            {"signal": number, "class": name, **dict(zip(columns, values.tolist(), strict=True))}
-            for number, name, values in zip(places, guessed, found.probabilities, strict=True)
-        )
-        write_csv(rows, ["signal", "class", *columns], folder / "predictions.csv")
-        write_summary(recognised_document(found), folder)
-    return Path(directory)

@@ -46,13 +46,14 @@ from vibroimpact.recognition.signal_features import (
     tables_of,
 )
 from vibroimpact.recognition.unseen_bins import Unseen, score_unseen
+from vibroimpact.report.reported import Reported
 
 MOST_SIGNALS, SEEDS = 4000, 5
 """By default: largest number of signals used, and seeds."""
 
 
 @dataclass(frozen=True, eq=False)
-class Recognition:
+class Recognition(Reported, reported_in="vibroimpact.recognition.report"):
     """Scores of classifiers of a data set, estimated by cross-validation.
 
     Parameters
@@ -173,7 +174,7 @@ def recognise(
     Returns
     -------
     Recognition
-        Scores, tables and the trained model; `save_recognition` writes them as a folder.
+        Scores, tables and the trained model; `save` writes them as a folder.
 
     Raises
     ------

@@ -17,7 +17,6 @@ from vibroimpact.charts.marks import Bars, Line, Mark, Points, Rug
 from vibroimpact.quoting import shortened, visible
 from vibroimpact.test_analysis.correlate import Correlation
 from vibroimpact.test_analysis.criteria import Criteria
-from vibroimpact.test_analysis.document import what_frac_is_of
 from vibroimpact.test_analysis.octaves import FEW
 
 MOST = 8
@@ -57,7 +56,7 @@ def correlation_charts(found: Correlation) -> list[Chart]:
     ... )
     >>> record = vi.Record("a", vi.simulate(case).signals()["a"].value, 20e3, "m/s2")
     >>> found = vi.correlate(case, [record], window=0.05)
-    >>> [chart.name for chart in vi.correlation_charts(found)]
+    >>> [chart.name for chart in correlation_charts(found)]
     ['overlay', 'responses', 'frac', 'damping']
     """
     makers = {
@@ -227,3 +226,13 @@ def damping_chart(found: Criteria, by: str) -> Chart:
     )
     caption = f"Damping ratios estimated from {by}, and those of the case."
     return Chart("damping", "Modal damping", ((panel,),), caption, _HEIGHT)
+
+
+def what_frac_is_of(correlation: Correlation) -> str:
+    """Return of what the frequency response assurance criterion is."""
+    if not correlation.hits:
+        return "the spectra of the signals, since no force was measured"
+    return (
+        f"the frequency responses to the force, by H1 from {correlation.hits} "
+        f"hit{'s' if correlation.hits > 1 else ''}"
+    )

@@ -16,6 +16,7 @@ from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.sensors.antialias import HALF_LENGTH
 from vibroimpact.dynamics.sensors.sensor import Sensor
 from vibroimpact.errors import InputError
+from vibroimpact.report.reported import Reported
 from vibroimpact.signals.baseline import without_baseline
 from vibroimpact.signals.decay.find import DecayMode, modes_in_decay
 from vibroimpact.signals.delay import Delay, band_limited
@@ -39,7 +40,7 @@ from vibroimpact.test_analysis.simulated import (
 
 
 @dataclass(frozen=True, eq=False)
-class Correlation:
+class Correlation(Reported, reported_in="vibroimpact.test_analysis.report"):
     """Comparison of the records of a test with the simulation of its case.
 
     Parameters

@@ -13,9 +13,8 @@ import pytest
 import vibroimpact as vi
 from vibroimpact.bayes_error.bound import Bound, bound_of
 from vibroimpact.bayes_error.falls import falls_of_sweep
-from vibroimpact.bayes_error.folder import save_bound
 from vibroimpact.bayes_error.observations import Channel
-from vibroimpact.bayes_error.tables import headline, scatter_words
+from vibroimpact.bayes_error.report import headline, scatter_sentences
 
 
 @pytest.fixture(scope="module")
@@ -95,7 +94,7 @@ def test_the_share_of_the_assumed_scatter(bound: Bound) -> None:
     assert exact.errors["one impact"] == exact.without_scatter["one impact"]
     assert (
         "Each error holds for classifiers that see only the quantities named, with this scatter."
-        in scatter_words(bound)
+        in scatter_sentences(bound)
     )
 
 
@@ -125,7 +124,7 @@ def test_how_sensors_are_mounted_does_not_matter_to_a_bound() -> None:
 
 
 def test_the_folder(bound: Bound, tmp_path: Path) -> None:
-    folder = save_bound(bound, tmp_path / "bound")
+    folder = bound.save(tmp_path / "bound")
     rows = list(csv.DictReader((folder / "bound.csv").read_text(encoding="utf-8").splitlines()))
     assert [row["measured"] for row in rows] == list(bound.errors)
     assert float(rows[2]["error_upper"]) == bound.errors["one impact"].upper
@@ -139,8 +138,8 @@ def test_the_folder(bound: Bound, tmp_path: Path) -> None:
     page = (folder / "report.html").read_text(encoding="utf-8")
     assert "best possible classifier" in page
     with pytest.raises(vi.InputError, match="is there already"):
-        save_bound(bound, folder)
-    save_bound(replace(bound, name="again"), folder, force=True)
+        bound.save(folder)
+    replace(bound, name="again").save(folder, force=True)
 
 
 def test_what_has_no_bound() -> None:

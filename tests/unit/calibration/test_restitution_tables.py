@@ -15,7 +15,7 @@ import vibroimpact as vi
 from support import plain_case
 from vibroimpact.calibration.bounces.speed_laws import speed_laws
 from vibroimpact.calibration.calibrate_case import calibrate_case, read_calibration
-from vibroimpact.calibration.restitutions.text import noise_sentence
+from vibroimpact.calibration.restitutions.report import noise_sentence
 from vibroimpact.cli import main
 
 SPEED = np.array([0.5, 1.0, 1.5, 2.0, 3.0, 4.0])

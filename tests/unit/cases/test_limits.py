@@ -25,7 +25,6 @@ from vibroimpact.cases.doubts import doubts
 from vibroimpact.cases.expected import expected_of
 from vibroimpact.cases.limit import limits, numbers_of
 from vibroimpact.contact.laws.lankarani_nikravesh import LankaraniNikravesh
-from vibroimpact.law_comparison.comparison import comparison_doubts
 from vibroimpact.results.result import result_of
 from vibroimpact.studies.compute_study import compute_study
 from vibroimpact.studies.report.text import study_summary
@@ -606,11 +605,9 @@ def test_a_visit_of_several_contacts_asks_for_the_modes_of_one() -> None:
 
 
 def test_a_comparison_says_once_what_is_so_under_every_law() -> None:
-    found = comparison_doubts(
-        vi.compare_laws(
-            vi.read_case(plain_case(drop__height=4.0)), ["hertz", "flores"], {"restitution": 0.7}
-        )
-    )
+    found = vi.compare_laws(
+        vi.read_case(plain_case(drop__height=4.0)), ["hertz", "flores"], {"restitution": 0.7}
+    ).report.warnings
     assert sum("in air" in doubt for doubt in found) == 1
     assert any(doubt.startswith("every law: in air") for doubt in found)
     assert any(doubt.startswith("hertz: Hertz's half space") for doubt in found)

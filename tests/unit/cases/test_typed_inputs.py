@@ -15,7 +15,7 @@ import pytest
 import vibroimpact as vi
 from ball_records import heard
 from support import plain_case
-from vibroimpact.calibration.bounces.tables import impact_cells, law_sentences
+from vibroimpact.calibration.bounces.report import impact_table, law_sentences
 from vibroimpact.calibration.calibrate_case import calibrate_case, read_calibration
 from vibroimpact.calibration.calibration import Calibration
 from vibroimpact.calibration.inputs import EARTH
@@ -187,9 +187,9 @@ def test_no_more_digits_than_the_interval_carries() -> None:
     ]
     assert [known_text(1988.56, spread) for spread in (80.0, 8.0)] == ["1989", "1988.6"]
     found = vi.rebounds_of(bounced(0.82, 0.6), height="0.6 m")
-    _, rows = impact_cells(found)
-    assert rows[0][4:] == ["0.820", "0.781 to 0.859"]
-    assert rows[1][4] == "0.820000"
+    restitution, interval = impact_table(found).columns[4:]
+    assert (restitution.cells[0], interval.cells[0]) == ("0.820", "0.781 to 0.859")
+    assert restitution.cells[1] == "0.820000"
     told = " ".join(law_sentences(vi.rebounds_of(bounced(0.82, 0.6, touches=3), height="0.60 m")))
     for value, low, high in re.findall(r"([\d.]+) \(([\d.]+) to ([\d.]+)\)", told):
         assert 10.0 ** -len(value.partition(".")[2]) >= 0.005 * (float(high) - float(low))

@@ -22,7 +22,6 @@ from knock_data import write_knocks
 from studies import study_table
 from support import one_in, plain_case
 from vibroimpact.bayes_error.bound import bound_of
-from vibroimpact.bayes_error.text import bound_summary
 from vibroimpact.calibration.calibrate import calibrate
 from vibroimpact.calibration.reported import report_of
 from vibroimpact.calibration.text import calibration_summary
@@ -36,13 +35,12 @@ from vibroimpact.cli.unit_table import converted, unit_table
 from vibroimpact.exporting.export_format import find_export_format
 from vibroimpact.exporting.text import export_summary, format_table
 from vibroimpact.law_comparison.comparison import compare_laws
-from vibroimpact.law_comparison.text import comparison_summary
 from vibroimpact.law_sheets.sheet import law_sheet, law_table
 from vibroimpact.modes.text import modes_summary
 from vibroimpact.paper.report.page import kind_summary, verdict_table
 from vibroimpact.paper.report_section import Verdict
-from vibroimpact.recognition.text import recognised_summary, recognition_summary
 from vibroimpact.report.console import TerminalConsole
+from vibroimpact.report.terminal_report import terminal_report
 from vibroimpact.results.result import result_of
 from vibroimpact.runs.case_explained import case_explained
 from vibroimpact.runs.text import result_summary, versions_table
@@ -105,20 +103,20 @@ def commands(tmp_path_factory: pytest.TempPathFactory, variable: vi.Response) ->
         "run, elastic": lambda width: result_summary(rung, width),
         "check": lambda _: case_explained(elastic),
         "check, study": lambda _: explain_sweep(sweep),
-        "compare": lambda _: comparison_summary(compared),
+        "compare": lambda _: terminal_report(compared.report),
         "calibrate": lambda _: calibration_summary(case, report_of(case, calibrated)),
         "modes": lambda _: modes_summary(elastic, modes),
         "sweep": lambda width: study_summary(study, width),
         "dataset": lambda _: explain_sweep(population),
-        "bound": lambda _: bound_summary(bound_of(population)),
+        "bound": lambda _: terminal_report(bound_of(population).report),
         "export": lambda _: format_table(),
         "export, done": lambda _: export_summary(
             drop, find_export_format("lammps"), [folder / "drop.in"]
         ),
         "features": lambda _: table_summary(table),
         "features --list": lambda _: feature_list(),
-        "recognise": lambda _: recognition_summary(recognition),
-        "recognise, applied": lambda _: recognised_summary(recognised),
+        "recognise": lambda _: terminal_report(recognition.report),
+        "recognise, applied": lambda _: terminal_report(recognised.report),
         "cases": lambda _: shipped_cases_table(),
         "laws": law_table,
         "laws NAME": lambda _: law_sheet("jackson-green-marghitu"),

@@ -273,7 +273,7 @@ def test_a_force_that_contradicts_the_contact_is_withheld(
     assert withheld.force is None
     assert not any(name.startswith("recovered") for name in withheld.estimates)
     assert "contradicts the" in withheld.doubts[-1]
-    folder = vi.save_identification(withheld, tmp_path / "found")
+    folder = withheld.save(tmp_path / "found")
     assert not (folder / "force.csv").exists()
     assert "withheld" in (folder / "report.html").read_text()
 

@@ -20,8 +20,8 @@ from vibroimpact.recognition.input_faults import check_signals
 from vibroimpact.recognition.labelled_signals import LabelledSignals, SensorSignals
 from vibroimpact.recognition.recorder_leaks import recorder_leaks
 from vibroimpact.recognition.reliability import reliability
+from vibroimpact.recognition.report import score_cells, sentences
 from vibroimpact.recognition.scores import Bootstrap, score
-from vibroimpact.recognition.tables import score_cells, sentences
 
 FALLS = 4
 DISTANCE, FEATURES = 2.0, 6

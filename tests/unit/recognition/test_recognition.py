@@ -39,9 +39,9 @@ from vibroimpact.recognition.jobs import silent
 from vibroimpact.recognition.labelled_signals import LabelledSignals
 from vibroimpact.recognition.recogniser import graph_of, run_graph
 from vibroimpact.recognition.reliability import reliability
+from vibroimpact.recognition.report import TABLES, sentences
 from vibroimpact.recognition.scores import Bootstrap, Score, score
 from vibroimpact.recognition.signal_features import features_of, with_noise
-from vibroimpact.recognition.tables import TABLES, sentences, summary_of_recognition
 
 SMALL = {"rocks": 16, "falls": 6}
 
@@ -58,7 +58,7 @@ def found(folder: Path) -> vi.Recognition:
 
 @pytest.fixture(scope="module")
 def saved(found: vi.Recognition, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return vi.save_recognition(found, tmp_path_factory.mktemp("recognised") / "out")
+    return found.save(tmp_path_factory.mktemp("recognised") / "out")
 
 
 def refused(tmp_path: Path, change: Callable[[dict[str, Any]], None], **settings: Any) -> str:
@@ -507,7 +507,7 @@ def test_everything_is_compared(found: vi.Recognition) -> None:
 @pytest.mark.slow
 def test_the_same_seed_gives_the_same_scores(found: vi.Recognition, folder: Path) -> None:
     again = vi.recognise(folder, folds=3, seeds=2, workers=1)
-    assert summary_of_recognition(again) == summary_of_recognition(found)
+    assert again.document == found.document
 
 
 def test_the_folder(saved: Path, found: vi.Recognition) -> None:

@@ -270,7 +270,7 @@ def test_records_of_a_low_rate_are_aligned_by_64_samples() -> None:
     assert any("times the simulation in the first 10.7 ms" in doubt for doubt in found.doubts), (
         found.doubts
     )
-    assert "aligned in time by their first 10.7 ms" in vi.correlation_charts(found)[0].caption
+    assert "aligned in time by their first 10.7 ms" in found.report.charts[0].caption
 
 
 @pytest.mark.parametrize("gain", [0.9, 0.94, 1.06, 1.1, 2.0])

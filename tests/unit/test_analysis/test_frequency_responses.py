@@ -681,7 +681,7 @@ def test_phases_do_not_cross_the_chart() -> None:
     """Near 180 degrees noise drew a line from one end of the axis to the other at each
     second frequency.
     """
-    (chart,) = (one for one in vi.response_charts(thin()) if one.name == "responses")
+    chart = thin().charts["responses"]
     phases = [panel for row in chart.rows for panel in row if panel.title == "Phase"]
     assert len(phases) == len(NODES)
     lines = [mark for panel in phases for mark in panel.marks]
@@ -693,7 +693,7 @@ def test_phases_do_not_cross_the_chart() -> None:
 
 def test_the_report_can_be_read(tmp_path: Path) -> None:
     """Words to the left, no column of remarks without any, and the whole line for the case."""
-    page = (vi.save_response_correlation(thin(), tmp_path / "compared") / "report.html").read_text()
+    page = (thin().save(tmp_path / "compared") / "report.html").read_text()
     assert '<th scope="col" class="text">Polarity</th>' in page
     assert '<td class="text">as simulated</td>' in page
     assert '<td class="text">m/s²/N</td>' in page

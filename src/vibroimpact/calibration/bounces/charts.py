@@ -42,7 +42,7 @@ def bounce_charts(found: Rebounds) -> list[Chart]:
     ...     np.zeros(0),
     ...     (),
     ... )
-    >>> [chart.name for chart in vi.bounce_charts(vi.rebounds_of(heard))]
+    >>> [chart.name for chart in bounce_charts(vi.rebounds_of(heard))]
     ['record', 'restitution']
     """
     of_impacts = partial(

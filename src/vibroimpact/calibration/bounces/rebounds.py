@@ -11,13 +11,14 @@ from vibroimpact.calibration.bounces.speed_laws import SpeedLaw, speed_laws
 from vibroimpact.calibration.fitting import half_width
 from vibroimpact.calibration.inputs import EARTH, Input, as_input, guessed_doubt
 from vibroimpact.errors import InputError
+from vibroimpact.report.reported import Reported
 from vibroimpact.signals.bounces.find import Bounces
 
 _UNLIKE = 1.25  # ratio of the first restitution to the second one above which a doubt is raised
 
 
 @dataclass(frozen=True)
-class Rebounds:
+class Rebounds(Reported, reported_in="vibroimpact.calibration.bounces.report"):
     """The impacts of a bouncing ball in a record, n touches, in vacuum.
 
     Parameters

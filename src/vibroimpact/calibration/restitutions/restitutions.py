@@ -21,6 +21,7 @@ from vibroimpact.calibration.impact_table import (
 from vibroimpact.contact.speed_function import SpeedFunction
 from vibroimpact.errors import InputError
 from vibroimpact.measurements.table_file import TableFile
+from vibroimpact.report.reported import Reported
 
 _MOST = 1.1
 """Largest restitution that noise can explain."""
@@ -29,7 +30,7 @@ _MOST_DIGITS = 9
 
 
 @dataclass(frozen=True)
-class Restitutions:
+class Restitutions(Reported, reported_in="vibroimpact.calibration.restitutions.report"):
     """Restitutions at n approach speeds, which are taken as exact.
 
     Parameters

@@ -10,6 +10,7 @@ import numpy as np
 
 from vibroimpact.arrays import Complex, Floats
 from vibroimpact.errors import InputError
+from vibroimpact.report.reported import Reported
 from vibroimpact.signals.decay.find import DecayMode
 from vibroimpact.signals.decay.responses import common_lines, modes_in_responses
 from vibroimpact.signals.frequency_response import FrequencyResponse
@@ -21,7 +22,7 @@ from vibroimpact.test_analysis.shared_differences import shared_differences
 
 
 @dataclass(frozen=True, eq=False)
-class MeasuredModes:
+class MeasuredModes(Reported, reported_in="vibroimpact.test_analysis.measured.report"):
     """The modes in measured frequency responses.
 
     Parameters

@@ -21,11 +21,13 @@ from vibroimpact.test_analysis.charts import (
     magnitude_lines,
     those_drawn,
 )
-from vibroimpact.test_analysis.responses.document import WHAT_FRAC_IS_OF
 from vibroimpact.test_analysis.responses.result import ResponseCorrelation
 
 _LOOKS = (("measured", "main"), ("simulated", "fit"))
 """Names and roles of the lines."""
+
+WHAT_FRAC_IS_OF = "the measured frequency responses"
+"""Of what the frequency response assurance criterion is."""
 
 
 def response_charts(found: ResponseCorrelation) -> list[Chart]:
@@ -55,7 +57,7 @@ def response_charts(found: ResponseCorrelation) -> list[Chart]:
     >>> found = vi.correlate_responses(
     ...     case, vi.responses_of_case(case, np.arange(500.0, 4000.0, 2.0))
     ... )
-    >>> [chart.name for chart in vi.response_charts(found)]
+    >>> [chart.name for chart in response_charts(found)]
     ['responses', 'frac', 'damping']
     """
     makers = {

@@ -9,11 +9,12 @@ import numpy as np
 from vibroimpact.arrays import Complex, Floats
 from vibroimpact.cases.schema import CaseTable
 from vibroimpact.dynamics.sensors.sensor import Sensor
+from vibroimpact.report.reported import Reported
 from vibroimpact.test_analysis.mode_pairs import ModePair
 
 
 @dataclass(frozen=True, eq=False)
-class ResponseCorrelation:
+class ResponseCorrelation(Reported, reported_in="vibroimpact.test_analysis.responses.report"):
     """Comparison of measured frequency responses with those of a case.
 
     Parameters

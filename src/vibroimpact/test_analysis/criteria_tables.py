@@ -1,4 +1,4 @@
-"""A correlation as data: its tables, and its summary, which `correlate --json` prints."""
+"""Tables of the agreement of a test with its simulation, over octaves and modes."""
 
 from __future__ import annotations
 
@@ -7,23 +7,13 @@ from typing import Any
 
 import numpy as np
 
-from vibroimpact._version import __version__
 from vibroimpact.arrays import Floats
 from vibroimpact.quoting import visible
-from vibroimpact.test_analysis.correlate import Correlation
+from vibroimpact.report.report import Block, Code, Explanation, Section, Table, table_of
 from vibroimpact.test_analysis.criteria import Criteria, Responses
 from vibroimpact.test_analysis.mode_pairs import ModePair, damping_field
 from vibroimpact.units.display import MISSING, digits
 
-RECORD_HEADERS = (
-    "Record",
-    "Polarity",
-    "Correlation",
-    "Measured over simulated",
-    "Residual, %",
-    "FRAC",
-)
-"""Headers of the table of records."""
 MODE_HEADERS = (
     "Mode",
     "Computed, Hz",
@@ -56,45 +46,6 @@ MODE_COLUMNS = (
 """Columns of `modes.csv`."""
 
 
-def what_frac_is_of(found: Correlation) -> str:
-    """Return of what the frequency response assurance criterion is."""
-    if not found.hits:
-        return "the spectra of the signals, since no force was measured"
-    return (
-        f"the frequency responses to the force, by H1 from {found.hits} "
-        f"hit{'s' if found.hits > 1 else ''}"
-    )
-
-
-def record_rows(found: Correlation) -> list[list[str]]:
-    """Return the cells of the table of records."""
-    columns = zip(
-        found.sensors,
-        found.polarity,
-        found.coefficient,
-        found.scale,
-        found.relative_residual,
-        found.frac,
-        strict=True,
-    )
-    return [
-        [
-            visible(sensor.name),
-            "inverted" if sign < 0.0 else "as simulated",
-            f"{alike:.3f}",
-            digits(scale, 4),
-            f"{100.0 * part:.1f}",
-            f"{of:.3f}",
-        ]
-        for sensor, sign, alike, scale, part, of in columns
-    ]
-
-
-def octave_headers(found: Criteria) -> list[str]:
-    """Return the headers of the table of octaves."""
-    return ["Band", *(visible(sensor.name) for sensor in found.sensors)]
-
-
 def response_columns(found: Responses, plain: Mapping[str, str]) -> dict[str, Floats]:
     """Return the columns of `responses.csv`: the frequency, and of each response magnitude and
     phase of both, and the coherence.
@@ -122,22 +73,27 @@ def response_columns(found: Responses, plain: Mapping[str, str]) -> dict[str, Fl
     return columns
 
 
-def octave_rows(found: Criteria) -> list[list[str]]:
-    """Return the cells of the table of octaves: the criterion of each record over each,
-    and over the whole band.
+def octave_table(criteria: Criteria) -> Table:
+    """Return the table of octaves: the criterion of each record over each, and over the
+    whole band.
     """
-    whole = [
-        f"{found.band[0]:.5g} to {found.band[1]:.5g} Hz, whole",
-        *(f"{value:.3f}" for value in found.frac),
-    ]
-    parts = [
-        [
-            f"{low:.5g} to {high:.5g} Hz",
-            *(MISSING if np.isnan(value) else f"{value:.3f}" for value in values),
-        ]
-        for (low, high), values in zip(found.octaves, found.octave_frac.T, strict=True)
-    ]
-    return [whole, *parts]
+    headings = ["Band", *(visible(sensor.name) for sensor in criteria.sensors)]
+    low, high = criteria.band
+    rows = [[f"{low:.5g} to {high:.5g} Hz, whole", *(f"{frac:.3f}" for frac in criteria.frac)]]
+    for (low, high), fracs in zip(criteria.octaves, criteria.octave_frac.T, strict=True):
+        cells = [MISSING if np.isnan(frac) else f"{frac:.3f}" for frac in fracs]
+        rows.append([f"{low:.5g} to {high:.5g} Hz", *cells])
+    return table_of(headings, rows)
+
+
+def modes_section(modes: Sequence[ModePair], explanation: str) -> Section:
+    """Return the section on the modes: their table, and the damping to be put into the case."""
+    blocks: list[Block] = [table_of(*mode_cells(modes), TEXTS)]
+    if damping := damping_field(modes):
+        lead = "In [plate] of the case, the measured damping is"
+        blocks.append(Code("damping", lead, damping, is_short=True))
+    blocks.append(Explanation(explanation))
+    return Section("modes", "Modes", blocks)
 
 
 def mode_cells(modes: Sequence[ModePair]) -> tuple[list[str], list[list[str]]]:
@@ -231,50 +187,3 @@ def _mode_values(pair: ModePair) -> list[Any]:
         ]
     )
     return [pair.number, *of_case, *measured, pair.damping_measured, pair.remark]
-
-
-def summary_of_correlation(found: Correlation) -> dict[str, Any]:
-    """Return the content of `summary.json`, and of what `correlate --json` prints."""
-    records = zip(
-        found.sensors,
-        found.polarity,
-        found.coefficient,
-        found.skew,
-        found.scale,
-        found.relative_residual,
-        found.frac,
-        found.octave_frac,
-        found.scaled_frac,
-        found.damped_frac,
-        strict=True,
-    )
-    return {
-        "name": found.case.name,
-        "version": __version__,
-        "band_Hz": list(found.band),
-        "rate_Hz": found.sensors[0].rate,
-        "first_touch_s": found.first_touch,
-        "delay_s": found.delay,
-        "hits": found.hits,
-        "octaves_Hz": [list(one) for one in found.octaves],
-        "records": {
-            sensor.name: {
-                "polarity": int(sign),
-                "correlation": float(alike),
-                "later_than_others_s": float(late),
-                "scale": float(scale),
-                "residual_rms_relative": float(part),
-                "frac": float(of),
-                "octave_frac": [None if np.isnan(value) else float(value) for value in octaves],
-                "scaled_frac": float(scaled),
-                "damped_frac": float(damped),
-            }
-            for sensor, sign, alike, late, scale, part, of, octaves, scaled, damped in records
-        },
-        "removed": {
-            name: {"offset": one.offset, "drift": one.drift} for name, one in found.removed.items()
-        },
-        "modes": mode_table(found),
-        "damping": damping_field(found.modes),
-        "doubts": list(found.doubts),
-    }

@@ -1,0 +1,454 @@
+"""What a recognition tells: scores of the classifiers, what they confuse, and the model."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from vibroimpact._version import __version__
+from vibroimpact.recognition.bound import SURE
+from vibroimpact.recognition.charts import recognition_charts
+from vibroimpact.recognition.classifiers import CLASSIFIER
+from vibroimpact.recognition.few_groups import (
+    coarse,
+    groups_for_bound,
+    groups_for_error,
+    largest_error_of_none,
+)
+from vibroimpact.recognition.recognise import Recognition
+from vibroimpact.recognition.recogniser import FOLDER, save_recogniser
+from vibroimpact.recognition.scores import Score, Scores
+from vibroimpact.report.report import Explanation, Report, Section, Table, table_of
+from vibroimpact.results.csv_files import write_csv
+
+Row = dict[str, Any]
+
+GROUPED, RANDOM = "grouped", "random"
+"""The two splits, as they are named in files."""
+
+_LEAST_SHOWN = 5e-4  # Bayes error below which a tenth of a per cent is not reached
+
+
+_FIRST_COLUMNS = {
+    "unseen.csv": ["key", "range", "signals"],
+    "fraction.csv": ["class", "fraction", "impacts"],
+}
+"""First columns of tables that may have no rows."""
+
+
+def report_of(recognition: Recognition) -> Report:
+    """Return the report of a recognition; its folder has the model in `model`."""
+    counts = ", ".join(
+        f"{count:,} {name}"
+        for name, count in zip(recognition.class_names, recognition.counts, strict=True)
+    )
+    seeds = len(recognition.seeds)
+    files = {name: partial(_write_rows, recognition, name) for name in TABLES}
+    card = recognition.recogniser.card
+    packages = ", ".join(f"{package} {version}" for package, version in card["packages"].items())
+    return Report(
+        title=recognition.name[:1].upper() + recognition.name[1:],
+        answer=(
+            f"{counts}; {recognition.groups} {recognition.group}s, {recognition.folds} folds, "
+            f"{seeds} seed{'s' if seeds > 1 else ''}"
+        ),
+        sentences=list(sentences(recognition)),
+        sections=(
+            _scores_section(recognition),
+            Section("confused", "Confusion matrix", (confusion_table(recognition),)),
+            _model_section(recognition),
+        ),
+        charts=recognition_charts(recognition),
+        warnings=recognition.doubts,
+        files={**files, FOLDER: partial(_write_model, recognition)},
+        summary=_summary(recognition),
+        provenance=(
+            f"{packages}; seeds {', '.join(map(str, recognition.seeds))}; data set SHA-256 "
+            f"{card['data']['sha256']}."
+        ),
+    )
+
+
+def _scores_section(recognition: Recognition) -> Section:
+    """Return the table of scores, and how they are to be read."""
+    group = recognition.group
+    contact_time = ""
+    if "true contact time" in recognition.scores:
+        contact_time = ', "true contact time" that of the simulation'
+    return Section(
+        "table",
+        "Scores",
+        (
+            score_table(recognition),
+            Explanation(
+                f"Scores on test signals, with no {group} in both training and test data; "
+                "hyperparameters are chosen within the training folds. Balanced accuracy is the "
+                "mean of the true positive rates of the classes. Optimism: balanced accuracy of "
+                "the random split less that of the grouped one. Intervals count "
+                f"{group}s, not signals, and include the variance between training sets; all are "
+                "in scores.csv and optimism.csv. A baseline uses one measured quantity or, as the "
+                f"majority class, none{contact_time}, and the probe the length, first and last "
+                "sample of the signals."
+            ),
+        ),
+    )
+
+
+def _model_section(recognition: Recognition) -> Section:
+    """Return how the model of the best classifier is used."""
+    best = recognition.best
+    return Section(
+        "model",
+        "The model",
+        (
+            Explanation(
+                f"{best[:1].upper()}{best[1:]}, trained on all signals that were used, is in the "
+                "folder model: an ONNX graph, and card.json, which describes it and its training "
+                "data. Apply it with: vibroimpact recognise DATASET --model DIR"
+            ),
+        ),
+        after_charts=True,
+    )
+
+
+def score_table(recognition: Recognition) -> Table:
+    """Return the table of scores with the optimism, a row a classifier; the best is bold."""
+    kinds = {compared.name: compared.kind for compared in recognition.compared}
+    names = list(recognition.scores)
+    rows = []
+    for cells in score_cells(recognition):
+        kind = kinds[cells[0]]
+        name = cells[0] if kind == CLASSIFIER else f"{cells[0]} ({kind})"
+        rows.append((name, *cells[1:]))
+    return table_of(SCORE_HEADERS, rows, bold=[names.index(recognition.best)])
+
+
+SCORE_HEADERS: list[str | tuple[str, str]] = [
+    "Classifier",
+    ("Error", "%"),
+    ("95 % interval", "%"),
+    ("Balanced accuracy", "%"),
+    ("95 % interval", "%"),
+    ("Split at random", "%"),
+    ("Optimism", "%"),
+    "Brier score",
+]
+
+
+def score_cells(recognition: Recognition) -> list[tuple[str, ...]]:
+    """Return the table of scores with the optimism, a row a classifier, as pages and
+    terminals show it.
+    """
+    digits = _digits(recognition)
+    return [
+        (
+            name,
+            _percent(one.error.value, digits),
+            _percents(one.error, digits),
+            _percent(one.balanced_accuracy.value, digits),
+            _percents(one.balanced_accuracy, digits),
+            _percent(recognition.random[name].balanced_accuracy.value, digits),
+            f"{100.0 * recognition.optimism[name].value:+.{digits}f}",
+            f"{one.brier.value:.{digits + 2}f}",
+        )
+        for name, one in recognition.scores.items()
+    ]
+
+
+def confusion_table(recognition: Recognition) -> Table:
+    """Return the table of what the best classifier takes for what."""
+    counts = recognition.confusion[recognition.best]
+    shares = counts / counts.sum(axis=1, keepdims=True)
+    decimals = _digits(recognition)
+    rows = [
+        [name, *(_percent(share, decimals) for share in row)]
+        for name, row in zip(recognition.class_names, shares, strict=True)
+    ]
+    headings = [(f"Classified as {name}", "%") for name in recognition.class_names]
+    return table_of(["True class", *headings], rows)
+
+
+def score_rows(recognition: Recognition) -> list[Row]:
+    """Return a row for each classifier and split, as `scores.csv` has them."""
+    kinds = {one.name: one.kind for one in recognition.compared}
+    return [
+        {"classifier": name, "kind": kinds[name], "split": split, **_scores(one)}
+        for split, scores in ((GROUPED, recognition.scores), (RANDOM, recognition.random))
+        for name, one in scores.items()
+    ]
+
+
+def optimism_rows(recognition: Recognition) -> list[Row]:
+    """Return what a split at random promises beyond what groups kept apart hold, as
+    `optimism.csv` has it.
+    """
+    return [
+        {
+            "classifier": name,
+            "balanced_accuracy_grouped": recognition.scores[name].balanced_accuracy.value,
+            "balanced_accuracy_random": recognition.random[name].balanced_accuracy.value,
+            **_interval("optimism", one),
+        }
+        for name, one in recognition.optimism.items()
+    ]
+
+
+def confusion_rows(recognition: Recognition) -> list[Row]:
+    """Return what is taken for what, mean over the seeds, as `confusion.csv` has it."""
+    return [
+        {
+            "classifier": name,
+            "class": truth,
+            "taken_for": guess,
+            "signals": counts[row, column],
+            "part": counts[row, column] / counts[row].sum(),
+        }
+        for name, counts in recognition.confusion.items()
+        for row, truth in enumerate(recognition.class_names)
+        for column, guess in enumerate(recognition.class_names)
+    ]
+
+
+def robustness_rows(recognition: Recognition) -> list[Row]:
+    """Return the balanced accuracy in noise, as `robustness.csv` has it."""
+    return [
+        {
+            "signal_to_noise_dB": one.level,
+            **_interval("trained_without", one.trained_without),
+            **_interval("trained_with", one.trained_with),
+        }
+        for one in recognition.noise
+    ]
+
+
+def unseen_rows(recognition: Recognition) -> list[Row]:
+    """Return the balanced accuracy in ranges that are left out in training, as
+    `unseen.csv` has it.
+    """
+    return [
+        {
+            "key": one.key,
+            "range": one.words,
+            "signals": one.signals,
+            **_interval("trained_on", one.seen),
+            **_interval("left_out", one.unseen),
+        }
+        for one in recognition.unseen
+    ]
+
+
+def importance_rows(recognition: Recognition) -> list[Row]:
+    """Return the importance of each feature, as `importance.csv` has it."""
+    units = dict(
+        zip(
+            recognition.recogniser.card["features"],
+            recognition.recogniser.card["units"],
+            strict=True,
+        )
+    )
+    return [
+        {
+            "feature": one.feature,
+            "unit": units[one.feature],
+            "loss": one.loss,
+            "loss_spread": one.spread,
+        }
+        for one in recognition.importance
+    ]
+
+
+def reliability_rows(recognition: Recognition) -> list[Row]:
+    """Return the calibration curve, as `reliability.csv` has it."""
+    return [
+        {
+            "class": one.class_name,
+            "signals": one.signals,
+            "probability": one.probability,
+            "part": one.part,
+            "part_low": one.low,
+            "part_high": one.high,
+        }
+        for one in recognition.reliability
+    ]
+
+
+def fraction_rows(recognition: Recognition) -> list[Row]:
+    """Return how well fractions are estimated, as `fraction.csv` has it."""
+    return [
+        {
+            "class": one.class_name,
+            "fraction": one.fraction,
+            "impacts": one.impacts,
+            "counted": one.counted,
+            "estimate": one.adjusted,
+            "estimate_low": one.low,
+            "estimate_high": one.high,
+            "error_rms": one.error,
+            "covered": one.covered,
+        }
+        for one in recognition.streams
+    ]
+
+
+TABLES = {
+    "scores.csv": score_rows,
+    "optimism.csv": optimism_rows,
+    "confusion.csv": confusion_rows,
+    "unseen.csv": unseen_rows,
+    "robustness.csv": robustness_rows,
+    "importance.csv": importance_rows,
+    "reliability.csv": reliability_rows,
+    "fraction.csv": fraction_rows,
+}
+"""The rows of each CSV file of the folder."""
+
+
+def _write_rows(recognition: Recognition, name: str, path: Path) -> None:
+    """Write a table; one without rows has the first columns alone."""
+    rows = TABLES[name](recognition)
+    write_csv(rows, list(rows[0]) if rows else _FIRST_COLUMNS[name], path)
+
+
+def _write_model(recognition: Recognition, path: Path) -> None:
+    """Write the model into a folder of its own."""
+    path.mkdir()
+    save_recogniser(recognition.recogniser, path)
+
+
+def _summary(recognition: Recognition) -> dict[str, Any]:
+    """Return the content of `summary.json`."""
+    grouped = [row for row in score_rows(recognition) if row["split"] == GROUPED]
+    return {
+        "name": recognition.name,
+        "version": __version__,
+        "recognition": {
+            "group": recognition.group,
+            "groups": recognition.groups,
+            "folds": recognition.folds,
+            "groups_for_5_percent": groups_for_error(
+                recognition.scores[recognition.best].error, recognition.groups
+            ),
+            "seeds": list(recognition.seeds),
+            "signals": dict(zip(recognition.class_names, recognition.counts, strict=True)),
+            "best": recognition.best,
+            "bayes_error": recognition.bayes_error,
+            "bayes_error_sees": recognition.bayes_error_sees,
+            "calibration_error": recognition.calibration_error,
+        },
+        "scores": grouped,
+        "optimism": optimism_rows(recognition),
+        "balanced_accuracy_by_seed": {
+            name: one.balanced_accuracy.seeds.tolist() for name, one in recognition.scores.items()
+        },
+        "model": {
+            key: recognition.recogniser.card[key]
+            for key in ("classifier", "parameters", "packages", "data")
+        },
+        "doubts": list(recognition.doubts),
+    }
+
+
+def sentences(recognition: Recognition) -> Iterator[str]:
+    """Yield what the scores say, in sentences."""
+    best, digits = recognition.scores[recognition.best], _digits(recognition)
+    yield (
+        f"The best classifier, {recognition.best}, has a balanced accuracy of "
+        f"{_percent(best.balanced_accuracy.value, digits)} % "
+        f"({_percents(best.balanced_accuracy, digits)} %) on {recognition.group}s not used in "
+        "training; a random split gives "
+        f"{_percent(recognition.random[recognition.best].balanced_accuracy.value, digits)} %."
+    )
+    yield from _few(recognition)
+    if recognition.bayes_error is not None:
+        least = (
+            f"{_percent(recognition.bayes_error)} %"
+            if recognition.bayes_error >= _LEAST_SHOWN
+            else "less than 0.05 %, which excludes nothing"
+        )
+        bound = (
+            f"The lower bound on the error that the data set states is {least}."
+            if recognition.bayes_error_sees is None
+            else "The lower bound on the error of a classifier that sees only "
+            f"{recognition.bayes_error_sees}, measured up to 50 kHz and 80 dB "
+            f"above the noise with a sensitivity known to 0.1 %, is {least}. A classifier "
+            "that sees more can be better. For a "
+            "band, a noise and a scatter of a sensor vibroimpact bound computes such bounds."
+        )
+        yield (
+            f"{bound} The error of the best classifier is {_percent(best.error.value, digits)} "
+            f"% ({_percents(best.error, digits)} %)."
+        )
+        most = largest_error_of_none(recognition.groups, recognition.folds)
+        if _LEAST_SHOWN <= recognition.bayes_error <= most:
+            yield (
+                f"With {recognition.groups} {recognition.group}s no classifier can be shown to be "
+                "better than this bound: one without any error may "
+                f"err in up to {_percent(most, digits)} % of further signals (confidence "
+                f"{SURE:g} %). At least some "
+                f"{groups_for_bound(recognition.bayes_error, recognition.folds):,} "
+                f"{recognition.group}s are needed."
+            )
+    hardest = [
+        one
+        for one in recognition.streams
+        if one.impacts == max(row.impacts for row in recognition.streams)
+    ]
+    if hardest:
+        worst = max(hardest, key=lambda row: row.error)
+        yield (
+            f"The fraction of {worst.class_name} in a stream of {worst.impacts} impacts "
+            f"has an error of {_percent(worst.error, digits)} "
+            "percentage points (root mean square, at the fraction with the largest error, "
+            f"{worst.fraction:g})."
+        )
+
+
+def _few(recognition: Recognition) -> Iterator[str]:
+    """Yield what the number of groups does not allow to tell."""
+    best = recognition.scores[recognition.best]
+    if not coarse(best.error):
+        return
+    yield (
+        f"With {recognition.groups} {recognition.group}s errors between "
+        f"{_percent(best.error.low, 0)} and {_percent(best.error.high, 0)} % can't be "
+        f"told apart; for +-5 % some {groups_for_error(best.error, recognition.groups):,} "
+        f"{recognition.group}s are needed. More signals of the same "
+        f"{recognition.group}s do not replace them."
+    )
+    chance = 1.0 / len(recognition.class_names)
+    if best.balanced_accuracy.low <= chance:
+        yield (
+            f"Whether the best classifier is better than guessing, {_percent(chance, 0)} %, "
+            "can't be told."
+        )
+
+
+def _digits(recognition: Recognition) -> int:
+    """Return the number of decimals of scores in per cent."""
+    return 0 if coarse(recognition.scores[recognition.best].error) else 1
+
+
+def _scores(one: Scores) -> Row:
+    row: Row = {}
+    for name in ("error", "balanced_accuracy", "brier", "log_loss"):
+        row |= _interval(name, getattr(one, name))
+    return {
+        **row,
+        "balanced_accuracy_spread_over_seeds": float(np.std(one.balanced_accuracy.seeds)),
+    }
+
+
+def _interval(name: str, one: Score) -> Row:
+    return {name: one.value, f"{name}_low": one.low, f"{name}_high": one.high}
+
+
+def _percent(value: float, digits: int = 1) -> str:
+    return f"{100.0 * value:.{digits}f}"
+
+
+def _percents(one: Score, digits: int) -> str:
+    return f"{_percent(one.low, digits)} to {_percent(one.high, digits)}"

@@ -1,0 +1,221 @@
+"""What a task tells of its finding, as data: page, terminal, JSON and folder are made from it.
+
+A task has a module `report` with a function `report_of`, which returns the `Report` of its finding.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, ClassVar
+
+from vibroimpact.charts.chart import Chart
+
+
+@dataclass(frozen=True)
+class Column:
+    """A column of a table.
+
+    Parameters
+    ----------
+    heading : str
+        What the column holds.
+    cells : sequence of str
+        A cell per row, with the digits that are shown.
+    unit : str
+        Unit of the cells; empty if there is none.
+    is_text : bool
+        Texts, aligned on the left; otherwise numbers.
+    """
+
+    heading: str
+    cells: Sequence[str]
+    unit: str = ""
+    is_text: bool = False
+
+
+@dataclass(frozen=True)
+class Table:
+    """Rows under headings; the first column names the rows.
+
+    Parameters
+    ----------
+    columns : sequence of Column
+        The columns.
+    title : str
+        What the table holds, where its section has several.
+    bold : collection of int
+        Numbers of rows that are set apart, from 0.
+    """
+
+    kind: ClassVar[str] = "table"
+
+    columns: Sequence[Column]
+    title: str = ""
+    bold: Sequence[int] = ()
+
+
+@dataclass(frozen=True)
+class Facts:
+    """Rows without headings: a name, and what is said of it in one or more texts."""
+
+    kind: ClassVar[str] = "facts"
+    rows: Sequence[tuple[str, ...]]
+
+
+@dataclass(frozen=True)
+class Paragraph:
+    """Sentences on the finding."""
+
+    kind: ClassVar[str] = "paragraph"
+
+    text: str
+
+
+@dataclass(frozen=True)
+class Note:
+    """Sentences on how a table is read."""
+
+    kind: ClassVar[str] = "note"
+
+    text: str
+
+
+@dataclass(frozen=True)
+class Explanation:
+    """Longer sentences on methods and definitions, for the page alone."""
+
+    kind: ClassVar[str] = "note"
+
+    text: str
+
+
+@dataclass(frozen=True)
+class Code:
+    """A text to copy from the page, such as lines of a case.
+
+    Parameters
+    ----------
+    name : str
+        Plain name.
+    lead : str
+        What the text is.
+    text : str
+        The text.
+    is_short : bool
+        Whether the terminal shows it too, and its lines may be broken.
+    """
+
+    kind: ClassVar[str] = "code"
+
+    name: str
+    lead: str
+    text: str
+    is_short: bool = False
+
+
+Block = Table | Facts | Paragraph | Note | Explanation | Code
+
+
+@dataclass(frozen=True)
+class Section:
+    """A part of a report under a heading.
+
+    Parameters
+    ----------
+    name : str
+        Plain name, to which the contents link.
+    title : str
+        The heading.
+    blocks : sequence of Block
+        What it consists of.
+    after_charts : bool
+        Whether it follows the charts.
+    """
+
+    name: str
+    title: str
+    blocks: Sequence[Block]
+    after_charts: bool = False
+
+
+@dataclass(frozen=True)
+class Report:
+    """A finding as it is told, in every medium.
+
+    Parameters
+    ----------
+    title : str
+        The title.
+    sections : sequence of Section
+        Tables with their notes.
+    summary : mapping
+        Content of `summary.json` in the folder, and of what `--json` prints; in SI.
+    charts : sequence of Chart
+        The charts.
+    files : mapping of str to callable
+        Further files of the folder by their names, each with the function that writes it to a path.
+    answer : str
+        The finding in a sentence.
+    sentences : sequence of str
+        What else is said of it.
+    warnings : sequence of str
+        What may be wrong with it, each without the full stop.
+    provenance : str
+        What it was made from, in words that follow the version of the program.
+    details : mapping
+        What `--json` prints beside the summary, or in place of its entries.
+    """
+
+    title: str
+    sections: Sequence[Section]
+    summary: Mapping[str, Any]
+    charts: Sequence[Chart] = ()
+    files: Mapping[str, Callable[[Path], object]] = field(default_factory=dict)
+    answer: str = ""
+    sentences: Sequence[str] = ()
+    warnings: Sequence[str] = ()
+    provenance: str = ""
+    details: Mapping[str, Any] = field(default_factory=dict)
+
+    @property
+    def document(self) -> dict[str, Any]:
+        """What `--json` prints."""
+        return {**self.summary, **self.details}
+
+
+def table_of(
+    headings: Sequence[str | tuple[str, str]],
+    rows: Sequence[Sequence[str]],
+    texts: Sequence[str] = (),
+    title: str = "",
+    bold: Sequence[int] = (),
+) -> Table:
+    """Return a table from its rows.
+
+    Parameters
+    ----------
+    headings : sequence of str or tuple of str
+        Heading of each column: a text, or a text and a unit.
+    rows : sequence of sequence of str
+        The rows.
+    texts : sequence of str
+        Headings of columns of texts; the first column is one anyhow.
+    title : str
+        Title of the table.
+    bold : sequence of int
+        Numbers of rows that are set apart, from 0.
+
+    Examples
+    --------
+    >>> table = table_of(["Law", ("Force", "N")], [["hertz", "20"], ["tsuji", "19"]])
+    >>> table.columns[1]
+    Column(heading='Force', cells=('20', '19'), unit='N', is_text=False)
+    """
+    columns = []
+    for number, heading in enumerate(headings):
+        name, unit = (heading, "") if isinstance(heading, str) else heading
+        cells = tuple(row[number] for row in rows)
+        columns.append(Column(name, cells, unit, is_text=number == 0 or name in texts))
+    return Table(tuple(columns), title, bold)

@@ -1,0 +1,99 @@
+"""Findings with a report: saved, drawn and read as data by one interface."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from importlib import import_module
+from os import PathLike
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from vibroimpact.charts.chart import Chart
+from vibroimpact.errors import InputError, choices
+from vibroimpact.quoting import quoted
+from vibroimpact.report.report import Report, Table
+
+if TYPE_CHECKING:
+    import plotly.graph_objects as go
+
+
+class Reported:
+    """A finding of a task, with its report.
+
+    A subclass names the module whose function `report_of` returns the report of a finding: what a
+    task computes does not depend on how it is reported.
+    """
+
+    _reported_in: ClassVar[str]
+
+    def __init_subclass__(cls, reported_in: str = "", **options: Any) -> None:
+        super().__init_subclass__(**options)
+        if reported_in:
+            cls._reported_in = reported_in
+
+    @property
+    def report(self) -> Report:
+        """The report: title, answer, tables, charts, warnings and files, as data."""
+        report: Report = import_module(self._reported_in).report_of(self)
+        return report
+
+    @property
+    def charts(self) -> dict[str, Chart]:
+        """The charts of the report, by name."""
+        return {chart.name: chart for chart in self.report.charts}
+
+    @property
+    def tables(self) -> list[Table]:
+        """The tables of the report."""
+        sections = self.report.sections
+        return [
+            block for section in sections for block in section.blocks if isinstance(block, Table)
+        ]
+
+    @property
+    def document(self) -> dict[str, Any]:
+        """The finding as data in SI: what the command prints with `--json`."""
+        return self.report.document
+
+    def save(
+        self,
+        directory: str | PathLike[str],
+        *,
+        force: bool = False,
+        figures: Sequence[str] = (),
+    ) -> Path:
+        """Write the report and its data as a folder, atomically, and return its path.
+
+        Parameters
+        ----------
+        directory : path
+            The folder to create.
+        force : bool, default False
+            Replace an existing result folder.
+        figures : sequence of str
+            Formats in which the charts are also written as files, into a folder `figures`: of
+            "png", "svg" and "pdf".
+
+        Raises
+        ------
+        InputError
+            If the folder exists and may not be replaced, or it can't be written to.
+        """
+        from vibroimpact.report.save_report import save_report
+
+        return save_report(self.report, directory, force=force, figures=figures)
+
+    def plot(self, name: str = "") -> go.Figure:
+        """Return a chart of the report as a figure of plotly; the first one by default.
+
+        Raises
+        ------
+        InputError
+            If there is no chart of that name.
+        """
+        from vibroimpact.charts.notebook import plotly_figure
+
+        charts = self.charts
+        if name and name not in charts:
+            raise InputError(f"there is no chart {quoted(name)}; there are {choices(charts, name)}")
+        return plotly_figure(charts[name or next(iter(charts))])

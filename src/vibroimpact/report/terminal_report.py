@@ -1,0 +1,78 @@
+"""A report in the terminal: its answer, tables, notes and warnings."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from rich.console import Group, RenderableType
+from rich.text import Text
+
+from vibroimpact.report.report import Block, Code, Facts, Note, Paragraph, Report, Table
+from vibroimpact.report.terminal_table import TerminalColumn, TerminalTable, facts, numbers
+
+
+def terminal_report(report: Report) -> RenderableType:
+    """Return what a terminal shows of a report.
+
+    Parameters
+    ----------
+    report : Report
+        The report; charts, explanations and texts to copy are on its page alone.
+
+    Examples
+    --------
+    >>> from rich.console import Console
+    >>> from vibroimpact.report.report import Section, table_of
+    >>> table = table_of(["Law", ("Force", "N")], [["hertz", "20"]])
+    >>> section = Section("force", "Force", (table, Note("The force is the largest.")))
+    >>> Console(width=60).print(terminal_report(Report("Two balls", (section,), {})))
+    Two balls
+            Force
+     Law      [N]
+     hertz     20
+     The force is the largest.
+    """
+    lines: list[RenderableType] = [Text(report.title, style="bold")]
+    if report.answer:
+        lines.append(Text(report.answer))
+    lines.extend(Text(sentence) for sentence in report.sentences)
+    for section in report.sections:
+        blocks = [line for block in section.blocks for line in block_lines(block)]
+        if not blocks:
+            continue
+        # the table below the answer needs no heading
+        if not (section is report.sections[0] and isinstance(section.blocks[0], Table)):
+            lines.append(Text())
+            lines.append(Text(section.title, style="bold"))
+        lines.extend(blocks)
+    lines.extend(warning_lines(report.warnings))
+    return Group(*lines)
+
+
+def block_lines(block: Block) -> Iterator[RenderableType]:
+    """Yield what the terminal shows of a block."""
+    if isinstance(block, Table):
+        if block.title:
+            yield Text(block.title, style="bold")
+        yield TerminalTable(
+            [
+                TerminalColumn(column.heading, column.cells, text=True)
+                if column.is_text
+                else numbers(column.heading, column.unit, column.cells)
+                for column in block.columns
+            ],
+            bold=block.bold,
+        )
+    elif isinstance(block, Facts):
+        yield facts(block.rows, indent=1)
+    elif isinstance(block, Paragraph):
+        yield Text(block.text)
+    elif isinstance(block, Code) and block.is_short:
+        yield Text(f"{block.lead}\n{block.text}")
+    elif isinstance(block, Note):
+        yield Text(f" {block.text}", style="dim")
+
+
+def warning_lines(warnings: Iterable[str]) -> list[RenderableType]:
+    """Return warnings as paragraphs for the terminal, one each."""
+    return [Text(f"Doubt: {warning}.", style="yellow") for warning in warnings]

@@ -1,0 +1,168 @@
+"""What a comparison of frequency responses tells: agreement, modes and damping."""
+
+from __future__ import annotations
+
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import tomli_w
+
+from vibroimpact._version import __version__
+from vibroimpact.cases.build import resolved_case
+from vibroimpact.files.plain_names import plain_names
+from vibroimpact.quoting import visible
+from vibroimpact.report.report import Explanation, Note, Report, Section, Table, table_of
+from vibroimpact.results.csv_files import write_columns, write_csv
+from vibroimpact.test_analysis.criteria_tables import (
+    MODE_COLUMNS,
+    mode_table,
+    modes_section,
+    octave_table,
+    response_columns,
+)
+from vibroimpact.test_analysis.mode_pairs import damping_field
+from vibroimpact.test_analysis.responses.charts import WHAT_FRAC_IS_OF, response_charts
+from vibroimpact.test_analysis.responses.doubts import COHERENT
+from vibroimpact.test_analysis.responses.result import ResponseCorrelation
+from vibroimpact.units.display import MISSING, digits, multiple
+
+
+def report_of(correlation: ResponseCorrelation) -> Report:
+    """Return the report of a comparison of frequency responses.
+
+    The folder has `responses.csv` (frequency, and of each response magnitude and phase of both, and
+    the coherence), `modes.csv` and `case.toml`.
+    """
+    agreement = Section(
+        "agreement",
+        "Agreement",
+        (
+            response_table(correlation),
+            Explanation(
+                "Measured over simulated is the scale factor that fits the simulated response "
+                "best to the measured one; level and phase are the medians over the band of the "
+                "absolute differences, and the coherence is its median."
+            ),
+            octave_table(correlation),
+            Note(
+                f"Frequency response assurance criterion (FRAC) of {WHAT_FRAC_IS_OF}: 1 where they "
+                "are equal except for a factor."
+            ),
+        ),
+    )
+    modes = modes_section(
+        correlation.modes,
+        "Measured frequencies and damping ratios are those of a sum of modes fitted to all "
+        "responses together; the intervals include noise alone. Modes are paired by frequency; "
+        "mode shapes are not compared.",
+    )
+    return Report(
+        title=f"{correlation.case.name or 'A test'}, test and simulation",
+        sections=(agreement, modes),
+        charts=response_charts(correlation),
+        warnings=correlation.doubts,
+        files={
+            "responses.csv": partial(_write_responses, correlation),
+            "modes.csv": partial(_write_modes, correlation),
+            "case.toml": partial(_write_case, correlation),
+        },
+        summary=_summary(correlation),
+        provenance="the case is case.toml, beside this page.",
+    )
+
+
+def response_table(correlation: ResponseCorrelation) -> Table:
+    """Return the table of responses."""
+    headings = [
+        "Response",
+        "Unit",
+        "Polarity",
+        "Measured over simulated",
+        "Level, dB",
+        "Phase, °",
+        "FRAC",
+        "Coherence",
+    ]
+    coherences = _coherences(correlation)
+    phases = np.degrees(correlation.phase_difference)
+    rows = []
+    for number, sensor in enumerate(correlation.sensors):
+        coherence = coherences[number]
+        rows.append(
+            [
+                visible(sensor.name),
+                multiple(correlation.units[number], 0.0).unit,
+                "inverted" if correlation.polarity[number] < 0.0 else "as simulated",
+                digits(correlation.scale[number], 4),
+                f"{correlation.level_difference[number]:.2f}",
+                f"{phases[number]:.1f}",
+                f"{correlation.frac[number]:.3f}",
+                MISSING if coherence is None else f"{coherence:.3f}",
+            ]
+        )
+    return table_of(headings, rows, texts=("Unit", "Polarity"))
+
+
+def _coherences(correlation: ResponseCorrelation) -> list[float | None]:
+    """Return the median coherence of each response; None if it is not known."""
+    if correlation.coherence is None:
+        return [None] * len(correlation.sensors)
+    return [
+        None if np.isnan(coherence).any() else float(np.median(coherence))
+        for coherence in correlation.coherence
+    ]
+
+
+def _write_responses(correlation: ResponseCorrelation, path: Path) -> None:
+    """Write the responses of both."""
+    plain = plain_names([sensor.name for sensor in correlation.sensors])
+    write_columns(response_columns(correlation, plain), path)
+
+
+def _write_modes(correlation: ResponseCorrelation, path: Path) -> None:
+    """Write the modes of both."""
+    write_csv(mode_table(correlation), list(MODE_COLUMNS), path)
+
+
+def _write_case(correlation: ResponseCorrelation, path: Path) -> None:
+    """Write the case."""
+    path.write_text(tomli_w.dumps(resolved_case(correlation.case)), encoding="utf-8")
+
+
+def _summary(correlation: ResponseCorrelation) -> dict[str, Any]:
+    """Return the content of `summary.json`."""
+    coherences = _coherences(correlation)
+    return {
+        "name": correlation.case.name,
+        "version": __version__,
+        "band_Hz": list(correlation.band),
+        "reference": correlation.reference,
+        "reciprocal": correlation.reciprocal,
+        "octaves_Hz": [list(one) for one in correlation.octaves],
+        "responses": {
+            sensor.name: {
+                "unit": correlation.units[number],
+                "polarity": int(correlation.polarity[number]),
+                "scale": float(correlation.scale[number]),
+                "level_difference_dB": float(correlation.level_difference[number]),
+                "phase_difference_rad": float(correlation.phase_difference[number]),
+                "frac": float(correlation.frac[number]),
+                "octave_frac": [
+                    None if np.isnan(value) else float(value)
+                    for value in correlation.octave_frac[number]
+                ],
+                "scaled_frac": float(correlation.scaled_frac[number]),
+                "damped_frac": float(correlation.damped_frac[number]),
+                "coherence_median": coherences[number],
+                "coherence_low_part": None
+                if correlation.coherence is None or coherences[number] is None
+                else float((correlation.coherence[number] < COHERENT).mean()),
+            }
+            for number, sensor in enumerate(correlation.sensors)
+        },
+        "modes": mode_table(correlation),
+        "damping": damping_field(correlation.modes),
+        "doubts": list(correlation.doubts),
+    }
