@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 import tomllib
 from pathlib import Path
@@ -20,6 +21,8 @@ def test_versions_are_one() -> None:
         r"^version: (.+)$", (ROOT / "CITATION.cff").read_text(encoding="utf-8"), re.MULTILINE
     )
     assert recipe == citation == version
+    for name in ("codemeta.json", ".zenodo.json"):
+        assert json.loads((ROOT / name).read_text(encoding="utf-8"))["version"] == version
 
 
 def test_the_recipe_needs_what_the_project_needs() -> None:

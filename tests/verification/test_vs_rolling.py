@@ -653,8 +653,8 @@ def test_elastic_friction_and_a_moment_act_together(
 def test_balls_of_the_guide(
     velocity: tuple[float, ...], spin: float, after: tuple[float, float]
 ) -> None:
-    """Velocity along the plate and spin [rad/s] as the guide to oblique drops and the
-    changelog have them.
+    """Velocity along the plate and spin [rad/s] as the guide to oblique drops has
+    them.
     """
     friction = {"law": "mindlin", "coefficient": 0.2, "rolling_coefficient": 0.02}
     case = {
