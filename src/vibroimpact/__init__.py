@@ -32,7 +32,6 @@ if TYPE_CHECKING:
     from vibroimpact.calibration.calibrate_case import read_calibration as read_calibration
     from vibroimpact.calibration.calibration import Calibration as Calibration
     from vibroimpact.calibration.charts import calibration_charts as calibration_charts
-    from vibroimpact.calibration.folder import save_calibration as save_calibration
     from vibroimpact.calibration.force_record import impacts_in_force as impacts_in_force
     from vibroimpact.calibration.friction.calibrate import (
         FrictionCalibration as FrictionCalibration,
@@ -45,6 +44,7 @@ if TYPE_CHECKING:
     from vibroimpact.calibration.restitutions.restitutions import (
         read_restitutions as read_restitutions,
     )
+    from vibroimpact.calibration.save_calibration import save_calibration as save_calibration
     from vibroimpact.calibration.tunables import law_parameter as law_parameter
     from vibroimpact.calibration.tunables import modal_damping as modal_damping
     from vibroimpact.cases.case import Case as Case
@@ -331,7 +331,7 @@ _HOME = {
     "rigid_sphere": "bodies.rigid_bodies",
     "run_charts": "runs.charts",
     "run_sweep": "studies.run_sweep",
-    "save_calibration": "calibration.folder",
+    "save_calibration": "calibration.save_calibration",
     "save_charts": "charts.files",
     "save_figures": "figures",
     "save_modes": "modes.folder",

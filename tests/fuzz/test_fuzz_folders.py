@@ -23,7 +23,7 @@ from hostile_runs import failures, number, seed
 from support import plain_case
 from vibroimpact.bayes_error.falls import falls_of_study
 from vibroimpact.calibration.calibrate_case import calibrate_case, read_calibration
-from vibroimpact.calibration.folder import save_calibration
+from vibroimpact.calibration.save_calibration import save_calibration
 from vibroimpact.exporting.load_drop import load_drop
 from vibroimpact.paper.report.folder import reproduce_paper
 from vibroimpact.studies.ledger import LEDGER

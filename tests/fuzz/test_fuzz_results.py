@@ -216,7 +216,7 @@ def read_calibration(folder: Path) -> Any:
 @pytest.fixture(scope="module")
 def calibration(tmp_path_factory: pytest.TempPathFactory) -> Path:
     from vibroimpact.calibration.calibrate_case import calibrate_case, read_calibration
-    from vibroimpact.calibration.folder import save_calibration
+    from vibroimpact.calibration.save_calibration import save_calibration
 
     case = plain_case(
         contact={"law": "adams-impact", "damping_max": 100.0},

@@ -45,10 +45,10 @@ from serving import Server
 from support import plain_case
 from vibroimpact.cases.build import resolved_case
 from vibroimpact.cli import main
+from vibroimpact.report.terminal_report import warning_lines
 from vibroimpact.results.csv_files import signal_csv
 from vibroimpact.results.result import Result, result_of
 from vibroimpact.runs.tables import impact_table, ledger_table
-from vibroimpact.runs.text import doubt_lines
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page
@@ -70,7 +70,7 @@ def assert_tables_are_those_of(page: Page, result: Result) -> None:
     ]
     assert page.locator("#status").text_content() == result.status
     assert page.locator("#doubts details p").all_text_contents() == [
-        str(line) for line in doubt_lines(result.doubts)
+        str(line) for line in warning_lines(result.doubts)
     ]
 
 

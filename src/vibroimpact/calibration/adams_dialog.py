@@ -8,9 +8,9 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from vibroimpact.calibration.calibration import Calibration
-from vibroimpact.calibration.report import Cells, shortened
 from vibroimpact.contact.law import ContactLaw
 from vibroimpact.contact.laws.adams_impact import AdamsImpact
+from vibroimpact.report.report import Table, first_rows, table_of
 
 _FIELDS = {
     "stiffness_N_mm_n": ("Stiffness", "N/mm^n"),
@@ -77,13 +77,21 @@ def calibrated_dialog(found: Calibration) -> list[dict[str, Any]]:
     )
 
 
-def dialog_cells(rows: Iterable[Mapping[str, Any]], names: Iterable[str]) -> Cells:
-    """Return the fields as a table, whose rows have the names of the impacts, or are
+def dialog_table(fields: Iterable[Mapping[str, Any]], names: Iterable[str]) -> Table:
+    """Return the fields of the dialog as a table, whose rows have the names of the impacts, or are
     "every impact" if there is one.
+
+    Parameters
+    ----------
+    fields : iterable of mapping
+        Fields of each impact, as `dialog_rows` returns them.
+    names : iterable of str
+        Names of the impacts.
     """
-    rows = list(rows)
-    cells = [[f"{row[field]:.6g}" for field in _FIELDS] for row in rows]
-    names = list(names)[: len(rows)] if len(rows) > 1 else ["every impact"]
-    return [("", ""), *_FIELDS.values()], shortened(
-        [[name, *row] for name, row in zip(names, cells, strict=True)]
-    )
+    impacts = list(fields)
+    row_names = list(names)[: len(impacts)] if len(impacts) > 1 else ["every impact"]
+    rows = [
+        [name, *(f"{impact[field]:.6g}" for field in _FIELDS)]
+        for name, impact in zip(row_names, impacts, strict=True)
+    ]
+    return table_of([("", ""), *_FIELDS.values()], first_rows(rows), title=DIALOG_TITLE)

@@ -1,77 +1,163 @@
-"""What is told of a calibration: by the terminal, the page and the files of its folder."""
+"""What the calibration of a case tells: the values found, how well they meet the target, charts."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
+from pathlib import Path
 from typing import Any
 
+import tomli_w
+
+from vibroimpact._version import __version__
+from vibroimpact.calibration.adams_dialog import calibrated_dialog, dialog_note, dialog_table
+from vibroimpact.calibration.calibrate_case import calibrated_case
+from vibroimpact.calibration.calibration import Calibration
+from vibroimpact.calibration.charts import calibration_charts
+from vibroimpact.calibration.file_contents import (
+    CALIBRATION,
+    calibration_table,
+    columns_of,
+    comparison_rows,
+)
+from vibroimpact.calibration.friction.calibrate import FrictionCalibration
+from vibroimpact.calibration.friction.friction_report import (
+    friction_document,
+    friction_sentences,
+    friction_table,
+    friction_words,
+    given_values_sentences,
+    together_words,
+)
+from vibroimpact.calibration.law_report import (
+    differences_tables,
+    fit_sentences,
+    function_words,
+    given_sentences,
+    match_words,
+    values_table,
+    ways_words,
+)
+from vibroimpact.cases.build import resolved_case
 from vibroimpact.cases.case import Case
-from vibroimpact.charts.chart import Chart
+from vibroimpact.files.check_sums import CHECK_SUMS, file_digest, sealed
+from vibroimpact.report.report import Block, Code, Explanation, Note, Report, Section
+from vibroimpact.results.csv_files import write_csv
 
-Cells = tuple[list[tuple[str, str]], list[list[str]]]
-"""A table as text: headers with units, and rows."""
-
-_MOST_ROWS = 50
-
-
-def shortened(rows: list[list[str]]) -> list[list[str]]:
-    """Return the first rows of a table, and an ellipsis if there are more."""
-    return (
-        rows
-        if len(rows) <= _MOST_ROWS
-        else [*rows[: _MOST_ROWS - 1], ["…", *[""] * (len(rows[0]) - 1)]]
-    )
+CASE = "case.toml"
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class CalibrationReport:
-    """What is told of a calibration.
+def report_of(case: Case, calibration: Calibration | FrictionCalibration) -> Report:
+    """Return the report of the calibration of a case.
+
+    The folder has `calibration.json`, `case.toml` (the case with the calibrated values, ready to
+    run), `matched.csv` and, of contact laws, `comparison.csv`.
 
     Parameters
     ----------
-    law : str
-        Name of the calibrated law.
-    parameter : str
-        What was tuned.
-    matched : str
-        What was matched, in words that follow the law.
-    function : str
-        What was found.
-    fit, given : sequence of str
-        Sentences on how well it is known, and on what the case gives.
-    values : Cells
-        The matched impacts.
-    dialog : Cells, optional
-        What Adams' dialog of a contact takes; None for laws other than IMPACT.
-    differences : mapping of str to Cells
-        Remaining differences, by their titles.
-    ways : str
-        In what ways the values of these differences are prescribed.
-    charts : sequence of Chart
-        The charts.
-    doubts : sequence of str
-        Warnings, as sentences.
-    document : mapping
-        Contents of `calibration.json`.
-    tables : mapping of str to sequences of rows
-        The CSV files, by their names without ending.
-    calibrated : Case
-        The case with the values found.
+    case : Case
+        The calibrated case.
+    calibration : Calibration or FrictionCalibration
+        Result of its calibration.
     """
+    if isinstance(calibration, FrictionCalibration):
+        return _friction_report(case, calibration)
+    return _law_report(case, calibration)
 
-    law: str
-    parameter: str
-    matched: str
-    function: str
-    fit: Sequence[str]
-    given: Sequence[str]
-    values: Cells
-    dialog: Cells | None = None
-    differences: Mapping[str, Cells]
-    ways: str
-    charts: Sequence[Chart]
-    doubts: Sequence[str]
-    document: Mapping[str, Any]
-    tables: Mapping[str, Sequence[dict[str, Any]]]
-    calibrated: Case
+
+def _law_report(case: Case, calibration: Calibration) -> Report:
+    """Return the report of the calibration of a parameter of a contact law."""
+    document = calibration_table(case, calibration)
+    comparison = comparison_rows(calibration)
+    impacts: list[Block] = [values_table(calibration)]
+    if dialog := calibrated_dialog(calibration):
+        impacts.append(dialog_table(dialog, calibration.observations.labels))
+        if len(dialog) > 1:
+            impacts.append(Note(dialog_note(calibration.parameter)))
+    sections = [Section("impacts", "Impact by impact", impacts)]
+    if tables := differences_tables(calibration):
+        ways = ways_words(calibration)
+        note = Note(f"Differences from the target, with {ways}.")
+        values = Explanation("All values are in comparison.csv.")
+        sections.append(Section("wrong", "Remaining differences", [*tables, note, values]))
+    return _report(
+        case,
+        calibration,
+        answer=function_words(calibration),
+        matched=f"With {case.contact.law}, {match_words(calibration)}.",
+        sentences=[*given_sentences(calibration), *fit_sentences(calibration)],
+        sections=sections,
+        parameter=calibration.parameter,
+        document=document,
+        tables={"matched": document["matched"], "comparison": comparison},
+    )
+
+
+def _friction_report(case: Case, calibration: FrictionCalibration) -> Report:
+    """Return the report of a calibration of friction."""
+    document = friction_document(case, calibration)
+    law = calibration.parameters.law.name
+    impacts = Section("impacts", "Impact by impact", (friction_table(calibration),))
+    return _report(
+        case,
+        calibration,
+        answer=friction_words(calibration),
+        matched=f"With friction by {law}, {together_words(calibration)}.",
+        sentences=[*given_values_sentences(calibration), *friction_sentences(calibration)],
+        sections=[impacts],
+        parameter=", ".join(calibration.names),
+        document=document,
+        tables={"matched": document["matched"]},
+    )
+
+
+def _report(
+    case: Case,
+    calibration: Calibration | FrictionCalibration,
+    *,
+    answer: str,
+    matched: str,
+    sentences: Sequence[str],
+    sections: Sequence[Section],
+    parameter: str,
+    document: Mapping[str, Any],
+    tables: Mapping[str, Sequence[Mapping[str, Any]]],
+) -> Report:
+    """Return a report with what calibrations of laws and of friction have in common."""
+    name = case.name or "a drop"
+    lead = "As it was given; the calibrated one is case.toml, beside this page."
+    code = Code("case", lead, tomli_w.dumps(resolved_case(case)))
+    calibrated = calibrated_case(case, calibration)
+    files: dict[str, Callable[[Path], object]] = {
+        CASE: partial(_write_case, calibrated),
+        CALIBRATION: partial(_write_calibration, document),
+    }
+    for table, rows in tables.items():
+        files[f"{table}.csv"] = partial(_write_rows, rows)
+    return Report(
+        title=f"{name[:1].upper()}{name[1:]}, calibrated",
+        answer=answer,
+        sentences=[matched, *sentences],
+        sections=[*sections, Section("case", "Case", (code,), after_charts=True)],
+        charts=calibration_charts(calibration),
+        warnings=calibration.doubts,
+        files=files,
+        summary={"name": case.name, "version": __version__, "calibration": parameter},
+        details={**document, **tables},
+    )
+
+
+def _write_case(case: Case, path: Path) -> None:
+    """Write the case with the values found."""
+    path.write_text(tomli_w.dumps(resolved_case(case)), encoding="utf-8")
+
+
+def _write_calibration(document: Mapping[str, Any], path: Path) -> None:
+    """Write the calibration with the checksum of the case beside it, and its own."""
+    check_sums = {CASE: file_digest(path.parent / CASE)}
+    path.write_bytes(sealed({**document, CHECK_SUMS: check_sums}))
+
+
+def _write_rows(rows: Sequence[Mapping[str, Any]], path: Path) -> None:
+    """Write a table."""
+    write_csv(list(map(dict, rows)), columns_of(rows), path)

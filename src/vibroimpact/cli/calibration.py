@@ -17,13 +17,13 @@ from vibroimpact.cli.shared import (
     Force,
     Json,
     app,
-    console,
     exit_on_interrupt,
     note,
+    progress_of,
     save_and_show,
     settings_of,
-    show_folder,
     stem,
+    write_and_show,
     written_in,
 )
 from vibroimpact.errors import InputError
@@ -134,28 +134,15 @@ def calibrate(
                 f"{option} goes with {kinds[0]} ({', '.join(kinds[1])}); a case has its own keys"
             )
     from vibroimpact.calibration.calibrate_case import calibrate_case, load_calibration
-    from vibroimpact.calibration.folder import save_calibration
-    from vibroimpact.calibration.reported import report_of
-    from vibroimpact.calibration.text import calibration_summary
+    from vibroimpact.calibration.report import report_of
     from vibroimpact.cases.reader import prefix_errors
-    from vibroimpact.report.progress import patient_progress
 
     what = load_calibration(case, settings_of(changes))
     check_free(target, force=force)
-    screen = console(err=as_json)
-    with exit_on_interrupt():
-        with patient_progress("calibrating", screen) as progress:
-            found = prefix_errors(case, lambda: calibrate_case(what, progress, note))
-        folder = save_calibration(
-            what.case, found, target, force=force, figures=("png",) if figures else ()
-        )
-    told = report_of(what.case, found)
-    show_folder(
-        folder,
-        lambda: {**told.document, **told.tables},
-        lambda: calibration_summary(what.case, told),
-        as_json=as_json,
-    )
+    with progress_of("calibrating", as_json=as_json) as progress:
+        calibration = prefix_errors(case, lambda: calibrate_case(what, progress, note))
+    report = report_of(what.case, calibration)
+    write_and_show(report, target, force=force, figures=figures, as_json=as_json)
 
 
 def _fit_table(

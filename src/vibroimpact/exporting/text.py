@@ -9,12 +9,11 @@ from pathlib import Path
 from rich.console import Group, RenderableType
 from rich.text import Text
 
-from vibroimpact.calibration.adams_dialog import DIALOG_TITLE, dialog_cells
-from vibroimpact.calibration.text import cells_table
+from vibroimpact.calibration.adams_dialog import dialog_table
 from vibroimpact.exporting.drop import Drop
 from vibroimpact.exporting.export_format import ExportFormat, export_formats
+from vibroimpact.report.terminal_report import block_lines, warning_lines
 from vibroimpact.report.terminal_table import TerminalColumn, TerminalTable
-from vibroimpact.runs.text import doubt_lines
 from vibroimpact.units.display import digits
 
 _MOST = 6
@@ -52,15 +51,13 @@ def export_summary(drop: Drop, format: ExportFormat, files: Sequence[Path]) -> R
     shown = files if len(files) <= _MOST else files[: _MOST - 1]
     dialog, speeds = format.dialog(drop), drop.impacts["approach_speed_m_s"].tolist()
     names = [f"impact {number} at {digits(speed)} m/s" for number, speed in enumerate(speeds, 1)]
-    typed: list[RenderableType] = (
-        [Text(DIALOG_TITLE), cells_table(dialog_cells(dialog, names))] if dialog else []
-    )
+    typed = list(block_lines(dialog_table(dialog, names))) if dialog else []
     more = f"and {len(files) - len(shown)} more files in {commonpath(files)}"
     return Group(
         *(Text(f"wrote {file}") for file in shown),
         *([Text(more)] if len(shown) < len(files) else []),
         *typed,
         *(Text(f"Note: {note}", style="yellow") for note in format.notes(drop)),
-        *doubt_lines(drop.doubts),
+        *warning_lines(drop.doubts),
         Text(f"Tested: {format.tested}.", style="dim"),
     )

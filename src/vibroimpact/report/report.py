@@ -185,6 +185,24 @@ class Report:
         return {**self.summary, **self.details}
 
 
+_MOST_ROWS = 50
+"""Rows of a table beyond which its first ones are shown."""
+
+
+def first_rows(rows: Sequence[Sequence[str]]) -> list[Sequence[str]]:
+    """Return the first rows of a table, and an ellipsis if there are more.
+
+    Examples
+    --------
+    >>> first_rows([[str(number), "1"] for number in range(60)])[-2:]
+    [['48', '1'], ['…', '']]
+    """
+    if len(rows) <= _MOST_ROWS:
+        return list(rows)
+    ellipsis = ["…", *[""] * (len(rows[0]) - 1)]
+    return [*rows[: _MOST_ROWS - 1], ellipsis]
+
+
 def table_of(
     headings: Sequence[str | tuple[str, str]],
     rows: Sequence[Sequence[str]],

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from itertools import groupby
 
+from rich.columns import Columns
 from rich.console import Group, RenderableType
 from rich.text import Text
 
-from vibroimpact.report.report import Block, Code, Facts, Note, Paragraph, Report, Table
+from vibroimpact.report.report import Block, Code, Facts, Note, Paragraph, Report, Section, Table
 from vibroimpact.report.terminal_table import TerminalColumn, TerminalTable, facts, numbers
 
 
@@ -37,7 +39,7 @@ def terminal_report(report: Report) -> RenderableType:
         lines.append(Text(report.answer))
     lines.extend(Text(sentence) for sentence in report.sentences)
     for section in report.sections:
-        blocks = [line for block in section.blocks for line in block_lines(block)]
+        blocks = list(_section_lines(section))
         if not blocks:
             continue
         # the table below the answer needs no heading
@@ -47,6 +49,21 @@ def terminal_report(report: Report) -> RenderableType:
         lines.extend(blocks)
     lines.extend(warning_lines(report.warnings))
     return Group(*lines)
+
+
+def _section_lines(section: Section) -> Iterator[RenderableType]:
+    """Yield what the terminal shows of a section; tables with titles stand beside each other."""
+    for titled, blocks in groupby(section.blocks, _has_title):
+        groups = [list(block_lines(block)) for block in blocks]
+        if titled and len(groups) > 1:
+            yield Columns([Group(*lines) for lines in groups], padding=(0, 4))
+        else:
+            for lines in groups:
+                yield from lines
+
+
+def _has_title(block: Block) -> bool:
+    return isinstance(block, Table) and block.title != ""
 
 
 def block_lines(block: Block) -> Iterator[RenderableType]:

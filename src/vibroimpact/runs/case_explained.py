@@ -36,8 +36,8 @@ from vibroimpact.contact.law import CompliantLaw, unit_of
 from vibroimpact.dynamics.liquid import restitution_kept
 from vibroimpact.dynamics.problem import STANDARD_GRAVITY
 from vibroimpact.materials import RIGID, Material
+from vibroimpact.report.terminal_report import warning_lines
 from vibroimpact.report.terminal_table import facts
-from vibroimpact.runs.text import doubt_lines
 
 # relative difference of the mean density of a sphere from that of its material, up to which it may
 # be solid
@@ -162,7 +162,7 @@ def case_explained(case: Case, aside: Container[str] = ()) -> RenderableType:
         rows.append(("without losses" + ("" if rigid else ", rigid"), numbers))
     rows += [("" if number else "cost", line) for number, line in enumerate(describe_costs(case))]
     found = doubts(resolved_case(case), expected, aside)
-    return Group(Text(case.name or "a drop", style="bold"), facts(rows), *doubt_lines(found))
+    return Group(Text(case.name or "a drop", style="bold"), facts(rows), *warning_lines(found))
 
 
 def _ends_of_a_run(case: Case) -> list[str]:

@@ -9,6 +9,7 @@ from rich.text import Text
 
 from vibroimpact.dynamics.columns import ALL_IMPACT_COLUMNS
 from vibroimpact.dynamics.energy import closure_in_words
+from vibroimpact.report.terminal_report import warning_lines
 from vibroimpact.report.terminal_table import (
     TerminalColumn,
     TerminalTable,
@@ -102,7 +103,7 @@ def result_summary(result: Result, width: int) -> RenderableType:
         Text(),
         Text(result.status),
         *_deformation(result),
-        *doubt_lines(result.doubts),
+        *warning_lines(result.doubts),
     )
 
 
@@ -150,8 +151,3 @@ def _deformation(result: Result) -> list[RenderableType]:
 def versions_table(rows: Iterable[tuple[str, str]]) -> RenderableType:
     """Return name-value pairs as a plain table of two columns."""
     return facts(rows)
-
-
-def doubt_lines(found: Iterable[str]) -> list[RenderableType]:
-    """Return doubts as paragraphs for the terminal, one each."""
-    return [Text(f"Doubt: {doubt}.", style="yellow") for doubt in found]

@@ -10,15 +10,23 @@ import pytest
 
 import vibroimpact as vi
 from support import plain_case
+from vibroimpact.calibration.adams_dialog import DIALOG_TITLE
 from vibroimpact.calibration.calibrate_case import ToCalibrate
 from vibroimpact.calibration.charts import calibration_charts
 from vibroimpact.calibration.differences import differences
-from vibroimpact.calibration.reported import report_of
+from vibroimpact.calibration.report import report_of
 from vibroimpact.charts.marks import Band, Line, Points
 from vibroimpact.exporting.load_drop import load_drop
+from vibroimpact.report.report import Report, Table
 
 ADAMS = {"law": "adams-impact"}
 PAPER = {"drop": {"height": 4.0, "gravity": 9.8}, "contact": ADAMS}
+
+
+def dialogs(report: Report) -> list[Table]:
+    """Return the tables for the dialog of a contact in Adams View."""
+    blocks = [block for section in report.sections for block in section.blocks]
+    return [block for block in blocks if isinstance(block, Table) and block.title == DIALOG_TITLE]
 
 
 def to_calibrate(section: dict, **changes: object) -> ToCalibrate:
@@ -311,8 +319,9 @@ def test_the_dialog_of_adams_has_its_units(damping: vi.Calibration) -> None:
     """
     case = vi.load_case("paper:calibration")
     stiffness = float(case.to_problem().laws[0].stiffness)
-    headers, rows = report_of(case, damping).dialog or ([], [])
-    assert headers[1:] == [
+    (dialog,) = dialogs(report_of(case, damping))
+    rows = list(zip(*(column.cells for column in dialog.columns), strict=True))
+    assert [(column.heading, column.unit) for column in dialog.columns[1:]] == [
         ("Stiffness", "N/mm^n"),
         ("Force Exponent", ""),
         ("Damping", "N s/mm"),
@@ -329,4 +338,4 @@ def test_the_dialog_is_that_of_adams_alone() -> None:
     what = to_calibrate(
         {"target": {"restitution": 0.7}}, contact={"law": "tsuji"}, run={"impacts": 2}
     )
-    assert report_of(what.case, vi.calibrate_case(what)).dialog is None
+    assert dialogs(report_of(what.case, vi.calibrate_case(what))) == []

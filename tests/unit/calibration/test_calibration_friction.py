@@ -17,8 +17,8 @@ from scipy.stats import t as students_t
 import vibroimpact as vi
 from support import one_in
 from vibroimpact.calibration.charts import calibration_charts
+from vibroimpact.calibration.friction.friction_report import friction_sentences
 from vibroimpact.calibration.friction.parameters import ImpactModel
-from vibroimpact.calibration.friction.tables import friction_sentences
 from vibroimpact.charts.marks import Line, Points
 from vibroimpact.errors import ComputationError
 from vibroimpact.exporting.load_drop import load_drop

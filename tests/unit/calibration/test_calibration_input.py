@@ -14,7 +14,7 @@ import vibroimpact as vi
 from support import plain_case
 from vibroimpact.calibration.calibrate_case import calibrate_case, read_calibration
 from vibroimpact.calibration.calibration import Calibration
-from vibroimpact.calibration.tables import fit_sentences
+from vibroimpact.calibration.law_report import fit_sentences
 from vibroimpact.cli import main
 from vibroimpact.measurements.table_file import read_table_file
 

@@ -13,7 +13,7 @@ import vibroimpact as vi
 from support import plain_case
 from vibroimpact.calibration.calibrate_case import calibrate_case, read_calibration
 from vibroimpact.calibration.calibration import Calibration
-from vibroimpact.calibration.tables import match_words
+from vibroimpact.calibration.law_report import match_words
 
 NEWTON = {"law": "newton", "restitution": 0.9}
 SPEEDS = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0]

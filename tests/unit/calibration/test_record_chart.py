@@ -12,9 +12,9 @@ from support import plain_case
 from vibroimpact.calibration.calibrate_case import calibrate_case, read_calibration
 from vibroimpact.calibration.calibration import Calibration
 from vibroimpact.calibration.charts import calibration_charts
-from vibroimpact.calibration.folder import save_calibration
 from vibroimpact.calibration.overlay import Overlay
 from vibroimpact.calibration.record_chart import record_chart
+from vibroimpact.calibration.save_calibration import save_calibration
 from vibroimpact.charts.chart import Chart
 from vibroimpact.charts.marks import Line, Points
 from vibroimpact.charts.matplotlib import matplotlib_figure

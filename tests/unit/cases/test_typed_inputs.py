@@ -16,10 +16,10 @@ import vibroimpact as vi
 from ball_records import heard
 from support import plain_case
 from vibroimpact.calibration.bounces.report import impact_table, law_sentences
-from vibroimpact.calibration.calibrate_case import calibrate_case, read_calibration
+from vibroimpact.calibration.calibrate_case import calibrate_case, calibrated_case, read_calibration
 from vibroimpact.calibration.calibration import Calibration
 from vibroimpact.calibration.inputs import EARTH
-from vibroimpact.calibration.reported import report_of
+from vibroimpact.calibration.report import report_of
 from vibroimpact.cli import main
 from vibroimpact.units.display import known_text
 from vibroimpact.units.written import read_written
@@ -401,10 +401,13 @@ def test_a_report_states_the_inputs() -> None:
         contact={"law": "newton", "restitution": 0.5}, sphere=EXACT, drop={"height": "1 m"}
     )
     what = read_calibration({**table, "calibrate": {"target": HEIGHTS, "air": False, "degree": 0}})
-    report = report_of(what.case, calibrate_case(what))
+    calibration = calibrate_case(what)
+    report = report_of(what.case, calibration)
     assert [one["name"] for one in report.document["inputs"]] == ["drop.height", "drop.gravity"]
-    assert any("drop.height 1" in sentence for sentence in report.fit)
-    (value,) = [row[2] for row in report.values[1]]
+    assert any("drop.height 1" in sentence for sentence in report.sentences)
+    (value,) = report.sections[0].blocks[0].columns[2].cells
     assert len(value.partition(".")[2]) <= 3
     # a run does not need them, and what is written has the numbers alone
-    assert vi.read_case(report.calibrated.to_problem().source).drop.height == 1.0
+    assert (
+        vi.read_case(calibrated_case(what.case, calibration).to_problem().source).drop.height == 1.0
+    )

@@ -23,8 +23,7 @@ from studies import study_table
 from support import one_in, plain_case
 from vibroimpact.bayes_error.bound import bound_of
 from vibroimpact.calibration.calibrate import calibrate
-from vibroimpact.calibration.reported import report_of
-from vibroimpact.calibration.text import calibration_summary
+from vibroimpact.calibration.report import report_of
 from vibroimpact.cases.elastic.modes import compute_modes
 from vibroimpact.cli import app, main
 from vibroimpact.cli.case_text import shipped_cases_table
@@ -104,7 +103,7 @@ def commands(tmp_path_factory: pytest.TempPathFactory, variable: vi.Response) ->
         "check": lambda _: case_explained(elastic),
         "check, study": lambda _: explain_sweep(sweep),
         "compare": lambda _: terminal_report(compared.report),
-        "calibrate": lambda _: calibration_summary(case, report_of(case, calibrated)),
+        "calibrate": lambda _: terminal_report(report_of(case, calibrated)),
         "modes": lambda _: modes_summary(elastic, modes),
         "sweep": lambda width: study_summary(study, width),
         "dataset": lambda _: explain_sweep(population),

@@ -38,7 +38,7 @@ def report_of(rebounds: Rebounds) -> Report:
     )
     fits = Section(
         "fits",
-        "Restitution over the approach speed",
+        "Fits over the approach speed",
         [Paragraph(sentence) for sentence in law_sentences(rebounds)],
     )
     return Report(

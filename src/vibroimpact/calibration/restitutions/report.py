@@ -31,7 +31,7 @@ def report_of(restitutions: Restitutions) -> Report:
     return Report(
         title=f"Restitutions of {Path(restitutions.source).name}",
         answer=status_sentence(restitutions),
-        sections=(Section("fits", "Restitution over the approach speed", fits), rows),
+        sections=(Section("fits", "Fits over the approach speed", fits), rows),
         charts=made_charts({"restitution": partial(restitution_chart, restitutions)}),
         warnings=restitutions.doubts,
         files={"restitutions.csv": partial(_write_restitutions, restitutions)},

@@ -7,8 +7,8 @@ from __future__ import annotations
 from rich.console import Group, RenderableType
 from rich.text import Text
 
+from vibroimpact.report.terminal_report import warning_lines
 from vibroimpact.report.terminal_table import TerminalColumn, TerminalTable
-from vibroimpact.runs.text import doubt_lines
 from vibroimpact.studies.percentiles import PERCENTILES
 from vibroimpact.studies.report.axes import study_axes
 from vibroimpact.studies.report.labels import drops_text, percent, with_unit
@@ -69,7 +69,7 @@ def study_summary(study: Study, width: int) -> RenderableType:
         *why,
         *([TerminalTable(columns)] if outputs else []),
         *([Text(restitution)] if restitution else []),
-        *doubt_lines(doubts),
+        *warning_lines(doubts),
         *([Text(COUNTED_FROM, style="dim")] if doubts else []),
     )
 

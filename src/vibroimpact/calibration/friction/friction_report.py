@@ -1,6 +1,4 @@
-"""What is told of calibrated friction: sentences, the table of the impacts, and the
-contents of the files.
-"""
+"""Tables and sentences of calibrated friction, and the contents of its files."""
 
 from __future__ import annotations
 
@@ -14,9 +12,9 @@ from vibroimpact.arrays import Floats
 from vibroimpact.calibration.friction.calibrate import FrictionCalibration
 from vibroimpact.calibration.matchable import ALONG_PLATE
 from vibroimpact.calibration.noise import standard_deviations
-from vibroimpact.calibration.report import Cells, shortened
 from vibroimpact.cases.build import resolved_case
 from vibroimpact.cases.case import Case
+from vibroimpact.report.report import Table, first_rows, table_of
 from vibroimpact.runs.tables import formatted_column
 from vibroimpact.units.display import column_texts, digits, fixed, text
 
@@ -117,8 +115,8 @@ def given_values_sentences(found: FrictionCalibration) -> list[str]:
     return told
 
 
-def friction_table(found: FrictionCalibration) -> Cells:
-    """Return headers with units, and a row per impact."""
+def friction_table(found: FrictionCalibration) -> Table:
+    """Return the table of the impacts."""
     impacts = found.impacts
     headers = [("", ""), ("Angle", "deg"), ("Speed", "m/s")]
     columns = [
@@ -151,7 +149,7 @@ def friction_table(found: FrictionCalibration) -> Cells:
     headers.append(("Slips throughout", ""))
     columns.append(["yes" if slips else "no" for slips in found.slips])
     rows = [list(row) for row in zip(*columns, strict=True)]
-    return headers, shortened(rows)
+    return table_of(headers, first_rows(rows))
 
 
 def friction_document(case: Case, found: FrictionCalibration) -> dict[str, Any]:

@@ -1,4 +1,4 @@
-"""Tables and sentences of a calibration as text, for the terminal and the report page."""
+"""Tables and sentences of a calibration of a contact law."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ from vibroimpact.calibration.calibration import Calibration
 from vibroimpact.calibration.differences import COMPARED, WAYS, differences, largest_misfit
 from vibroimpact.calibration.inputs import inputs_sentence
 from vibroimpact.calibration.matchable import MATCHABLE, REBOUNDS
-from vibroimpact.calibration.report import Cells, shortened
 from vibroimpact.calibration.tunables import law_parameter
 from vibroimpact.cases.fields.contact import varies_with_speed
 from vibroimpact.contact.speed_function import toml_of
+from vibroimpact.report.report import Table, first_rows, table_of
 from vibroimpact.runs.tables import formatted_column
 from vibroimpact.units.display import (
     column_texts,
@@ -35,8 +35,8 @@ _MEANING = {
 }
 
 
-def values_table(found: Calibration) -> Cells:
-    """Return headers with units, and a row per matched impact."""
+def values_table(found: Calibration) -> Table:
+    """Return the table of the matched impacts."""
     seen = found.observations
     headers = [("", ""), ("Approach speed", "m/s"), (found.parameter, found.unit)]
     speeds = (
@@ -70,25 +70,28 @@ def values_table(found: Calibration) -> Cells:
             headers.append(("as given, off by", "%"))
             columns.append(_off(found.as_given[name] / seen.wanted[name] - 1.0))
     rows = [list(row) for row in zip(*columns, strict=True)]
-    return headers, shortened(rows)
+    return table_of(headers, first_rows(rows))
 
 
-def differences_tables(found: Calibration) -> dict[str, Cells]:
-    """Return for each compared quantity headers, and a row per impact with the deviations of each
-    way of prescribing the value [%].
+def differences_tables(found: Calibration) -> list[Table]:
+    """Return for each compared quantity a table with the deviations of each way of prescribing
+    the value [%], a row per impact.
 
-    Empty for a single impact, which is matched, and without a reference.
+    None for a single impact, which is matched, and without a reference.
     """
-    off = differences(found)
-    if "rebound_height_m" in off and "separation_speed_m_s" in off:
-        del off["separation_speed_m_s"]  # equivalent to the rebound height
-    tables = {}
-    for name, ways in off.items():
+    if len(found.drops["variable"]["impact"]) <= 1:
+        return []
+    deviations = differences(found)
+    if "rebound_height_m" in deviations and "separation_speed_m_s" in deviations:
+        del deviations["separation_speed_m_s"]  # equivalent to the rebound height
+    headings = [("Impact", ""), *((way, "%") for way in WAYS)]
+    tables = []
+    for name, ways in deviations.items():
         number = len(next(iter(ways.values())))
         cells = np.reshape(_off(np.concatenate([ways[way] for way in WAYS])), (len(WAYS), number))
         rows = [[str(impact + 1), *cells[:, impact].tolist()] for impact in range(number)]
-        tables[COMPARED[name]] = ([("Impact", ""), *((way, "%") for way in WAYS)], shortened(rows))
-    return tables if len(found.drops["variable"]["impact"]) > 1 else {}
+        tables.append(table_of(headings, first_rows(rows), title=COMPARED[name]))
+    return tables
 
 
 def function_words(found: Calibration) -> str:
