@@ -29,9 +29,7 @@ PALE_BLUE, PALE_RED, PALE_GREY = "#a9c4dc", "#e6bfa8", "#e4e4e4"
 # form.
 BALL = 4.0 / 3.0 * np.pi * 0.01**3 * 7850.0
 SIDES, THICKNESS, PLACE = (0.3, 0.2), 0.01, (0.11, 0.08)
-LAW = vi.find_contact_law("adams-impact")(
-    stiffness=1.5e10, damping_max=1200.0, full_damping_penetration=1e-5
-)
+LAW = vi.laws.AdamsImpact(stiffness=1.5e10, damping_max=1200.0, full_damping_penetration=1e-5)
 
 
 def plate(modes: int) -> ModalBasis:
@@ -300,9 +298,7 @@ def draw_row(number: int = 12) -> None:
     after the first is hit.
     """
     mass = 4.0 / 3.0 * np.pi * 2.38e-3**3 * 7850.0
-    law = vi.find_contact_law("hertz")(
-        stiffness=4.0 / 3.0 * 0.5 * 210e9 / (1.0 - 0.3**2) * np.sqrt(0.5 * 2.38e-3)
-    )
+    law = vi.laws.Hertz(stiffness=4.0 / 3.0 * 0.5 * 210e9 / (1.0 - 0.3**2) * np.sqrt(0.5 * 2.38e-3))
     names = [*(str(bead) for bead in range(1, number + 1)), "wall"]
     bodies = {
         name: vi.MovingBody(mass=mass, velocity=(0.5 if name == "1" else 0.0, 0.0, 0.0))

@@ -101,7 +101,7 @@ def adams() -> None:
     )
     laws = {
         "the dialog's defaults: 1e5 N/mm$^{2.2}$, 2.2, 10 N s/mm, 0.1 mm": (
-            vi.find_contact_law("adams-impact")(**DIALOG),
+            vi.laws.AdamsImpact(**DIALOG),
             GREY,
         ),
         f"found: Hertz's stiffness, 1.5, {1e-3 * found.values[0]:.4g} N s/mm, 0.01 mm": (

@@ -49,7 +49,7 @@ bare = response.problem.sensors[0]
 def recorded(**instrument):
     """Return what an accelerometer with these properties records of the impact."""
     chain = {name: instrument.pop(name) for name in ("filter", "rate") if name in instrument}
-    sensor = replace(bare, instrument=vi.Accelerometer(**instrument), **chain)
+    sensor = replace(bare, instrument=vi.sensors.Accelerometer(**instrument), **chain)
     return response.signals(sensor)["a1"]
 
 

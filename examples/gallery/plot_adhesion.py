@@ -32,8 +32,8 @@ def laws_of(radius):
     }
     return (
         mass,
-        vi.find_contact_law("jkr")(**pair),
-        vi.find_contact_law("krijt")(**pair, dissipation_time=radius / 4e3),
+        vi.laws.JKR(**pair),
+        vi.laws.Krijt(**pair, dissipation_time=radius / 4e3),
     )
 
 

@@ -30,7 +30,7 @@ def fallen(air):
     problem = vi.Problem(
         sphere=vi.rigid_sphere(radius, quartz),
         plate=vi.rigid_plate(),
-        laws=(vi.find_contact_law("newton")(restitution=0.8),),
+        laws=(vi.laws.Newton(restitution=0.8),),
         height=height + radius,
         air=air,
         impacts=1,

@@ -19,16 +19,14 @@ import numpy as np
 import vibroimpact as vi
 
 modulus, radius, mass, strength = 115e9, 5e-3, 4.1e-3, 1.0e9
-thornton = vi.find_contact_law("thornton")(
+thornton = vi.laws.Thornton(
     effective_modulus=modulus, effective_radius=radius, yield_pressure=1.6 * strength
 )
-meyer = vi.find_contact_law("meyer")(
+meyer = vi.laws.Meyer(effective_modulus=modulus, effective_radius=radius, yield_strength=strength)
+storakers = vi.laws.Storakers(
     effective_modulus=modulus, effective_radius=radius, yield_strength=strength
 )
-storakers = vi.find_contact_law("storakers")(
-    effective_modulus=modulus, effective_radius=radius, yield_strength=strength
-)
-walton = vi.find_contact_law("walton-braun")(stiffness=2e7, restitution=0.7)
+walton = vi.laws.WaltonBraun(stiffness=2e7, restitution=0.7)
 
 yields = np.sqrt(0.8 * thornton.stiffness * thornton.yield_indentation**2.5 / mass)
 for ratio, restitution in {

@@ -17,7 +17,7 @@ import numpy as np
 
 import vibroimpact as vi
 
-law = vi.find_contact_law("hertz")(stiffness=1e9)  # N/m^1.5
+law = vi.laws.Hertz(stiffness=1e9)  # N/m^1.5
 
 
 def cradle(gap):

@@ -38,7 +38,7 @@ achieved = {
 # A published value for comparison: EXUDYN's test model contactSphereSphereTest.py gives a rebound
 # speed of 6.629838 m/s for a sphere with an approach speed of 10 m/s, for Hunt and Crossley's law
 # with a restitution of 0.5.
-hunt = vi.find_contact_law("hunt-crossley")(stiffness=1e6, exponent=1.0, restitution=0.5)
+hunt = vi.laws.HuntCrossley(stiffness=1e6, exponent=1.0, restitution=0.5)
 assert abs(vi.achieved_restitution(hunt, mass=1.0, speed=10.0) - 0.6629838) < 1e-4
 
 # %%

@@ -36,7 +36,7 @@ gravity = amplitude * omega**2 / strength
 balls = vi.Problem(
     sphere=vi.Body(mass=0.1, contact_offset=0.01),
     plate=vi.rigid_plate(),
-    laws=(vi.find_contact_law("newton")(restitution=restitution),),
+    laws=(vi.laws.Newton(restitution=restitution),),
     speed=np.pi * gravity / omega,
     gravity=gravity,
     motion=vi.PlateMotion(amplitude=amplitude, frequency=frequency, phase=np.arccos(exists / 1.5)),

@@ -20,7 +20,7 @@ import vibroimpact as vi
 
 lump, deck, natural, damping = 20.0, 80.0, 12.0, 0.05
 amplitude, frequency, gravity, fall = 1.6e-3, 15.0, 9.8, 0.006
-law = vi.find_contact_law("kuwabara-kono")(stiffness=1e7, dissipation_time=2e-3)
+law = vi.laws.KuwabaraKono(stiffness=1e7, dissipation_time=2e-3)
 mode = vi.ModalBasis(
     np.array([natural]),
     np.array([damping]),

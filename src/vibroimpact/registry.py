@@ -61,3 +61,31 @@ def find_named(kind: str, name: str, known: Mapping[str, Found], command: str = 
             f"there is no {kind} {quoted(name)}; there are {choices(known, name, command)}"
         )
     return known[name]
+
+
+def class_named(registered: Mapping[str, type[Found]], name: str, module: str) -> type[Found]:
+    """Return a registered class by the name of the class, as a module has it as an attribute.
+
+    Parameters
+    ----------
+    registered : mapping of str to type
+        The registry.
+    name : str
+        Name of the class.
+    module : str
+        Name of the module, for the message.
+
+    Raises
+    ------
+    AttributeError
+        If there is none.
+
+    Examples
+    --------
+    >>> class_named({"whole": int}, "int", "numbers")
+    <class 'int'>
+    """
+    for registered_class in registered.values():
+        if registered_class.__name__ == name:
+            return registered_class
+    raise AttributeError(f"module {module!r} has no attribute {name!r}")

@@ -133,12 +133,12 @@ def test_defaults_of_instruments() -> None:
         "corner frequency of a Butterworth filter: {} of the rate",
         sensor.passed / sensor.rate,
     )
-    says(PAGE, "({} by default), ", vi.Accelerometer(resonance=1e4).damping_ratio)
+    says(PAGE, "({} by default), ", vi.sensors.Accelerometer(resonance=1e4).damping_ratio)
     says(PAGE, '"g" is standard gravity, {} m/s^2', to_si("1 g", "m/s^2"))
     says(
         PAGE,
         "({} by default), ",
-        vi.Geophone(natural_frequency=10.0, sensitivity=28.0).damping_ratio,
+        vi.sensors.Geophone(natural_frequency=10.0, sensitivity=28.0).damping_ratio,
     )
 
 

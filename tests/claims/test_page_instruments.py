@@ -18,14 +18,14 @@ PAGE = "docs/instruments.md"
 def test_defaults() -> None:
     """Those that stand in the table beside the keys."""
     text = (ROOT / PAGE).read_text(encoding="utf-8")
-    accelerometer = vi.Accelerometer()
+    accelerometer = vi.sensors.Accelerometer()
     assert f"`damping_ratio` ({accelerometer.damping_ratio}), `range`" in text
     assert (
         "`damping_ratio` "
-        f"({vi.Geophone(natural_frequency=10.0, sensitivity=27.6).damping_ratio}, with its "
+        f"({vi.sensors.Geophone(natural_frequency=10.0, sensitivity=27.6).damping_ratio}, with its "
         "shunt)" in text
     )
-    says(PAGE, "or {} kg/m^3)", vi.Microphone().air_density)
+    says(PAGE, "or {} kg/m^3)", vi.sensors.Microphone().air_density)
     (case,) = (vi.read_case(tomllib.loads(block)) for block in blocks(PAGE, "toml"))
     microphone = case.sensors[1].microphone
     assert microphone is not None

@@ -26,6 +26,7 @@ LAYERS = [
     {"structures"},
     {"bodies"},
     {"dynamics"},
+    {"laws", "friction", "sensors"},
     # what comes in, what came out, and how it is shown
     {"meshes", "measurements"},
     {"cases"},

@@ -16,7 +16,8 @@ import vibroimpact as vi
 
 ROOT = Path(__file__).parents[2]
 DOCS = ROOT / "docs"
-NAMES = [name for name in vi.__all__ if name != "__version__"]
+MODULES = ("friction", "laws", "sensors")
+NAMES = [name for name in vi.__all__ if name not in (*MODULES, "__version__")]
 
 sys.path.insert(0, str(DOCS / "_extensions"))
 from page_faults import page_faults, read_pages  # noqa: E402
@@ -36,11 +37,18 @@ def test_every_public_name_stands_in_one_group_of_the_reference() -> None:
     assert grouped == Counter(NAMES)
 
 
-def test_type_checkers_know_the_public_names() -> None:
-    text = Path(vi.__file__).read_text(encoding="utf-8")
-    assert sorted(
-        re.findall(r"^    from vibroimpact\S+ import (?:\(\s*)?(\w+) as \1\b", text, flags=re.M)
-    ) == sorted(NAMES)
+def test_type_checkers_know_the_laws() -> None:
+    for module in (vi.laws, vi.friction):
+        text = Path(module.__file__).with_suffix(".pyi").read_text(encoding="utf-8")
+        named = re.findall(r" import (?:\(\s*)?(\w+) as \1\b", text)
+        assert sorted(named) == dir(module)
+        for name in named:
+            assert getattr(module, name).__name__ == name
+
+
+def test_a_law_that_is_not_there_is_no_attribute() -> None:
+    with pytest.raises(AttributeError, match="has no attribute 'Herz'"):
+        _ = vi.laws.Herz
 
 
 def test_every_public_name_has_an_example() -> None:

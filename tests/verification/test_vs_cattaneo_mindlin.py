@@ -13,7 +13,7 @@ from agreement import Against, Agrees
 from support import one_in
 from turning_history import by_turning_points
 from vibroimpact.arrays import Floats
-from vibroimpact.contact.friction.laws.mdr import Mdr
+from vibroimpact.contact.friction.laws.mdr import MDR
 from vibroimpact.dynamics.core.tangential_history import history_after, lost_in_microslip
 from vibroimpact.dynamics.oblique.tangential_history import tangential_history
 
@@ -51,7 +51,7 @@ def impact(
     """
     shear_ratio = 2.0 * (1.0 - NU) / (2.0 - NU)
     modulus = 1e9
-    friction = Mdr(
+    friction = MDR(
         coefficient=MU,
         effective_modulus=modulus,
         effective_shear_modulus=shear_ratio * modulus,
@@ -138,7 +138,7 @@ def test_friction_without_bound_sticks(agrees: Agrees) -> None:
     them: a row of springs without limits tells it.
     """
     shear, slip = 2.0 * (1.0 - NU) / (2.0 - NU) * 1e9, 0.4
-    friction = Mdr(
+    friction = MDR(
         coefficient=1e5, effective_modulus=1e9, effective_shear_modulus=shear, effective_radius=0.01
     )
     oblique = vi.Oblique(velocity=(slip, 0.0), friction=friction)
@@ -306,7 +306,7 @@ def test_a_cycle_of_tangential_force_is_lost_in_microslip(agrees: Agrees, share:
     1953; Johnson 1985, section 7.4).
     """
     force, modulus, shear, radius = 300.0, 1e9, 0.8e9, 0.01
-    law = Mdr(
+    law = MDR(
         coefficient=MU,
         effective_modulus=modulus,
         effective_shear_modulus=shear,

@@ -140,7 +140,7 @@ def find_friction_law(name: str) -> type[FrictionLaw]:
     Examples
     --------
     >>> find_friction_law("mdr").__name__
-    'Mdr'
+    'MDR'
     """
     if not isinstance(name, str):
         raise InputError(f"a friction law is found by its name, a text, not {name!r}")

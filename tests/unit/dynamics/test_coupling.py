@@ -312,4 +312,4 @@ def test_a_microphone_is_not_told_to_take_another_filter() -> None:
     with pytest.raises(
         vi.InputError, match=r'the filter "sigma-delta" takes no corner; leave it out$'
     ):
-        vi.Sensor("m1", quantity="pressure", instrument=vi.Microphone(), corner=1e3)
+        vi.Sensor("m1", quantity="pressure", instrument=vi.sensors.Microphone(), corner=1e3)

@@ -348,7 +348,7 @@ def test_low_sound_of_a_plate_in_no_baffle_is_doubted() -> None:
 
 def test_microphones_of_the_plates_modes_are_needed() -> None:
     response = vi.simulate(case(microphone=MICROPHONE, rate="10 kHz"))
-    microphone = vi.Microphone()
+    microphone = vi.sensors.Microphone()
     with pytest.raises(vi.InputError, match='have no paths of sound to a microphone "other"'):
         response.signals(vi.Sensor("other", "pressure", instrument=microphone))
     with pytest.raises(

@@ -85,8 +85,8 @@ class FrictionLaw(Parameters):
 
         Examples
         --------
-        >>> from vibroimpact.contact.friction.laws.mdr import Mdr
-        >>> law = Mdr(
+        >>> from vibroimpact.contact.friction.laws.mdr import MDR
+        >>> law = MDR(
         ...     coefficient=0.1,
         ...     effective_modulus=60e9,
         ...     effective_shear_modulus=50e9,

@@ -63,7 +63,7 @@ class Sensor:
     Examples
     --------
     >>> import vibroimpact as vi
-    >>> geophone = vi.Geophone(natural_frequency=10.0, sensitivity=30.0)
+    >>> geophone = vi.sensors.Geophone(natural_frequency=10.0, sensitivity=30.0)
     >>> (
     ...     vi.Sensor("a1", quantity="velocity", rate=20e3).unit,
     ...     vi.Sensor("a2", quantity="voltage", instrument=geophone).unit,

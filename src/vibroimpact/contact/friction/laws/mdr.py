@@ -8,7 +8,7 @@ from vibroimpact.contact.friction.law import CompliantFriction
 
 
 @dataclass(frozen=True, kw_only=True)
-class Mdr(CompliantFriction):
+class MDR(CompliantFriction):
     r"""The contact of elastic spheres that sticks in its middle and slips at its rim, under any
     history of both forces.
 
@@ -36,7 +36,7 @@ class Mdr(CompliantFriction):
 
     Examples
     --------
-    >>> Mdr(
+    >>> MDR(
     ...     coefficient=0.1,
     ...     effective_modulus=60e9,
     ...     effective_shear_modulus=50e9,

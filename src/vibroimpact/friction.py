@@ -1,0 +1,20 @@
+"""The friction laws by their names, with those of other packages.
+
+>>> import vibroimpact as vi
+>>> vi.friction.Coulomb(coefficient=0.3).coefficient
+0.3
+"""
+
+from __future__ import annotations
+
+from vibroimpact.contact.friction.law import FrictionLaw
+from vibroimpact.contact.registry import friction_laws
+from vibroimpact.registry import class_named
+
+
+def __getattr__(name: str) -> type[FrictionLaw]:
+    return class_named(friction_laws(), name, __name__)
+
+
+def __dir__() -> list[str]:
+    return sorted(law.__name__ for law in friction_laws().values())

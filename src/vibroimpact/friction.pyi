@@ -1,0 +1,8 @@
+"""The friction laws of this package, for type checkers."""
+
+from vibroimpact.contact.friction.laws.coulomb import Coulomb as Coulomb
+from vibroimpact.contact.friction.laws.mdr import MDR as MDR
+from vibroimpact.contact.friction.laws.mindlin import Mindlin as Mindlin
+from vibroimpact.contact.friction.laws.mindlin import MindlinForce as MindlinForce
+from vibroimpact.contact.friction.laws.mindlin import MindlinRescale as MindlinRescale
+from vibroimpact.contact.friction.laws.rigid import Rigid as Rigid
