@@ -25,13 +25,12 @@ from vibroimpact.structures.plate_compliance import (
 )
 from vibroimpact.structures.plate_element import shear_factor
 from vibroimpact.structures.recipe import Recipe, SphereOfSolids, is_thin, plate_key
-from vibroimpact.structures.store import hold_entry, key_of, load_entry, save_entry
+from vibroimpact.structures.store import COMPLIANCE, hold_entry, key_of, load_or_compute
 from vibroimpact.structures.structure import Structure
 from vibroimpact.structures.supports.constraints import HeldStructure
 from vibroimpact.structures.supports.support import held_by
 from vibroimpact.structures.surface import Side, materials_around, surface_motion
 
-_KIND = "compliance"
 _FACES: tuple[Side, Side] = ("upper", "lower")
 _RADIUS = 0.75  # of the disc, in thicknesses; elements of that size resolve it
 _FACTORISED = MemoryCache[tuple[HeldStructure, ElasticSystem]](capacity=500e6)
@@ -115,26 +114,27 @@ def stored_compliance(
     InputError, ComputationError
         As `compute` does.
     """
-    say = tell or (lambda text: None)
-    found, trouble = load_entry(key, _KIND, lambda parts: float(parts[_KIND].item()))
-    if trouble:
-        say(trouble)
-    if found is None:
-        found = compute()
-        trouble = save_entry(key, _KIND, {_KIND: np.array(found)})
-        if trouble:
-            say(trouble)
-    return found
+    return load_or_compute(
+        key,
+        COMPLIANCE,
+        lambda arrays: float(arrays[COMPLIANCE].item()),
+        compute,
+        lambda compliance: {COMPLIANCE: np.array(compliance)},
+        tell,
+    )
 
 
 def hold_compliances(
     recipe: Recipe, places: Sequence[tuple[float, float]], side: Side = "upper"
 ) -> None:
-    """Compute the compliances of a plate at places together, for calls of
-    `static_compliance` that follow in this process.
+    """Compute the compliances of a plate at places together.
+
+    Calls of `static_compliance` that follow in this process find them in memory.
     """
-    for place, found in zip(places, computed_compliances(recipe, places, side), strict=True):
-        hold_entry(compliance_key(recipe, place, side), _KIND, {_KIND: np.array(found)})
+    compliances = computed_compliances(recipe, places, side)
+    for place, compliance in zip(places, compliances, strict=True):
+        key = compliance_key(recipe, place, side)
+        hold_entry(key, COMPLIANCE, {COMPLIANCE: np.array(compliance)})
 
 
 def compliance_key(recipe: Recipe, place: tuple[float, float], side: Side = "upper") -> str:
