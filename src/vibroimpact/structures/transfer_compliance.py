@@ -52,6 +52,7 @@ def transfer_compliances(
     """Return the static compliances between a place and points of a held plate [m/N].
 
     They are an array (points, 3), from the store or computed.
+
     Parameters
     ----------
     recipe : Recipe
@@ -156,20 +157,23 @@ def computed_transfers(
     )
     compliances = np.empty((len(places), len(points), 3))
     for number, (point, face) in enumerate(points):
-        thickness = structure.thickness if has_plate_elements else 0.0
-        motion, _ = surface_motion(structure.mesh, np.array([point]), face, thickness, "a sensor")
+        element_thickness = structure.thickness if has_plate_elements else 0.0
+        motion, _ = surface_motion(
+            structure.mesh, np.array([point]), face, element_thickness, "a sensor"
+        )
         compliances[:, number] = (motion @ displacements).T
+        if not has_plate_elements:
+            continue
         for index, (place, thickness) in enumerate(zip(places, thicknesses, strict=True)):
+            # along z, what plate theory under a distributed force lacks near the force
             distance = math.dist(point, place)
-            if thin:
-                radius = _disc_of_an_element(recipe.shape, place)
-                if radius:
-                    rigidity = recipe.youngs_modulus * thickness**3 / (12.0 * (1.0 - ratio**2))
-                    compliances[index, number, 2] += thin_near_term(distance, radius, rigidity)
-            elif has_plate_elements:
+            if not thin:
                 compliances[index, number, 2] += near_term(
                     distance, face == side, thickness, recipe.youngs_modulus, ratio, faces
                 )
+            elif radius := _disc_of_an_element(recipe.shape, place):
+                rigidity = recipe.youngs_modulus * thickness**3 / (12.0 * (1.0 - ratio**2))
+                compliances[index, number, 2] += thin_near_term(distance, radius, rigidity)
     return compliances
 
 
@@ -224,6 +228,7 @@ def near_term(
     r"""Return the displacement of a plate near a unit force that plate theory lacks [m/N].
 
     It is that of a layer less that of plate theory under the distributed force.
+
     Parameters
     ----------
     distance : float
