@@ -22,6 +22,7 @@ def scaled_shapes(mesh: Mesh, block: ElementBlock) -> Iterator[tuple[Floats, Flo
     """Yield the shape functions and their gradients times sqrt(dV), chunk by chunk of elements.
 
     They are taken at the quadrature points.
+
     Yields
     ------
     values : array, shape (elements, points, nodes)

@@ -326,7 +326,8 @@ def _wedge_edge_terms(area: Floats, t: Floats) -> list[tuple[Floats, dict[int, F
             by_t = -2.0 * t * area[start]
         else:  # of the lower or upper triangle
             sign = 1.0 if start > 2 else -1.0
-            first, second = area[start % 3], area[end % 3]
+            first = area[start % 3]
+            second = area[end % 3]
             side = 2.0 * (1.0 + sign * t)
             value = side * first * second
             by_area = {start % 3: side * second, end % 3: side * first}

@@ -213,7 +213,8 @@ def _eliminated(equations: list[Terms], displacements: int) -> list[Terms]:
     triangle, order = qr(matrix.T, mode="r", pivoting=True)
     diagonal = np.abs(np.diagonal(triangle))
     rank = int((diagonal > _NONE * diagonal[0]).sum())
-    independent, dependent = order[:rank], order[rank:]
+    independent = order[:rank]
+    dependent = order[rank:]
     shares = np.linalg.lstsq(matrix[independent].T, matrix[dependent].T, rcond=None)[0].T
     of_displacements = [
         {unknown: value for unknown, value in equation.items() if unknown < displacements}

@@ -107,9 +107,9 @@ def _projected(nodes: Floats, faces: Faces, face: Integers, points: Floats) -> F
         # regular also where the tangents are parallel
         metric += 1e-14 * np.trace(metric, axis1=1, axis2=2)[:, None, None] * np.eye(2)
         step = np.linalg.solve(metric, (tangents @ offset[:, :, None]))[:, :, 0]
-        moved = _inside(local - step, len(faces.corners))
-        change = np.abs(moved - local).max(initial=0.0)
-        local = moved
+        next_local = _inside(local - step, len(faces.corners))
+        change = np.abs(next_local - local).max(initial=0.0)
+        local = next_local
         if change < _CONVERGED:
             break
     return local

@@ -60,6 +60,7 @@ def part_at(mesh: Mesh, spot: Spot, side: Side) -> Mesh:
     """Return the part of a mesh that is outermost at a spot on one side.
 
     It has a remark on the parts that are left out.
+
     Parameters
     ----------
     mesh : Mesh

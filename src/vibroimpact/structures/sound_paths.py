@@ -166,21 +166,24 @@ def _integral_over_faces(
     integral over the faces. Indices in the sums below are f of faces, q of quadrature points, k of
     nodes, and i of axes.
     """
-    local, weight = _rule(len(faces.corners), cells)
+    local, weights = _rule(len(faces.corners), cells)
     values, slopes = faces.shape_functions(local)  # (q, k), (q, 2, k)
     nodes = mesh.nodes[faces.connectivity]  # (f, k, 3)
-    tangents = np.einsum("qak,fki->fqai", slopes, nodes)
     # outward normals times the area of the quadrature points
-    area = np.cross(tangents[..., 0, :], tangents[..., 1, :]) * weight[:, None]
+    tangents = np.einsum("qak,fki->fqai", slopes, nodes)
+    area = np.cross(tangents[..., 0, :], tangents[..., 1, :]) * weights[:, None]
     area *= _outwards(listener) * np.sign(area[..., 2:])
-    distance = np.linalg.norm(np.einsum("qk,fki->fqi", values, nodes) - point, axis=2)
+    positions = np.einsum("qk,fki->fqi", values, nodes)
+    distance = np.linalg.norm(positions - point, axis=2)
     factors = area / (2.0 * np.pi * distance[..., None])  # dS / 2 pi R, (f, q, 3)
 
     # the pressure of each quadrature point arrives between two steps of the grid of delays
-    delays, shares = lagrange_shares((distance / (listener.speed * listener.step)).ravel())
+    travel_steps = distance / (listener.speed * listener.step)
+    delays, shares = lagrange_shares(travel_steps.ravel())
     first = int(delays.min())
     quadrature_points = np.arange(delays.size) // delays.shape[1]
-    arrival = csr_array(coo_array((shares.ravel(), ((delays - first).ravel(), quadrature_points))))
+    coordinates = ((delays - first).ravel(), quadrature_points)
+    arrival = csr_array(coo_array((shares.ravel(), coordinates)))
     return first, csr_array(arrival @ _pressures(mesh, faces, factors, values))
 
 
@@ -203,6 +206,7 @@ def _pressures(mesh: Mesh, faces: Faces, factors: Floats, values: Floats) -> csr
     pressures = np.einsum("fqi,qk->fqki", factors[..., axes], values)
     points = np.arange(factors[..., 0].size).reshape(*factors.shape[:2], 1, 1)
     rows = np.broadcast_to(points, pressures.shape)
+    # the acceleration of a point is that of the nodes, by the shape functions
     dofs = mesh.dofs_per_node * faces.connectivity[:, None, :, None] + axes
     columns = np.broadcast_to(dofs, pressures.shape)
     shape = (points.size, mesh.dofs_per_node * len(mesh.nodes))

@@ -65,7 +65,8 @@ class Faces:
 
         They are (points, dimension), and the local coordinates (points, 2).
         """
-        a, b = local[:, :1], local[:, 1:]
+        a = local[:, :1]
+        b = local[:, 1:]
         corner = self.kind.reference[list(self.corners)]
         if len(corner) == 3:
             return np.asarray(corner[0] + a * (corner[1] - corner[0]) + b * (corner[2] - corner[0]))
@@ -294,6 +295,7 @@ def materials_around(
     """Return the materials of the elements within a distance of a place, over the whole height.
 
     The distance is taken along x and along y.
+
     Parameters
     ----------
     mesh : Mesh
@@ -373,6 +375,7 @@ def element_at(mesh: Mesh, place: tuple[float, float]) -> tuple[Floats, Floats]:
     """Return the corners of the plate element at a place, and the local coordinates of the place.
 
     Of several elements that contain the place it is the largest.
+
     Parameters
     ----------
     mesh : Mesh

@@ -79,6 +79,7 @@ def column_matrices(
     r"""Return stiffness and mass of a round column of Timoshenko beam elements.
 
     It is fixed at its lower end.
+
     Parameters
     ----------
     radius, length : float

@@ -15,6 +15,7 @@ from vibroimpact.structures.surface import surface_motion
 @dataclass(frozen=True)
 class Spring(Support):
     """Spring between the lower side and the ground, at a point or spread uniformly over a disc.
+
     Parameters
     ----------
     x, y : float
