@@ -10,8 +10,9 @@ SOLID = 0.4
 """Moment of inertia of a homogeneous ball over mass and square of the radius [-]."""
 
 HOLLOW = 2.0 / 3.0
-"""Moment of inertia of a thin spherical shell over mass and square of the radius [-]: no
-ball has more.
+"""Moment of inertia of a thin spherical shell over mass and square of the radius [-].
+
+No ball has more.
 """
 
 INERTIA_RATIOS = {"solid": SOLID, "hollow": HOLLOW}
@@ -30,8 +31,9 @@ def ball_volume(radius: Array) -> Array:
 
 
 def mean_density(mass: Array, radius: Array) -> Array:
-    """Return the mass of a ball [kg] over its volume [kg/m^3], from its radius [m]; if it is solid,
-    the density of its material.
+    """Return the mass of a ball [kg] over its volume [kg/m^3], from its radius [m].
+
+    If it is solid, that is the density of its material.
 
     Examples
     --------

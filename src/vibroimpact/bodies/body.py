@@ -53,15 +53,17 @@ class Body:
 
     def __post_init__(self) -> None:
         for name in ("mass", "contact_offset", "inertia"):
-            if isinstance(getattr(self, name), (list, tuple)):
-                object.__setattr__(self, name, np.asarray(getattr(self, name), dtype=float))
+            value = getattr(self, name)
+            if isinstance(value, (list, tuple)):
+                object.__setattr__(self, name, np.asarray(value, dtype=float))
         if not np.all(np.asarray(self.mass) > 0):
             raise InputError("the mass of a body must be positive [kg]")
         if not np.all(np.asarray(self.contact_offset) >= 0):
             raise InputError("the contact offset of a body must not be negative [m]")
-        if self.inertia is not None and not np.all(
-            np.isfinite(self.inertia) & (np.asarray(self.inertia) > 0)
-        ):
-            raise InputError(
-                "the moment of inertia of a body must be positive and finite [kg m^2]", "inertia"
-            )
+        if self.inertia is not None:
+            is_possible = np.isfinite(self.inertia) & (np.asarray(self.inertia) > 0)
+            if not np.all(is_possible):
+                raise InputError(
+                    "the moment of inertia of a body must be positive and finite [kg m^2]",
+                    "inertia",
+                )

@@ -1,5 +1,6 @@
-"""Elastic bodies: recipes of their modes from geometry and material, with the choice of a
-mesh that resolves them.
+"""Elastic bodies: recipes of their modes from geometry and material.
+
+A mesh that resolves the modes is chosen here.
 """
 
 from __future__ import annotations
@@ -35,17 +36,19 @@ from vibroimpact.structures.surface import Side, Spot, place_of
 _PER_WAVE = 3.0  # second-order bricks per shortest shear wavelength
 _ACROSS = 8  # least number of elements from pole to pole, for errors of 0.03 % of the lowest modes
 # sides of second-order bricks and of plate elements, over the shortest bending wavelength
-_SOLID_STEP, _PLATE_STEP = 0.1, 0.6
+_BRICK_SIZE = 0.1
+_PLATE_ELEMENT_SIZE = 0.6
 # thicknesses: width of plate elements along edges, where the shear varies within half a thickness
 _MARGIN = 1.5
 # wave number times thickness above which a plate has two, three and four layers of bricks
 _LAYERS = (0.32, 0.9, 3.0)
 # of a mesh that is chosen here; finer meshes, for higher modes, have to be specified
 _MOST_BRICKS = 6000
-# of bricks at rims; the remaining error of frequencies is 0.1 to 0.3 %
-_RIM_SPLITS, _LOWER_SPLITS = 2, 1
-_SIDE = 7  # least number of plate elements along the longer side
-_SOLID_SIDE = 30  # least number of bricks along the longer side
+# of bricks at rims and in the lowest layer; the remaining error of frequencies is 0.1 to 0.3 %
+_RIM_SPLITS = 2
+_LOWER_SPLITS = 1
+_LEAST_PLATE_ELEMENTS = 7  # along the longer side
+_LEAST_BRICKS = 30  # along the longer side
 
 
 @dataclass(frozen=True)
@@ -101,32 +104,28 @@ class ElasticBody:
         if not self.pressed:
             return basis
         forces = self.support_forces(model).of_modes(model)
-        return replace(
-            basis, points={**basis.points, **dict(zip(self.pressed, forces, strict=True))}
-        )
+        force_sensors = dict(zip(self.pressed, forces, strict=True))
+        return replace(basis, points={**basis.points, **force_sensors})
 
     def support_forces(
         self, model: ModalModel, tell: Callable[[str], None] | None = None
     ) -> SupportForces:
-        """Return the forces of supports at the sensors of force; parameters and errors
-        are those of `support_forces`.
+        """Return the forces of supports at the sensors of force.
+
+        Parameters and errors are those of `support_forces`.
         """
         place = place_of(model.mesh, self.contact, self.side)
-        return support_forces(
-            self.recipe, place, self.side, [spot for spot, _ in self.pressed.values()], tell
-        )
+        spots = [spot for spot, _ in self.pressed.values()]
+        return support_forces(self.recipe, place, self.side, spots, tell)
 
     def rigid_motions(self, model: ModalModel) -> ModalBasis | None:
-        """Return the rigid motions that the supports permit, at the same points, as modes
-        of frequency zero; None if there are none.
+        """Return the rigid motions that the supports permit, as modes of frequency zero.
+
+        They are taken at the same points. It is None if there are none.
         """
-        return rigid_basis(
-            model,
-            (self.contact, self.side),
-            self.watched,
-            [*self.strained, *self.pressed],
-            self.heard,
-        )
+        contact = (self.contact, self.side)
+        unmoved_sensors = [*self.strained, *self.pressed]
+        return rigid_basis(model, contact, self.watched, unmoved_sensors, self.heard)
 
 
 def sphere_recipe(radius: float, material: Material, reduction: Reduction, **mesh: Any) -> Recipe:
@@ -151,21 +150,35 @@ def sphere_recipe(radius: float, material: Material, reduction: Reduction, **mes
     SphereOfSolids(radius=0.025, elements_across=8, kind='hex27', grading=1.0)
     """
     if not mesh.get("elements_across"):
-        wave_number = _shear_wave_number(radius, material, reduction) * radius
-        across = max(_ACROSS, 2 * math.ceil(_PER_WAVE * wave_number / (2.0 * math.pi)))
-        mesh["elements_across"] = 2 * math.ceil(0.5 * across * math.sqrt(mesh.get("grading", 1.0)))
-        if mesh["elements_across"] > MOST_ACROSS:
-            kept = (
-                f"{reduction.modes} modes"
-                if reduction.modes
-                else f"modes up to {reduction.max_frequency:g} Hz"
-            )
-            raise InputError(
-                f"{kept} need {mesh['elements_across']} elements across the sphere, and "
-                f"{MOST_ACROSS} are the most; "
-                "ask for fewer modes, or give mesh.elements_across"
-            )
+        grading = mesh.get("grading", 1.0)
+        mesh["elements_across"] = _elements_across(radius, material, reduction, grading)
     return recipe_of(SphereOfSolids(radius, **mesh), material, reduction)
+
+
+def _elements_across(
+    radius: float, material: Material, reduction: Reduction, grading: float
+) -> int:
+    """Return the number of bricks from pole to pole that resolve the modes of a sphere.
+
+    Raises
+    ------
+    InputError
+        If they are too many.
+    """
+    wave_number = _shear_wave_number(radius, material, reduction) * radius
+    ungraded = max(_ACROSS, 2 * math.ceil(_PER_WAVE * wave_number / (2.0 * math.pi)))
+    elements = 2 * math.ceil(0.5 * ungraded * math.sqrt(grading))
+    if elements > MOST_ACROSS:
+        if reduction.modes:
+            modes = f"{reduction.modes} modes"
+        else:
+            modes = f"modes up to {reduction.max_frequency:g} Hz"
+        raise InputError(
+            f"{modes} need {elements} elements across the sphere, and "
+            f"{MOST_ACROSS} are the most; "
+            "ask for fewer modes, or give mesh.elements_across"
+        )
+    return elements
 
 
 def plate_recipe(
@@ -201,39 +214,52 @@ def plate_recipe(
     PlateOfPlates(size=(0.52, 0.42, 0.008), element_size=0.0743, theory='thick', margin=0.012)
     """
     wave_number = _bending_wave_number(size, material, reduction, supports)
+    shape: Shape
     if element == "solid":
-        _choose_bricks(mesh, size, wave_number, supports)
+        _choose_layers(mesh, size, wave_number, supports)
+        if not mesh.get("element_size"):
+            layers = mesh["layers"] + mesh["lower_splits"]
+            mesh["element_size"] = _brick_size(size, wave_number, layers)
+        shape = PlateOfSolids(size=size, **mesh)
     else:
         mesh.setdefault("margin", _MARGIN * size[2])
-    if not mesh.get("element_size"):
-        step, least = (_PLATE_STEP, _SIDE) if element == "plate" else (_SOLID_STEP, _SOLID_SIDE)
-        side = min(step * 2.0 * math.pi / wave_number, max(size[:2]) / least)
-        if element == "solid":
-            side = max(
-                side,
-                math.sqrt(
-                    size[0] * size[1] * (mesh["layers"] + mesh["lower_splits"]) / _MOST_BRICKS
-                ),
-            )
-        mesh["element_size"] = float(f"{side:.3g}")
-    kind = PlateOfPlates if element == "plate" else PlateOfSolids
-    return recipe_of(kind(size=size, **mesh), material, reduction, supports)
+        if not mesh.get("element_size"):
+            mesh["element_size"] = _plate_element_size(size, wave_number)
+        shape = PlateOfPlates(size=size, **mesh)
+    return recipe_of(shape, material, reduction, supports)
 
 
-def _choose_bricks(
+def _plate_element_size(size: tuple[float, float, float], wave_number: float) -> float:
+    """Return the side of plate elements that resolve bending waves [m]."""
+    resolved = _PLATE_ELEMENT_SIZE * 2.0 * math.pi / wave_number
+    return _rounded(min(resolved, max(size[:2]) / _LEAST_PLATE_ELEMENTS))
+
+
+def _brick_size(size: tuple[float, float, float], wave_number: float, layers: int) -> float:
+    """Return the side of bricks that resolve bending waves, unless they are too many [m]."""
+    resolved = _BRICK_SIZE * 2.0 * math.pi / wave_number
+    affordable = math.sqrt(size[0] * size[1] * layers / _MOST_BRICKS)
+    return _rounded(max(min(resolved, max(size[:2]) / _LEAST_BRICKS), affordable))
+
+
+def _rounded(length: float) -> float:
+    """Return a length with three digits."""
+    return float(f"{length:.3g}")
+
+
+def _choose_layers(
     mesh: dict[str, Any],
     size: tuple[float, float, float],
     wave_number: float,
     supports: tuple[Support, ...],
 ) -> None:
-    """Set the number of layers and of splits at edges and rims of a mesh of bricks,
-    unless given.
-    """
-    held_below = any(support.discs or any(support.rims) for support in supports)
-    mesh.setdefault("lower_splits", mesh.get("splits", _LOWER_SPLITS) if held_below else 0)
+    """Set the number of layers and of splits of a mesh of bricks, unless given."""
+    is_held_below = any(support.discs or any(support.rims) for support in supports)
+    mesh.setdefault("lower_splits", mesh.get("splits", _LOWER_SPLITS) if is_held_below else 0)
     mesh.setdefault("splits", _RIM_SPLITS)
-    needed = 1 + sum(wave_number * size[2] > limit for limit in _LAYERS)
-    mesh.setdefault("layers", max(1, needed - mesh["lower_splits"]))
+    needed_layers = 1 + sum(wave_number * size[2] > limit for limit in _LAYERS)
+    # splits of the lowest layer are layers too
+    mesh.setdefault("layers", max(1, needed_layers - mesh["lower_splits"]))
 
 
 def recipe_of(
@@ -285,21 +311,19 @@ def _bending_wave_number(
     """
     length, width, thickness = size
     if reduction.modes is None:
-        return float(
-            wave_numbers(
-                np.array(2.0 * math.pi * (reduction.max_frequency or 0.0)),
-                thickness,
-                material,
-                thin=True,
-            )
-        )
-    held = {support.edge: support.condition for support in supports if isinstance(support, Edge)}
-    part = -sum(
-        OF_AN_EDGE[how] * (width if edge[0] == "x" else length) for edge, how in held.items()
+        omega = np.array(2.0 * math.pi * (reduction.max_frequency or 0.0))
+        return float(wave_numbers(omega, thickness, material, thin=True))
+    modes = reduction.modes + 4
+    conditions = {
+        support.edge: support.condition for support in supports if isinstance(support, Edge)
+    }
+    # -c P, summed over the held edges
+    edge_sum = -sum(
+        OF_AN_EDGE[condition] * (width if edge[0] == "x" else length)
+        for edge, condition in conditions.items()
     )
     area = length * width
-    of_area = (part + math.sqrt(part**2 + 16.0 * math.pi * (reduction.modes + 4) * area)) / (
-        2.0 * area
-    )
+    # the positive root of A k^2 - edge_sum k - 4 pi modes
+    of_plate = (edge_sum + math.sqrt(edge_sum**2 + 16.0 * math.pi * modes * area)) / (2.0 * area)
     # a narrow plate has the modes of a beam
-    return min(of_area, math.pi * (reduction.modes + 4) / max(length, width))
+    return min(of_plate, math.pi * modes / max(length, width))

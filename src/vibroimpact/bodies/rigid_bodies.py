@@ -14,7 +14,7 @@ from vibroimpact.materials import Material
 from vibroimpact.quoting import quoted
 
 # relative: by so much a moment of inertia may be rounded up beyond that of a thin shell
-_ROUNDED = 1e-3
+_ROUNDING = 1e-3
 
 
 def rigid_sphere(
@@ -24,8 +24,9 @@ def rigid_sphere(
     mass: Array | None = None,
     inertia: Array | str | None = None,
 ) -> Body:
-    r"""Return a sphere whose only compliance is that of its contact: a solid ball, unless its mass
-    or its moment of inertia are given.
+    r"""Return a sphere whose only compliance is that of its contact.
+
+    It is a solid ball, unless its mass or its moment of inertia are given.
 
     Parameters
     ----------
@@ -37,10 +38,9 @@ def rigid_sphere(
         Mass [kg], > 0, of a ball that is hollow, filled, or of several materials.
     inertia : float, array or str, optional
         Moment of inertia about an axis through the centre [kg m^2], > 0 and at most :math:`\tfrac23
-        m R^2`; or "solid",
-        :math:`\tfrac25 m R^2`, or "hollow", :math:`\tfrac23 m R^2` of a thin shell. By default that
-        of the `inertia_ratio` of an `Oblique`,
-        which is that of a solid ball.
+        m R^2`; or "solid", :math:`\tfrac25 m R^2`, or "hollow", :math:`\tfrac23 m R^2` of a thin
+        shell. By default that of the `inertia_ratio` of an `Oblique`, which is that of a solid
+        ball.
 
     Raises
     ------
@@ -62,20 +62,19 @@ def rigid_sphere(
         raise InputError(
             f"material must be a Material, as vi.find_material(...) gives it, not {material!r}"
         )
-    radius = _numbers(radius)
-    mass = ball_volume(radius) * material.density if mass is None else _numbers(mass)
-    return Body(
-        mass=mass,
-        contact_offset=radius,
-        inertia=None if inertia is None else _inertia(inertia, mass, radius),
-    )
+    radius = _as_array(radius)
+    mass = ball_volume(radius) * material.density if mass is None else _as_array(mass)
+    if inertia is not None:
+        inertia = _inertia(inertia, mass, radius)
+    return Body(mass=mass, contact_offset=radius, inertia=inertia)
 
 
-def _numbers(value: Any) -> Any:
+def _as_array(value: Any) -> Any:
+    """Return a list or tuple of numbers as an array, and anything else as it is."""
     return np.asarray(value, dtype=float) if isinstance(value, (list, tuple)) else value
 
 
-def _inertia(given: Array | str, mass: Array, radius: Array) -> Array:
+def _inertia(inertia: Array | str, mass: Array, radius: Array) -> Array:
     """Return the moment of inertia of a ball [kg m^2] from its value or its name.
 
     Raises
@@ -85,26 +84,26 @@ def _inertia(given: Array | str, mass: Array, radius: Array) -> Array:
         inertia.
     """
     unit = mass * (radius * radius)
-    if isinstance(given, str):
-        if given not in INERTIA_RATIOS:
+    if isinstance(inertia, str):
+        if inertia not in INERTIA_RATIOS:
             raise InputError(
-                f"{quoted(given)} is not allowed; inertia must be a number in kg m^2, "
+                f"{quoted(inertia)} is not allowed; inertia must be a number in kg m^2, "
                 '"solid" or "hollow"',
                 "inertia",
             )
-        return INERTIA_RATIOS[given] * unit
-    found = _numbers(given)
+        return INERTIA_RATIOS[inertia] * unit
+    moments = _as_array(inertia)
     with np.errstate(divide="ignore", invalid="ignore"):
-        parts = np.asarray(found) / unit
-    part = np.max(np.where(np.isfinite(parts) & (unit > 0.0), parts, 0.0))
-    if part > HOLLOW * (1.0 + _ROUNDED):
+        ratios = np.asarray(moments) / unit
+    largest = np.max(np.where(np.isfinite(ratios) & (unit > 0.0), ratios, 0.0))
+    if largest > HOLLOW * (1.0 + _ROUNDING):
         raise InputError(
-            f"it is {part:.4g} times the mass and the squared radius, and no sphere has "
+            f"it is {largest:.4g} times the mass and the squared radius, and no sphere has "
             "more than the 2/3 of a thin shell: give at most "
             f'{float(np.min(HOLLOW * unit)):.4g} kg m^2, or "hollow"',
             "inertia",
         )
-    return found
+    return moments
 
 
 def rigid_plate(thickness: Array = 0.0) -> Body:

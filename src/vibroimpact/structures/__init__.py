@@ -1,3 +1,1 @@
-"""Structures: meshes, elasticity, supports, modes, reduction and damping; independent of
-contact.
-"""
+"""Structures: meshes, elasticity, supports, modes, reduction and damping, without contact."""

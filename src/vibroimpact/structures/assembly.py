@@ -1,5 +1,7 @@
-"""Vectorised assembly: shape functions at the quadrature points of all elements, and sums
-of element matrices over pairs of nodes.
+"""Vectorised assembly of element matrices.
+
+Shape functions are taken at the quadrature points of all elements, and element matrices summed over
+pairs of nodes.
 """
 
 from __future__ import annotations
@@ -13,12 +15,13 @@ from vibroimpact.arrays import Floats
 from vibroimpact.structures.geometry import jacobians
 from vibroimpact.structures.mesh import ElementBlock, Mesh
 
-_CHUNK = 4_000_000  # numbers in the largest array of a chunk of elements, to limit the memory
+_CHUNK_NUMBERS = 4_000_000  # in the largest array of a chunk of elements, to limit the memory
 
 
 def scaled_shapes(mesh: Mesh, block: ElementBlock) -> Iterator[tuple[Floats, Floats]]:
-    """Yield the shape functions and their gradients at the quadrature points times sqrt(dV), chunk
-    by chunk of elements.
+    """Yield the shape functions and their gradients times sqrt(dV), chunk by chunk of elements.
+
+    They are taken at the quadrature points.
 
     Yields
     ------
@@ -28,21 +31,21 @@ def scaled_shapes(mesh: Mesh, block: ElementBlock) -> Iterator[tuple[Floats, Flo
         Derivatives of N along each axis, times sqrt(dV).
     """
     points, weights = block.element.quadrature()
-    values, slopes = block.element.basis(points)
-    size = max(1, _CHUNK // (values.shape[1] * values.size))
-    for start in range(0, len(block.connectivity), size):
-        at = mesh.nodes[block.connectivity[start : start + size], : block.element.dimension]
-        jacobian = jacobians(at, slopes)
-        root = np.sqrt(weights * np.linalg.det(jacobian))
-        gradients = np.linalg.inv(jacobian) @ slopes * root[:, :, None, None]
+    values, reference_gradients = block.element.basis(points)
+    chunk_size = max(1, _CHUNK_NUMBERS // (values.shape[1] * values.size))
+    for start in range(0, len(block.connectivity), chunk_size):
+        elements = block.connectivity[start : start + chunk_size]
+        nodes = mesh.nodes[elements, : block.element.dimension]
+        jacobian = jacobians(nodes, reference_gradients)
+        root = np.sqrt(weights * np.linalg.det(jacobian))  # of dV
+        gradients = np.linalg.inv(jacobian) @ reference_gradients * root[:, :, None, None]
         yield values * root[:, :, None], np.ascontiguousarray(gradients.transpose(2, 0, 1, 3))
 
 
 def pair_assembly(
     mesh: Mesh,
 ) -> tuple[Callable[[Sequence[Floats]], Floats], Callable[[Floats], csr_array]]:
-    """Return functions that sum element matrices over pairs of nodes, and that make a sparse matrix
-    of such sums.
+    """Return functions that sum element matrices over pairs of nodes, and make a sparse matrix.
 
     Returns
     -------
@@ -57,49 +60,48 @@ def pair_assembly(
     Pairs are sorted once, so that each sum is one `np.add.reduceat` and all matrices of a mesh have
     the same pattern.
     """
-    number = len(mesh.nodes)
-    # the square of the number of nodes must fit
-    wide = [block.connectivity.astype(np.int64) for block in mesh.blocks]
-    pairs = np.concatenate(
-        [(nodes[:, :, None] * number + nodes[:, None, :]).ravel() for nodes in wide]
-    )
+    number_of_nodes = len(mesh.nodes)
+    # a pair of nodes as one number: row times the number of nodes, plus column
+    pair_numbers = []
+    for block in mesh.blocks:
+        nodes = block.connectivity.astype(np.int64)  # the square of the number of nodes must fit
+        pair_numbers.append((nodes[:, :, None] * number_of_nodes + nodes[:, None, :]).ravel())
+    pairs = np.concatenate(pair_numbers)
     order = np.argsort(pairs, kind="stable")
-    key = pairs[order]
-    starts = np.flatnonzero(np.concatenate([[True], key[1:] != key[:-1]]))
-    found = key[starts]
-    columns, pointer = found % number, np.searchsorted(found, np.arange(number + 1) * number)
+    ordered = pairs[order]
+    starts = np.flatnonzero(np.concatenate([[True], ordered[1:] != ordered[:-1]]))
+    distinct = ordered[starts]
+    columns = distinct % number_of_nodes
+    row_starts = np.searchsorted(distinct, np.arange(number_of_nodes + 1) * number_of_nodes)
 
     def summed(chunks: Sequence[Floats]) -> Floats:
-        return np.asarray(
-            np.add.reduceat(np.concatenate([chunk.ravel() for chunk in chunks])[order], starts)
-        )
+        entries = np.concatenate([chunk.ravel() for chunk in chunks])
+        return np.asarray(np.add.reduceat(entries[order], starts))
 
     def matrix(blocks: Floats) -> csr_array:
-        size = number * blocks.shape[1]
-        return bsr_array((blocks, columns, pointer), shape=(size, size)).tocsr()
+        size = number_of_nodes * blocks.shape[1]
+        return bsr_array((blocks, columns, row_starts), shape=(size, size)).tocsr()
 
     return summed, matrix
 
 
 def node_adjacency(mesh: Mesh) -> csr_array:
-    """Return the adjacency of nodes that share an element, as the pattern of a sparse
-    matrix (nodes, nodes).
-    """
+    """Return the pattern of nodes that share an element, as a sparse matrix (nodes, nodes)."""
     summed, matrix = pair_assembly(mesh)
-    ones = [
-        np.ones((*block.connectivity.shape, block.connectivity.shape[1])) for block in mesh.blocks
-    ]
+    ones = []
+    for block in mesh.blocks:
+        elements, nodes = block.connectivity.shape
+        ones.append(np.ones((elements, nodes, nodes)))
     return matrix(summed(ones)[:, None, None])
 
 
 def isotropic(product: Floats, lame: float, mu: float) -> Floats:
-    """Return the stiffness blocks of pairs of nodes of an isotropic material, from the integrals of
-    dN_a/dx_i dN_b/dx_j.
+    """Return the stiffness blocks of pairs of nodes of an isotropic material.
 
     Parameters
     ----------
     product : array, shape (d, d, pairs)
-        The integrals, with the axes i and j first.
+        G_ij, the integrals of dN_a/dx_i dN_b/dx_j, with the axes i and j first.
     lame, mu : float
         Lame's first parameter (in two dimensions that of plane stress) and the shear modulus [Pa].
 

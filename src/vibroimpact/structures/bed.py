@@ -1,5 +1,6 @@
-"""The bed of a plate: an elastic foundation for the local compliance between its middle
-plane and a held part of its lower face.
+"""The bed of a plate: an elastic foundation of a held part of its lower face.
+
+It stands for the local compliance between that part and the middle plane.
 """
 
 from __future__ import annotations
@@ -12,11 +13,13 @@ from vibroimpact.materials import Material
 from vibroimpact.structures.assembly import pair_assembly, scaled_shapes
 from vibroimpact.structures.mesh import ElementBlock, Mesh
 
-# compliance over h (1 - nu^2) / E: coefficients of 1, nu, nu^2, nu^3
+# compliance of the bed across the plate and along it, over h (1 - nu^2) / E: coefficients of 1, nu,
+# nu^2, nu^3
 _NORMAL = (0.2066, 0.0480, 0.1398, -0.5132)
-# relative increase of the stiffness across and along, per ratio of thickness to radius of a patch
-_BENT, _NARROW = 1.5, 0.05
 _SHEAR = (0.1371, -0.1190, -0.1577, -0.0455)
+# relative increase of the stiffness across and along, per ratio of thickness to radius of a patch
+_BENT = 1.5
+_NARROW = 0.05
 
 
 def bed_stiffness(material: Material, thickness: float) -> tuple[float, float]:
@@ -35,11 +38,10 @@ def bed_stiffness(material: Material, thickness: float) -> tuple[float, float]:
     stretch over about half a thickness. Plate theory fixes the normal over its full height and is
     too stiff; frequencies of the paper's plate on patches come out 1.4 % too high. Here springs
     connect the lower face, which turns with the plate, to the ground or body below it, of a
-    compliance of
-    :math:`a(\nu)\,h (1-\nu^2) / E` per area along and across. The two factors a are chosen so that
-    at a straight rim the rotation
-    under a moment and the deflection under a transverse force are those of the elastic half strip
-    in plane strain, held on one half of one side. Both compliances of the rim agree within 0.2 %,
+    compliance of :math:`a(\nu)\,h (1-\nu^2) / E` per area along and across. The two factors a are
+    chosen so that at a straight rim the rotation under a moment and the deflection under a
+    transverse force are those of the elastic half strip in plane strain, held on one half of one
+    side. Both compliances of the rim agree within 0.2 %,
     for Poisson's ratios from 0 to 0.495; that under an in-plane force, which is not fitted, within
     15 %. The half strip was computed with finite elements graded to 1e-7 of the thickness at the
     rim, where the stress is singular; the tests repeat the computation.
@@ -56,24 +58,22 @@ def bed_stiffness(material: Material, thickness: float) -> tuple[float, float]:
     """
     ratio = material.poissons_ratio
     unit = material.youngs_modulus / (thickness * (1.0 - ratio**2))
-    along, across = (
-        unit / float(np.polynomial.polynomial.polyval(ratio, compliance))
-        for compliance in (_SHEAR, _NORMAL)
-    )
+    along = unit / float(np.polynomial.polynomial.polyval(ratio, _SHEAR))
+    across = unit / float(np.polynomial.polynomial.polyval(ratio, _NORMAL))
     return along, across
 
 
 def end_compliance(material: Material, thickness: float) -> float:
-    r"""Return the rotation under a unit moment per width at a fully held end of a plate, in excess
-    of plate theory [1/N].
+    r"""Return the rotation at a fully held end of a plate in excess of plate theory [1/N].
+
+    It is that under a unit moment per width.
 
     Notes
     -----
     It is negative: the held side cannot expand in height as bending would make it, and is stiffer.
-    In plane strain it is, per moment
-    per width, :math:`-(\nu / (1 - \nu))^2 (0.80 - 0.38 \nu)\,(1 - \nu^2) / (E h^2)`, fitted within
-    3 % to the half strip of
-    `bed_stiffness`, held at its end instead. The stiffness matrix neglects it: frequencies of a
+    In plane strain it is, per moment per width, :math:`-(\nu / (1 - \nu))^2 (0.80 - 0.38 \nu)\,(1 -
+    \nu^2) / (E h^2)`, fitted within 3 % to the half strip of `bed_stiffness`, held at its end
+    instead. The stiffness matrix neglects it: frequencies of a
     clamped plate of 8 mm on 420 mm are 0.1 % too low.
     """
     ratio = material.poissons_ratio
@@ -82,8 +82,9 @@ def end_compliance(material: Material, thickness: float) -> float:
 
 
 def patch_bed(bed: tuple[float, float], slenderness: float) -> tuple[float, float]:
-    """Return the stiffness of a bed under a round patch, along and across the plate; the
-    slenderness is thickness over radius.
+    """Return the stiffness of a bed under a round patch, along and across the plate.
+
+    The slenderness is thickness over radius.
 
     Notes
     -----
@@ -96,25 +97,23 @@ def patch_bed(bed: tuple[float, float], slenderness: float) -> tuple[float, floa
     (without it, 1.3 %), except for in-plane motions, which are up to 0.9 % too stiff at 1.5
     thicknesses.
     """
-    return bed[0] * (1.0 + _NARROW * slenderness), bed[1] * (1.0 + _BENT * slenderness)
+    along, across = bed
+    return along * (1.0 + _NARROW * slenderness), across * (1.0 + _BENT * slenderness)
 
 
 def elements_within(mesh: Mesh, nodes: Integers) -> Integers:
     """Return the plate elements of which all nodes are among the given ones."""
-    inside = np.zeros(len(mesh.nodes), dtype=bool)
-    inside[nodes] = True
-    return np.flatnonzero(inside[mesh.blocks[0].connectivity].all(axis=1))
+    is_given = np.zeros(len(mesh.nodes), dtype=bool)
+    is_given[nodes] = True
+    return np.flatnonzero(is_given[mesh.blocks[0].connectivity].all(axis=1))
 
 
 def area_products(mesh: Mesh, elements: Integers) -> csr_array:
-    """Return the integrals of N_a N_b over the given plate elements [m^2], as a sparse
-    matrix (nodes, nodes).
-    """
-    part = Mesh(
-        mesh.nodes, (ElementBlock(mesh.blocks[0].kind, mesh.blocks[0].connectivity[elements]),)
-    )
-    summed, matrix = pair_assembly(part)
+    """Return the integrals of N_a N_b over some plate elements [m^2], sparse (nodes, nodes)."""
+    block = mesh.blocks[0]
+    held = Mesh(mesh.nodes, (ElementBlock(block.kind, block.connectivity[elements]),))
+    summed, matrix = pair_assembly(held)
     products: Floats = summed(
-        [values.transpose(0, 2, 1) @ values for values, _ in scaled_shapes(part, part.blocks[0])]
+        [values.transpose(0, 2, 1) @ values for values, _ in scaled_shapes(held, held.blocks[0])]
     )
     return matrix(products[:, None, None])

@@ -1,6 +1,4 @@
-"""Modal damping: models of the damping ratio as a function of frequency or of the number
-of a mode.
-"""
+"""Modal damping: models of the damping ratio of a mode, by its frequency or its number."""
 
 from __future__ import annotations
 
@@ -48,8 +46,9 @@ class ConstantRatio:
 
 @dataclass(frozen=True)
 class RatioTable:
-    """Damping ratios tabulated over frequency, interpolated linearly, and constant beyond the ends
-    of the table.
+    """Damping ratios tabulated over frequency and interpolated linearly.
+
+    They are constant beyond the ends of the table.
 
     Parameters
     ----------
@@ -63,10 +62,11 @@ class RatioTable:
     damping_ratios: tuple[float, ...]
 
     def __post_init__(self) -> None:
-        if len(self.frequencies) != len(self.damping_ratios) or not self.frequencies:
-            given, ratios = len(self.frequencies), len(self.damping_ratios)
+        frequencies = len(self.frequencies)
+        ratios = len(self.damping_ratios)
+        if frequencies != ratios or not frequencies:
             raise InputError(
-                f"{given} frequenc{'y' if given == 1 else 'ies'} and {ratios} "
+                f"{frequencies} frequenc{'y' if frequencies == 1 else 'ies'} and {ratios} "
                 f"ratio{'' if ratios == 1 else 's'} do not make a table; "
                 "give one frequency or more, and one ratio for each"
             )
@@ -90,33 +90,33 @@ class RatioTable:
 
 @dataclass(frozen=True)
 class RatioOfEach:
-    """A damping ratio [-] for each mode, from the lowest; the last one holds for all
-    further modes.
-    """
+    """A damping ratio [-] for each mode, from the lowest; the last one holds for further modes."""
 
     damping_ratios: tuple[float, ...]
 
     @property
     def description(self) -> str:
         """Short description for users."""
-        shown = ", ".join(f"{ratio:g}" for ratio in self.damping_ratios[:4]) + (
-            ", ..." if len(self.damping_ratios) > 4 else ""
-        )
+        ratios = ", ".join(f"{ratio:g}" for ratio in self.damping_ratios[:4])
+        if len(self.damping_ratios) > 4:
+            ratios += ", ..."
         return (
-            f"damping ratios of the modes one by one: {shown}; the last holds for all further modes"
+            f"damping ratios of the modes one by one: {ratios}; "
+            "the last holds for all further modes"
         )
 
     def ratios(self, frequencies: Floats) -> Floats:
         """Return the damping ratio of each mode, in their order."""
-        return np.array(self.damping_ratios)[
-            np.minimum(np.arange(len(frequencies)), len(self.damping_ratios) - 1)
-        ]
+        last = len(self.damping_ratios) - 1
+        return np.array(self.damping_ratios)[np.minimum(np.arange(len(frequencies)), last)]
 
 
 @dataclass(frozen=True)
 class Rayleigh:
-    r"""Rayleigh damping :math:`C = a M + b K`: ratio :math:`\zeta = a / (2 \omega) + b \omega / 2`
-    (Lord Rayleigh, Theory of Sound, 1877).
+    r"""Rayleigh damping :math:`C = a M + b K`.
+
+    The damping ratio is :math:`\zeta = a / (2 \omega) + b \omega / 2` (Lord Rayleigh, Theory of
+    Sound, 1877).
 
     Parameters
     ----------
@@ -164,8 +164,9 @@ class LossFactor:
 
 @dataclass(frozen=True)
 class AdamsDefault:
-    """The default of Adams/Flex for flexible bodies: 1 % below 100 Hz, 10 % to 1 kHz, critical
-    above.
+    """The default of Adams/Flex for flexible bodies.
+
+    It is 1 % below 100 Hz, 10 % to 1 kHz, and critical above.
 
     Examples
     --------
@@ -180,4 +181,5 @@ class AdamsDefault:
 
     def ratios(self, frequencies: Floats) -> Floats:
         """Return the damping ratio of each mode."""
-        return np.where(frequencies < 100.0, 0.01, np.where(frequencies <= 1000.0, 0.1, 1.0))
+        above_100_hz = np.where(frequencies <= 1000.0, 0.1, 1.0)
+        return np.where(frequencies < 100.0, 0.01, above_100_hz)

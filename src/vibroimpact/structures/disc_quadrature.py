@@ -11,14 +11,18 @@ from vibroimpact.arrays import Floats
 UNIFORM, HERTZ = 0.0, 0.5
 """Exponents of pressures: uniform, and Hertz's."""
 
-_PRESSURE_RINGS, _PRESSURE_ANGLES = 6, 12
-_AREA_RINGS, _AREA_ANGLES = 6, 24  # exact to degree 11 in r^2 and harmonics up to 23 in the angle
+_PRESSURE_RINGS = 6
+_PRESSURE_ANGLES = 12
+# exact to degree 11 in r^2 and harmonics up to 23 in the angle
+_AREA_RINGS = 6
+_AREA_ANGLES = 24
 
 
 @functools.cache
 def pressure_rule(exponent: float) -> tuple[Floats, Floats]:
-    """Return the points of a rule on the unit disc, (points, 2), and its weights, of sum 1 and
-    proportional to (1 - r^2)^exponent.
+    """Return the points (points, 2) and weights of a rule on the unit disc with a pressure.
+
+    The weights are of sum 1; the pressure is proportional to (1 - r^2)^exponent.
 
     Notes
     -----
@@ -33,17 +37,19 @@ def pressure_rule(exponent: float) -> tuple[Floats, Floats]:
     0.4
     """
     nodes, weights = np.polynomial.legendre.leggauss(_PRESSURE_RINGS)
-    root = 0.5 * (nodes + 1.0)
-    share = weights * root ** (2.0 * exponent + 1.0)
+    v = 0.5 * (nodes + 1.0)
+    ring_weights = weights * v ** (2.0 * exponent + 1.0)
     angle = 2.0 * np.pi * (np.arange(_PRESSURE_ANGLES) + 0.5) / _PRESSURE_ANGLES
-    radius = np.sqrt(1.0 - root**2)[:, None]
-    places = np.stack([radius * np.cos(angle), radius * np.sin(angle)], axis=-1).reshape(-1, 2)
-    return places, np.repeat(share / share.sum() / _PRESSURE_ANGLES, _PRESSURE_ANGLES)
+    radius = np.sqrt(1.0 - v**2)[:, None]
+    points = np.stack([radius * np.cos(angle), radius * np.sin(angle)], axis=-1).reshape(-1, 2)
+    point_weights = ring_weights / ring_weights.sum() / _PRESSURE_ANGLES
+    return points, np.repeat(point_weights, _PRESSURE_ANGLES)
 
 
 def disc_rule(radius: float) -> tuple[Floats, Floats]:
-    """Return the points of a uniform rule on a disc around the origin, (points, 2), and its
-    weights, of sum 1; one point for radius 0.
+    """Return the points (points, 2) and weights of a uniform rule on a disc around the origin.
+
+    The weights are of sum 1. For radius 0 there is one point.
 
     Examples
     --------

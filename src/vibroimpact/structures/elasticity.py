@@ -33,12 +33,10 @@ def assemble_solid(mesh: Mesh, material: Material) -> tuple[csr_array, csr_array
     Notes
     -----
     :math:`K = \int B^T C B\,dV` and :math:`M = \int \rho N^T N\,dV` (O. C. Zienkiewicz and R. L.
-    Taylor, The Finite Element
-    Method), full Gauss quadrature, isoparametric. The kernel is one batched matrix product over the
-    gradients of the scalar
-    shape functions: with :math:`G_{ij} = \int \partial_i N_a\,\partial_j N_b\,dV` an isotropic
-    material has
-    :math:`K_{ij} = \lambda G_{ij} + \mu G_{ji} + \mu\,\delta_{ij}\,\mathrm{tr}\,G`.
+    Taylor, The Finite Element Method), full Gauss quadrature, isoparametric. The kernel is one
+    batched matrix product over the gradients of the scalar shape functions: with :math:`G_{ij} =
+    \int \partial_i N_a\,\partial_j N_b\,dV` an isotropic material has :math:`K_{ij} = \lambda
+    G_{ij} + \mu G_{ji} + \mu\,\delta_{ij}\,\mathrm{tr}\,G`.
 
     Examples
     --------
@@ -48,48 +46,59 @@ def assemble_solid(mesh: Mesh, material: Material) -> tuple[csr_array, csr_array
     >>> round(float(mass.sum()) / 3.0, 6)
     7850.0
     """
-    products, masses = [], []
+    # integrals over each element, in chunks: of N_a N_b, and of dN_a/dx_i dN_b/dx_j
+    value_products = []
+    gradient_products = []
     for block in mesh.blocks:
         for values, gradients in scaled_shapes(mesh, block):
-            masses.append(values.transpose(0, 2, 1) @ values)
-            products.append(gradients.transpose(0, 1, 3, 2)[:, None] @ gradients[None])
+            value_products.append(values.transpose(0, 2, 1) @ values)
+            gradient_products.append(gradients.transpose(0, 1, 3, 2)[:, None] @ gradients[None])
     summed, matrix = pair_assembly(mesh)
 
-    def stiffness_of(chunks: Sequence[Floats], lame: float, mu: float) -> Floats:
+    def isotropic_stiffness(chunks: Sequence[Floats], lame: float, shear_modulus: float) -> Floats:
         product = np.array(
             [[summed([chunk[i, j] for chunk in chunks]) for j in range(3)] for i in range(3)]
         )
-        return isotropic(product, lame, mu)
+        return isotropic(product, lame, shear_modulus)
 
-    # the stiffness is linear in both constants, so that each is a weight of the elements
     if mesh.materials:
-        lame, mu, density = (
-            _of_chunks(mesh.of_elements(material, value), masses)
-            for value in (_lame, _shear_modulus, lambda one: one.density)
+        # the stiffness is linear in both constants, so that each is a weight of the elements
+        lame = mesh.of_elements(material, _lame)
+        shear_modulus = mesh.of_elements(material, _shear_modulus)
+        density = mesh.of_elements(material, _density)
+        stiffness = isotropic_stiffness(_weighted(gradient_products, lame), 1.0, 0.0)
+        stiffness = stiffness + isotropic_stiffness(
+            _weighted(gradient_products, shear_modulus), 0.0, 1.0
         )
-        weighted = [
-            [chunk * of[:, None, None] for chunk, of in zip(products, each, strict=True)]
-            for each in (lame, mu)
-        ]
-        stiffness = stiffness_of(weighted[0], 1.0, 0.0) + stiffness_of(weighted[1], 0.0, 1.0)
-        scalar = summed(
-            [chunk * of[:, None, None] for chunk, of in zip(masses, density, strict=True)]
-        )
+        scalar_mass = summed(_weighted(value_products, density))
     else:
-        stiffness = stiffness_of(products, _lame(material), _shear_modulus(material))
-        scalar = material.density * summed(masses)
-    return matrix(stiffness), matrix(scalar[:, None, None] * np.eye(3))
+        stiffness = isotropic_stiffness(
+            gradient_products, _lame(material), _shear_modulus(material)
+        )
+        scalar_mass = material.density * summed(value_products)
+    return matrix(stiffness), matrix(scalar_mass[:, None, None] * np.eye(3))
 
 
-def _of_chunks(values: Floats, chunks: Sequence[Floats]) -> list[Floats]:
-    """Return a number per element as one array per chunk of elements."""
-    return np.split(values, np.cumsum([len(chunk) for chunk in chunks])[:-1])
+def _weighted(chunks: Sequence[Floats], weights: Floats) -> list[Floats]:
+    """Return chunks of element matrices (..., elements, nodes, nodes) times weights of elements."""
+    ends = np.cumsum([chunk.shape[-3] for chunk in chunks])[:-1]
+    return [
+        chunk * chunk_weights[:, None, None]
+        for chunk, chunk_weights in zip(chunks, np.split(weights, ends), strict=True)
+    ]
 
 
 def _lame(material: Material) -> float:
-    modulus, ratio = material.youngs_modulus, material.poissons_ratio
-    return modulus * ratio / ((1.0 + ratio) * (1.0 - 2.0 * ratio))
+    """Return Lame's first parameter [Pa]."""
+    ratio = material.poissons_ratio
+    return material.youngs_modulus * ratio / ((1.0 + ratio) * (1.0 - 2.0 * ratio))
 
 
 def _shear_modulus(material: Material) -> float:
+    """Return the shear modulus [Pa]."""
     return material.youngs_modulus / (2.0 * (1.0 + material.poissons_ratio))
+
+
+def _density(material: Material) -> float:
+    """Return the density [kg/m^3]."""
+    return material.density

@@ -10,7 +10,7 @@ which is evaluated for every drop of an elastic sphere.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache, partial, reduce
 from typing import Any
@@ -20,7 +20,7 @@ import numpy as np
 from vibroimpact.arrays import Floats, Integers
 
 Shape = tuple[Floats, Floats]
-
+"""Shape functions (points, nodes), and their gradients (points, dimension, nodes)."""
 _HEX_CORNERS = [
     [0, 0, 0],
     [1, 0, 0],
@@ -62,8 +62,9 @@ _EDGES = {4: _TET_EDGES, 5: _PYRAMID_EDGES, 6: _WEDGE_EDGES, 8: _HEX_EDGES}
 _SPACE = 3  # dimensions of a solid element
 
 PLATE_ORDER = 4
-"""Polynomial degree of the plate element; from degree four on, quadrilaterals do not lock
-in thin plates.
+"""Polynomial degree of the plate element.
+
+From degree four on, quadrilaterals do not lock in thin plates.
 """
 
 
@@ -107,9 +108,10 @@ class ElementKind:
     @property
     def order(self) -> int:
         """Polynomial degree of the shape functions along an edge."""
-        return (
-            PLATE_ORDER if self.dimension == 2 else 1 if len(self.reference) == self.corners else 2
-        )
+        if self.dimension == 2:
+            return PLATE_ORDER
+        has_only_corners = len(self.reference) == self.corners
+        return 1 if has_only_corners else 2
 
     @property
     def is_brick(self) -> bool:
@@ -118,21 +120,24 @@ class ElementKind:
 
     @property
     def is_pyramid(self) -> bool:
-        """Whether the element is a pyramid, at whose apex the gradients of its shape
-        functions depend on the direction.
+        """Whether the element is a pyramid.
+
+        At its apex the gradients of its shape functions depend on the direction.
         """
         return self.corners == len(_PYRAMID_CORNERS)
 
     @property
     def edges(self) -> tuple[tuple[int, int], ...]:
-        """The two corners of each edge, in the order of the nodes in the middle of edges;
-        none for plate elements.
+        """The two corners of each edge, in the order of the nodes in the middle of edges.
+
+        There are none for plate elements.
         """
         return tuple(_EDGES[self.corners]) if self.dimension == _SPACE else ()
 
     def quadrature(self, degree: int | None = None) -> tuple[Floats, Floats]:
-        """Return the points (points, dimension) and weights of a quadrature exact to a degree; by
-        default that of stiffness and mass.
+        """Return the points (points, dimension) and weights of a quadrature exact to a degree.
+
+        The degree is by default that of stiffness and mass.
 
         Examples
         --------
@@ -145,168 +150,225 @@ class ElementKind:
 
 @cache
 def _quadrature(corners: int, dimension: int, degree: int) -> tuple[Floats, Floats]:
+    """Return the points and weights of a quadrature on a reference element."""
     from skfem.quadrature import get_quadrature
-    from skfem.refdom import RefHex, RefLine, RefQuad, RefTet, RefTri
+    from skfem.refdom import RefHex, RefQuad, RefTet
 
     if corners == len(_WEDGE_CORNERS):
-        triangle, areas = get_quadrature(RefTri, degree)
-        line, lengths = get_quadrature(RefLine, degree)
-        points = np.concatenate(
-            [np.tile(triangle, line.shape[1]), np.repeat(line, triangle.shape[1], axis=1)]
-        )
-        return np.ascontiguousarray(points.T), np.repeat(lengths, len(areas)) * np.tile(
-            areas, len(lengths)
-        )
+        return _wedge_quadrature(degree)
     if corners == len(_PYRAMID_CORNERS):
         return _pyramid_quadrature(degree)
-    points, weights = get_quadrature(
-        {(4, 2): RefQuad, (8, 3): RefHex, (4, 3): RefTet}[corners, dimension], degree
+    domain = {(4, 2): RefQuad, (8, 3): RefHex, (4, 3): RefTet}[corners, dimension]
+    points, weights = get_quadrature(domain, degree)
+    return np.ascontiguousarray(points.T), weights
+
+
+def _wedge_quadrature(degree: int) -> tuple[Floats, Floats]:
+    """Return the product of the rules on the triangle and on the line."""
+    from skfem.quadrature import get_quadrature
+    from skfem.refdom import RefLine, RefTri
+
+    triangle, areas = get_quadrature(RefTri, degree)
+    line, lengths = get_quadrature(RefLine, degree)
+    points = np.concatenate(
+        [np.tile(triangle, line.shape[1]), np.repeat(line, triangle.shape[1], axis=1)]
     )
+    weights = np.repeat(lengths, len(areas)) * np.tile(areas, len(lengths))
     return np.ascontiguousarray(points.T), weights
 
 
 def _pyramid_quadrature(degree: int) -> tuple[Floats, Floats]:
-    """Return the conical product of Gauss and Gauss-Jacobi rules, for a cross section
-    that shrinks linearly to the apex.
+    """Return the conical product of Gauss and Gauss-Jacobi rules.
+
+    The cross section shrinks linearly to the apex.
     """
     from scipy.special import roots_jacobi, roots_legendre
 
     number = degree // 2 + 1
-    across, shares = roots_legendre(number)
-    upwards, lengths = roots_jacobi(number, 2.0, 0.0)  # with the weight (1 - u)^2, as the area has
-    x, y, z = (
-        part.ravel()
-        for part in np.meshgrid(0.5 * across, 0.5 * across, 0.5 * (1.0 + upwards), indexing="ij")
-    )
+    across, across_weights = roots_legendre(number)
+    # with the weight (1 - u)^2, as the area has
+    upwards, upwards_weights = roots_jacobi(number, 2.0, 0.0)
+    grid = np.meshgrid(0.5 * across, 0.5 * across, 0.5 * (1.0 + upwards), indexing="ij")
+    x, y, z = (coordinate.ravel() for coordinate in grid)
     points = np.stack([0.5 + (1.0 - z) * x, 0.5 + (1.0 - z) * y, z], axis=1)
-    weights = 0.5 * shares[:, None, None] * 0.5 * shares[:, None] * 0.125 * lengths
+    weights = (
+        0.5
+        * across_weights[:, None, None]
+        * 0.5
+        * across_weights[:, None]
+        * 0.125
+        * upwards_weights
+    )
     return points, weights.ravel()
 
 
 def _scikit_fem(name: str, reference: Floats, points: Floats) -> Shape:
     """Return scikit-fem's shape functions and gradients, reordered to the node order used here."""
     element, order = _reordered(name, reference.tobytes(), reference.shape)
-    found = [element.lbasis(points.T, index) for index in order]
-    return np.stack([value for value, _ in found], axis=1), np.stack(
-        [slope.T for _, slope in found], axis=2
-    )
+    functions = [element.lbasis(points.T, index) for index in order]
+    values = np.stack([value for value, _ in functions], axis=1)
+    gradients = np.stack([gradient.T for _, gradient in functions], axis=2)
+    return values, gradients
 
 
 @cache
 def _reordered(name: str, reference: bytes, shape: tuple[int, int]) -> tuple[Any, list[int]]:
-    """Return an element of scikit-fem, and the numbers of its shape functions in the node
-    order used here.
-    """
+    """Return an element of scikit-fem, and the numbers of its shape functions in our node order."""
     import skfem
 
     element = getattr(skfem, name)()
-    ours = np.frombuffer(reference).reshape(shape)
-    distance = np.abs(ours[:, None, :] - np.asarray(element.doflocs)[None, :, :]).max(axis=2)
+    nodes = np.frombuffer(reference).reshape(shape)
+    their_nodes = np.asarray(element.doflocs)
+    distance = np.abs(nodes[:, None, :] - their_nodes[None, :, :]).max(axis=2)
     return element, [int(index) for index in distance.argmin(axis=1)]
 
 
-def _tensor_lagrange(order: int, places: Integers, points: Floats) -> Shape:
-    """Return products of Lagrange polynomials and their gradients; `places` (nodes,
-    dimension) are the factors of each node.
+def _tensor_lagrange(order: int, factors: Integers, points: Floats) -> Shape:
+    """Return products of Lagrange polynomials and their gradients.
+
+    `factors` (nodes, dimension) are the numbers of the polynomials in the product of each node.
     """
     axes = range(points.shape[1])
-    along = [
-        [part.take(places[:, axis], axis=1) for part in _lagrange(order, points[:, axis])]
-        for axis in axes
+    # polynomials and derivatives along each axis, by node
+    along = []
+    for axis in axes:
+        polynomials, derivatives = _lagrange(order, points[:, axis])
+        along.append(
+            (
+                polynomials.take(factors[:, axis], axis=1),
+                derivatives.take(factors[:, axis], axis=1),
+            )
+        )
+    values = reduce(np.multiply, [polynomials for polynomials, _ in along])
+    # the derivative along an axis is the product with the polynomial of that axis derived
+    gradients = [
+        reduce(np.multiply, [along[axis][1 if axis == derived else 0] for axis in axes])
+        for derived in axes
     ]
-    slopes = [
-        reduce(np.multiply, [along[axis][axis == sloping] for axis in axes]) for sloping in axes
-    ]
-    return reduce(np.multiply, [value for value, _ in along]), np.stack(slopes, axis=1)
+    return values, np.stack(gradients, axis=1)
 
 
 def _lagrange(order: int, x: Floats) -> tuple[Floats, Floats]:
-    """Return the Lagrange polynomials on equidistant nodes of [0, 1], and their
-    derivatives, (points, order + 1).
+    """Return the Lagrange polynomials on equidistant nodes of [0, 1], and their derivatives.
+
+    Both are (points, order + 1).
     """
-    powers, coefficients = np.arange(order + 1), _lagrange_coefficients(order)
-    values = x[:, None] ** powers
-    slopes = powers * x[:, None] ** np.maximum(powers - 1, 0)
-    return values @ coefficients, slopes @ coefficients
+    exponents = np.arange(order + 1)
+    coefficients = _lagrange_coefficients(order)
+    powers = x[:, None] ** exponents
+    derivatives = exponents * x[:, None] ** np.maximum(exponents - 1, 0)
+    return powers @ coefficients, derivatives @ coefficients
 
 
 @cache
 def _lagrange_coefficients(order: int) -> Floats:
+    """Return the coefficients of powers in each Lagrange polynomial, (powers, nodes)."""
     return np.asarray(np.linalg.inv(np.vander(np.arange(order + 1) / order, increasing=True)))
 
 
 def _wedge_shape(order: int, points: Floats) -> Shape:
-    """Return the shape functions of a wedge of first or second order (serendipity), and
-    their gradients.
-    """
-    # the coordinates of the triangle
+    """Return the shape functions of a wedge of first or second order (serendipity)."""
+    # area coordinates of the triangle, their gradients, and the height from -1 to 1
     area = np.stack([1.0 - points[:, 0] - points[:, 1], points[:, 0], points[:, 1]])
-    slope = np.array([[-1.0, -1.0], [1.0, 0.0], [0.0, 1.0]])
+    area_gradients = np.array([[-1.0, -1.0], [1.0, 0.0], [0.0, 1.0]])
     t = 2.0 * points[:, 2] - 1.0
-    values, by_area, by_t = [], [], []
-
-    def add(value: Floats, partial_of: dict[int, Floats], along: Floats) -> None:
-        values.append(value)
-        by_area.append(sum(part[:, None] * slope[index] for index, part in partial_of.items()))
-        by_t.append(along)
-
-    for sign in (-1.0, 1.0):
-        for index, one in enumerate(area):
-            side, bubble = (
-                0.5 * (1.0 + sign * t),
-                0.5 * (1.0 - t**2) if order == 2 else np.zeros_like(t),
-            )
-            shape, steep = (
-                (one * (2.0 * one - 1.0), 4.0 * one - 1.0)
-                if order == 2
-                else (one, np.ones_like(one))
-            )
-            add(
-                shape * side - one * bubble,
-                {index: steep * side - bubble},
-                0.5 * sign * shape + (one * t if order == 2 else 0.0),
-            )
-    for start, end in _WEDGE_EDGES if order == 2 else []:
-        if end == start + 3:
-            add(area[start] * (1.0 - t**2), {start: 1.0 - t**2}, -2.0 * t * area[start])
-        else:
-            sign, first, second = (1.0 if start > 2 else -1.0), start % 3, end % 3
-            side = 2.0 * (1.0 + sign * t)
-            of = {first: side * area[second], second: side * area[first]}
-            add(side * area[first] * area[second], of, 2.0 * sign * area[first] * area[second])
+    # of each node: its value, its derivatives in area coordinates, and that in t
+    terms = _wedge_corner_terms(order, area, t)
+    if order == 2:
+        terms += _wedge_edge_terms(area, t)
+    values = np.stack([value for value, _, _ in terms], axis=1)
+    along_triangle = [
+        sum(slope[:, None] * area_gradients[index] for index, slope in by_area.items())
+        for _, by_area, _ in terms
+    ]
+    along_height = [by_t for _, _, by_t in terms]
     gradients = np.concatenate(
-        [np.stack(by_area, axis=-1), 2.0 * np.stack(by_t, axis=-1)[:, None]], axis=1
+        [np.stack(along_triangle, axis=-1), 2.0 * np.stack(along_height, axis=-1)[:, None]], axis=1
     )
-    return np.stack(values, axis=1), gradients
+    return values, gradients
+
+
+def _wedge_corner_terms(
+    order: int, area: Floats, t: Floats
+) -> list[tuple[Floats, dict[int, Floats], Floats]]:
+    """Return value, derivatives in area coordinates and derivative in t of each corner's function.
+
+    Corners of the lower triangle, at t = -1, come first.
+    """
+    terms = []
+    for sign in (-1.0, 1.0):
+        for index, coordinate in enumerate(area):
+            linear = 0.5 * (1.0 + sign * t)
+            if order == 2:
+                bubble = 0.5 * (1.0 - t**2)
+                triangle = coordinate * (2.0 * coordinate - 1.0)
+                triangle_slope = 4.0 * coordinate - 1.0
+                bubble_slope = coordinate * t
+            else:
+                bubble = np.zeros_like(t)
+                triangle = coordinate
+                triangle_slope = np.ones_like(coordinate)
+                bubble_slope = np.zeros_like(t)
+            value = triangle * linear - coordinate * bubble
+            by_area = {index: triangle_slope * linear - bubble}
+            by_t = 0.5 * sign * triangle + bubble_slope
+            terms.append((value, by_area, by_t))
+    return terms
+
+
+def _wedge_edge_terms(area: Floats, t: Floats) -> list[tuple[Floats, dict[int, Floats], Floats]]:
+    """Return, as `_wedge_corner_terms`, the functions of the nodes in the middle of edges."""
+    terms = []
+    for start, end in _WEDGE_EDGES:
+        if end == start + 3:  # along the height
+            value = area[start] * (1.0 - t**2)
+            by_area = {start: 1.0 - t**2}
+            by_t = -2.0 * t * area[start]
+        else:  # of the lower or upper triangle
+            sign = 1.0 if start > 2 else -1.0
+            first = area[start % 3]
+            second = area[end % 3]
+            side = 2.0 * (1.0 + sign * t)
+            value = side * first * second
+            by_area = {start % 3: side * second, end % 3: side * first}
+            by_t = 2.0 * sign * first * second
+        terms.append((value, by_area, by_t))
+    return terms
 
 
 def _pyramid_terms(count: int, points: Floats) -> Shape:
-    """Return the functions that span the shape functions of a pyramid of 5, 13 or 14 nodes, and
-    their gradients.
+    """Return the functions that span the shape functions of a pyramid, and their gradients.
 
+    The pyramid has 5, 13 or 14 nodes.
     With x and y from the axis, from -1 to 1 at the base, and c = 1 - z, they are 1, x, y, z and
     xy/c; for 13 nodes also x^2, y^2, z^2, xy, xz, yz, x^2 y/c and x y^2/c (G. Bedrosian, Int. J.
     Numer. Meth. Engng 35:95, 1992); for 14 also the bubble of the base. On the faces they are the
     polynomials of the tetrahedra and bricks of the same order.
     """
-    x, y, z = 2.0 * points[:, 0] - 1.0, 2.0 * points[:, 1] - 1.0, points[:, 2]
+    x = 2.0 * points[:, 0] - 1.0
+    y = 2.0 * points[:, 1] - 1.0
+    z = points[:, 2]
     c = 1.0 - z
-    below = np.where(c == 0.0, 1.0, c)
-    # at the apex as along the axis
-    s, t = np.where(c == 0.0, 0.0, x / below), np.where(c == 0.0, 0.0, y / below)
-    one, none = np.ones_like(x), np.zeros_like(x)
+    # s = x / c and t = y / c; at the apex as along the axis
+    is_apex = c == 0.0
+    divisor = np.where(is_apex, 1.0, c)
+    s = np.where(is_apex, 0.0, x / divisor)
+    t = np.where(is_apex, 0.0, y / divisor)
+    one = np.ones_like(x)
+    zero = np.zeros_like(x)
+    # each function, and its derivatives along x, y and z
     terms = [
-        (one, none, none, none),
-        (x, one, none, none),
-        (y, none, one, none),
-        (z, none, none, one),
+        (one, zero, zero, zero),
+        (x, one, zero, zero),
+        (y, zero, one, zero),
+        (z, zero, zero, one),
         (x * t, t, s, s * t),
-        (x * x, 2.0 * x, none, none),
-        (y * y, none, 2.0 * y, none),
-        (z * z, none, none, 2.0 * z),
-        (x * y, y, x, none),
-        (x * z, z, none, x),
-        (y * z, none, z, y),
+        (x * x, 2.0 * x, zero, zero),
+        (y * y, zero, 2.0 * y, zero),
+        (z * z, zero, zero, 2.0 * z),
+        (x * y, y, x, zero),
+        (x * z, z, zero, x),
+        (y * z, zero, z, y),
         (x * x * t, 2.0 * x * t, x * s, x * s * t),
         (x * y * t, y * t, 2.0 * x * t, y * s * t),
         (
@@ -317,55 +379,48 @@ def _pyramid_terms(count: int, points: Floats) -> Shape:
         ),
     ][:count]
     values = np.stack([value for value, *_ in terms], axis=1)
-    slopes = np.stack(
-        [
-            np.stack([2.0 * along_x, 2.0 * along_y, along_z])
-            for _, along_x, along_y, along_z in terms
-        ],
-        axis=2,
+    # x and y run twice as fast as the coordinates of the reference element
+    gradients = np.stack(
+        [np.stack([2.0 * by_x, 2.0 * by_y, by_z]) for _, by_x, by_y, by_z in terms], axis=2
     )
-    return values, slopes.transpose(1, 0, 2)
+    return values, gradients.transpose(1, 0, 2)
 
 
 @cache
 def _pyramid_coefficients(reference: bytes, count: int) -> Floats:
-    """Return the coefficients of the spanning functions in each shape function,
-    (functions, nodes).
+    """Return the coefficients of the spanning functions in each shape function.
+
+    They are (functions, nodes).
     """
-    return np.asarray(
-        np.linalg.inv(_pyramid_terms(count, np.frombuffer(reference).reshape(count, 3))[0])
-    )
+    nodes = np.frombuffer(reference).reshape(count, 3)
+    return np.asarray(np.linalg.inv(_pyramid_terms(count, nodes)[0]))
 
 
 def _pyramid_shape(reference: Floats, points: Floats) -> Shape:
     """Return the shape functions of a pyramid and their gradients."""
-    values, slopes = _pyramid_terms(len(reference), points)
+    values, gradients = _pyramid_terms(len(reference), points)
     coefficients = _pyramid_coefficients(reference.tobytes(), len(reference))
-    return values @ coefficients, slopes @ coefficients
+    return values @ coefficients, gradients @ coefficients
 
 
 def _pyramid(name: str, reference: Floats, degree: int) -> ElementKind:
-    return ElementKind(
-        name,
-        reference,
-        len(_PYRAMID_CORNERS),
-        _PYRAMID_FACES,
-        partial(_pyramid_shape, reference),
-        degree,
-    )
+    shape = partial(_pyramid_shape, reference)
+    return ElementKind(name, reference, len(_PYRAMID_CORNERS), _PYRAMID_FACES, shape, degree)
 
 
 def _wedge(name: str, reference: Floats, order: int, degree: int) -> ElementKind:
-    return ElementKind(
-        name, reference, len(_WEDGE_CORNERS), _WEDGE_FACES, partial(_wedge_shape, order), degree
-    )
+    shape = partial(_wedge_shape, order)
+    return ElementKind(name, reference, len(_WEDGE_CORNERS), _WEDGE_FACES, shape, degree)
 
 
-def _kind(name: str, reference: Floats, corners: int, element: str, degree: int) -> ElementKind:
-    faces = _HEX_FACES if corners == 8 else _TET_FACES
-    return ElementKind(
-        name, reference, corners, faces, partial(_scikit_fem, element, reference), degree
-    )
+def _tetrahedron(name: str, reference: Floats, element: str, degree: int) -> ElementKind:
+    shape = partial(_scikit_fem, element, reference)
+    return ElementKind(name, reference, len(_TET_CORNERS), _TET_FACES, shape, degree)
+
+
+def _brick(name: str, reference: Floats, element: str, degree: int) -> ElementKind:
+    shape = partial(_scikit_fem, element, reference)
+    return ElementKind(name, reference, len(_HEX_CORNERS), _HEX_FACES, shape, degree)
 
 
 def _product(
@@ -376,44 +431,49 @@ def _product(
     order: int,
     degree: int,
 ) -> ElementKind:
-    places = np.rint(order * reference).astype(np.int64)
-    return ElementKind(
-        name, reference, corners, faces, partial(_tensor_lagrange, order, places), degree
-    )
+    """Return a kind whose shape functions are products of Lagrange polynomials."""
+    factors = np.rint(order * reference).astype(np.int64)
+    shape = partial(_tensor_lagrange, order, factors)
+    return ElementKind(name, reference, corners, faces, shape, degree)
 
 
 def _kinds() -> Mapping[str, ElementKind]:
-    hexa, tet = np.array(_HEX_CORNERS, dtype=float), np.array(_TET_CORNERS, dtype=float)
-    hex20 = np.concatenate([hexa, [hexa[list(edge)].mean(axis=0) for edge in _HEX_EDGES]])
-    hex27 = np.concatenate(
-        [hex20, [hexa[list(face)].mean(axis=0) for face in _HEX_FACES], [[0.5, 0.5, 0.5]]]
-    )
-    tet10 = np.concatenate([tet, [tet[list(edge)].mean(axis=0) for edge in _TET_EDGES]])
-    wedge = np.array(_WEDGE_CORNERS, dtype=float)
-    wedge15 = np.concatenate([wedge, [wedge[list(edge)].mean(axis=0) for edge in _WEDGE_EDGES]])
-    pyramid = np.array(_PYRAMID_CORNERS, dtype=float)
-    pyramid13 = np.concatenate(
-        [pyramid, [pyramid[list(edge)].mean(axis=0) for edge in _PYRAMID_EDGES]]
-    )
-    pyramid14 = np.concatenate([pyramid13, [pyramid[:4].mean(axis=0)]])
+    tet4 = np.array(_TET_CORNERS, dtype=float)
+    tet10 = _with_middles(tet4, _TET_EDGES)
+    wedge6 = np.array(_WEDGE_CORNERS, dtype=float)
+    wedge15 = _with_middles(wedge6, _WEDGE_EDGES)
+    pyramid5 = np.array(_PYRAMID_CORNERS, dtype=float)
+    pyramid13 = _with_middles(pyramid5, _PYRAMID_EDGES)
+    pyramid14 = np.concatenate([pyramid13, [pyramid5[:4].mean(axis=0)]])
+    hex8 = np.array(_HEX_CORNERS, dtype=float)
+    hex20 = _with_middles(hex8, _HEX_EDGES)
+    face_middles = [hex8[list(face)].mean(axis=0) for face in _HEX_FACES]
+    hex27 = np.concatenate([hex20, face_middles, [[0.5, 0.5, 0.5]]])
     steps = np.linspace(0.0, 1.0, PLATE_ORDER + 1)
-    quad = np.array([[x, y] for y in steps for x in steps])
-    return {
-        "tet4": _kind("tet4", tet, 4, "ElementTetP1", 2),
-        "tet10": _kind("tet10", tet10, 4, "ElementTetP2", 5),
-        "wedge6": _wedge("wedge6", wedge, 1, 4),
-        "wedge15": _wedge("wedge15", wedge15, 2, 5),
-        "pyramid5": _pyramid("pyramid5", pyramid, 5),
-        "pyramid13": _pyramid("pyramid13", pyramid13, 5),
-        "pyramid14": _pyramid("pyramid14", pyramid14, 5),
-        "hex8": _kind("hex8", hexa, 8, "ElementHex1", 3),
-        "hex20": _kind("hex20", hex20, 8, "ElementHexS2", 5),
-        "hex27": _product("hex27", hex27, 8, _HEX_FACES, 2, 5),
-        "quad25": _product("quad25", quad, 4, (_QUAD_CORNERS,), PLATE_ORDER, 2 * PLATE_ORDER + 1),
-    }
+    quad25 = np.array([[x, y] for y in steps for x in steps])
+    kinds = [
+        _tetrahedron("tet4", tet4, "ElementTetP1", 2),
+        _tetrahedron("tet10", tet10, "ElementTetP2", 5),
+        _wedge("wedge6", wedge6, 1, 4),
+        _wedge("wedge15", wedge15, 2, 5),
+        _pyramid("pyramid5", pyramid5, 5),
+        _pyramid("pyramid13", pyramid13, 5),
+        _pyramid("pyramid14", pyramid14, 5),
+        _brick("hex8", hex8, "ElementHex1", 3),
+        _brick("hex20", hex20, "ElementHexS2", 5),
+        _product("hex27", hex27, 8, _HEX_FACES, 2, 5),
+        _product("quad25", quad25, 4, (_QUAD_CORNERS,), PLATE_ORDER, 2 * PLATE_ORDER + 1),
+    ]
+    return {kind.name: kind for kind in kinds}
+
+
+def _with_middles(corners: Floats, edges: Sequence[tuple[int, int]]) -> Floats:
+    """Return the corners of an element, followed by the middles of its edges."""
+    return np.concatenate([corners, [corners[list(edge)].mean(axis=0) for edge in edges]])
 
 
 ELEMENT_KINDS: Mapping[str, ElementKind] = _kinds()
-"""Element kinds by name: tetrahedra, wedges, pyramids and bricks of first and second
-order, and the plate element.
+"""Element kinds by name.
+
+They are tetrahedra, wedges, pyramids and bricks of first and second order, and the plate element.
 """

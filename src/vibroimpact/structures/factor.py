@@ -1,9 +1,9 @@
-"""Factorisation of a sparse symmetric matrix in nested-dissection order, with an estimate of the
-memory of the factors beforehand.
+"""Factorisation of a sparse symmetric matrix in nested-dissection order.
 
-Compared with it, SuperLU's minimum-degree order has less fill for plate elements (0.35 to 1), but
-1.2 to 1.7 times the fill and two to three times the time for whole plates of bricks, the largest
-systems here; and its fill is not known before the factorisation.
+The memory of the factors is estimated beforehand. Compared with that order, SuperLU's
+minimum-degree order has less fill for plate elements (0.35 to 1), but 1.2 to 1.7 times the fill and
+two to three times the time for whole plates of bricks, the largest systems here; and its fill is
+not known before the factorisation.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from vibroimpact.errors import ComputationError, InputError
 from vibroimpact.structures.free_memory import check_memory
 
 _LEAF = 40  # nodes of a part that is not dissected further; smaller parts do not reduce the fill
-_ROUNDING = 1e-15  # relative to the diagonal
+_ROUNDING = 1e-15  # relative to the diagonal: smaller entries of the matrix are rounding
 # of the matrix; SuperLU reserves thirty times as many, and has 32-bit indices
 _MAX_ENTRIES = 71_000_000
 BYTES_PER_ENTRY = 12.0
@@ -79,8 +79,9 @@ class Factors:
         return BYTES_PER_ENTRY * self.entries
 
     def negative_pivots(self) -> int:
-        """Return the number of negative pivots, which is that of negative eigenvalues
-        (Sylvester's law of inertia).
+        """Return the number of negative pivots.
+
+        It is that of negative eigenvalues (Sylvester's law of inertia).
         """
         return int((self._factors.U.diagonal() < 0.0).sum())
 
@@ -92,13 +93,16 @@ class Factors:
 
 
 def _without_rounding(matrix: csr_array) -> csr_array:
-    """Return a matrix without entries that are zero up to rounding: a fifth of all in a
-    regular mesh.
+    """Return a matrix without entries that are zero up to rounding.
+
+    They are a fifth of all in a regular mesh.
     """
-    whole = matrix.tocoo()
-    size = np.sqrt(np.abs(matrix.diagonal()))
-    keep = np.abs(whole.data) >= _ROUNDING * size[whole.row] * size[whole.col]
-    return csr_array((whole.data[keep], (whole.row[keep], whole.col[keep])), shape=matrix.shape)
+    entries = matrix.tocoo()
+    scale = np.sqrt(np.abs(matrix.diagonal()))
+    kept = np.abs(entries.data) >= _ROUNDING * scale[entries.row] * scale[entries.col]
+    return csr_array(
+        (entries.data[kept], (entries.row[kept], entries.col[kept])), shape=matrix.shape
+    )
 
 
 def nested_dissection(nodes: Floats, adjacency: csr_array) -> list[Integers]:
@@ -117,81 +121,97 @@ def nested_dissection(nodes: Floats, adjacency: csr_array) -> list[Integers]:
     plane across the longest side of their bounding box. Nodes of one half that are adjacent to the
     other half are the separator and are eliminated last; both halves are dissected in the same way.
     """
-    other = np.zeros(len(nodes), dtype=bool)
+    is_above = np.zeros(len(nodes), dtype=bool)  # working memory of the cuts
     parts: list[Integers] = []
-    waiting: list[tuple[Integers, bool]] = [(np.arange(len(nodes)), False)]
-    while waiting:
-        part, separates = waiting.pop()
-        if separates or len(part) <= _LEAF:
+    # a stack of parts to be dissected, and of separators, in reverse of their elimination
+    stack: list[tuple[Integers, bool]] = [(np.arange(len(nodes)), False)]
+    while stack:
+        part, is_separator = stack.pop()
+        if is_separator or len(part) <= _LEAF:
             parts.append(part)
             continue
-        low, touching = _best_cut(
-            nodes[part, np.ptp(nodes[part], axis=0).argmax()], part, adjacency, other
-        )
-        first = part[low]
-        if not len(first):
+        longest_side = np.ptp(nodes[part], axis=0).argmax()
+        below, separates = _best_cut(nodes[part, longest_side], part, adjacency, is_above)
+        lower_half = part[below]
+        if not len(lower_half):  # all nodes are at one level
             parts.append(part)
             continue
-        waiting += [(first[touching], True), (part[~low], False), (first[~touching], False)]
+        stack.append((lower_half[separates], True))
+        stack.append((part[~below], False))
+        stack.append((lower_half[~separates], False))
     return [part for part in parts if len(part)]
 
 
 def _best_cut(
-    at: Floats, part: Integers, adjacency: csr_array, other: Bools
+    positions: Floats, part: Integers, adjacency: csr_array, is_above: Bools
 ) -> tuple[Bools, Bools]:
-    """Return the nodes below the cut near the median with the smallest separator, and which of them
-    are in the separator.
+    """Return the nodes below the cut with the smallest separator, and which of them separate.
 
-    Both are masks: the first of the nodes of the part, the second of those below the cut.
+    Cuts at the median and beside it are tried. Both results are masks: the first of the nodes of
+    the part, the second of those below the cut.
+
+    Parameters
+    ----------
+    positions : array, shape (part,)
+        Positions of the nodes across the cut.
+    part : int array
+        The nodes.
+    adjacency : sparse array
+        Pattern of the nodes that share an element.
+    is_above : bool array, shape (nodes,)
+        Working memory, False before and after.
     """
-    levels = np.unique(np.round(at, 12))
-    middle = int(np.searchsorted(levels, np.median(at)))
-    best = (np.zeros(len(part), dtype=bool), np.zeros(0, dtype=bool))
-    for level in levels[max(0, middle - 1) : min(middle + 2, len(levels) - 1)]:
-        low = at <= level + 1e-12
-        other[part[~low]] = True
-        neighbours, count = _neighbours(adjacency, part[low])
-        touching = np.add.reduceat(other[neighbours], np.cumsum(count) - count, dtype=np.int64) > 0
-        other[part[~low]] = False
-        if not best[0].any() or touching.sum() < best[1].sum():
-            best = low, touching
-    return best
+    levels = np.unique(np.round(positions, 12))
+    median = int(np.searchsorted(levels, np.median(positions)))
+    best_below = np.zeros(len(part), dtype=bool)
+    best_separator = np.zeros(0, dtype=bool)
+    for level in levels[max(0, median - 1) : min(median + 2, len(levels) - 1)]:
+        below = positions <= level + 1e-12
+        is_above[part[~below]] = True
+        neighbours, counts = _neighbours(adjacency, part[below])
+        starts = np.cumsum(counts) - counts
+        separates = np.add.reduceat(is_above[neighbours], starts, dtype=np.int64) > 0
+        is_above[part[~below]] = False
+        if not best_below.any() or separates.sum() < best_separator.sum():
+            best_below = below
+            best_separator = separates
+    return best_below, best_separator
 
 
 def factor_entries(parts: list[Integers], adjacency: csr_array) -> int:
-    """Return an upper estimate of the number of entries of the factors for one degree of freedom
-    per node.
+    """Return an upper estimate of the number of entries of the factors.
 
-    It follows from a symbolic factorisation in which each part is a dense block.
+    It is that for one degree of freedom per node, and follows from a symbolic factorisation in
+    which each part is a dense block.
     """
-    place = np.empty(adjacency.shape[0], dtype=np.int64)  # of a node in the elimination order
-    owner = np.empty_like(place)
     order = np.concatenate(parts)
-    place[order] = np.arange(len(order))
-    ends = np.cumsum([len(part) for part in parts])
-    for index, part in enumerate(parts):
-        owner[part] = index
-    # columns that the elimination of descendants couples to a part
-    passed: list[list[Integers]] = [[] for _ in parts]
+    rank = np.empty(adjacency.shape[0], dtype=np.int64)  # of a node in the elimination order
+    rank[order] = np.arange(len(order))
+    part_of_node = np.empty_like(rank)
+    for number, part in enumerate(parts):
+        part_of_node[part] = number
+    ends = np.cumsum([len(part) for part in parts])  # ranks where parts end
+    # ranks of the nodes that the elimination of earlier parts couples to a part
+    coupled: list[list[Integers]] = [[] for _ in parts]
     entries = 0
-    for index, part in enumerate(parts):
-        reached = np.unique(
-            np.concatenate([place[_neighbours(adjacency, part)[0]], *passed[index]])
-        )
-        passed[index] = []
-        later = reached[reached >= ends[index]]
+    for number, part in enumerate(parts):
+        neighbours = rank[_neighbours(adjacency, part)[0]]
+        reached = np.unique(np.concatenate([neighbours, *coupled[number]]))
+        coupled[number] = []
+        later = reached[reached >= ends[number]]
         entries += len(part) ** 2 + 2 * len(part) * len(later)
-        if len(later):
-            passed[owner[order[later[0]]]].append(later)
+        if len(later):  # they are all coupled to the part that is eliminated first among them
+            coupled[part_of_node[order[later[0]]]].append(later)
     return entries
 
 
 def _neighbours(adjacency: csr_array, nodes: Integers) -> tuple[Integers, Integers]:
     """Return the concatenated neighbours of nodes, and their number for each node."""
-    start = adjacency.indptr[nodes]
-    count = adjacency.indptr[nodes + 1] - start
-    end = np.cumsum(count)
-    return adjacency.indices[np.arange(end[-1]) + np.repeat(start - end + count, count)], count
+    starts = adjacency.indptr[nodes]
+    counts = adjacency.indptr[nodes + 1] - starts
+    ends = np.cumsum(counts)  # of each node's neighbours among the concatenated ones
+    entries = np.arange(ends[-1]) + np.repeat(starts - ends + counts, counts)
+    return adjacency.indices[entries], counts
 
 
 def check_factor_memory(dofs: int, entries: float) -> None:

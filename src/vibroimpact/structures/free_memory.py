@@ -14,8 +14,9 @@ _PART_OF_MEMORY = 0.8  # of the free memory, as the other arrays need some too
 def check_memory(
     need: float, what: str, remedy: str = "ask for fewer, or use larger elements"
 ) -> None:
-    """Raise if `need` [bytes] exceeds the free memory less a reserve; `what` and `remedy` are for
-    the message.
+    """Raise if `need` [bytes] exceeds the free memory less a reserve.
+
+    `what` and `remedy` are for the message.
 
     Raises
     ------
@@ -24,20 +25,21 @@ def check_memory(
     """
     free = free_memory()
     if need > _PART_OF_MEMORY * free:
-        there = "are free" if _available() is not None else "are built in"
+        status = "are free" if _available() is not None else "are built in"
         raise InputError(
-            f"{what} about {need / 1e9:.2g} GB of memory, and {free / 1e9:.2g} GB {there}, "
+            f"{what} about {need / 1e9:.2g} GB of memory, and {free / 1e9:.2g} GB {status}, "
             f"of which {100.0 * _PART_OF_MEMORY:g} % may be used; {remedy}"
         )
 
 
 def free_memory() -> float:
-    """Return the free memory [bytes]; where the system does not tell, its total memory,
-    or infinity.
+    """Return the free memory [bytes].
+
+    Where the system does not tell, it is the total memory, or infinity.
     """
-    found = _available()
-    if found is not None:
-        return found
+    available = _available()
+    if available is not None:
+        return available
     try:
         return float(os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE"))
     except (AttributeError, OSError, ValueError):

@@ -1,5 +1,6 @@
-"""Estimated errors of natural frequencies due to the mesh, plate theory, the model of
-supports and a reduction.
+"""Estimated errors of natural frequencies.
+
+Their causes are the mesh, plate theory, the model of supports and a reduction.
 """
 
 from __future__ import annotations
@@ -19,13 +20,11 @@ from vibroimpact.structures.plate_waves import (
 )
 from vibroimpact.structures.supports.constraints import HeldStructure
 
-MESH, THEORY, SUPPORTS, REDUCTION = (
-    "the mesh",
-    "the theory of plates",
-    "the supports",
-    "the reduction",
-)
-"""Causes of errors of natural frequencies."""
+# causes of errors of natural frequencies
+MESH = "the mesh"
+THEORY = "the theory of plates"
+SUPPORTS = "the supports"
+REDUCTION = "the reduction"
 
 # relative error of the stiffness of a bed, from plates on round patches of 1.25 to 2.5 thicknesses
 # in radius
@@ -61,7 +60,7 @@ def mesh_errors(fine: Floats, coarse: Floats, gain: float) -> Floats:
 
 
 def support_errors(held: HeldStructure, modes: Eigenmodes) -> Floats:
-    """Return the relative errors of frequencies due to the model of the supports of plate elements.
+    """Return the relative errors of frequencies due to the supports of plate elements.
 
     Notes
     -----
@@ -70,18 +69,23 @@ def support_errors(held: HeldStructure, modes: Eigenmodes) -> Floats:
     series with a support, the squared reaction over the modal mass and the squared frequency, times
     that compliance.
     """
-    squared, shapes = modes.angular_frequencies**2, modes.shapes
-    if not held.structure.thickness:
-        return np.zeros(len(squared))
-    relative = _BED + (_BED_IN_PLANE - _BED) * _in_plane(held, modes)
-    in_beds = relative * np.einsum("ij,ij->j", shapes, held.bed @ shapes) / squared
+    structure = held.structure
+    squared_frequencies = modes.angular_frequencies**2
+    if not structure.thickness:
+        return np.zeros(len(squared_frequencies))
+    bed_error = _BED + (_BED_IN_PLANE - _BED) * _in_plane(held, modes)
+    bed_energy = np.einsum("ij,ij->j", modes.shapes, held.bed @ modes.shapes)
+    by_beds = bed_error * bed_energy / squared_frequencies
     dofs, compliances = held.neglected
     if not len(dofs):
-        return np.asarray(0.5 * in_beds)
-    structure = held.structure
-    moved = held.expansion @ shapes
-    reactions = structure.stiffness[dofs] @ moved - (structure.mass[dofs] @ moved) * squared
-    return np.asarray(0.5 * (in_beds + np.abs(compliances @ reactions**2) / squared))
+        return np.asarray(0.5 * by_beds)
+    shapes = held.expansion @ modes.shapes
+    reactions = (
+        structure.stiffness[dofs] @ shapes - (structure.mass[dofs] @ shapes) * squared_frequencies
+    )
+    by_compliances = np.abs(compliances @ reactions**2) / squared_frequencies
+    # half, as the error is that of the frequency, not of its square
+    return np.asarray(0.5 * (by_beds + by_compliances))
 
 
 def plate_theory_errors(
@@ -106,34 +110,29 @@ def plate_theory_errors(
     mode, and of `stretching_error`, weighted by the kinetic energies of bending and of in-plane
     motion; plus 0.02 % for the effect of edges, which plane waves do not have.
     """
-    thickness, ratio, omega, in_plane = (
-        held.structure.thickness,
-        material.poissons_ratio,
-        modes.angular_frequencies,
-        _in_plane(held, modes),
-    )
-    bending = np.abs(
-        bending_error(thickness * wave_numbers(omega, thickness, material, thin), ratio, thin)
-    )
-    return np.asarray(
-        _EDGES
-        + (1.0 - in_plane) * bending
-        + in_plane * stretching_error(omega, thickness, material)
-    )
+    thickness = held.structure.thickness
+    omega = modes.angular_frequencies
+    in_plane = _in_plane(held, modes)
+    waves = thickness * wave_numbers(omega, thickness, material, thin)
+    bending = np.abs(bending_error(waves, material.poissons_ratio, thin))
+    stretching = stretching_error(omega, thickness, material)
+    return np.asarray(_EDGES + (1.0 - in_plane) * bending + in_plane * stretching)
 
 
 def _in_plane(held: HeldStructure, modes: Eigenmodes) -> Floats:
     """Return the fraction of the kinetic energy of in-plane motion, for modes of plate elements."""
     structure = held.structure
-    moved = (held.expansion @ modes.shapes).reshape(len(structure.mesh.nodes), 5, -1)
-    momenta = (structure.mass @ moved.reshape(-1, moved.shape[2])).reshape(moved.shape)
-    energy = np.einsum("nim,nim->im", moved, momenta)
+    nodes = len(structure.mesh.nodes)
+    shapes = (held.expansion @ modes.shapes).reshape(nodes, 5, -1)
+    momenta = (structure.mass @ shapes.reshape(-1, shapes.shape[2])).reshape(shapes.shape)
+    energy = np.einsum("nim,nim->im", shapes, momenta)  # by degree of freedom of a node, and mode
     return np.asarray(energy[:2].sum(axis=0) / np.maximum(energy.sum(axis=0), 1e-300))
 
 
 def one_layer_errors(angular_frequencies: Floats, material: Material, thickness: float) -> Floats:
-    """Return the relative errors of bending frequencies of one layer of second-order bricks, which
-    are too high.
+    """Return the relative errors of bending frequencies of one layer of second-order bricks.
+
+    The frequencies are too high.
 
     Notes
     -----
@@ -145,8 +144,11 @@ def one_layer_errors(angular_frequencies: Floats, material: Material, thickness:
 
 
 def main_cause(parts: Mapping[str, Floats]) -> str:
-    """Return the cause of the largest contribution to the error of the mode with the
-    largest total error; "" without causes.
+    """Return the cause of the largest contribution to the largest error of a mode.
+
+    It is "" without causes.
     """
-    worst = int(np.nanargmax(sum(parts.values()))) if parts else 0
-    return max(parts, key=lambda name: float(parts[name][worst]), default="")
+    if not parts:
+        return ""
+    worst_mode = int(np.nanargmax(sum(parts.values())))
+    return max(parts, key=lambda cause: float(parts[cause][worst_mode]))

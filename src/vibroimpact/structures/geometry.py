@@ -1,5 +1,6 @@
-"""Geometry of a mesh: Jacobians of the isoparametric map, mass properties, and checks for
-inverted elements and loose parts.
+"""Geometry of a mesh: Jacobians of the isoparametric map, mass properties and checks.
+
+The checks are for inverted elements and loose parts.
 """
 
 from __future__ import annotations
@@ -17,6 +18,8 @@ from vibroimpact.structures.parts import part_of_nodes, used_nodes
 _MIRRORED_ALONG_X_Y = (4, 5)  # corners of tetrahedra and pyramids
 # exact for the product of two coordinates and the Jacobian of a second-order brick
 _INERTIA_DEGREE = 9
+_SHOWN = 5  # inverted elements in a message
+_CHUNK = 5000  # elements whose determinants are taken at once
 
 
 @dataclass(frozen=True)
@@ -56,50 +59,54 @@ def mass_properties(mesh: Mesh, density: float | Floats, thickness: float = 1.0)
     >>> round(mass_properties(box_mesh((2.0, 1.0, 1.0), (2, 1, 1)), 7850.0).mass, 6)
     15700.0
     """
-    volume, first, second = 0.0, np.zeros(3), np.zeros((3, 3))
-    reference = float(np.mean(density))
-    ratios = np.broadcast_to(np.asarray(density) / reference, mesh.number_of_elements)
+    # moments over the mean density: integrals of 1, x_i and x_i x_j
+    volume = 0.0
+    first_moment = np.zeros(3)
+    second_moment = np.zeros((3, 3))
+    mean_density = float(np.mean(density))
+    ratios = np.broadcast_to(np.asarray(density) / mean_density, mesh.number_of_elements)
     ends = np.cumsum([len(block.connectivity) for block in mesh.blocks])[:-1]
     for block, ratio in zip(mesh.blocks, np.split(ratios, ends), strict=True):
+        is_plate = block.element.dimension == 2
         points, weights = block.element.quadrature(max(_INERTIA_DEGREE, block.element.degree))
-        values, slopes = block.element.basis(points)
-        at = mesh.nodes[block.connectivity]
-        scale = (
-            ratio[:, None]
-            * weights
-            * np.abs(determinants(at, slopes))
-            * (thickness if block.element.dimension == 2 else 1.0)
-        )
-        positions = np.einsum("qk,eki->eqi", values, at, optimize=True)
-        volume += scale.sum()
-        first += np.einsum("eq,eqi->i", scale, positions)
-        second += np.einsum("eq,eqi,eqj->ij", scale, positions, positions, optimize=True)
-        if block.element.dimension == 2:
-            second[2, 2] += scale.sum() * thickness**2 / 12.0
-    centre = first / volume
-    spread = reference * (second - volume * np.outer(centre, centre))
-    return MassProperties(float(reference * volume), centre, np.trace(spread) * np.eye(3) - spread)
+        values, gradients = block.element.basis(points)
+        nodes = mesh.nodes[block.connectivity]
+        height = thickness if is_plate else 1.0
+        # of the quadrature points, weighted with the density
+        volumes = ratio[:, None] * weights * np.abs(determinants(nodes, gradients)) * height
+        positions = np.einsum("qk,eki->eqi", values, nodes, optimize=True)
+        volume += volumes.sum()
+        first_moment += np.einsum("eq,eqi->i", volumes, positions)
+        second_moment += np.einsum("eq,eqi,eqj->ij", volumes, positions, positions, optimize=True)
+        if is_plate:  # over the thickness
+            second_moment[2, 2] += volumes.sum() * thickness**2 / 12.0
+    centre = first_moment / volume
+    about_centre = mean_density * (second_moment - volume * np.outer(centre, centre))
+    inertia = np.trace(about_centre) * np.eye(3) - about_centre
+    return MassProperties(float(mean_density * volume), centre, inertia)
 
 
-def determinants(at: Floats, slopes: Floats) -> Floats:
-    """Return the Jacobian determinants det dx/dxi, (elements, points), from nodes `at`
-    (elements, nodes, 3) and reference gradients.
+def determinants(nodes: Floats, gradients: Floats) -> Floats:
+    """Return the Jacobian determinants det dx/dxi, (elements, points).
+
+    They follow from nodes (elements, nodes, 3) and reference gradients.
     """
-    dimension = slopes.shape[1]
-    return np.asarray(np.linalg.det(jacobians(at[:, :, :dimension], slopes)))
+    dimension = gradients.shape[1]
+    return np.asarray(np.linalg.det(jacobians(nodes[:, :, :dimension], gradients)))
 
 
-def jacobians(at: Floats, slopes: Floats) -> Floats:
+def jacobians(nodes: Floats, gradients: Floats) -> Floats:
     """Return the Jacobians dx_i/dxi_d, (elements, points, dimension d, dimension i)."""
-    elements, (points, dimension, nodes) = len(at), slopes.shape
-    return np.asarray((slopes.reshape(-1, nodes) @ at).reshape(elements, points, dimension, -1))
+    points, dimension, nodes_of_element = gradients.shape
+    products = gradients.reshape(-1, nodes_of_element) @ nodes
+    return np.asarray(products.reshape(len(nodes), points, dimension, -1))
 
 
 def renumbered_by_volume(mesh: Mesh) -> Mesh:
-    """Return a mesh of solids in which elements of wholly negative volume are numbered the other
-    way round, which other programs read.
+    """Return a mesh of solids in which inverted elements are numbered the other way round.
 
-    Elements whose volume is negative in part are folded, and stay as they are.
+    They are those of wholly negative volume, which other programs read. Elements whose volume is
+    negative in part are folded, and stay as they are.
 
     Examples
     --------
@@ -107,28 +114,28 @@ def renumbered_by_volume(mesh: Mesh) -> Mesh:
     >>> renumbered_by_volume(tet).blocks[0].connectivity.tolist()
     [[0, 1, 3, 2]]
     """
-    blocks = []
-    for block in mesh.blocks:
-        middle = block.element.reference[: block.element.corners].mean(axis=0, keepdims=True)
-        turned = np.flatnonzero(
-            determinants(mesh.nodes[block.connectivity], block.element.basis(middle)[1])[:, 0] < 0.0
-        )
-        if len(turned):
-            other = _other_way_round(block.element)
-            connectivity = block.connectivity.copy()
-            connectivity[turned] = connectivity[turned][:, other]
-            right = (
-                _smallest_determinants(mesh, ElementBlock(block.kind, connectivity[turned])) > 0.0
-            )
-            connectivity[turned[~right]] = block.connectivity[turned[~right]]
-            block = ElementBlock(block.kind, connectivity)
-        blocks.append(block)
-    return replace(mesh, blocks=tuple(blocks))
+    return replace(mesh, blocks=tuple(_renumbered(mesh, block) for block in mesh.blocks))
+
+
+def _renumbered(mesh: Mesh, block: ElementBlock) -> ElementBlock:
+    """Return a block of solids with inverted elements numbered the other way round."""
+    corners = block.element.reference[: block.element.corners]
+    _, gradients = block.element.basis(corners.mean(axis=0, keepdims=True))
+    in_middle = determinants(mesh.nodes[block.connectivity], gradients)[:, 0]
+    inverted = np.flatnonzero(in_middle < 0.0)
+    if not len(inverted):
+        return block
+    renumbered = block.connectivity[inverted][:, _other_way_round(block.element)]
+    is_right = _smallest_determinants(mesh, ElementBlock(block.kind, renumbered)) > 0.0
+    connectivity = block.connectivity.copy()
+    connectivity[inverted[is_right]] = renumbered[is_right]
+    return ElementBlock(block.kind, connectivity)
 
 
 def _other_way_round(element: ElementKind) -> Integers:
-    """Return the numbering of a mirrored element: a tetrahedron or pyramid with x and y
-    exchanged, a wedge or brick from top to bottom.
+    """Return the numbering of a mirrored element.
+
+    Of a tetrahedron or pyramid x and y are exchanged, of a wedge or brick top and bottom.
     """
     mirrored = element.reference.copy()
     if element.corners in _MIRRORED_ALONG_X_Y:
@@ -147,19 +154,19 @@ def check_mesh(mesh: Mesh) -> None:
     InputError
         With the inverted elements, or the number of loose parts.
     """
-    first = 0
+    first = 0  # number of the first element of a block
     for block in mesh.blocks:
-        bad = np.flatnonzero(_smallest_determinants(mesh, block) <= 0.0)
-        if len(bad):
-            shown = ", ".join(str(first + index + 1) for index in bad[:5]) + (
-                ", ..." if len(bad) > 5 else ""
-            )
+        inverted = np.flatnonzero(_smallest_determinants(mesh, block) <= 0.0)
+        if len(inverted):
+            numbers = ", ".join(str(first + index + 1) for index in inverted[:_SHOWN])
+            if len(inverted) > _SHOWN:
+                numbers += ", ..."
             kinds = ", kind by kind" if len(mesh.blocks) > 1 else ""
             raise InputError(
-                f"{len(bad)} of {len(block.connectivity)} {block.kind} elements are "
+                f"{len(inverted)} of {len(block.connectivity)} {block.kind} elements are "
                 "inverted or folded "
                 "(their volume is not positive everywhere): "
-                f"number {shown}, counted from 1 in the order of the mesh{kinds}; "
+                f"number {numbers}, counted from 1 in the order of the mesh{kinds}; "
                 "use smaller elements, or mesh the part again if the mesh was imported"
             )
         first += len(block.connectivity)
@@ -172,15 +179,14 @@ def check_mesh(mesh: Mesh) -> None:
 
 
 def _smallest_determinants(mesh: Mesh, block: ElementBlock) -> Floats:
-    """Return the smallest Jacobian determinant of each element, at the quadrature points
-    and at the corners.
+    """Return the smallest Jacobian determinant of each element.
+
+    It is that at the quadrature points and at the corners.
     """
-    points = np.concatenate(
-        [block.element.quadrature()[0], block.element.reference[: block.element.corners]]
+    quadrature_points, _ = block.element.quadrature()
+    corners = block.element.reference[: block.element.corners]
+    _, gradients = block.element.basis(np.concatenate([quadrature_points, corners]))
+    chunks = np.array_split(block.connectivity, len(block.connectivity) // _CHUNK + 1)
+    return np.concatenate(
+        [determinants(mesh.nodes[chunk], gradients).min(axis=1) for chunk in chunks]
     )
-    slopes = block.element.basis(points)[1]
-    found = [
-        determinants(mesh.nodes[part], slopes).min(axis=1)
-        for part in np.array_split(block.connectivity, len(block.connectivity) // 5000 + 1)
-    ]
-    return np.concatenate(found)

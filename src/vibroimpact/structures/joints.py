@@ -1,5 +1,6 @@
-"""Joints of a mesh: displacements of nodes that follow those of others, from linear
-equations between displacements.
+"""Joints of a mesh: displacements of nodes that follow those of others.
+
+They follow from linear equations between displacements.
 """
 
 from __future__ import annotations
@@ -11,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.sparse import coo_array, csr_array
 
-from vibroimpact.arrays import Bools, Integers
+from vibroimpact.arrays import Bools, Floats, Integers
 from vibroimpact.errors import InputError
 
 AXES = 3
@@ -61,29 +62,27 @@ class Joints:
 
     def rows(self) -> list[tuple[int, Terms]]:
         """Return each follower with the weights of the displacements that move it."""
-        starts, columns, values = (
-            part.tolist() for part in (self.weights.indptr, self.weights.indices, self.weights.data)
-        )
-        return [
-            (follower, dict(zip(columns[start:end], values[start:end], strict=True)))
-            for follower, start, end in zip(
-                self.followers.tolist(), starts[:-1], starts[1:], strict=True
-            )
-        ]
+        starts = self.weights.indptr.tolist()
+        columns = self.weights.indices.tolist()
+        values = self.weights.data.tolist()
+        rows = []
+        for index, follower in enumerate(self.followers.tolist()):
+            entries = slice(starts[index], starts[index + 1])
+            rows.append((follower, dict(zip(columns[entries], values[entries], strict=True))))
+        return rows
 
     def of_nodes(self, chosen: Bools) -> Joints | None:
-        """Return the joints of chosen nodes, renumbered without the others; None if there
-        are none. No joint may lead to others.
+        """Return the joints of chosen nodes, renumbered without the others; None if there are none.
+
+        No joint may lead to others.
         """
-        places = AXES * (np.cumsum(chosen) - 1)[:, None] + np.arange(AXES)
-        columns = np.repeat(chosen, AXES)
-        mine = columns[self.followers]
-        if not mine.any():
+        new_numbers = AXES * (np.cumsum(chosen) - 1)[:, None] + np.arange(AXES)
+        is_chosen = np.repeat(chosen, AXES)  # of each displacement
+        kept = is_chosen[self.followers]
+        if not kept.any():
             return None
-        return Joints(
-            places.ravel()[self.followers[mine]],
-            csr_array(self.weights[mine][:, np.flatnonzero(columns)]),
-        )
+        weights = csr_array(self.weights[kept][:, np.flatnonzero(is_chosen)])
+        return Joints(new_numbers.ravel()[self.followers[kept]], weights)
 
 
 def solved_joints(equations: Sequence[Terms], displacements: int) -> Joints | None:
@@ -108,178 +107,225 @@ def solved_joints(equations: Sequence[Terms], displacements: int) -> Joints | No
     hold for some value of these. Then each equation is solved for one displacement, if possible for
     one that occurs in no other.
     """
-    waiting = [*_without_others(equations, displacements)]
-    uses = Counter(unknown for row in waiting for unknown in row)
-    ties: dict[int, Terms] = {}
-    for row in waiting:
-        found = _substituted(row, ties)
-        largest = max(map(abs, found.values()), default=0.0)
-        if not largest > _NONE * max(map(abs, row.values())):
-            continue  # it follows from those before
-        able = [unknown for unknown, value in found.items() if abs(value) >= _PIVOT * largest]
-        follower = min(able, key=lambda unknown: (uses[unknown], -unknown))
-        scale = found.pop(follower)
+    remaining = _without_other_unknowns(equations, displacements)
+    uses = Counter(unknown for equation in remaining for unknown in equation)
+    ties: dict[int, Terms] = {}  # each follower in terms of other displacements
+    for equation in remaining:
+        terms = _substituted(equation, ties)
+        largest = max(map(abs, terms.values()), default=0.0)
+        if not largest > _NONE * max(map(abs, equation.values())):
+            continue  # it follows from earlier equations
+        pivots = [unknown for unknown, value in terms.items() if abs(value) >= _PIVOT * largest]
+        # the one in the fewest equations; of several, the highest number
+        follower = min(pivots, key=lambda unknown: (uses[unknown], -unknown))
+        pivot = terms.pop(follower)
         ties[follower] = {
-            unknown: -value / scale
-            for unknown, value in found.items()
+            unknown: -value / pivot
+            for unknown, value in terms.items()
             if abs(value) > _NONE * _PIVOT * largest
         }
     return _resolved(ties, displacements) if ties else None
 
 
-def _substituted(row: Terms, ties: dict[int, Terms]) -> Terms:
+def _substituted(equation: Terms, ties: dict[int, Terms]) -> Terms:
     """Return an equation in terms of displacements that do not follow others so far."""
-    waiting, found = list(row.items()), dict[int, float]()
-    while waiting:
-        unknown, value = waiting.pop()
+    stack = list(equation.items())
+    terms = dict[int, float]()
+    while stack:
+        unknown, value = stack.pop()
         if unknown in ties:
-            waiting += [(other, value * share) for other, share in ties[unknown].items()]
+            stack += [(mover, value * weight) for mover, weight in ties[unknown].items()]
         else:
-            found[unknown] = found.get(unknown, 0.0) + value
-    return found
+            terms[unknown] = terms.get(unknown, 0.0) + value
+    return terms
 
 
 def _resolved(ties: dict[int, Terms], displacements: int) -> Joints:
     """Return the joints of ties, of which earlier ones may lead to followers of later ones."""
     followers = np.array(sorted(ties), dtype=np.int64)
-    entries = [
-        (row, unknown, value)
-        for row, one in enumerate(followers.tolist())
-        for unknown, value in ties[one].items()
-    ]
-    rows, columns, values = (
-        (np.array(side) for side in zip(*entries, strict=True))
-        if entries
-        else (np.zeros(0, int),) * 3
-    )
+    rows = []
+    columns = []
+    values = []
+    for row, follower in enumerate(followers.tolist()):
+        for unknown, value in ties[follower].items():
+            rows.append(row)
+            columns.append(unknown)
+            values.append(value)
     weights = csr_array(
-        coo_array((values, (rows, columns)), shape=(len(followers), displacements)),
+        coo_array(
+            (
+                np.array(values, dtype=np.float64),
+                (np.array(rows, dtype=np.int64), np.array(columns, dtype=np.int64)),
+            ),
+            shape=(len(followers), displacements),
+        ),
         dtype=np.float64,
     )
-    place = np.full(displacements, -1)
-    place[followers] = np.arange(len(followers))
-    while len(followed := np.flatnonzero(place[weights.indices] >= 0)):
-        entry = weights.tocoo()
-        direct = np.ones(len(entry.data), dtype=bool)
-        direct[followed] = False
-        through = coo_array(
-            (entry.data[followed], (entry.row[followed], place[entry.col[followed]])),
+    row_of_follower = np.full(displacements, -1)
+    row_of_follower[followers] = np.arange(len(followers))
+    # substitute followers until none is left among the displacements that move others
+    while (leads_to_follower := row_of_follower[weights.indices] >= 0).any():
+        entries = weights.tocoo()
+        is_direct = ~leads_to_follower
+        indirect = coo_array(
+            (
+                entries.data[leads_to_follower],
+                (
+                    entries.row[leads_to_follower],
+                    row_of_follower[entries.col[leads_to_follower]],
+                ),
+            ),
             shape=(len(followers), len(followers)),
         )
-        straight = coo_array(
-            (entry.data[direct], (entry.row[direct], entry.col[direct])), shape=weights.shape
+        direct = coo_array(
+            (entries.data[is_direct], (entries.row[is_direct], entries.col[is_direct])),
+            shape=weights.shape,
         )
-        weights = csr_array(straight.tocsr() + through.tocsr() @ weights)
+        weights = csr_array(direct.tocsr() + indirect.tocsr() @ weights)
     return Joints(followers, weights)
 
 
-def _without_others(equations: Sequence[Terms], displacements: int) -> list[Terms]:
-    """Return the equations that remain once the unknowns that are no displacements are
-    eliminated.
+def _without_other_unknowns(equations: Sequence[Terms], displacements: int) -> list[Terms]:
+    """Return the equations that remain once all unknowns but displacements are eliminated."""
+    binding = [equations[number] for number in _that_bind(equations, displacements)]
+    remaining = [
+        equation
+        for equation in equations
+        if not any(unknown >= displacements for unknown in equation)
+    ]
+    for members in _hanging_together(binding, displacements):
+        remaining += _eliminated([binding[member] for member in members], displacements)
+    return remaining
+
+
+def _eliminated(equations: list[Terms], displacements: int) -> list[Terms]:
+    """Return those combinations of equations in which unknowns from `displacements` on cancel.
+
+    Raises
+    ------
+    InputError
+        If there are too many.
     """
     from scipy.linalg import qr
 
-    with_others = _that_bind(equations, displacements)
-    found = [row for row in equations if not any(unknown >= displacements for unknown in row)]
-    for members in _hanging_together([equations[index] for index in with_others], displacements):
-        rows = [equations[with_others[index]] for index in members]
-        others = sorted({unknown for row in rows for unknown in row if unknown >= displacements})
-        if len(rows) * len(others) > _MOST_DENSE:
-            raise InputError(
-                f"{len(rows)} equations of rigid parts are linked through rotations or "
-                "nodes off the mesh, which is too many; replace "
-                "chains of rigid parts by one that joins the nodes of the mesh directly, or "
-                "leave parts out"
-            )
-        place = {unknown: index for index, unknown in enumerate(others)}
-        matrix = np.zeros((len(rows), len(others)))
-        for index, row in enumerate(rows):
-            for unknown, value in row.items():
-                if unknown >= displacements:
-                    matrix[index, place[unknown]] = value
-        matrix /= np.linalg.norm(matrix, axis=0)
-        triangle, order = qr(matrix.T, mode="r", pivoting=True)
-        diagonal = np.abs(np.diagonal(triangle))
-        rank = int((diagonal > _NONE * diagonal[0]).sum())
-        solved, rest = order[:rank], order[rank:]
-        shares = np.linalg.lstsq(matrix[solved].T, matrix[rest].T, rcond=None)[0].T
-        bases = [
-            {unknown: value for unknown, value in rows[index].items() if unknown < displacements}
-            for index in solved
-        ]
-        for index, share in zip(rest.tolist(), shares.tolist(), strict=True):
-            left = {
-                unknown: value for unknown, value in rows[index].items() if unknown < displacements
-            }
-            for factor, base in zip(share, bases, strict=True):
-                for unknown, value in base.items() if factor else ():
-                    left[unknown] = left.get(unknown, 0.0) - factor * value
-            size = max([*map(abs, rows[index].values()), *map(abs, share)])
-            left = {unknown: value for unknown, value in left.items() if abs(value) > _NONE * size}
-            if left:
-                found.append(left)
-    return found
+    matrix = _coefficients_of_others(equations, displacements)
+    # independent equations, of which the others are combinations as far as the matrix goes
+    triangle, order = qr(matrix.T, mode="r", pivoting=True)
+    diagonal = np.abs(np.diagonal(triangle))
+    rank = int((diagonal > _NONE * diagonal[0]).sum())
+    independent = order[:rank]
+    dependent = order[rank:]
+    shares = np.linalg.lstsq(matrix[independent].T, matrix[dependent].T, rcond=None)[0].T
+    of_displacements = [
+        {unknown: value for unknown, value in equation.items() if unknown < displacements}
+        for equation in equations
+    ]
+    remaining = []
+    for index, row_shares in zip(dependent.tolist(), shares.tolist(), strict=True):
+        terms = of_displacements[index].copy()
+        for share, base in zip(row_shares, independent.tolist(), strict=True):
+            if not share:
+                continue
+            for unknown, value in of_displacements[base].items():
+                terms[unknown] = terms.get(unknown, 0.0) - share * value
+        scale = max([*map(abs, equations[index].values()), *map(abs, row_shares)])
+        terms = {unknown: value for unknown, value in terms.items() if abs(value) > _NONE * scale}
+        if terms:
+            remaining.append(terms)
+    return remaining
+
+
+def _coefficients_of_others(equations: list[Terms], displacements: int) -> Floats:
+    """Return the coefficients of unknowns from `displacements` on, (equations, unknowns).
+
+    Columns are of unit norm.
+
+    Raises
+    ------
+    InputError
+        If there are too many.
+    """
+    others = sorted(
+        {unknown for equation in equations for unknown in equation if unknown >= displacements}
+    )
+    if len(equations) * len(others) > _MOST_DENSE:
+        raise InputError(
+            f"{len(equations)} equations of rigid parts are linked through rotations or "
+            "nodes off the mesh, which is too many; replace "
+            "chains of rigid parts by one that joins the nodes of the mesh directly, or "
+            "leave parts out"
+        )
+    column_of = {unknown: column for column, unknown in enumerate(others)}
+    matrix = np.zeros((len(equations), len(others)))
+    for row, equation in enumerate(equations):
+        for unknown, value in equation.items():
+            if unknown >= displacements:
+                matrix[row, column_of[unknown]] = value
+    matrix /= np.linalg.norm(matrix, axis=0)
+    return matrix
 
 
 def _that_bind(equations: Sequence[Terms], displacements: int) -> list[int]:
-    """Return the numbers of the equations with unknowns from `displacements` on, but for those that
-    hold for some value of one of these.
+    """Return the numbers of the equations that bind unknowns from `displacements` on.
 
-    Such an unknown is in no other equation, as the rotation of a node that follows a rigid part.
+    Left out are equations that hold for some value of such an unknown, which is in no other
+    equation, as the rotation of a node that follows a rigid part.
     """
-    others = {
-        index: {unknown for unknown in row if unknown >= displacements}
-        for index, row in enumerate(equations)
+    unknowns_of = {
+        number: {unknown for unknown in equation if unknown >= displacements}
+        for number, equation in enumerate(equations)
     }
-    uses: dict[int, set[int]] = {}
-    for index, unknowns in others.items():
+    uses: dict[int, set[int]] = {}  # the equations of each unknown
+    for number, unknowns in unknowns_of.items():
         for unknown in unknowns:
-            uses.setdefault(unknown, set()).add(index)
-    waiting = [unknown for unknown, rows in uses.items() if len(rows) == 1]
-    while waiting:
-        for index in uses[waiting.pop()].copy():
-            for unknown in others.pop(index):
-                uses[unknown].discard(index)
+            uses.setdefault(unknown, set()).add(number)
+    used_once = [unknown for unknown, numbers in uses.items() if len(numbers) == 1]
+    while used_once:
+        for number in uses[used_once.pop()].copy():
+            for unknown in unknowns_of.pop(number):
+                uses[unknown].discard(number)
                 if len(uses[unknown]) == 1:
-                    waiting.append(unknown)
-    return [index for index, unknowns in others.items() if unknowns]
+                    used_once.append(unknown)
+    return [number for number, unknowns in unknowns_of.items() if unknowns]
 
 
-def _hanging_together(rows: Sequence[Terms], displacements: int) -> list[list[int]]:
-    """Return the numbers of rows in groups that share unknowns from `displacements` on."""
+def _hanging_together(equations: Sequence[Terms], displacements: int) -> list[list[int]]:
+    """Return the numbers of equations in groups that share unknowns from `displacements` on."""
     from scipy.sparse.csgraph import connected_components
 
-    if not rows:
+    if not equations:
         return []
-    pairs = [
-        (row, unknown)
-        for row, terms in enumerate(rows)
-        for unknown in terms
-        if unknown >= displacements
-    ]
-    row, unknown = (np.array(side, dtype=np.int64) for side in zip(*pairs, strict=True))
-    _, column = np.unique(unknown, return_inverse=True)
-    size = len(rows) + int(column.max()) + 1
-    graph = coo_array((np.ones(len(row)), (row, len(rows) + column)), shape=(size, size))
-    labels = connected_components(graph, directed=False)[1][: len(rows)]
+    numbers = []
+    unknowns = []
+    for number, equation in enumerate(equations):
+        for unknown in equation:
+            if unknown >= displacements:
+                numbers.append(number)
+                unknowns.append(unknown)
+    # a graph of equations, followed by unknowns
+    _, column = np.unique(np.array(unknowns, dtype=np.int64), return_inverse=True)
+    size = len(equations) + int(column.max()) + 1
+    graph = coo_array(
+        (np.ones(len(numbers)), (np.array(numbers, dtype=np.int64), len(equations) + column)),
+        shape=(size, size),
+    )
+    labels = connected_components(graph, directed=False)[1][: len(equations)]
     order = np.argsort(labels, kind="stable")
-    return [part.tolist() for part in np.split(order, np.flatnonzero(np.diff(labels[order])) + 1)]
+    ends = np.flatnonzero(np.diff(labels[order])) + 1
+    return [group.tolist() for group in np.split(order, ends)]
 
 
 def joined_adjacency(adjacency: csr_array, joints: Joints) -> csr_array:
-    """Return the pattern of nodes that are coupled once followers are expressed by the
-    nodes that move them.
-    """
-    number = adjacency.shape[0]
+    """Return the pattern of coupled nodes once followers are expressed by nodes that move them."""
+    nodes = adjacency.shape[0]
     follower, mover = joints.pairs
-    moved = csr_array(
-        coo_array((np.ones(len(follower)), (follower, mover)), shape=(number, number))
+    movers = csr_array(coo_array((np.ones(len(follower)), (follower, mover)), shape=(nodes, nodes)))
+    every_node = np.arange(nodes)
+    identity = csr_array(
+        coo_array((np.ones(nodes), (every_node, every_node)), shape=(nodes, nodes))
     )
-    whole = csr_array(
-        moved
-        + csr_array(coo_array((np.ones(number), (np.arange(number),) * 2), shape=(number, number)))
-    )
-    return csr_array(whole.T @ adjacency @ whole)
+    expansion = csr_array(movers + identity)
+    return csr_array(expansion.T @ adjacency @ expansion)
 
 
 def hubs(joints: Joints, nodes: int) -> Bools:

@@ -1,5 +1,6 @@
-"""Spreading of amounts over the points of a regular grid, as the transpose of Lagrange's
-interpolation of degree five.
+"""Spreading of amounts over the points of a regular grid.
+
+It is the transpose of Lagrange's interpolation of degree five.
 """
 
 from __future__ import annotations
@@ -15,8 +16,9 @@ _CARDINAL = np.linalg.inv(np.vander(STENCIL.astype(float)))
 
 
 def lagrange_shares(places: Floats) -> tuple[Integers, Floats]:
-    """Return the points of `STENCIL` for places in steps of the grid, (n, 6), and the share of each
-    in an amount there, (n, 6).
+    """Return the points of `STENCIL` for places in steps of the grid, and their shares, (n, 6).
+
+    A share is the part of an amount at the place that the point gets.
 
     Examples
     --------
@@ -25,4 +27,5 @@ def lagrange_shares(places: Floats) -> tuple[Integers, Floats]:
     ([[5, 6, 7, 8, 9, 10]], 0.0)
     """
     cells = np.floor(places).astype(int)
-    return cells[:, None] + STENCIL, np.asarray(np.vander(places - cells, len(STENCIL)) @ _CARDINAL)
+    powers = np.vander(places - cells, len(STENCIL))
+    return cells[:, None] + STENCIL, np.asarray(powers @ _CARDINAL)

@@ -15,10 +15,11 @@ from scipy.sparse import csr_array
 from vibroimpact.arrays import Floats
 from vibroimpact.errors import ComputationError
 
-_BLOCK = 10
+_BLOCK = 10  # vectors of a block
 TOLERANCE = 1e-9
-"""Residual of a mode relative to its static response; the relative error of the
-eigenvalue is the square of it.
+"""Residual of a mode relative to its static response.
+
+The relative error of the eigenvalue is the square of it.
 """
 
 _EQUAL = 1e-6  # relative difference below which eigenvalues count as equal
@@ -69,29 +70,32 @@ def lowest_modes(
     have converged, a short iteration from other random vectors, orthogonal to those found, searches
     for missed modes, as eigenvalues may have a higher multiplicity than a block has columns.
     """
-    values, vectors = np.zeros(0), np.zeros((mass.shape[0], 0))
+    values = np.zeros(0)
+    vectors = np.zeros((mass.shape[0], 0))
     random = np.random.default_rng(1)
     wanted = number
     while True:
         krylov = _Krylov(respond, mass, vectors, random)
-        enough = wanted
+        next_test = wanted  # size of the space at which convergence is tested
         while not krylov.exhausted:
-            if krylov.size >= enough:
+            if krylov.size >= next_test:
                 if krylov.converged(tolerance) >= wanted:
                     break
-                enough = int(_GROWTH * krylov.size)
+                next_test = int(_GROWTH * krylov.size)
             if krylov.size > _MAX_SPACE * (wanted + _BLOCK):
                 raise ComputationError(
                     f"the {number} lowest modes could not be found: the iteration does not converge"
                 )
             krylov.grow()
+            # about how large the space will be
             progress(min(0.99, krylov.size / (2.5 * number + 6.0 * _BLOCK)))
-        found, shapes = krylov.modes(wanted)
-        order = np.argsort(np.concatenate([values, found]))[:number]
-        values, vectors = (
-            np.concatenate([values, found])[order],
-            np.concatenate([vectors, shapes], axis=1)[:, order],
-        )
+        new_values, new_vectors = krylov.modes(wanted)
+        values = np.concatenate([values, new_values])
+        vectors = np.concatenate([vectors, new_vectors], axis=1)
+        lowest = np.argsort(values)[:number]
+        values = values[lowest]
+        vectors = vectors[:, lowest]
+
         check = _Krylov(respond, mass, vectors, random)
         for _ in range(_CHECK_BLOCKS):
             check.grow()
@@ -111,10 +115,13 @@ class _Krylov:
         known: Floats,
         random: np.random.Generator,
     ) -> None:
-        self._respond, self._mass = respond, mass
-        self._known, self._known_momenta = known, mass @ known
-        # storage of the vectors and of their products with M, enlarged when full
-        self._room = [np.empty((mass.shape[0], 4 * _BLOCK), order="F") for _ in range(2)]
+        self._respond = respond
+        self._mass = mass
+        self._known = known
+        self._known_momenta = mass @ known
+        # vectors of the space and their products with M, with room for more columns
+        self._vector_storage = np.empty((mass.shape[0], 4 * _BLOCK), order="F")
+        self._momentum_storage = np.empty((mass.shape[0], 4 * _BLOCK), order="F")
         self.size = 0
         """Dimension of the space."""
         self._projected = np.zeros((0, 0))  # K^-1 M on the space
@@ -126,25 +133,25 @@ class _Krylov:
 
     @property
     def _vectors(self) -> Floats:
-        return self._room[0][:, : self.size]
+        """The basis of the space, orthonormal in M."""
+        return self._vector_storage[:, : self.size]
 
     @property
     def _momenta(self) -> Floats:
-        return self._room[1][:, : self.size]
+        """Products of the basis with M."""
+        return self._momentum_storage[:, : self.size]
 
     def grow(self) -> None:
         """Add the orthonormalised response to the last block."""
         if self.exhausted:
             return
-        columns = slice(self.size - self._width, self.size)
-        response, coefficients = self._orthogonalised(self._respond(self._momenta[:, columns]))
-        size = self.size
-        projected = np.zeros((size, size))
-        projected[: columns.start, : columns.start] = self._projected[
-            : columns.start, : columns.start
-        ]
-        projected[:, columns] = coefficients
-        projected[columns] = coefficients.T
+        last_block = slice(self.size - self._width, self.size)
+        earlier = slice(0, self.size - self._width)
+        response, coefficients = self._orthogonalised(self._respond(self._momenta[:, last_block]))
+        projected = np.zeros((self.size, self.size))
+        projected[earlier, earlier] = self._projected[earlier, earlier]
+        projected[:, last_block] = coefficients
+        projected[last_block] = coefficients.T
         self._projected = projected
         self._add(response)
 
@@ -153,8 +160,11 @@ class _Krylov:
         from scipy.linalg import eigh  # imported late: modes that are stored do not need it
 
         size = len(self._projected)
-        responses, turned = eigh(self._projected, subset_by_index=[max(0, size - number), size - 1])
-        return 1.0 / responses[::-1], self._vectors[:, :size] @ turned[:, ::-1]
+        # eigenvalues of K^-1 M: the largest are those of the lowest modes
+        responses, coefficients = eigh(
+            self._projected, subset_by_index=[max(0, size - number), size - 1]
+        )
+        return 1.0 / responses[::-1], self._vectors[:, :size] @ coefficients[:, ::-1]
 
     def converged(self, tolerance: float) -> int:
         """Return the number of lowest modes that have converged, without a gap."""
@@ -163,14 +173,16 @@ class _Krylov:
         size = len(self._projected)
         if not size:
             return 0
-        responses, turned = eigh(self._projected)
-        left = np.linalg.norm(self._last @ turned[size - self._last.shape[1] :], axis=0)
-        unconverged = (left > tolerance * np.abs(responses))[::-1]
+        responses, coefficients = eigh(self._projected)
+        # what the newest block, which is not yet in the projection, adds to each response
+        residuals = np.linalg.norm(self._last @ coefficients[size - self._last.shape[1] :], axis=0)
+        unconverged = (residuals > tolerance * np.abs(responses))[::-1]
         return int(unconverged.argmax()) if unconverged.any() else int(size)
 
     def _orthogonalised(self, block: Floats) -> tuple[Floats, Floats]:
-        """Return a block orthogonalised against the space and the known modes, and its
-        coefficients in the space.
+        """Return a block orthogonalised against the space and the known modes.
+
+        Its coefficients in the space are returned too.
         """
         total = np.zeros((self.size, block.shape[1]))
         for _ in range(2):  # twice, against rounding
@@ -183,17 +195,24 @@ class _Krylov:
     def _add(self, block: Floats) -> None:
         """Add a block to the space, orthonormal in M and without dependent directions."""
         momenta = self._mass @ block
-        squares, turned = np.linalg.eigh(block.T @ momenta)
-        keep = squares > _DEPENDENT * max(squares[-1], 1e-300)
-        scale = turned[:, keep] / np.sqrt(squares[keep])
-        self._last = (turned[:, keep] * np.sqrt(squares[keep])).T
-        self._width = int(keep.sum())
+        squares, directions = np.linalg.eigh(block.T @ momenta)
+        independent = squares > _DEPENDENT * max(squares[-1], 1e-300)
+        norms = np.sqrt(squares[independent])
+        scaled_directions = directions[:, independent] / norms
+        self._last = (directions[:, independent] * norms).T
+        self._width = int(independent.sum())
         self.exhausted = not self._width
-        end = self.size + self._width
-        for index, more in enumerate((block @ scale, momenta @ scale)):
-            if end > self._room[index].shape[1]:
-                larger = np.empty((len(block), 2 * end), order="F")
-                larger[:, : self.size] = self._room[index][:, : self.size]
-                self._room[index] = larger
-            self._room[index][:, self.size : end] = more
-        self.size = end
+        new_size = self.size + self._width
+        self._vector_storage = self._with_room(self._vector_storage, new_size)
+        self._momentum_storage = self._with_room(self._momentum_storage, new_size)
+        self._vector_storage[:, self.size : new_size] = block @ scaled_directions
+        self._momentum_storage[:, self.size : new_size] = momenta @ scaled_directions
+        self.size = new_size
+
+    def _with_room(self, storage: Floats, columns: int) -> Floats:
+        """Return a storage of at least so many columns, with the present ones."""
+        if columns <= storage.shape[1]:
+            return storage
+        larger = np.empty((len(storage), 2 * columns), order="F")
+        larger[:, : self.size] = storage[:, : self.size]
+        return larger

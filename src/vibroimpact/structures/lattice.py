@@ -18,46 +18,46 @@ from vibroimpact.structures.element_kinds import ELEMENT_KINDS
 from vibroimpact.structures.mesh import ElementBlock, Mesh
 
 _SAME = 1e-7  # of the largest extent: distance within which points coincide
+# the 27 nodes of a brick as points of the lattice, counted from its first corner
 _BRICK = np.rint(2.0 * ELEMENT_KINDS["hex27"].reference).astype(np.int64)
 
 
 def _tetrahedra(order: int) -> Integers:
-    """Return the six tetrahedra of a brick that share its diagonal, as indices into its
-    27 nodes.
-    """
-    index = {tuple(corner): number for number, corner in enumerate(_BRICK.tolist())}
-    found = []
+    """Return the six tetrahedra around a diagonal of a brick, as indices into its 27 nodes."""
+    reference = ELEMENT_KINDS["tet4" if order == 1 else "tet10"].reference
+    steps = 2 * np.eye(3, dtype=np.int64)  # along the edges of the brick
+    tetrahedra = []
+    # each path along three edges, from the first corner to the opposite one, is one tetrahedron
     for path in permutations(range(3)):
         corners = [np.zeros(3, dtype=np.int64)]
         for axis in path:
-            corners.append(corners[-1] + 2 * np.eye(3, dtype=np.int64)[axis])
-        if np.linalg.det(np.array(corners[1:]) - corners[0]) < 0.0:
+            corners.append(corners[-1] + steps[axis])
+        if np.linalg.det(np.array(corners[1:]) - corners[0]) < 0.0:  # for a positive volume
             corners[1], corners[2] = corners[2], corners[1]
-        reference = ELEMENT_KINDS["tet4" if order == 1 else "tet10"].reference
-        at = corners[0] + reference @ (np.array(corners[1:]) - corners[0])
-        found.append([index[tuple(int(value) for value in point)] for point in np.rint(at)])
-    return np.array(found)
+        points = reference @ (np.array(corners[1:]) - corners[0]) + corners[0]
+        tetrahedra.append(_brick_nodes_at(points))
+    return np.array(tetrahedra)
+
+
+def _brick_nodes_at(points: Floats) -> list[int]:
+    """Return the indices of the nodes of a brick that lie at points of its lattice, (n, 3)."""
+    index = {tuple(node): number for number, node in enumerate(_BRICK.tolist())}
+    return [index[tuple(int(step) for step in point)] for point in np.rint(points)]
 
 
 def _wedges(order: int) -> Integers:
-    """Return the two wedges of a brick on either side of a diagonal plane, as indices
-    into its 27 nodes.
-    """
-    index = {tuple(corner): number for number, corner in enumerate(_BRICK.tolist())}
+    """Return the two wedges beside a diagonal plane of a brick, as indices into its 27 nodes."""
     reference = ELEMENT_KINDS["wedge6" if order == 1 else "wedge15"].reference
+    # images of the three reference directions; the wedges share their first corner
     halves = (
         np.array([[2, 0, 0], [2, 2, 0], [0, 0, 2]]),
         np.array([[2, 2, 0], [0, 2, 0], [0, 0, 2]]),
     )
-    return np.array(
-        [
-            [index[tuple(int(value) for value in point)] for point in np.rint(reference @ half)]
-            for half in halves
-        ]
-    )
+    return np.array([_brick_nodes_at(reference @ half) for half in halves])
 
 
-_TAKEN = {
+# the elements that a brick is divided into, as indices into its 27 nodes
+_ELEMENTS_OF_BRICK = {
     "hex8": np.arange(8)[None],
     "hex20": np.arange(20)[None],
     "hex27": np.arange(27)[None],
@@ -67,8 +67,9 @@ _TAKEN = {
     "wedge15": _wedges(2),
 }
 SOLID_KINDS = ("hex8", "hex20", "hex27", "tet4", "tet10")
-"""Kinds of solid elements of which a case may ask for a mesh; a block can be meshed with
-wedges too.
+"""Kinds of solid elements of which a case may ask for a mesh.
+
+A block can be meshed with wedges too.
 """
 
 
@@ -93,16 +94,22 @@ def mesh_of_blocks(blocks: Sequence[Floats], kind: str) -> Mesh:
     >>> mesh_of_blocks([np.stack([x, y, z], axis=-1)], "tet10").number_of_elements
     6
     """
-    bricks, points, start = [], [], 0
+    bricks = []  # the 27 points of each brick, by block
+    points = []
+    number_of_points = 0  # of the blocks so far
     for block in blocks:
         lattice = _right_handed(block)
-        number = np.arange(start, start + lattice[..., 0].size).reshape(lattice.shape[:3])
-        first = number[:-1:2, :-1:2, :-1:2].ravel()
+        size = lattice[..., 0].size
+        block_numbers = np.arange(number_of_points, number_of_points + size)
+        point_numbers = block_numbers.reshape(lattice.shape[:3])
+        # every second point along each direction is the first corner of a brick
+        first_corners = point_numbers[:-1:2, :-1:2, :-1:2].ravel()
         strides = np.array([lattice.shape[1] * lattice.shape[2], lattice.shape[2], 1])
-        bricks.append(first[:, None] + _BRICK @ strides)
+        bricks.append(first_corners[:, None] + _BRICK @ strides)
         points.append(lattice.reshape(-1, 3))
-        start += lattice[..., 0].size
-    connectivity = np.concatenate(bricks)[:, _TAKEN[kind]].reshape(-1, _TAKEN[kind].shape[1])
+        number_of_points += size
+    elements = _ELEMENTS_OF_BRICK[kind]
+    connectivity = np.concatenate(bricks)[:, elements].reshape(-1, elements.shape[1])
     nodes, connectivity = merged(np.concatenate(points), connectivity)
     return Mesh(nodes, (ElementBlock(kind, connectivity),))
 
@@ -115,15 +122,16 @@ def merged(points: Floats, connectivity: Integers) -> tuple[Floats, Integers]:
 
     used, connectivity = np.unique(connectivity, return_inverse=True)
     points = points[used]
-    near = cKDTree(points).query_pairs(
-        _SAME * float(np.ptp(points, axis=0).max()), output_type="ndarray"
-    )
+    tolerance = _SAME * float(np.ptp(points, axis=0).max())
+    coincident_pairs = cKDTree(points).query_pairs(tolerance, output_type="ndarray")
+    # points that coincide, also by way of others, are one component of the graph of the pairs
     graph = coo_array(
-        (np.ones(len(near)), (near[:, 0], near[:, 1])), shape=(len(points), len(points))
+        (np.ones(len(coincident_pairs)), (coincident_pairs[:, 0], coincident_pairs[:, 1])),
+        shape=(len(points), len(points)),
     )
-    same = connected_components(graph, directed=False)[1].astype(np.int64)
-    _, first = np.unique(same, return_index=True)
-    return points[first], same[connectivity]
+    node_of_point = connected_components(graph, directed=False)[1].astype(np.int64)
+    _, first_points = np.unique(node_of_point, return_index=True)
+    return points[first_points], node_of_point[connectivity]
 
 
 def box_mesh(size: Sequence[float], counts: Sequence[int], kind: str = "hex20") -> Mesh:
@@ -153,10 +161,10 @@ def box_mesh(size: Sequence[float], counts: Sequence[int], kind: str = "hex20") 
 def _right_handed(block: Floats) -> Floats:
     """Return the block, with its first two directions exchanged if needed for positive volumes."""
     middle = tuple(size // 4 * 2 for size in block.shape[:3])
-    at = block[middle]
-    sides = []
+    edges = []  # from the middle point to the next one along each direction
     for axis in range(3):
-        step = np.array(middle)
-        step[axis] += 1
-        sides.append(block[tuple(step)] - at)
-    return block if np.linalg.det(np.array(sides)) > 0.0 else block.transpose(1, 0, 2, 3)
+        neighbour = np.array(middle)
+        neighbour[axis] += 1
+        edges.append(block[tuple(neighbour)] - block[middle])
+    is_right_handed = np.linalg.det(np.array(edges)) > 0.0
+    return block if is_right_handed else block.transpose(1, 0, 2, 3)

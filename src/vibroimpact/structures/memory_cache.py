@@ -1,5 +1,6 @@
-"""Cache of recently used objects in the memory of a process, limited in size: many drops
-on one plate share its modes and factors.
+"""Cache of recently used objects in the memory of a process, limited in size.
+
+Many drops on one plate share its modes and factors.
 """
 
 from __future__ import annotations
@@ -12,9 +13,9 @@ Content = TypeVar("Content")
 
 
 class MemoryCache(Generic[Content]):
-    """Cache that removes the least recently used objects first. It may be used by several threads.
+    """Cache that removes the least recently used objects first.
 
-    Objects are shared and must not be changed.
+    It may be used by several threads. Objects are shared and must not be changed.
 
     Parameters
     ----------

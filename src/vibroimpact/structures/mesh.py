@@ -113,25 +113,30 @@ class Mesh:
         return np.asarray(np.ptp(self.nodes, axis=0))
 
     def of_elements(self, body: Material, value: Callable[[Material], float]) -> Floats:
-        """Return a property of the material of each element, (elements,); -1 in
-        `element_materials` is the material of the body.
+        """Return a property of the material of each element, (elements,).
+
+        -1 in `element_materials` is the material of the body.
         """
         if not self.materials:
             return np.full(self.number_of_elements, value(body))
-        return np.array([*map(value, self.materials), value(body)])[self.element_materials]
+        values = np.array([*map(value, self.materials), value(body)])  # number -1 is the last
+        return np.asarray(values[self.element_materials])
 
     @property
     def materials_text(self) -> str:
-        """How many elements have which material, in words; "" if all elements are of the
-        material of the body.
+        """How many elements have which material, in words.
+
+        It is "" if all elements are of the material of the body.
         """
         counts = Counter(self.element_materials.tolist())
-        own = [
-            f"{counts[index]} of {_material_text(one)}"
-            for index, one in enumerate(self.materials)
-            if counts[index]
+        texts = [
+            f"{counts[number]} of {_material_text(material)}"
+            for number, material in enumerate(self.materials)
+            if counts[number]
         ]
-        return ", ".join([*own, f"{counts[-1]} of the material of the case"] if counts[-1] else own)
+        if counts[-1]:
+            texts.append(f"{counts[-1]} of the material of the case")
+        return ", ".join(texts)
 
     def nodes_of(self, name: str) -> Integers:
         """Return the nodes of a named set of nodes, or of a named set of elements.
@@ -142,36 +147,37 @@ class Mesh:
             If there is no such set, or it is empty.
         """
         known = [*self.node_sets, *self.element_sets]
-        exact = (
-            name
-            if name in known
-            else next((other for other in known if other.lower() == name.lower()), None)
-        )
-        if exact is None:
+        # the exact name, else one that differs in case only
+        matches = [other for other in known if other == name]
+        matches += [other for other in known if other.lower() == name.lower()]
+        if not matches:
             have = f"there are {', '.join(known)}" if known else "it has no named sets"
             raise InputError(f'the mesh has no set "{name}"; {have}.{did_you_mean(name, known)}')
-        found = (
-            self.node_sets[exact]
-            if exact in self.node_sets
-            else self._nodes_of_elements(self.element_sets[exact])
-        )
-        if len(found) == 0:
-            raise InputError(f'the set "{exact}" of the mesh is empty')
-        return found
+        set_name = matches[0]
+        if set_name in self.node_sets:
+            nodes = self.node_sets[set_name]
+        else:
+            nodes = self._nodes_of_elements(self.element_sets[set_name])
+        if len(nodes) == 0:
+            raise InputError(f'the set "{set_name}" of the mesh is empty')
+        return nodes
 
     def _nodes_of_elements(self, elements: Integers) -> Integers:
-        found, first = [], 0
+        """Return the nodes of elements, numbered through all blocks."""
+        nodes = []
+        first = 0
         for block in self.blocks:
-            inside = (
-                elements[(elements >= first) & (elements < first + len(block.connectivity))] - first
-            )
-            found.append(block.connectivity[inside].ravel())
-            first += len(block.connectivity)
-        return np.unique(np.concatenate(found))
+            end = first + len(block.connectivity)
+            in_block = elements[(elements >= first) & (elements < end)]
+            nodes.append(block.connectivity[in_block - first].ravel())
+            first = end
+        return np.unique(np.concatenate(nodes))
 
 
-def _material_text(one: Material) -> str:
+def _material_text(material: Material) -> str:
+    """Return the name of a material, and its numbers in parentheses."""
     numbers = (
-        f"{one.density:.4g} kg/m3, {1e-9 * one.youngs_modulus:.4g} GPa, {one.poissons_ratio:.3g}"
+        f"{material.density:.4g} kg/m3, {1e-9 * material.youngs_modulus:.4g} GPa, "
+        f"{material.poissons_ratio:.3g}"
     )
-    return f"{quoted(one.name)[1:-1]} ({numbers})" if one.name else f"({numbers})"
+    return f"{quoted(material.name)[1:-1]} ({numbers})" if material.name else f"({numbers})"

@@ -14,11 +14,10 @@ L. M. H. Navier's),
     c(k) = \left(\frac{1}{D k^4} + \frac{1}{\kappa G h k^2}\right) d(k)^2
 
 with the sines s at the place and the transform d of the average over which force and displacement
-are spread. The series converges
-slowly. With :math:`x = k / k_s` and the weight :math:`w = (1 + x^2)\,e^{-x^2}` the sum of w c ends
-after few terms, and that of
-(1 - w) c is the field near the force, of which the images at the edges have no part:
-:math:`\int_0^\infty (1 - w)\,c\,k\,dk / 2\pi`.
+are spread. The series converges slowly. With :math:`x = k / k_s` and the weight :math:`w = (1 +
+x^2)\,e^{-x^2}` the sum of w c ends after few terms, and that of (1 - w) c is the field near the
+force, of which the images at the edges have no part: :math:`\int_0^\infty (1 - w)\,c\,k\,dk /
+2\pi`.
 """
 
 from __future__ import annotations
@@ -54,7 +53,8 @@ _SPLIT = 6.0
 _END = 6.0  # wave number at which the sum ends, over k_s: w is 1e-14
 _LOG_STEP = 0.005  # of the rule of the integral, in ln k
 # ends of the integral, relative to the least and the greatest of its scales
-_BELOW, _ABOVE = 1e-4, 1e3
+_BELOW = 1e-4
+_ABOVE = 1e3
 _PLATES = 16  # small plates that are kept, for other places on elements of the same size
 _DIGITS = 9  # of the sides of an element; those of equal elements of a mesh differ by rounding
 
@@ -96,16 +96,13 @@ def mesh_compliance(
     True
     """
     corners, local = element_at(mesh, place)
-    edges = np.linalg.norm(np.roll(corners, -1, axis=0) - corners, axis=1)
-    small = _small_plate(
-        _rounded(0.5 * (edges[0] + edges[2])),
-        _rounded(0.5 * (edges[1] + edges[3])),
-        thickness,
-        material,
-        thin,
-    )
-    at = float((local[0] - 0.5) * small.length), float((local[1] - 0.5) * small.width)
-    return max(0.0, small.exact_compliance(at) - small.compliance(at))
+    sides = np.linalg.norm(np.roll(corners, -1, axis=0) - corners, axis=1)
+    length = _rounded(0.5 * (sides[0] + sides[2]))
+    width = _rounded(0.5 * (sides[1] + sides[3]))
+    small_plate = _small_plate(length, width, thickness, material, thin)
+    # in the middle element, whose centre is that of the plate
+    position = (float((local[0] - 0.5) * length), float((local[1] - 0.5) * width))
+    return max(0.0, small_plate.exact_compliance(position) - small_plate.compliance(position))
 
 
 def mesh_compliance_key(recipe: Recipe, place: tuple[float, float]) -> str:
@@ -114,13 +111,15 @@ def mesh_compliance_key(recipe: Recipe, place: tuple[float, float]) -> str:
 
 
 def _rounded(length: float) -> float:
+    """Return a length without the last digits, as those of equal elements differ by rounding."""
     return float(f"{length:.{_DIGITS}g}")
 
 
 @dataclass(frozen=True)
 class _SmallPlate:
-    """A simply supported plate of equal elements: length and width of an element [m], and
-    what it is made of.
+    """A simply supported plate of equal elements.
+
+    Length and width are those of an element [m].
     """
 
     length: float
@@ -139,50 +138,48 @@ class _SmallPlate:
         """The average over which force and displacement are spread."""
         return plate_element_average(self.thickness, self.material.poissons_ratio, self.thin)
 
-    def compliance(self, at: tuple[float, float]) -> float:
-        """Return the compliance of its elements at a place from the centre [m/N]."""
-        return float(averaged_compliances(*self._elements, [at], [self.average])[0])
+    def compliance(self, position: tuple[float, float]) -> float:
+        """Return the compliance of its elements at a position from the centre [m/N]."""
+        held, elastic = self._elements
+        return float(averaged_compliances(held, elastic, [position], [self.average])[0])
 
     @cached_property
     def _elements(self) -> tuple[HeldStructure, ElasticSystem]:
-        lines = [
-            [side * (number - 0.5 * _ACROSS) for number in range(1, _ACROSS)]
-            for side in (self.length, self.width)
-        ]
-        mesh = plate_mesh(self.size, 2.0 * max(self.length, self.width), lines=(lines[0], lines[1]))
-        structure = plate_structure(
-            mesh, self.material, self.thickness, "thin" if self.thin else "thick"
-        )
+        """The finite elements with simply supported edges, and their factorised system."""
+        steps = [number - 0.5 * _ACROSS for number in range(1, _ACROSS)]
+        lines = ([self.length * step for step in steps], [self.width * step for step in steps])
+        # larger than any element, so that the lines alone divide the plate
+        element_size = 2.0 * max(self.length, self.width)
+        mesh = plate_mesh(self.size, element_size, lines=lines)
+        theory = "thin" if self.thin else "thick"
+        structure = plate_structure(mesh, self.material, self.thickness, theory)
         held = held_by(structure, tuple(Edge(edge, "simply-supported") for edge in EDGES))
         return held, ElasticSystem(held.stiffness, held.mass, held.rigid, held.order)
 
-    def exact_compliance(self, at: tuple[float, float]) -> float:
-        """Return the compliance of plate theory at a place from the centre [m/N]."""
-        waves = [
-            np.arange(1, math.ceil(_END * self._split * side / math.pi) + 1) * math.pi / side
-            for side in self.size
-        ]
-        sines = [
-            np.sin(k * (place + 0.5 * side)) ** 2
-            for k, place, side in zip(waves, at, self.size, strict=True)
-        ]
-        k = np.hypot(waves[0][:, None], waves[1])
-        far = sines[0] @ (self._weight(k) * self._spectrum(k)) @ sines[1]
-        return 4.0 / math.prod(self.size) * float(far) + self._near
+    def exact_compliance(self, position: tuple[float, float]) -> float:
+        """Return the compliance of plate theory at a position from the centre [m/N]."""
+        wave_numbers = []
+        squared_sines = []
+        for side, coordinate in zip(self.size, position, strict=True):
+            terms = math.ceil(_END * self._split * side / math.pi)
+            k = np.arange(1, terms + 1) * math.pi / side
+            wave_numbers.append(k)
+            squared_sines.append(np.sin(k * (coordinate + 0.5 * side)) ** 2)
+        k = np.hypot(wave_numbers[0][:, None], wave_numbers[1])
+        series = squared_sines[0] @ (self._weight(k) * self._spectrum(k)) @ squared_sines[1]
+        return 4.0 / math.prod(self.size) * float(series) + self._near
 
     @cached_property
     def _near(self) -> float:
         """The integral of (1 - w) c, by the trapezoidal rule in ln k."""
-        radius = self.average.radius
-        scales = [self._split, 1.0 / radius] if radius else [self._split]
-        k = np.exp(
-            np.arange(math.log(_BELOW * min(scales)), math.log(_ABOVE * max(scales)), _LOG_STEP)
-        )
-        return (
-            float(((1.0 - self._weight(k)) * self._spectrum(k) * k**2).sum())
-            * _LOG_STEP
-            / (2.0 * math.pi)
-        )
+        scales = [self._split]
+        if self.average.radius:
+            scales.append(1.0 / self.average.radius)
+        start = math.log(_BELOW * min(scales))
+        end = math.log(_ABOVE * max(scales))
+        k = np.exp(np.arange(start, end, _LOG_STEP))
+        integrand = (1.0 - self._weight(k)) * self._spectrum(k) * k**2  # k dk = k^2 d ln k
+        return float(integrand.sum()) * _LOG_STEP / (2.0 * math.pi)
 
     @property
     def _split(self) -> float:
@@ -196,16 +193,15 @@ class _SmallPlate:
 
     def _spectrum(self, k: Floats) -> Floats:
         """Return c at wave numbers [1/m]."""
-        modulus, ratio = self.material.youngs_modulus, self.material.poissons_ratio
+        modulus = self.material.youngs_modulus
+        ratio = self.material.poissons_ratio
         rigidity = modulus * self.thickness**3 / (12.0 * (1.0 - ratio**2))
-        shear = (
-            math.inf
-            if self.thin
-            else shear_factor(ratio) * modulus * self.thickness / (2.0 * (1.0 + ratio))
-        )
-        return np.asarray(
-            (1.0 / (rigidity * k**4) + 1.0 / (shear * k**2)) * self.average.transform(k) ** 2
-        )
+        if self.thin:
+            shear_stiffness = math.inf
+        else:
+            shear_stiffness = shear_factor(ratio) * modulus * self.thickness / (2.0 * (1.0 + ratio))
+        plate_theory = 1.0 / (rigidity * k**4) + 1.0 / (shear_stiffness * k**2)
+        return np.asarray(plate_theory * self.average.transform(k) ** 2)
 
 
 _small_plate = functools.lru_cache(maxsize=_PLATES)(_SmallPlate)

@@ -1,5 +1,6 @@
-"""Modal model of a body: its modes on the mesh; and the modal basis: the same modes at
-the contact point and at sensors.
+"""Modal model of a body: its modes on the mesh, or at the contact point and at sensors.
+
+The latter are the modal basis.
 """
 
 from __future__ import annotations
@@ -27,7 +28,7 @@ from vibroimpact.structures.surface_strain import surface_strain
 
 _CACHE_SIZE = 1e7  # bytes, of mode shapes at places and on the grid of a picture
 
-Found = TypeVar("Found")
+Quantity = TypeVar("Quantity")
 
 
 @dataclass(frozen=True)
@@ -76,9 +77,10 @@ class ModalModel:
     @property
     def is_held_vertically(self) -> bool:
         """Whether the supports prevent every rigid motion with a vertical component."""
-        return not np.abs(self.rigid_coefficients[:, 2:5]).max(initial=0.0) > 1e-6 * np.abs(
-            self.rigid_coefficients
-        ).max(initial=0.0)
+        largest = np.abs(self.rigid_coefficients).max(initial=0.0)
+        # translation along z, and rotations about x and y
+        vertical = np.abs(self.rigid_coefficients[:, 2:5]).max(initial=0.0)
+        return not vertical > 1e-6 * largest
 
     @property
     def size(self) -> int:
@@ -87,8 +89,9 @@ class ModalModel:
         return int(self.shapes.nbytes + self.mesh.nodes.nbytes + connectivity)
 
     def scaled(self, length: float, density: float, youngs_modulus: float) -> ModalModel:
-        r"""Return the modes of a geometrically similar body of solid elements with the same
-        Poisson's ratio.
+        r"""Return the modes of a geometrically similar body of solid elements.
+
+        Its Poisson's ratio is the same.
 
         Parameters
         ----------
@@ -98,38 +101,38 @@ class ModalModel:
         Notes
         -----
         Wave speeds are proportional to :math:`\sqrt{E/\rho}`, hence angular frequencies to
-        :math:`\sqrt{E/\rho}\,/L`, and shapes of
-        unit modal mass to :math:`(\rho L^3)^{-1/2}`.
+        :math:`\sqrt{E/\rho}\,/L`, and shapes of unit modal mass to :math:`(\rho L^3)^{-1/2}`.
         """
-        mass, turning = density * length**3, np.repeat([1.0, length], 3)
-        properties = self.properties
+        mass = density * length**3
+        frequency = math.sqrt(youngs_modulus / density) / length
+        arms = np.repeat([1.0, length], 3)  # of translations and rotations
+        properties = MassProperties(
+            mass * self.properties.mass,
+            length * self.properties.centre,
+            mass * length**2 * self.properties.inertia,
+        )
         return replace(
             self,
             mesh=replace(self.mesh, nodes=length * self.mesh.nodes),
-            properties=MassProperties(
-                mass * properties.mass,
-                length * properties.centre,
-                mass * length**2 * properties.inertia,
-            ),
-            angular_frequencies=math.sqrt(youngs_modulus / density)
-            / length
-            * self.angular_frequencies,
+            properties=properties,
+            angular_frequencies=frequency * self.angular_frequencies,
             shapes=self.shapes / math.sqrt(mass),
-            participation=math.sqrt(mass) * turning * self.participation,
-            rigid_coefficients=self.rigid_coefficients / turning,
+            participation=math.sqrt(mass) * arms * self.participation,
+            rigid_coefficients=self.rigid_coefficients / arms,
         )
 
     def displacements(self, mode: int) -> Floats:
-        """Return the displacements of the nodes in a mode (numbered from 0), (nodes, 3)
-        [kg^-1/2].
+        """Return the displacements of the nodes in a mode, (nodes, 3) [kg^-1/2].
+
+        Modes are numbered from 0.
         """
         return np.asarray(self.shapes[mode].reshape(len(self.mesh.nodes), -1)[:, :3])
 
     def at(self, places: Floats, side: Side = "upper", what: str = "") -> tuple[Floats, Floats]:
-        """Return the mode shapes at places (x, y) on one side, (modes, points, 3), and the
-        positions of the places, (points, 3) [m].
+        """Return the mode shapes at places (x, y) on one side, and the positions of the places [m].
 
-        `what` names the places in the message if one is not on the body.
+        They are (modes, points, 3) and (points, 3). `what` names the places in the message if one
+        is not on the body.
 
         Raises
         ------
@@ -137,31 +140,34 @@ class ModalModel:
             If a place is not on the body.
         """
 
-        def found() -> tuple[Floats, Floats]:
+        def shapes_at_places() -> tuple[Floats, Floats]:
             motion, positions = surface_motion(self.mesh, places, side, self.thickness, what)
             return self.modal_values(motion).reshape(len(self.shapes), -1, 3), positions
 
-        return self.cached(f"{side} {places.tolist()}", found) if len(places) == 1 else found()
+        if len(places) == 1:
+            return self.cached(f"{side} {places.tolist()}", shapes_at_places)
+        return shapes_at_places()
 
-    def cached(self, key: str, compute: Callable[[], Found], numbers: int = 3) -> Found:
-        """Return a quantity of the modes from the cache, or compute it: many drops on one plate
-        have the same sensors. Do not change it.
+    def cached(self, key: str, compute: Callable[[], Quantity], numbers: int = 3) -> Quantity:
+        """Return a quantity of the modes from the cache, or compute it. Do not change it.
 
-        `numbers` is how many it has for each mode.
+        Many drops on one plate have the same sensors. `numbers` is how many it has for each mode.
         """
-        found = self._cache.get(key)
-        if found is None:
-            found = compute()
-            self._cache.put(key, found, 8.0 * numbers * len(self.shapes))
-        return found
+        quantity: Quantity | None = self._cache.get(key)
+        if quantity is None:
+            quantity = compute()
+            self._cache.put(key, quantity, 8.0 * numbers * len(self.shapes))
+        return quantity
 
     @cached_property
     def _cache(self) -> MemoryCache[Any]:
+        """Quantities of the modes by key."""
         return MemoryCache(capacity=_CACHE_SIZE)
 
     def strains(self, place: tuple[float, float], side: Side) -> Floats:
-        """Return the strains of a face at a place in each mode, along x and y and of shear, (modes,
-        3) [kg^-1/2 m^-1].
+        """Return the strains of a face at a place in each mode, (modes, 3) [kg^-1/2 m^-1].
+
+        They are those along x and y, and of shear.
 
         Raises
         ------
@@ -172,20 +178,20 @@ class ModalModel:
         return self.cached(f"strain {side} {place}", lambda: self.modal_values(rows))
 
     def sound(self, listener: Listener) -> SoundPaths:
-        """Return the paths of sound of the modes to a point, from the cache or computed;
-        errors are those of `sound_paths`.
+        """Return the paths of sound of the modes to a point, from the cache or computed.
+
+        Errors are those of `sound_paths`.
         """
-        numbers = math.ceil(
-            math.dist(self.mesh.nodes.min(axis=0), self.mesh.nodes.max(axis=0))
-            / (listener.speed * listener.step)
-        )
+        diagonal = math.dist(self.mesh.nodes.min(axis=0), self.mesh.nodes.max(axis=0))
+        delays = math.ceil(diagonal / (listener.speed * listener.step))  # about
         return self.cached(
-            f"sound {listener}", lambda: sound_paths(self.mesh, listener, self.shapes), numbers
+            f"sound {listener}", lambda: sound_paths(self.mesh, listener, self.shapes), delays
         )
 
     def modal_values(self, motion: csr_array) -> Floats:
-        """Return linear functions of the degrees of freedom, the rows of a sparse array,
-        evaluated for each mode, (modes, rows).
+        """Return linear functions of the degrees of freedom in each mode, (modes, rows).
+
+        The functions are the rows of a sparse array.
         """
         dofs = np.unique(motion.indices)  # a few of many columns
         return np.asarray(self.shapes[:, dofs] @ motion[:, dofs].T.toarray())
@@ -193,8 +199,9 @@ class ModalModel:
     def averaged(
         self, place: tuple[float, float], radius: float, side: Side = "upper", what: str = ""
     ) -> Floats:
-        """Return the mode shapes averaged over a disc with Hertz's pressure as weight, (modes, 3)
-        [kg^-1/2].
+        """Return the mode shapes averaged over a disc, (modes, 3) [kg^-1/2].
+
+        The weight of the average is Hertz's pressure.
 
         Parameters
         ----------
@@ -212,12 +219,9 @@ class ModalModel:
         InputError
             If part of the disc is not on the body.
         """
-        places, weights = pressure_rule(HERTZ)
-        return np.asarray(
-            np.einsum(
-                "mpi,p->mi", self.at(np.asarray(place) + radius * places, side, what)[0], weights
-            )
-        )
+        points, weights = pressure_rule(HERTZ)
+        shapes, _ = self.at(np.asarray(place) + radius * points, side, what)
+        return np.asarray(np.einsum("mpi,p->mi", shapes, weights))
 
 
 def modal_model(
@@ -226,26 +230,31 @@ def modal_model(
     facts: Mapping[str, str] | None = None,
     frequency_errors: Floats | None = None,
 ) -> ModalModel:
-    """Return the modal model of a held structure from the modes of its free degrees of
-    freedom; errors not given are unknown (NaN).
+    """Return the modal model of a held structure from the modes of its free degrees of freedom.
+
+    Errors that are not given are unknown (NaN).
     """
-    structure, shapes = held.structure, np.asarray(held.expansion @ modes.shapes)
-    moved = shapes.reshape(len(structure.mesh.nodes), -1, shapes.shape[1])[:, :3].reshape(
-        -1, shapes.shape[1]
-    )
-    large = np.abs(moved) > 0.5 * np.abs(moved).max(axis=0)
+    structure = held.structure
+    shapes = np.asarray(held.expansion @ modes.shapes)
+    number_of_modes = shapes.shape[1]
+    if frequency_errors is None:
+        frequency_errors = np.full(number_of_modes, np.nan)
     # sign convention: the first large displacement is positive
-    shapes *= np.sign(moved[large.argmax(axis=0), np.arange(shapes.shape[1])])
+    displacements = shapes.reshape(len(structure.mesh.nodes), -1, number_of_modes)[:, :3]
+    displacements = displacements.reshape(-1, number_of_modes)
+    is_large = np.abs(displacements) > 0.5 * np.abs(displacements).max(axis=0)
+    first_large = displacements[is_large.argmax(axis=0), np.arange(number_of_modes)]
+    shapes *= np.sign(first_large)
     return ModalModel(
-        structure.mesh,
-        structure.properties,
-        modes.angular_frequencies,
-        np.ascontiguousarray(shapes.T),
-        np.asarray(shapes.T @ (structure.mass @ structure.rigid_motions())),
-        held.rigid_coefficients,
-        np.full(shapes.shape[1], np.nan) if frequency_errors is None else frequency_errors,
-        structure.thickness,
-        facts or {},
+        mesh=structure.mesh,
+        properties=structure.properties,
+        angular_frequencies=modes.angular_frequencies,
+        shapes=np.ascontiguousarray(shapes.T),
+        participation=np.asarray(shapes.T @ (structure.mass @ structure.rigid_motions())),
+        rigid_coefficients=held.rigid_coefficients,
+        frequency_errors=frequency_errors,
+        thickness=structure.thickness,
+        facts=facts or {},
     )
 
 
@@ -354,25 +363,29 @@ def modal_basis(
         If a point is not on the body.
     """
 
-    def seen(spot: Spot, face: Side, what: str = "the contact point") -> Floats:
-        return model.at(np.array([place_of(model.mesh, spot, face)]), face, what)[0][:, 0]
+    def displacements_at(spot: Spot, face: Side, what: str) -> Floats:
+        place = np.array([place_of(model.mesh, spot, face)])
+        return model.at(place, face, what)[0][:, 0]
 
     strains = {
-        name: model.strains(place_of(model.mesh, *point), point[1])
-        for name, point in (strained or {}).items()
+        name: model.strains(place_of(model.mesh, spot, face), face)
+        for name, (spot, face) in (strained or {}).items()
     }
-    touched = seen(contact, side)
+    at_contact = displacements_at(contact, side, "the contact point")
+    at_sensors = {
+        name: displacements_at(spot, face, f'sensor "{name}"')
+        for name, (spot, face) in (points or {}).items()
+    }
     return ModalBasis(
-        model.frequencies,
-        damping.ratios(model.frequencies),
-        touched[:, 2],
-        model.participation[:, :3],
-        {name: seen(*point, f'sensor "{name}"') for name, point in (points or {}).items()}
-        | strains,
-        model.properties.mass,
-        _rotation(model.properties, model.participation[:, 3:]),
-        model.frequency_errors,
-        along=touched[:, :2],
+        frequencies=model.frequencies,
+        damping_ratios=damping.ratios(model.frequencies),
+        contact=at_contact[:, 2],
+        participation=model.participation[:, :3],
+        points=at_sensors | strains,
+        mass=model.properties.mass,
+        rotation=_rotation(model.properties, model.participation[:, 3:]),
+        frequency_errors=model.frequency_errors,
+        along=at_contact[:, :2],
         sounds={name: model.sound(listener) for name, listener in (heard or {}).items()},
     )
 
@@ -384,8 +397,9 @@ def rigid_basis(
     strained: Iterable[str] = (),
     heard: Mapping[str, Listener] | None = None,
 ) -> ModalBasis | None:
-    """Return the rigid motions that the supports do not prevent as modes of frequency zero; None if
-    there are none.
+    """Return the rigid motions that the supports do not prevent, as modes of frequency zero.
+
+    It is None if there are none.
 
     Parameters
     ----------
@@ -403,49 +417,57 @@ def rigid_basis(
     if not len(model.rigid_coefficients):
         return None
     properties = model.properties
-    weights = np.zeros((6, 6))
-    weights[:3, :3], weights[3:, 3:] = properties.mass * np.eye(3), properties.inertia
-    coefficients = model.rigid_coefficients
-    # of unit modal mass
-    motions = np.linalg.solve(
-        np.linalg.cholesky(coefficients @ weights @ coefficients.T), coefficients
-    )
-    along, turning = motions[:, :3], motions[:, 3:]
+    mesh = model.mesh
+    motions = _rigid_motions_of_unit_mass(properties, model.rigid_coefficients)
+    number_of_motions = len(motions)
+    translation = motions[:, :3]
+    rotation = motions[:, 3:]
 
-    def seen(spot: Spot, side: Side) -> Floats:
-        place = surface_motion(
-            model.mesh, np.array([place_of(model.mesh, spot, side)]), side, model.thickness
-        )[1][0]
-        return np.asarray(along + np.cross(turning, place - properties.centre))
+    def displacements_at(spot: Spot, side: Side) -> Floats:
+        place = np.array([place_of(mesh, spot, side)])
+        _, positions = surface_motion(mesh, place, side, model.thickness)
+        return np.asarray(translation + np.cross(rotation, positions[0] - properties.centre))
 
+    at_contact = displacements_at(*contact)
+    at_sensors = {name: displacements_at(spot, side) for name, (spot, side) in points.items()}
+    strains = {name: np.zeros((number_of_motions, 3)) for name in strained}
     # faces move by the displacements of their nodes
-    nodes = np.zeros((len(motions), len(model.mesh.nodes), model.mesh.dofs_per_node))
-    nodes[:, :, :3] = along[:, None] + np.cross(
-        turning[:, None], model.mesh.nodes - properties.centre
+    nodes = np.zeros((number_of_motions, len(mesh.nodes), mesh.dofs_per_node))
+    nodes[:, :, :3] = translation[:, None] + np.cross(
+        rotation[:, None], mesh.nodes - properties.centre
     )
-    shapes = nodes.reshape(len(motions), -1)
-    touched = seen(*contact)
+    shapes = nodes.reshape(number_of_motions, -1)
+    sounds = {name: sound_paths(mesh, listener, shapes) for name, listener in (heard or {}).items()}
     return ModalBasis(
-        np.zeros(len(motions)),
-        np.zeros(len(motions)),
-        touched[:, 2],
-        properties.mass * along,
-        {name: seen(*point) for name, point in points.items()}
-        | {name: np.zeros((len(motions), 3)) for name in strained},
-        properties.mass,
-        _rotation(properties, turning @ properties.inertia),
-        along=touched[:, :2],
-        turning=turning,
-        sounds={
-            name: sound_paths(model.mesh, listener, shapes)
-            for name, listener in (heard or {}).items()
-        },
+        frequencies=np.zeros(number_of_motions),
+        damping_ratios=np.zeros(number_of_motions),
+        contact=at_contact[:, 2],
+        participation=properties.mass * translation,
+        points=at_sensors | strains,
+        mass=properties.mass,
+        rotation=_rotation(properties, rotation @ properties.inertia),
+        along=at_contact[:, :2],
+        turning=rotation,
+        sounds=sounds,
     )
+
+
+def _rigid_motions_of_unit_mass(properties: MassProperties, coefficients: Floats) -> Floats:
+    """Return combinations of rigid motions, (r, 6), that are orthonormal in the mass of the body.
+
+    Coefficients are those of translations and of rotations about the centre of mass.
+    """
+    mass = np.zeros((6, 6))
+    mass[:3, :3] = properties.mass * np.eye(3)
+    mass[3:, 3:] = properties.inertia
+    lower = np.linalg.cholesky(coefficients @ mass @ coefficients.T)
+    return np.asarray(np.linalg.solve(lower, coefficients))
 
 
 def _rotation(properties: MassProperties, momentum: Floats) -> Floats:
-    """Return the angular momenta of modes over the square root of the inertia; half their
-    squares are the energy of rotation.
+    """Return the angular momenta of modes over the square root of the inertia.
+
+    Half their squares are the energy of rotation.
     """
     moments, axes = np.linalg.eigh(properties.inertia)
     return np.asarray(momentum @ axes / np.sqrt(moments))

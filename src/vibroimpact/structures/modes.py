@@ -1,5 +1,6 @@
-"""Undamped elastic modes and static response of a held or free structure, by Lanczos
-iteration on its factorised stiffness.
+"""Undamped elastic modes and static response of a held or free structure.
+
+They follow from the factorised stiffness, the modes by Lanczos iteration.
 """
 
 from __future__ import annotations
@@ -27,6 +28,7 @@ _INVERSE_STEPS = 4
 _ROUNDING = 2e-15  # of the highest squared frequency: a lowest one below this is zero
 
 Progress = Callable[[float], None]
+"""Called with the estimated progress, from 0 to 1."""
 
 
 @dataclass(frozen=True)
@@ -84,29 +86,20 @@ class ElasticSystem:
         rigid: Floats | None = None,
         order: Integers | None = None,
     ) -> None:
-        from scipy.linalg import qr  # imported late: modes that are stored do not need it
-
-        number = stiffness.shape[0]
-        self.stiffness, self.mass = stiffness, mass
-        self.order = np.arange(number) if order is None else order
-        motions = np.zeros((number, 0)) if rigid is None else rigid
-        if motions.shape[1]:
-            lower = np.linalg.cholesky(motions.T @ (mass @ motions))
-            motions = np.asarray(np.linalg.solve(lower, motions.T).T, dtype=np.float64)
-        self.rigid = motions
+        size = stiffness.shape[0]
+        self.stiffness = stiffness
+        self.mass = mass
+        self.order = np.arange(size) if order is None else order
+        self.rigid = of_unit_mass(np.zeros((size, 0)) if rigid is None else rigid, mass)
         """Rigid motions of unit modal mass."""
-        self._momentum = mass @ motions
-        held = (
-            qr(motions.T, pivoting=True, mode="r")[1][: motions.shape[1]]
-            if motions.shape[1]
-            else np.zeros(0, dtype=int)
-        )
-        self._free = np.setdiff1d(np.arange(number), held)
-        place = np.full(number, -1)
-        place[self._free] = np.arange(len(self._free))
-        inner = place[self.order]
-        matrix = stiffness[self._free][:, self._free] if len(held) else stiffness
-        self._factors = Factors(csr_array(matrix), inner[inner >= 0])
+        self._momentum = mass @ self.rigid
+        constrained = _constrained_dofs(self.rigid)
+        self._free = np.setdiff1d(np.arange(size), constrained)
+        free_number = np.full(size, -1)
+        free_number[self._free] = np.arange(len(self._free))
+        free_order = free_number[self.order]
+        matrix = stiffness[self._free][:, self._free] if len(constrained) else stiffness
+        self._factors = Factors(csr_array(matrix), free_order[free_order >= 0])
         self._heavy = mass.diagonal() > 0.0  # the slopes of a thin plate have no inertia
         self._refuse_mechanisms()
 
@@ -147,14 +140,17 @@ class ElasticSystem:
         ComputationError
             If the iteration does not converge.
         """
-        size, most = self.stiffness.shape[0], max_modes(self.mass, self.rigid.shape[1])
+        size = self.stiffness.shape[0]
+        most = max_modes(self.mass, self.rigid.shape[1])
         if not 1 <= number <= most:
+            remedies = []
+            if most > 0:
+                remedies.append(f"ask for 1 to {most}")
+            if number > most:
+                remedies.append("use smaller elements")
             raise InputError(
                 f"{number} modes are not to be had from {size} degrees of freedom; "
-                + " or ".join(
-                    ([f"ask for 1 to {most}"] if most > 0 else [])
-                    + (["use smaller elements"] if number > most else [])
-                )
+                f"{' or '.join(remedies)}"
             )
         if size <= _DENSE:
             return self._dense(number)
@@ -167,28 +163,34 @@ class ElasticSystem:
         return Eigenmodes(np.sqrt(values), shapes)
 
     def count_below(self, angular_frequency: float) -> int:
-        """Return the number of elastic modes below an angular frequency [rad/s], from the
-        signs of the pivots.
+        """Return the number of elastic modes below an angular frequency [rad/s].
+
+        It follows from the signs of the pivots.
         """
         shifted = self.stiffness - angular_frequency**2 * self.mass
-        return int(Factors(csr_array(shifted), self.order).negative_pivots()) - int(
-            self.rigid.shape[1]
-        )
+        factors = Factors(csr_array(shifted), self.order)
+        return int(factors.negative_pivots()) - int(self.rigid.shape[1])
 
     def _refuse_mechanisms(self) -> None:
-        """Raise if a static solution has a large residual, and the lowest frequency, by
-        inverse iteration, is zero up to rounding.
+        """Raise if part of the system can move without resistance.
+
+        Then a static solution has a large residual, and the lowest frequency, by inverse iteration,
+        is zero up to rounding.
         """
         shape = np.random.default_rng(0).standard_normal(self.stiffness.shape[0])
         load = self.mass @ shape
-        left = self.stiffness @ self.static(load) - load + self._momentum @ (self.rigid.T @ load)
-        if np.linalg.norm(left) <= _CARRIED * np.linalg.norm(load):
+        rigid_load = self._momentum @ (self.rigid.T @ load)
+        residual = self.stiffness @ self.static(load) - load + rigid_load
+        if np.linalg.norm(residual) <= _CARRIED * np.linalg.norm(load):
             return
-        highest = (self.stiffness.diagonal()[self._heavy] / self.mass.diagonal()[self._heavy]).max()
+        squared_frequencies = (
+            self.stiffness.diagonal()[self._heavy] / self.mass.diagonal()[self._heavy]
+        )
         for _ in range(_INVERSE_STEPS):
             shape = self.static(self.mass @ shape)
             shape /= np.sqrt(shape @ (self.mass @ shape))
-        if not shape @ (self.stiffness @ shape) > _ROUNDING * highest:
+        lowest = shape @ (self.stiffness @ shape)
+        if not lowest > _ROUNDING * squared_frequencies.max():
             raise ComputationError(
                 "the stiffness matrix is singular: part of the body can move without "
                 "resistance, as a hinge does, or all of it can on "
@@ -199,22 +201,44 @@ class ElasticSystem:
             )
 
     def _dense(self, number: int) -> Eigenmodes:
-        """Return the lowest modes by a dense solver; the mass may be singular, as that of
-        a thin plate, or the stiffness, but not both.
+        """Return the lowest modes by a dense solver.
+
+        The mass may be singular, as that of a thin plate, or the stiffness, but not both.
         """
-        inertia, axes = np.linalg.eigh(self.mass.toarray())
-        root = axes * np.sqrt(np.maximum(inertia, 0.0))
+        masses, axes = np.linalg.eigh(self.mass.toarray())
+        # M = root root^T, and root^T K^-1 root has the inverse squared frequencies as eigenvalues
+        root = axes * np.sqrt(np.maximum(masses, 0.0))
         response = self.static(root)
-        responses, turned = np.linalg.eigh(root.T @ response)
+        responses, coefficients = np.linalg.eigh(root.T @ response)
         lowest = slice(-1, -number - 1, -1)
         return Eigenmodes(
-            1.0 / np.sqrt(responses[lowest]), response @ (turned[:, lowest] / responses[lowest])
+            1.0 / np.sqrt(responses[lowest]),
+            response @ (coefficients[:, lowest] / responses[lowest]),
         )
 
 
+def of_unit_mass(motions: Floats, mass: csr_array) -> Floats:
+    """Return a basis of motions, (n, r), that is orthonormal with respect to the mass."""
+    if not motions.shape[1]:
+        return motions
+    lower = np.linalg.cholesky(motions.T @ (mass @ motions))
+    return np.asarray(np.linalg.solve(lower, motions.T).T, dtype=np.float64)
+
+
+def _constrained_dofs(rigid: Floats) -> Integers:
+    """Return as many degrees of freedom as there are rigid motions, which prevent these."""
+    from scipy.linalg import qr  # imported late: modes that are stored do not need it
+
+    if not rigid.shape[1]:
+        return np.zeros(0, dtype=int)
+    _, pivots = qr(rigid.T, pivoting=True, mode="r")
+    return np.asarray(pivots[: rigid.shape[1]])
+
+
 def max_modes(mass: csr_array, rigid: int) -> int:
-    """Return the largest number of elastic modes that may be computed of a system with a
-    number of rigid motions.
+    """Return the largest number of elastic modes that may be computed of a system.
+
+    `rigid` is its number of rigid motions.
     """
     most = int(np.count_nonzero(mass.diagonal() > 0.0)) - rigid
     return most if mass.shape[0] <= _DENSE else int(_MOST * most)

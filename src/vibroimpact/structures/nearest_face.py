@@ -10,7 +10,7 @@ import numpy as np
 from vibroimpact.arrays import Floats, Integers
 from vibroimpact.structures.surface import Faces
 
-_STEPS = 30
+_STEPS = 30  # of Gauss and Newton's method
 # last step in local coordinates: it is quadratic near a face that a point lies on
 _CONVERGED = 1e-14
 # of the distance of the furthest node from the middle of a face: how far a curved face reaches
@@ -64,49 +64,52 @@ def nearest_places(
     """
     from scipy.spatial import cKDTree
 
-    found: list[NearestPlace | None] = [None] * len(points)
+    nearest: list[NearestPlace | None] = [None] * len(points)
     tree = cKDTree(points)
     for faces in groups:
-        at = nodes[faces.connectivity[:, faces.has_node]]
-        middle = at.mean(axis=1)
-        radius = _BULGE * np.linalg.norm(at - middle[:, None], axis=2).max(axis=1)
-        near = tree.query_ball_point(middle, radius + reach)
-        face = np.repeat(np.arange(len(near)), [len(one) for one in near])
-        point = np.concatenate(
-            [np.zeros(0, dtype=np.int64), *(np.array(one, dtype=np.int64) for one in near)]
-        )
+        face_nodes = nodes[faces.connectivity[:, faces.has_node]]
+        middle = face_nodes.mean(axis=1)
+        radius = _BULGE * np.linalg.norm(face_nodes - middle[:, None], axis=2).max(axis=1)
+        # pairs of faces and points that may be near
+        points_of_faces = tree.query_ball_point(middle, radius + reach)
+        face = np.repeat(np.arange(len(points_of_faces)), [*map(len, points_of_faces)])
+        point = np.array([point for near in points_of_faces for point in near], dtype=np.int64)
         if not len(point):
             continue
         local = _projected(nodes, faces, face, points[point])
         values = faces.shape_functions(local)[0]
         position = np.einsum("pk,pki->pi", values, nodes[faces.connectivity[face]])
         distance = np.linalg.norm(position - points[point], axis=1)
-        for index in np.flatnonzero(distance <= reach).tolist():
-            which, before = int(point[index]), found[int(point[index])]
-            if before is None or distance[index] < before.distance:
-                members = faces.connectivity[face[index], faces.has_node]
-                found[which] = NearestPlace(
-                    float(distance[index]), position[index], members, values[index, faces.has_node]
+        for pair in np.flatnonzero(distance <= reach).tolist():
+            best = nearest[point[pair]]
+            if best is None or distance[pair] < best.distance:
+                nearest[point[pair]] = NearestPlace(
+                    distance=float(distance[pair]),
+                    position=position[pair],
+                    nodes=faces.connectivity[face[pair], faces.has_node],
+                    weights=values[pair, faces.has_node],
                 )
-    return found
+    return nearest
 
 
 def _projected(nodes: Floats, faces: Faces, face: Integers, points: Floats) -> Floats:
-    """Return the local coordinates of the place of each face nearest to its point, by
-    Gauss and Newton's method within the face.
+    """Return the local coordinates of the place of each face nearest to its point.
+
+    They are found by Gauss and Newton's method within the face.
     """
-    at = nodes[faces.connectivity[face]]
+    face_nodes = nodes[faces.connectivity[face]]
     local = np.full((len(face), 2), 1.0 / 3.0)
     for _ in range(_STEPS):
         values, slopes = faces.shape_functions(local)
-        apart = np.einsum("pk,pki->pi", values, at) - points
-        along = slopes @ at  # tangents, (points, 2, 3)
-        metric = along @ along.transpose(0, 2, 1)
+        offset = np.einsum("pk,pki->pi", values, face_nodes) - points
+        tangents = slopes @ face_nodes  # (points, 2, 3)
+        metric = tangents @ tangents.transpose(0, 2, 1)
+        # regular also where the tangents are parallel
         metric += 1e-14 * np.trace(metric, axis1=1, axis2=2)[:, None, None] * np.eye(2)
-        step = np.linalg.solve(metric, (along @ apart[:, :, None]))[:, :, 0]
-        moved = _inside(local - step, len(faces.corners))
-        change = np.abs(moved - local).max(initial=0.0)
-        local = moved
+        step = np.linalg.solve(metric, (tangents @ offset[:, :, None]))[:, :, 0]
+        next_local = _inside(local - step, len(faces.corners))
+        change = np.abs(next_local - local).max(initial=0.0)
+        local = next_local
         if change < _CONVERGED:
             break
     return local
@@ -116,6 +119,6 @@ def _inside(local: Floats, corners: int) -> Floats:
     """Return the nearest local coordinates of a triangle or a square."""
     if corners == 4:
         return np.clip(local, 0.0, 1.0)
-    over = np.maximum(local.sum(axis=1) - 1.0, 0.0)
-    found = np.clip(local - 0.5 * over[:, None], 0.0, 1.0)
-    return np.asarray(found / np.maximum(found.sum(axis=1), 1.0)[:, None])
+    excess = np.maximum(local.sum(axis=1) - 1.0, 0.0)  # beyond the side opposite the first corner
+    clipped = np.clip(local - 0.5 * excess[:, None], 0.0, 1.0)
+    return np.asarray(clipped / np.maximum(clipped.sum(axis=1), 1.0)[:, None])

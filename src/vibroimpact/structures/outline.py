@@ -1,14 +1,15 @@
-"""The outline of a body seen from above: the edges that belong to one face of its upper
-side only.
+"""The outline of a body seen from above.
+
+It consists of the edges that belong to one face of its upper side only.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-from vibroimpact.arrays import Floats
+from vibroimpact.arrays import Bools, Floats
 from vibroimpact.structures.mesh import Mesh
-from vibroimpact.structures.surface import facing
+from vibroimpact.structures.surface import Faces, facing
 
 _POINTS = 5  # on an edge, which may be curved
 _CORNERS = {
@@ -19,8 +20,9 @@ _CORNERS = {
 
 
 def outline(mesh: Mesh) -> tuple[Floats, Floats]:
-    """Return x and y [m] along the free edges of the upper side of a mesh, edge by edge, each
-    followed by NaN.
+    """Return x and y [m] along the free edges of the upper side of a mesh, edge by edge.
+
+    Each edge is followed by NaN.
 
     Examples
     --------
@@ -30,35 +32,40 @@ def outline(mesh: Mesh) -> tuple[Floats, Floats]:
     >>> float(np.nanmin(x).round(9)), float(np.nanmax(y).round(9)), bool(on_edge.all())
     (-0.25, 0.2, True)
     """
-    sides = []  # of each group of faces: the two corners of each of its sides
     groups = facing(mesh, "upper")
-    for faces in groups:
-        corner = faces.connectivity[:, list(faces.corners)]
-        sides.append(np.sort(np.stack([corner, np.roll(corner, -1, axis=1)], axis=-1), axis=-1))
-    if not sides:
+    if not groups:
         return np.empty(0), np.empty(0)
-    _, same, count = np.unique(
+    along = np.linspace(0.0, 1.0, _POINTS)[:, None]
+    edges = []
+    for faces, is_free in zip(groups, _free_sides(groups), strict=True):
+        corners = _CORNERS[len(faces.corners)]
+        ends = np.roll(corners, -1, axis=0)
+        for side, (start, end) in enumerate(zip(corners, ends, strict=True)):
+            values, _ = faces.shape_functions(start + along * (end - start))
+            nodes = mesh.nodes[faces.connectivity[is_free[:, side]], :2]
+            points = np.einsum("qk,eki->eqi", values, nodes)
+            gap = np.full_like(points[:, :1], np.nan)
+            edges.append(np.concatenate([points, gap], axis=1).reshape(-1, 2))
+    x, y = np.concatenate(edges).T
+    return np.ascontiguousarray(x), np.ascontiguousarray(y)
+
+
+def _free_sides(groups: list[Faces]) -> list[Bools]:
+    """Return which sides of faces belong to no other face, (faces, sides), by group."""
+    sides = []  # the two corners of each side, by group
+    for faces in groups:
+        start = faces.connectivity[:, list(faces.corners)]
+        end = np.roll(start, -1, axis=1)
+        sides.append(np.sort(np.stack([start, end], axis=-1), axis=-1))
+    _, number_of_side, faces_of_side = np.unique(
         np.concatenate([side.reshape(-1, 2) for side in sides]),
         axis=0,
         return_inverse=True,
         return_counts=True,
     )
-    alone = np.split(
-        count[same.ravel()] == 1, np.cumsum([side.shape[0] * side.shape[1] for side in sides])[:-1]
-    )
-    along = np.linspace(0.0, 1.0, _POINTS)[:, None]
-    edges = []
-    for faces, side, free in zip(groups, sides, alone, strict=True):
-        corner = _CORNERS[len(faces.corners)]
-        for number, (begin, end) in enumerate(
-            zip(corner, np.roll(corner, -1, axis=0), strict=True)
-        ):
-            nodes = mesh.nodes[faces.connectivity[free.reshape(side.shape[:2])[:, number]], :2]
-            at = np.einsum(
-                "qk,eki->eqi", faces.shape_functions(begin + along * (end - begin))[0], nodes
-            )
-            edges.append(
-                np.concatenate([at, np.full_like(at[:, :1], np.nan)], axis=1).reshape(-1, 2)
-            )
-    x, y = np.concatenate(edges).T
-    return np.ascontiguousarray(x), np.ascontiguousarray(y)
+    is_free = faces_of_side[number_of_side.ravel()] == 1
+    ends = np.cumsum([side.shape[0] * side.shape[1] for side in sides])[:-1]
+    return [
+        free.reshape(side.shape[:2])
+        for free, side in zip(np.split(is_free, ends), sides, strict=True)
+    ]

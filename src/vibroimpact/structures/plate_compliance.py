@@ -1,23 +1,18 @@
-r"""Correction of the point compliance of a plate from that of plate theory, or from the response of
-the opposite face.
+r"""Correction of the point compliance of a plate for what finite elements do not resolve.
 
-A pressure of wave number k on the upper face of an elastic layer displaces that face by A + S, and
-the lower face by A - S, with
-:math:`A = \frac{2(1-\nu^2)}{E k}\frac{\cosh^2 x}{\sinh 2x - 2x}`, :math:`S = \frac{2(1-\nu^2)}{E
-k}\frac{\sinh^2 x}{\sinh 2x + 2x}`
-and x = k h / 2 (I. N. Sneddon, Fourier Transforms, 1951, section 46), and that of the half space by
-:math:`2(1-\nu^2)/(E k)`. The
+They give the compliance of plate theory, or the response of the opposite face. A pressure of wave
+number k on the upper face of an elastic layer displaces that face by A + S, and the lower face by
+A - S, with :math:`A = \frac{2(1-\nu^2)}{E k}\frac{\cosh^2 x}{\sinh 2x - 2x}`, :math:`S =
+\frac{2(1-\nu^2)}{E k}\frac{\sinh^2 x}{\sinh 2x + 2x}` and x = k h / 2 (I. N. Sneddon, Fourier
+Transforms, 1951, section 46), and that of the half space by :math:`2(1-\nu^2)/(E k)`. The
 structural compliance is that of a point under a normal force less that of the half space, with the
-kernel
-:math:`A + S - 2(1-\nu^2)/(E k)`.
+kernel :math:`A + S - 2(1-\nu^2)/(E k)`.
 
 Finite elements give the compliance with load and response averaged over a disc, each with the
-transform
-:math:`d(k) = 1 - k^2 \overline{r^2}/4 + \ldots`. The mean of r^2 is chosen so that both kernels
-agree in the terms :math:`k^{-4}` and
-:math:`k^{-2}`. The integral of their difference over :math:`k\,dk/2\pi` then depends on the layer
-near the point only, not on the edges
-of the plate or its supports.
+transform :math:`d(k) = 1 - k^2 \overline{r^2}/4 + \ldots`. The mean of r^2 is chosen so that both
+kernels agree in the terms :math:`k^{-4}` and :math:`k^{-2}`. The integral of their difference over
+:math:`k\,dk/2\pi` then depends on the layer near the point only, not on the edges of the plate or
+its supports.
 """
 
 from __future__ import annotations
@@ -32,7 +27,7 @@ import numpy as np
 from vibroimpact.arrays import Floats
 
 _PLATES = 64  # of which the terms are cached, for other places on them
-_NODES = 16  # of Gauss's rule on each part of the integral
+_NODES = 16  # of Gauss's rule on each interval of the integral
 _DEEPEST = 40.0  # wave number times thickness beyond which the faces are uncoupled
 _FINEST = 100.0  # wave number times radius at which the integral ends: the rest is 1e-6 of the term
 
@@ -65,8 +60,9 @@ class Average:
 
 
 def through_thickness_average(radius: float) -> Average:
-    """Return the average of `through_thickness_term` over a disc of a radius [m]: the
-    mean of r^2 is zero.
+    """Return the average of `through_thickness_term` over a disc of a radius [m].
+
+    The mean of r^2 is zero.
     """
     return Average(radius, 3.0)
 
@@ -75,8 +71,9 @@ def through_thickness_average(radius: float) -> Average:
 def through_thickness_term(
     thickness: float, youngs_modulus: float, poissons_ratio: float, average: Average
 ) -> float:
-    r"""Return the structural compliance of a plate less the averaged response of its opposite face
-    [m/N].
+    r"""Return the structural compliance of a plate less that of its opposite face [m/N].
+
+    The latter is averaged over a disc.
 
     Parameters
     ----------
@@ -91,10 +88,8 @@ def through_thickness_term(
     Notes
     -----
     The kernel that is subtracted is :math:`(A - S)\,d^2`. For points, of radius 0, A cancels and
-    the term is
-    :math:`\frac{2(1-\nu^2)}{\pi E h} \int_0^\infty \left(\frac{2\sinh^2 x}{\sinh 2x + 2x} -
-    1\right) dx
-    = -1.1676\,\frac{2(1-\nu^2)}{\pi E h}`.
+    the term is :math:`\frac{2(1-\nu^2)}{\pi E h} \int_0^\infty \left(\frac{2\sinh^2 x}{\sinh 2x +
+    2x} - 1\right) dx = -1.1676\,\frac{2(1-\nu^2)}{\pi E h}`.
 
     Examples
     --------
@@ -111,12 +106,11 @@ def through_thickness_term(
     modulus = youngs_modulus / (1.0 - poissons_ratio**2)  # in plane strain
 
     def kernel(k: Floats) -> Floats:
-        bending, squeezing = layer_kernels(k * thickness)
-        return np.asarray(
-            2.0
-            / (modulus * k)
-            * (bending + squeezing - 1.0 - (bending - squeezing) * average.transform(k) ** 2)
-        )
+        half_space = 2.0 / (modulus * k)
+        bending, squeezing = layer_kernels(k * thickness)  # over the half space
+        structural = bending + squeezing - 1.0
+        opposite_face = (bending - squeezing) * average.transform(k) ** 2
+        return np.asarray(half_space * (structural - opposite_face))
 
     return _integral(kernel, thickness, average)
 
@@ -124,17 +118,18 @@ def through_thickness_term(
 def plate_theory_average(
     radius: float, thickness: float, poissons_ratio: float, shear_factor: float
 ) -> Average:
-    """Return the average of `plate_theory_term` over a disc of a radius [m]: the mean of
-    r^2 is `mean_square`.
+    """Return the average of `plate_theory_term` over a disc of a radius [m].
+
+    The mean of r^2 is `mean_square`.
     """
-    return Average(
-        radius, 3.0 - 6.0 * mean_square(thickness, poissons_ratio, shear_factor) / radius**2
-    )
+    square = mean_square(thickness, poissons_ratio, shear_factor)
+    return Average(radius, 3.0 - 6.0 * square / radius**2)
 
 
 def mean_square(thickness: float, poissons_ratio: float, shear_factor: float) -> float:
-    r"""Return the mean of r^2 of the average with which plate theory agrees with the face of a
-    layer for long waves [m^2].
+    r"""Return the mean of r^2 with which plate theory agrees with the face of a layer [m^2].
+
+    It is that of an average over a disc; they agree for long waves.
 
     Notes
     -----
@@ -167,8 +162,7 @@ def plate_theory_term(
     Notes
     -----
     The kernel that is subtracted is :math:`\left(\frac{1}{D k^4} + \frac{1}{\kappa G h k^2}\right)
-    d^2` (R. D. Mindlin, J. Appl.
-    Mech. 18:31, 1951).
+    d^2` (R. D. Mindlin, J. Appl. Mech. 18:31, 1951).
 
     Examples
     --------
@@ -178,24 +172,25 @@ def plate_theory_term(
     """
     modulus = youngs_modulus / (1.0 - poissons_ratio**2)
     rigidity = modulus * thickness**3 / 12.0
-    shear = shear_factor * 0.5 * (1.0 - poissons_ratio) * modulus * thickness
+    shear_stiffness = shear_factor * 0.5 * (1.0 - poissons_ratio) * modulus * thickness
 
     def kernel(k: Floats) -> Floats:
         structural = 2.0 / (modulus * k) * (np.sum(layer_kernels(k * thickness), axis=0) - 1.0)
-        return np.asarray(
-            structural
-            - (1.0 / (rigidity * k**4) + 1.0 / (shear * k**2)) * average.transform(k) ** 2
-        )
+        plate_theory = 1.0 / (rigidity * k**4) + 1.0 / (shear_stiffness * k**2)
+        return np.asarray(structural - plate_theory * average.transform(k) ** 2)
 
     return _integral(kernel, thickness, average)
 
 
 def layer_kernels(y: Floats) -> tuple[Floats, Floats]:
-    """Return A and S over the kernel of the half space, at y = k h; for short waves each
-    tends to 1/2.
+    """Return A and S over the kernel of the half space, at y = k h.
+
+    For short waves each tends to 1/2.
     """
     y = np.minimum(y, _DEEPEST)
-    return (1.0 + np.cosh(y)) / (2.0 * _sinh_less(y)), (np.cosh(y) - 1.0) / (2.0 * (np.sinh(y) + y))
+    bending = (1.0 + np.cosh(y)) / (2.0 * _sinh_less(y))
+    squeezing = (np.cosh(y) - 1.0) / (2.0 * (np.sinh(y) + y))
+    return bending, squeezing
 
 
 def _sinh_less(y: Floats) -> Floats:
@@ -207,13 +202,15 @@ def _sinh_less(y: Floats) -> Floats:
 
 
 def _integral(kernel: Callable[[Floats], Floats], thickness: float, average: Average) -> float:
-    """Return the integral of a kernel over k dk / 2 pi from zero to the cutoff, by
-    Gauss's rule on equal parts.
+    """Return the integral of a kernel over k dk / 2 pi from zero to the cutoff.
+
+    It is taken by Gauss's rule on equal intervals.
     """
     largest = max(thickness, average.radius)
-    parts = math.ceil(
-        largest * max(_DEEPEST / thickness, _FINEST / average.radius if average.radius else 0.0)
-    )
+    cutoff = _DEEPEST / thickness
+    if average.radius:
+        cutoff = max(cutoff, _FINEST / average.radius)
+    intervals = math.ceil(largest * cutoff)  # each of the length 1 / largest
     nodes, weights = np.polynomial.legendre.leggauss(_NODES)
-    k = (np.arange(parts)[:, None] + 0.5 * (nodes + 1.0)).ravel() / largest
-    return float(kernel(k) @ (k * np.tile(weights, parts)) / (4.0 * math.pi * largest))
+    k = (np.arange(intervals)[:, None] + 0.5 * (nodes + 1.0)).ravel() / largest
+    return float(kernel(k) @ (k * np.tile(weights, intervals)) / (4.0 * math.pi * largest))

@@ -1,5 +1,6 @@
-"""Plate element: Reissner-Mindlin bending and plane stress in its middle plane, on
-quadrilaterals of order four.
+"""Plate element: Reissner-Mindlin bending, and plane stress in its middle plane.
+
+It is a quadrilateral of order four.
 """
 
 from __future__ import annotations
@@ -16,8 +17,9 @@ _THIN_SHEAR = 1e4  # factor on the shear stiffness that stands for the thin plat
 
 
 def shear_factor(poissons_ratio: float) -> float:
-    """Return the shear correction factor of a plate [-]: 5 / (6 - nu), J. R. Hutchinson's
-    (J. Appl. Mech. 51:581, 1984).
+    """Return the shear correction factor of a plate [-], 5 / (6 - nu).
+
+    It is J. R. Hutchinson's (J. Appl. Mech. 51:581, 1984).
     """
     return 5.0 / (6.0 - poissons_ratio)
 
@@ -60,13 +62,12 @@ def assemble_plate(
     Notes
     -----
     Strain energy :math:`\tfrac12\int h\,\varepsilon^T C \varepsilon + \tfrac{h^3}{12} \kappa^T C
-    \kappa
-    + s G h\,|\nabla w + \beta|^2\,dA` with C of plane stress (R. D. Mindlin, J. Appl. Mech. 18:31,
-    1951). The factor
-    s = 5 / (6 - nu) is J. R. Hutchinson's (J. Appl. Mech. 51:581, 1984): errors of frequencies with
-    respect to three-dimensional elasticity are twenty times smaller than with E. Reissner's 5/6 or
-    Mindlin's pi^2/12. Integration is full, as quadrilaterals of order four do not lock. The thin
-    plate is the thick one with ten thousand times the shear stiffness and without rotary inertia.
+    \kappa + s G h\,|\nabla w + \beta|^2\,dA` with C of plane stress (R. D. Mindlin, J. Appl. Mech.
+    18:31, 1951). The factor s = 5 / (6 - nu) is J. R. Hutchinson's (J. Appl. Mech. 51:581, 1984):
+    errors of frequencies with respect to three-dimensional elasticity are twenty times smaller than
+    with E. Reissner's 5/6 or Mindlin's pi^2/12. Integration is full, as quadrilaterals of order
+    four do not lock. The thin plate is the thick one with ten thousand times the shear stiffness
+    and without rotary inertia.
 
     Examples
     --------
@@ -79,38 +80,51 @@ def assemble_plate(
     """
     if theory not in ("thick", "thin"):
         raise InputError(f'"{theory}" is not a theory of plates; it must be "thick" or "thin"')
-    modulus, ratio = material.youngs_modulus, material.poissons_ratio
-    mu = modulus / (2.0 * (1.0 + ratio))
-    lame = modulus * ratio / (1.0 - ratio**2)  # in plane stress
-    factor = shear_factor(ratio) if shear_correction is None else shear_correction
-    shear = factor * mu * thickness * (1.0 if theory == "thick" else _THIN_SHEAR)
+    is_thick = theory == "thick"
+    ratio = material.poissons_ratio
+    shear_modulus = material.youngs_modulus / (2.0 * (1.0 + ratio))
+    lame = material.youngs_modulus * ratio / (1.0 - ratio**2)  # in plane stress
+    if shear_correction is None:
+        shear_correction = shear_factor(ratio)
+    shear_stiffness = (
+        shear_correction * shear_modulus * thickness * (1.0 if is_thick else _THIN_SHEAR)
+    )
     second_moment = thickness**3 / 12.0
-    shapes = list(scaled_shapes(mesh, mesh.blocks[0]))
-    summed, matrix = pair_assembly(mesh)
 
-    unit = summed([values.transpose(0, 2, 1) @ values for values, _ in shapes])
-    product = np.array(
+    # chunks of values and gradients of the shape functions times sqrt(dA)
+    chunks = list(scaled_shapes(mesh, mesh.blocks[0]))
+    summed, matrix = pair_assembly(mesh)
+    # integrals of N_a N_b, and of dN_a/dx_i dN_b/dx_j
+    value_products = summed([values.transpose(0, 2, 1) @ values for values, _ in chunks])
+    gradient_products = np.array(
         [
-            [summed([g[i].transpose(0, 2, 1) @ g[j] for _, g in shapes]) for j in range(2)]
+            [
+                summed([gradients[i].transpose(0, 2, 1) @ gradients[j] for _, gradients in chunks])
+                for j in range(2)
+            ]
             for i in range(2)
         ]
     )
-    plane = isotropic(product, lame, mu)
-    stiffness, mass = np.zeros((2, len(unit), 5, 5))
-    stiffness[:, :2, :2] = thickness * plane
-    stiffness[:, 3:, 3:] = second_moment * plane
-    stiffness[:, 2, 2] = shear * np.trace(product)
+    plane_stress = isotropic(gradient_products, lame, shear_modulus)
+
+    # blocks of pairs of nodes, with the degrees of freedom u, v, w and two slopes
+    stiffness, mass = np.zeros((2, len(value_products), 5, 5))
+    stiffness[:, :2, :2] = thickness * plane_stress
+    stiffness[:, 3:, 3:] = second_moment * plane_stress
+    stiffness[:, 2, 2] = shear_stiffness * np.trace(gradient_products)
     for axis in range(2):
-        stiffness[:, 3 + axis, 3 + axis] += shear * unit
-        stiffness[:, 2, 3 + axis] = shear * summed(
-            [g[axis].transpose(0, 2, 1) @ values for values, g in shapes]
-        )
-        stiffness[:, 3 + axis, 2] = shear * summed(
-            [values.transpose(0, 2, 1) @ g[axis] for values, g in shapes]
-        )
-        mass[:, 3 + axis, 3 + axis] = (
-            material.density * second_moment * unit if theory == "thick" else 0.0
-        )
+        slope = 3 + axis
+        stiffness[:, slope, slope] += shear_stiffness * value_products
+        gradient_values = [
+            gradients[axis].transpose(0, 2, 1) @ values for values, gradients in chunks
+        ]
+        value_gradients = [
+            values.transpose(0, 2, 1) @ gradients[axis] for values, gradients in chunks
+        ]
+        stiffness[:, 2, slope] = shear_stiffness * summed(gradient_values)
+        stiffness[:, slope, 2] = shear_stiffness * summed(value_gradients)
+        if is_thick:
+            mass[:, slope, slope] = material.density * second_moment * value_products
     for axis in range(3):
-        mass[:, axis, axis] = material.density * thickness * unit
+        mass[:, axis, axis] = material.density * thickness * value_products
     return matrix(stiffness), matrix(mass)

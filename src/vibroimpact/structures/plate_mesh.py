@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from vibroimpact.arrays import Floats
 from vibroimpact.errors import InputError
 from vibroimpact.structures.element_kinds import PLATE_ORDER
 from vibroimpact.structures.lattice import merged, mesh_of_blocks
@@ -18,7 +19,7 @@ from vibroimpact.structures.rectangle import (
     with_midpoints,
 )
 
-_NODES = 4  # of each element of a large mesh of the kind "hex20"
+_NODES_PER_ELEMENT = 4  # of a large mesh of the kind "hex20"
 
 
 def solid_plate_mesh(
@@ -58,22 +59,24 @@ def solid_plate_mesh(
     >>> solid_plate_mesh((0.52, 0.42, 0.008), 0.004, layers=2).number_of_elements
     27300
     """
-    most = MOST_NODES // _NODES
-    if (size[0] / element_size) * (size[1] / element_size) * layers > most:
+    most_elements = MOST_NODES // _NODES_PER_ELEMENT
+    if (size[0] / element_size) * (size[1] / element_size) * layers > most_elements:
         remedy = "make them larger, or take fewer layers" if layers > 1 else "make them larger"
         raise InputError(
             f"elements of {element_size:g} m in {layers} layer{'s' if layers > 1 else ''} "
-            f"would be more than {most}; {remedy}"
+            f"would be more than {most_elements}; {remedy}"
         )
-    below = splits if lower_splits is None else lower_splits
-    height = with_midpoints(
-        split_at(np.linspace(-0.5 * size[2], 0.5 * size[2], layers + 1), below), 2
-    )
+    if lower_splits is None:
+        lower_splits = splits
+    layer_ends = np.linspace(-0.5 * size[2], 0.5 * size[2], layers + 1)
+    heights = with_midpoints(split_at(layer_ends, lower_splits), 2)
     margins = [0.5 * size[2] * 0.25**split for split in range(splits)]
+    rectangles = rectangle_blocks(size[:2], element_size, 2, discs, lines, splits, margins, rims)
     blocks = []
-    for flat in rectangle_blocks(size[:2], element_size, 2, discs, lines, splits, margins, rims):
-        block = np.empty((*flat.shape[:2], len(height), 3))
-        block[..., :2], block[..., 2] = flat[:, :, None], height
+    for rectangle in rectangles:
+        block = np.empty((*rectangle.shape[:2], len(heights), 3))
+        block[..., :2] = rectangle[:, :, None]
+        block[..., 2] = heights
         blocks.append(block)
     return mesh_of_blocks(blocks, kind)
 
@@ -102,24 +105,31 @@ def plate_mesh(
     >>> plate_mesh((0.52, 0.42), 0.052).nodes.shape
     (1517, 3)
     """
-    steps = np.arange(PLATE_ORDER + 1)
-    points, elements, start = [], [], 0
-    for block in rectangle_blocks(
+    blocks = rectangle_blocks(
         size, element_size, PLATE_ORDER, discs, lines, margins=margins, rims=rims
-    ):
-        sides = (block[1, 0] - block[0, 0], block[0, 1] - block[0, 0])
-        flat = (
-            block
-            if sides[0][0] * sides[1][1] > sides[0][1] * sides[1][0]
-            else block.transpose(1, 0, 2)
-        )
-        number = start + np.arange(flat[..., 0].size).reshape(flat.shape[:2])
-        # the first coordinate runs fastest
-        offsets = (flat.shape[1] * steps[None, :] + steps[:, None]).ravel()
-        elements.append(number[:-1:PLATE_ORDER, :-1:PLATE_ORDER].reshape(-1, 1) + offsets)
-        points.append(
-            np.concatenate([flat.reshape(-1, 2), np.zeros((flat[..., 0].size, 1))], axis=1)
-        )
-        start += flat[..., 0].size
+    )
+    steps = np.arange(PLATE_ORDER + 1)
+    points = []
+    elements = []
+    number_of_points = 0  # of the blocks so far
+    for block in blocks:
+        lattice = _right_handed(block)
+        block_points = lattice[..., 0].size
+        numbers = number_of_points + np.arange(block_points).reshape(lattice.shape[:2])
+        first_corners = numbers[:-1:PLATE_ORDER, :-1:PLATE_ORDER].reshape(-1, 1)
+        # in the nodes of an element the first coordinate runs fastest
+        offsets = (lattice.shape[1] * steps[None, :] + steps[:, None]).ravel()
+        elements.append(first_corners + offsets)
+        heights = np.zeros((block_points, 1))
+        points.append(np.concatenate([lattice.reshape(-1, 2), heights], axis=1))
+        number_of_points += block_points
     nodes, connectivity = merged(np.concatenate(points), np.concatenate(elements))
     return Mesh(nodes, (ElementBlock("quad25", connectivity),))
+
+
+def _right_handed(block: Floats) -> Floats:
+    """Return the block, with its directions exchanged if needed for a normal upwards."""
+    first = block[1, 0] - block[0, 0]
+    second = block[0, 1] - block[0, 0]
+    is_right_handed = first[0] * second[1] > first[1] * second[0]
+    return block if is_right_handed else block.transpose(1, 0, 2)

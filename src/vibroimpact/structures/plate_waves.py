@@ -26,7 +26,7 @@ from vibroimpact.materials import Material
 from vibroimpact.structures.plate_compliance import mean_square
 from vibroimpact.structures.plate_element import shear_factor
 
-_LARGEST = 8.0  # wave number times thickness beyond which the factor is constant
+_LARGEST = 8.0  # wave number times thickness beyond which the bending factor is constant
 _DEGREE = 24  # of the polynomial that interpolates the factor within 3e-8
 _RATIOS = 64  # Poisson's ratios of which the factor is cached
 _HALVINGS = 60  # of the bisection
@@ -34,13 +34,13 @@ _HALVINGS = 60  # of the bisection
 # hides them
 _LEAST = 0.05
 _NODES = 24  # of Gauss's rule across the thickness
-# coefficients of powers of Poisson's ratio, within 0.2 %; without waves longer than 20 thicknesses
+# of the factor c of `inertia_beyond_bending`: coefficients of powers of Poisson's ratio, within
+# 0.2 %; without waves longer than 20 thicknesses
 _INERTIA = (0.02432, -0.03887, 0.05163)
 
 
 def bending_factor(wave: Floats, poissons_ratio: float) -> Floats:
-    """Return the displacement of the face of a plate in a bending wave over the deflection of plate
-    theory [-].
+    """Return the displacement of a face over the deflection of plate theory in bending waves [-].
 
     Parameters
     ----------
@@ -58,8 +58,9 @@ def bending_factor(wave: Floats, poissons_ratio: float) -> Floats:
 
 
 def bending_error(wave: Floats, poissons_ratio: float, thin: bool = False) -> Floats:
-    """Return the relative error of plate theory in the frequency of a bending wave, with respect to
-    the layer [-].
+    """Return the relative error of plate theory in the frequency of bending waves [-].
+
+    The frequency is compared with that of the layer.
 
     Parameters
     ----------
@@ -78,18 +79,17 @@ def bending_error(wave: Floats, poissons_ratio: float, thin: bool = False) -> Fl
     [0.156335414, 1.77e-07]
     """
     resolved = np.maximum(wave, _LEAST)
-    exact = _lamb(resolved, poissons_ratio)[0]
-    theory = (
-        resolved**2 * math.sqrt(1.0 / (6.0 * (1.0 - poissons_ratio)))
-        if thin
-        else _mindlin(resolved, poissons_ratio)[0]
-    )
-    return np.asarray((theory / exact - 1.0) * (wave / resolved) ** 2)
+    layer_frequency = _lamb(resolved, poissons_ratio)[0]
+    if thin:
+        # omega = k^2 sqrt(D / (rho h)), for h = rho = G = 1
+        plate_frequency = resolved**2 * math.sqrt(1.0 / (6.0 * (1.0 - poissons_ratio)))
+    else:
+        plate_frequency = _mindlin(resolved, poissons_ratio)[0]
+    return np.asarray((plate_frequency / layer_frequency - 1.0) * (wave / resolved) ** 2)
 
 
 def stiff_shear_error(wave: Floats, poissons_ratio: float) -> Floats:
-    """Return the relative increase of the frequency of bending waves in Mindlin's theory without
-    shear correction [-].
+    """Return the relative error of Mindlin's bending frequencies without shear correction [-].
 
     Parameters
     ----------
@@ -98,16 +98,16 @@ def stiff_shear_error(wave: Floats, poissons_ratio: float) -> Floats:
     poissons_ratio : float
         Poisson's ratio [-].
     """
-    return np.asarray(
-        _mindlin(wave, poissons_ratio, 1.0)[0] / _mindlin(wave, poissons_ratio)[0] - 1.0
-    )
+    uncorrected = _mindlin(wave, poissons_ratio, 1.0)[0]
+    corrected = _mindlin(wave, poissons_ratio)[0]
+    return np.asarray(uncorrected / corrected - 1.0)
 
 
 def stretching_error(angular_frequencies: Floats, thickness: float, material: Material) -> Floats:
-    r"""Return the relative error of plate theory in the frequencies of in-plane longitudinal waves
-    [-].
+    r"""Return the relative error of plate theory in frequencies of longitudinal waves [-].
 
-    It is :math:`(\nu k h)^2 / 24 (1-\nu)^2`, to the second order in the wave number k (Lamb 1917).
+    The waves move in the plane of the plate. The error is :math:`(\nu k h)^2 / 24 (1-\nu)^2`, to
+    the second order in the wave number k (Lamb 1917).
 
     Parameters
     ----------
@@ -119,17 +119,16 @@ def stretching_error(angular_frequencies: Floats, thickness: float, material: Ma
         Material of the plate.
     """
     ratio = material.poissons_ratio
-    wave = (
-        thickness
-        * angular_frequencies
-        * math.sqrt(material.density * (1.0 - ratio**2) / material.youngs_modulus)
-    )
+    # slowness of longitudinal waves in a thin plate
+    slowness = math.sqrt(material.density * (1.0 - ratio**2) / material.youngs_modulus)
+    wave = thickness * angular_frequencies * slowness
     return np.asarray((ratio * wave / (1.0 - ratio)) ** 2 / 24.0)
 
 
 def shear_wave_factor(square: Floats, poissons_ratio: float) -> Floats:
-    r"""Return the counterpart of `bending_factor` for shear waves, to the second order: :math:`1 /
-    (1 + k^2 \overline{r^2} / 4)` [-].
+    r"""Return the counterpart of `bending_factor` for shear waves, to the second order [-].
+
+    It is :math:`1 / (1 + k^2 \overline{r^2} / 4)`.
 
     Parameters
     ----------
@@ -138,19 +137,17 @@ def shear_wave_factor(square: Floats, poissons_ratio: float) -> Floats:
     poissons_ratio : float
         Poisson's ratio [-].
     """
-    return np.asarray(
-        1.0 / (1.0 + 0.25 * mean_square(1.0, poissons_ratio, shear_factor(poissons_ratio)) * square)
-    )
+    mean_squared_radius = mean_square(1.0, poissons_ratio, shear_factor(poissons_ratio))
+    return np.asarray(1.0 / (1.0 + 0.25 * mean_squared_radius * square))
 
 
 def inertia_beyond_bending(thickness: float, material: Material) -> float:
-    r"""Return the contribution of the waves of a layer other than bending to :math:`\sum \varphi^2
-    / \omega^4` at a point [m s^2/N].
+    r"""Return the sum of phi^2 / omega^4 over the waves of a layer other than bending [m s^2/N].
 
-    It is the response of the face to the second derivative of a force in excess of plate theory,
-    :math:`c\,\rho h / G^2`. The factor
-    c, from :math:`\int \sum \varphi^2 \omega^{-4} k\,dk / 2\pi` over all other branches, is fitted
-    by a parabola in Poisson's ratio.
+    It is the response of a point of the face to the second derivative of a force in excess of
+    plate theory, :math:`c\,\rho h / G^2`. The factor c, from
+    :math:`\int \sum \varphi^2 \omega^{-4} k\,dk / 2\pi` over all other branches, is fitted by a
+    parabola in Poisson's ratio.
 
     Parameters
     ----------
@@ -166,38 +163,33 @@ def inertia_beyond_bending(thickness: float, material: Material) -> float:
     '2.1e-22'
     """
     ratio = material.poissons_ratio
-    shear = 0.5 * material.youngs_modulus / (1.0 + ratio)
-    return (
-        float(np.polynomial.polynomial.polyval(ratio, _INERTIA))
-        * material.density
-        * thickness
-        / shear**2
-    )
+    shear_modulus = 0.5 * material.youngs_modulus / (1.0 + ratio)
+    factor = float(np.polynomial.polynomial.polyval(ratio, _INERTIA))
+    return factor * material.density * thickness / shear_modulus**2
 
 
 def wave_numbers(
     angular_frequencies: Floats, thickness: float, material: Material, thin: bool = False
 ) -> Floats:
-    """Return the wave numbers of bending waves [1/m] at angular frequencies [rad/s], by
-    Mindlin's or Kirchhoff's (`thin`) theory.
+    """Return the wave numbers of bending waves [1/m] at angular frequencies [rad/s].
+
+    They are those of Mindlin's theory, or of Kirchhoff's if `thin`.
     """
-    if thin:
-        rigidity = (
-            material.youngs_modulus * thickness**2 / (12.0 * (1.0 - material.poissons_ratio**2))
-        )
-        return np.asarray((material.density * angular_frequencies**2 / rigidity) ** 0.25)
-    return np.asarray(np.sqrt(mindlin_squares(angular_frequencies, thickness, material)[0]))
+    if not thin:
+        return np.asarray(np.sqrt(mindlin_squares(angular_frequencies, thickness, material)[0]))
+    ratio = material.poissons_ratio
+    rigidity = material.youngs_modulus * thickness**2 / (12.0 * (1.0 - ratio**2))  # D / h
+    return np.asarray((material.density * angular_frequencies**2 / rigidity) ** 0.25)
 
 
 def mindlin_squares(
     omega: Floats, thickness: float, material: Material
 ) -> tuple[Floats, Floats, Floats]:
-    r"""Return the squares of both wave numbers of Mindlin's plate, and :math:`\rho \omega^2 /
-    \kappa G` [1/m^2].
+    r"""Return the squares of both wave numbers of Mindlin's plate, and their shear term [1/m^2].
 
-    That of the bending wave is positive. That of the shear wave is negative below :math:`\sqrt{12
-    \kappa G / (\rho h^2)}`, where it is
-    evanescent.
+    The first, that of the bending wave, is positive. The second, that of the shear wave, is
+    negative below :math:`\sqrt{12 \kappa G / (\rho h^2)}`, where the wave is evanescent. The shear
+    term is :math:`\rho \omega^2 / \kappa G`.
 
     Parameters
     ----------
@@ -210,10 +202,12 @@ def mindlin_squares(
     """
     ratio = material.poissons_ratio
     modulus = material.youngs_modulus / (1.0 - ratio**2)
-    lag = material.density * omega**2 / (shear_factor(ratio) * 0.5 * (1.0 - ratio) * modulus)
-    turn = material.density * omega**2 / modulus  # of rotary inertia
-    root = np.sqrt(0.25 * (lag - turn) ** 2 + 12.0 * turn / thickness**2)
-    return 0.5 * (lag + turn) + root, 0.5 * (lag + turn) - root, lag
+    shear_stiffness = shear_factor(ratio) * 0.5 * (1.0 - ratio) * modulus  # kappa G
+    shear_term = material.density * omega**2 / shear_stiffness
+    rotary_term = material.density * omega**2 / modulus  # of rotary inertia
+    root = np.sqrt(0.25 * (shear_term - rotary_term) ** 2 + 12.0 * rotary_term / thickness**2)
+    mean = 0.5 * (shear_term + rotary_term)
+    return mean + root, mean - root, shear_term
 
 
 @functools.lru_cache(maxsize=_RATIOS)
@@ -226,46 +220,76 @@ def _factor(poissons_ratio: float) -> Chebyshev:
     return Chebyshev.interpolate(ratio, _DEGREE, domain=[0.0, _LARGEST])
 
 
-def _mindlin(y: Floats, ratio: float, factor: float | None = None) -> tuple[Floats, Floats]:
-    """Return the angular frequency of bending waves and their deflection for unit modal
-    mass per area, for h = rho = G = 1 and y = k h.
+def _mindlin(wave: Floats, ratio: float, factor: float | None = None) -> tuple[Floats, Floats]:
+    """Return the angular frequency and deflection of Mindlin's bending waves.
+
+    The deflection is that for unit modal mass per area. Units are such that h = rho = G = 1, so
+    that `wave` is k h; `factor` is the shear correction, by default `shear_factor`.
     """
-    shear = shear_factor(ratio) if factor is None else factor
-    bend = y**2 / (6.0 * (1.0 - ratio))  # rigidity times k^2
-    trace, product = shear * y**2 + 12.0 * (bend + shear), 12.0 * shear * y**2 * bend
-    square = 2.0 * product / (trace + np.sqrt(trace**2 - 4.0 * product))
+    shear_stiffness = shear_factor(ratio) if factor is None else factor  # kappa G h
+    bending_stiffness = wave**2 / (6.0 * (1.0 - ratio))  # D k^2
+    # omega^2 is the smaller root of x^2 - trace x + product, in a form without cancellation
+    trace = shear_stiffness * wave**2 + 12.0 * (bending_stiffness + shear_stiffness)
+    product = 12.0 * shear_stiffness * wave**2 * bending_stiffness
+    squared_frequency = 2.0 * product / (trace + np.sqrt(trace**2 - 4.0 * product))
     # over the deflection, from equilibrium of the transverse forces
-    slope = y - square / (shear * y)
-    return np.sqrt(square), 1.0 / np.sqrt(1.0 + slope**2 / 12.0)
+    slope = wave - squared_frequency / (shear_stiffness * wave)
+    # rotary inertia is 1/12 of the inertia of the deflection per squared slope
+    return np.sqrt(squared_frequency), 1.0 / np.sqrt(1.0 + slope**2 / 12.0)
 
 
-def _lamb(y: Floats, ratio: float) -> tuple[Floats, Floats]:
-    r"""Return the angular frequency and the face displacement of the lowest antisymmetric Lamb
-    wave, normalised and in units as `_mindlin`.
+def _lamb(wave: Floats, ratio: float) -> tuple[Floats, Floats]:
+    """Return the angular frequency and face displacement of the lowest antisymmetric Lamb wave.
 
-    Its speed is below that of Rayleigh waves, so that with :math:`\alpha^2 = y^2 - \omega^2 /
-    c_L^2`, :math:`\beta^2 = y^2 - \omega^2`
-    the equation :math:`(y^2 + \beta^2)^2 \tanh(\alpha/2) = 4 y^2 \alpha \beta \tanh(\beta/2)` has
-    one root, found by bisection.
+    They are normalised and in units as those of `_mindlin`.
     """
-    y = np.asarray(y, dtype=float)
-    slowness = 0.5 * (1.0 - 2.0 * ratio) / (1.0 - ratio)  # the square of c_T / c_L
+    wave = np.asarray(wave, dtype=float)
+    squared_speed = _squared_lamb_speed(wave, ratio)
+    frequency = wave * np.sqrt(squared_speed)
 
-    def depths(square: Floats) -> tuple[Floats, Floats]:
-        return y * np.sqrt(1.0 - slowness * square), y * np.sqrt(1.0 - square)
+    # one axis more, for the heights z from the middle of the layer
+    alpha, beta = (rate[..., None] for rate in _decay_rates(wave, squared_speed, ratio))
+    k = wave[..., None]
+    nodes, weights = np.polynomial.legendre.leggauss(_NODES)
+    z = 0.5 * nodes
 
-    low, high = np.zeros_like(y), np.ones_like(y)  # of the square of the speed over c_T
+    # amplitude of the shear part over that of the pressure part, without shear stress on the faces
+    shear_part = 2.0 * k * alpha / (k**2 + beta**2)
+    pressure_along = k * np.sinh(alpha * z) / np.cosh(0.5 * alpha)
+    shear_along = shear_part * beta * np.sinh(beta * z) / np.cosh(0.5 * beta)
+    pressure_across = alpha * np.cosh(alpha * z) / np.cosh(0.5 * alpha)
+    shear_across = shear_part * k * np.cosh(beta * z) / np.cosh(0.5 * beta)
+    along = pressure_along - shear_along
+    across = pressure_across - shear_across
+    face = (alpha - shear_part * k)[..., 0]
+    modal_mass = 0.5 * (along**2 + across**2) @ weights
+    return frequency, np.abs(face) / np.sqrt(modal_mass)
+
+
+def _squared_lamb_speed(wave: Floats, ratio: float) -> Floats:
+    r"""Return the squared speed of the lowest antisymmetric Lamb wave, over that of shear waves.
+
+    The speed is below that of Rayleigh waves, so that with :math:`\alpha^2 = y^2 - \omega^2 /
+    c_L^2`, :math:`\beta^2 = y^2 - \omega^2` and y = k h the equation :math:`(y^2 + \beta^2)^2
+    \tanh(\alpha/2) = 4 y^2 \alpha \beta \tanh(\beta/2)` has one root, found by bisection.
+    """
+    low = np.zeros_like(wave)
+    high = np.ones_like(wave)
     for _ in range(_HALVINGS):
         middle = 0.5 * (low + high)
-        a, b = depths(middle)
-        fast = (2.0 - middle) ** 2 * y**2 * np.tanh(0.5 * a) > 4.0 * a * b * np.tanh(0.5 * b)
-        low, high = np.where(fast, low, middle), np.where(fast, middle, high)
-    square = 0.5 * (low + high)
-    a, b = depths(square)
-    z, weight = np.polynomial.legendre.leggauss(_NODES)
-    z, a, b, k = 0.5 * z, a[..., None], b[..., None], y[..., None]
-    share = 2.0 * k * a / (k**2 + b**2)
-    along = k * np.sinh(a * z) / np.cosh(0.5 * a) - share * b * np.sinh(b * z) / np.cosh(0.5 * b)
-    across = a * np.cosh(a * z) / np.cosh(0.5 * a) - share * k * np.cosh(b * z) / np.cosh(0.5 * b)
-    face = (a - share * k)[..., 0]
-    return y * np.sqrt(square), np.abs(face) / np.sqrt(0.5 * (along**2 + across**2) @ weight)
+        alpha, beta = _decay_rates(wave, middle, ratio)
+        # both sides of the equation over y^2
+        left = (2.0 - middle) ** 2 * wave**2 * np.tanh(0.5 * alpha)
+        right = 4.0 * alpha * beta * np.tanh(0.5 * beta)
+        is_below = left > right
+        low = np.where(is_below, low, middle)
+        high = np.where(is_below, middle, high)
+    return np.asarray(0.5 * (low + high))
+
+
+def _decay_rates(wave: Floats, squared_speed: Floats, ratio: float) -> tuple[Floats, Floats]:
+    """Return alpha and beta: the decay of the pressure and of the shear part across a layer."""
+    squared_speed_ratio = 0.5 * (1.0 - 2.0 * ratio) / (1.0 - ratio)  # (c_T / c_L)^2
+    alpha = wave * np.sqrt(1.0 - squared_speed_ratio * squared_speed)
+    beta = wave * np.sqrt(1.0 - squared_speed)
+    return alpha, beta

@@ -1,5 +1,6 @@
-"""Recipe of the modes of a body: mesh, material, supports and reduction; and the
-computation of its modal model.
+"""Recipe of the modes of a body, and the computation of its modal model.
+
+A recipe is mesh, material, supports and reduction.
 """
 
 from __future__ import annotations
@@ -11,6 +12,7 @@ from functools import lru_cache
 from typing import Literal
 
 import numpy as np
+from scipy.sparse import csr_array
 
 from vibroimpact.arrays import Floats, Integers
 from vibroimpact.errors import ComputationError, InputError
@@ -46,9 +48,15 @@ from vibroimpact.structures.surface import Side, Spot, place_of, surface_motion
 Place = tuple[Spot, Side]
 """A spot, and the side of the body where it lies."""
 
-_COARSE_ACROSS, _COARSE_SOLID, _COARSE_PLATE, _COARSE_MARGIN = 0.67, 1.5, 1.5, 4.0 / 3.0
-# measured: docs/elastic-bodies.md compares estimated with true errors
-_SOLID_GAIN, _PLATE_GAIN = 4.0, 3.0
+# of the coarser mesh, over those of the mesh: elements across a sphere, sizes of elements, margin
+_COARSE_ACROSS = 0.67
+_COARSE_SOLID = 1.5
+_COARSE_PLATE = 1.5
+_COARSE_MARGIN = 4.0 / 3.0
+# ratios of the errors of both meshes, measured: docs/elastic-bodies.md compares estimated with true
+# errors
+_SOLID_GAIN = 4.0
+_PLATE_GAIN = 3.0
 
 REMARKS = "remarks on the file"
 """Name of the fact with what is doubtful about a mesh file, one sentence a line."""
@@ -59,19 +67,22 @@ _RECENT = 64
 """Recipes whose keys are kept."""
 _MODELS = MemoryCache[ModalModel](capacity=500e6)
 _ROUGH = 1e-4
-"""Residual of the modes of the coarser mesh, of which only the frequencies are used;
-their relative error is 1e-8.
+"""Residual of the modes of the coarser mesh, of which only the frequencies are used.
+
+Their relative error is 1e-8.
 """
 _MODES_PART = 0.6
-"""Part of the time that modes take, as told by `progress`; the rest is for their errors,
-from a coarser mesh.
+"""Part of the time that modes take, as told by `progress`.
+
+The rest is for their errors, from a coarser mesh.
 """
 
 
 @dataclass(frozen=True)
 class Shape:
-    """Base class of the shapes of bodies: how to mesh and assemble them; of solid
-    elements unless overridden.
+    """Base class of the shapes of bodies: how to mesh and assemble them.
+
+    The elements are solid unless overridden.
     """
 
     def mesh(self, supports: tuple[Support, ...] = ()) -> Mesh:
@@ -83,8 +94,9 @@ class Shape:
         return solid_structure(mesh, material)
 
     def coarser(self) -> tuple[Shape, float] | None:
-        """Return a shape with a coarser mesh and the ratio of the errors of its
-        frequencies to those of this one, or None.
+        """Return a shape with a coarser mesh and the ratio of its errors to those of this one.
+
+        The errors are those of frequencies. None stands for no such shape.
         """
         return None
 
@@ -107,8 +119,9 @@ class SphereOfSolids(Shape):
         return sphere_mesh(self.radius, self.elements_across, self.kind, self.grading)
 
     def coarser(self) -> tuple[Shape, float] | None:
-        """Return the sphere with two thirds or half as many elements across; the error is
-        a power of their size.
+        """Return the sphere with two thirds or half as many elements across.
+
+        The error is a power of their size.
         """
         across = max(4, 4 * int(_COARSE_ACROSS * self.elements_across / 4))
         if across >= self.elements_across:
@@ -138,31 +151,35 @@ class PlateOfSolids(Shape):
             self.kind,
             discs,
             lines,
-            self.splits,
-            self.lower_splits,
-            _rims(supports),
+            splits=self.splits,
+            lower_splits=self.lower_splits,
+            rims=_rims(supports),
         )
 
     def coarser(self) -> tuple[Shape, float] | None:
-        """Return the plate with larger elements, and one split of rims less: both have
-        about four times the error.
+        """Return the plate with larger elements, and one split of rims less.
+
+        Both have about four times the error.
         """
-        below = self.splits if self.lower_splits is None else self.lower_splits
-        return replace(
+        coarser = replace(
             self,
             element_size=_COARSE_SOLID * self.element_size,
             splits=max(0, self.splits - 1),
-            lower_splits=max(0, below - 1),
-        ), _SOLID_GAIN
+            lower_splits=max(0, self._splits_below - 1),
+        )
+        return coarser, _SOLID_GAIN
 
     def one_layer(self) -> float:
         """Return the thickness if there is one second-order layer without splits, else 0."""
-        below = self.splits if self.lower_splits is None else self.lower_splits
-        return (
-            self.size[2]
-            if self.layers == 1 and not below and ELEMENT_KINDS[self.kind].order == 2
-            else 0.0
-        )
+        is_second_order = ELEMENT_KINDS[self.kind].order == 2
+        if self.layers == 1 and not self._splits_below and is_second_order:
+            return self.size[2]
+        return 0.0
+
+    @property
+    def _splits_below(self) -> int:
+        """Number of splits of the lowest layer, by default that of rims."""
+        return self.splits if self.lower_splits is None else self.lower_splits
 
 
 @dataclass(frozen=True)
@@ -176,10 +193,9 @@ class PlateOfPlates(Shape):
 
     def mesh(self, supports: tuple[Support, ...] = ()) -> Mesh:
         """Return the mesh."""
+        discs, lines = mesh_features(supports)
         margins = (self.margin,) if self.margin else ()
-        return plate_mesh(
-            self.size[:2], self.element_size, *mesh_features(supports), margins, _rims(supports)
-        )
+        return plate_mesh(self.size[:2], self.element_size, discs, lines, margins, _rims(supports))
 
     def structure(self, mesh: Mesh, material: Material) -> Structure:
         """Return the structure: the assembled plate elements."""
@@ -187,11 +203,12 @@ class PlateOfPlates(Shape):
 
     def coarser(self) -> tuple[Shape, float] | None:
         """Return the plate with larger elements and the ratio of the errors."""
-        return replace(
+        coarser = replace(
             self,
             element_size=_COARSE_PLATE * self.element_size,
             margin=_COARSE_MARGIN * self.margin,
-        ), _PLATE_GAIN
+        )
+        return coarser, _PLATE_GAIN
 
 
 @dataclass(frozen=True)
@@ -281,17 +298,17 @@ def modal_model_of(
     ComputationError
         If the modes cannot be computed.
     """
-    similar, tell = _normalised(recipe), tell or (lambda text: None)
-    if similar is recipe:
+    tell = tell or (lambda text: None)
+    normalised = _normalised(recipe)
+    if normalised is recipe:
         return _stored_model(recipe, progress, tell)
     assert isinstance(recipe.shape, SphereOfSolids)
-    here = _place(recipe)
-    model = _MODELS.get(here)  # which knows its shapes at places that were asked for before
+    key = _memory_key(recipe)
+    model = _MODELS.get(key)  # which knows its shapes at places that were asked for before
     if model is None:
-        model = _stored_model(similar, progress, tell).scaled(
-            recipe.shape.radius, recipe.density, recipe.youngs_modulus
-        )
-        _MODELS.put(here, model, model.size)
+        unit_model = _stored_model(normalised, progress, tell)
+        model = unit_model.scaled(recipe.shape.radius, recipe.density, recipe.youngs_modulus)
+        _MODELS.put(key, model, model.size)
     return model
 
 
@@ -312,46 +329,46 @@ def model_key(recipe: Recipe) -> str:
 
 
 def _normalised(recipe: Recipe) -> Recipe:
-    """Return the recipe whose modes are stored: for a free sphere that of unit radius,
-    density and modulus, else the recipe itself.
+    """Return the recipe whose modes are stored.
+
+    For a free sphere it is that of unit radius, density and modulus, else the recipe itself.
     """
-    if (
-        not isinstance(recipe.shape, SphereOfSolids)
-        or recipe.supports
-        or recipe.reduction.modes is None
-    ):
+    reduction = recipe.reduction
+    is_free_sphere = isinstance(recipe.shape, SphereOfSolids) and not recipe.supports
+    if not is_free_sphere or reduction.modes is None:
         return recipe
-    if any(
-        spot is not None for spot, _ in (*recipe.reduction.interface, *recipe.reduction.attachment)
-    ):
+    # places that are given by x and y do not scale with the sphere
+    if any(spot is not None for spot, _ in (*reduction.interface, *reduction.attachment)):
         return recipe
-    return replace(recipe, shape=replace(recipe.shape, radius=1.0), density=1.0, youngs_modulus=1.0)
+    unit_sphere = replace(recipe.shape, radius=1.0)
+    return replace(recipe, shape=unit_sphere, density=1.0, youngs_modulus=1.0)
 
 
 def _stored_model(
-    recipe: Recipe, progress: Progress | None, say: Callable[[str], None]
+    recipe: Recipe, progress: Progress | None, tell: Callable[[str], None]
 ) -> ModalModel:
-    """Return a model from memory, else from the store, else computed; a model that cannot
-    be stored stays in memory.
+    """Return a model from memory, else from the store, else computed.
+
+    A model that cannot be stored stays in memory.
     """
-    key, here = recipe_key(recipe), _place(recipe)
-    model = _MODELS.get(here)
+    key = recipe_key(recipe)
+    model = _MODELS.get(_memory_key(recipe))
     if model is not None:
         return model
     model, trouble = load_model(key)
     if trouble:
-        say(trouble)
+        tell(trouble)
     if model is None:
         model = computed_model(recipe, progress)
         trouble = save_model(key, model)
         if not trouble:
             return model
-        say(trouble)
-    _MODELS.put(here, model, model.size)
+        tell(trouble)
+    _MODELS.put(_memory_key(recipe), model, model.size)
     return model
 
 
-def _place(recipe: Recipe) -> str:
+def _memory_key(recipe: Recipe) -> str:
     """Return the key of the modes of a recipe in memory, which differs from store to store."""
     return f"{store_folder()}/{recipe_key(recipe)}"
 
@@ -359,96 +376,103 @@ def _place(recipe: Recipe) -> str:
 def computed_model(recipe: Recipe, progress: Progress | None = None) -> ModalModel:
     """Return the modal model of a recipe, computed anew; errors are those of `modal_model_of`."""
     begun = time.process_time()
-    material = Material(recipe.density, recipe.youngs_modulus, recipe.poissons_ratio)
-    structure = recipe.shape.structure(recipe.shape.mesh(recipe.supports), material)
-    held = held_by(structure, recipe.supports)
     tell = progress or (lambda part: None)
+    material = Material(recipe.density, recipe.youngs_modulus, recipe.poissons_ratio)
+    held = _held_structure(recipe, recipe.shape, material)
     modes = _reduced_modes(held, recipe.reduction, lambda part: tell(_MODES_PART * part))
-    parts = _errors(
+    errors_by_cause = _errors(
         recipe, held, modes, material, lambda part: tell(_MODES_PART + (1.0 - _MODES_PART) * part)
     )
-    facts = {
-        "nodes": f"{len(structure.mesh.nodes)}",
-        "elements": ", ".join(
-            f"{len(block.connectivity)} {block.kind}" for block in structure.mesh.blocks
-        ),
-        "degrees of freedom": f"{held.stiffness.shape[0]}",
-        "materials": structure.mesh.materials_text,
-        "joined by": ", ".join(
-            f"{name} ({count})" for name, count in structure.mesh.joined_by.items()
-        ),
-        "left out of the file": ", ".join(
-            f"{name} ({count})" for name, count in structure.mesh.skipped.items()
-        ),
-        REMARKS: "\n".join(
-            [
-                *structure.mesh.remarks,
-                *joint_remarks(held, recipe.supports),
-                *contradictions(structure.mesh.stated, material),
-            ]
-        ),
-        MAIN_CAUSE: main_cause(parts),
-        "processor time": f"{time.process_time() - begun:.2f} s",
-    }
+    facts = _facts(recipe, held, material)
+    facts[MAIN_CAUSE] = main_cause(errors_by_cause)
+    facts["processor time"] = f"{time.process_time() - begun:.2f} s"
     errors = np.full(len(modes.angular_frequencies), np.nan)
-    if parts:
-        whole = np.sum(list(parts.values()), axis=0)
-        errors[: len(whole)] = whole
+    if errors_by_cause:
+        total = np.sum(list(errors_by_cause.values()), axis=0)
+        errors[: len(total)] = total
     return modal_model(held, modes, {name: text for name, text in facts.items() if text}, errors)
+
+
+def _held_structure(recipe: Recipe, shape: Shape, material: Material) -> HeldStructure:
+    """Return the structure of a shape with the supports of a recipe."""
+    structure = shape.structure(shape.mesh(recipe.supports), material)
+    return held_by(structure, recipe.supports)
+
+
+def _facts(recipe: Recipe, held: HeldStructure, material: Material) -> dict[str, str]:
+    """Return facts on the mesh of a model, for users; some may be empty."""
+    mesh = held.structure.mesh
+    remarks = [
+        *mesh.remarks,
+        *joint_remarks(held, recipe.supports),
+        *contradictions(mesh.stated, material),
+    ]
+    return {
+        "nodes": f"{len(mesh.nodes)}",
+        "elements": ", ".join(f"{len(block.connectivity)} {block.kind}" for block in mesh.blocks),
+        "degrees of freedom": f"{held.stiffness.shape[0]}",
+        "materials": mesh.materials_text,
+        "joined by": ", ".join(f"{name} ({count})" for name, count in mesh.joined_by.items()),
+        "left out of the file": ", ".join(
+            f"{name} ({count})" for name, count in mesh.skipped.items()
+        ),
+        REMARKS: "\n".join(remarks),
+    }
 
 
 def _errors(
     recipe: Recipe, held: HeldStructure, modes: Eigenmodes, material: Material, progress: Progress
 ) -> dict[str, Floats]:
-    """Return estimated relative errors of frequencies by cause, without those of added
-    static modes; empty if unknown.
+    """Return estimated relative errors of frequencies by cause; empty if unknown.
+
+    Modes that are added static shapes have none.
     """
     coarser = recipe.shape.coarser()
     if coarser is None:
         return {}
-    shape, gain = coarser
+    coarse_shape, gain = coarser
     number = recipe.reduction.modes or len(modes.angular_frequencies)
     kept = Eigenmodes(modes.angular_frequencies[:number], modes.shapes[:, :number])
-    parts = {}
+    errors = {}
     if recipe.reduction.method == "craig-bampton":
-        elastic = ElasticSystem(held.stiffness, held.mass, held.rigid, held.order)
-        closer = projected(
-            held.stiffness, held.mass, elastic.static(held.mass @ modes.shapes), elastic.rigid
-        )
-        least = closer.angular_frequencies[:number]
-        parts[REDUCTION] = np.asarray(kept.angular_frequencies / least - 1.0)
-        kept = Eigenmodes(least, closer.shapes[:, :number])
+        reduced_frequencies = kept.angular_frequencies
+        kept = _improved(held, modes, number)
+        errors[REDUCTION] = np.asarray(reduced_frequencies / kept.angular_frequencies - 1.0)
     try:
-        other = held_by(shape.structure(shape.mesh(recipe.supports), material), recipe.supports)
-        found = elastic_system(other).modes(number, progress, _ROUGH)
+        coarse = _held_structure(recipe, coarse_shape, material)
+        coarse_modes = elastic_system(coarse).modes(number, progress, _ROUGH)
     except (InputError, ComputationError):
         return {}  # the coarser mesh has too few modes, or does not follow the supports
-    parts[MESH] = mesh_errors(kept.angular_frequencies, found.angular_frequencies, gain)
+    errors[MESH] = mesh_errors(kept.angular_frequencies, coarse_modes.angular_frequencies, gain)
     if held.structure.thickness:
-        parts[SUPPORTS] = support_errors(held, kept)
-        parts[THEORY] = plate_theory_errors(held, kept, material, is_thin(recipe))
+        errors[SUPPORTS] = support_errors(held, kept)
+        errors[THEORY] = plate_theory_errors(held, kept, material, is_thin(recipe))
         # shear at clamped edges adds to that of plane waves
         if isinstance(recipe.shape, PlateOfPlates) and is_thin(recipe):
-            thick = replace(recipe, shape=replace(recipe.shape, theory="thick"))
-            sheared = held_by(
-                thick.shape.structure(thick.shape.mesh(thick.supports), material), thick.supports
-            )
-            apart = (
-                kept.angular_frequencies
-                / elastic_system(sheared).modes(number, progress, _ROUGH).angular_frequencies
-                - 1.0
-            )
-            parts[THEORY] = np.maximum(parts[THEORY], np.abs(apart))
-    if recipe.shape.one_layer():
-        parts[MESH] = parts[MESH] + one_layer_errors(
-            kept.angular_frequencies, material, recipe.shape.one_layer()
+            thick = _held_structure(recipe, replace(recipe.shape, theory="thick"), material)
+            thick_modes = elastic_system(thick).modes(number, progress, _ROUGH)
+            difference = kept.angular_frequencies / thick_modes.angular_frequencies - 1.0
+            errors[THEORY] = np.maximum(errors[THEORY], np.abs(difference))
+    thickness_of_layer = recipe.shape.one_layer()
+    if thickness_of_layer:
+        errors[MESH] = errors[MESH] + one_layer_errors(
+            kept.angular_frequencies, material, thickness_of_layer
         )
-    return parts
+    return errors
+
+
+def _improved(held: HeldStructure, modes: Eigenmodes, number: int) -> Eigenmodes:
+    """Return the lowest modes after one step of inverse iteration on those of a reduction."""
+    elastic = ElasticSystem(held.stiffness, held.mass, held.rigid, held.order)
+    basis = elastic.static(held.mass @ modes.shapes)
+    improved = projected(held.stiffness, held.mass, basis, elastic.rigid)
+    return Eigenmodes(improved.angular_frequencies[:number], improved.shapes[:, :number])
 
 
 def _reduced_modes(held: HeldStructure, reduction: Reduction, progress: Progress) -> Eigenmodes:
-    """Return the modes of a held structure by truncation, with attachment modes, or by
-    Craig-Bampton reduction.
+    """Return the modes of a held structure by truncation or Craig-Bampton reduction.
+
+    Truncated modes may have attachment modes in addition.
     """
     elastic = elastic_system(held)
     number = reduction.modes
@@ -462,7 +486,7 @@ def _reduced_modes(held: HeldStructure, reduction: Reduction, progress: Progress
                 "max_frequency",
             )
     if reduction.method == "craig-bampton":
-        interface = np.concatenate([_nearest(held, place) for place in reduction.interface])
+        interface = np.concatenate([_nearest_dofs(held, place) for place in reduction.interface])
         basis = craig_bampton(
             held.stiffness, held.mass, interface, number, held.order, elastic.rigid, progress
         )
@@ -470,50 +494,48 @@ def _reduced_modes(held: HeldStructure, reduction: Reduction, progress: Progress
     modes = elastic.modes(number, progress)
     if not reduction.attachment:
         return modes
-    loads = np.stack([_vertical(held, place) for place in reduction.attachment], axis=1)
+    loads = np.stack([_vertical_load(held, place) for place in reduction.attachment], axis=1)
     basis = np.concatenate([modes.shapes, attachment_modes(elastic, modes, loads)], axis=1)
     return projected(held.stiffness, held.mass, basis, elastic.rigid)
 
 
-def _vertical(held: HeldStructure, place: Place) -> Floats:
-    """Return the load vector of a unit vertical force at a place, on the free degrees of
-    freedom.
-    """
-    structure = held.structure
-    at = place_of(structure.mesh, *place)
-    motion, _ = surface_motion(structure.mesh, np.array([at]), place[1], structure.thickness)
+def _vertical_load(held: HeldStructure, place: Place) -> Floats:
+    """Return the load of a unit vertical force at a place, on the free degrees of freedom."""
+    motion, _ = _motion_at(held.structure, place)
     return np.asarray((motion @ held.expansion)[[2]].toarray()[0])
 
 
-def _nearest(held: HeldStructure, place: Place) -> Integers:
+def _nearest_dofs(held: HeldStructure, place: Place) -> Integers:
     """Return the free degrees of freedom of the node nearest to a place."""
     structure = held.structure
-    _, position = surface_motion(
-        structure.mesh, np.array([place_of(structure.mesh, *place)]), place[1], structure.thickness
-    )
+    mesh = structure.mesh
+    _, position = _motion_at(structure, place)
+    # nodes of plate elements lie in the middle plane
     height = 0.5 * structure.thickness if place[1] == "upper" else -0.5 * structure.thickness
-    node = np.linalg.norm(structure.mesh.nodes - position + [0.0, 0.0, height], axis=1).argmin()
-    rows = held.expansion[
-        structure.mesh.dofs_per_node * node + np.arange(structure.mesh.dofs_per_node)
-    ]
-    return np.unique(rows.indices)
+    distance = np.linalg.norm(mesh.nodes - position + [0.0, 0.0, height], axis=1)
+    dofs = mesh.dofs_per_node * distance.argmin() + np.arange(mesh.dofs_per_node)
+    return np.unique(held.expansion[dofs].indices)
+
+
+def _motion_at(structure: Structure, place: Place) -> tuple[csr_array, Floats]:
+    """Return the displacements and the position of a place, as `surface_motion`."""
+    spot, side = place
+    point = np.array([place_of(structure.mesh, spot, side)])
+    return surface_motion(structure.mesh, point, side, structure.thickness)
 
 
 def mesh_features(
     supports: tuple[Support, ...],
 ) -> tuple[list[Disc], tuple[list[float], list[float]]]:
-    """Return the discs, and the x and y of lines [m], of supports that edges of elements
-    must follow.
-    """
+    """Return the discs, and the x and y of lines [m], that edges of elements must follow."""
     discs = [disc for support in supports for disc in support.discs]
-    return discs, (
-        [x for support in supports for x in support.lines[0]],
-        [y for support in supports for y in support.lines[1]],
-    )
+    xs = [x for support in supports for x in support.lines[0]]
+    ys = [y for support in supports for y in support.lines[1]]
+    return discs, (xs, ys)
 
 
 def _rims(supports: tuple[Support, ...]) -> tuple[list[float], list[float]]:
     """Return the x and y [m] of straight rims of supports of the lower face."""
-    return [x for support in supports for x in support.rims[0]], [
-        y for support in supports for y in support.rims[1]
-    ]
+    xs = [x for support in supports for x in support.rims[0]]
+    ys = [y for support in supports for y in support.rims[1]]
+    return xs, ys

@@ -1,6 +1,4 @@
-"""Model reduction: Craig-Bampton and residual attachment bases, and the modes of a system
-projected on a basis.
-"""
+"""Model reduction: Craig-Bampton and residual attachment bases, and projection on a basis."""
 
 from __future__ import annotations
 
@@ -49,8 +47,8 @@ def craig_bampton(
     -------
     array, shape (n, interface + number)
         :math:`[\Psi, \Phi]` with :math:`\Psi = [I; -K_{ii}^{-1} K_{ib}]`, one static shape for a
-        unit displacement of each
-        interface degree of freedom, and :math:`\Phi` the lowest eigenvectors of the interior.
+        unit displacement of each interface degree of freedom, and :math:`\Phi` the lowest
+        eigenvectors of the interior.
 
     Raises
     ------
@@ -75,19 +73,20 @@ def craig_bampton(
             "Craig and Bampton's reduction needs at least one interface degree of freedom"
         )
     inside = np.setdiff1d(np.arange(size), boundary)
-    place = np.full(size, -1)
-    place[inside] = np.arange(len(inside))
-    inner = place[np.arange(size) if order is None else order]
-    left = _rigid_with_fixed(rigid, boundary)
+    number_inside = np.full(size, -1)
+    number_inside[inside] = np.arange(len(inside))
+    inside_order = number_inside[np.arange(size) if order is None else order]
+    permitted = _rigid_with_fixed(rigid, boundary)
     interior = ElasticSystem(
         stiffness[inside][:, inside],
         mass[inside][:, inside],
-        None if left is None else left[inside],
-        inner[inner >= 0],
+        None if permitted is None else permitted[inside],
+        inside_order[inside_order >= 0],
     )
     basis = np.zeros((size, len(boundary) + number))
     basis[boundary, np.arange(len(boundary))] = 1.0
-    basis[inside, : len(boundary)] = -interior.static(stiffness[inside][:, boundary].toarray())
+    coupling = stiffness[inside][:, boundary].toarray()
+    basis[inside, : len(boundary)] = -interior.static(coupling)
     if number:
         basis[inside, len(boundary) :] = interior.modes(number, progress).shapes
     return basis
@@ -96,8 +95,7 @@ def craig_bampton(
 def attachment_modes(
     elastic: ElasticSystem | MirroredSystem, modes: Eigenmodes, loads: Floats
 ) -> Floats:
-    """Return the residual attachment modes: the static response to loads less that of truncated
-    modes.
+    """Return the residual attachment modes: the static response that truncated modes lack.
 
     Parameters
     ----------
@@ -113,8 +111,8 @@ def attachment_modes(
     R. H. MacNeal, Comput. Struct. 1:581, 1971; for a free system the response is that with inertia
     relief.
     """
-    kept = modes.shapes @ ((modes.shapes.T @ loads) / modes.angular_frequencies[:, None] ** 2)
-    return np.asarray(elastic.static(loads) - kept)
+    amplitudes = (modes.shapes.T @ loads) / modes.angular_frequencies[:, None] ** 2
+    return np.asarray(elastic.static(loads) - modes.shapes @ amplitudes)
 
 
 def projected(
@@ -145,17 +143,18 @@ def projected(
     """
     from scipy.linalg import eigh  # imported late: modes that are stored do not need it
 
-    whole = _norms(basis, mass)
+    initial_norms = _norms(basis, mass)
     if rigid is not None and rigid.shape[1]:
         basis = basis - rigid @ (rigid.T @ (mass @ basis))
     norms = _norms(basis, mass)
-    elastic = norms > _RIGID * whole  # without columns that are rigid motions
-    basis = basis[:, elastic] / norms[elastic]
-    gram, turned = eigh(basis.T @ (mass @ basis))
-    keep = gram > _DEPENDENT * gram[-1]
-    basis = basis @ (turned[:, keep] / np.sqrt(gram[keep]))
-    values, shapes = eigh(basis.T @ (stiffness @ basis), basis.T @ (mass @ basis))
-    return Eigenmodes(np.sqrt(np.maximum(values, 0.0)), basis @ shapes)
+    is_elastic = norms > _RIGID * initial_norms  # without columns that are rigid motions
+    basis = basis[:, is_elastic] / norms[is_elastic]
+    # an orthonormal basis, without dependent columns
+    gram_values, directions = eigh(basis.T @ (mass @ basis))
+    independent = gram_values > _DEPENDENT * gram_values[-1]
+    basis = basis @ (directions[:, independent] / np.sqrt(gram_values[independent]))
+    squares, coefficients = eigh(basis.T @ (stiffness @ basis), basis.T @ (mass @ basis))
+    return Eigenmodes(np.sqrt(np.maximum(squares, 0.0)), basis @ coefficients)
 
 
 def _norms(basis: Floats, mass: csr_array) -> Floats:
@@ -164,12 +163,12 @@ def _norms(basis: Floats, mass: csr_array) -> Floats:
 
 
 def _rigid_with_fixed(rigid: Floats | None, boundary: Integers) -> Floats | None:
-    """Return the rigid motions with a fixed interface, (n, r); None if no rigid motions
-    are given.
-    """
+    """Return the rigid motions with a fixed interface, (n, r); None if no motions are given."""
     if rigid is None or not rigid.shape[1]:
         return None
     scaled = rigid / np.abs(rigid).max(axis=0)
-    _, values, turned = np.linalg.svd(scaled[boundary], full_matrices=True)
-    rank = int((values > 1e-9 * max(values.max(initial=0.0), 1e-300)).sum())
-    return np.asarray(scaled @ turned[rank:].T)
+    # combinations of the motions that leave the interface at rest: the null space there
+    _, singular_values, combinations = np.linalg.svd(scaled[boundary], full_matrices=True)
+    least = 1e-9 * max(singular_values.max(initial=0.0), 1e-300)
+    rank = int((singular_values > least).sum())
+    return np.asarray(scaled @ combinations[rank:].T)

@@ -23,13 +23,12 @@ from vibroimpact.structures.lagrange_shares import lagrange_shares
 from vibroimpact.structures.mesh import Mesh
 from vibroimpact.structures.surface import Faces, Side, Spot, facing, place_of
 
-_WAVE = 14.0
+_STEPS_PER_PERIOD = 14.0
 """Steps of the grid of delays in the shortest period of the sound."""
+# of Gauss's rule across a cell, which is no larger than the shortest wavelength and the distance
+# to the point
 _NODES = 6
-"""Of Gauss's rule across a cell, which is no larger than the shortest wavelength and the
-distance to the point.
-"""
-_MOST = 100_000
+_MOST_POINTS = 100_000
 """Largest number of quadrature points that are taken at once."""
 
 
@@ -109,84 +108,121 @@ def sound_paths(mesh: Mesh, listener: Listener, shapes: Floats) -> SoundPaths:
     >>> round(float(paths.weights.sum()) * 2.0 * np.pi * 10.0, 5)  # far away, the area
     0.02
     """
-    sign = 1.0 if listener.side == "upper" else -1.0
     groups = facing(mesh, listener.side)
-    face_nodes = np.unique(np.concatenate([faces.connectivity.ravel() for faces in groups]))
-    height = sign * (sign * mesh.nodes[face_nodes, 2]).max() + sign * listener.distance
-    point = np.array([*place_of(mesh, listener.spot, listener.side), height])
+    point = _listening_point(mesh, groups, listener)
+    # parts of the integral: the first delay, and the pressures by delay and degree of freedom
     parts = [
-        _of_cells(mesh, faces, cells, point, sign, listener)
-        for faces, cells in _cells(mesh, groups, point, listener)
+        _integral_over_faces(mesh, faces, cells, point, listener)
+        for faces, cells in _faces_by_cells(mesh, groups, point, listener)
     ]
-    first, last = (
-        min(first for first, _ in parts),
-        max(first + part.shape[0] for first, part in parts),
-    )
-    weights = np.zeros((len(shapes), last - first))
-    for begin, part in parts:
-        weights[:, begin - first : begin - first + part.shape[0]] += (part @ shapes.T).T
+    first = min(first for first, _ in parts)
+    end = max(first + pressures.shape[0] for first, pressures in parts)
+    weights = np.zeros((len(shapes), end - first))
+    for part_first, pressures in parts:
+        start = part_first - first
+        weights[:, start : start + pressures.shape[0]] += (pressures @ shapes.T).T
     return SoundPaths(first, listener.step, weights)
 
 
-def _cells(
+def _outwards(listener: Listener) -> float:
+    """Return the sign of z outwards from the face that a listener hears."""
+    return 1.0 if listener.side == "upper" else -1.0
+
+
+def _listening_point(mesh: Mesh, groups: list[Faces], listener: Listener) -> Floats:
+    """Return the position of a listener [m], above the outermost node of the faces."""
+    sign = _outwards(listener)
+    face_nodes = np.unique(np.concatenate([faces.connectivity.ravel() for faces in groups]))
+    height = sign * (sign * mesh.nodes[face_nodes, 2]).max() + sign * listener.distance
+    return np.array([*place_of(mesh, listener.spot, listener.side), height])
+
+
+def _faces_by_cells(
     mesh: Mesh, groups: list[Faces], point: Floats, listener: Listener
 ) -> Iterator[tuple[Faces, int]]:
     """Yield faces that are cut alike, with the number of cells along their sides."""
-    wave = _WAVE * listener.step * listener.speed
+    shortest_wavelength = _STEPS_PER_PERIOD * listener.step * listener.speed
     for faces in groups:
-        corner = mesh.nodes[faces.connectivity]
-        size = np.ptp(corner, axis=1).max(axis=1)
-        apart = np.maximum(
-            np.linalg.norm(corner.mean(axis=1) - point, axis=1) - size, listener.distance
+        positions = mesh.nodes[faces.connectivity]
+        size = np.ptp(positions, axis=1).max(axis=1)
+        distance = np.maximum(
+            np.linalg.norm(positions.mean(axis=1) - point, axis=1) - size, listener.distance
         )
-        cells = np.ceil(size / np.minimum(wave, apart)).astype(int)
-        for number in np.unique(cells):
-            found = faces.connectivity[cells == number]
-            at_once = max(1, _MOST // (_NODES * int(number)) ** 2)
-            for begin in range(0, len(found), at_once):
-                yield Faces(faces.kind, faces.corners, found[begin : begin + at_once]), int(number)
+        cells_along = np.ceil(size / np.minimum(shortest_wavelength, distance)).astype(int)
+        for cells in np.unique(cells_along):
+            connectivity = faces.connectivity[cells_along == cells]
+            at_once = max(1, _MOST_POINTS // (_NODES * int(cells)) ** 2)
+            for start in range(0, len(connectivity), at_once):
+                chunk = connectivity[start : start + at_once]
+                yield Faces(faces.kind, faces.corners, chunk), int(cells)
 
 
-def _of_cells(
-    mesh: Mesh, faces: Faces, cells: int, point: Floats, sign: float, listener: Listener
+def _integral_over_faces(
+    mesh: Mesh, faces: Faces, cells: int, point: Floats, listener: Listener
 ) -> tuple[int, csr_array]:
-    """Return the integral over faces as linear functions of the degrees of freedom,
-    (delays, dofs), and the first delay in steps.
+    """Return the first delay in steps, and the pressures over density by delay (delays, dofs).
+
+    The pressures are those under a unit acceleration of each degree of freedom: Rayleigh's
+    integral over the faces. Indices in the sums below are f of faces, q of quadrature points, k of
+    nodes, and i of axes.
     """
-    local, weight = _rule(len(faces.corners), cells)
-    values, along = faces.shape_functions(local)  # (q, k), (q, 2, k)
-    corner = mesh.nodes[faces.connectivity]  # (f, k, 3)
-    tangent = np.einsum("qak,fki->fqai", along, corner)
-    normal = np.cross(tangent[..., 0, :], tangent[..., 1, :]) * weight[:, None]
-    normal *= sign * np.sign(normal[..., 2:])
-    apart = np.linalg.norm(np.einsum("qk,fki->fqi", values, corner) - point, axis=2)
-    flow = normal / (2.0 * np.pi * apart[..., None])  # (f, q, 3)
-    delays, shares = lagrange_shares((apart / (listener.speed * listener.step)).ravel())
-    first, rows = int(delays.min()), np.arange(delays.size) // delays.shape[1]
-    spread = csr_array(coo_array((shares.ravel(), ((delays - first).ravel(), rows))))
+    local, weights = _rule(len(faces.corners), cells)
+    values, slopes = faces.shape_functions(local)  # (q, k), (q, 2, k)
+    nodes = mesh.nodes[faces.connectivity]  # (f, k, 3)
+    # outward normals times the area of the quadrature points
+    tangents = np.einsum("qak,fki->fqai", slopes, nodes)
+    area = np.cross(tangents[..., 0, :], tangents[..., 1, :]) * weights[:, None]
+    area *= _outwards(listener) * np.sign(area[..., 2:])
+    positions = np.einsum("qk,fki->fqi", values, nodes)
+    distance = np.linalg.norm(positions - point, axis=2)
+    factors = area / (2.0 * np.pi * distance[..., None])  # dS / 2 pi R, (f, q, 3)
+
+    # the pressure of each quadrature point arrives between two steps of the grid of delays
+    travel_steps = distance / (listener.speed * listener.step)
+    delays, shares = lagrange_shares(travel_steps.ravel())
+    first = int(delays.min())
+    quadrature_points = np.arange(delays.size) // delays.shape[1]
+    coordinates = ((delays - first).ravel(), quadrature_points)
+    arrival = csr_array(coo_array((shares.ravel(), coordinates)))
+    return first, csr_array(arrival @ _pressures(mesh, faces, factors, values))
+
+
+def _pressures(mesh: Mesh, faces: Faces, factors: Floats, values: Floats) -> csr_array:
+    """Return the pressures that quadrature points send, by degree of freedom.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        The body.
+    faces : Faces
+        Faces of it.
+    factors : array, shape (faces, points, 3)
+        Pressure per acceleration of a quadrature point along each axis.
+    values : array, shape (points, nodes)
+        Shape functions.
+    """
+    # the normals of plate elements are along z
     axes: Integers = np.array([2]) if mesh.is_flat else np.arange(3)
-    seen = np.einsum("fqa,qk->fqka", flow[..., axes], values)
-    columns = mesh.dofs_per_node * faces.connectivity[:, None, :, None] + axes
-    points = np.broadcast_to(np.arange(apart.size).reshape(*apart.shape, 1, 1), seen.shape)
-    shape = (apart.size, mesh.dofs_per_node * len(mesh.nodes))
-    motion = csr_array(
-        coo_array(
-            (seen.ravel(), (points.ravel(), np.broadcast_to(columns, seen.shape).ravel())),
-            shape=shape,
-        )
-    )
-    return first, csr_array(spread @ motion)
+    pressures = np.einsum("fqi,qk->fqki", factors[..., axes], values)
+    points = np.arange(factors[..., 0].size).reshape(*factors.shape[:2], 1, 1)
+    rows = np.broadcast_to(points, pressures.shape)
+    # the acceleration of a point is that of the nodes, by the shape functions
+    dofs = mesh.dofs_per_node * faces.connectivity[:, None, :, None] + axes
+    columns = np.broadcast_to(dofs, pressures.shape)
+    shape = (points.size, mesh.dofs_per_node * len(mesh.nodes))
+    return csr_array(coo_array((pressures.ravel(), (rows.ravel(), columns.ravel())), shape=shape))
 
 
 def _rule(corners: int, cells: int) -> tuple[Floats, Floats]:
-    """Return points and weights of Gauss's rule on cells of the unit square or triangle,
-    (q, 2) and (q,).
+    """Return points (q, 2) and weights (q,) of Gauss's rule on cells of a reference face.
+
+    The face is the unit square, or with three corners the unit triangle.
     """
     nodes, weights = legendre.leggauss(_NODES)
-    places = (np.arange(cells)[:, None] + 0.5 * (nodes + 1.0)).ravel() / cells
-    weights = np.tile(0.5 * weights / cells, cells)
-    a, b = (part.ravel() for part in np.meshgrid(places, places, indexing="ij"))
-    weight = np.outer(weights, weights).ravel()
+    positions = (np.arange(cells)[:, None] + 0.5 * (nodes + 1.0)).ravel() / cells
+    line_weights = np.tile(0.5 * weights / cells, cells)
+    a, b = (side.ravel() for side in np.meshgrid(positions, positions, indexing="ij"))
+    square_weights = np.outer(line_weights, line_weights).ravel()
     if corners == 3:  # the square, with one side drawn together
-        return np.stack([a, b * (1.0 - a)], axis=1), weight * (1.0 - a)
-    return np.stack([a, b], axis=1), weight
+        return np.stack([a, b * (1.0 - a)], axis=1), square_weights * (1.0 - a)
+    return np.stack([a, b], axis=1), square_weights

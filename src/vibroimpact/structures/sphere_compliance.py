@@ -1,5 +1,6 @@
-"""Finite-size correction of Hertz's theory for an elastic sphere: its approach under a
-contact pressure less that of the half space.
+"""Finite-size correction of Hertz's theory for an elastic sphere.
+
+It is the approach of the sphere under a contact pressure less that of the half space.
 """
 
 from __future__ import annotations
@@ -14,11 +15,12 @@ from vibroimpact.arrays import Floats
 from vibroimpact.errors import InputError
 
 # the series has _REACH / (a / R) + _LEAST degrees; three times both change c by less than 5e-6
-_REACH, _LEAST = 20.0, 60
+_REACH = 20.0
+_LEAST = 60
 _NODES = 40  # of the integral over the contact, where the harmonics have at most fifteen zeros
-# a / R: below, the series cancels; above, Hertz's pressure does not apply
-_SMALLEST, _LARGEST = 0.005, 0.5
-_PLACES = 9  # points of the fit
+_SMALLEST = 0.005  # a / R: below it the series cancels
+_LARGEST = 0.5  # a / R: above it Hertz's pressure does not apply
+_FITTED_RATIOS = 9  # number of ratios a / R in the fit
 
 FITTED = (0.01, 0.35)
 """Range of the ratio a / R of the radii of contact and sphere in which `sphere_term` holds."""
@@ -26,8 +28,9 @@ FITTED = (0.01, 0.35)
 
 @dataclass(frozen=True)
 class SphereTerm:
-    r"""Finite-size factor of a sphere as a function of the ratio x = a / R of the radii of contact
-    and sphere.
+    r"""Finite-size factor of a sphere as a function of the ratio of the radii x = a / R.
+
+    The radii are those of the contact and of the sphere.
 
     Parameters
     ----------
@@ -37,8 +40,7 @@ class SphereTerm:
     Notes
     -----
     The approach is that of Hertz plus :math:`s(F) = c(a/R)\,F/(E R)`. As a is proportional to
-    :math:`F^{1/3}`, each term has an
-    integral in closed form.
+    :math:`F^{1/3}`, each term has an integral in closed form.
     """
 
     constant: float
@@ -62,30 +64,32 @@ def sphere_term(poissons_ratio: float) -> SphereTerm:
     -----
     Constant, linear and square are fitted to `finite_sphere_factor` by least squares for a / R from
     0.01 to 0.35, with an error below 3e-4. The logarithm is the asymptote for small contacts:
-    around a point force F the surface of the half space has the radial
-    stress :math:`(1-2\nu) F / 2\pi r^2` and the radial displacement :math:`(1-2\nu)(1+\nu) F / 2\pi
-    E r` inwards. As the sphere's
-    surface has the slope r / R there, that stress would leave a traction on it; the work of the
-    traction on that displacement,
-    for r from a to R, gives :math:`c_l = -(1-2\nu)^2 (1+\nu) / 2\pi`.
+    around a point force F the surface of the half space has the radial stress :math:`(1-2\nu) F /
+    2\pi r^2` and the radial displacement :math:`(1-2\nu)(1+\nu) F / 2\pi E r` inwards. As the
+    sphere's surface has the slope r / R there, that stress would leave a traction on it; the work
+    of the traction on that displacement, for r from a to R, gives :math:`c_l = -(1-2\nu)^2 (1+\nu)
+    / 2\pi`.
 
     Examples
     --------
     >>> round(float(sphere_term(0.28).factor(0.1)), 3)
     -0.407
     """
-    middle, half = 0.5 * (FITTED[1] + FITTED[0]), 0.5 * (FITTED[1] - FITTED[0])
+    middle = 0.5 * (FITTED[1] + FITTED[0])
+    half_range = 0.5 * (FITTED[1] - FITTED[0])
     # Chebyshev nodes, for a nearly best fit
-    places = middle + half * np.cos(np.pi * (np.arange(_PLACES) + 0.5) / _PLACES)
+    angles = np.pi * (np.arange(_FITTED_RATIOS) + 0.5) / _FITTED_RATIOS
+    ratios = middle + half_range * np.cos(angles)
     logarithm = -((1.0 - 2.0 * poissons_ratio) ** 2) * (1.0 + poissons_ratio) / (2.0 * math.pi)
-    rest = finite_sphere_factor(poissons_ratio, places) - logarithm * np.log(places)
-    square, linear, constant = np.polyfit(places, rest, 2).tolist()
+    polynomial = finite_sphere_factor(poissons_ratio, ratios) - logarithm * np.log(ratios)
+    square, linear, constant = np.polyfit(ratios, polynomial, 2).tolist()
     return SphereTerm(constant, logarithm, linear, square)
 
 
 def finite_sphere_factor(poissons_ratio: float, radius_ratio: Floats | float) -> Floats:
-    r"""Return the approach of an elastic sphere to a rigid plane less that of Hertz, over F / (E
-    R).
+    r"""Return the approach of an elastic sphere less that of Hertz's theory, over F / (E R).
+
+    The sphere touches a rigid plane.
 
     Parameters
     ----------
@@ -107,11 +111,9 @@ def finite_sphere_factor(poissons_ratio: float, radius_ratio: Floats | float) ->
     Notes
     -----
     The sphere is loaded by a vertical traction of Hertz's pressure :math:`p = \tfrac{3F}{2\pi
-    a^2}\sqrt{1 - r^2/a^2}` on the
-    projection of its pole, in equilibrium with a uniform body force. The approach, conjugate to F,
-    is the displacement relative to
-    the mean of the sphere, averaged with the weight p. For the half space it is :math:`0.6\,(1 -
-    \nu^2) F / (E a)`; for the sphere
+    a^2}\sqrt{1 - r^2/a^2}` on the projection of its pole, in equilibrium with a uniform body force.
+    The approach, conjugate to F, is the displacement relative to the mean of the sphere, averaged
+    with the weight p. For the half space it is :math:`0.6\,(1 - \nu^2) F / (E a)`; for the sphere
     that plus :math:`c\,F/(E R)`.
 
     A. I. Lur'e, Three-dimensional Problems of the Theory of Elasticity (1964), gives the
@@ -140,78 +142,102 @@ def finite_sphere_factor(poissons_ratio: float, radius_ratio: Floats | float) ->
 @functools.cache
 def _factor(poissons_ratio: float, ratio: float) -> float:
     """Return c at one ratio of radii, as a sum over the degrees."""
-    radial, tangential = _loads(ratio)
-    outwards, along = _displacements(poissons_ratio, radial, tangential)
-    place = (np.arange(len(radial)) + 0.5) * ratio
-    half_space = (
-        (1.0 - poissons_ratio**2)
-        / np.pi
-        * (3.0 * (np.sin(place) - place * np.cos(place)) / place**3) ** 2
-    )
-    return float((outwards * radial + along * tangential - half_space).sum())
+    radial_loads, meridional_loads = _loads(ratio)
+    radial, meridional = _displacements(poissons_ratio, radial_loads, meridional_loads)
+    # the half space under Hertz's pressure, at the wave number (n + 1/2) / R of each degree; the
+    # Hankel transform of the pressure is 3 (sin x - x cos x) / x^3
+    x = (np.arange(len(radial_loads)) + 0.5) * ratio
+    half_space = (1.0 - poissons_ratio**2) / np.pi * (3.0 * (np.sin(x) - x * np.cos(x)) / x**3) ** 2
+    return float((radial * radial_loads + meridional * meridional_loads - half_space).sum())
 
 
 def _loads(ratio: float) -> tuple[Floats, Floats]:
-    """Return the work of a unit force on radial displacements P_n(cos theta), and on
-    meridional ones dP_n / d theta, by degree.
+    """Return the radial and the meridional load of a unit force on the sphere, by degree n.
+
+    They are its work on radial displacements P_n(cos theta), and on meridional ones
+    dP_n / d theta.
     """
     nodes, weights = _gauss()
-    angle = 0.25 * np.pi * (nodes + 1.0)  # r = a sin(angle) removes the square root of the pressure
+    # r = a sin(angle) removes the square root of Hertz's pressure
+    angle = 0.25 * np.pi * (nodes + 1.0)
     force = 0.25 * np.pi * weights * 3.0 * np.cos(angle) ** 2 * np.sin(angle)
+    # of the polar angle theta on the sphere
     sine = ratio * np.sin(angle)
     cosine = np.sqrt(1.0 - sine**2)
-    depth = sine**2 / (1.0 + cosine)
-    count = math.ceil(_REACH / ratio) + _LEAST
-    values, steps = np.ones((count, len(nodes))), np.zeros((count, len(nodes)))
+    one_less_cosine = sine**2 / (1.0 + cosine)
+
+    degrees = math.ceil(_REACH / ratio) + _LEAST
+    legendre = np.ones((degrees, len(nodes)))  # P_n(cos theta)
+    differences = np.zeros((degrees, len(nodes)))  # P_n - P_(n-1)
     # Bonnet's recursion for differences, as successive values nearly cancel near the pole
-    for n in range(1, count):
-        steps[n] = ((n - 1) * steps[n - 1] - (2 * n - 1) * depth * values[n - 1]) / n
-        values[n] = values[n - 1] + steps[n]
-    slopes = np.arange(count)[:, None] * (steps - depth * values) / sine
-    return -values @ (force * cosine), slopes @ (force * sine)
+    for n in range(1, degrees):
+        differences[n] = (
+            (n - 1) * differences[n - 1] - (2 * n - 1) * one_less_cosine * legendre[n - 1]
+        ) / n
+        legendre[n] = legendre[n - 1] + differences[n]
+    slopes = np.arange(degrees)[:, None] * (differences - one_less_cosine * legendre) / sine
+    return -legendre @ (force * cosine), slopes @ (force * sine)
 
 
 @functools.cache
 def _gauss() -> tuple[Floats, Floats]:
+    """Return the nodes and weights of Gauss's rule from -1 to 1."""
     nodes, weights = np.polynomial.legendre.leggauss(_NODES)
     return np.asarray(nodes), np.asarray(weights)
 
 
 def _displacements(
-    poissons_ratio: float, radial: Floats, tangential: Floats
+    poissons_ratio: float, radial_loads: Floats, meridional_loads: Floats
 ) -> tuple[Floats, Floats]:
-    """Return the radial and meridional surface displacements by degree, for a sphere of unit radius
-    and modulus under the loads.
+    """Return the radial and the meridional displacements of the surface under the loads, by degree.
 
-    Tractions over twice the shear modulus are met by two fields per degree, which are of order r^(n
-    + 1) and r^(n - 1); for degree 1 both are of order r^2, with the body force, and the mean
-    displacement is subtracted; degree 0 has one field.
+    The sphere is of unit radius and modulus. Tractions over twice the shear modulus are met by two
+    fields per degree, which are of order r^(n + 1) and r^(n - 1); for degree 1 both are of order
+    r^2, with the body force, and the mean displacement is subtracted; degree 0 has one field.
     """
-    nu, degree = poissons_ratio, np.arange(len(radial), dtype=float)
-    normal = (2.0 * degree + 1.0) * (1.0 + nu) / (4.0 * np.pi) * radial
+    nu = poissons_ratio
+    degree = np.arange(len(radial_loads), dtype=float)
+    # tractions over twice the shear modulus; (2 n + 1) / 4 pi, and n (n + 1) for the meridional
+    # ones, are the norms of the harmonics
+    normal = (2.0 * degree + 1.0) * (1.0 + nu) / (4.0 * np.pi) * radial_loads
     shear = (
         (2.0 * degree + 1.0)
         * (1.0 + nu)
         / (4.0 * np.pi * np.maximum(degree * (degree + 1.0), 1.0))
-        * tangential
+        * meridional_loads
     )
-    n, t, s = degree[2:], normal[2:], shear[2:]
-    of_first, of_second = (n + 1.0) * (n**2 - n - 2.0 - 2.0 * nu), n * (n - 1.0)
-    along_first, along_second = n**2 + 2.0 * n - 1.0 + 2.0 * nu, n - 1.0
-    determinant = of_first * along_second - of_second * along_first
-    first = (t * along_second - s * of_second) / determinant
-    second = (s * of_first - t * along_first) / determinant
-    uniform = normal[0] * (1.0 - 2.0 * nu) / (1.0 + nu)
+    meridional_1, radial_1 = _first_degree(nu, normal[1], shear[1])
+    expansion = normal[0] * (1.0 - 2.0 * nu) / (1.0 + nu)
+
+    n = degree[2:]
+    outer, inner = _field_amplitudes(nu, n, normal[2:], shear[2:])
+    radial = np.concatenate(
+        [[expansion, radial_1], outer * (n + 1.0) * (n - 2.0 + 4.0 * nu) + inner * n]
+    )
+    meridional = np.concatenate([[0.0, meridional_1], outer * (n + 5.0 - 4.0 * nu) + inner])
+    return radial, meridional
+
+
+def _field_amplitudes(nu: float, n: Floats, normal: Floats, shear: Floats) -> tuple[Floats, Floats]:
+    """Return the amplitudes of the fields of order r^(n + 1) and r^(n - 1), for degrees n >= 2.
+
+    They solve two equations, for the normal and for the shear traction.
+    """
+    normal_of_outer = (n + 1.0) * (n**2 - n - 2.0 - 2.0 * nu)
+    normal_of_inner = n * (n - 1.0)
+    shear_of_outer = n**2 + 2.0 * n - 1.0 + 2.0 * nu
+    shear_of_inner = n - 1.0
+    determinant = normal_of_outer * shear_of_inner - normal_of_inner * shear_of_outer
+    outer = (normal * shear_of_inner - shear * normal_of_inner) / determinant
+    inner = (shear * normal_of_outer - normal * shear_of_outer) / determinant
+    return outer, inner
+
+
+def _first_degree(nu: float, normal: float, shear: float) -> tuple[float, float]:
+    """Return the meridional and the radial displacement of degree 1, less the mean displacement."""
     # coefficient of r^2 e_z
-    along_axis = (2.0 * shear[1] - 0.5 * (1.0 - 2.0 * nu) * normal[1]) / (1.0 + nu)
+    along_axis = (2.0 * shear - 0.5 * (1.0 - 2.0 * nu) * normal) / (1.0 + nu)
     # coefficient of z times the position vector
-    along_radius = ((1.0 - 2.0 * nu) * normal[1] - 2.0 * (1.0 - nu) * shear[1]) / (1.0 + nu)
-    mean = 0.6 * along_axis + 0.2 * along_radius
-    outwards = np.concatenate(
-        [
-            [uniform, along_axis + along_radius - mean],
-            first * (n + 1.0) * (n - 2.0 + 4.0 * nu) + second * n,
-        ]
-    )
-    along = np.concatenate([[0.0, along_axis - mean], first * (n + 5.0 - 4.0 * nu) + second])
-    return outwards, along
+    along_radius = ((1.0 - 2.0 * nu) * normal - 2.0 * (1.0 - nu) * shear) / (1.0 + nu)
+    mean = 0.6 * along_axis + 0.2 * along_radius  # over the volume of the sphere
+    return along_axis - mean, along_axis + along_radius - mean

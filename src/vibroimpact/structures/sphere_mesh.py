@@ -1,6 +1,4 @@
-"""Mesh of a solid sphere: a bulged cube at the centre, and six blocks from its faces to
-the surface.
-"""
+"""Mesh of a solid sphere: a bulged cube at the centre, and six blocks around it."""
 
 from __future__ import annotations
 
@@ -21,8 +19,9 @@ _BULGE = 0.5  # of the cube: 0 for a cube, 1 for a ball
 def sphere_mesh(
     radius: float, elements_across: int = 8, kind: str = "hex20", grading: float = 1.0
 ) -> Mesh:
-    """Return a mesh of a solid sphere, centred at the origin, with curved second-order elements by
-    default.
+    """Return a mesh of a solid sphere, centred at the origin.
+
+    Elements are curved and of second order by default.
 
     Parameters
     ----------
@@ -59,36 +58,45 @@ def sphere_mesh(
         )
     if not grading >= 1.0:
         raise InputError(f"a grading of {grading:g} is not allowed; it must be at least 1")
-    layers = elements_across // 4
-    side = elements_across - 2 * layers
-    run = np.linspace(-1.0, 1.0, 2 * side + 1)
-    depth = np.linspace(0.0, 1.0, 2 * layers + 1)
-    blocks = [_core(np.stack(np.meshgrid(run, run, run, indexing="ij"), axis=-1))]
-    first, second = np.meshgrid(run, run, indexing="ij")
+    layers = elements_across // 4  # between the cube and the surface
+    elements_in_cube = elements_across - 2 * layers
+    # lattice points along a side of the cube, and from the cube to the surface
+    along = np.linspace(-1.0, 1.0, 2 * elements_in_cube + 1)
+    outwards = np.linspace(0.0, 1.0, 2 * layers + 1)[:, None]
+    blocks = [_core(np.stack(np.meshgrid(along, along, along, indexing="ij"), axis=-1))]
+    first, second = np.meshgrid(along, along, indexing="ij")
     for axis in range(3):
-        others = [other for other in range(3) if other != axis]
+        first_axis, second_axis = [other for other in range(3) if other != axis]
         for sign in (-1.0, 1.0):
             face = np.full((*first.shape, 3), sign)
-            face[..., others[0]], face[..., others[1]] = first, second
-            outside = np.tan(0.25 * np.pi * face)
-            outside /= np.linalg.norm(outside, axis=-1, keepdims=True)
-            step = depth[:, None]
-            blocks.append((1.0 - step) * _core(face)[:, :, None] + step * outside[:, :, None])
+            face[..., first_axis] = first
+            face[..., second_axis] = second
+            # equal angles along the face, projected onto the sphere
+            surface = np.tan(0.25 * np.pi * face)
+            surface /= np.linalg.norm(surface, axis=-1, keepdims=True)
+            blocks.append(
+                (1.0 - outwards) * _core(face)[:, :, None] + outwards * surface[:, :, None]
+            )
     return mesh_of_blocks([radius * _towards_lower_pole(block, grading) for block in blocks], kind)
 
 
-def _core(at: Floats) -> Floats:
+def _core(points: Floats) -> Floats:
     """Return the image of points of the cube from -1 to 1 in the bulged core."""
-    square = at**2
-    following, last = np.roll(square, -1, axis=-1), np.roll(square, -2, axis=-1)
-    ball = at * np.sqrt(1.0 - 0.5 * following - 0.5 * last + following * last / 3.0)
-    return np.asarray(_CORE * ((1.0 - _BULGE) * at + _BULGE * np.sqrt(2.0) * ball))
+    squares = points**2
+    following = np.roll(squares, -1, axis=-1)
+    last = np.roll(squares, -2, axis=-1)
+    # a map of the cube onto the ball
+    ball = points * np.sqrt(1.0 - 0.5 * following - 0.5 * last + following * last / 3.0)
+    return np.asarray(_CORE * ((1.0 - _BULGE) * points + _BULGE * np.sqrt(2.0) * ball))
 
 
-def _towards_lower_pole(at: Floats, grading: float) -> Floats:
+def _towards_lower_pole(points: Floats, grading: float) -> Floats:
     """Return the image of points of the unit ball under the Moebius map of a grading."""
     shift = np.array([0.0, 0.0, (grading - 1.0) / (grading + 1.0)])
-    squared = shift @ shift
-    apart = at - shift
-    top = (1.0 - squared) * apart - (apart**2).sum(axis=-1, keepdims=True) * shift
-    return np.asarray(top / (1.0 - 2.0 * (at @ shift) + (at**2).sum(axis=-1) * squared)[..., None])
+    squared_shift = shift @ shift
+    offset = points - shift
+    squares = (points**2).sum(axis=-1)
+    squared_offset = (offset**2).sum(axis=-1, keepdims=True)
+    numerator = (1.0 - squared_shift) * offset - squared_offset * shift
+    denominator = 1.0 - 2.0 * (points @ shift) + squares * squared_shift
+    return np.asarray(numerator / denominator[..., None])

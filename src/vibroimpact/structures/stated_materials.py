@@ -10,7 +10,8 @@ from vibroimpact.arrays import Integers
 from vibroimpact.materials import Material
 
 # relative: larger differences from the material of the case are stated
-_SAME_DENSITY, _SAME_MODULUS = 0.05, 0.1
+_SAME_DENSITY = 0.05
+_SAME_MODULUS = 0.1
 
 
 @dataclass(frozen=True)
@@ -36,8 +37,9 @@ class StatedMaterial:
 
 @dataclass(frozen=True)
 class StatedMaterials:
-    """Materials that a mesh file states, and the number of each element's material; -1
-    for an element without one.
+    """Materials that a mesh file states, and the number of each element's material.
+
+    The number is -1 for an element without one.
     """
 
     materials: tuple[StatedMaterial, ...]
@@ -45,8 +47,10 @@ class StatedMaterials:
 
 
 def contradictions(stated: StatedMaterials | None, material: Material) -> Iterator[str]:
-    """Yield what a mesh file states of its only material, in SI, and the material of the body
-    contradicts; nothing if it states several.
+    """Yield what a mesh file states of its only material, and the body's material contradicts.
+
+    The numbers of the file are taken as SI units. Nothing is yielded if it states several
+    materials.
 
     Examples
     --------
@@ -58,28 +62,22 @@ def contradictions(stated: StatedMaterials | None, material: Material) -> Iterat
     """
     if stated is None or len(stated.materials) > 1:
         return
-    said = stated.materials[0]
-    if said.other:
-        words = "its elements are computed with the isotropic material of the case"
-        yield f"the material of the mesh file, {said.name}, is {said.other}; {words}"
+    in_file = stated.materials[0]
+    if in_file.other:
+        yield (
+            f"the material of the mesh file, {in_file.name}, is {in_file.other}; its elements "
+            "are computed with the isotropic material of the case"
+        )
         return
-    off = {
-        "density": (said.density / material.density - 1.0, _SAME_DENSITY, said.density, "kg/m3"),
-        "Young's modulus": (
-            said.youngs_modulus / material.youngs_modulus - 1.0,
-            _SAME_MODULUS,
-            said.youngs_modulus,
-            "Pa",
-        ),
-    }
-    differing = [
-        f"a {what} of {value:.4g} {unit}"
-        for what, (part, same, value, unit) in off.items()
-        if abs(part) > same
-    ]
+    # comparisons with NaN, of what the file does not state, are False
+    differing = []
+    if abs(in_file.density / material.density - 1.0) > _SAME_DENSITY:
+        differing.append(f"a density of {in_file.density:.4g} kg/m3")
+    if abs(in_file.youngs_modulus / material.youngs_modulus - 1.0) > _SAME_MODULUS:
+        differing.append(f"a Young's modulus of {in_file.youngs_modulus:.4g} Pa")
     if differing:
         yield (
-            f"the mesh file gives its material {said.name} {' and '.join(differing)}, and "
+            f"the mesh file gives its material {in_file.name} {' and '.join(differing)}, and "
             "its elements are computed with the material of "
             f"the case, of {material.density:.4g} kg/m3 and {material.youngs_modulus:.4g} "
             "Pa; give the material that the body is made of"

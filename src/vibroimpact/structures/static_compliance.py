@@ -1,6 +1,4 @@
-"""Structural compliance of a plate at its contact point, from one static finite-element
-solution.
-"""
+"""Structural compliance of a plate at its contact point, from a static finite-element solution."""
 
 from __future__ import annotations
 
@@ -25,13 +23,12 @@ from vibroimpact.structures.plate_compliance import (
 )
 from vibroimpact.structures.plate_element import shear_factor
 from vibroimpact.structures.recipe import Recipe, SphereOfSolids, is_thin, plate_key
-from vibroimpact.structures.store import hold_entry, key_of, load_entry, save_entry
+from vibroimpact.structures.store import COMPLIANCE, hold_entry, key_of, load_or_compute
 from vibroimpact.structures.structure import Structure
 from vibroimpact.structures.supports.constraints import HeldStructure
 from vibroimpact.structures.supports.support import held_by
 from vibroimpact.structures.surface import Side, materials_around, surface_motion
 
-_KIND = "compliance"
 _FACES: tuple[Side, Side] = ("upper", "lower")
 _RADIUS = 0.75  # of the disc, in thicknesses; elements of that size resolve it
 _FACTORISED = MemoryCache[tuple[HeldStructure, ElasticSystem]](capacity=500e6)
@@ -115,26 +112,27 @@ def stored_compliance(
     InputError, ComputationError
         As `compute` does.
     """
-    say = tell or (lambda text: None)
-    found, trouble = load_entry(key, _KIND, lambda parts: float(parts[_KIND].item()))
-    if trouble:
-        say(trouble)
-    if found is None:
-        found = compute()
-        trouble = save_entry(key, _KIND, {_KIND: np.array(found)})
-        if trouble:
-            say(trouble)
-    return found
+    return load_or_compute(
+        key,
+        COMPLIANCE,
+        lambda arrays: float(arrays[COMPLIANCE].item()),
+        compute,
+        lambda compliance: {COMPLIANCE: np.array(compliance)},
+        tell,
+    )
 
 
 def hold_compliances(
     recipe: Recipe, places: Sequence[tuple[float, float]], side: Side = "upper"
 ) -> None:
-    """Compute the compliances of a plate at places together, for calls of
-    `static_compliance` that follow in this process.
+    """Compute the compliances of a plate at places together.
+
+    Calls of `static_compliance` that follow in this process find them in memory.
     """
-    for place, found in zip(places, computed_compliances(recipe, places, side), strict=True):
-        hold_entry(compliance_key(recipe, place, side), _KIND, {_KIND: np.array(found)})
+    compliances = computed_compliances(recipe, places, side)
+    for place, compliance in zip(places, compliances, strict=True):
+        key = compliance_key(recipe, place, side)
+        hold_entry(key, COMPLIANCE, {COMPLIANCE: np.array(compliance)})
 
 
 def compliance_key(recipe: Recipe, place: tuple[float, float], side: Side = "upper") -> str:
@@ -143,8 +141,9 @@ def compliance_key(recipe: Recipe, place: tuple[float, float], side: Side = "upp
 
 
 def computed_compliance(recipe: Recipe, place: tuple[float, float], side: Side = "upper") -> float:
-    """Return the structural compliance of a held plate, computed anew; parameters and
-    errors are those of `static_compliance`.
+    """Return the structural compliance of a held plate, computed anew.
+
+    Parameters and errors are those of `static_compliance`.
     """
     return float(computed_compliances(recipe, [place], side)[0])
 
@@ -152,8 +151,9 @@ def computed_compliance(recipe: Recipe, place: tuple[float, float], side: Side =
 def computed_compliances(
     recipe: Recipe, places: Sequence[tuple[float, float]], side: Side = "upper"
 ) -> Floats:
-    """Return the structural compliances of a held plate at several places, solved
-    together, (places,).
+    """Return the structural compliances of a held plate at several places, (places,).
+
+    The forces at all places are solved together.
     """
     if isinstance(recipe.shape, SphereOfSolids):
         raise InputError(
@@ -161,28 +161,30 @@ def computed_compliances(
         )
     held, elastic = _factorised(recipe)
     structure = held.structure
-    averages, terms = [], []
+    averages = []
+    terms = []  # what the averaged compliance lacks
     for thickness, place in zip(_thicknesses(structure, places), places, strict=True):
         material = _material_of_layer(structure.mesh, recipe, place, thickness)
-        layer = thickness, material.youngs_modulus, material.poissons_ratio
-        if structure.mesh.is_flat:
-            averages.append(
-                plate_element_average(thickness, material.poissons_ratio, is_thin(recipe))
-            )
-            terms.append(
-                0.0
-                if is_thin(recipe)
-                else plate_theory_term(*layer, shear_factor(material.poissons_ratio), averages[-1])
-            )
+        modulus = material.youngs_modulus
+        ratio = material.poissons_ratio
+        if not structure.mesh.is_flat:
+            average = through_thickness_average(_RADIUS * thickness)
+            term = through_thickness_term(thickness, modulus, ratio, average)
+        elif is_thin(recipe):
+            average = plate_element_average(thickness, ratio, thin=True)
+            term = 0.0
         else:
-            averages.append(through_thickness_average(_RADIUS * thickness))
-            terms.append(through_thickness_term(*layer, averages[-1]))
+            average = plate_element_average(thickness, ratio)
+            term = plate_theory_term(thickness, modulus, ratio, shear_factor(ratio), average)
+        averages.append(average)
+        terms.append(term)
     return averaged_compliances(held, elastic, places, averages, side) + terms
 
 
 def plate_element_average(thickness: float, poissons_ratio: float, thin: bool = False) -> Average:
-    """Return the average of force and displacement around a place of plate elements; by
-    Kirchhoff's theory, `thin`, that of a point.
+    """Return the average of force and displacement around a place of plate elements.
+
+    By Kirchhoff's theory, `thin`, it is that of a point.
     """
     if thin:
         return Average(0.0, 0.0)
@@ -198,8 +200,9 @@ def averaged_compliances(
     averages: Sequence[Average],
     side: Side = "upper",
 ) -> Floats:
-    """Return the averaged displacements of the opposite face under unit forces averaged in the same
-    way, (places,) [m/N].
+    """Return the averaged displacements of the opposite face under unit forces, (places,) [m/N].
+
+    The forces are averaged in the same way.
 
     Parameters
     ----------
@@ -217,35 +220,39 @@ def averaged_compliances(
     InputError
         If a place is not on the body.
     """
-    upper, lower = _faces(held, places, averages)
+    upper, lower = _face_rows(held, places, averages)
     load, opposite = (upper, lower) if side == "upper" else (lower, upper)
-    moved = elastic.static(load.toarray().T)
-    return np.asarray(opposite.multiply(moved.T).sum(axis=1))
+    displacements = elastic.static(load.toarray().T)
+    return np.asarray(opposite.multiply(displacements.T).sum(axis=1))
 
 
 def _material_of_layer(
     mesh: Mesh, recipe: Recipe, place: tuple[float, float], thickness: float
 ) -> Material:
-    """Return the material of a body around a place, for the terms of a layer, which are exact for
-    one of a single material.
+    """Return the material of a body around a place.
+
+    It is for the terms of a layer, which are exact for one of a single material.
 
     Raises
     ------
     InputError
         If the elements there are of several materials.
     """
-    found = materials_around(mesh, _material(recipe), place, _RADIUS * thickness)
-    if len(found) > 1:
+    materials = materials_around(mesh, _material(recipe), place, _RADIUS * thickness)
+    if len(materials) > 1:
         kinds = "; ".join(
-            f"{one.density:.4g} kg/m3, {one.youngs_modulus:.3g} Pa" for one in found[:3]
-        ) + ("; ..." if len(found) > 3 else "")
+            f"{material.density:.4g} kg/m3, {material.youngs_modulus:.3g} Pa"
+            for material in materials[:3]
+        )
+        if len(materials) > 3:
+            kinds += "; ..."
         raise InputError(
-            f"around ({place[0]:g}, {place[1]:g}) m the body is of {len(found)} materials "
+            f"around ({place[0]:g}, {place[1]:g}) m the body is of {len(materials)} materials "
             f"({kinds}), and its static compliance under a "
             "contact is known where it is of one; give contact.local_compliance = "
             '"superposed", which takes the modes as they are'
         )
-    return found[0]
+    return materials[0]
 
 
 def _thicknesses(structure: Structure, places: Sequence[tuple[float, float]]) -> list[float]:
@@ -256,84 +263,88 @@ def _thicknesses(structure: Structure, places: Sequence[tuple[float, float]]) ->
     InputError
         If a place is not on the body.
     """
-    top = surface_motion(structure.mesh, np.array(places))[1]
+    _, upper = surface_motion(structure.mesh, np.array(places))
     if structure.mesh.is_flat:
         return len(places) * [structure.thickness]
-    thicknesses: list[float] = np.linalg.norm(
-        top - surface_motion(structure.mesh, np.array(places), "lower")[1], axis=1
-    ).tolist()
+    _, lower = surface_motion(structure.mesh, np.array(places), "lower")
+    thicknesses: list[float] = np.linalg.norm(upper - lower, axis=1).tolist()
     return thicknesses
 
 
 def _material(recipe: Recipe) -> Material:
+    """Return the material of a recipe."""
     return Material(recipe.density, recipe.youngs_modulus, recipe.poissons_ratio)
 
 
 def _factorised(recipe: Recipe) -> tuple[HeldStructure, ElasticSystem]:
-    """Return a held body and its factorised system; the last one is cached, for drops on
-    other places of one plate.
+    """Return a held body and its factorised system.
+
+    The last one is cached, for drops on other places of one plate.
     """
     key = plate_key(recipe)
-    found = _FACTORISED.get(key)
-    if found is None:
-        _FACTORISED.clear()  # before the new factors need the memory
-        structure = recipe.shape.structure(recipe.shape.mesh(recipe.supports), _material(recipe))
-        held = held_by(structure, recipe.supports)
-        found = held, ElasticSystem(held.stiffness, held.mass, held.rigid, held.order)
-        _FACTORISED.put(key, found, found[1].size)
-    return found
+    cached = _FACTORISED.get(key)
+    if cached is not None:
+        return cached
+    _FACTORISED.clear()  # before the new factors need the memory
+    structure = recipe.shape.structure(recipe.shape.mesh(recipe.supports), _material(recipe))
+    held = held_by(structure, recipe.supports)
+    elastic = ElasticSystem(held.stiffness, held.mass, held.rigid, held.order)
+    _FACTORISED.put(key, (held, elastic), elastic.size)
+    return held, elastic
 
 
-def _faces(
+def _face_rows(
     held: HeldStructure, places: Sequence[tuple[float, float]], averages: Sequence[Average]
 ) -> list[csr_array]:
-    """Return the averaged vertical displacements of the upper and lower face around
-    places, as rows of the free degrees of freedom.
+    """Return the averaged vertical displacements of the upper and lower face around places.
+
+    They are rows of the free degrees of freedom, (places, free).
     """
-    mesh = held.structure.mesh
-    discs, weights = pressure_rule(UNIFORM)
-    points = np.concatenate(
-        [
-            np.asarray(place) + average.radius * discs
-            for place, average in zip(places, averages, strict=True)
-        ]
-    )
-    inside, motions = _on_body(mesh, points)
-    shares = np.where(
-        inside, np.concatenate([weights * average.weights(discs) for average in averages]), 0.0
-    ).reshape(len(places), -1)
-    for place, found in zip(places, inside.reshape(shares.shape), strict=True):
-        if not found.any():
+    disc_points, disc_weights = pressure_rule(UNIFORM)
+    points = []
+    weights = []
+    for place, average in zip(places, averages, strict=True):
+        points.append(np.asarray(place) + average.radius * disc_points)
+        weights.append(disc_weights * average.weights(disc_points))
+    is_on_body, motions = _on_body(held.structure.mesh, np.concatenate(points))
+    # the part of each disc that is on the body
+    shares = np.where(is_on_body, np.concatenate(weights), 0.0).reshape(len(places), -1)
+    for place, is_inside in zip(places, is_on_body.reshape(shares.shape), strict=True):
+        if not is_inside.any():
             raise InputError(
                 f"the body is too narrow at ({place[0]:g}, {place[1]:g}) m to be taken for a plate"
             )
     shares /= shares.sum(axis=1, keepdims=True)
-    rows = np.repeat(np.arange(len(places)), len(discs))
-    averaging = csr_array(
-        (shares.ravel(), (rows, np.arange(len(points)))), shape=(len(places), len(points))
-    )[:, inside]
+    rows = np.repeat(np.arange(len(places)), len(disc_points))
+    columns = np.arange(shares.size)
+    averaging = csr_array((shares.ravel(), (rows, columns)), shape=(len(places), shares.size))
+    averaging = averaging[:, is_on_body]
     return [csr_array(averaging @ motion @ held.expansion) for motion in motions]
 
 
 def _on_body(mesh: Mesh, places: Floats) -> tuple[Bools, list[csr_array]]:
-    """Return a mask of the places on the body, and the vertical displacements of these on either
-    face.
+    """Return a mask of the places on the body, and their vertical displacements on either face.
 
     All places within the bounding box are tried together first, which is fast; one by one only if
     that fails.
     """
-    in_box = (
-        (places >= mesh.nodes[:, :2].min(axis=0)) & (places <= mesh.nodes[:, :2].max(axis=0))
-    ).all(axis=1)
-    if in_box.any() and (motions := _vertical_motions(mesh, places[in_box])):
-        return in_box, motions
-    inside = np.array([bool(_vertical_motions(mesh, place)) for place in places])
-    return inside, _vertical_motions(mesh, places[inside]) if inside.any() else []
+    low = mesh.nodes[:, :2].min(axis=0)
+    high = mesh.nodes[:, :2].max(axis=0)
+    is_in_box = ((places >= low) & (places <= high)).all(axis=1)
+    if is_in_box.any():
+        motions = _vertical_motions(mesh, places[is_in_box])
+        if motions:
+            return is_in_box, motions
+    is_on_body = np.array([bool(_vertical_motions(mesh, place)) for place in places])
+    if not is_on_body.any():
+        return is_on_body, []
+    return is_on_body, _vertical_motions(mesh, places[is_on_body])
 
 
 def _vertical_motions(mesh: Mesh, places: Floats) -> list[csr_array]:
-    """Return the vertical displacements of places on either face as rows of the degrees
-    of freedom; [] if one is not on the body.
+    """Return the vertical displacements of places on either face per degree of freedom.
+
+    The list is empty if a place is not on the body.
     """
     try:
         if mesh.is_flat:  # both faces of a plate element have the same deflection
@@ -349,8 +360,7 @@ def responses_to_spread_forces(
     side: Side,
     average: Callable[[tuple[float, float], float], Average],
 ) -> tuple[Structure, list[float], Floats]:
-    """Return structure, local thicknesses and displacements of a held plate under unit upward
-    forces distributed around places.
+    """Return the response of a held plate to unit upward forces distributed around places.
 
     Parameters
     ----------
@@ -377,14 +387,9 @@ def responses_to_spread_forces(
     """
     held, elastic = _factorised(recipe)
     thicknesses = _thicknesses(held.structure, places)
-    loads = _faces(
-        held,
-        places,
-        [average(place, thickness) for place, thickness in zip(places, thicknesses, strict=True)],
-    )
-    load = loads[_FACES.index(side)]
-    return (
-        held.structure,
-        thicknesses,
-        np.asarray(held.expansion @ elastic.static(load.toarray().T)),
-    )
+    averages = [
+        average(place, thickness) for place, thickness in zip(places, thicknesses, strict=True)
+    ]
+    loads = _face_rows(held, places, averages)[_FACES.index(side)]
+    displacements = np.asarray(held.expansion @ elastic.static(loads.toarray().T))
+    return held.structure, thicknesses, displacements

@@ -22,6 +22,7 @@ import numpy as np
 from scipy.sparse import coo_array, csr_array
 
 from vibroimpact._version import __version__
+from vibroimpact.arrays import Floats
 from vibroimpact.errors import InputError
 from vibroimpact.files.atomic_write import write_file
 from vibroimpact.files.json_reading import parse_json
@@ -34,8 +35,9 @@ from vibroimpact.structures.mesh import ElementBlock, Mesh
 from vibroimpact.structures.modal_model import ModalModel
 
 FORMAT = 6
-"""Part of every key: to be increased when the stored data, or their computation, change;
-earlier entries are then not found.
+"""Part of every key: to be increased when the stored data, or their computation, change.
+
+Earlier entries are then not found.
 """
 
 PLACE = "VIBROIMPACT_STORE"
@@ -44,30 +46,35 @@ PLACE = "VIBROIMPACT_STORE"
 _LARGEST = 4_000_000_000  # bytes; the least recently used entries are removed first
 # of _LARGEST: bytes written between two scans of the folder, which may hold thousands of entries
 _SLACK = 0.01
-_CHECKSUM, _PIECE = 4, 2**20  # bytes
+_CHECKSUM_SIZE = 4  # bytes
+_PIECE_SIZE = 2**20  # bytes that are read at once
 _MODES = "modes"
-KINDS = (_MODES, "compliance", "parts")
+COMPLIANCE = "compliance"
+"""Kind of the entries with static responses."""
+KINDS = (_MODES, COMPLIANCE, "parts")
 """Kinds of entries, which are the suffixes of their files."""
 
 Content = TypeVar("Content")
 
-_HELD_SIZE = 2000.0  # bytes, about
+_HELD_SIZE = 2000.0  # bytes of an entry that is kept in memory, about
 _HELD = MemoryCache[Mapping[str, Any]](capacity=1000 * _HELD_SIZE)
 
 
 def store_folder() -> Path:
-    """Return the folder of the store: that of the environment variable VIBROIMPACT_STORE,
-    else one in the user's cache.
+    """Return the folder of the store.
+
+    It is that of the environment variable VIBROIMPACT_STORE, else one in the user's cache.
     """
     from platformdirs import user_cache_path
 
-    given = os.environ.get(PLACE)
-    return Path(given) if given else user_cache_path("vibroimpact") / "modes"
+    folder = os.environ.get(PLACE)
+    return Path(folder) if folder else user_cache_path("vibroimpact") / "modes"
 
 
 def key_of(recipe: Any) -> str:
-    """Return the key of a recipe: a hash of its content, of the format of the store and of the
-    version of the package.
+    """Return the key of a recipe: a hash of its content and of the version of the package.
+
+    The format of the store is part of it.
 
     Examples
     --------
@@ -83,28 +90,24 @@ def key_of(recipe: Any) -> str:
 
 
 def _content(value: Any) -> Any:
-    """Return a value in terms of JSON: a dataclass as its name and its compared fields,
-    an array as a hash.
+    """Return a value in terms of JSON.
+
+    A dataclass is its name and its compared fields, and an array is a hash.
     """
     if dataclasses.is_dataclass(value):
-        return [
-            type(value).__name__,
-            {
-                item.name: _content(getattr(value, item.name))
-                for item in dataclasses.fields(value)
-                if item.compare
-            },
-        ]
+        compared_fields = {
+            item.name: _content(getattr(value, item.name))
+            for item in dataclasses.fields(value)
+            if item.compare
+        }
+        return [type(value).__name__, compared_fields]
     if isinstance(value, (list, tuple)):
         return [_content(item) for item in value]
     if isinstance(value, Mapping):
         return {str(key): _content(item) for key, item in value.items()}
     if isinstance(value, np.ndarray):
-        return [
-            str(value.dtype),
-            value.shape,
-            hashlib.sha256(np.ascontiguousarray(value).tobytes()).hexdigest(),
-        ]
+        array_hash = hashlib.sha256(np.ascontiguousarray(value).tobytes()).hexdigest()
+        return [str(value.dtype), value.shape, array_hash]
     if isinstance(value, (np.generic, float, int)) and not isinstance(value, bool):
         return (float(value) + 0.0).hex()  # 1 and 1.0 are equal, and so are 0.0 and -0.0
     return value
@@ -117,12 +120,12 @@ def has_model(key: str) -> bool:
 
 def load_model(key: str) -> tuple[ModalModel | None, str]:
     """Return the model under a key, or None; and a message on a failure to read it, or ""."""
-    return load_entry(key, _MODES, _model)
+    return load_entry(key, _MODES, _model_of_arrays)
 
 
 def save_model(key: str, model: ModalModel) -> str:
     """Store a model under a key; return a message on failure, or ""."""
-    return save_entry(key, _MODES, _parts(model))
+    return save_entry(key, _MODES, _arrays_of_model(model))
 
 
 def load_entry(
@@ -167,21 +170,72 @@ def load_entry(
     return content, ""
 
 
-def hold_entry(key: str, kind: str, parts: Mapping[str, Any]) -> None:
-    """Keep arrays by name in memory for this process: for what is used soon, and then
-    hardly again.
+def hold_entry(key: str, kind: str, arrays: Mapping[str, Any]) -> None:
+    """Keep arrays by name in memory for this process.
+
+    It is for what is used soon, and then hardly again.
     """
-    _HELD.put(f"{key}.{kind}", parts, _HELD_SIZE)
+    _HELD.put(f"{key}.{kind}", arrays, _HELD_SIZE)
 
 
-def save_entry(key: str, kind: str, parts: Mapping[str, Any]) -> str:
+def save_entry(key: str, kind: str, arrays: Mapping[str, Any]) -> str:
     """Store arrays by name under a key; return a message on failure, or ""."""
-    return _put(key, kind, _packed(parts))
+    return _put(key, kind, _packed(arrays))
+
+
+def load_or_compute(
+    key: str,
+    kind: str,
+    read: Callable[[Mapping[str, Any]], Content],
+    compute: Callable[[], Content],
+    arrays: Callable[[Content], Mapping[str, Any]],
+    tell: Callable[[str], None] | None = None,
+) -> Content:
+    """Return the content of an entry from the store, or computed and then stored.
+
+    Parameters
+    ----------
+    key, kind, read
+        As in `load_entry`.
+    compute : callable
+        Computes the content where the store does not have it.
+    arrays : callable
+        Makes arrays by their names from the content; the inverse of `read`.
+    tell : callable, optional
+        Called with a message on a failure of the store.
+    """
+    content, trouble = load_entry(key, kind, read)
+    if trouble and tell is not None:
+        tell(trouble)
+    if content is None:
+        content = compute()
+        trouble = save_entry(key, kind, arrays(content))
+        if trouble and tell is not None:
+            tell(trouble)
+    return content
+
+
+def load_or_compute_array(
+    key: str, compute: Callable[[], Floats], tell: Callable[[str], None] | None = None
+) -> Floats:
+    """Return an array of static responses from the store, or computed and then stored.
+
+    Parameters are those of `load_or_compute`.
+    """
+    return load_or_compute(
+        key,
+        COMPLIANCE,
+        lambda arrays: np.asarray(arrays[COMPLIANCE], dtype=float),
+        compute,
+        lambda array: {COMPLIANCE: array},
+        tell,
+    )
 
 
 def _put(key: str, kind: str, pieces: Sequence[bytes]) -> str:
-    """Write an entry atomically, so that several processes may save and load at once;
-    return a message on failure, or "".
+    """Write an entry; return a message on failure, or "".
+
+    It is written atomically, so that several processes may save and load at once.
     """
     folder = store_folder()
     try:
@@ -197,10 +251,10 @@ def _put(key: str, kind: str, pieces: Sequence[bytes]) -> str:
 
 
 def carry(keys: Iterable[str]) -> dict[str, bytes]:
-    """Return the entries under some keys as bytes, by file name, for a process without access to
-    this disk.
+    """Return the entries under some keys as bytes, by file name.
 
-    Keys that are not in the store are left out; the receiving process computes their content.
+    They are for a process without access to this disk. Keys that are not in the store are left out;
+    the receiving process computes their content.
 
     Examples
     --------
@@ -240,47 +294,49 @@ def receive(entries: Mapping[str, bytes]) -> str:
 
 
 def _path(key: str, kind: str) -> Path:
+    """Return the file of an entry."""
     return store_folder() / f"{key}.{kind}"
 
 
-def _packed(parts: Mapping[str, Any]) -> list[bytes]:
+def _packed(arrays: Mapping[str, Any]) -> list[bytes]:
     """Return arrays as an npz archive, preceded by its CRC-32."""
     stream = BytesIO()
-    np.savez(stream, **parts)
+    np.savez(stream, **arrays)
     archive = stream.getvalue()
-    return [zlib.crc32(archive).to_bytes(_CHECKSUM, "little"), archive]
+    return [zlib.crc32(archive).to_bytes(_CHECKSUM_SIZE, "little"), archive]
 
 
 def _unpacked(file: BinaryIO) -> dict[str, Any]:
-    """Return the arrays of an entry, read-only, as what is made of them is shared within the
-    process.
+    """Return the arrays of an entry, read-only.
 
-    The file is read twice, in pieces: it may take as much memory as the arrays.
+    What is made of them is shared within the process. The file is read twice, in pieces: it may
+    take as much memory as the arrays.
 
     Raises
     ------
     ValueError
         If the checksum does not agree, or the content is not an archive of arrays.
     """
-    expected, sum_so_far = file.read(_CHECKSUM), 0
-    while piece := file.read(_PIECE):
-        sum_so_far = zlib.crc32(piece, sum_so_far)
-    if file.tell() <= _CHECKSUM or sum_so_far.to_bytes(_CHECKSUM, "little") != expected:
+    expected = file.read(_CHECKSUM_SIZE)
+    checksum = 0
+    while piece := file.read(_PIECE_SIZE):
+        checksum = zlib.crc32(piece, checksum)
+    is_empty = file.tell() <= _CHECKSUM_SIZE
+    if is_empty or checksum.to_bytes(_CHECKSUM_SIZE, "little") != expected:
         raise ValueError("its check sum does not agree")
-    file.seek(_CHECKSUM)
+    file.seek(_CHECKSUM_SIZE)
     with np.load(file, allow_pickle=False) as archive:
-        found = dict(archive)
-    for array in found.values():
+        arrays = dict(archive)
+    for array in arrays.values():
         array.flags.writeable = False
-    return found
+    return arrays
 
 
 def entries() -> list[Path]:
     """Return the files of the store, the least recently used first."""
-    found = [
-        (path.stat().st_mtime, path) for kind in KINDS for path in store_folder().glob(f"*.{kind}")
-    ]
-    return [path for _, path in sorted(found)]
+    folder = store_folder()
+    times = [(path.stat().st_mtime, path) for kind in KINDS for path in folder.glob(f"*.{kind}")]
+    return [path for _, path in sorted(times)]
 
 
 def store_size() -> int:
@@ -290,10 +346,10 @@ def store_size() -> int:
 
 def clear_store() -> int:
     """Remove all entries; return how many there were."""
-    found = entries()
-    for path in found:
+    paths = entries()
+    for path in paths:
         path.unlink(missing_ok=True)
-    return len(found)
+    return len(paths)
 
 
 @cache
@@ -306,26 +362,28 @@ _written = [math.inf]  # bytes since the last scan of the folder by this process
 
 
 def _make_room(size: int) -> None:
-    """Count the bytes written; from time to time remove the least recently used entries
-    beyond the limit.
+    """Count the bytes written; from time to time remove entries beyond the limit.
+
+    The least recently used entries are removed first.
     """
     _written[0] += size
     if _written[0] < _SLACK * _LARGEST:
         return
     _written[0] = 0.0
-    found = entries()
-    total = sum(path.stat().st_size for path in found)
-    for path in found[:-1]:
+    paths = entries()
+    total = sum(path.stat().st_size for path in paths)
+    for path in paths[:-1]:
         if total <= _LARGEST:
             break
         total -= path.stat().st_size
         path.unlink(missing_ok=True)
 
 
-def _parts(model: ModalModel) -> dict[str, Any]:
-    """Return the arrays of a model by name; `_model` is the inverse."""
-    parts: dict[str, Any] = {
-        "nodes": model.mesh.nodes,
+def _arrays_of_model(model: ModalModel) -> dict[str, Any]:
+    """Return the arrays of a model by name; `_model_of_arrays` is the inverse."""
+    mesh = model.mesh
+    arrays: dict[str, Any] = {
+        "nodes": mesh.nodes,
         "angular_frequencies": model.angular_frequencies,
         "shapes": model.shapes,
         "participation": model.participation,
@@ -336,30 +394,25 @@ def _parts(model: ModalModel) -> dict[str, Any]:
         "frequency_errors": model.frequency_errors,
         "facts": _text_array(dict(model.facts)),
     }
-    if model.mesh.materials:
+    if mesh.materials:
         table = [
-            [one.name, one.density, one.youngs_modulus, one.poissons_ratio]
-            for one in model.mesh.materials
+            [material.name, material.density, material.youngs_modulus, material.poissons_ratio]
+            for material in mesh.materials
         ]
-        parts |= {
-            "materials": _text_array(table),
-            "element_materials": model.mesh.element_materials,
-        }
-    joints = model.mesh.joints
-    if joints is not None:
-        entries = joints.weights.tocoo()
-        parts |= {
-            "followers": joints.followers,
-            "movers": np.stack([entries.row, entries.col]),
-            "weights": entries.data,
-        }
-    for index, block in enumerate(model.mesh.blocks):
-        parts[f"block:{index}:{block.kind}"] = block.connectivity
-    for name, nodes in model.mesh.node_sets.items():
-        parts[f"nodes:{name.encode().hex()}"] = nodes
-    for name, elements in model.mesh.element_sets.items():
-        parts[f"elements:{name.encode().hex()}"] = elements
-    return parts
+        arrays["materials"] = _text_array(table)
+        arrays["element_materials"] = mesh.element_materials
+    if mesh.joints is not None:
+        weights = mesh.joints.weights.tocoo()
+        arrays["followers"] = mesh.joints.followers
+        arrays["movers"] = np.stack([weights.row, weights.col])
+        arrays["weights"] = weights.data
+    for index, block in enumerate(mesh.blocks):
+        arrays[f"block:{index}:{block.kind}"] = block.connectivity
+    for name, nodes in mesh.node_sets.items():
+        arrays[f"nodes:{name.encode().hex()}"] = nodes
+    for name, elements in mesh.element_sets.items():
+        arrays[f"elements:{name.encode().hex()}"] = elements
+    return arrays
 
 
 def _text_array(value: Any) -> Any:
@@ -367,47 +420,55 @@ def _text_array(value: Any) -> Any:
     return np.frombuffer(json.dumps(value).encode(), np.uint8)
 
 
-def _model(entry: Mapping[str, Any]) -> ModalModel:
+def _model_of_arrays(arrays: Mapping[str, Any]) -> ModalModel:
     """Return the model of the arrays of an entry."""
-
-    def named(prefix: str) -> dict[str, Any]:
-        return {
-            bytes.fromhex(key[len(prefix) :]).decode(): entry[key]
-            for key in entry
-            if key.startswith(prefix)
-        }
-
-    blocks = sorted(
-        (key.split(":") for key in entry if key.startswith("block:")),
-        key=lambda parts: int(parts[1]),
+    mass, thickness = arrays["numbers"].tolist()
+    return ModalModel(
+        _mesh_of_arrays(arrays),
+        MassProperties(mass, arrays["centre"], arrays["inertia"]),
+        arrays["angular_frequencies"],
+        arrays["shapes"],
+        arrays["participation"],
+        arrays["rigid_coefficients"],
+        arrays["frequency_errors"],
+        thickness,
+        parse_json(arrays["facts"].tobytes()),
     )
+
+
+def _mesh_of_arrays(arrays: Mapping[str, Any]) -> Mesh:
+    """Return the mesh of the model of an entry."""
+    block_names = [key.split(":") for key in arrays if key.startswith("block:")]
+    block_names.sort(key=lambda parts: int(parts[1]))
     mesh = Mesh(
-        entry["nodes"],
-        tuple(ElementBlock(kind, entry[f"block:{index}:{kind}"]) for _, index, kind in blocks),
-        named("nodes:"),
-        named("elements:"),
+        arrays["nodes"],
+        tuple(
+            ElementBlock(kind, arrays[f"block:{index}:{kind}"]) for _, index, kind in block_names
+        ),
+        _named_sets(arrays, "nodes:"),
+        _named_sets(arrays, "elements:"),
     )
-    if "materials" in entry:
-        rows = parse_json(entry["materials"].tobytes())
+    if "materials" in arrays:
+        table = parse_json(arrays["materials"].tobytes())
         materials = tuple(
-            Material(density, modulus, ratio, name=name) for name, density, modulus, ratio in rows
+            Material(density, modulus, ratio, name=name) for name, density, modulus, ratio in table
         )
         mesh = dataclasses.replace(
-            mesh, materials=materials, element_materials=entry["element_materials"]
+            mesh, materials=materials, element_materials=arrays["element_materials"]
         )
-    if "followers" in entry:
-        shape = (len(entry["followers"]), mesh.nodes.size)
-        weights = csr_array(coo_array((entry["weights"], tuple(entry["movers"])), shape=shape))
-        mesh = dataclasses.replace(mesh, joints=Joints(entry["followers"], weights))
-    mass, thickness = entry["numbers"].tolist()
-    return ModalModel(
-        mesh,
-        MassProperties(mass, entry["centre"], entry["inertia"]),
-        entry["angular_frequencies"],
-        entry["shapes"],
-        entry["participation"],
-        entry["rigid_coefficients"],
-        entry["frequency_errors"],
-        thickness,
-        parse_json(entry["facts"].tobytes()),
-    )
+    if "followers" in arrays:
+        followers = arrays["followers"]
+        weights = coo_array(
+            (arrays["weights"], tuple(arrays["movers"])), shape=(len(followers), mesh.nodes.size)
+        )
+        mesh = dataclasses.replace(mesh, joints=Joints(followers, csr_array(weights)))
+    return mesh
+
+
+def _named_sets(arrays: Mapping[str, Any], prefix: str) -> dict[str, Any]:
+    """Return the sets of a mesh by name; names are in hexadecimal, after a prefix."""
+    return {
+        bytes.fromhex(key[len(prefix) :]).decode(): arrays[key]
+        for key in arrays
+        if key.startswith(prefix)
+    }

@@ -60,29 +60,26 @@ class Structure:
         InputError
             If the factors would not fit into the free memory.
         """
-        adjacency, joints = node_adjacency(self.mesh), self.mesh.joints
-        last = np.zeros(len(self.mesh.nodes), dtype=bool)
-        if joints is not None:
-            adjacency = joined_adjacency(adjacency, joints)
-            last = hubs(joints, len(self.mesh.nodes))
-        first = np.flatnonzero(~last)
-        parts = [
-            first[part]
-            for part in nested_dissection(self.mesh.nodes[first], adjacency[first][:, first])
-        ]
-        if last.any():
-            parts.append(np.flatnonzero(last))
-        check_factor_memory(
-            self.stiffness.shape[0], self.mesh.dofs_per_node**2 * factor_entries(parts, adjacency)
-        )
-        return (
-            self.mesh.dofs_per_node * np.concatenate(parts)[:, None]
-            + np.arange(self.mesh.dofs_per_node)
-        ).ravel()
+        mesh = self.mesh
+        adjacency = node_adjacency(mesh)
+        is_last = np.zeros(len(mesh.nodes), dtype=bool)
+        if mesh.joints is not None:
+            adjacency = joined_adjacency(adjacency, mesh.joints)
+            is_last = hubs(mesh.joints, len(mesh.nodes))
+        others = np.flatnonzero(~is_last)
+        dissected = nested_dissection(mesh.nodes[others], adjacency[others][:, others])
+        parts = [others[part] for part in dissected]
+        if is_last.any():
+            parts.append(np.flatnonzero(is_last))
+        entries = mesh.dofs_per_node**2 * factor_entries(parts, adjacency)
+        check_factor_memory(self.stiffness.shape[0], entries)
+        first_dofs = mesh.dofs_per_node * np.concatenate(parts)[:, None]
+        return (first_dofs + np.arange(mesh.dofs_per_node)).ravel()
 
     def rigid_motions(self) -> Floats:
-        """Return the six rigid motions, (dofs, 6): unit translations, then unit rotations about the
-        centre of mass.
+        """Return the six rigid motions, (dofs, 6).
+
+        They are unit translations, then unit rotations about the centre of mass.
 
         Examples
         --------
@@ -93,8 +90,7 @@ class Structure:
         True
         """
         x, y, z = (self.mesh.nodes - self.properties.centre).T
-        number = len(self.mesh.nodes)
-        motions = np.zeros((number, self.mesh.dofs_per_node, 6))
+        motions = np.zeros((len(self.mesh.nodes), self.mesh.dofs_per_node, 6))
         motions[:, :3, :3] = np.eye(3)
         motions[:, :3, 3:] = rotation_columns(x, y, z)
         if self.mesh.is_flat:
@@ -106,15 +102,16 @@ class Structure:
 def rotation_columns(x: Floats, y: Floats, z: Floats) -> Floats:
     """Return the displacements of points under unit rotations about x, y and z, (points, 3, 3)."""
     zero = np.zeros_like(x)
-    return np.stack(
-        [np.stack([zero, z, -y], -1), np.stack([-z, zero, x], -1), np.stack([y, -x, zero], -1)],
-        axis=1,
-    )
+    along_x = np.stack([zero, z, -y], axis=-1)
+    along_y = np.stack([-z, zero, x], axis=-1)
+    along_z = np.stack([y, -x, zero], axis=-1)
+    return np.stack([along_x, along_y, along_z], axis=1)
 
 
 def solid_structure(mesh: Mesh, material: Material) -> Structure:
-    """Return the structure of a mesh of solid elements; `material` is that of the elements that
-    have none of their own.
+    """Return the structure of a mesh of solid elements.
+
+    `material` is that of the elements that have none of their own.
 
     Raises
     ------
@@ -122,10 +119,11 @@ def solid_structure(mesh: Mesh, material: Material) -> Structure:
         If elements are inverted or the mesh has loose parts.
     """
     check_mesh(mesh)
-    density = (
-        mesh.of_elements(material, lambda one: one.density) if mesh.materials else material.density
-    )
-    return Structure(mesh, *assemble_solid(mesh, material), mass_properties(mesh, density))
+    density: float | Floats = material.density
+    if mesh.materials:
+        density = mesh.of_elements(material, lambda element_material: element_material.density)
+    stiffness, mass = assemble_solid(mesh, material)
+    return Structure(mesh, stiffness, mass, mass_properties(mesh, density))
 
 
 def plate_structure(
@@ -148,11 +146,13 @@ def plate_structure(
     check_mesh(mesh)
     properties = mass_properties(mesh, material.density, thickness)
     bed = bed_stiffness(material, thickness) if theory == "thick" else None
+    stiffness, mass = assemble_plate(mesh, material, thickness, theory, shear_correction)
     return Structure(
         mesh,
-        *assemble_plate(mesh, material, thickness, theory, shear_correction),
+        stiffness,
+        mass,
         properties,
-        thickness,
-        end_compliance(material, thickness),
-        bed,
+        thickness=thickness,
+        end_compliance=end_compliance(material, thickness),
+        bed=bed,
     )

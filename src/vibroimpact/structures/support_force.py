@@ -1,10 +1,9 @@
 r"""Forces of supports on a plate, as linear functions of its motion.
 
 In a mode, the bare structure of stiffness K and mass M is in balance with the forces of its
-supports,
-:math:`r = (K - \omega^2 M)\,\varphi`, and under a static force elsewhere :math:`r = K u`: zero on
-all degrees of freedom but those that
-supports hold, tie or spring. The sum over the nodes of a support is the force of that support.
+supports, :math:`r = (K - \omega^2 M)\,\varphi`, and under a static force elsewhere :math:`r = K u`:
+zero on all degrees of freedom but those that supports hold, tie or spring. The sum over the nodes
+of a support is the force of that support.
 """
 
 from __future__ import annotations
@@ -20,16 +19,15 @@ from vibroimpact.arrays import Floats, Integers
 from vibroimpact.errors import InputError
 from vibroimpact.structures.mesh import Mesh
 from vibroimpact.structures.modal_model import ModalModel
+from vibroimpact.structures.plate_compliance import Average
 from vibroimpact.structures.recipe import Recipe, plate_key
 from vibroimpact.structures.static_compliance import responses_to_spread_forces
-from vibroimpact.structures.store import key_of, load_entry, save_entry
+from vibroimpact.structures.store import COMPLIANCE, key_of, load_or_compute
 from vibroimpact.structures.structure import Structure
 from vibroimpact.structures.supports.constraints import Constraints
 from vibroimpact.structures.supports.support import Support
 from vibroimpact.structures.surface import Side, Spot, place_of
 from vibroimpact.structures.transfer_strain import spread_at_face
-
-_KIND = "compliance"
 
 
 @dataclass(frozen=True)
@@ -51,13 +49,13 @@ class SupportForces:
 
     def of_modes(self, model: ModalModel) -> Floats:
         """Return the forces in each mode, (S, modes, 3) [N m^-1 kg^-1/2]."""
-        square = model.angular_frequencies[:, None] ** 2
-        return np.array(
-            [
-                model.shapes @ k.T - square * (model.shapes @ m.T)
-                for k, m in zip(self.stiffness, self.mass, strict=True)
-            ]
-        )
+        squared_frequencies = model.angular_frequencies[:, None] ** 2
+        # r = (K - omega^2 M) phi, summed over the nodes of each support
+        forces = [
+            model.shapes @ stiffness.T - squared_frequencies * (model.shapes @ mass.T)
+            for stiffness, mass in zip(self.stiffness, self.mass, strict=True)
+        ]
+        return np.array(forces)
 
 
 def support_forces(
@@ -89,18 +87,14 @@ def support_forces(
     ComputationError
         If the stiffness is singular.
     """
-    key, say = support_force_key(recipe, place, side, spots), tell or (lambda text: None)
-    found, trouble = load_entry(
-        key, _KIND, lambda parts: SupportForces(parts["stiffness"], parts["mass"], parts["static"])
+    return load_or_compute(
+        support_force_key(recipe, place, side, spots),
+        COMPLIANCE,
+        lambda arrays: SupportForces(arrays["stiffness"], arrays["mass"], arrays["static"]),
+        lambda: computed_support_forces(recipe, place, side, spots),
+        lambda forces: vars(forces),
+        tell,
     )
-    if trouble:
-        say(trouble)
-    if found is None:
-        found = computed_support_forces(recipe, place, side, spots)
-        trouble = save_entry(key, _KIND, vars(found))
-        if trouble:
-            say(trouble)
-    return found
 
 
 def support_force_key(
@@ -113,53 +107,54 @@ def support_force_key(
 def computed_support_forces(
     recipe: Recipe, place: tuple[float, float], side: Side, spots: Sequence[Spot]
 ) -> SupportForces:
-    """Return the forces of supports, computed anew; parameters and errors are those of
-    `support_forces`.
+    """Return the forces of supports, computed anew.
+
+    Parameters and errors are those of `support_forces`.
     """
-    structure, _, displacements = responses_to_spread_forces(
-        recipe, [place], side, lambda _, thickness: spread_at_face(recipe, thickness)
-    )
+
+    def distribution(place: tuple[float, float], thickness: float) -> Average:
+        return spread_at_face(recipe, thickness)
+
+    structure, _, displacements = responses_to_spread_forces(recipe, [place], side, distribution)
     watched = [support_at(structure, recipe.supports, spot) for spot in spots]
     _refuse_joints(structure, [recipe.supports[number] for number in watched])
-    shares = _shares(structure, recipe.supports)
-    rows = [shares[number] for number in watched]
-    stiffness, mass = (
-        np.array([(row @ matrix).toarray() for row in rows])
-        for matrix in (structure.stiffness, structure.mass)
-    )
+    sums = _force_sums(structure, recipe.supports)
+    stiffness = np.array([(sums[number] @ structure.stiffness).toarray() for number in watched])
+    mass = np.array([(sums[number] @ structure.mass).toarray() for number in watched])
     return SupportForces(stiffness, mass, stiffness @ displacements[:, 0])
 
 
 def support_at(structure: Structure, supports: Sequence[Support], spot: Spot) -> int:
-    """Return the number of the support whose held nodes lie nearest to a place, within the size of
-    an element.
+    """Return the number of the support nearest to a place, within the size of an element.
+
+    The distance is that of its held nodes.
 
     Raises
     ------
     InputError
         If there is none, or several are as near.
     """
-    mesh, place = structure.mesh, np.array(place_of(structure.mesh, spot, "lower"))
-    apart = [
-        float(
-            np.linalg.norm(mesh.nodes[_nodes(structure, one), :2] - place, axis=1).min(
-                initial=math.inf
-            )
-        )
-        for one in supports
-    ]
-    least, reach = min(apart, default=math.inf), _largest_element(mesh)
-    words = "; ".join(one.description for one in supports) or "none"
+    mesh = structure.mesh
+    place = np.array(place_of(mesh, spot, "lower"))
+    distances = []
+    for support in supports:
+        positions = mesh.nodes[_nodes(structure, support), :2]
+        distance = np.linalg.norm(positions - place, axis=1).min(initial=math.inf)
+        distances.append(float(distance))
+    least = min(distances, default=math.inf)
+    reach = _largest_element(mesh)
     if least > reach:
+        descriptions = "; ".join(support.description for support in supports) or "none"
         raise InputError(
-            f"there is no support at ({place[0]:g}, {place[1]:g}) m; there are: {words}"
+            f"there is no support at ({place[0]:g}, {place[1]:g}) m; there are: {descriptions}"
         )
-    near = [number for number, one in enumerate(apart) if one <= least + 1e-9 * reach]
+    limit = least + 1e-9 * reach
+    near = [number for number, distance in enumerate(distances) if distance <= limit]
     if len(near) > 1:
-        both = " and ".join(supports[number].description for number in near)
+        descriptions = " and ".join(supports[number].description for number in near)
         raise InputError(
             f"({place[0]:g}, {place[1]:g}) m is as near to a node that is held by one as "
-            f"to that of another of {both}; "
+            f"to that of another of {descriptions}; "
             "give a place that is nearer to one of them by an element or more"
         )
     return near[0]
@@ -184,38 +179,34 @@ def _refuse_joints(structure: Structure, supports: Sequence[Support]) -> None:
     joints = structure.mesh.joints
     if joints is None:
         return
-    for one in supports:
-        if np.isin(_nodes(structure, one), joints.nodes).any():
+    for support in supports:
+        if np.isin(_nodes(structure, support), joints.nodes).any():
             raise InputError(
-                f"the force of {one.description} is not known: it holds nodes that the "
+                f"the force of {support.description} is not known: it holds nodes that the "
                 "mesh file joins to others; "
                 "leave out its force sensor, or move the support"
             )
 
 
-def _shares(structure: Structure, supports: Sequence[Support]) -> list[csr_array]:
-    """Return sums of forces along x, y and z over the nodes of each support, (3, dofs); a
-    node of several has an equal share in each.
+def _force_sums(structure: Structure, supports: Sequence[Support]) -> list[csr_array]:
+    """Return sums of forces along x, y and z over the nodes of each support, (3, dofs).
+
+    A node of several supports has an equal share in each.
     """
-    nodes, per_node = (
-        [_nodes(structure, support) for support in supports],
-        structure.mesh.dofs_per_node,
+    per_node = structure.mesh.dofs_per_node
+    nodes_of_supports = [_nodes(structure, support) for support in supports]
+    number_of_supports = np.bincount(  # of each node
+        np.concatenate(nodes_of_supports), minlength=len(structure.mesh.nodes)
     )
-    owners = np.bincount(np.concatenate(nodes), minlength=len(structure.mesh.nodes))
-    shape = (3, structure.stiffness.shape[0])
-    return [
-        csr_array(
-            (
-                np.tile(1.0 / owners[mine], 3),
-                (
-                    np.repeat([0, 1, 2], len(mine)),
-                    (per_node * mine + np.array([[0], [1], [2]])).ravel(),
-                ),
-            ),
-            shape,
-        )
-        for mine in nodes
-    ]
+    axes = np.array([[0], [1], [2]])
+    sums = []
+    for nodes in nodes_of_supports:
+        shares = np.tile(1.0 / number_of_supports[nodes], 3)
+        rows = np.repeat([0, 1, 2], len(nodes))
+        columns = (per_node * nodes + axes).ravel()
+        shape = (3, structure.stiffness.shape[0])
+        sums.append(csr_array((shares, (rows, columns)), shape))
+    return sums
 
 
 def _largest_element(mesh: Mesh) -> float:

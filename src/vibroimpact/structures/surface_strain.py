@@ -1,6 +1,4 @@
-"""Strain of a face of a body in its plane, as a linear function of the degrees of freedom
-of its finite elements.
-"""
+"""Strain of a face of a body in its plane, per degree of freedom of its finite elements."""
 
 from __future__ import annotations
 
@@ -14,8 +12,7 @@ from vibroimpact.structures.surface import Side, face_gradients
 def surface_strain(
     mesh: Mesh, place: tuple[float, float], side: Side = "upper", thickness: float = 0.0
 ) -> csr_array:
-    r"""Return the strains of a face at a place as linear functions of the degrees of freedom, (3,
-    dofs).
+    r"""Return the strains of a face at a place per degree of freedom, (3, dofs).
 
     The rows are :math:`\varepsilon_x, \varepsilon_y, \gamma_{xy}` [-]; on common edges of elements
     they are means over these.
@@ -49,19 +46,19 @@ def surface_strain(
     """
     nodes, gradients = face_gradients(mesh, place, side)  # (k,), (2, k)
     height = (0.5 if side == "upper" else -0.5) * thickness
-    parts = [(0, 1.0), (3, height)] if mesh.is_flat else [(0, 1.0)]
-    terms = [
-        (row, axis, along) for row, axis, along in ((0, 0, 0), (1, 1, 1), (2, 0, 1), (2, 1, 0))
-    ]
-    rows, columns, values = [], [], []
-    for first, factor in parts:
-        for row, axis, along in terms:
-            rows.append(np.full(len(nodes), row))
-            columns.append(mesh.dofs_per_node * nodes + first + axis)
-            values.append(factor * gradients[along])
+    # first degree of freedom of a node, and factor: displacements, and slopes times the height
+    motions = [(0, 1.0)]
+    if mesh.is_flat:
+        motions.append((3, height))
+    rows = []
+    columns = []
+    values = []
+    for first_dof, factor in motions:
+        # each strain, the displacement and the axis along which it is derived
+        for strain, displacement, axis in ((0, 0, 0), (1, 1, 1), (2, 0, 1), (2, 1, 0)):
+            rows.append(np.full(len(nodes), strain))
+            columns.append(mesh.dofs_per_node * nodes + first_dof + displacement)
+            values.append(factor * gradients[axis])
+    coordinates = (np.concatenate(rows), np.concatenate(columns))
     shape = (3, mesh.dofs_per_node * len(mesh.nodes))
-    return csr_array(
-        coo_array(
-            (np.concatenate(values), (np.concatenate(rows), np.concatenate(columns))), shape=shape
-        )
-    )
+    return csr_array(coo_array((np.concatenate(values), coordinates), shape=shape))

@@ -1,6 +1,6 @@
-r"""Static transfer compliances of a plate between its contact point and its sensors, from one
-static solution.
+r"""Static transfer compliances of a plate between its contact point and its sensors.
 
+They follow from one static solution.
 The force is distributed over a disc, as finite elements do not resolve the field near a point
 force; outside the disc the response is the same. The face of a layer moves less than plate theory
 states (see `plate_compliance`), for long waves of wave number k by the factor
@@ -10,10 +10,9 @@ states (see `plate_compliance`), for long waves of wave number k by the factor
 
 The modal shapes that are used with the compliance may include that factor at neither point, at one
 or at both. Their number is `faces`; the mean of r^2 of the disc is as many times the above. The
-remaining difference between a layer and plate theory decays within two
-thicknesses, as :math:`e^{-4.2\,r/h}`, and is added. By the thin theory the disc has the size of an
-element, and the additional
-displacement under a point force within it is added in closed form (`thin_near_term`).
+remaining difference between a layer and plate theory decays within two thicknesses, as
+:math:`e^{-4.2\,r/h}`, and is added. By the thin theory the disc has the size of an element, and the
+additional displacement under a point force within it is added in closed form (`thin_near_term`).
 """
 
 from __future__ import annotations
@@ -26,12 +25,11 @@ import numpy as np
 from vibroimpact.arrays import Floats
 from vibroimpact.structures.plate_compliance import Average, layer_kernels, mean_square
 from vibroimpact.structures.plate_element import shear_factor
-from vibroimpact.structures.recipe import PlateOfPlates, Recipe, is_thin, plate_key
+from vibroimpact.structures.recipe import PlateOfPlates, Recipe, Shape, is_thin, plate_key
 from vibroimpact.structures.static_compliance import responses_to_spread_forces
-from vibroimpact.structures.store import hold_entry, key_of, load_entry, save_entry
+from vibroimpact.structures.store import COMPLIANCE, hold_entry, key_of, load_or_compute_array
 from vibroimpact.structures.surface import Side, surface_motion
 
-_KIND = "compliance"
 _RADIUS = 0.75  # of the disc, in thicknesses
 _NEAR = 4.0  # thicknesses beyond which a layer and plate theory agree
 # thicknesses: least distance from the force on the loaded face; closer points are evaluated there
@@ -51,8 +49,9 @@ def transfer_compliances(
     faces: int = 0,
     tell: Callable[[str], None] | None = None,
 ) -> Floats:
-    """Return the static compliances between a place and points of a held plate [m/N], (points, 3),
-    from the store or computed.
+    """Return the static compliances between a place and points of a held plate [m/N].
+
+    They are an array (points, 3), from the store or computed.
 
     Parameters
     ----------
@@ -91,16 +90,11 @@ def transfer_compliances(
     >>> abs(one / other - 1.0) < 1e-4  # Maxwell-Betti reciprocity
     True
     """
-    key, say = transfer_key(recipe, place, side, points, faces), tell or (lambda text: None)
-    found, trouble = load_entry(key, _KIND, lambda parts: np.asarray(parts[_KIND], dtype=float))
-    if trouble:
-        say(trouble)
-    if found is None:
-        found = computed_transfer(recipe, place, side, points, faces)
-        trouble = save_entry(key, _KIND, {_KIND: found})
-        if trouble:
-            say(trouble)
-    return found
+    return load_or_compute_array(
+        transfer_key(recipe, place, side, points, faces),
+        lambda: computed_transfer(recipe, place, side, points, faces),
+        tell,
+    )
 
 
 def hold_transfers(
@@ -110,13 +104,14 @@ def hold_transfers(
     points: Sequence[Point],
     faces: int = 0,
 ) -> None:
-    """Compute the compliances between places and points together, for calls of
-    `transfer_compliances` that follow in this process.
+    """Compute the compliances between places and points together.
+
+    Calls of `transfer_compliances` that follow in this process find them in memory.
     """
-    for place, found in zip(
-        places, computed_transfers(recipe, places, side, points, faces), strict=True
-    ):
-        hold_entry(transfer_key(recipe, place, side, points, faces), _KIND, {_KIND: found})
+    transfers = computed_transfers(recipe, places, side, points, faces)
+    for place, compliances in zip(places, transfers, strict=True):
+        key = transfer_key(recipe, place, side, points, faces)
+        hold_entry(key, COMPLIANCE, {COMPLIANCE: compliances})
 
 
 def transfer_key(
@@ -129,8 +124,9 @@ def transfer_key(
 def computed_transfer(
     recipe: Recipe, place: tuple[float, float], side: Side, points: Sequence[Point], faces: int = 0
 ) -> Floats:
-    """Return the compliances between a place and points, computed anew; parameters and
-    errors are those of `transfer_compliances`.
+    """Return the compliances between a place and points, computed anew.
+
+    Parameters and errors are those of `transfer_compliances`.
     """
     return np.asarray(computed_transfers(recipe, [place], side, points, faces)[0])
 
@@ -142,61 +138,61 @@ def computed_transfers(
     points: Sequence[Point],
     faces: int = 0,
 ) -> Floats:
-    """Return the compliances between several places, whose forces are solved together,
-    and points, (places, points, 3).
+    """Return the compliances between several places and points, (places, points, 3).
+
+    The forces at all places are solved together.
     """
-    shape, nu = recipe.shape, recipe.poissons_ratio
-    flat = isinstance(shape, PlateOfPlates)
+    ratio = recipe.poissons_ratio
+    has_plate_elements = isinstance(recipe.shape, PlateOfPlates)
     thin = is_thin(recipe)
-    square = faces * _square(nu) if flat else 0.0
+    square = faces * _square(ratio) if has_plate_elements else 0.0
 
-    def within(place: tuple[float, float]) -> float:
-        return _disc_of_an_element(shape, place) if isinstance(shape, PlateOfPlates) else 0.0
+    def distribution(place: tuple[float, float], thickness: float) -> Average:
+        if thin:
+            return Average(_disc_of_an_element(recipe.shape, place), 3.0)
+        return Average(_RADIUS * thickness, 3.0 - 6.0 * square / _RADIUS**2)
 
-    def spread(place: tuple[float, float], thickness: float) -> Average:
-        return (
-            Average(within(place), 3.0)
-            if thin
-            else Average(_RADIUS * thickness, 3.0 - 6.0 * square / _RADIUS**2)
-        )
-
-    structure, thicknesses, displacements = responses_to_spread_forces(recipe, places, side, spread)
-    found = np.empty((len(places), len(points), 3))
+    structure, thicknesses, displacements = responses_to_spread_forces(
+        recipe, places, side, distribution
+    )
+    compliances = np.empty((len(places), len(points), 3))
     for number, (point, face) in enumerate(points):
+        element_thickness = structure.thickness if has_plate_elements else 0.0
         motion, _ = surface_motion(
-            structure.mesh,
-            np.array([point]),
-            face,
-            structure.thickness if flat else 0.0,
-            "a sensor",
+            structure.mesh, np.array([point]), face, element_thickness, "a sensor"
         )
-        found[:, number] = (motion @ displacements).T
-        for moved, place, thickness in zip(found[:, number], places, thicknesses, strict=True):
-            apart = math.dist(point, place)
-            if flat and not thin:
-                moved[2] += near_term(
-                    apart, face == side, thickness, recipe.youngs_modulus, nu, faces
+        compliances[:, number] = (motion @ displacements).T
+        if not has_plate_elements:
+            continue
+        for index, (place, thickness) in enumerate(zip(places, thicknesses, strict=True)):
+            # along z, what plate theory under a distributed force lacks near the force
+            distance = math.dist(point, place)
+            if not thin:
+                compliances[index, number, 2] += near_term(
+                    distance, face == side, thickness, recipe.youngs_modulus, ratio, faces
                 )
-            elif thin and within(place):
-                rigidity = recipe.youngs_modulus * thickness**3 / (12.0 * (1.0 - nu**2))
-                moved[2] += thin_near_term(apart, within(place), rigidity)
-    return found
+            elif radius := _disc_of_an_element(recipe.shape, place):
+                rigidity = recipe.youngs_modulus * thickness**3 / (12.0 * (1.0 - ratio**2))
+                compliances[index, number, 2] += thin_near_term(distance, radius, rigidity)
+    return compliances
 
 
-def _disc_of_an_element(shape: PlateOfPlates, place: tuple[float, float]) -> float:
-    """Return the radius [m] of a disc of the size of an element, or zero where it would
-    extend beyond the plate.
+def _disc_of_an_element(shape: Shape, place: tuple[float, float]) -> float:
+    """Return the radius [m] of a disc of the size of an element of a plate.
+
+    It is zero where the disc would extend beyond the plate.
     """
+    assert isinstance(shape, PlateOfPlates)
     room = min(0.5 * side - abs(at) for side, at in zip(shape.size[:2], place, strict=True))
     return shape.element_size if room > shape.element_size else 0.0
 
 
 def thin_near_term(distance: float, radius: float, rigidity: float) -> float:
-    r"""Return the displacement of Kirchhoff's plate under a unit point force less that under one
-    distributed over a disc [m/N].
+    r"""Return the displacement of Kirchhoff's plate that a spread unit force lacks [m/N].
 
-    It is the inverse Hankel transform of :math:`(1 - A(k)) / (D k^4)`, with A the transform of the
-    weighted disc. As its mean of r^2 is zero, the term is zero outside the disc.
+    It is that under a point force less that under a force distributed over a disc: the inverse
+    Hankel transform of :math:`(1 - A(k)) / (D k^4)`, with A the transform of the weighted disc. As
+    its mean of r^2 is zero, the term is zero outside the disc.
 
     Parameters
     ----------
@@ -216,9 +212,9 @@ def thin_near_term(distance: float, radius: float, rigidity: float) -> float:
 
     if distance >= radius:
         return 0.0
-    y, weights = _gauss_rule(math.ceil(0.5 * _FINEST))  # k times the radius
-    less = (1.0 - Average(1.0, 3.0).transform(y)) / y**3 * jv(0, y * distance / radius)
-    return float(less @ weights) * radius**2 / (2.0 * math.pi * rigidity)
+    y, weights = _gauss_rule(math.ceil(0.5 * _FINEST))  # y is k times the radius
+    integrand = (1.0 - Average(1.0, 3.0).transform(y)) / y**3 * jv(0, y * distance / radius)
+    return float(integrand @ weights) * radius**2 / (2.0 * math.pi * rigidity)
 
 
 def near_term(
@@ -229,8 +225,9 @@ def near_term(
     poissons_ratio: float,
     faces: int = 0,
 ) -> float:
-    r"""Return the displacement of a plate near a unit force less that of plate theory under the
-    distributed force [m/N].
+    r"""Return the displacement of a plate near a unit force that plate theory lacks [m/N].
+
+    It is that of a layer less that of plate theory under the distributed force.
 
     Parameters
     ----------
@@ -238,8 +235,8 @@ def near_term(
         Distance along the plate [m].
     same_face : bool
         Whether the point is on the loaded face. There the singular displacement :math:`(1 -
-        \nu^2)/(\pi E r)` of the half space is
-        included; within 0.05 thicknesses the value at that distance is returned.
+        \nu^2)/(\pi E r)` of the half space is included; within 0.05 thicknesses the value at that
+        distance is returned.
     thickness, youngs_modulus, poissons_ratio : float
         h [m], E [Pa] and nu [-].
     faces : int, default 0
@@ -260,22 +257,31 @@ def near_term(
 
     if distance > _NEAR * thickness:
         return 0.0
-    modulus, factor = youngs_modulus / (1.0 - poissons_ratio**2), shear_factor(poissons_ratio)
+    modulus = youngs_modulus / (1.0 - poissons_ratio**2)
     rigidity = modulus * thickness**3 / 12.0
-    shear = factor * 0.5 * (1.0 - poissons_ratio) * modulus * thickness
-    apart = max(distance, _LEAST * thickness) if same_face else distance
-    y, weights = _gauss_rule(math.ceil(0.5 * _FINEST * max(1.0, apart / thickness)))  # k h
+    shear_stiffness = (
+        shear_factor(poissons_ratio) * 0.5 * (1.0 - poissons_ratio) * modulus * thickness
+    )
+    if same_face:
+        distance = max(distance, _LEAST * thickness)
+    intervals = math.ceil(0.5 * _FINEST * max(1.0, distance / thickness))
+    y, weights = _gauss_rule(intervals)  # y is k h
     k = y / thickness
+    # kernel of the layer over that of the half space, on the loaded face without the latter
     bending, squeezing = layer_kernels(y)
     layer = bending + squeezing - 1.0 if same_face else bending - squeezing
     square = _square(poissons_ratio)
     average = Average(_RADIUS * thickness, 3.0 - 6.0 * faces * square / _RADIUS**2)
     # excess of the modes of plate theory in long waves
-    longer = 0.25 * (2 - faces) * square * thickness**2 / rigidity
-    plate = (1.0 / (rigidity * k**4) + (1.0 / shear - longer) / k**2) * average.transform(k)
-    kernel = (2.0 / (modulus * k) * layer - plate) * jv(0, k * apart)
-    near = float(kernel @ (k * weights)) / thickness / (2.0 * math.pi)
-    return near + (1.0 / (math.pi * modulus * apart) if same_face else 0.0)
+    excess = 0.25 * (2 - faces) * square * thickness**2 / rigidity
+    bending_term = 1.0 / (rigidity * k**4)
+    shear_term = (1.0 / shear_stiffness - excess) / k**2
+    plate = (bending_term + shear_term) * average.transform(k)
+    kernel = (2.0 / (modulus * k) * layer - plate) * jv(0, k * distance)
+    displacement = float(kernel @ (k * weights)) / thickness / (2.0 * math.pi)
+    if same_face:  # with the half space
+        displacement += 1.0 / (math.pi * modulus * distance)
+    return displacement
 
 
 def _square(poissons_ratio: float) -> float:
@@ -283,10 +289,8 @@ def _square(poissons_ratio: float) -> float:
     return mean_square(1.0, poissons_ratio, shear_factor(poissons_ratio))
 
 
-def _gauss_rule(parts: int) -> tuple[Floats, Floats]:
-    """Return the nodes and weights of Gauss's rule on equal parts of the integral, up to
-    the cutoff.
-    """
+def _gauss_rule(intervals: int) -> tuple[Floats, Floats]:
+    """Return the nodes and weights of Gauss's rule on equal intervals, from zero to the cutoff."""
     nodes, weights = np.polynomial.legendre.leggauss(_NODES)
-    places = (np.arange(parts)[:, None] + 0.5 * (nodes + 1.0)).ravel() * (_FINEST / parts)
-    return places, np.tile(weights, parts) * (0.5 * _FINEST / parts)
+    places = (np.arange(intervals)[:, None] + 0.5 * (nodes + 1.0)).ravel() * (_FINEST / intervals)
+    return places, np.tile(weights, intervals) * (0.5 * _FINEST / intervals)

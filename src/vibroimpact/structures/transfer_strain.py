@@ -11,12 +11,11 @@ from vibroimpact.structures.plate_compliance import Average, mean_square
 from vibroimpact.structures.plate_element import shear_factor
 from vibroimpact.structures.recipe import PlateOfPlates, Recipe, is_thin, plate_key
 from vibroimpact.structures.static_compliance import responses_to_spread_forces
-from vibroimpact.structures.store import key_of, load_entry, save_entry
+from vibroimpact.structures.store import key_of, load_or_compute_array
 from vibroimpact.structures.surface import Side
 from vibroimpact.structures.surface_strain import surface_strain
 from vibroimpact.structures.transfer_compliance import Point
 
-_KIND = "compliance"
 _RADIUS = 0.75  # of the disc of the force, in thicknesses
 
 
@@ -27,12 +26,11 @@ def transfer_strains(
     points: Sequence[Point],
     tell: Callable[[str], None] | None = None,
 ) -> Floats:
-    r"""Return the static strains at points under a unit upward force at a place of a held plate
-    [1/N], (points, 3).
+    r"""Return the static strains at points of a held plate under a unit upward force [1/N].
 
-    The force is spread over a disc whose effect away from it is that of a point force on the face
-    of a layer, as in `transfer_compliance`; within some thicknesses of the force the strain of a
-    layer differs.
+    They are an array (points, 3). The force is spread over a disc whose effect away from it is that
+    of a point force on the face of a layer, as in `transfer_compliance`; within some thicknesses of
+    the force the strain of a layer differs.
 
     Parameters
     ----------
@@ -55,16 +53,11 @@ def transfer_strains(
     ComputationError
         If the stiffness is singular.
     """
-    key, say = strain_key(recipe, place, side, points), tell or (lambda text: None)
-    found, trouble = load_entry(key, _KIND, lambda parts: np.asarray(parts[_KIND], dtype=float))
-    if trouble:
-        say(trouble)
-    if found is None:
-        found = computed_strains(recipe, place, side, points)
-        trouble = save_entry(key, _KIND, {_KIND: found})
-        if trouble:
-            say(trouble)
-    return found
+    return load_or_compute_array(
+        strain_key(recipe, place, side, points),
+        lambda: computed_strains(recipe, place, side, points),
+        tell,
+    )
 
 
 def strain_key(
@@ -77,12 +70,15 @@ def strain_key(
 def computed_strains(
     recipe: Recipe, place: tuple[float, float], side: Side, points: Sequence[Point]
 ) -> Floats:
-    """Return the strains under a force, computed anew; parameters and errors are those of
-    `transfer_strains`.
+    """Return the strains under a force, computed anew.
+
+    Parameters and errors are those of `transfer_strains`.
     """
-    structure, _, displacements = responses_to_spread_forces(
-        recipe, [place], side, lambda _, thickness: spread_at_face(recipe, thickness)
-    )
+
+    def distribution(place: tuple[float, float], thickness: float) -> Average:
+        return spread_at_face(recipe, thickness)
+
+    structure, _, displacements = responses_to_spread_forces(recipe, [place], side, distribution)
     strains = [
         surface_strain(structure.mesh, point, face, structure.thickness) @ displacements[:, 0]
         for point, face in points
@@ -91,13 +87,12 @@ def computed_strains(
 
 
 def spread_at_face(recipe: Recipe, thickness: float) -> Average:
-    """Return the distribution of a force whose static response is that of the modes of a
-    plate at its face, not of plate theory.
+    """Return the distribution of a force whose static response is that at the face of a plate.
+
+    The response is that of the modes at the face, not of plate theory.
     """
-    layered = isinstance(recipe.shape, PlateOfPlates) and not is_thin(recipe)
-    square = (
-        mean_square(1.0, recipe.poissons_ratio, shear_factor(recipe.poissons_ratio))
-        if layered
-        else 0.0
-    )
+    has_layer = isinstance(recipe.shape, PlateOfPlates) and not is_thin(recipe)
+    square = 0.0  # mean of r^2 over the square of the thickness
+    if has_layer:
+        square = mean_square(1.0, recipe.poissons_ratio, shear_factor(recipe.poissons_ratio))
     return Average(_RADIUS * thickness, 3.0 - 6.0 * square / _RADIUS**2)

@@ -19,8 +19,9 @@ _ELEMENTS = 8  # of the column, for an error of 1e-5 of its first bending freque
 
 @dataclass(frozen=True)
 class Bar(Support):
-    """Round elastic column, fixed to the ground; its top is a rigid disc attached to the lower side
-    of the plate.
+    """Round elastic column, fixed to the ground.
+
+    Its top is a rigid disc attached to the lower side of the plate.
 
     Parameters
     ----------
@@ -62,27 +63,22 @@ class Bar(Support):
         constraints.attach(nodes, self.radius, (dofs[-6:], top))
 
     def _rigid(self, top: Floats, centre: Floats) -> Floats:
-        """Return the rigid motions of the column about the centre of mass of the plate,
-        (dofs, 6).
-        """
+        """Return the rigid motions of the column about the plate's centre of mass, (dofs, 6)."""
         motions = np.zeros((_ELEMENTS, 6, 6))
-        motions[:, :3, :3] = motions[:, 3:, 3:] = np.eye(3)
-        at = (
-            top
-            - centre
-            - np.outer(
-                self.length * (1.0 - np.arange(1, _ELEMENTS + 1) / _ELEMENTS), [0.0, 0.0, 1.0]
-            )
-        )
-        motions[:, :3, 3:] = rotation_columns(*at.T)
+        motions[:, :3, :3] = np.eye(3)
+        motions[:, 3:, 3:] = np.eye(3)
+        depths = self.length * (1.0 - np.arange(1, _ELEMENTS + 1) / _ELEMENTS)  # below the top
+        nodes = top - centre - np.outer(depths, [0.0, 0.0, 1.0])
+        motions[:, :3, 3:] = rotation_columns(*nodes.T)
         return motions.reshape(-1, 6)
 
 
 def column_matrices(
     radius: float, length: float, material: Material, elements: int
 ) -> tuple[Floats, Floats]:
-    r"""Return stiffness and mass of a round column of Timoshenko beam elements, fixed at its lower
-    end.
+    r"""Return stiffness and mass of a round column of Timoshenko beam elements.
+
+    It is fixed at its lower end.
 
     Parameters
     ----------
@@ -112,86 +108,107 @@ def column_matrices(
     >>> round(float(stretch) * 210e9 * np.pi * 0.02**2 / 0.3, 9)
     1.0
     """
-    modulus, ratio, step = material.youngs_modulus, material.poissons_ratio, length / elements
+    element_matrices = np.array(_beam_matrices(radius, length / elements, material))
+    # all elements have the same matrices; neighbours share a node of six degrees of freedom
+    size = 6 * (elements + 1)
+    column = np.zeros((2, size, size))
+    for element in range(elements):
+        dofs = slice(6 * element, 6 * element + 12)
+        column[:, dofs, dofs] += element_matrices
+    stiffness, mass = column[:, 6:, 6:]  # without the fixed end
+    return stiffness, mass
+
+
+def _beam_matrices(radius: float, length: float, material: Material) -> tuple[Floats, Floats]:
+    """Return the stiffness and the mass of one beam element, (12, 12)."""
+    modulus = material.youngs_modulus
+    ratio = material.poissons_ratio
+    density = material.density
     shear_modulus = modulus / (2.0 * (1.0 + ratio))
     area = np.pi * radius**2
-    second = 0.25 * np.pi * radius**4
-    flexible = (
+    second_moment = 0.25 * np.pi * radius**4
+    polar_moment = 2.0 * second_moment
+    # 12 E I / (kappa G A L^2), with Cowper's shear coefficient kappa
+    shear_flexibility = (
         12.0
         * modulus
-        * second
-        / (shear_modulus * area * 6.0 * (1.0 + ratio) / (7.0 + 6.0 * ratio) * step**2)
+        * second_moment
+        / (shear_modulus * area * 6.0 * (1.0 + ratio) / (7.0 + 6.0 * ratio) * length**2)
     )
-    pair, share = np.array([[1.0, -1.0], [-1.0, 1.0]]), np.array([[2.0, 1.0], [1.0, 2.0]]) / 6.0
     stiffness, mass = np.zeros((2, 12, 12))
+
+    # stretching and torsion: linear between the two nodes
+    linear_stiffness = np.array([[1.0, -1.0], [-1.0, 1.0]])
+    linear_mass = np.array([[2.0, 1.0], [1.0, 2.0]]) / 6.0
+    torsional_rigidity = shear_modulus * 2.0 * second_moment
     for dof, rigidity, inertia in (
         (2, modulus * area, area),
-        (5, shear_modulus * 2.0 * second, 2.0 * second),
+        (5, torsional_rigidity, polar_moment),
     ):
-        both = np.ix_([dof, dof + 6], [dof, dof + 6])
-        stiffness[both], mass[both] = (
-            rigidity / step * pair,
-            material.density * inertia * step * share,
-        )
-    bend, heave = _bending(
-        step, flexible, modulus * second, material.density * area, material.density * second
+        ends = np.ix_([dof, dof + 6], [dof, dof + 6])
+        stiffness[ends] = rigidity / length * linear_stiffness
+        mass[ends] = density * inertia * length * linear_mass
+
+    # bending: w' is +theta_y for u, and -theta_x for v
+    bending_stiffness, bending_mass = _bending(
+        length, shear_flexibility, modulus * second_moment, density * area, density * second_moment
     )
-    # w' is +theta_y for u, and -theta_x for v
     for displacement, rotation, sign in ((0, 4, 1.0), (1, 3, -1.0)):
-        dofs = [displacement, rotation, displacement + 6, rotation + 6]
-        turn = np.array([1.0, sign, 1.0, sign])
-        stiffness[np.ix_(dofs, dofs)] += np.outer(turn, turn) * bend
-        mass[np.ix_(dofs, dofs)] += np.outer(turn, turn) * heave
-    whole = np.zeros((2, 6 * (elements + 1), 6 * (elements + 1)))
-    for element in range(elements):
-        part = slice(6 * element, 6 * element + 12)
-        whole[:, part, part] += np.array([stiffness, mass])
-    return whole[0, 6:, 6:], whole[1, 6:, 6:]
+        numbers = [displacement, rotation, displacement + 6, rotation + 6]
+        dofs = np.ix_(numbers, numbers)
+        signs = np.array([1.0, sign, 1.0, sign])
+        stiffness[dofs] += np.outer(signs, signs) * bending_stiffness
+        mass[dofs] += np.outer(signs, signs) * bending_mass
+    return stiffness, mass
 
 
 def _bending(
-    step: float, flexible: float, rigidity: float, line_mass: float, line_inertia: float
+    length: float,
+    shear_flexibility: float,
+    rigidity: float,
+    line_mass: float,
+    line_inertia: float,
 ) -> tuple[Floats, Floats]:
-    """Return the stiffness of one beam for deflection and slope at both ends, and its
-    mass integrated from its shape functions.
+    """Return the bending stiffness and mass of one beam for deflection and slope at both ends.
+
+    The mass is integrated from the shape functions of deflection and slope at Gauss points.
+    `shear_flexibility` is the ratio of shear to bending flexibility.
     """
-    # Shape functions of deflection and slope at Gauss points; `flexible` is the ratio of shear to
-    # bending flexibility
+    phi = shear_flexibility
     points, weights = np.polynomial.legendre.leggauss(4)
-    s, weights = 0.5 * (points + 1.0), 0.5 * step * weights
-    scale = 1.0 / (1.0 + flexible)
+    s = 0.5 * (points + 1.0)  # from one end to the other, 0 to 1
+    weights = 0.5 * length * weights
+    scale = 1.0 / (1.0 + phi)
     deflection = scale * np.array(
         [
-            1 - 3 * s**2 + 2 * s**3 + flexible * (1 - s),
-            step * (s - 2 * s**2 + s**3 + 0.5 * flexible * (s - s**2)),
-            3 * s**2 - 2 * s**3 + flexible * s,
-            step * (-(s**2) + s**3 - 0.5 * flexible * (s - s**2)),
+            1 - 3 * s**2 + 2 * s**3 + phi * (1 - s),
+            length * (s - 2 * s**2 + s**3 + 0.5 * phi * (s - s**2)),
+            3 * s**2 - 2 * s**3 + phi * s,
+            length * (-(s**2) + s**3 - 0.5 * phi * (s - s**2)),
         ]
     )
     slope = scale * np.array(
         [
-            (-6 * s + 6 * s**2) / step,
-            1 - 4 * s + 3 * s**2 + flexible * (1 - s),
-            (6 * s - 6 * s**2) / step,
-            -2 * s + 3 * s**2 + flexible * s,
+            (-6 * s + 6 * s**2) / length,
+            1 - 4 * s + 3 * s**2 + phi * (1 - s),
+            (6 * s - 6 * s**2) / length,
+            -2 * s + 3 * s**2 + phi * s,
         ]
     )
     mass = (
         line_mass * (deflection * weights) @ deflection.T
         + line_inertia * (slope * weights) @ slope.T
     )
-    # The stiffness is known in closed form
-    a, b, c = 12.0 / step**3, 6.0 / step**2, 1.0 / step
-    stiffness = (
-        rigidity
-        * scale
-        * np.array(
-            [
-                [a, b, -a, b],
-                [b, (4 + flexible) * c, -b, (2 - flexible) * c],
-                [-a, -b, a, -b],
-                [b, (2 - flexible) * c, -b, (4 + flexible) * c],
-            ]
-        )
+    # the stiffness is known in closed form
+    a = 12.0 / length**3
+    b = 6.0 / length**2
+    c = 1.0 / length
+    coefficients = np.array(
+        [
+            [a, b, -a, b],
+            [b, (4 + phi) * c, -b, (2 - phi) * c],
+            [-a, -b, a, -b],
+            [b, (2 - phi) * c, -b, (4 + phi) * c],
+        ]
     )
-    return stiffness, mass
+    return rigidity * scale * coefficients, mass

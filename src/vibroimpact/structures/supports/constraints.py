@@ -1,5 +1,6 @@
-"""Constraints of supports on a structure: held and tied degrees of freedom, added
-stiffness and bodies; and the reduced system.
+"""Constraints of supports on a structure, and the reduced system.
+
+They are held and tied degrees of freedom, added stiffness and bodies.
 """
 
 from __future__ import annotations
@@ -61,6 +62,12 @@ class HeldStructure:
     neglected: tuple[Integers, Floats]
 
 
+Body = tuple[Integers, Floats]
+"""Six degrees of freedom of a rigid body, and the point [m], (3,), whose displacements are the
+first three.
+"""
+
+
 class Constraints:
     """Constraints, stiffness and bodies that supports add to a structure.
 
@@ -100,50 +107,55 @@ class Constraints:
     def hold_motion(self, motion: csr_array) -> None:
         """Hold linear functions of degrees of freedom, the rows of `motion`, at zero."""
         for row in range(motion.shape[0]):
-            part = motion[[row]].tocoo()
-            waiting, weights = (
-                list(zip(part.col.tolist(), part.data.tolist(), strict=True)),
-                dict[int, float](),
-            )
-            while waiting:  # express the row in terms of free degrees of freedom
-                dof, value = waiting.pop()
-                if dof in self._ties:
-                    waiting += [(other, value * share) for other, share in self._ties[dof].items()]
-                else:
-                    weights[dof] = weights.get(dof, 0.0) + value
-            size = float(np.abs(part.data).max(initial=0.0))
+            function = motion[[row]].tocoo()
+            weights = self._in_free(function.col.tolist(), function.data.tolist())
+            size = float(np.abs(function.data).max(initial=0.0))
+            # otherwise the function is held already
             if max(map(abs, weights.values()), default=0.0) > _NONE * size:
                 largest = max(weights, key=lambda dof: abs(weights[dof]))
                 self._ties[largest] = {
-                    dof: -value / weights[largest]
-                    for dof, value in weights.items()
+                    dof: -weight / weights[largest]
+                    for dof, weight in weights.items()
                     if dof != largest
                 }
 
+    def _in_free(self, dofs: list[int], weights: list[float]) -> dict[int, float]:
+        """Return a linear function of degrees of freedom in terms of those that are not tied."""
+        stack = list(zip(dofs, weights, strict=True))
+        free_weights = dict[int, float]()
+        while stack:
+            dof, weight = stack.pop()
+            if dof in self._ties:
+                stack += [(other, weight * share) for other, share in self._ties[dof].items()]
+            else:
+                free_weights[dof] = free_weights.get(dof, 0.0) + weight
+        return free_weights
+
     def join(self, joints: Joints) -> None:
-        """Let displacements follow others, by the joints of the mesh; supports come
-        before, as what they hold does not follow.
+        """Let displacements follow others, by the joints of the mesh.
+
+        Supports come before, as what they hold does not follow.
         """
-        supported = self._ties.keys() | {other for tie in self._ties.values() for other in tie}
-        touched = []
+        supported = set(self._ties)
+        for tie in self._ties.values():
+            supported.update(tie)
+        held_followers = []
         for follower, weights in joints.rows():
             if follower in supported or not supported.isdisjoint(weights):
-                touched.append((follower, weights))
+                held_followers.append((follower, weights))
             else:
                 self._ties[follower] = weights
-        for follower, weights in touched:
+        for follower, weights in held_followers:
             columns = np.array([follower, *weights], dtype=np.int64)
             values = np.array([-1.0, *weights.values()])
-            row = coo_array(
-                (values, (np.zeros(len(columns), dtype=np.int64), columns)), shape=(1, self._size)
-            )
-            self.hold_motion(csr_array(row))
+            rows = np.zeros(len(columns), dtype=np.int64)
+            difference = coo_array((values, (rows, columns)), shape=(1, self._size))
+            self.hold_motion(csr_array(difference))
 
-    def attach(
-        self, nodes: Integers, radius: float, body: tuple[Integers, Floats] | None = None
-    ) -> None:
-        """Hold the lower face at nodes, or attach it to a rigid body; through a bed if the
-        structure has one.
+    def attach(self, nodes: Integers, radius: float, body: Body | None = None) -> None:
+        """Hold the lower face at nodes, or attach it to a rigid body.
+
+        If the structure has a bed, the face is held through it.
 
         Parameters
         ----------
@@ -161,31 +173,29 @@ class Constraints:
             If a node is attached to two bodies.
         """
         per_node = self.structure.mesh.dofs_per_node
-        dofs = {
-            per_node * node + axis: (node, axis) for node in nodes.tolist() for axis in range(3)
-        }
-        for dof, (node, _) in dofs.items():
+        node_axes = [(node, axis) for node in nodes.tolist() for axis in range(3)]
+        for node, axis in node_axes:
+            dof = per_node * node + axis
             if dof in self._carried or (body is not None and dof in self._ties):
                 self._refuse(node)
         if body is not None:
-            self._carried.update(dofs)
+            self._carried.update(per_node * node + axis for node, axis in node_axes)
         if self.structure.bed is not None:
-            self._add_bed(
-                nodes, patch_bed(self.structure.bed, self.structure.thickness / radius), body
-            )
+            bed = patch_bed(self.structure.bed, self.structure.thickness / radius)
+            self._add_bed(nodes, bed, body)
             return
-        for dof, (node, axis) in dofs.items():
-            self._ties[dof] = {
-                other: -share for other, share in self._lower(node, axis).items() if other != dof
-            }
+        for node, axis in node_axes:
+            dof = per_node * node + axis
+            lower_face = self._lower_face(node, axis)
+            tie = {other: -share for other, share in lower_face.items() if other != dof}
             if body is not None:
-                self._ties[dof] |= self._row(node, axis, *body)
+                tie |= self._of_body(node, axis, *body)
+            self._ties[dof] = tie
 
-    def _add_bed(
-        self, nodes: Integers, bed: tuple[float, float], body: tuple[Integers, Floats] | None
-    ) -> None:
-        """Add distributed springs between the lower face of plate elements and the
-        ground, or a body.
+    def _add_bed(self, nodes: Integers, bed: tuple[float, float], body: Body | None) -> None:
+        """Add distributed springs between the lower face of plate elements and ground or body.
+
+        The bed is the stiffness per area [N/m^3] along and across the plate.
         """
         mesh = self.structure.mesh
         elements = elements_within(mesh, nodes)
@@ -194,33 +204,46 @@ class Constraints:
             self._refuse(int(mesh.blocks[0].connectivity[shared[0]].flat[0]))
         elements = np.setdiff1d(elements, self._bedded)  # one bed where patches overlap
         self._bedded = np.concatenate([self._bedded, elements])
+        along, across = bed
         stiffness = kron(
-            area_products(mesh, elements), diags_array([bed[0], bed[0], bed[1]]), format="csr"
+            area_products(mesh, elements), diags_array([along, along, across]), format="csr"
         )
-        entries = []
+        # stretch of the springs along each axis, three rows per node
+        rows = []
+        columns = []
+        weights = []
         for node in nodes.tolist():
             for axis in range(3):
-                moved = self._lower(node, axis)
-                for dof, share in ({} if body is None else self._row(node, axis, *body)).items():
-                    moved[dof] = moved.get(dof, 0.0) - share
-                entries += [(3 * node + axis, dof, share) for dof, share in moved.items()]
-        rows, columns, values = (np.array(side) for side in zip(*entries, strict=True))
-        motion = csr_array(
-            coo_array((values, (rows, columns)), shape=(stiffness.shape[0], self._size))
+                for dof, weight in self._stretch(node, axis, body).items():
+                    rows.append(3 * node + axis)
+                    columns.append(dof)
+                    weights.append(weight)
+        stretch = csr_array(
+            coo_array((weights, (rows, columns)), shape=(stiffness.shape[0], self._size))
         )
-        self._beds.append(csr_array(motion.T @ stiffness @ motion))
+        self._beds.append(csr_array(stretch.T @ stiffness @ stretch))
 
-    def _lower(self, node: int, axis: int) -> dict[int, float]:
-        """Return the displacement of the lower face at a node along an axis as
-        coefficients of degrees of freedom.
+    def _stretch(self, node: int, axis: int, body: Body | None) -> dict[int, float]:
+        """Return the displacement of the lower face at a node less that of the body below it.
+
+        It is along an axis, in coefficients of degrees of freedom.
+        """
+        weights = self._lower_face(node, axis)
+        if body is not None:
+            for dof, weight in self._of_body(node, axis, *body).items():
+                weights[dof] = weights.get(dof, 0.0) - weight
+        return weights
+
+    def _lower_face(self, node: int, axis: int) -> dict[int, float]:
+        """Return the displacement of the lower face at a node along an axis.
+
+        It is in coefficients of degrees of freedom.
         """
         mesh = self.structure.mesh
         dof = mesh.dofs_per_node * node + axis
-        return (
-            {dof: 1.0, dof + 3: -0.5 * self.structure.thickness}
-            if mesh.is_flat and axis < 2
-            else {dof: 1.0}
-        )
+        if mesh.is_flat and axis < 2:  # the slope displaces the face below the middle plane
+            return {dof: 1.0, dof + 3: -0.5 * self.structure.thickness}
+        return {dof: 1.0}
 
     def _refuse(self, node: int) -> None:
         """Raise, as two supports hold a node."""
@@ -229,31 +252,41 @@ class Constraints:
             f"two supports hold the same point, ({x:g}, {y:g}) m; supports must lie apart"
         )
 
-    def _row(self, node: int, axis: int, dofs: Integers, point: Floats) -> dict[int, float]:
-        """Return the displacement of a rigid body at a node along an axis as coefficients
-        of its degrees of freedom.
+    def _of_body(self, node: int, axis: int, dofs: Integers, point: Floats) -> dict[int, float]:
+        """Return the displacement of a rigid body at a node along an axis.
+
+        It is in coefficients of the body's degrees of freedom: displacements of the point, and
+        rotations.
         """
-        at = self.structure.mesh.nodes[node] + [0.0, 0.0, -0.5 * self.structure.thickness] - point
-        turned = rotation_columns(*at[:, None])[0, axis]
-        return {int(dofs[axis]): 1.0} | {
-            int(dof): float(value)
-            for dof, value in zip(dofs[3:], turned, strict=True)
-            if value != 0.0
-        }
+        lower_face = self.structure.mesh.nodes[node] + [0.0, 0.0, -0.5 * self.structure.thickness]
+        arm = lower_face - point
+        weights = {int(dofs[axis]): 1.0}
+        by_rotation = rotation_columns(*arm[:, None])[0, axis]
+        for dof, weight in zip(dofs[3:], by_rotation, strict=True):
+            if weight != 0.0:
+                weights[int(dof)] = float(weight)
+        return weights
 
     def add_stiffness(self, dofs: Integers, stiffness: Floats) -> None:
         """Add a stiffness matrix on some degrees of freedom, grounded."""
         self._added.append((dofs, stiffness))
 
     def neglect(self, dofs: Integers, compliances: Floats) -> None:
-        """Record neglected compliances in series with supports of degrees of freedom; a
-        negative one stiffens the support.
+        """Record neglected compliances in series with supports of degrees of freedom.
+
+        A negative one stiffens the support.
         """
         self._neglected.append((dofs, compliances))
 
     def add_body(self, stiffness: Floats, mass: Floats, rigid: Floats) -> Integers:
-        """Add a body with its own degrees of freedom, given its matrices and rigid
-        motions; return the numbers of these.
+        """Add a body with its own degrees of freedom; return the numbers of these.
+
+        Parameters
+        ----------
+        stiffness, mass : array, shape (n, n)
+            Matrices of the body.
+        rigid : array, shape (n, 6)
+            Its rigid motions.
         """
         self._bodies.append((stiffness, mass, rigid))
         self._size += len(stiffness)
@@ -262,83 +295,94 @@ class Constraints:
     @property
     def touched(self) -> Integers:
         """Degrees of freedom that the supports hold, tie or spring."""
-        tied = [dof for one, tie in self._ties.items() for dof in (one, *tie)]
-        parts = (
-            [dofs for dofs, _ in self._added]
-            + [bed.indices for bed in self._beds]
-            + [np.array(tied, dtype=np.int64)]
+        tied = list(self._ties)
+        for tie in self._ties.values():
+            tied += tie
+        return np.unique(
+            np.concatenate(
+                [
+                    *(dofs for dofs, _ in self._added),
+                    *(bed.indices for bed in self._beds),
+                    np.array(tied, dtype=np.int64),
+                ]
+            )
         )
-        return np.unique(np.concatenate(parts))
 
     def held(self) -> HeldStructure:
         """Return the structure with its supports, reduced to the free degrees of freedom."""
         structure = self.structure
         expansion, free = self._expansion()
-        added = self._added_stiffness()
-        bed = sum((self._whole(part) for part in self._beds), csr_array((self._size, self._size)))
-        added = csr_array(added + bed)
-        stiffness = (
-            block_diag([structure.stiffness, *(body[0] for body in self._bodies)], format="csr")
-            + added
-        )
-        mass = block_diag([structure.mass, *(body[1] for body in self._bodies)], format="csr")
-        motions = np.concatenate([structure.rigid_motions(), *(body[2] for body in self._bodies)])
-        # bodies are eliminated last, after all degrees of freedom of the structure that they couple
-        order = np.concatenate(
-            [structure.order, np.arange(structure.stiffness.shape[0], self._size)]
-        )
-        place = np.full(self._size, -1)
-        place[free] = np.arange(len(free))
-        order = place[order]
+        beds = csr_array((self._size, self._size))
+        for bed in self._beds:
+            beds = beds + self._enlarged(bed)
+        added = csr_array(self._added_stiffness() + beds)
+        body_stiffness = [stiffness for stiffness, _, _ in self._bodies]
+        stiffness = block_diag([structure.stiffness, *body_stiffness], format="csr") + added
+        body_mass = [mass for _, mass, _ in self._bodies]
+        mass = block_diag([structure.mass, *body_mass], format="csr")
         if not self._ties and not self._bodies:  # no projection is needed
-            reduced = [csr_array(matrix) for matrix in (stiffness, mass, bed)]
+            reduced = [csr_array(matrix) for matrix in (stiffness, mass, beds)]
         else:
-            turned = expansion.T.tocsr()
-            reduced = [csr_array(turned @ matrix @ expansion) for matrix in (stiffness, mass, bed)]
+            transposed = expansion.T.tocsr()
+            reduced = [
+                csr_array(transposed @ matrix @ expansion) for matrix in (stiffness, mass, beds)
+            ]
+        body_motions = [rigid for _, _, rigid in self._bodies]
+        motions = np.concatenate([structure.rigid_motions(), *body_motions])
         coefficients = self._rigid_coefficients(motions, expansion, free, added)
-        neglected = [
-            np.concatenate([np.zeros(0), *(part[side] for part in self._neglected)])
-            for side in range(2)
-        ]
         return HeldStructure(
             structure,
-            reduced[0],
-            reduced[1],
-            csr_array(expansion[: structure.stiffness.shape[0]]),
-            free,
-            order[order >= 0],
-            motions[free] @ coefficients.T,
-            coefficients,
-            reduced[2],
-            (neglected[0].astype(np.int64), neglected[1]),
+            stiffness=reduced[0],
+            mass=reduced[1],
+            expansion=csr_array(expansion[: structure.stiffness.shape[0]]),
+            free=free,
+            order=self._free_order(free),
+            rigid=motions[free] @ coefficients.T,
+            rigid_coefficients=coefficients,
+            bed=reduced[2],
+            neglected=(
+                np.concatenate(
+                    [np.zeros(0, dtype=np.int64), *(dofs for dofs, _ in self._neglected)]
+                ),
+                np.concatenate([np.zeros(0), *(compliances for _, compliances in self._neglected)]),
+            ),
         )
 
-    def _whole(self, part: csr_array) -> csr_array:
+    def _free_order(self, free: Integers) -> Integers:
+        """Return the elimination order of the free degrees of freedom."""
+        structure = self.structure
+        # bodies are eliminated last, after all degrees of freedom of the structure that they couple
+        of_bodies = np.arange(structure.stiffness.shape[0], self._size)
+        free_number = np.full(self._size, -1)
+        free_number[free] = np.arange(len(free))
+        order = free_number[np.concatenate([structure.order, of_bodies])]
+        return np.asarray(order[order >= 0])
+
+    def _enlarged(self, matrix: csr_array) -> csr_array:
         """Return a matrix of earlier degrees of freedom enlarged to all present ones."""
-        found = part.tocoo()
+        entries = matrix.tocoo()
         return csr_array(
-            coo_array((found.data, (found.row, found.col)), shape=(self._size, self._size))
+            coo_array((entries.data, (entries.row, entries.col)), shape=(self._size, self._size))
         )
 
     def _expansion(self) -> tuple[csr_array, Integers]:
         """Return the map from free to all degrees of freedom, and the free ones."""
         tied = np.array(sorted(self._ties), dtype=np.int64)
         free = np.setdiff1d(np.arange(self._size), tied)
-        entries = [
-            (dof, other, value) for dof, tie in self._ties.items() for other, value in tie.items()
-        ]
-        rows, columns, values = (
-            (np.array(side) for side in zip(*entries, strict=True))
-            if entries
-            else (np.zeros(0, int),) * 3
-        )
-        rows, columns = np.concatenate([free, rows]), np.concatenate([free, columns])
-        values = np.concatenate([np.ones(len(free)), values])
-        whole = csr_array(coo_array((values, (rows, columns)), shape=(self._size, self._size)))
-        while whole[:, tied].nnz:  # substitute ties to degrees of freedom that are tied themselves
-            whole = csr_array(whole @ whole)
-            whole.eliminate_zeros()
-        return csr_array(whole[:, free]), free
+        # each free degree of freedom is itself, and each tied one a combination of others
+        rows = free.tolist()
+        columns = free.tolist()
+        values = [1.0] * len(free)
+        for dof, tie in self._ties.items():
+            rows += [dof] * len(tie)
+            columns += tie.keys()
+            values += tie.values()
+        expansion = csr_array(coo_array((values, (rows, columns)), shape=(self._size, self._size)))
+        # substitute ties to degrees of freedom that are tied themselves
+        while expansion[:, tied].nnz:
+            expansion = csr_array(expansion @ expansion)
+            expansion.eliminate_zeros()
+        return csr_array(expansion[:, free]), free
 
     def _added_stiffness(self) -> csr_array:
         """Return the stiffness of springs on all degrees of freedom."""
@@ -353,21 +397,23 @@ class Constraints:
     def _rigid_coefficients(
         self, motions: Floats, expansion: csr_array, free: Integers, added: csr_array
     ) -> Floats:
-        """Return the coefficients of rigid motions that violate no tie and strain no
-        spring, one motion per row.
+        """Return the coefficients of rigid motions that the supports permit, one motion per row.
+
+        These violate no tie and strain no spring.
         """
         # rotations in units of displacement
         scale = np.repeat([1.0, 1.0 / np.ptp(self.structure.mesh.nodes, axis=0).max()], 3)
         motions = motions * scale
-        broken = motions - expansion @ motions[free]
-        measure = broken.T @ broken / (motions.T @ motions).trace()
+        violations = motions - expansion @ motions[free]
+        measure = violations.T @ violations / (motions.T @ motions).trace()
         energy = motions.T @ (added @ motions)
         start = self.structure.stiffness.shape[0]
         for stiffness, _, rigid in self._bodies:
-            part = motions[start : start + len(rigid)]
-            energy += part.T @ stiffness @ part
+            body_motions = motions[start : start + len(rigid)]
+            energy += body_motions.T @ stiffness @ body_motions
             start += len(rigid)
         if energy.any():
             measure = measure + energy / np.abs(energy).max()
+        # a permitted motion has neither: it is in the null space of the sum
         values, vectors = np.linalg.eigh(measure)
         return np.asarray((scale[:, None] * vectors[:, values < _STILL]).T)

@@ -41,10 +41,8 @@ class Patch(Support):
 
     def hold(self, constraints: Constraints) -> None:
         """Hold the nodes within the patch."""
-        constraints.attach(
-            nodes_within(constraints.structure, self.x, self.y, self.radius, "the patch"),
-            self.radius,
-        )
+        nodes = nodes_within(constraints.structure, self.x, self.y, self.radius, "the patch")
+        constraints.attach(nodes, self.radius)
 
 
 @dataclass(frozen=True)
@@ -72,10 +70,9 @@ class RectangularPatch(Support):
     @property
     def lines(self) -> tuple[Sequence[float], Sequence[float]]:
         """The x and y [m] of its sides."""
-        return tuple(
-            (at - 0.5 * side, at + 0.5 * side)
-            for at, side in ((self.x, self.length), (self.y, self.width))
-        )  # type: ignore[return-value]
+        xs = (self.x - 0.5 * self.length, self.x + 0.5 * self.length)
+        ys = (self.y - 0.5 * self.width, self.y + 0.5 * self.width)
+        return xs, ys
 
     @property
     def rims(self) -> tuple[Sequence[float], Sequence[float]]:
@@ -84,17 +81,21 @@ class RectangularPatch(Support):
 
     def hold(self, constraints: Constraints) -> None:
         """Hold the nodes within the patch."""
-        middle, half = np.array([self.x, self.y]), 0.5 * np.array([self.length, self.width])
+        centre = np.array([self.x, self.y])
+        half_sides = 0.5 * np.array([self.length, self.width])
         nodes = constraints.structure.mesh.nodes[:, :2]
-        low, high = nodes.min(axis=0), nodes.max(axis=0)
-        room = 1e-6 * (high - low)
-        if np.any(middle - half < low - room) or np.any(middle + half > high + room):
+        low = nodes.min(axis=0)
+        high = nodes.max(axis=0)
+        tolerance = 1e-6 * (high - low)
+        is_below = np.any(centre - half_sides < low - tolerance)
+        is_above = np.any(centre + half_sides > high + tolerance)
+        if is_below or is_above:
             raise InputError(
                 f"the {self.description} does not lie wholly on the plate, which reaches "
                 f"from {low[0]:g} to {high[0]:g} m along x and "
                 f"from {low[1]:g} to {high[1]:g} m along y"
             )
-        constraints.attach(
-            nodes_within(constraints.structure, self.x, self.y, half, "the patch"),
-            self.length * self.width / (self.length + self.width),
-        )
+        held_nodes = nodes_within(constraints.structure, self.x, self.y, half_sides, "the patch")
+        # twice the area over the perimeter, as of a disc
+        radius = self.length * self.width / (self.length + self.width)
+        constraints.attach(held_nodes, radius)

@@ -14,8 +14,7 @@ from vibroimpact.structures.surface import surface_motion
 
 @dataclass(frozen=True)
 class Spring(Support):
-    """Spring between the lower side and the ground, distributed uniformly over a disc, or at a
-    point.
+    """Spring between the lower side and the ground, at a point or spread uniformly over a disc.
 
     Parameters
     ----------
@@ -38,24 +37,29 @@ class Spring(Support):
     @property
     def description(self) -> str:
         """Short description for users."""
-        return f"spring of {self.stiffness:g} N/m at ({self.x:g}, {self.y:g}) m" + (
-            f", spread over a radius of {self.radius:g} m" if self.radius else ""
-        )
+        description = f"spring of {self.stiffness:g} N/m at ({self.x:g}, {self.y:g}) m"
+        if self.radius:
+            description += f", spread over a radius of {self.radius:g} m"
+        return description
 
     def hold(self, constraints: Constraints) -> None:
         """Add the stiffness of the spring, by the shape functions at the points of the disc."""
-        places, weights = disc_rule(self.radius)
+        points, weights = disc_rule(self.radius)
         structure = constraints.structure
         motion, _ = surface_motion(
             structure.mesh,
-            places + np.array([self.x, self.y]),
+            points + np.array([self.x, self.y]),
             "lower",
             structure.thickness,
             self.description,
         )
-        stiffness = np.outer(
-            weights, [self.horizontal_stiffness, self.horizontal_stiffness, self.stiffness]
-        ).ravel()
+        # of each point along x, y and z
+        stiffness_along_axes = [
+            self.horizontal_stiffness,
+            self.horizontal_stiffness,
+            self.stiffness,
+        ]
+        stiffness = np.outer(weights, stiffness_along_axes).ravel()
         dofs = np.unique(motion.indices)
-        local = motion[:, dofs].toarray()
-        constraints.add_stiffness(dofs, local.T @ (stiffness[:, None] * local))
+        local_motion = motion[:, dofs].toarray()
+        constraints.add_stiffness(dofs, local_motion.T @ (stiffness[:, None] * local_motion))

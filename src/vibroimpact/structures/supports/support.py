@@ -14,13 +14,14 @@ from vibroimpact.structures.structure import Structure
 from vibroimpact.structures.supports.constraints import Constraints, HeldStructure
 from vibroimpact.structures.surface import lower_nodes
 
-_RIGID = 6  # motions of a free body
+_RIGID_MOTIONS = 6  # of a free body
 
 
 @dataclass(frozen=True)
 class Support:
-    """Base class of supports: frozen dataclasses, as their fields are part of the key of
-    stored modes.
+    """Base class of supports.
+
+    They are frozen dataclasses, as their fields are part of the key of stored modes.
     """
 
     @property
@@ -35,15 +36,17 @@ class Support:
 
     @property
     def lines(self) -> tuple[Sequence[float], Sequence[float]]:
-        """The x and y [m] of lines that are to be edges of elements of a generated mesh;
-        none by default.
+        """The x and y [m] of lines that are to be edges of elements of a generated mesh.
+
+        There are none by default.
         """
         return (), ()
 
     @property
     def rims(self) -> tuple[Sequence[float], Sequence[float]]:
-        """Those lines that are rims of a held part of the lower face, where the strain is
-        singular; none by default.
+        """Those lines that are rims of a held part of the lower face, where the strain is singular.
+
+        There are none by default.
         """
         return (), ()
 
@@ -90,26 +93,22 @@ def joint_remarks(held: HeldStructure, supports: Sequence[Support]) -> list[str]
     if structure.mesh.joints is None:
         return []
     free = held_by(structure) if supports else held
-    missing = _RIGID - len(free.rigid_coefficients)
-    words = (
-        f"the joints of the mesh file resist {missing} of the {_RIGID} rigid motions of the "
-        "body, as supports do"
-    )
-    return (
-        [
-            f"{words}: their equations are not those of bodies that move freely, or join "
-            "nodes that are apart"
-        ]
-        if missing
-        else []
-    )
+    missing = _RIGID_MOTIONS - len(free.rigid_coefficients)
+    if not missing:
+        return []
+    return [
+        f"the joints of the mesh file resist {missing} of the {_RIGID_MOTIONS} rigid motions of "
+        "the body, as supports do: their equations are not those of bodies that move freely, or "
+        "join nodes that are apart"
+    ]
 
 
 def nodes_within(
     structure: Structure, x: float, y: float, reach: Floats | float, what: str
 ) -> Integers:
-    """Return the nodes of the lower side within a radius, or within half the sides of a rectangle,
-    around a point.
+    """Return the nodes of the lower side around a point.
+
+    They lie within a radius, or within half the sides of a rectangle.
 
     Raises
     ------
@@ -117,16 +116,18 @@ def nodes_within(
         If there are fewer than three, which cannot hold a plate.
     """
     lower = lower_nodes(structure.mesh)
-    apart = structure.mesh.nodes[lower, :2] - [x, y]
-    limit = np.asarray(reach) * (1.0 + 1e-9) + 1e-9 * np.ptp(structure.mesh.nodes[:, 0])
-    inside = (
-        np.hypot(*apart.T) <= limit if limit.ndim == 0 else (np.abs(apart) <= limit).all(axis=1)
-    )
-    if inside.sum() < 3:
-        count = "no nodes" if not inside.any() else f"only {inside.sum()} of the nodes"
+    offset = structure.mesh.nodes[lower, :2] - [x, y]
+    tolerance = 1e-9 * np.ptp(structure.mesh.nodes[:, 0])
+    limit = np.asarray(reach) * (1.0 + 1e-9) + tolerance
+    if limit.ndim == 0:
+        is_inside = np.hypot(*offset.T) <= limit
+    else:
+        is_inside = (np.abs(offset) <= limit).all(axis=1)
+    if is_inside.sum() < 3:
+        count = "no nodes" if not is_inside.any() else f"only {is_inside.sum()} of the nodes"
         raise InputError(
             f"{what} at ({x:g}, {y:g}) m holds {count} on the lower side of the mesh, and "
             "needs three or more; "
             "move it, make it larger, or refine the mesh"
         )
-    return lower[inside]
+    return np.asarray(lower[is_inside])
