@@ -34,7 +34,7 @@ def response_of(run: RunState) -> Response:
         run.sag,
         run.stored,
         run.written_off,
-        run.bodies.left,
+        run.bodies.remaining_energy,
         tuple(run.bodies.lying),
     )
     outcomes = tuple(OUTCOMES[code] for code in run.outcomes.tolist())
@@ -42,8 +42,9 @@ def response_of(run: RunState) -> Response:
 
 
 def _lie_on_plate(run: RunState, oblique: ObliqueMotion, resting: Drops) -> dict[str, Floats]:
-    """Follow drops at rest along the plate, over whose edge they may leave it; return the
-    entries of the ledger for that motion.
+    """Follow drops at rest along the plate, over whose edge they may leave it.
+
+    Return the entries of the ledger for that motion.
     """
     if resting.size:
         lain = oblique.lie(
@@ -72,8 +73,9 @@ def _final_motion(run: RunState, resting: Drops) -> tuple[Floats, Floats]:
 def _ledger(
     run: RunState, along: dict[str, Floats], gap: Floats, velocity: Floats
 ) -> tuple[dict[str, Floats], Floats]:
-    """Return the energy ledger [J], and the energy that gravity and adhesion added to that of the
-    start [J].
+    """Return the energy ledger [J], and the energy that gravity and adhesion added [J].
+
+    It was added to that of the start.
 
     `along`: the entries for the motion along the plate. `gap` [m], `velocity` upwards [m/s]: at the
     end.

@@ -30,23 +30,26 @@ class Run(RunState):
 
     def fraction_done(self) -> float:
         """Return the fraction of the run that is done, in [0, 1]."""
-        if not self.moving.any():
+        moving = self.moving
+        if not moving.any():
             return 1.0
-        done = len(self.rows) / (self.problem.impacts or MOST_IMPACTS)
-        if self.problem.duration is not None:
-            done = max(done, float(self.time[self.moving].min()) / self.problem.duration)
+        problem = self.problem
+        fraction = len(self.rows) / (problem.impacts or MOST_IMPACTS)
+        if problem.duration is not None:
+            fraction = max(fraction, float(self.time[moving].min()) / problem.duration)
         # up to rest: the logarithm of the speed falls about linearly
-        if self.problem.impacts is None and self.rows and not self.problem.shaken:
-            first = self.rows.first["approach_speed_m_s"][self.moving]
-            slowed = np.log(first / self.velocity[self.moving]) / np.log(
-                first / self.rest_speed[self.moving]
-            )
-            done = max(done, float(np.nanmin(np.clip(slowed, 0.0, 1.0), initial=1.0)))
-        return done
+        if problem.impacts is None and self.rows and not problem.shaken:
+            first_speed = self.rows.first["approach_speed_m_s"][moving]
+            decay = np.log(first_speed / self.velocity[moving])
+            decay_at_rest = np.log(first_speed / self.rest_speed[moving])
+            slowest = np.nanmin(np.clip(decay / decay_at_rest, 0.0, 1.0), initial=1.0)
+            fraction = max(fraction, float(slowest))
+        return fraction
 
     def advance(self) -> Bounce:
-        """Advance all moving drops to their next touch and through one contact, and
-        return both as a bounce.
+        """Advance all moving drops to their next touch and through one contact.
+
+        Return both as a bounce.
         """
         drops = np.flatnonzero(self.moving)
         flight = self.flights(drops)
@@ -54,9 +57,8 @@ class Run(RunState):
         stopped, stop_time, outcome = first_stops(self.stop_rules, drops, flight, touch)
         self.end(drops[stopped], outcome[stopped], stop_time[stopped])
         touches = ~stopped
-        bounce = Bounce(
-            drops, flight, np.where(stopped, stop_time, touch), drops[touches], motions=motions
-        )
+        flight_end = np.where(stopped, stop_time, touch)
+        bounce = Bounce(drops, flight, flight_end, drops[touches], motions=motions)
         bounce = self.fly(bounce)
         if touches.any():
             bounce = self.collide(bounce, touch[touches], speed[touches])
@@ -68,10 +70,12 @@ class Run(RunState):
         return bounce
 
     def fly(self, bounce: Bounce) -> Bounce:
-        """Advance drops to the end of their flights, and return the bounce with their motion
-        along the plate.
+        """Advance drops to the end of their flights.
+
+        Return the bounce with their motion along the plate.
         """
-        drops, flight = bounce.drops, bounce.flight
+        drops = bounce.drops
+        flight = bounce.flight
         self.bodies.pass_flight(drops, bounce.motions, bounce.flight_end - flight.start)
         if self.oblique is not None:
             bounce = replace(bounce, oblique=self.oblique.now(drops))
@@ -91,10 +95,10 @@ class Run(RunState):
             self.rows.last[f"{self.problem.fluid.key}_lost_J"][bounce.contact_drops] = lost[touches]
 
     def collide(self, bounce: Bounce, touch: Floats, speed: Floats) -> Bounce:
-        """Solve the contact of drops, write the row of the impact table, and return the bounce with
-        the contact.
+        """Solve the contact of drops, and write the row of the impact table.
 
-        `touch` [s], `speed` [m/s]: of the approach, of `bounce.contact_drops`.
+        Return the bounce with the contact. `touch` [s], `speed` [m/s]: of the approach, of
+        `bounce.contact_drops`.
         """
         drops = bounce.contact_drops
         law = self.law_at(drops, speed)
@@ -105,12 +109,8 @@ class Run(RunState):
         else:
             assert isinstance(law, CompliantLaw)
             closing = self.bodies.closing_speed(drops, speed, self.velocity[drops])
-            bounce, lost = self.solve_contact(
-                bounce,
-                impact_conditions_of(law, self.mass[drops], self.gravity[drops], closing),
-                touch,
-                row,
-            )
+            conditions = impact_conditions_of(law, self.mass[drops], self.gravity[drops], closing)
+            bounce, lost = self.solve_contact(bounce, conditions, touch, row)
             lost += row["plastic_work_J"][drops]
             law = self.problem.law_at(self.law(drops), speed)  # with its memory of this impact
         self.dissipated[drops] += lost - row["plastic_work_J"][drops]
@@ -120,16 +120,17 @@ class Run(RunState):
         if self.oblique is not None:
             self.leave_dents(drops, self.oblique, row)
         moving = self.moving[drops]
-        self.stop_resting(
-            drops[moving], law if moving.all() else law.take(np.flatnonzero(moving)), row
-        )
+        if not moving.all():
+            law = law.take(np.flatnonzero(moving))
+        self.stop_resting(drops[moving], law, row)
         return bounce
 
     def write_touch(
         self, drops: Drops, law: ContactLaw, touch: Floats, speed: Floats, row: dict[str, Floats]
     ) -> None:
-        """Write what the impact table tells of the touches of drops at some times [s],
-        with some approach speeds [m/s].
+        """Write the columns of the touches of drops.
+
+        `touch`: their times [s]. `speed`: their approach speeds [m/s].
         """
         row["impact"][drops] = len(self.rows)
         row["time_s"][drops] = touch
@@ -137,58 +138,62 @@ class Run(RunState):
         row["restitution_asked"][drops] = _nominal_restitution(law)
         if self.problem.motion is None:
             return
-        row["plate_velocity_m_s"][drops] = self.problem.surface(touch)[1]
+        _, surface_velocity, _ = self.problem.surface(touch)
+        row["plate_velocity_m_s"][drops] = surface_velocity
         if self.oblique is not None:
-            row["place_on_plate_x_m"][drops], row["place_on_plate_y_m"][drops] = (
-                self.oblique.seen_from_plate(drops, touch)
-            )
+            x, y = self.oblique.seen_from_plate(drops, touch)
+            row["place_on_plate_x_m"][drops] = x
+            row["place_on_plate_y_m"][drops] = y
 
     def write_rebound(self, drops: Drops, speed: Floats, row: dict[str, Floats]) -> None:
-        """Write the restitution and the rebound of drops that touched with some approach
-        speeds [m/s].
+        """Write the restitution and the rebound of drops.
+
+        `speed`: their approach speeds [m/s].
         """
+        gravity = self.gravity[drops]
+        velocity = self.velocity[drops]
         separation = row["separation_speed_m_s"][drops]
         row["restitution_achieved"][drops] = separation / speed
         rising = separation
         if self.problem.shaken:  # where it leaves, its velocity is not that relative to the plate
-            leaves = ~self.bodies.rests(drops, self.velocity[drops], self.rest_speed[drops])
-            rising = np.where(
-                np.isnan(separation), np.nan, np.maximum(self.velocity[drops], 0.0) * leaves
-            )
+            leaves = ~self.bodies.rests(drops, velocity, self.rest_speed[drops])
+            upward = np.maximum(velocity, 0.0) * leaves
+            rising = np.where(np.isnan(separation), np.nan, upward)
         with np.errstate(divide="ignore", invalid="ignore"):
-            rise = np.where(
-                self.gravity[drops] > 0.0, 0.5 * rising**2 / self.gravity[drops], np.nan
-            )
+            rise = np.where(gravity > 0.0, 0.5 * rising**2 / gravity, np.nan)
         if self.problem.fluid is not None:
-            rise = np.where(rising > 0.0, self.flights(drops).apex()[1] - self.gap[drops], rise)
+            _, apex = self.flights(drops).apex()
+            rise = np.where(rising > 0.0, apex - self.gap[drops], rise)
         row["rebound_height_m"][drops] = self.radius[drops] + self.gap[drops] + rise
 
     def leave_dents(self, drops: Drops, oblique: ObliqueMotion, row: dict[str, Floats]) -> None:
-        """Forget the dents of drops that move on by more than the radius of their contact
-        before they touch again.
-        """
+        """Forget the dents of drops that touch next beyond the radius of their last contact."""
         if not self.memories:
             return
         flight = self.flights(drops)
-        away = oblique.distance(drops, flight, flight.touch(np.zeros(1))[0])
-        gone = drops[
-            away > np.sqrt(self.radius[drops] * np.nan_to_num(row["max_indentation_m"][drops]))
-        ]
+        next_touch, _ = flight.touch(np.zeros(1))
+        distance = oblique.distance(drops, flight, next_touch)
+        indentation = np.nan_to_num(row["max_indentation_m"][drops])
+        contact_radius = np.sqrt(self.radius[drops] * indentation)
+        leaving = drops[distance > contact_radius]
         fresh = self.problem.laws[0].memories()
         for name, values in self.memories.items():
             # laws of earlier contacts refer to the previous array
             self.memories[name] = values.copy()
-            self.memories[name][gone] = self.spread(fresh[name])[gone]
+            self.memories[name][leaving] = self.spread(fresh[name])[leaving]
 
     def solve_contact(
         self, bounce: Bounce, conditions: ImpactConditions, touch: Floats, row: dict[str, Floats]
     ) -> tuple[Bounce, Floats]:
         """Return the bounce with the contact of drops, and the energy lost in it [J]."""
         drops = bounce.contact_drops
-        until = (np.inf if self.problem.duration is None else self.problem.duration) - touch
-        place = self.gap[drops], self.velocity[drops]
+        longest_ride = self.run_end - touch
         contact, force, time_of_force = self.bodies.collide(
-            drops, conditions, place, (self.rest_speed[drops], until), row
+            drops,
+            conditions,
+            (self.gap[drops], self.velocity[drops]),
+            (self.rest_speed[drops], longest_ride),
+            row,
         )
         self.deepest[drops] = np.maximum(self.deepest[drops], contact.max_delta)
         self.time[drops] = touch + contact.duration
@@ -211,26 +216,26 @@ class Run(RunState):
         bounce = replace(bounce, contact=contact, conditions=conditions)
         if self.oblique is not None:
             bounce = replace(bounce, oblique_contacts=self.bodies.slide(self.oblique, bounce, row))
+        # what a contact stores at its end is lost with it
         return bounce, contact.dissipated + np.where(stays, 0.0, contact.stored)
 
     def release(self, drops: Drops, contact: Contact, row: dict[str, Floats]) -> Bools:
-        """Write the separation of drops after a contact, end the runs of those that do
-        not leave, and return which stay in contact.
+        """Write the separation of drops after a contact, and end the runs of those that stay.
+
+        Return which stay in contact.
         """
         failed = contact.outcome == FAILED
         riding = contact.outcome == RIDING
         captured = contact.outcome == CAPTURED
         captured |= self.bodies.falls_back(contact, self.next_law(drops), self.gravity[drops])
-        leaving = self.bodies.rigid_speed(drops, -contact.final_rate)
-        row["separation_speed_m_s"][drops] = np.where(
-            failed | riding, np.nan, np.where(captured, 0.0, leaving)
+        separation = self.bodies.rigid_speed(drops, -contact.final_rate)
+        separation = np.where(captured, 0.0, separation)
+        row["separation_speed_m_s"][drops] = np.where(failed | riding, np.nan, separation)
+        energy_at_release = contact.law.elastic_energy(
+            contact.law.release_level + np.zeros(len(drops))
         )
-        sticks = captured & (
-            contact.law.elastic_energy(contact.law.release_level + np.zeros(len(drops))) > 0.0
-        )
-        at_end = riding & (
-            self.time[drops] >= (np.inf if self.problem.duration is None else self.problem.duration)
-        )
+        sticks = captured & (energy_at_release > 0.0)
+        at_end = riding & (self.time[drops] >= self.run_end)
         for ended, outcome in (
             (failed, Outcome.FAILED),
             (captured & ~sticks, Outcome.CAPTURED),
@@ -241,29 +246,36 @@ class Run(RunState):
             self.stop(drops[ended], outcome, self.time[drops[ended]])
         if captured.any():
             law = contact.law.take(np.flatnonzero(captured))
-            self.bring_to_rest(
-                drops[captured], law, self.time[drops[captured]], contact.stored[captured]
-            )
+            resting = drops[captured]
+            self.bring_to_rest(resting, law, self.time[resting], contact.stored[captured])
         self.stored[drops[riding]] = contact.stored[riding]
         return np.asarray(captured | riding)
 
+    @property
+    def run_end(self) -> float:
+        """Time at which the run ends at the latest [s]."""
+        return np.inf if self.problem.duration is None else self.problem.duration
+
     def stop_resting(self, drops: Drops, law: ContactLaw, row: dict[str, Floats]) -> None:
-        """Stop the drops that separate more slowly than the rest speed, or not at all,
-        and cannot be lifted again.
+        """Stop the drops that rest: they separate slowly or not at all, and stay so.
+
+        They separate more slowly than the rest speed, and cannot be lifted again.
         """
         resting = self.bodies.rests(drops, self.velocity[drops], self.rest_speed[drops])
         slow = drops[resting]
         if not slow.size:
             return
+        time = self.time[slow]
+        _, surface_velocity, _ = self.problem.surface(time)
+        speed = self.velocity[slow] - surface_velocity
+        # flights are a geometric series with the ratio of the last restitution e, whose sum is that
+        # of the first, 2 v/g, over 1 - e
+        missing = 1.0 - row["restitution_achieved"][slow]
         with np.errstate(divide="ignore", invalid="ignore"):
-            # flights are a geometric series with the ratio of the last restitution
-            missing = 1.0 - row["restitution_achieved"][slow]
-            speed = self.velocity[slow] - self.problem.surface(self.time[slow])[1]
-            limit = self.time[slow] + 2.0 * speed * self.inertia[slow] / self.gravity[
-                slow
-            ] / np.where(missing > 1e-6, missing, 0.0)
+            first_flight = 2.0 * speed * self.inertia[slow] / self.gravity[slow]
+            limit = time + first_flight / np.where(missing > 1e-6, missing, 0.0)
         self.bring_to_rest(slow, law.take(np.flatnonzero(resting)), limit, np.zeros(len(slow)))
-        self.stop(slow, Outcome.REST_SPEED, np.where(np.isfinite(limit), limit, self.time[slow]))
+        self.stop(slow, Outcome.REST_SPEED, np.where(np.isfinite(limit), limit, time))
 
 
 def _nominal_restitution(law: ContactLaw) -> Floats | float:

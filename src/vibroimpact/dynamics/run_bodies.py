@@ -25,45 +25,50 @@ class Bodies(Protocol):
     """The bodies of B drops, rigid or vibrating.
 
     In the methods `drops` are indices of drops of the run, and the other arrays have one entry for
-    each of them. `columns`: of the impact table. `left`: mechanical energy above equilibrium of
-    drops at rest or riding, and of what carries them [J] (B,), NaN for the others. `lying`: the
-    states of those at rest on what vibrates.
+    each of them. `columns`: of the impact table. `remaining_energy`: mechanical energy above
+    equilibrium of drops at rest or riding, and of what carries them [J] (B,), NaN for the others.
+    `lying`: the motions of those at rest on what vibrates.
     """
 
     columns: tuple[str, ...]
-    left: Floats
+    remaining_energy: Floats
     lying: list[RestMotion | None]
 
     def next_touch(
         self, drops: Drops, flight: Flight, law: ContactLaw
     ) -> tuple[Floats, Floats, Motions]:
-        """Return the time of the next touch [s], the approach speed of the rigid bodies
-        [m/s], and the free motions until then.
+        """Return the time of the next touch [s], the approach speed, and the motions until then.
+
+        The speed is that of the rigid bodies [m/s]; the motions are those of the bodies without
+        contact.
         """
 
     def pass_flight(self, drops: Drops, motions: Motions, elapsed: Floats) -> None:
         """Advance the state of the bodies through a flight of a given duration [s]."""
 
     def closing_speed(self, drops: Drops, speed: Floats, velocity: Floats) -> Floats:
-        """Return the closing speed of the surfaces [m/s], from that of the rigid bodies
-        and the velocity of the spheres [m/s].
+        """Return the closing speed of the surfaces [m/s].
+
+        `speed`: of the rigid bodies. `velocity`: of the spheres [m/s].
         """
 
     def rigid_speed(self, drops: Drops, velocity: Floats) -> Floats:
-        """Return the separation speed of the rigid bodies [m/s], from the upward velocity
-        of the spheres [m/s].
+        """Return the separation speed of the rigid bodies [m/s].
+
+        `velocity`: upwards, of the spheres [m/s].
         """
 
     def collide(
         self,
         drops: Drops,
         conditions: ImpactConditions,
-        place: tuple[Floats, Floats],
+        at_touch: tuple[Floats, Floats],
         limits: tuple[Floats, Floats],
         row: dict[str, Floats],
     ) -> tuple[Contact, Floats, Floats]:
-        """Return the contact of drops, its largest force [N], and the time of that since first
-        touch [s].
+        """Return the contact of drops, its largest force [N], and the time of that [s].
+
+        The time is since first touch.
 
         Parameters
         ----------
@@ -71,7 +76,7 @@ class Bodies(Protocol):
             Indices in the run.
         conditions : ImpactConditions
             Their impact.
-        place : tuple of two arrays, shape (b,)
+        at_touch : tuple of two arrays, shape (b,)
             Gaps [m] and velocities upwards [m/s] at first touch.
         limits : tuple of two arrays, shape (b,)
             Rest speed [m/s], and the longest time for which a ride is followed, since first touch
@@ -84,13 +89,15 @@ class Bodies(Protocol):
     def slide(
         self, oblique: ObliqueMotion, bounce: Bounce, row: dict[str, Floats]
     ) -> ObliqueContacts:
-        """Advance drops along the plate through the contacts of a bounce, write their
-        columns, and return the motion in them.
+        """Advance drops along the plate through the contacts of a bounce.
+
+        Write their columns, and return the motion in them.
         """
 
     def falls_back(self, contact: Contact, law: CompliantLaw, gravity: Floats) -> Bools:
-        """Return which drops fall back into the indentation before they have risen to the
-        touch level of the law.
+        """Return which drops fall back into the indentation.
+
+        They do before they have risen to the touch level of the law.
         """
 
     def rests(self, drops: Drops, velocity: Floats, rest_speed: Floats) -> Bools:
@@ -99,23 +106,28 @@ class Bodies(Protocol):
     def static_state(
         self, drops: Drops, law: ContactLaw, weight: Floats, energy: Floats
     ) -> dict[str, Floats]:
-        """Return the static state of drops: `sag` [m], `stored` energy [J], and
-        `written_off`, the rest of their `energy` [J].
+        """Return the static state of drops.
+
+        It consists of `sag` [m], `stored` energy [J], and `written_off`, the rest of their `energy`
+        [J].
         """
 
     def follow(
         self, drops: Drops, elapsed: Floats, sag: Floats, stored: Floats
     ) -> tuple[Floats, Floats, Floats]:
-        """Return gap [m], upward velocity [m/s] and energy stored in the contact [J] of
-        drops that have lain for some time [s].
+        """Return gap, upward velocity and stored energy of drops that have lain for some time [s].
+
+        They are in m, m/s and J.
         """
 
     def energies(self) -> dict[str, Floats]:
-        """Return further entries of the energy ledger [J] (B,); `local_J` and
-        `local_damping_J` are added to those of the contact.
+        """Return further entries of the energy ledger [J] (B,).
+
+        `local_J` and `local_damping_J` are added to those of the contact.
         """
 
     def growth(self, bounce: Bounce) -> Floats:
-        """Return the growth of a small relative change of the drop up to the contact of a
-        bounce [-], one value per drop; or nothing.
+        """Return the growth of a small relative change of the drop up to a contact [-].
+
+        There is one value per drop of a bounce, or none.
         """

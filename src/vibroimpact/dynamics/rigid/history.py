@@ -14,8 +14,7 @@ from vibroimpact.dynamics.shaken.ride import RideSegment
 def rigid_history(
     problem: Problem, segments: Timeline, number: int, times: Floats, written_off: float
 ) -> dict[str, Floats]:
-    """Return the columns of the motion along the normal, by their names, at times since the start
-    of one segment [s] (T,).
+    """Return the columns of the motion along the normal of one segment, by their names.
 
     Parameters
     ----------
@@ -30,36 +29,39 @@ def rigid_history(
     written_off : float
         Energy that was written off when the sphere came to rest [J].
     """
-    segment, mass, gravity = (
-        segments[number],
-        float(problem.sphere.mass),
-        float(problem.net_gravity),
-    )
-    gap, velocity, force, stored, lost, plastic = segment.at(times)
-    lost_before, plastic_before, drive_before = segments.spent[number]
+    segment = segments[number]
+    mass = float(problem.sphere.mass)
+    gravity = float(problem.net_gravity)
+    gap, velocity, force, stored, dissipated, plastic = segment.at(times)
+    dissipated_before, plastic_before, drive_before = segments.spent[number]
+    zeros = np.zeros_like(times)
     resting = isinstance(segment, RestSegment)
-    # a hard sphere that rides does not, and the plate moves under it
+    if isinstance(segment, FlightSegment):
+        acceleration = segment.flight.acceleration(segment.flight.start + times)
+    elif resting:
+        acceleration = zeros
+    else:
+        acceleration = force / mass - gravity
+    # a hard sphere that rides does not indent the plate, which moves under it
     indents = not isinstance(segment, FlightSegment | RideSegment)
-    found = {
+    columns = {
         "time_s": segment.start + times,
         "position_m": float(problem.sphere.contact_offset) + gap,
         "velocity_m_s": velocity,
-        "acceleration_m_s2": np.zeros_like(times) if resting else force / mass - gravity,
+        "acceleration_m_s2": acceleration,
         "force_N": force,
-        "indentation_m": -gap if indents else np.zeros_like(times),
+        "indentation_m": -gap if indents else zeros,
         "kinetic_J": 0.5 * mass * velocity**2,
         "potential_J": mass * gravity * gap,
         "contact_elastic_J": stored,
-        "contact_dissipated_J": lost_before + lost,
+        "contact_dissipated_J": dissipated_before + dissipated,
         "plastic_work_J": plastic_before + plastic,
         "written_off_at_rest_J": np.full_like(times, written_off if resting else 0.0),
     }
     if problem.motion is not None:
-        place, surface_velocity, _ = problem.surface(found["time_s"])
-        drive = drive_before - (
-            segment.drive_work(times) if isinstance(segment, RideSegment) else 0.0 * times
-        )
-        found |= {"surface_m": place, "surface_velocity_m_s": surface_velocity, "drive_J": drive}
-    if isinstance(segment, FlightSegment):
-        found["acceleration_m_s2"] = segment.flight.acceleration(segment.flight.start + times)
-    return found
+        surface, surface_velocity, _ = problem.surface(columns["time_s"])
+        work = segment.drive_work(times) if isinstance(segment, RideSegment) else 0.0 * times
+        columns["surface_m"] = surface
+        columns["surface_velocity_m_s"] = surface_velocity
+        columns["drive_J"] = drive_before - work
+    return columns

@@ -1,6 +1,4 @@
-"""Contacts of rigid bodies, solved by the core one drop after the other, and the motion
-within them.
-"""
+"""Contacts of rigid bodies, solved by the core one drop after the other, and their motion."""
 
 from __future__ import annotations
 
@@ -49,8 +47,9 @@ _ON_CORNER = 1e-9  # of the duration
 def follow_contacts(
     conditions: ImpactConditions, tolerance: float, friction_steps: int = 0
 ) -> tuple[Contact, Floats, Floats]:
-    """Return the contacts of B drops, their largest forces [N], and the times of these since first
-    touch [s].
+    """Return the contacts of B drops, their largest forces [N], and the times of these [s].
+
+    Times are since first touch.
 
     Parameters
     ----------
@@ -61,37 +60,7 @@ def follow_contacts(
     friction_steps : int
         Of the normal motion in each segment of a contact, if it drives friction.
     """
-    law, size = conditions.law, len(conditions.mass)
-    collocates = _collocates(law, tolerance)
-    touches = np.array(
-        [
-            conditions.mass,
-            conditions.gravity,
-            conditions.approach_speed,
-            conditions.depth,
-            conditions.speed_scale,
-        ]
-    )
-    rules = _rules(law, tolerance)
-    contacts, solved, written = _room_for(size, friction_steps), 0, 0
-    with coefficients_of(law, size) as coefficients:
-        known = (
-            rules,
-            normal_grid(friction_steps),
-            collocates,
-            law_addresses(type(law)),
-            coefficients,
-            touches,
-        )
-        while True:
-            solved, written = follow_lines(
-                _manner(conditions, 0, tolerance), *known, contacts, solved, written
-            )
-            if solved == size:
-                break
-            contacts = contacts._replace(
-                motions=np.append(contacts.motions, np.empty_like(contacts.motions))
-            )
+    contacts = _solve(conditions, tolerance, friction_steps)
     (
         duration,
         final_delta,
@@ -104,26 +73,23 @@ def follow_contacts(
         plastic,
         stored,
     ) = contacts.ends
-    after = law.after_compression(deepest)
-    pieces = [
-        Piece(
-            np.arange(size),
-            np.zeros(size),
-            LineMotion(conditions, tolerance, "compression", time_of_deepest),
-            law,
+    law = conditions.law
+    size = len(conditions.mass)
+    law_after = law.after_compression(deepest)
+    compression = LineMotion(conditions, tolerance, "compression", time_of_deepest)
+    pieces = [Piece(np.arange(size), np.zeros(size), compression, law)]
+    rebounding = np.flatnonzero(duration > time_of_deepest)
+    if rebounding.size:
+        restitution = LineMotion(
+            conditions.take(rebounding),
+            tolerance,
+            "restitution",
+            (duration - time_of_deepest)[rebounding],
         )
-    ]
-    left = np.flatnonzero(duration > time_of_deepest)
-    if left.size:
-        spans = (duration - time_of_deepest)[left]
-        pieces.append(
-            Piece(
-                left,
-                time_of_deepest[left],
-                LineMotion(conditions.take(left), tolerance, "restitution", spans),
-                after,
-            )
-        )
+        pieces.append(Piece(rebounding, time_of_deepest[rebounding], restitution, law_after))
+    normals = None
+    if friction_steps:
+        normals = NormalRecords(friction_steps, contacts.shapes, contacts.begins, contacts.motions)
     contact = Contact(
         pieces=pieces,
         outcome=_OUTCOMES[contacts.outcomes],
@@ -135,19 +101,58 @@ def follow_contacts(
         dissipated=dissipated,
         plastic=plastic,
         stored=stored,
-        law=after,
-        normals=NormalRecords(friction_steps, contacts.shapes, contacts.begins, contacts.motions)
-        if friction_steps
-        else None,
+        law=law_after,
+        normals=normals,
     )
     return contact, peak_force, time_of_peak
 
 
-def release_rates(conditions: ImpactConditions, tolerance: float) -> Floats:
-    """Return the indentation rates of B drops at the end of their contacts [m/s]: zero where they
-    are captured, NaN where that failed.
+def _solve(
+    conditions: ImpactConditions, tolerance: float, friction_steps: int
+) -> records.LineContacts:
+    """Return the contacts of B drops as the core solves them."""
+    law = conditions.law
+    size = len(conditions.mass)
+    touches = np.array(
+        [
+            conditions.mass,
+            conditions.gravity,
+            conditions.approach_speed,
+            conditions.depth,
+            conditions.speed_scale,
+        ]
+    )
+    contacts = _empty_contacts(size, friction_steps)
+    solved = 0
+    written = 0
+    with coefficients_of(law, size) as coefficients:
+        grid = normal_grid(friction_steps)
+        while True:
+            solved, written = follow_lines(
+                _manner(conditions, 0, tolerance),
+                _rules(law, tolerance),
+                grid,
+                _collocates(law, tolerance),
+                law_addresses(type(law)),
+                coefficients,
+                touches,
+                contacts,
+                solved,
+                written,
+            )
+            if solved == size:
+                return contacts
+            # there is no room for further normal motions
+            contacts = contacts._replace(
+                motions=np.append(contacts.motions, np.empty_like(contacts.motions))
+            )
 
-    A few are collocated in plain Python.
+
+def release_rates(conditions: ImpactConditions, tolerance: float) -> Floats:
+    """Return the indentation rates of B drops at the end of their contacts [m/s].
+
+    They are zero where drops are captured, NaN where that failed. A few are collocated in plain
+    Python.
 
     Parameters
     ----------
@@ -166,28 +171,21 @@ def release_rates(conditions: ImpactConditions, tolerance: float) -> Floats:
                     for drop in range(size)
                 ]
             )
-    left = np.flatnonzero(np.isnan(rates))
-    if left.size:
-        contact, *_ = follow_contacts(conditions.pick(left), tolerance)
-        rates[left] = np.where(
-            contact.outcome == CAPTURED,
-            0.0,
-            np.where(contact.outcome == FAILED, np.nan, contact.final_rate),
-        )
+    missing = np.flatnonzero(np.isnan(rates))
+    if missing.size:
+        contact, _, _ = follow_contacts(conditions.pick(missing), tolerance)
+        final_rates = np.where(contact.outcome == FAILED, np.nan, contact.final_rate)
+        rates[missing] = np.where(contact.outcome == CAPTURED, 0.0, final_rates)
     return rates
 
 
 def _collocated_rate(conditions: ImpactConditions, tolerance: float) -> float:
-    """Return the indentation rate of one drop at the end of its contact [m/s]; NaN if it
-    cannot be collocated.
+    """Return the indentation rate of one drop at the end of its contact [m/s].
+
+    It is NaN if the contact cannot be collocated.
     """
-    held, rules = conditions.law.take(0), _rules(conditions.law, tolerance)
-    law = law_at_touch(
-        law_addresses(type(held)),
-        law_coefficients(held),
-        _NO_COMPLIANCE,
-        float(conditions.approach_speed[0]),
-    )
+    rules = _rules(conditions.law, tolerance)
+    law = _law_at_touch(conditions.law.take(0), conditions)
     room = np.zeros((ROWS, rules.vectors.shape[2]))
     solved, contact = collocate_contact(
         law, _manner(conditions, 0, tolerance), rules, normal_grid(0), room
@@ -195,8 +193,18 @@ def _collocated_rate(conditions: ImpactConditions, tolerance: float) -> float:
     return float(contact.end.rate) if solved else np.nan
 
 
+def _law_at_touch(law: CompliantLaw, conditions: ImpactConditions) -> Law:
+    """Return the law of one drop as the core takes it."""
+    return law_at_touch(
+        law_addresses(type(law)),
+        law_coefficients(law),
+        _NO_COMPLIANCE,
+        float(conditions.approach_speed[0]),
+    )
+
+
 def _collocates(law: CompliantLaw, tolerance: float) -> bool:
-    """Is collocation tried for contacts under a law?"""
+    """Whether collocation is tried for contacts under a law."""
     return tolerance >= _TIGHTEST and law.contact_end != "pull-off"
 
 
@@ -205,24 +213,26 @@ def _rules(law: CompliantLaw, tolerance: float) -> PhaseRules:
     return phase_rules(law.root, min(max(tolerance, _TIGHTEST), _LOOSEST))
 
 
-def _room_for(size: int, friction_steps: int) -> records.LineContacts:
-    """Return room for the contacts of B drops, with normal motions that have some steps
-    in each segment, if any.
+def _empty_contacts(size: int, friction_steps: int) -> records.LineContacts:
+    """Return arrays for the contacts of B drops.
+
+    They have room for normal motions with some steps in each segment, if any.
     """
-    moved = size if friction_steps else 0
+    with_motions = size if friction_steps else 0
     return records.LineContacts(
         outcomes=np.zeros(size, dtype=np.int64),
         ends=np.zeros((10, size)),
-        shapes=np.zeros(moved, dtype=np.int64),
-        begins=np.zeros(moved, dtype=np.int64),
-        motions=np.empty(moved * MOTION_ROWS * _SEGMENTS * (friction_steps + 1)),
+        shapes=np.zeros(with_motions, dtype=np.int64),
+        begins=np.zeros(with_motions, dtype=np.int64),
+        motions=np.empty(with_motions * MOTION_ROWS * _SEGMENTS * (friction_steps + 1)),
     )
 
 
 @dataclass(frozen=True)
 class LineMotion:
-    """The motion of b contacts in compression or restitution, which is computed again where it is
-    read.
+    """The motion of b contacts in compression or restitution.
+
+    It is computed again where it is read.
 
     Parameters
     ----------
@@ -260,11 +270,9 @@ class LineMotion:
     @property
     def begins_at(self) -> float:
         """Return the indentation at its start, of one drop [m]."""
-        return (
-            self.recorded.law.touch
-            if self.phase == "compression"
-            else self.recorded.contact.deepest
-        )
+        if self.phase == "compression":
+            return self.recorded.law.touch
+        return self.recorded.contact.deepest
 
     @property
     def begins(self) -> float:
@@ -272,8 +280,9 @@ class LineMotion:
         return 0.0 if self.phase == "compression" else self.recorded.contact.time_of_deepest
 
     def grid(self) -> Floats:
-        """Return times since the start at which the motion of one drop is well resolved
-        [s]; that of the largest force is one of them.
+        """Return times since the start at which the motion of one drop is well resolved [s].
+
+        That of the largest force is one of them.
         """
         times = self.recorded.times(self.phase == "restitution") - self.begins
         if self.phase == "compression":
@@ -281,8 +290,9 @@ class LineMotion:
         return np.append(times[times < self.duration[0]], self.duration[0])
 
     def at(self, time: Floats, conditions: ImpactConditions) -> tuple[Floats, Floats, Floats]:
-        """Return indentation [m], its rate [m/s] and the energy dissipated since the
-        start [J] of one drop at times since then [s].
+        """Return indentation [m], its rate [m/s] and the energy dissipated [J] of one drop.
+
+        They are those at times since the start [s].
         """
         delta, rate, lost = self.recorded.motion(self.begins + np.append(time, 0.0))
         return delta[:-1], rate[:-1], lost[:-1] - lost[-1]
@@ -314,13 +324,9 @@ class RecordedContact:
     def of(cls, conditions: ImpactConditions, tolerance: float) -> RecordedContact:
         """Follow the contact of one drop again, and record its steps."""
         held = conditions.law.take(0)
-        law = law_at_touch(
-            law_addresses(type(held)),
-            law_coefficients(held),
-            _NO_COMPLIANCE,
-            float(conditions.approach_speed[0]),
-        )
-        manner, room = _manner(conditions, 0, tolerance), _ROOM
+        law = _law_at_touch(held, conditions)
+        manner = _manner(conditions, 0, tolerance)
+        room = _ROOM
         while True:
             steps = records.LineSteps(
                 variable=np.zeros(room, dtype=np.int64),
@@ -332,36 +338,39 @@ class RecordedContact:
             contact = follow_line(law, manner, steps)
             room = int(steps.written[0])
             if room <= len(steps.length):
-                kept = records.LineSteps(
+                recorded_steps = records.LineSteps(
                     variable=steps.variable[:room].copy(),
                     after=steps.after[:room].copy(),
                     begun=steps.begun[:room].copy(),
                     length=steps.length[:room].copy(),
                     written=steps.written,
                 )
-                return cls(law, manner, kept, contact, held)
+                return cls(law, manner, recorded_steps, contact, held)
 
     def motion(self, times: Floats) -> Floats:
-        """Return indentation [m], its rate [m/s] and energy dissipated [J] (3, T) at
-        times since touch [s].
+        """Return indentation [m], its rate [m/s] and energy dissipated [J] (3, T).
+
+        They are those at times since touch [s].
         """
+        # the core reads times in order
         order = np.argsort(times, kind="stable")
-        motion = np.empty((3, len(times)))
+        ordered = np.empty((3, len(times)))
         read_line(
             self.law,
             self.manner,
             self.contact.deepest,
             self.steps,
             np.ascontiguousarray(times[order]),
-            motion,
+            ordered,
         )
-        found = np.empty_like(motion)
-        found[:, order] = motion
-        return found
+        motion = np.empty_like(ordered)
+        motion[:, order] = ordered
+        return motion
 
     def times(self, after: bool) -> Floats:
-        """Return the times at which the contact is well resolved before, or after, its
-        deepest point [s].
+        """Return the times at which the contact is well resolved [s].
+
+        They are those before, or after, its deepest point.
         """
         times = np.empty((len(self.steps.length), _PARTS))
         time_line(self.law, self.manner, self.contact.deepest, self.steps, times)
@@ -369,18 +378,19 @@ class RecordedContact:
 
     def corners(self) -> Floats:
         """Return the times between which the force is smooth, from touch to the end [s]."""
-        starts, variables, end = self.steps.begun[1:, 0], self.steps.variable, self.contact.end.time
-        within = starts[
-            (variables[:-1] == BY_ROOT) | (variables[:-1] == FREE) | (variables[1:] == FREE)
-        ]
-        times = np.unique(np.append(within, self.contact.time_of_deepest))
-        return np.concatenate(
-            [[0.0], times[(times > _ON_CORNER * end) & (times < (1.0 - _ON_CORNER) * end)], [end]]
-        )
+        starts = self.steps.begun[1:, 0]
+        variable = self.steps.variable[:-1]
+        next_variable = self.steps.variable[1:]
+        end = self.contact.end.time
+        # after steps in the root of the indentation, and where free motion begins or ends
+        at_corner = (variable == BY_ROOT) | (variable == FREE) | (next_variable == FREE)
+        times = np.unique(np.append(starts[at_corner], self.contact.time_of_deepest))
+        inside = (times > _ON_CORNER * end) & (times < (1.0 - _ON_CORNER) * end)
+        return np.concatenate([[0.0], times[inside], [end]])
 
 
 def _manner(conditions: ImpactConditions, drop: int, tolerance: float) -> records.LineManner:
-    """Return a drop of an conditions as the core takes it."""
+    """Return a drop of an impact as the core takes it."""
     law = conditions.law
     return records.LineManner(
         root=law.root,

@@ -1,9 +1,8 @@
-"""The Gauss rules with which the core collocates a phase of a contact, and the grids on
-which it writes the normal motion.
-"""
+"""Gauss rules with which the core collocates a phase of a contact, and grids of normal motions."""
 
 from __future__ import annotations
 
+import math
 from functools import cache
 
 import numpy as np
@@ -20,11 +19,11 @@ _COUNTS = (15, 23, 31)  # with the far end they fill vectors of eight
 # power of the tolerance: the error at the ends is of the order of the square of the last
 # coefficient
 _ROUGHNESS = 0.5
-# tolerances: last coefficients of G, so that the largest force, between nodes, is as exact as the
-# end
+# last coefficients of G over the tolerance, so that the largest force, between nodes, is as exact
+# as the end
 _OF_RATE = 3e3
-# tolerances: last coefficients of a phase that ends within a segment, where the error is of their
-# order
+# last coefficients over the tolerance of a phase that ends within a segment, where the error is of
+# their order
 _INSIDE = 300.0
 # of a contact: three segments of compression, six of restitution, and as many glides
 _MOST_PARTS = 15
@@ -32,24 +31,25 @@ _MOST_PARTS = 15
 
 @cache
 def phase_rules(root: int, tolerance: float) -> PhaseRules:
-    """Return the rules for laws whose force is smooth in a root of the indentation, at a
-    relative error of the approach speed.
+    """Return the rules for laws whose force is smooth in a root of the indentation.
+
+    `tolerance`: relative error allowed of the approach speed.
     """
-    number, width = len(_COUNTS), max(_COUNTS) + 1
+    number = len(_COUNTS)
+    width = max(_COUNTS) + 1
     vectors = np.zeros((number, records.KINDS, records.VECTORS, width))
     matrices = np.zeros((number, records.KINDS, 2, width, width))
     onward = np.zeros((number, width, width))
-    before: Floats | None = None
+    coarser_spectrum: Floats | None = None
     for rule, count in enumerate(_COUNTS):
         z, weights = legendre.leggauss(count)
-        spectrum: Floats = np.asarray(
-            np.linalg.inv(legendre.legvander(z, count - 1)), dtype=np.float64
-        )
-        if before is not None:
-            onward[rule, : len(before), :count] = (
-                legendre.legvander(z, len(before) - 1) @ before
-            ).T
-        before = spectrum
+        spectrum = _spectrum(z)
+        if coarser_spectrum is not None:
+            # interpolation from the nodes of the rule before
+            coarser = len(coarser_spectrum)
+            interpolation = legendre.legvander(z, coarser - 1) @ coarser_spectrum
+            onward[rule, :coarser, :count] = interpolation.T
+        coarser_spectrum = spectrum
         for kind in range(records.KINDS):
             _write_kind(
                 kind,
@@ -73,9 +73,16 @@ def phase_rules(root: int, tolerance: float) -> PhaseRules:
     )
 
 
+def _spectrum(z: Floats) -> Floats:
+    """Return the matrix from values at points in [-1, 1] to Legendre coefficients."""
+    matrix: Floats = np.asarray(np.linalg.inv(legendre.legvander(z, len(z) - 1)), dtype=np.float64)
+    return matrix
+
+
 def normal_grid(steps: int) -> NormalGrid:
-    """Return the grid of normal motions with some steps in each segment, with room of its
-    own; 0 where none are asked for.
+    """Return the grid of normal motions with some steps in each segment, with arrays of its own.
+
+    `steps` are 0 where no normal motions are asked for.
     """
     derivatives, values, integrals = _grid_matrices(steps)
     nodes, points = values.shape[1:]
@@ -93,27 +100,27 @@ def normal_grid(steps: int) -> NormalGrid:
 
 @cache
 def _grid_matrices(steps: int) -> tuple[Floats, Floats, Floats]:
-    """Return the matrices of a `NormalGrid`."""
-    number, width = len(_COUNTS), max(_COUNTS) + 1
-    points = -(-(MORE_STEPS * steps + 1) // 8) * 8
+    """Return the matrices of a `NormalGrid`: derivatives, values and integrals."""
+    number = len(_COUNTS)
+    width = max(_COUNTS) + 1
+    points = math.ceil((MORE_STEPS * steps + 1) / 8) * 8  # they fill vectors of eight
     derivatives = np.zeros((number, width, width))
-    values, integrals = np.zeros((2, 2 * number, width, points))
+    values = np.zeros((2 * number, width, points))
+    integrals = np.zeros((2 * number, width, points))
+    steps_of_grids = (steps, MORE_STEPS * steps) if steps else ()
     for rule, count in enumerate(_COUNTS):
         z, _ = legendre.leggauss(count)
-        spectrum: Floats = np.asarray(
-            np.linalg.inv(legendre.legvander(z, count - 1)), dtype=np.float64
-        )
+        spectrum = _spectrum(z)
+        # with the far end, where the integral ends
+        spectrum_with_end = _spectrum(np.append(z, 1.0))
         slopes = 2.0 * legendre.legder(spectrum, axis=0)
         derivatives[rule, :count, :count] = (legendre.legvander(z, count - 2) @ slopes).T
-        ends = np.append(z, 1.0)
-        of_ends: Floats = np.asarray(
-            np.linalg.inv(legendre.legvander(ends, count)), dtype=np.float64
-        )
-        for finer, number_of_steps in enumerate((steps, MORE_STEPS * steps) if steps else ()):
-            y = np.array([graded(point / number_of_steps) for point in range(number_of_steps + 1)])
-            at = legendre.legvander(2.0 * y - 1.0, count)
-            values[2 * rule + finer, :count, : len(y)] = (at[:, :count] @ spectrum).T
-            integrals[2 * rule + finer, : count + 1, : len(y)] = (at @ of_ends).T
+        for finer, grid_steps in enumerate(steps_of_grids):
+            y = np.array([graded(point / grid_steps) for point in range(grid_steps + 1)])
+            polynomials = legendre.legvander(2.0 * y - 1.0, count)
+            grid = 2 * rule + finer
+            values[grid, :count, : len(y)] = (polynomials[:, :count] @ spectrum).T
+            integrals[grid, : count + 1, : len(y)] = (polynomials @ spectrum_with_end).T
     return derivatives, values, integrals
 
 
@@ -131,37 +138,43 @@ def _write_kind(
     `spectrum`: from values at the nodes to Legendre coefficients.
     """
     turns = kind in (records.TURNING_AT_TOUCH, records.TURNING)
+    touches = kind in (records.TURNING_AT_TOUCH, records.AT_TOUCH, records.AT_TOUCH_INWARD)
     inward = kind in (records.AT_TOUCH_INWARD, records.BETWEEN_INWARD)
-    power = (
-        root if kind in (records.TURNING_AT_TOUCH, records.AT_TOUCH, records.AT_TOUCH_INWARD) else 1
-    )
-    count, far = len(nodes), 0.0 if inward else 1.0
-    places = np.append(nodes, far)
-    factor = nodes if turns else np.ones(count)
-    place, barycentric, factors, per_factor, shape, fall, weight, last, before_last = vectors
-    place[: count + 1] = places
-    barycentric[: count + 1] = 1.0 / np.prod(
-        4.0 * (places[:, None] - places) + np.eye(count + 1), axis=1
-    )
-    factors[:] = per_factor[:] = 1.0
-    factors[:count] = factor
-    per_factor[:count] = 1.0 / factor
-    shape[:count] = (1.0 - nodes**2) ** power
-    shape[count:] = 1.0 if inward else 0.0
-    fall[:count] = -2.0 * nodes / factor * power * (1.0 - nodes**2) ** (power - 1)
-    weight[:count] = weights
-    before_last[:count], last[:count] = spectrum[-2:]
-    integral = to_square = _integrals(spectrum, places, 1.0 if inward else 0.0)
+    power = root if touches else 1
+    count = len(nodes)
+    # the nodes, and the end of the segment at which the motion is not known
+    far_end = 0.0 if inward else 1.0
+    points = np.append(nodes, far_end)
+    factor = nodes if turns else np.ones(count)  # f
+
+    vectors[records.PLACE, : count + 1] = points
+    distances = 4.0 * (points[:, None] - points)
+    vectors[records.BARYCENTRIC, : count + 1] = 1.0 / np.prod(distances + np.eye(count + 1), axis=1)
+    vectors[records.FACTOR] = 1.0
+    vectors[records.FACTOR, :count] = factor
+    vectors[records.PER_FACTOR] = 1.0
+    vectors[records.PER_FACTOR, :count] = 1.0 / factor
+    # the shape s of the indentation, (1 - y^2)^p, and its slope over f
+    vectors[records.SHAPE, :count] = (1.0 - nodes**2) ** power
+    vectors[records.SHAPE, count:] = 1.0 if inward else 0.0
+    vectors[records.FALL, :count] = -2.0 * nodes / factor * power * (1.0 - nodes**2) ** (power - 1)
+    vectors[records.WEIGHT, :count] = weights
+    vectors[records.LAST, :count] = spectrum[-1]
+    vectors[records.BEFORE_LAST, :count] = spectrum[-2]
+
+    integral = _integrals(spectrum, points, 1.0 if inward else 0.0)
+    to_square = integral
     if turns:
         times_y: Floats = np.stack(
             [legendre.legmul(column, [0.5, 0.5]) for column in spectrum.T], axis=1
         )
-        to_square = _integrals(times_y, places, 0.0) / (places**2)[:, None]
-    for matrix, values in zip(matrices, (to_square, integral), strict=True):
-        matrix[:count, : count + 1] = values.T
+        to_square = _integrals(times_y, points, 0.0) / (points**2)[:, None]
+    matrices[0, :count, : count + 1] = to_square.T
+    matrices[1, :count, : count + 1] = integral.T
 
 
-def _integrals(series: Floats, places: Floats, start: float) -> Floats:
-    """Return the integrals of Legendre series in 2 y - 1, the columns, from `start` to places."""
-    whole = legendre.legint(series, lbnd=2.0 * start - 1.0, axis=0)
-    return np.asarray(legendre.legvander(2.0 * places - 1.0, len(whole) - 1) @ whole / 2.0)
+def _integrals(series: Floats, points: Floats, start: float) -> Floats:
+    """Return the integrals of Legendre series in 2 y - 1, the columns, from `start` to points."""
+    integral = legendre.legint(series, lbnd=2.0 * start - 1.0, axis=0)
+    polynomials = legendre.legvander(2.0 * points - 1.0, len(integral) - 1)
+    return np.asarray(polynomials @ integral / 2.0)

@@ -25,8 +25,9 @@ if TYPE_CHECKING:  # a drop of rigid bodies does not load what vibrates
 
 
 class RigidBodies:
-    """The bodies of B drops that do not vibrate: a sphere falls on a plate at rest. `Bodies`
-    describes the methods.
+    """The bodies of B drops that do not vibrate: a sphere falls on a plate at rest.
+
+    `Bodies` describes the methods.
 
     Parameters
     ----------
@@ -39,16 +40,19 @@ class RigidBodies:
     def __init__(self, size: int, solve_contact: SolvesContact) -> None:
         self.columns = tuple(IMPACT_COLUMNS)
         self.solve_contact = solve_contact
-        self.left = np.full(size, np.nan)
+        self.remaining_energy = np.full(size, np.nan)
         self.lying: list[RestMotion | None] = [None] * size
 
     def next_touch(
         self, drops: Drops, flight: Flight, law: ContactLaw
     ) -> tuple[Floats, Floats, Motions]:
-        """Return times of touch [s] from the parabolas of the flights, approach speeds
-        [m/s], and no motions of bodies.
+        """Return times of touch [s], approach speeds [m/s], and no motions of bodies.
+
+        The times are those of the parabolas of the flights.
         """
-        return *flight.touch(-law.touch_level if isinstance(law, CompliantLaw) else np.zeros(1)), ()
+        level = -law.touch_level if isinstance(law, CompliantLaw) else np.zeros(1)
+        touch, speed = flight.touch(level)
+        return touch, speed, ()
 
     def pass_flight(self, drops: Drops, motions: Motions, elapsed: Floats) -> None:
         """Do nothing: rigid bodies have no state but that of the flight."""
@@ -65,7 +69,7 @@ class RigidBodies:
         self,
         drops: Drops,
         conditions: ImpactConditions,
-        place: tuple[Floats, Floats],
+        at_touch: tuple[Floats, Floats],
         limits: tuple[Floats, Floats],
         row: dict[str, Floats],
     ) -> tuple[Contact, Floats, Floats]:
@@ -75,8 +79,9 @@ class RigidBodies:
     def slide(
         self, oblique: ObliqueMotion, bounce: Bounce, row: dict[str, Floats]
     ) -> ObliqueContacts:
-        """Advance drops along the plate, driven by the normal motion of their contacts,
-        which does not feel friction.
+        """Advance drops along the plate, driven by the normal motion of their contacts.
+
+        The normal motion does not feel friction.
         """
         assert bounce.contact is not None
         assert bounce.contact.normals is not None
@@ -86,13 +91,13 @@ class RigidBodies:
         return oblique.collide(bounce.contact_drops, motions, row)
 
     def falls_back(self, contact: Contact, law: CompliantLaw, gravity: Floats) -> Bools:
-        """Return which drops fall back into the indentation before they have risen to the
-        touch level of the law.
+        """Return which drops fall back into the indentation.
+
+        They do before they have risen to the touch level of the law.
         """
         overlap = np.maximum(contact.final_delta - law.touch_level, 0.0)
-        return np.asarray(
-            (contact.outcome != FAILED) & (contact.final_rate**2 < 2.0 * gravity * overlap)
-        )
+        falls = contact.final_rate**2 < 2.0 * gravity * overlap
+        return np.asarray((contact.outcome != FAILED) & falls)
 
     def rests(self, drops: Drops, velocity: Floats, rest_speed: Floats) -> Bools:
         """Return which drops separate below the rest speed, or not at all."""
@@ -101,10 +106,9 @@ class RigidBodies:
     def static_state(
         self, drops: Drops, law: ContactLaw, weight: Floats, energy: Floats
     ) -> dict[str, Floats]:
-        """Return the static indentation under the weight [N], its energy, and the rest of
-        the energy.
-        """
-        sag = stored = np.zeros(len(drops))
+        """Return the static indentation, its energy, and the rest of the energy."""
+        sag = np.zeros(len(drops))
+        stored = np.zeros(len(drops))
         if isinstance(law, CompliantLaw):
             sag = static_indentation(law, weight)
             stored = law.elastic_energy(sag)
@@ -113,9 +117,7 @@ class RigidBodies:
     def follow(
         self, drops: Drops, elapsed: Floats, sag: Floats, stored: Floats
     ) -> tuple[Floats, Floats, Floats]:
-        """Return the gap of the static indentation, no velocity, and the stored energy:
-        rigid bodies lie still.
-        """
+        """Return the gap of the static indentation, no velocity, and the stored energy."""
         return -sag, np.zeros(len(drops)), stored
 
     def energies(self) -> dict[str, Floats]:

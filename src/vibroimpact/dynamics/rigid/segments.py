@@ -1,5 +1,4 @@
-"""The history of one drop as a sequence of segments, each of which gives the motion at any time
-within it.
+"""The history of one drop as segments, each of which gives the motion at any time within it.
 
 A segment counts time from its own start: a contact may be a billion times shorter than the run.
 """
@@ -36,8 +35,9 @@ class MotionInContact(Protocol):
         """Return times since the start at which it is well resolved [s]."""
 
     def at(self, time: Floats, conditions: ImpactConditions) -> tuple[Floats, Floats, Floats]:
-        """Return indentation [m], its rate [m/s] and the energy dissipated since the
-        start [J] at times since then [s].
+        """Return indentation [m], its rate [m/s] and the energy dissipated [J].
+
+        They are those at times since the start [s].
         """
 
 
@@ -56,8 +56,8 @@ class FlightSegment:
     def at(self, time: Floats) -> Motion:
         """Return the motion at times [s] since the start of the segment."""
         gap, velocity = self.flight.at(self.flight.start + time)
-        nothing = np.zeros_like(time)
-        return gap, velocity, nothing, nothing, nothing, nothing
+        zeros = np.zeros_like(time)
+        return gap, velocity, zeros, zeros, zeros, zeros
 
 
 @dataclass(frozen=True)
@@ -80,20 +80,15 @@ class ContactSegment:
 
     def at(self, time: Floats) -> Motion:
         """Return the motion at times [s] since the start of the segment."""
-        delta, velocity, lost = self.motion.at(time, self.conditions)
-        law, begun = self.conditions.law, np.array([self.motion.begins_at])
+        law = self.conditions.law
+        delta, velocity, dissipated = self.motion.at(time, self.conditions)
         elastic, dissipative = law.forces(delta, velocity, self.conditions.approach_speed)
         force = elastic + dissipative
         if law.tension == "cut":
             force = np.maximum(force, 0.0)
-        return (
-            -delta,
-            -velocity,
-            force,
-            law.elastic_energy(delta),
-            lost,
-            law.plastic_work(delta) - law.plastic_work(begun),
-        )
+        plastic_before = law.plastic_work(np.array([self.motion.begins_at]))
+        plastic = law.plastic_work(delta) - plastic_before
+        return -delta, -velocity, force, law.elastic_energy(delta), dissipated, plastic
 
 
 @dataclass(frozen=True)
@@ -106,9 +101,7 @@ class RestSegment:
     weight: float
     stored: float
     points: int = 2
-    """Number of times at which it is well resolved: more where the sphere moves on along
-    the plate.
-    """
+    """Number of times at which it is well resolved: more where the sphere moves on."""
 
     def grid(self) -> Floats:
         """Return times since the start at which the segment is well resolved [s]."""
@@ -116,15 +109,9 @@ class RestSegment:
 
     def at(self, time: Floats) -> Motion:
         """Return the motion at times [s] since the start of the segment."""
-        same = np.ones_like(time)
-        return (
-            -self.sag * same,
-            0.0 * same,
-            self.weight * same,
-            self.stored * same,
-            0.0 * same,
-            0.0 * same,
-        )
+        ones = np.ones_like(time)
+        zeros = 0.0 * ones
+        return -self.sag * ones, zeros, self.weight * ones, self.stored * ones, zeros, zeros
 
 
 Segment = FlightSegment | ContactSegment | RestSegment | RideSegment

@@ -1,6 +1,4 @@
-"""The interface of contact solvers of rigid bodies, and the one that has the core solve
-each drop on its own.
-"""
+"""The interface of contact solvers of rigid bodies, and the one that uses the core."""
 
 from __future__ import annotations
 
@@ -19,8 +17,9 @@ class SolvesContact(Protocol):
     def __call__(
         self, conditions: ImpactConditions, drops: Drops
     ) -> tuple[Contact, Floats, Floats]:
-        """Return the contact, its largest force [N], and the time of that since first
-        touch [s]; `drops` are indices in the run.
+        """Return the contact, its largest force [N], and the time of that since first touch [s].
+
+        `drops` are indices in the run.
         """
         ...
 

@@ -22,8 +22,9 @@ from vibroimpact.dynamics.shaken.ride import RideSegment
 
 @dataclass(frozen=True, eq=False)
 class Timeline(Sequence[Segment]):
-    """Segments made lazily from the bounces of a run, since those of a hundred thousand impacts
-    would take 1 GB.
+    """Segments made lazily from the bounces of a run.
+
+    Those of a hundred thousand impacts would take 1 GB.
 
     Parameters
     ----------
@@ -49,10 +50,12 @@ class Timeline(Sequence[Segment]):
         return len(self.starts)
 
     def bounce_of(self, number: int) -> int:
-        """Return the number of the bounce to which a segment belongs; what comes after them
-        belongs to the last one.
+        """Return the number of the bounce to which a segment belongs.
+
+        What comes after the bounces belongs to the last one.
         """
-        return min(int(np.searchsorted(self._firsts, number, side="right")), len(self.bounces)) - 1
+        after = int(np.searchsorted(self._firsts, number, side="right"))
+        return min(after, len(self.bounces)) - 1
 
     @overload
     def __getitem__(self, index: int) -> Segment: ...
@@ -88,27 +91,26 @@ def timeline_of(
         Energy that each impact takes in damping, in plastic deformation, and minus the work of the
         drive of the plate [J].
     """
-    before = np.concatenate([np.zeros((1, 3)), np.cumsum(lost, axis=0)])
+    lost_before = np.concatenate([np.zeros((1, 3)), np.cumsum(lost, axis=0)])
     starts: list[float] = []
     spent: list[Floats] = []
-    firsts = []
+    firsts: list[int] = []  # number of the first segment of each bounce
     for number, bounce in enumerate(bounces):
         firsts.append(len(starts))
-        so_far = before[number]
+        so_far = lost_before[number]
         segments = segments_of(bounce)
         for segment in segments:
             if isinstance(segment, RideSegment):
-                so_far = before[number + 1]
+                so_far = lost_before[number + 1]
             starts.append(segment.start)
             spent.append(so_far)
             if isinstance(segment, ContactSegment) and segment is not segments[-1]:
-                so_far = so_far + np.array(
-                    [*(float(part[0]) for part in segment.at(segment.duration)[-2:]), 0.0]
-                )
+                *_, dissipated, plastic = segment.at(segment.duration)
+                so_far = so_far + np.array([float(dissipated[0]), float(plastic[0]), 0.0])
     if rest is not None:
         firsts.append(len(starts))
         starts.append(rest.start)
-        spent.append(before[-1])
+        spent.append(lost_before[-1])
     return Timeline(bounces, rest, np.array(starts), np.array(spent), np.array(firsts))
 
 
@@ -116,22 +118,17 @@ def segments_of(bounce: Bounce) -> list[Segment]:
     """Return the segments of a bounce of one drop."""
     touch = float(bounce.flight_end[0])
     segments: list[Segment] = [FlightSegment(float(bounce.flight.start[0]), touch, bounce.flight)]
-    if bounce.ride is not None and touch < float(bounce.ride.end[0]) < np.inf:
-        end = float(bounce.ride.end[0])
-        segments.append(RideSegment(touch, end, bounce.ride, end))
+    if bounce.ride is not None:
+        launch = float(bounce.ride.end[0])
+        if touch < launch < np.inf:
+            segments.append(RideSegment(touch, launch, bounce.ride, launch))
     if bounce.contact is None or bounce.conditions is None:
         return segments
     for piece in bounce.contact.pieces:
-        begin = touch + float(piece.start[0])
-        finish = begin + float(piece.motion.duration[0])
-        segments.append(
-            ContactSegment(
-                begin,
-                finish,
-                cast(MotionInContact, piece.motion),
-                bounce.conditions.under(piece.law),
-            )
-        )
+        start = touch + float(piece.start[0])
+        end = start + float(piece.motion.duration[0])
+        motion = cast(MotionInContact, piece.motion)
+        segments.append(ContactSegment(start, end, motion, bounce.conditions.under(piece.law)))
     return segments
 
 

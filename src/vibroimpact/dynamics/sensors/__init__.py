@@ -1,3 +1,1 @@
-"""What sensors on the plate record: from the motion of its points through a measuring
-chain to samples.
-"""
+"""What sensors on the plate record: its motion through a measuring chain, as samples."""

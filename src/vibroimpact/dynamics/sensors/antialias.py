@@ -32,8 +32,10 @@ _ORDER = 8
 
 @dataclass(frozen=True)
 class AntiAlias:
-    """An anti-alias filter: half width of its linear-phase kernel in samples, zero if it
-    has none, and its pairs of poles.
+    """An anti-alias filter.
+
+    `half_length`: half width of its linear-phase kernel in samples, zero if it has none.
+    `sections`: its pairs of poles.
     """
 
     half_length: int = 0
@@ -59,8 +61,9 @@ def antialias_of(sensor: Sensor) -> AntiAlias:
 
 
 def butterworth(corner: float) -> tuple[Section, ...]:
-    """Return the pairs of poles of a Butterworth low-pass of order eight with a gain of 1
-    / sqrt(2) at the corner frequency [Hz].
+    """Return the pairs of poles of a Butterworth low-pass of order eight.
+
+    It has a gain of 1 / sqrt(2) at the corner frequency [Hz].
     """
     omega = 2.0 * math.pi * corner
     angles = (math.pi * (2.0 * number + 1.0) / (2.0 * _ORDER) for number in range(_ORDER // 2))
@@ -102,26 +105,29 @@ def kernel(x: Floats) -> Floats:
 
 
 def kernel_derivatives() -> Floats:
-    """Return the kernel and its first two derivatives per sampling period, (3, points),
-    at `FINENESS` points per period.
+    """Return the kernel and its first two derivatives per sampling period, (3, points).
+
+    There are `FINENESS` points per period.
     """
-    points = 2 * HALF_LENGTH * FINENESS
+    cells = 2 * HALF_LENGTH * FINENESS
     values = kernel(np.arange(-HALF_LENGTH * FINENESS, HALF_LENGTH * FINENESS + 1) / FINENESS)
-    size = 2 * points  # zero padding against circular wrap-around
-    spectrum, slope = np.fft.rfft(values, size), 2j * np.pi * np.fft.rfftfreq(size, 1.0 / FINENESS)
-    slope[-1] = 0.0
-    return np.stack(
-        [values, *(np.fft.irfft(spectrum * slope**order, size)[: points + 1] for order in (1, 2))]
-    )
+    # derivatives by the Fourier transform, zero padded against circular wrap-around
+    size = 2 * cells
+    spectrum = np.fft.rfft(values, size)
+    factor = 2j * np.pi * np.fft.rfftfreq(size, 1.0 / FINENESS)
+    factor[-1] = 0.0
+    first, second = (np.fft.irfft(spectrum * factor**order, size)[: cells + 1] for order in (1, 2))
+    return np.stack([values, first, second])
 
 
 def parallel(sections: tuple[Section, ...]) -> list[tuple[Floats, Section]]:
-    """Return the partial fractions of a low-pass of pairs of poles: of each pair the
-    numerator a + b s, (2,), and the pair.
+    """Return the partial fractions of a low-pass of pairs of poles.
+
+    They are given as the numerator a + b s of each pair, (2,), and the pair.
     """
-    parts = []
+    fractions = []
     for number, (stiffness, damping) in enumerate(sections):
         poles = PolePairs(np.array([stiffness]), np.array([damping]))
-        value = stiffness * poles.low_pass([*sections[:number], *sections[number + 1 :]])
-        parts.append((value[:, 0], sections[number]))
-    return parts
+        numerator = stiffness * poles.low_pass([*sections[:number], *sections[number + 1 :]])
+        fractions.append((numerator[:, 0], sections[number]))
+    return fractions

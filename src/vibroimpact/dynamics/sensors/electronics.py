@@ -1,5 +1,4 @@
-r"""The electronics behind an instrument: an amplifier with its noise and the hum of the mains, and
-a converter.
+r"""The electronics behind an instrument: an amplifier with noise and hum, and a converter.
 
 .. math:: y = Q\bigl(g\,(x + n + h \cos(2 \pi f_m t + \theta))\bigr)
 
@@ -80,8 +79,10 @@ class Converter:
         return 0.0 if self.bits is None else math.ldexp(self.range, 1 - self.bits)
 
     def read(self, value: Floats) -> Floats:
-        """Return what it reads; the upper end of the range is a step below the lower
-        one's magnitude, as of any two's complement.
+        """Return the readings of samples.
+
+        The upper end of the range is a step below the lower one's magnitude, as of any two's
+        complement.
         """
         rounded = self.step * np.round(value / self.step) if self.step else value
         return np.clip(rounded, -self.range, self.range - self.step)
@@ -103,16 +104,15 @@ def amplified(amplifier: Amplifier, name: str, value: Floats, rate: float, passe
     passed : float
         Gain of the anti-alias filter at the frequency of the mains [-].
     """
-    drawn = np.random.default_rng(
-        [zlib.crc32(f"amplifier of {name}".encode()), *seeds(amplifier.seed)]
-    )
-    phase = drawn.uniform(0.0, 2.0 * math.pi)
+    seed = [zlib.crc32(f"amplifier of {name}".encode()), *seeds(amplifier.seed)]
+    generator = np.random.default_rng(seed)
+    hum_phase = generator.uniform(0.0, 2.0 * math.pi)
     if amplifier.hum:
-        value = value + passed * amplifier.hum * np.cos(
-            2.0 * math.pi * amplifier.mains / rate * np.arange(len(value)) + phase
-        )
+        radians_per_sample = 2.0 * math.pi * amplifier.mains / rate
+        hum = np.cos(radians_per_sample * np.arange(len(value)) + hum_phase)
+        value = value + passed * amplifier.hum * hum
     if amplifier.noise:
-        value = value + amplifier.noise * drawn.standard_normal(len(value))
+        value = value + amplifier.noise * generator.standard_normal(len(value))
     return amplifier.gain * value
 
 

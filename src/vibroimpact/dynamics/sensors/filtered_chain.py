@@ -1,5 +1,4 @@
-r"""A measuring chain with a converter's linear-phase filter, evaluated in closed form at the
-samples only.
+r"""A measuring chain with a converter's linear-phase filter, in closed form at the samples only.
 
 With the kernel h of the filter, of half width T, and the response k of the chain to an impulse of
 force, an output is
@@ -17,7 +16,7 @@ sharp the contact, so one table of K serves for every contact.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 
@@ -34,13 +33,12 @@ from vibroimpact.structures.lagrange_shares import STENCIL, lagrange_shares
 _ROWS = 64
 """Points of the table that are computed at once."""
 _MOST_RADIANS = 5000.0
-"""Largest phase of a mode between two points of the table that is resolved; faster modes
-are far above the band, and hardly respond.
+"""Largest phase of a mode between two points of the table that is resolved.
+
+Faster modes are far above the band, and hardly respond.
 """
-_KEPT = 2_000_000
-"""Largest table of states, in numbers, that is cached for the next drop on the same
-plate: 16 MB.
-"""
+_CACHED_SIZE = 2_000_000
+"""Largest table of states, in numbers, that is cached for the next drop on a plate: 16 MB."""
 _WIDE = 1000
 """Number of impulse points from which on Fourier transforms are faster than sums."""
 
@@ -66,8 +64,9 @@ class FilteredChain:
 
     @cached_property
     def outputs(self) -> Floats:
-        """Weights of displacements and velocities of the oscillators in the outputs
-        `HALF_LENGTH` samples later, (2, S, n).
+        """Weights of displacements and velocities in the outputs, (2, S, n).
+
+        The outputs are those `HALF_LENGTH` samples later.
         """
         return self.chain.pairs.product(
             self.chain.outputs, filter_gains(self.chain.oscillators, self.rate)
@@ -76,15 +75,16 @@ class FilteredChain:
     def add(
         self, values: Floats, port: int, times: Floats, impulses: Floats, last: int, origin: int = 0
     ) -> None:
-        """Add the response to impulses at a port [N s] to `values` (S, samples) from
-        sample `origin` on, for samples before `last`.
+        """Add the response to impulses at a port [N s] to `values` (S, samples).
+
+        These begin with sample `origin`; the response is added to samples before `last`.
         """
         add_responses(values, self.answers[port], self.rate, times, -impulses, last, origin)
 
 
 def add_responses(
     values: Floats,
-    whole: Floats,
+    responses: Floats,
     rate: float,
     times: Floats,
     impulses: Floats,
@@ -97,7 +97,7 @@ def add_responses(
     ----------
     values : array, shape (S, samples)
         Samples, to which is added.
-    whole : array, shape (S, points)
+    responses : array, shape (S, points)
         Responses to a unit impulse, `FINENESS` points per sample, from `HALF_LENGTH` samples before
         it on.
     rate : float
@@ -109,19 +109,23 @@ def add_responses(
     origin : int, default 0
         Number of the first of `values`, counted from time zero.
     """
-    first, spread = _spread_on_grid(times * (rate * FINENESS), impulses)
-    first, last, width = first - origin * FINENESS, last - origin, len(spread)
+    lead = HALF_LENGTH * FINENESS
+    first_point, weights = _spread_on_grid(times * (rate * FINENESS), impulses)
+    first_point -= origin * FINENESS
     # the first sample whose kernel reaches the impulses
-    begin = max(0, -((HALF_LENGTH * FINENESS - first) // FINENESS))
-    end = min(last, values.shape[1])
+    begin = max(0, -((lead - first_point) // FINENESS))
+    end = min(last - origin, values.shape[1])
     if end <= begin:
         return
-    # index of the last impulse point in the responses
-    at = begin * FINENESS - (first + width - 1) + HALF_LENGTH * FINENESS
-    before, after = max(0, -at), (end - 1 - begin) * FINENESS + at + width - whole.shape[1]
-    answers = np.pad(whole, ((0, 0), (before, max(0, after))))
-    answers = answers[:, at + before : at + before + (end - 1 - begin) * FINENESS + width]
-    values[:, begin:end] += _correlate(answers, spread[::-1])
+    # points of the responses from that of the first sample to the last impulse point, to that of
+    # the last sample to the first one; the responses are zero beyond their ends
+    start = begin * FINENESS - (first_point + len(weights) - 1) + lead
+    stop = start + (end - 1 - begin) * FINENESS + len(weights)
+    before = max(0, -start)
+    after = max(0, stop - responses.shape[1])
+    padded = np.pad(responses, ((0, 0), (before, after)))
+    needed = padded[:, start + before : stop + before]
+    values[:, begin:end] += _correlate(needed, weights[::-1])
 
 
 def filtered_chain(chain: MeasuringChain, rate: float, beyond: float) -> FilteredChain:
@@ -137,99 +141,105 @@ def filtered_chain(chain: MeasuringChain, rate: float, beyond: float) -> Filtere
         Length of the impulse response after the filter's reach [s].
     """
     derivatives = kernel_derivatives()
-    points, more = derivatives.shape[1], math.ceil(beyond * FINENESS * rate) + len(STENCIL)
-    answers = np.zeros((*chain.direct.shape[:2], points + more))
-    own = [chain.instrument_of(port) for port in range(len(answers))]
-    of_plate = chain.outputs[:, None, :, : chain.modes] * chain.plate.shape[:, None]
-    of_instrument = np.stack([chain.outputs[:, :, chain.modes :][:, :, one] for one in own], axis=1)
-    _add_oscillators(answers, chain.plate, of_plate, rate, points + _rounded(more))
+    kernel_points = derivatives.shape[1]
+    points_beyond = math.ceil(beyond * FINENESS * rate) + len(STENCIL)
+    # few lengths are cached
+    cached_points = kernel_points + _next_power_of_two(points_beyond)
+    ports, sensors = chain.direct.shape[:2]
+    answers = np.zeros((ports, sensors, kernel_points + points_beyond))
+
+    plate_outputs = chain.outputs[:, None, :, : chain.modes] * chain.plate.shape[:, None]
+    _add_oscillators(answers, chain.plate, plate_outputs, rate, cached_points)
     # each port drives poles of its own, and all of these move alike
-    _add_oscillators(
-        answers, chain.instrument.pick(own[0]), of_instrument, rate, points + _rounded(more)
+    poles_of_ports = [chain.instrument_of(port) for port in range(ports)]
+    instrument_outputs = np.stack(
+        [chain.outputs[:, :, chain.modes :][:, :, poles] for poles in poles_of_ports], axis=1
     )
+    poles = chain.instrument.pick(poles_of_ports[0])
+    _add_oscillators(answers, poles, instrument_outputs, rate, cached_points)
+    # the direct terms in the force and its derivatives
     scaled = derivatives * rate ** np.arange(1.0, 4.0)[:, None]
-    answers[:, :, :points] += chain.direct @ scaled
+    answers[:, :, :kernel_points] += chain.direct @ scaled
     return FilteredChain(chain, rate, answers)
 
 
 def _add_oscillators(
-    answers: Floats, oscillators: Oscillators, weights: Floats, rate: float, count: int
+    answers: Floats, oscillators: Oscillators, weights: Floats, rate: float, cached_points: int
 ) -> None:
-    """Add outputs of oscillators to answers (P, S, points), by the weights of displacements and
-    velocities in them, (2, P, S, n).
+    """Add outputs of oscillators to answers (P, S, points).
 
-    Where they are few enough, the states at the first `count` points are kept, for longer responses
-    of the same oscillators.
+    They have the weights of displacements and velocities in them, (2, P, S, n). Where they are few
+    enough, the states at the first points are cached, for longer responses of the same oscillators.
     """
     if not oscillators.number:
         return
-    parts = (oscillators.angular_frequency.tobytes(), oscillators.damping_ratio.tobytes(), rate)
-    kept, points = 2 * oscillators.number * answers.shape[2] <= _KEPT, answers.shape[2]
-    of_ports = np.concatenate(list(weights), axis=-1)  # (P, S, 2 n)
-    # a port that a single mode sees needs that alone
-    seen = [np.flatnonzero(one) for one in np.asarray(of_ports.any(axis=1))]
-    for begin, states in _kept_states(*parts, count) if kept else _states(*parts, points):
-        rows = min(states.shape[1], points - begin)
-        for answer, weight, which in zip(answers, of_ports, seen, strict=True):
-            answer[:, begin : begin + rows] += weight[:, which] @ states[which, :rows]
+    points = answers.shape[2]
+    frequencies = oscillators.angular_frequency.tobytes()
+    ratios = oscillators.damping_ratio.tobytes()
+    state_weights = np.concatenate(list(weights), axis=-1)  # (P, S, 2 n)
+    # a port that a single mode moves needs the states of that alone
+    states_of_ports = [np.flatnonzero(port) for port in np.asarray(state_weights.any(axis=1))]
+    if 2 * oscillators.number * points <= _CACHED_SIZE:
+        blocks: Iterable[tuple[int, Floats]] = [
+            (0, _cached_states(frequencies, ratios, rate, cached_points))
+        ]
+    else:
+        blocks = _states(frequencies, ratios, rate, points)
+    for begin, states in blocks:
+        count = min(states.shape[1], points - begin)
+        for answer, weight, moving in zip(answers, state_weights, states_of_ports, strict=True):
+            answer[:, begin : begin + count] += weight[:, moving] @ states[moving, :count]
 
 
 def _states(
     frequencies: bytes, ratios: bytes, rate: float, count: int
 ) -> Iterator[tuple[int, Floats]]:
-    """Yield the states (2 n, points), displacements then velocities, of oscillators of shape one
-    driven by a converter's kernel.
+    """Yield the states (2 n, points) of oscillators of shape one driven by a converter's kernel.
 
-    They are given at `FINENESS` points per sample from the beginning of the kernel on, in blocks
-    with the index of the first point.
+    These are displacements, then velocities, at `FINENESS` points per sample from the beginning of
+    the kernel on, in blocks with the index of the first point.
     """
     oscillators = Oscillators(
         np.frombuffer(frequencies), np.frombuffer(ratios), np.ones(len(frequencies) // 8)
     )
-    step, kernel_cells = 1.0 / (FINENESS * rate), 2 * HALF_LENGTH * FINENESS
-    drives = _drives(oscillators, rate, step, kernel_cells)
-    later = oscillators.transition(step * np.arange(1.0, _ROWS + 1.0))  # (2, 2, rows, n)
+    step = 1.0 / (FINENESS * rate)
+    kernel_cells = 2 * HALF_LENGTH * FINENESS
+    increments = _kernel_increments(oscillators, rate, step, kernel_cells)
+    transition = oscillators.transition(step * np.arange(1.0, _ROWS + 1.0))  # (2, 2, rows, n)
     state = np.zeros((2, oscillators.number))
     for begin in range(0, count, _ROWS):
         rows = min(_ROWS, count - begin)
-        if begin > kernel_cells:  # the kernel has passed
-            states = later[:, 0, :rows] * state[0] + later[:, 1, :rows] * state[1]
+        if begin > kernel_cells:  # free motion after the kernel
+            states = transition[:, 0, :rows] * state[0] + transition[:, 1, :rows] * state[1]
         else:
             states = np.empty((2, rows, oscillators.number))
             for row in range(rows):
                 cell = begin + row - 1
                 if cell >= 0:
-                    state = later[:, 0, 0] * state[0] + later[:, 1, 0] * state[1]
+                    state = transition[:, 0, 0] * state[0] + transition[:, 1, 0] * state[1]
                     if cell < kernel_cells:
-                        state += drives[cell]
+                        state += increments[cell]
                 states[:, row] = state
         state = states[:, -1]
         yield begin, states.swapaxes(1, 2).reshape(2 * oscillators.number, rows)
 
 
 @lru_cache(maxsize=8)
-def _kept_states(
-    frequencies: bytes, ratios: bytes, rate: float, count: int
-) -> tuple[tuple[int, Floats]]:
+def _cached_states(frequencies: bytes, ratios: bytes, rate: float, count: int) -> Floats:
     """Return `_states` in one block, cached for drops on the same plate."""
-    return (
-        (
-            0,
-            np.concatenate(
-                [states for _, states in _states(frequencies, ratios, rate, count)], axis=1
-            ),
-        ),
-    )
+    blocks = [states for _, states in _states(frequencies, ratios, rate, count)]
+    return np.concatenate(blocks, axis=1)
 
 
-def _rounded(number: int) -> int:
-    """Return the next power of two, so that few lengths are cached."""
+def _next_power_of_two(number: int) -> int:
+    """Return the least power of two that is not below a number."""
     return 1 << (number - 1).bit_length()
 
 
 def filter_gains(oscillators: Oscillators, rate: float) -> Floats:
-    """Return the gains of a converter's filter for the free motion of oscillators,
-    `HALF_LENGTH` samples later, (2, n).
+    """Return the gains of a converter's filter for the free motion of oscillators, (2, n).
+
+    They give the output `HALF_LENGTH` samples later.
     """
     return _gains(
         oscillators.angular_frequency.tobytes(), oscillators.damping_ratio.tobytes(), rate
@@ -239,47 +249,50 @@ def filter_gains(oscillators: Oscillators, rate: float) -> Floats:
 @lru_cache(maxsize=64)
 def _gains(frequencies: bytes, ratios: bytes, rate: float) -> Floats:
     """Return `filter_gains`, cached."""
+    # the state at the end of the kernel
     *_, (_, states) = _states(frequencies, ratios, rate, 2 * HALF_LENGTH * FINENESS + 1)
     displacement, velocity = np.split(states[:, -1], 2)
-    return np.stack(
-        [
-            velocity + 2.0 * np.frombuffer(ratios) * np.frombuffer(frequencies) * displacement,
-            displacement,
-        ]
-    )
+    damping = 2.0 * np.frombuffer(ratios) * np.frombuffer(frequencies)
+    return np.stack([velocity + damping * displacement, displacement])
 
 
-def _correlate(answers: Floats, weights: Floats) -> Floats:
-    """Return the correlation of responses (S, points) with weights (w,) at every
-    `FINENESS`-th point, (S, samples).
+def _correlate(responses: Floats, weights: Floats) -> Floats:
+    """Return the correlation of responses (S, points) with weights (w,), (S, samples).
+
+    It is given at every `FINENESS`-th point.
     """
-    width, points = len(weights), answers.shape[1]
+    width = len(weights)
+    points = responses.shape[1]
     if width < _WIDE:
-        return np.asarray(sliding_window_view(answers, width, axis=1)[:, ::FINENESS] @ weights)
+        windows = sliding_window_view(responses, width, axis=1)
+        return np.asarray(windows[:, ::FINENESS] @ weights)
     size = 1 << (points + width - 1).bit_length()
-    transformed = np.fft.irfft(np.fft.rfft(answers, size) * np.fft.rfft(weights[::-1], size), size)
-    return np.asarray(transformed[:, width - 1 : points : FINENESS])
+    spectrum = np.fft.rfft(responses, size) * np.fft.rfft(weights[::-1], size)
+    return np.asarray(np.fft.irfft(spectrum, size)[:, width - 1 : points : FINENESS])
 
 
-def _drives(oscillators: Oscillators, rate: float, step: float, cells: int) -> Floats:
-    """Return the increments of displacement and velocity of oscillators of shape one by
-    the kernel in each of its cells, (cells, 2, n).
+def _kernel_increments(oscillators: Oscillators, rate: float, step: float, cells: int) -> Floats:
+    """Return the increments of the states of oscillators by the kernel, (cells, 2, n).
+
+    The oscillators have shape one; the increments of displacement and velocity are those in each
+    cell of the kernel between two points.
     """
     fastest = float(
         (oscillators.angular_frequency * np.maximum(1.0, 2.0 * oscillators.damping_ratio)).max()
     )
     x, weights = gauss_rule(min(fastest * step, _MOST_RADIANS))
     cosine, sine = oscillators.propagators(step * (1.0 - x))
-    places = (np.arange(cells)[:, None] + x) / FINENESS - HALF_LENGTH
-    pushes = kernel(places) * (weights * step * rate)
-    return np.stack([pushes @ sine, pushes @ (cosine - oscillators.damping * sine)], axis=1)
+    times = (np.arange(cells)[:, None] + x) / FINENESS - HALF_LENGTH  # in samples
+    impulses = kernel(times) * (weights * step * rate)
+    return np.stack([impulses @ sine, impulses @ (cosine - oscillators.damping * sine)], axis=1)
 
 
-def _spread_on_grid(places: Floats, amounts: Floats) -> tuple[int, Floats]:
-    """Return amounts at places spread over integer points, as the transpose of Lagrange
-    interpolation: the first point, and the values.
+def _spread_on_grid(positions: Floats, amounts: Floats) -> tuple[int, Floats]:
+    """Return amounts at positions spread over integer points: the first point, and the values.
+
+    It is the transpose of Lagrange interpolation.
     """
-    points, shares = lagrange_shares(places)
+    points, shares = lagrange_shares(positions)
     first = int(points.min())
-    shared = np.bincount((points - first).ravel(), weights=(shares * amounts[:, None]).ravel())
-    return first, np.asarray(shared, dtype=np.float64)
+    spread = np.bincount((points - first).ravel(), weights=(shares * amounts[:, None]).ravel())
+    return first, np.asarray(spread, dtype=np.float64)

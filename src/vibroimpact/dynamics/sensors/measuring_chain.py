@@ -1,8 +1,8 @@
-r"""The chain from the contact force to the output of a sensor, as one linear system: plate, mounted
-resonance, analogue filter.
+r"""The chain from the contact force to the output of a sensor, as one linear system.
 
-The plate is at rest before the first contact, so every sensor records the response to the contact
-force. The displacement of a point is
+It consists of the plate, a mounted resonance and an analogue filter. The plate is at rest before
+the first contact, so every sensor records the response to the contact force. The displacement of a
+point is
 
 .. math:: u(t) = \sum_i \varphi_i\,q_i(t) - C\,F(t)
 
@@ -17,7 +17,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -72,7 +72,7 @@ class MeasuringChain:
         return self.oscillators.pick(np.arange(self.modes, self.oscillators.number))
 
     def instrument_of(self, port: int) -> slice:
-        """Return the places of the pairs of poles for a port among those of the instruments."""
+        """Return the slice of a port's pairs of poles among those of the instruments."""
         number = (self.oscillators.number - self.modes) // len(self.direct)
         return slice(number * port, number * (port + 1))
 
@@ -100,47 +100,49 @@ def measuring_chain(
         The poles of the instruments, each pair with a gain of one at frequency zero.
     """
     sections = _separate_poles(sections, plate)
-    at_modes = PolePairs(plate.angular_frequency**2, plate.damping)
-    passed = at_modes.low_pass(sections)
-    outputs = np.stack(
+    plate_poles = PolePairs(plate.angular_frequency**2, plate.damping)
+    passed = plate_poles.low_pass(sections)
+    plate_outputs = np.stack(
         [
-            shape * at_modes.product(at_modes.power(order), passed)
+            shape * plate_poles.product(plate_poles.power(order), passed)
             for shape, order in zip(shapes, orders, strict=True)
         ]
     )
-    direct = compliance[..., None] * np.array([_whole_part(order, sections) for order in orders])
-    if not sections:
-        direct[:, :, 0] += np.where(
-            np.asarray(orders) == 2, [shapes @ shape for shape in plate.shape], 0.0
-        )
-    of_sections = [
+    outputs_of_sections = [
         _section_weights(number, sections, plate, shapes, compliance, orders)
         for number in range(len(sections))
     ]
-    instrument = np.concatenate(
-        [np.zeros((2, len(compliance), len(shapes), 0)), *of_sections], axis=-1
+    instrument_outputs = np.concatenate(
+        [np.zeros((2, len(compliance), len(shapes), 0)), *outputs_of_sections], axis=-1
     )
-    # those of a port are neighbours
-    by_port = instrument.swapaxes(1, 2).reshape(2, len(shapes), -1)
+    # the poles of a port are neighbours
+    instrument_outputs = instrument_outputs.swapaxes(1, 2).reshape(2, len(shapes), -1)
+    direct = compliance[..., None] * np.array([_whole_part(order, sections) for order in orders])
+    if not sections:
+        # the acceleration of a mode follows the force at once
+        direct[:, :, 0] += np.where(
+            np.asarray(orders) == 2, [shapes @ shape for shape in plate.shape], 0.0
+        )
     return MeasuringChain(
-        _with_sections(plate, sections),
-        plate.number,
-        np.concatenate([outputs.swapaxes(0, 1), by_port], axis=-1),
-        direct,
-        shapes,
-        compliance,
-        tuple(orders),
+        oscillators=_with_sections(plate, sections),
+        modes=plate.number,
+        outputs=np.concatenate([plate_outputs.swapaxes(0, 1), instrument_outputs], axis=-1),
+        direct=direct,
+        shapes=shapes,
+        compliance=compliance,
+        orders=tuple(orders),
     )
 
 
 def _whole_part(order: int, sections: Sequence[Section]) -> Floats:
-    """Return the polynomial in s that a derivative behind pairs of poles has beside
-    partial fractions, lowest power first, (3,).
+    """Return the polynomial in s of a derivative behind pairs of poles, (3,).
+
+    It is what the derivative has beside partial fractions, lowest power first.
     """
-    whole = math.prod(stiffness for stiffness, _ in sections) * np.eye(order + 1)[0]
+    polynomial = math.prod(stiffness for stiffness, _ in sections) * np.eye(order + 1)[0]
     for stiffness, damping in sections:
-        whole, _ = np.polydiv(whole, [1.0, damping, stiffness])
-    return np.asarray(np.pad(whole[::-1], (0, 3 - len(whole))))
+        polynomial, _ = np.polydiv(polynomial, [1.0, damping, stiffness])
+    return np.asarray(np.pad(polynomial[::-1], (0, 3 - len(polynomial))))
 
 
 def at_port(plate: Oscillators, port: int) -> Oscillators:
@@ -149,8 +151,9 @@ def at_port(plate: Oscillators, port: int) -> Oscillators:
 
 
 def section_outputs(number: int, sections: Sequence[Section], orders: Sequence[int]) -> Floats:
-    """Return the outputs of one pair of poles driven by the motion of a point, as
-    elements at these poles, (2, S, 1).
+    """Return the outputs of one pair of poles driven by the motion of a point, (2, S, 1).
+
+    They are elements at these poles.
     """
     stiffness, damping = sections[number]
     poles = PolePairs(np.array([stiffness]), np.array([damping]))
@@ -161,19 +164,18 @@ def section_outputs(number: int, sections: Sequence[Section], orders: Sequence[i
 def point_receptance(
     section: Section, plate: Oscillators, shapes: Floats, compliance: Floats
 ) -> Floats:
-    """Return the receptance of points to minus the force at the poles of a section, (2, S, 1), or
-    (2, P, S, 1) of shapes with P rows.
+    """Return the receptance of points to minus the force at the poles of a section, (2, S, 1).
 
-    `compliance` is that of the modes left out, (S,) or (P, S).
+    It is (2, P, S, 1) of shapes with P rows. `compliance` is that of the modes left out, (S,) or
+    (P, S).
     """
     stiffness, damping = section
-    receptance = np.stack([plate.angular_frequency**2 - stiffness, plate.damping - damping])
-    at_poles = PolePairs(np.full(plate.number, stiffness), np.full(plate.number, damping)).inverse(
-        receptance
-    )
-    receptance_there = np.stack([(part * plate.shape) @ shapes.T for part in at_poles])
-    receptance_there[0] += compliance
-    return np.asarray(receptance_there[..., None])
+    section_poles = PolePairs(np.full(plate.number, stiffness), np.full(plate.number, damping))
+    dynamic_stiffness = np.stack([plate.angular_frequency**2 - stiffness, plate.damping - damping])
+    of_modes = section_poles.inverse(dynamic_stiffness)
+    receptance = np.stack([(element * plate.shape) @ shapes.T for element in of_modes])
+    receptance[0] += compliance
+    return np.asarray(receptance[..., None])
 
 
 def _section_weights(
@@ -184,9 +186,7 @@ def _section_weights(
     compliance: Floats,
     orders: Sequence[int],
 ) -> Floats:
-    """Return the weights of the motion of one pair of poles, driven at each port, in each
-    output, (2, P, S, 1).
-    """
+    """Return the weights in each output of one pair of poles driven at each port, (2, P, S, 1)."""
     stiffness, damping = sections[number]
     poles = PolePairs(np.array([stiffness]), np.array([damping]))
     return poles.product(
@@ -196,24 +196,24 @@ def _section_weights(
 
 
 def _separate_poles(sections: Sequence[Section], plate: Oscillators) -> list[Section]:
-    """Return pairs of poles, shifted slightly where they coincide with those of the plate
-    or with each other.
+    """Return pairs of poles that coincide neither with those of the plate nor with each other.
+
+    They are shifted slightly where they do.
     """
-    found: list[Section] = []
+    separate: list[Section] = []
     for stiffness, damping in sections:
+        others = PolePairs(
+            np.append(plate.angular_frequency**2, [section[0] for section in separate]),
+            np.append(plate.damping, [section[1] for section in separate]),
+        )
         while True:
-            others = PolePairs(
-                np.append(plate.angular_frequency**2, [one for one, _ in found]),
-                np.append(plate.damping, [one for _, one in found]),
-            )
-            near, slope = np.abs(others.quadratic(stiffness, damping)) < _POLE_DISTANCE * np.array(
-                [[stiffness], [math.sqrt(stiffness)]]
-            )
-            if not (near & slope).any():
+            scale = np.array([[stiffness], [math.sqrt(stiffness)]])
+            near = np.abs(others.quadratic(stiffness, damping)) < _POLE_DISTANCE * scale
+            if not near.all(axis=0).any():
                 break
             stiffness *= 1.0 + 3.0 * _POLE_DISTANCE
-        found.append((stiffness, damping))
-    return found
+        separate.append((stiffness, damping))
+    return separate
 
 
 def _with_sections(plate: Oscillators, sections: Sequence[Section]) -> Oscillators:
@@ -221,10 +221,25 @@ def _with_sections(plate: Oscillators, sections: Sequence[Section]) -> Oscillato
     if not sections:
         return plate
     omega = np.sqrt([stiffness for stiffness, _ in sections])
-    ratio, ports = np.array([damping for _, damping in sections]) / (2.0 * omega), len(plate.shape)
-    driven = np.repeat(np.eye(ports), len(sections), axis=1)
+    ratio = np.array([damping for _, damping in sections]) / (2.0 * omega)
+    ports = len(plate.shape)
+    driven_shapes = np.repeat(np.eye(ports), len(sections), axis=1)
     return Oscillators(
         np.append(plate.angular_frequency, np.tile(omega, ports)),
         np.append(plate.damping_ratio, np.tile(ratio, ports)),
-        np.concatenate([plate.shape, driven], axis=1),
+        np.concatenate([plate.shape, driven_shapes], axis=1),
+    )
+
+
+def next_octave(plate: Oscillators, shapes: Floats) -> tuple[Oscillators, Floats]:
+    """Return a model of the modes left out of the next octave, and their shapes at S points.
+
+    `shapes`: those of the modes kept, (S, modes). The next octave is modelled on the last one kept,
+    at twice the frequencies; twice as many are assumed, as for the bending of a plate.
+    """
+    last_octave = np.flatnonzero(plate.angular_frequency > 0.5 * plate.angular_frequency.max())
+    modes = plate.pick(last_octave)
+    return (
+        replace(modes, angular_frequency=2.0 * modes.angular_frequency),
+        2.0 * shapes[:, last_octave],
     )

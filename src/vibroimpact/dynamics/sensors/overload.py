@@ -1,6 +1,4 @@
-"""Overload of an accelerometer: the signal beyond its range, and the effect of clipping
-on the samples.
-"""
+"""Overload of an accelerometer: the signal beyond its range, and clipping of the samples."""
 
 from __future__ import annotations
 
@@ -13,8 +11,10 @@ from vibroimpact.arrays import Floats
 from vibroimpact.dynamics.sensors.antialias import HALF_LENGTH, AntiAlias, kernel, parallel
 from vibroimpact.dynamics.sensors.sensor import sample_count
 
-_FINER, _PER_PERIOD = 8, 64.0
-"""Least oversampling of a clipped signal, and least number of samples per period of a resonance."""
+_LEAST_OVERSAMPLING = 8
+"""Least oversampling of a clipped signal."""
+_SAMPLES_PER_PERIOD = 64.0
+"""Least number of samples of a clipped signal per period of a resonance."""
 RINGING = 60
 """Samples after which the response of a Butterworth filter has decayed."""
 
@@ -47,59 +47,71 @@ class Overload:
 
 def finer_rate(rate: float, resonance: float | None) -> float:
     """Return the sampling rate of a clipped signal [Hz]: an integer multiple of the rate."""
-    return rate * max(_FINER, math.ceil(_PER_PERIOD * (resonance or 0.0) / rate))
+    for_resonance = math.ceil(_SAMPLES_PER_PERIOD * (resonance or 0.0) / rate)
+    return rate * max(_LEAST_OVERSAMPLING, for_resonance)
 
 
-def overload(value: Floats, rate: float, first: int, end: float, limit: float) -> Overload:
-    """Return the excess of samples [m/s^2] over a limit, at a rate [Hz] from sample
-    `first` on, of a run that ends at a time [s].
+def overload_of(value: Floats, rate: float, first: int, end: float, limit: float) -> Overload:
+    """Return the excess of samples over a limit [m/s^2].
+
+    The samples have a rate [Hz] and begin with sample `first`; the run ends at a time [s].
     """
     excess = np.maximum(np.abs(value) - limit, 0.0) * np.sign(value)
-    within = slice(max(-first, 0), max(sample_count(end, rate) - first, 0))
+    # the peak and the time beyond the range are those of the run alone
+    in_run = slice(max(-first, 0), max(sample_count(end, rate) - first, 0))
     return Overload(
-        rate,
-        first,
-        excess,
-        float(np.abs(value[within]).max(initial=0.0)),
-        float(np.count_nonzero(excess[within]) / rate),
+        rate=rate,
+        first=first,
+        excess=excess,
+        peak=float(np.abs(value[in_run]).max(initial=0.0)),
+        time=float(np.count_nonzero(excess[in_run]) / rate),
     )
 
 
-def clipped_part(found: Overload, antialias: AntiAlias, rate: float, count: int) -> Floats:
+def clipped_part(overload: Overload, antialias: AntiAlias, rate: float, count: int) -> Floats:
     """Return the contribution of the excess to the samples after an anti-alias filter, (count,)."""
-    taken, cut = np.zeros(count), np.flatnonzero(found.excess)
-    if not len(cut):
-        return taken
-    finer = round(found.rate / rate)
+    clipped = np.flatnonzero(overload.excess)
+    if not len(clipped):
+        return np.zeros(count)
+    oversampling = round(overload.rate / rate)
     if not antialias.half_length:
-        return _through_poles(found, antialias, finer, count)
+        return _through_poles(overload, antialias, oversampling, count)
     from scipy.signal import upfirdn
 
-    taps = kernel(np.arange(-HALF_LENGTH * finer, HALF_LENGTH * finer + 1) / finer) / finer
-    begin = cut[0] // finer  # the sample at or before the first excess
-    # it begins `HALF_LENGTH` samples before `begin`
-    given = upfirdn(taps, found.excess[begin * finer : cut[-1] + 1], 1, finer)
-    first = found.first // finer + begin - HALF_LENGTH
-    here = slice(max(first, 0), min(first + len(given), count))
-    taken[here] = given[here.start - first : here.stop - first]
-    return taken
+    lead = HALF_LENGTH * oversampling
+    taps = kernel(np.arange(-lead, lead + 1) / oversampling) / oversampling
+    begin = clipped[0] // oversampling  # the sample at or before the first excess
+    excess = overload.excess[begin * oversampling : clipped[-1] + 1]
+    # the filtered excess begins `HALF_LENGTH` samples before `begin`
+    filtered = upfirdn(taps, excess, 1, oversampling)
+    return _placed(filtered, overload.first // oversampling + begin - HALF_LENGTH, count)
 
 
-def _through_poles(found: Overload, antialias: AntiAlias, finer: int, count: int) -> Floats:
-    """Return the contribution of the excess after pairs of poles, exact for an excess
-    that is linear between its samples.
+def _through_poles(
+    overload: Overload, antialias: AntiAlias, oversampling: int, count: int
+) -> Floats:
+    """Return the contribution of the excess after pairs of poles, (count,).
+
+    It is exact for an excess that is linear between its samples.
     """
     from scipy.signal import cont2discrete, lfilter
 
-    cut = np.flatnonzero(found.excess)
-    begin, end = cut[0], min(cut[-1] + 1 + RINGING * finer, len(found.excess))
+    clipped = np.flatnonzero(overload.excess)
+    begin = clipped[0]
+    end = min(clipped[-1] + 1 + RINGING * oversampling, len(overload.excess))
     response = np.zeros(end)
-    for (level, slope), (stiffness, damping) in parallel(antialias.sections):
+    for (constant, slope), (stiffness, damping) in parallel(antialias.sections):
+        transfer_function = ([slope, constant], [1.0, damping, stiffness])
         numerator, denominator, _ = cont2discrete(
-            ([slope, level], [1.0, damping, stiffness]), 1.0 / found.rate, method="foh"
+            transfer_function, 1.0 / overload.rate, method="foh"
         )
-        response[begin:] += lfilter(np.ravel(numerator), denominator, found.excess[begin:end])
-    taken, samples, first = np.zeros(count), response[::finer], found.first // finer
-    here = slice(max(first, 0), min(first + len(samples), count))
-    taken[here] = samples[here.start - first : here.stop - first]
-    return taken
+        response[begin:] += lfilter(np.ravel(numerator), denominator, overload.excess[begin:end])
+    return _placed(response[::oversampling], overload.first // oversampling, count)
+
+
+def _placed(values: Floats, first: int, count: int) -> Floats:
+    """Return samples 0 to `count` of values that begin with sample `first`, zero elsewhere."""
+    samples = np.zeros(count)
+    inside = slice(max(first, 0), min(first + len(values), count))
+    samples[inside] = values[inside.start - first : inside.stop - first]
+    return samples

@@ -1,9 +1,8 @@
-r"""Responses of sensors to a force at any place of the plate.
+r"""Responses of sensors to a force at any position on the plate.
 
 A sensor's response to an impulse of force is linear in the mode shapes :math:`\varphi_i` at the
-place of the force and in the residual
-compliance C between the place and the sensor. With the responses to each of these numbers alone,
-one table serves all places:
+position of the force and in the residual compliance C between it and the sensor. With the responses
+to each of these numbers alone, one table serves all positions:
 
 .. math:: k(t; x) = \sum_i \varphi_i(x)\,k_i(t) + C(x)\,k_C(t)
 """
@@ -33,16 +32,15 @@ _ROWS = 256
 
 @dataclass(frozen=True)
 class PlaceResponses:
-    """Responses of sensors with a common rate to unit impulses of force, for any place of the
-    force.
+    """Responses of sensors of one rate to unit impulses of force, at any position of the force.
 
     Parameters
     ----------
     rate : float
         Samples per second [Hz].
     values : array, shape (modes, S, points)
-        Response to an impulse at a place where one mode alone moves, at `FINENESS` points per
-        sample from `HALF_LENGTH` samples before the impulse on.
+        Response to an impulse where one mode alone moves, at `FINENESS` points per sample from
+        `HALF_LENGTH` samples before the impulse on.
     residual : array, shape (S, points)
         The same for a unit of residual compliance.
     """
@@ -52,8 +50,9 @@ class PlaceResponses:
     residual: Floats
 
     def at(self, shapes: Floats, compliance: Floats) -> Floats:
-        """Return the responses at a place, (S, points), from its mode shapes (modes,) and
-        residual compliances to the sensors (S,).
+        """Return the responses at a position, (S, points).
+
+        It has mode shapes (modes,) and residual compliances to the sensors (S,).
         """
         return np.asarray(
             np.tensordot(shapes, self.values, 1) + compliance[:, None] * self.residual
@@ -87,21 +86,17 @@ def sampled_responses(
 
 
 def sensor_shapes(problem: Problem, sensors: Sequence[Sensor]) -> Floats:
-    """Return what each rigid motion and mode of the plate of a problem does at sensors,
-    (modes, S).
-    """
+    """Return how each rigid motion and mode of the plate moves sensors, (modes, S)."""
     bases = bases_of_plate(problem)
-    return np.stack(
-        [
-            np.concatenate([one.points[of.name] for one in bases]) @ np.asarray(of.components)
-            for of in sensors
-        ],
-        axis=1,
-    )
+    shapes = []
+    for sensor in sensors:
+        points = np.concatenate([basis.points[sensor.name] for basis in bases])
+        shapes.append(points @ np.asarray(sensor.components))
+    return np.stack(shapes, axis=1)
 
 
 def place_responses(problem: Problem, sensors: Sequence[Sensor], duration: float) -> PlaceResponses:
-    """Return the responses of sensors to a force at any place of the plate of a problem.
+    """Return the responses of sensors to a force at any position on the plate of a problem.
 
     Parameters
     ----------
@@ -117,13 +112,14 @@ def place_responses(problem: Problem, sensors: Sequence[Sensor], duration: float
     InputError
         If the rates differ, or a sensor is a microphone or has no anti-alias filter.
     """
-    found = unit_responses(problem, sensors, duration)
-    return replace(found, values=sensor_shapes(problem, sensors)[:, :, None] * found.values)
+    unit = unit_responses(problem, sensors, duration)
+    return replace(unit, values=sensor_shapes(problem, sensors)[:, :, None] * unit.values)
 
 
 def unit_responses(problem: Problem, sensors: Sequence[Sensor], duration: float) -> PlaceResponses:
-    """Return the responses of sensors at which each mode of the plate of a problem is one: those of
-    `sensor_shapes` are their multiples.
+    """Return the responses of sensors at which each mode of the plate of a problem is one.
+
+    Those of `sensor_shapes` are their multiples.
 
     Parameters
     ----------
@@ -138,20 +134,22 @@ def unit_responses(problem: Problem, sensors: Sequence[Sensor], duration: float)
     _check(sensors)
     # a port for each number that the response is linear in: it alone is one
     modes = len(np.concatenate([basis.frequencies for basis in bases_of_plate(problem)]))
-    each = [
+    responses = [
         _responses(problem, sensor, duration, np.eye(modes + 1), np.ones(modes))
         for sensor in sensors
     ]
-    points = min(one.shape[1] for one in each)  # those of a converter's filter are a few longer
-    found = np.stack([one[:, :points] for one in each], axis=1)
-    return PlaceResponses(sensors[0].rate, found[:-1], found[-1])
+    # those of a converter's filter are a few points longer
+    points = min(response.shape[1] for response in responses)
+    table = np.stack([response[:, :points] for response in responses], axis=1)
+    return PlaceResponses(sensors[0].rate, table[:-1], table[-1])
 
 
 def responses_at(
     problem: Problem, sensors: Sequence[Sensor], duration: float, shapes: Floats, compliance: Floats
 ) -> Floats:
-    """Return the responses of sensors to a unit impulse of force at one place, (S, points), as
-    `PlaceResponses.at`, in less memory.
+    """Return the responses of sensors to a unit impulse of force at one position, (S, points).
+
+    They are those of `PlaceResponses.at`, in less memory.
 
     Parameters
     ----------
@@ -166,20 +164,17 @@ def responses_at(
         As `place_responses`.
     """
     _check(sensors)
-    seen = sensor_shapes(problem, sensors).T
-    ports = [np.append(shapes, c)[None] for c in compliance]
-    each = [
-        _responses(problem, one, duration, port, at)[0]
-        for one, port, at in zip(sensors, ports, seen, strict=True)
-    ]
-    points = min(len(one) for one in each)
-    return np.stack([one[:points] for one in each])
+    shapes_at_sensors = sensor_shapes(problem, sensors).T
+    responses = []
+    for number, sensor in enumerate(sensors):
+        port = np.append(shapes, compliance[number])[None]
+        responses.append(_responses(problem, sensor, duration, port, shapes_at_sensors[number])[0])
+    points = min(len(response) for response in responses)
+    return np.stack([response[:points] for response in responses])
 
 
 def _check(sensors: Sequence[Sensor]) -> None:
-    """Raise InputError unless sensors have one rate, and hear the plate where they are
-    through a filter.
-    """
+    """Raise InputError unless sensors have one rate and a filter, and are on the plate."""
     if not sensors:
         raise InputError("there is no sensor; give one or more", "sensors")
     if len({sensor.rate for sensor in sensors}) > 1:
@@ -192,13 +187,10 @@ def _check(sensors: Sequence[Sensor]) -> None:
                 "sensors",
             )
         if sensor.filter == "none":
-            words = (
-                "without an anti-alias filter frequencies above half the rate "
-                "are aliased into the band"
-            )
             raise InputError(
-                f'sensor "{sensor.name}": {words}; give it the filter "sigma-delta" or '
-                '"butterworth"',
+                f'sensor "{sensor.name}": without an anti-alias filter frequencies above half '
+                "the rate are aliased into the band; give it the filter "
+                '"sigma-delta" or "butterworth"',
                 "sensors",
             )
 
@@ -206,47 +198,47 @@ def _check(sensors: Sequence[Sensor]) -> None:
 def _responses(
     problem: Problem, sensor: Sensor, duration: float, ports: Floats, shapes: Floats
 ) -> Floats:
-    """Return the responses of a sensor, at which the modes are `shapes`, to unit impulses, (P,
-    points).
+    """Return the responses of a sensor to unit impulses, (P, points).
 
-    A port has a weight for each mode, and one of the compliance.
+    `ports`: a row for each, with a weight for each mode, and one of the compliance. `shapes`: those
+    of the modes at the sensor.
     """
     bases = bases_of_plate(problem)
-    frequencies, ratios = (
-        np.concatenate(part)
-        for part in zip(
-            *((basis.angular_frequencies, basis.damping_ratios) for basis in bases), strict=True
-        )
-    )
-    number = len(frequencies)
-    plate = Oscillators(frequencies, ratios, ports[:, :number])
+    frequencies = np.concatenate([basis.angular_frequencies for basis in bases])
+    ratios = np.concatenate([basis.damping_ratios for basis in bases])
+    modes = len(frequencies)
     antialias = antialias_of(sensor)
     chain = measuring_chain(
-        plate,
+        Oscillators(frequencies, ratios, ports[:, :modes]),
         shapes[None],
-        ports[:, number:],
+        ports[:, modes:],
         [sensor.order],
         (*sensor.sections, *antialias.sections),
     )
-    gain = (sensor.instrument.gain if sensor.instrument else 1.0) * (
-        sensor.amplifier.gain if sensor.amplifier else 1.0
-    )
+    instrument_gain = sensor.instrument.gain if sensor.instrument else 1.0
+    amplifier_gain = sensor.amplifier.gain if sensor.amplifier else 1.0
+    gain = instrument_gain * amplifier_gain
     if antialias.half_length:
         return -gain * filtered_chain(chain, sensor.rate, duration).answers[:, 0]
     return -gain * _at_instants(chain, sensor.rate, duration)
 
 
 def _at_instants(chain: MeasuringChain, rate: float, duration: float) -> Floats:
-    """Return the responses of a chain without a converter's filter to impulses of minus
-    the force, (P, points), as a filtered one's.
+    """Return the responses of a chain to impulses of minus the force, (P, points).
+
+    The chain has no converter's filter; the points are those of one that has.
     """
-    oscillators, lead = chain.oscillators, HALF_LENGTH * FINENESS
+    oscillators = chain.oscillators
+    lead = HALF_LENGTH * FINENESS
     times = np.arange(math.ceil(duration * rate * FINENESS) + lead) / (rate * FINENESS)
-    found = np.zeros((len(oscillators.shape), lead + len(times)))
+    responses = np.zeros((len(oscillators.shape), lead + len(times)))
+    displacement_weights, velocity_weights = chain.outputs[:, 0]
     for begin in range(0, len(times), _ROWS):
         cosine, sine = oscillators.propagators(times[begin : begin + _ROWS])
-        seen = chain.outputs[0, 0] * sine + chain.outputs[1, 0] * (
+        # to a unit initial velocity
+        output = displacement_weights * sine + velocity_weights * (
             cosine - oscillators.damping * sine
         )
-        found[:, lead + begin : lead + begin + len(seen)] = oscillators.shape @ seen.T
-    return found
+        first = lead + begin
+        responses[:, first : first + len(output)] = oscillators.shape @ output.T
+    return responses

@@ -1,11 +1,9 @@
 r"""Transfer functions at the poles of linear oscillators, in real arithmetic for any damping.
 
 The free motion of an oscillator, :math:`\ddot q = -\omega^2 q - d\,\dot q`, is the exponential of
-the matrix A of its state
-:math:`(q, \dot q)`. The forced output of a linear system driven by that motion is the first row of
-:math:`f(A)\,(q, \dot q)^T`, with the
-system's transfer function f. Since :math:`A^2 = -\omega^2 - d A`, any :math:`f(A) = a + b A`, and
-the output is :math:`a q + b \dot q`.
+the matrix A of its state :math:`(q, \dot q)`. The forced output of a linear system driven by that
+motion is the first row of :math:`f(A)\,(q, \dot q)^T`, with the system's transfer function f. Since
+:math:`A^2 = -\omega^2 - d A`, any :math:`f(A) = a + b A`, and the output is :math:`a q + b \dot q`.
 Elements (a, b) of n oscillators are arrays of shape (2, ..., n).
 """
 
@@ -32,35 +30,41 @@ class PolePairs:
 
     def power(self, order: int) -> Floats:
         """Return the element of the derivative of an order from 0 to 3, that power of A, (2, n)."""
-        one, none = np.ones_like(self.stiffness), np.zeros_like(self.stiffness)
-        squared = (-self.stiffness, -self.damping)
-        cubed = (self.damping * self.stiffness, self.damping**2 - self.stiffness)
-        return np.stack([(one, none), (none, one), squared, cubed][order])
+        ones = np.ones_like(self.stiffness)
+        zeros = np.zeros_like(self.stiffness)
+        powers = (
+            (ones, zeros),
+            (zeros, ones),
+            (-self.stiffness, -self.damping),
+            (self.damping * self.stiffness, self.damping**2 - self.stiffness),
+        )
+        return np.stack(powers[order])
 
     def quadratic(self, stiffness: float, damping: float) -> Floats:
-        """Return the polynomial s^2 + damping s + stiffness of another oscillator at
-        these poles, (2, n).
+        """Return the polynomial s^2 + damping s + stiffness at these poles, (2, n).
+
+        It is that of another oscillator.
         """
         return np.stack([stiffness - self.stiffness, damping - self.damping])
 
-    def product(self, one: Floats, other: Floats) -> Floats:
+    def product(self, first: Floats, second: Floats) -> Floats:
         """Return the product of two elements."""
-        (a, b), (c, d) = one, other
+        a, b = first
+        c, d = second
         return np.stack([a * c - b * d * self.stiffness, a * d + b * c - b * d * self.damping])
 
     def inverse(self, element: Floats) -> Floats:
         """Return the inverse of an element."""
         a, b = element
-        return np.asarray(
-            np.stack([a - self.damping * b, -b])
-            / (a * a - self.damping * a * b + self.stiffness * b * b)
-        )
+        determinant = a * a - self.damping * a * b + self.stiffness * b * b
+        return np.asarray(np.stack([a - self.damping * b, -b]) / determinant)
 
     def low_pass(self, sections: Sequence[Section]) -> Floats:
-        """Return the low-pass of other pairs of poles (stiffness, damping) in series,
-        with unit gain at frequency zero, (2, n).
+        """Return the low-pass of other pairs of poles (stiffness, damping) in series, (2, n).
+
+        It has unit gain at frequency zero.
         """
         passed = math.prod(stiffness for stiffness, _ in sections) * self.power(0)
-        for section in sections:
-            passed = self.product(passed, self.inverse(self.quadratic(*section)))
+        for stiffness, damping in sections:
+            passed = self.product(passed, self.inverse(self.quadratic(stiffness, damping)))
         return np.asarray(passed)

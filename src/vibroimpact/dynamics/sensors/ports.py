@@ -1,4 +1,4 @@
-"""Ports of a plate: the places and directions in which contact forces act on it during a run."""
+"""Ports of a plate: the positions and directions in which contact forces act on it in a run."""
 
 from __future__ import annotations
 
@@ -38,13 +38,16 @@ class Ports:
     def pulses(
         self, stretch: VibratingStretch, fastest: float, until: Floats | None = None
     ) -> list[tuple[int, Pulses]]:
-        """Return the forces of a stretch as pulses, with their ports; arguments are those
-        of `pulses`.
+        """Return the forces of a stretch as pulses, with their ports.
+
+        Arguments are those of `pulses`.
         """
-        port = self.of(stretch.system)
-        forces = [stretch.force[0], *(() if stretch.sliding is None else stretch.sliding.force)]
+        normal_port = self.of(stretch.system)
+        forces = [stretch.force[0]]
+        if stretch.sliding is not None:
+            forces += list(stretch.sliding.force)
         return [
-            (port + number, pulses(stretch, force, fastest, until))
+            (normal_port + number, pulses(stretch, force, fastest, until))
             for number, force in enumerate(forces)
         ]
 
@@ -55,11 +58,15 @@ def ports_of(segments: Sequence[VibratingSegment]) -> Ports:
     residuals: list[Mapping[str, Floats]] = []
     first: dict[int, int] = {}
     for segment in segments:
-        system, ground = segment.system, segment.system.ground
+        system = segment.system
+        ground = system.ground
         if id(system) in first:
             continue
         first[id(system)] = len(shapes)
-        rubs = () if system.along is None else -system.along[:, ground]
-        shapes += [system.shape[0, ground], *rubs]
-        residuals += [system.residuals, *({} for _ in rubs)]
+        shapes.append(system.shape[0, ground])
+        residuals.append(system.residuals)
+        if system.along is not None:  # friction, without residual compliances
+            tangential_shapes = -system.along[:, ground]
+            shapes += list(tangential_shapes)
+            residuals += [{}] * len(tangential_shapes)
     return Ports(np.array(shapes), residuals, first)

@@ -16,14 +16,17 @@ from vibroimpact.dynamics.sensors.filtered_chain import filtered_chain
 from vibroimpact.dynamics.sensors.instruments.accelerometer import Accelerometer
 from vibroimpact.dynamics.sensors.instruments.force_sensor import ForceSensor
 from vibroimpact.dynamics.sensors.instruments.microphone import Microphone
-from vibroimpact.dynamics.sensors.left_out import next_octave
-from vibroimpact.dynamics.sensors.measuring_chain import MeasuringChain, measuring_chain
+from vibroimpact.dynamics.sensors.measuring_chain import (
+    MeasuringChain,
+    measuring_chain,
+    next_octave,
+)
 from vibroimpact.dynamics.sensors.overload import (
     RINGING,
     Overload,
     clipped_part,
     finer_rate,
-    overload,
+    overload_of,
 )
 from vibroimpact.dynamics.sensors.pole_pairs import Section
 from vibroimpact.dynamics.sensors.ports import Ports, ports_of
@@ -49,14 +52,13 @@ if TYPE_CHECKING:
     from vibroimpact.structures.modal_model import ModalBasis  # which loads sparse matrices
 
 MOST_SAMPLES = 100_000_000
-"""Largest number of samples of all sensors, or by which the clipping of one is followed;
-more do not fit into memory.
+"""Largest number of samples of all sensors, or by which the clipping of one is followed.
+
+More do not fit into memory.
 """
-_NONE = np.zeros(3)
+_NO_COMPLIANCE = np.zeros(3)
 _WIDER = 8
-"""Multiple of the rate: samples without a filter are taken to contain frequencies up to
-half of it.
-"""
+"""Multiple of the rate for samples without a filter: their frequencies reach up to half of it."""
 
 
 def record(
@@ -92,27 +94,23 @@ def record(
     signals: dict[str, Signal] = {}
     for sensor in sensors:
         if isinstance(sensor.instrument, Microphone):
-            value, uncertainty = heard(
-                problem,
-                _plate(problem, ports),
-                ports,
-                segments,
-                sensor,
-                sample_count(end, sensor.rate),
-            )
+            plate = _plate(problem, ports)
+            count = sample_count(end, sensor.rate)
+            value, uncertainty = heard(problem, plate, ports, segments, sensor, count)
             signals[sensor.name] = Signal(sensor, _digitised(sensor, value), uncertainty)
         else:
-            groups.setdefault(
-                (sensor.rate, sensor.filter, sensor.corner, sensor.sections), []
-            ).append(sensor)
+            # sensors with the same linear chain are computed together
+            linear_chain = (sensor.rate, sensor.filter, sensor.corner, sensor.sections)
+            groups.setdefault(linear_chain, []).append(sensor)
     for group in groups.values():
         signals |= _recorded(problem, ports, segments, group, end)
     return {sensor.name: signals[sensor.name] for sensor in sensors}
 
 
 def _check(problem: Problem, sensors: Sequence[Sensor], end: float) -> None:
-    """Raise InputError if the plate is rigid and at rest, lacks a point, or there would
-    be too many samples.
+    """Raise InputError if sensors can not record, or there would be too many samples.
+
+    They can not if the plate is rigid and at rest, or lacks a point.
     """
     modes = problem.plate.modes
     if modes is None and problem.motion is None:
@@ -123,33 +121,33 @@ def _check(problem: Problem, sensors: Sequence[Sensor], end: float) -> None:
         )
     for sensor in sensors:
         if isinstance(sensor.instrument, (ForceSensor, Microphone)) and problem.motion is not None:
-            words = (
-                "microphones and force sensors are for plates whose supports are at rest; leave "
-                "out the sensor, or the motion"
-            )
-            raise InputError(words, "sensors")
-        _check_place(modes, sensor)
-        meter = _limited(sensor)
-        rate = sensor.rate if meter is None else finer_rate(sensor.rate, meter.resonance)
-        count = (
-            sum(sample_count(end, one.rate) for one in sensors)
-            if rate == sensor.rate
-            else sample_count(end, rate)
-        )
-        if count > MOST_SAMPLES:
-            whose, remedy = "of all sensors", "ask for a lower rate or a shorter run"
-            if rate != sensor.rate:
-                whose = f'by which the clipping of the sensor "{sensor.name}" is followed'
-                remedy = "ask for a shorter run, or leave out its range or its resonance"
             raise InputError(
-                f"{count:.3g} samples, {whose}, are more than {MOST_SAMPLES:.0e}; {remedy}",
+                "microphones and force sensors are for plates whose supports are at rest; leave "
+                "out the sensor, or the motion",
+                "sensors",
+            )
+        _check_point(modes, sensor)
+        limited = _limited(sensor)
+        rate = sensor.rate if limited is None else finer_rate(sensor.rate, limited.resonance)
+        if rate == sensor.rate:
+            count = sum(sample_count(end, each.rate) for each in sensors)
+            subject = "of all sensors"
+            remedy = "ask for a lower rate or a shorter run"
+        else:
+            count = sample_count(end, rate)
+            subject = f'by which the clipping of the sensor "{sensor.name}" is followed'
+            remedy = "ask for a shorter run, or leave out its range or its resonance"
+        if count > MOST_SAMPLES:
+            raise InputError(
+                f"{count:.3g} samples, {subject}, are more than {MOST_SAMPLES:.0e}; {remedy}",
                 "sensors",
             )
 
 
-def _check_place(modes: ModalBasis | None, sensor: Sensor) -> None:
-    """Raise InputError if the modes of the plate do not know where a sensor is, or do not
-    tell the delays of sound finely enough.
+def _check_point(modes: ModalBasis | None, sensor: Sensor) -> None:
+    """Raise InputError if the modes of the plate do not know the position of a sensor.
+
+    Neither may they tell the delays of sound to a microphone too coarsely.
     """
     if modes is None:
         return
@@ -164,66 +162,75 @@ def _check_place(modes: ModalBasis | None, sensor: Sensor) -> None:
         )
     highest = 1.0 / (FINENESS * modes.sounds[sensor.name].step)
     if sensor.rate > 1.000001 * highest:
-        words = (
+        raise InputError(
             f'the paths of sound to the microphone "{sensor.name}" are valid for {highest:g} '
-            "samples per second at most"
+            f"samples per second at most; ask for a lower rate than {sensor.rate:g} Hz",
+            "sensors",
         )
-        raise InputError(f"{words}; ask for a lower rate than {sensor.rate:g} Hz", "sensors")
 
 
 def _plate(problem: Problem, ports: Ports) -> Oscillators:
     """Return the rigid motions and modes of the plate as oscillators, driven at ports."""
-    parts = ((basis.angular_frequencies, basis.damping_ratios) for basis in bases_of_plate(problem))
-    frequencies, ratios = (np.concatenate(part) for part in zip(*parts, strict=True))
-    return Oscillators(frequencies, ratios, ports.shapes)
+    bases = bases_of_plate(problem)
+    return Oscillators(
+        np.concatenate([basis.angular_frequencies for basis in bases]),
+        np.concatenate([basis.damping_ratios for basis in bases]),
+        ports.shapes,
+    )
 
 
 def _limited(sensor: Sensor) -> Accelerometer | None:
     """Return the accelerometer of a sensor if it has a range."""
-    meter = sensor.instrument
-    return meter if isinstance(meter, Accelerometer) and meter.range is not None else None
+    instrument = sensor.instrument
+    if isinstance(instrument, Accelerometer) and instrument.range is not None:
+        return instrument
+    return None
 
 
 def _recorded(
     problem: Problem,
     ports: Ports,
     segments: Sequence[VibratingSegment],
-    group: Sequence[Sensor],
+    sensors: Sequence[Sensor],
     end: float,
 ) -> dict[str, Signal]:
     """Return the signals of sensors with the same rate, filter and poles of their instruments."""
-    sensor, motion, count = group[0], problem.motion, sample_count(end, group[0].rate)
-    antialias, poles = antialias_of(sensor), (*sensor.sections, *antialias_of(sensor).sections)
-    values, uncertainties = np.zeros((len(group), count)), np.zeros(len(group))
+    rate = sensors[0].rate
+    count = sample_count(end, rate)
+    antialias = antialias_of(sensors[0])
+    values = np.zeros((len(sensors), count))
+    uncertainties = np.zeros(len(sensors))
     if problem.plate.modes is not None:
-        values, uncertainties = _excited(problem, ports, segments, group, count)
-    if motion is not None:
+        values, uncertainties = _excited(problem, ports, segments, sensors, count)
+    if problem.motion is not None:
         values += steady_outputs(
-            motion,
+            problem.motion,
             problem.plate.modes,
-            group,
-            poles,
-            sensor.rate,
+            sensors,
+            (*sensors[0].sections, *antialias.sections),
+            rate,
             range(count),
             bool(antialias.half_length),
         )
     # a filter still holds what was cut off before the run
-    before = 0 if motion is None else RINGING
+    samples_before = 0 if problem.motion is None else RINGING
     signals = {}
-    for number, one in enumerate(group):
-        value, meter, facts = (
-            values[number],
-            _limited(one),
-            {"uncertainty": float(uncertainties[number])},
+    for number, sensor in enumerate(sensors):
+        value = values[number]
+        uncertainty = float(uncertainties[number])
+        limited = _limited(sensor)
+        if limited is None:
+            signals[sensor.name] = Signal(sensor, _digitised(sensor, value), uncertainty)
+            continue
+        assert limited.range is not None
+        overload = _overload(problem, ports, segments, sensor, samples_before, end)
+        if sensor.filter == "none":
+            value = np.clip(value, -limited.range, limited.range)
+        else:
+            value = value - clipped_part(overload, antialias, rate, count)
+        signals[sensor.name] = Signal(
+            sensor, _digitised(sensor, value), uncertainty, overload.peak, overload.time
         )
-        if meter is not None and meter.range is not None:
-            found = _overload(problem, ports, segments, one, before, end)
-            if one.filter == "none":
-                value = np.clip(value, -meter.range, meter.range)
-            else:
-                value = value - clipped_part(found, antialias, one.rate, count)
-            facts |= {"peak": found.peak, "overload_time": found.time}
-        signals[one.name] = Signal(one, _digitised(one, value), **facts)
     return signals
 
 
@@ -231,40 +238,40 @@ def _excited(
     problem: Problem,
     ports: Ports,
     segments: Sequence[VibratingSegment],
-    group: Sequence[Sensor],
+    sensors: Sequence[Sensor],
     count: int,
 ) -> tuple[Floats, Floats]:
-    """Return samples of the vibration that impacts excite (S, count), and how far the
-    modes left out may change each (S,).
+    """Return samples of the vibration that impacts excite (S, count), and their uncertainties.
+
+    These are how far the modes left out may change each signal (S,).
     """
-    sensor, bare = group[0], _chain(problem, ports, group, group[0].sections)
-    antialias, rate, around = (
-        antialias_of(sensor),
-        sensor.rate,
-        around_first_contact(segments, sensor.rate),
-    )
+    rate = sensors[0].rate
+    sections = sensors[0].sections
+    antialias = antialias_of(sensors[0])
+    around = around_first_contact(segments, rate)
+    unfiltered = _chain(problem, ports, sensors, sections)
     # a converter's filter is applied in closed form; an analogue one is a part of the chain,
     # sampled at instants
     if antialias.half_length:
-        known = filtered_chain(bare, rate, response_length(segments, rate, around))
-        values = sample_filtered(known, ports, segments, range(count))
+        kept = filtered_chain(unfiltered, rate, response_length(segments, rate, around))
+        values = sample_filtered(kept, ports, segments, range(count))
     else:
-        chain = _chain(problem, ports, group, (*sensor.sections, *antialias.sections))
+        chain = _chain(problem, ports, sensors, (*sections, *antialias.sections))
         values = sample_at_instants(chain, ports, rate, segments, count)
         rate *= 1 if antialias.sections else _WIDER
-        known = filtered_chain(bare, rate, response_length(segments, rate, around))
+        kept = filtered_chain(unfiltered, rate, response_length(segments, rate, around))
     # the error by the modes left out, from a model of the next octave
-    steeper = 2.0 ** np.array([[one.steepness] for one in group])
+    steeper = 2.0 ** np.array([[sensor.steepness] for sensor in sensors])
     left_out = filtered_chain(
-        _next_octave_chain(bare, steeper, sensor.sections),
+        _next_octave_chain(unfiltered, steeper, sections),
         rate,
         response_length(segments, rate, around),
     )
-    norm, left_out_norm = (
-        np.linalg.norm(outputs_around_first_contact(one, ports, segments, around), axis=1)
-        for one in (known, left_out)
-    )
-    return values, left_out_norm / np.where(norm > 0.0, norm, np.inf)
+    outputs = outputs_around_first_contact(kept, ports, segments, around)
+    norms = np.linalg.norm(outputs, axis=1)
+    outputs_left_out = outputs_around_first_contact(left_out, ports, segments, around)
+    norms_left_out = np.linalg.norm(outputs_left_out, axis=1)
+    return values, norms_left_out / np.where(norms > 0.0, norms, np.inf)
 
 
 def _overload(
@@ -272,87 +279,94 @@ def _overload(
     ports: Ports,
     segments: Sequence[VibratingSegment],
     sensor: Sensor,
-    before: int,
+    samples_before: int,
     end: float,
 ) -> Overload:
-    """Return what of the signal of a sensor lies beyond its range, from so many of its
-    samples before the run on.
+    """Return what of the signal of a sensor lies beyond its range.
+
+    `samples_before`: number of its samples before the run from which on it counts.
     """
-    meter, ahead = _limited(sensor), antialias_of(sensor).half_length / sensor.rate
-    assert meter is not None
-    assert meter.range is not None
-    rate = finer_rate(sensor.rate, meter.resonance)
-    finer, level = round(rate / sensor.rate), meter.range
-    first = first_motion(segments, rate) // finer if problem.motion is None else -before
-    samples = range(first * finer, sample_count(end + ahead, rate))
+    limited = _limited(sensor)
+    assert limited is not None
+    assert limited.range is not None
+    rate = finer_rate(sensor.rate, limited.resonance)
+    oversampling = round(rate / sensor.rate)
+    reach = antialias_of(sensor).half_length / sensor.rate  # of the filter beyond the end
+    if problem.motion is None:
+        first = first_motion(segments, rate) // oversampling
+    else:
+        first = -samples_before
+    samples = range(first * oversampling, sample_count(end + reach, rate))
     value = np.zeros(len(samples))
+    level = limited.range  # of the vibration that the range leaves
     if problem.motion is not None:
         value += steady_outputs(
             problem.motion, problem.plate.modes, [sensor], sensor.sections, rate, samples, True
         )[0]
-        level = max(meter.range - float(np.abs(value).max()), 0.0)
+        level = max(limited.range - float(np.abs(value).max()), 0.0)
     if problem.plate.modes is not None:
-        alone, moved = (
-            _chain(problem, ports, [sensor], sensor.sections),
-            range(max(samples.start, 0), samples.stop),
-        )
-        value[-len(moved) :] += sample_filtered_chain(
-            alone, ports, rate, segments, moved, np.array([level])
+        chain = _chain(problem, ports, [sensor], sensor.sections)
+        in_run = range(max(samples.start, 0), samples.stop)
+        value[-len(in_run) :] += sample_filtered_chain(
+            chain, ports, rate, segments, in_run, np.array([level])
         )[0]
-    return overload(value, rate, samples.start, end, meter.range)
+    return overload_of(value, rate, samples.start, end, limited.range)
 
 
 def _chain(
-    problem: Problem, ports: Ports, group: Sequence[Sensor], sections: Sequence[Section]
+    problem: Problem, ports: Ports, sensors: Sequence[Sensor], sections: Sequence[Section]
 ) -> MeasuringChain:
     """Return the chain from the contact forces to sensors, through pairs of poles."""
     bases = bases_of_plate(problem)
+    directions = [np.asarray(sensor.components) for sensor in sensors]
     shapes = np.stack(
         [
-            np.concatenate([basis.points[one.name] for basis in bases]) @ np.asarray(one.components)
-            for one in group
+            np.concatenate([basis.points[sensor.name] for basis in bases]) @ direction
+            for sensor, direction in zip(sensors, directions, strict=True)
         ]
     )
     compliance = np.array(
         [
-            [part.get(one.name, _NONE) @ np.asarray(one.components) for one in group]
-            for part in ports.residuals
+            [
+                residuals.get(sensor.name, _NO_COMPLIANCE) @ direction
+                for sensor, direction in zip(sensors, directions, strict=True)
+            ]
+            for residuals in ports.residuals
         ]
     )
-    return measuring_chain(
-        _plate(problem, ports), shapes, compliance, [one.order for one in group], sections
-    )
+    orders = [sensor.order for sensor in sensors]
+    return measuring_chain(_plate(problem, ports), shapes, compliance, orders, sections)
 
 
 def _next_octave_chain(
     chain: MeasuringChain, steeper: Floats, poles: Sequence[Section]
 ) -> MeasuringChain:
-    """Return the chain of the modes left out of the next octave, beyond their
-    quasi-static response, as an estimate.
+    """Return the chain of the modes left out of the next octave, as an estimate.
+
+    It is that beyond their quasi-static response.
     """
-    above, shapes_above = next_octave(chain.plate, steeper * chain.shapes)
-    static = -(shapes_above * above.shape[:, None] / above.angular_frequency**2).sum(axis=2)
-    return measuring_chain(above, shapes_above, static, chain.orders, poles)
+    modes, shapes = next_octave(chain.plate, steeper * chain.shapes)
+    static = -(shapes * modes.shape[:, None] / modes.angular_frequency**2).sum(axis=2)
+    return measuring_chain(modes, shapes, static, chain.orders, poles)
 
 
 def _digitised(sensor: Sensor, value: Floats) -> Floats:
-    """Return samples with what is not linear: noise and resolution of an accelerometer;
-    and with gain, amplifier and converter.
+    """Return samples with noise, resolution, gain, amplifier and converter.
+
+    Noise and resolution are those of an accelerometer.
     """
-    meter, amplifier = sensor.instrument, sensor.amplifier
-    if isinstance(meter, Accelerometer):
-        if meter.noise:
-            seed = [zlib.crc32(sensor.name.encode()), *seeds(meter.seed)]
-            value = value + meter.noise * np.random.default_rng(seed).standard_normal(len(value))
-        value = (
-            value
-            if meter.resolution is None
-            else meter.resolution * np.round(value / meter.resolution)
-        )
-    if meter is not None:
-        value = meter.gain * value
+    instrument = sensor.instrument
+    if isinstance(instrument, Accelerometer):
+        if instrument.noise:
+            seed = [zlib.crc32(sensor.name.encode()), *seeds(instrument.seed)]
+            noise = np.random.default_rng(seed).standard_normal(len(value))
+            value = value + instrument.noise * noise
+        if instrument.resolution is not None:
+            value = instrument.resolution * np.round(value / instrument.resolution)
+    if instrument is not None:
+        value = instrument.gain * value
+    amplifier = sensor.amplifier
     if amplifier is not None:
-        value = amplified(
-            amplifier, sensor.name, value, sensor.rate, gain_at(sensor, amplifier.mains)
-        )
+        passed = gain_at(sensor, amplifier.mains)
+        value = amplified(amplifier, sensor.name, value, sensor.rate, passed)
     return value if sensor.converter is None else sensor.converter.read(value)

@@ -45,8 +45,9 @@ class Signal:
 
     @property
     def time(self) -> Floats:
-        """Times of the samples since the start [s], recomputed on access, as they take as
-        much memory as the values.
+        """Times of the samples since the start [s].
+
+        They are recomputed on access, as they take as much memory as the values.
         """
         return self.times(0, len(self.value))
 
@@ -55,8 +56,9 @@ class Signal:
         return np.arange(first, min(last, len(self.value))) / self.sensor.rate
 
     def first_at(self, time: float) -> int:
-        """Return the number of the first sample that is not before a time [s]; the number
-        of samples if there is none.
+        """Return the number of the first sample that is not before a time [s].
+
+        It is the number of samples if there is none.
         """
         # may be off by rounding
         about = min(max(int(time * self.sensor.rate) - 2, 0), len(self.value))

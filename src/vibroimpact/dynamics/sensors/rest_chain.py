@@ -1,9 +1,9 @@
-r"""A measuring chain while a sphere is at rest on the plate, in closed form: both move as one
-linear system about their equilibrium.
+r"""A measuring chain while a sphere is at rest on the plate, in closed form.
 
-With the coupled oscillators c of sphere and plate and their mode shapes S (rows: the sphere, scaled
-by the root of its mass, then the modes of the plate), the modes of the plate move by :math:`q = q_0
-+ S c`, and the contact force follows from the acceleration of the sphere,
+Sphere and plate move as one linear system about their equilibrium. With their coupled oscillators c
+and mode shapes S (rows: the sphere, scaled by the root of its mass, then the modes of the plate),
+the modes of the plate move by :math:`q = q_0 + S c`, and the contact force follows from the
+acceleration of the sphere,
 
 .. math:: F = m g - m \ddot s = m g - \sqrt m \sum_j S_{0j}\,\ddot c_j .
 
@@ -34,10 +34,11 @@ from vibroimpact.dynamics.vibrating.oscillators import Oscillators, joined
 from vibroimpact.dynamics.vibrating.rest_motion import FreeOscillations, RestMotion
 
 _FAST = 16.0
-"""Oscillations faster than this multiple of the system's highest frequency act as one
-impulse, with an error of one over its square.
+"""Multiple of the system's highest frequency beyond which oscillations act as one impulse.
+
+The error is one over its square.
 """
-_TURN = 10.0
+_RADIANS_PER_PANEL = 10.0
 """Radians, or time constants, per panel of Gauss's rule."""
 
 
@@ -72,16 +73,21 @@ def rest_chain(
     instrument_state : array, shape (2, pairs of poles)
         State of the instruments' pairs of poles at the beginning.
     """
-    equilibrium, motion = rest.equilibrium, rest.oscillations
-    poles, ground, compliance = _poles(motion), equilibrium.system.ground, chain.compliance[port]
-    # (2, S, oscillators)
-    moved = (
+    equilibrium = rest.equilibrium
+    motion = rest.oscillations
+    poles = _poles(motion)
+    ground = equilibrium.system.ground
+    compliance = chain.compliance[port]
+    # motion of each point as elements at the poles of the oscillators, (2, S, oscillators), and its
+    # static deflection (S,); the modes left out follow the force
+    point_motion = (
         chain.shapes @ motion.shapes[:, ground]
         - compliance[:, None] * _force(rest, motion)[:, None]
     )
     static = chain.shapes @ equilibrium.state.displacement[ground] - compliance * equilibrium.weight
-    here = chain.instrument_of(port)
-    instrument = at_port(chain.instrument.pick(here), port)
+
+    own_poles = chain.instrument_of(port)
+    instrument = at_port(chain.instrument.pick(own_poles), port)
     sections = list(
         zip((instrument.angular_frequency**2).tolist(), instrument.damping.tolist(), strict=True)
     )
@@ -89,44 +95,44 @@ def rest_chain(
     outputs = [
         np.stack(
             [
-                poles.product(one, poles.product(poles.power(order), passed))
-                for one, order in zip(moved.swapaxes(0, 1), chain.orders, strict=True)
+                poles.product(point_motion[:, sensor], poles.product(poles.power(order), passed))
+                for sensor, order in enumerate(chain.orders)
             ],
             1,
         )
     ]
-    places = [motion.start]
+    oscillators = [motion.oscillators]
+    initial = [motion.start]
+    # the instruments' own free motion: what their state differs from that of the driven motion
     for number, section in enumerate(sections):
-        driven = poles.product(moved, poles.inverse(poles.quadratic(*section))[:, None])
-        now = np.stack(
-            [
-                _value(driven, motion.start),
-                _value(poles.product(driven, poles.power(1)[:, None]), motion.start),
-            ]
+        driven = poles.product(point_motion, poles.inverse(poles.quadratic(*section))[:, None])
+        driven_rate = poles.product(driven, poles.power(1)[:, None])
+        driven_state = np.stack([_value(driven, motion.start), _value(driven_rate, motion.start)])
+        driven_state[0] += static / section[0]
+        state = _driven_section_states(
+            chain, port, section, rest, instrument_state[:, own_poles][:, [number]]
         )
-        now[0] += static / section[0]
-        places.append(
-            _driven_section_states(
-                chain, port, section, rest, instrument_state[:, here][:, [number]]
-            )
-            - now
-        )
+        oscillators.append(instrument.pick(np.full(len(static), number)))
+        initial.append(state - driven_state)
         outputs.append(section_outputs(number, sections, chain.orders) * np.eye(len(static)))
-    constant = np.where(np.asarray(chain.orders) == 0, static, 0.0)
-    own = [instrument.pick(np.full(len(static), number)) for number in range(len(sections))]
-    # what earlier contacts left in the instruments dies away
-    for other in (one for one in range(len(chain.direct)) if one != port):
-        there = chain.instrument_of(other)
-        own.append(at_port(chain.instrument.pick(there), other))
-        places.append(instrument_state[:, there])
-        outputs.append(chain.outputs[:, :, chain.modes :][:, :, there])
-    oscillators = joined([motion.oscillators, *own])
+    # what earlier contacts at other ports left in the instruments dies away
+    for other in range(len(chain.direct)):
+        if other == port:
+            continue
+        other_poles = chain.instrument_of(other)
+        oscillators.append(at_port(chain.instrument.pick(other_poles), other))
+        initial.append(instrument_state[:, other_poles])
+        outputs.append(chain.outputs[:, :, chain.modes :][:, :, other_poles])
     return RestChain(
-        oscillators, np.concatenate(outputs, axis=-1), np.concatenate(places, axis=1), constant
+        oscillators=joined(oscillators),
+        outputs=np.concatenate(outputs, axis=-1),
+        initial=np.concatenate(initial, axis=1),
+        constant=np.where(np.asarray(chain.orders) == 0, static, 0.0),
     )
 
 
 def _poles(motion: FreeOscillations) -> PolePairs:
+    """Return the poles of the oscillators of a motion."""
     return PolePairs(motion.oscillators.angular_frequency**2, motion.oscillators.damping)
 
 
@@ -142,41 +148,46 @@ def _force(rest: RestMotion, motion: FreeOscillations) -> Floats:
 def _driven_section_states(
     chain: MeasuringChain, port: int, section: Section, rest: RestMotion, instrument_state: Floats
 ) -> Floats:
-    """Return the states of a pair of poles driven by the motion of each point, (2, S),
-    from its state under minus the force, (2, 1).
+    """Return the states of a pair of poles driven by the motion of each point, (2, S).
+
+    `instrument_state`: its state under minus the force, (2, 1).
     """
-    plate, ground = at_port(chain.plate, port), rest.equilibrium.system.ground
-    modes = np.stack([rest.start.displacement[ground], rest.start.velocity[ground]])
-    found = []
-    at_modes, poles = (
-        PolePairs(plate.angular_frequency**2, plate.damping),
-        PolePairs(np.array([section[0]]), np.array([section[1]])),
-    )
-    by_modes, by_own = (
-        at_modes.inverse(at_modes.quadratic(*section)),
-        point_receptance(section, plate, chain.shapes, chain.compliance[port]),
-    )
+    plate = at_port(chain.plate, port)
+    ground = rest.equilibrium.system.ground
+    plate_state = np.stack([rest.start.displacement[ground], rest.start.velocity[ground]])
+    plate_poles = PolePairs(plate.angular_frequency**2, plate.damping)
+    section_poles = PolePairs(np.array([section[0]]), np.array([section[1]]))
+    # partial fractions of section and point: at the poles of the plate, and at those of the section
+    at_plate = plate_poles.inverse(plate_poles.quadratic(*section))
+    at_section = point_receptance(section, plate, chain.shapes, chain.compliance[port])
+    states = []
     for order in (0, 1):
-        of_modes = chain.shapes @ _terms(at_modes.product(by_modes, at_modes.power(order)), modes)
-        found.append(
-            of_modes + _value(poles.product(by_own, poles.power(order)[:, None]), instrument_state)
+        by_modes = chain.shapes @ _terms(
+            plate_poles.product(at_plate, plate_poles.power(order)), plate_state
         )
-    return np.stack(found)
+        by_section = _value(
+            section_poles.product(at_section, section_poles.power(order)[:, None]), instrument_state
+        )
+        states.append(by_modes + by_section)
+    return np.stack(states)
 
 
-def _terms(element: Floats, place: Floats) -> Floats:
+def _terms(element: Floats, state: Floats) -> Floats:
     """Return a q + b q' of each oscillator, (..., n)."""
-    return np.asarray(element[0] * place[0] + element[1] * place[1])
+    a, b = element
+    displacement, velocity = state
+    return np.asarray(a * displacement + b * velocity)
 
 
-def _value(element: Floats, place: Floats) -> Floats:
+def _value(element: Floats, state: Floats) -> Floats:
     """Return the sums of a q + b q' over the oscillators, (...)."""
-    return np.asarray(_terms(element, place).sum(axis=-1))
+    return np.asarray(_terms(element, state).sum(axis=-1))
 
 
 def rest_pulses(rest: RestMotion, fastest: float, length: float) -> Pulses:
-    """Return times since rest began [s] and impulses [N s] that are equivalent to the contact force
-    for a smooth linear system.
+    """Return times since rest began [s] and impulses [N s] equivalent to the contact force.
+
+    They are so for a smooth linear system.
 
     Parameters
     ----------
@@ -188,31 +199,35 @@ def rest_pulses(rest: RestMotion, fastest: float, length: float) -> Pulses:
         Duration [s].
     """
     motion = rest.oscillations
-    oscillators, poles, force = motion.oscillators, _poles(motion), _force(rest, motion)
+    oscillators = motion.oscillators
+    poles = _poles(motion)
+    force = _force(rest, motion)
     fast = (oscillators.damping_ratio < 1.0) & (oscillators.angular_frequency > _FAST * fastest)
-    # total impulse of oscillations that decay or average out
-    at_once = -_value(
-        poles.product(force, poles.inverse(poles.power(1)))[:, fast], motion.start[:, fast]
-    )
+    # total impulse of oscillations that decay or average out: the integral of their force, by the
+    # inverse of the derivative
+    integrated = poles.product(force, poles.inverse(poles.power(1)))
+    fast_impulse = -_value(integrated[:, fast], motion.start[:, fast])
     slow = oscillators.pick(~fast)
     times, weights = _graded_rule(length, fastest, slow)
-    later, (place, speed) = slow.transition(times), motion.start[:, ~fast]
-    pushed = rest.equilibrium.weight + _value(
-        force[:, None, ~fast], later[:, 0] * place + later[:, 1] * speed
-    )
-    return np.append(0.0, times), np.append(at_once, weights * pushed)
+    transition = slow.transition(times)
+    displacement, velocity = motion.start[:, ~fast]
+    slow_state = transition[:, 0] * displacement + transition[:, 1] * velocity
+    slow_force = rest.equilibrium.weight + _value(force[:, None, ~fast], slow_state)
+    return np.append(0.0, times), np.append(fast_impulse, weights * slow_force)
 
 
 def _graded_rule(length: float, fastest: float, oscillators: Oscillators) -> tuple[Floats, Floats]:
-    """Return nodes [s] and weights [s] of Gauss's rule up to a time, with panels for the
-    oscillations, graded towards 0 for fast decays.
+    """Return nodes and weights of Gauss's rule up to a time [s].
+
+    It has panels for the oscillations, graded towards 0 for fast decays.
     """
-    swinging = oscillators.angular_frequency[oscillators.damping_ratio < 1.0].max(initial=0.0)
-    panel = length / math.ceil(max(1.0, (fastest + swinging) * length / _TURN))
-    dying = float(
+    highest = oscillators.angular_frequency[oscillators.damping_ratio < 1.0].max(initial=0.0)
+    radians = (fastest + highest) * length
+    panel = length / math.ceil(max(1.0, radians / _RADIANS_PER_PANEL))
+    fastest_decay = float(
         (2.0 * oscillators.damping_ratio * oscillators.angular_frequency).max(initial=0.0)
     )
-    halvings = math.ceil(math.log2(max(1.0, dying * panel / _TURN)))
+    halvings = math.ceil(math.log2(max(1.0, fastest_decay * panel / _RADIANS_PER_PANEL)))
     ends = np.concatenate(
         [
             [0.0],
@@ -220,6 +235,6 @@ def _graded_rule(length: float, fastest: float, oscillators: Oscillators) -> tup
             panel * np.arange(1, round(length / panel) + 1),
         ]
     )
-    x, weights = gauss_rule(_TURN)
+    x, weights = gauss_rule(_RADIANS_PER_PANEL)
     spans = np.diff(ends)[:, None]
     return (ends[:-1, None] + spans * x).ravel(), (spans * weights).ravel()

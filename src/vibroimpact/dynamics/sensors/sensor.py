@@ -134,11 +134,9 @@ class Sensor:
     @property
     def components(self) -> Direction:
         """Weights of the three numbers that a mode has at the sensor: displacements, or strains."""
-        return (
-            self.direction
-            if self.instrument is None
-            else self.instrument.components(self.direction)
-        )
+        if self.instrument is None:
+            return self.direction
+        return self.instrument.components(self.direction)
 
     @property
     def sees_strain(self) -> bool:
@@ -152,14 +150,13 @@ class Sensor:
 
     @property
     def passed(self) -> float:
-        """Highest frequency that its anti-alias filter passes [Hz]; without one, what the
-        default Butterworth filter would pass.
+        """Highest frequency that its anti-alias filter passes [Hz].
+
+        Without one, it is what the default Butterworth filter would pass.
         """
-        return (
-            _FLAT * self.rate
-            if self.filter == "sigma-delta"
-            else self.corner or _CORNER * self.rate
-        )
+        if self.filter == "sigma-delta":
+            return _FLAT * self.rate
+        return self.corner or _CORNER * self.rate
 
     def of_drop(self, number: int) -> Sensor:
         """Return the sensor with noise and hum of its own for a drop of a study, by its number."""

@@ -1,5 +1,4 @@
-r"""Samples of a microphone: the accelerations of the modes, each through its paths of sound and the
-anti-alias filter.
+r"""Samples of a microphone: accelerations of modes through paths of sound and a filter.
 
 With the paths of sound w of the modes, by delay, and the kernel h of the filter, the samples over
 the density of the air are
@@ -27,8 +26,7 @@ from vibroimpact.arrays import Floats
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.sensors.antialias import HALF_LENGTH, kernel
 from vibroimpact.dynamics.sensors.filtered_chain import FilteredChain, filtered_chain
-from vibroimpact.dynamics.sensors.left_out import next_octave
-from vibroimpact.dynamics.sensors.measuring_chain import measuring_chain
+from vibroimpact.dynamics.sensors.measuring_chain import measuring_chain, next_octave
 from vibroimpact.dynamics.sensors.ports import Ports
 from vibroimpact.dynamics.sensors.sampled import (
     around_first_contact,
@@ -45,16 +43,18 @@ if TYPE_CHECKING:
 
 _FINER = 2
 """Rate of the accelerations over that of the samples: their images then lie beyond the filter."""
-_KEPT = 1e-9
-"""Least singular value that is kept, relative to the largest."""
+_NEGLIGIBLE = 1e-9
+"""Singular value, relative to the largest, below which a combination is left out."""
 _AT_ONCE = 16
 """Combinations of modes that are sampled at once, for memory."""
 
 
 @dataclass(frozen=True)
 class _Kernels:
-    """Kernels of the modes as products: weights of the modes (r, modes), and kernels (r,
-    lags) from a first lag on, in finer samples.
+    """Kernels of the modes as products.
+
+    `shapes`: weights of the modes (r, modes). `lags`: kernels (r, lags) from a first lag `first`
+    on, in finer samples.
     """
 
     shapes: Floats
@@ -70,8 +70,9 @@ def heard(
     sensor: Sensor,
     count: int,
 ) -> tuple[Floats, float]:
-    """Return the samples of a microphone over the gain of its instrument, (count,), and their
-    relative error by the modes left out.
+    """Return the samples of a microphone over the gain of its instrument, (count,).
+
+    With their relative error by the modes left out.
 
     Parameters
     ----------
@@ -86,25 +87,25 @@ def heard(
     count : int
         Number of samples from the start on.
     """
-    kernels, rate = _kernels(problem, sensor), _FINER * sensor.rate
+    kernels = _kernels(problem, sensor)
+    rate = _FINER * sensor.rate
     # a sample of acceleration sees a little of what comes later: the samples begin before the run
-    late = HALF_LENGTH / rate
-    later = [
-        replace(segment, start=segment.start + late, end=segment.end + late) for segment in segments
+    lead = HALF_LENGTH / rate
+    delayed = [
+        replace(segment, start=segment.start + lead, end=segment.end + lead) for segment in segments
     ]
-    finer = max(0, _FINER * (count - 1) - kernels.first + HALF_LENGTH + 1)
-    sum_of_all = np.zeros(finer + kernels.lags.shape[1] - 1)
-    for begin in range(0, len(kernels.shapes) if finer else 0, _AT_ONCE):
-        part = slice(begin, begin + _AT_ONCE)
-        accelerations = sample_filtered(
-            _chain(plate, kernels.shapes[part], rate, later), ports, later, range(finer)
-        )
-        sum_of_all += _through(accelerations, kernels.lags[part])
-    ahead = HALF_LENGTH - kernels.first
-    samples = np.pad(sum_of_all, (max(0, -ahead), 0))[max(0, ahead) :: _FINER][:count]
-    return np.pad(samples, (0, count - len(samples))), _uncertainty(
-        kernels, plate, ports, segments, rate
-    )
+    finer_count = max(0, _FINER * (count - 1) - kernels.first + HALF_LENGTH + 1)
+    pressure = np.zeros(finer_count + kernels.lags.shape[1] - 1)
+    for begin in range(0, len(kernels.shapes) if finer_count else 0, _AT_ONCE):
+        combinations = slice(begin, begin + _AT_ONCE)
+        chain = _chain(plate, kernels.shapes[combinations], rate, delayed)
+        accelerations = sample_filtered(chain, ports, delayed, range(finer_count))
+        pressure += _convolved(accelerations, kernels.lags[combinations])
+    # number of the finer sample at the start of the run
+    start = HALF_LENGTH - kernels.first
+    samples = np.pad(pressure, (max(0, -start), 0))[max(0, start) :: _FINER][:count]
+    samples = np.pad(samples, (0, count - len(samples)))
+    return samples, _uncertainty(kernels, plate, ports, segments, rate)
 
 
 def _uncertainty(
@@ -114,20 +115,22 @@ def _uncertainty(
     segments: Sequence[VibratingSegment],
     rate: float,
 ) -> float:
-    """Return the sound of the modes left out of the next octave, as an estimate, relative
-    to that of the modes around the first contact.
+    """Return the sound of the modes left out of the next octave, as an estimate.
+
+    It is relative to that of the modes around the first contact.
     """
-    norms, around = [], around_first_contact(segments, rate)
-    for modes, shapes in ((plate, kernels.shapes), next_octave(plate, kernels.shapes)):
-        accelerations = outputs_around_first_contact(
-            _chain(modes, shapes, rate, segments), ports, segments, around
-        )
-        norms.append(
-            float(np.linalg.norm(_through(accelerations, kernels.lags)))
-            if accelerations.size
-            else 0.0
-        )
-    return norms[1] / norms[0] if norms[0] else 0.0
+    around = around_first_contact(segments, rate)
+
+    def norm(modes: Oscillators, shapes: Floats) -> float:
+        chain = _chain(modes, shapes, rate, segments)
+        accelerations = outputs_around_first_contact(chain, ports, segments, around)
+        if not accelerations.size:
+            return 0.0
+        return float(np.linalg.norm(_convolved(accelerations, kernels.lags)))
+
+    norm_of_kept = norm(plate, kernels.shapes)
+    norm_of_left_out = norm(*next_octave(plate, kernels.shapes))
+    return norm_of_left_out / norm_of_kept if norm_of_kept else 0.0
 
 
 def _chain(
@@ -138,35 +141,36 @@ def _chain(
     What the modes left out do quasi-statically has no part in it: next to the contact, it moves
     hardly any air.
     """
+    ports = len(plate.shape)
+    combinations = len(shapes)
     chain = measuring_chain(
-        plate, shapes, np.zeros((len(plate.shape), len(shapes))), [2] * len(shapes), ()
+        plate, shapes, np.zeros((ports, combinations)), [2] * combinations, sections=()
     )
-    return filtered_chain(
-        chain, rate, response_length(segments, rate, around_first_contact(segments, rate))
-    )
+    length = response_length(segments, rate, around_first_contact(segments, rate))
+    return filtered_chain(chain, rate, length)
 
 
 def _kernels(problem: Problem, sensor: Sensor) -> _Kernels:
     """Return the kernels of the modes for a microphone."""
     paths = [basis.sounds[sensor.name] for basis in bases_of_plate(problem)]
     delays = paths[0].delays * sensor.rate  # in samples
-    first, last = (
-        round(_FINER * (end + side * HALF_LENGTH))
-        for end, side in ((delays[0], -1.0), (delays[-1], 1.0))
-    )
+    first = round(_FINER * (delays[0] - HALF_LENGTH))
+    last = round(_FINER * (delays[-1] + HALF_LENGTH))
     lags = np.arange(first, last + 1) / _FINER
-    whole = (
-        np.concatenate([path.weights for path in paths]) @ kernel(lags - delays[:, None]) / _FINER
-    )
-    modes, sizes, parts = np.linalg.svd(whole, full_matrices=False)
-    kept = sizes > _KEPT * sizes[0]
-    return _Kernels((modes[:, kept] * sizes[kept]).T, parts[kept], first)
+    weights = np.concatenate([path.weights for path in paths])
+    of_modes = weights @ kernel(lags - delays[:, None]) / _FINER
+    modes, singular_values, combinations = np.linalg.svd(of_modes, full_matrices=False)
+    kept = singular_values > _NEGLIGIBLE * singular_values[0]
+    return _Kernels((modes[:, kept] * singular_values[kept]).T, combinations[kept], first)
 
 
-def _through(accelerations: Floats, lags: Floats) -> Floats:
+def _convolved(accelerations: Floats, lags: Floats) -> Floats:
     """Return the sum of accelerations (r, samples) convolved with kernels (r, lags)."""
     from scipy.signal import fftconvolve
 
     return np.asarray(
-        sum(fftconvolve(one, kernel) for one, kernel in zip(accelerations, lags, strict=True))
+        sum(
+            fftconvolve(acceleration, kernel)
+            for acceleration, kernel in zip(accelerations, lags, strict=True)
+        )
     )

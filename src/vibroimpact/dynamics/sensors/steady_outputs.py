@@ -1,11 +1,9 @@
-r"""What sensors read of the steady motion of a plate on supports that move.
+r"""What sensors measure of the steady motion of a plate on supports that move.
 
 Each harmonic motion of the supports moves a point of the plate by a phasor C (`shaken/steady.py`),
-and for ever. It is the free motion of
-an undamped oscillator, :math:`q = \sin \omega t`, so that derivative, resonance and filter are
-transfer functions at its poles
-(`pole_pairs`): :math:`\mathrm{Im}\,C e^{i \omega t} = a q + b \dot q` with :math:`C = a + i \omega
-b`.
+and for ever. It is the free motion of an undamped oscillator, :math:`q = \sin \omega t`, so that
+derivative, resonance and filter are transfer functions at its poles (`pole_pairs`):
+:math:`\mathrm{Im}\,C e^{i \omega t} = a q + b \dot q` with :math:`C = a + i \omega b`.
 """
 
 from __future__ import annotations
@@ -38,8 +36,9 @@ def steady_outputs(
     samples: range,
     converted: bool,
 ) -> Floats:
-    """Return the outputs of sensors with the same resonance and filter in the steady motion, (S,
-    samples).
+    """Return the outputs of sensors in the steady motion, (S, samples).
+
+    The sensors have the same resonance and filter.
 
     Parameters
     ----------
@@ -58,33 +57,40 @@ def steady_outputs(
     converted : bool
         Whether the filter of a converter follows.
     """
-    omega, still = motion.angular_frequency, np.zeros_like(motion.angular_frequency)
-    oscillators, poles = Oscillators(omega, still, still), PolePairs(omega**2, still)
+    omega = motion.angular_frequency
+    zeros = np.zeros_like(omega)
+    # undamped oscillators that move as sines
+    oscillators = Oscillators(omega, zeros, zeros)
+    start = np.stack([zeros, omega])
+    poles = PolePairs(omega**2, zeros)
     passed = poles.low_pass(sections)
     if converted:
         passed = poles.product(passed, filter_gains(oscillators, rate))
-    phasors = [_phasors(motion, modes, sensor) for sensor in sensors]
-    moved = [
-        poles.product(np.stack([one.real, one.imag / omega]), poles.power(sensor.order))
-        for one, sensor in zip(phasors, sensors, strict=True)
-    ]
-    outputs = np.stack([poles.product(one, passed) for one in moved], axis=1)
+    elements = []
+    for sensor in sensors:
+        phasors = _phasors(motion, modes, sensor)
+        moved = poles.product(
+            np.stack([phasors.real, phasors.imag / omega]), poles.power(sensor.order)
+        )
+        elements.append(poles.product(moved, passed))
+    outputs = np.stack(elements, axis=1)
     values = np.zeros((len(sensors), len(samples)))
     # the gains of the filter are for its output so many samples later
     first = samples.start - (HALF_LENGTH if converted else 0)
-    blocks_of(oscillators, outputs, rate).sample(values, np.stack([still, omega]), first / rate)
+    blocks_of(oscillators, outputs, rate).sample(values, start, first / rate)
     return values
 
 
 def _phasors(motion: PlateMotion, modes: ModalBasis | None, sensor: Sensor) -> Complex:
-    """Return the phasors of what a sensor sees (k,): its motion in space along its
-    direction [m], or the strain [m/m].
+    """Return the phasors of what a sensor measures (k,).
+
+    It is its motion in space along its direction [m], or the strain [m/m].
     """
-    along = np.asarray(sensor.components)
-    # which move the plate as a whole
-    supports = (0.0 if sensor.sees_strain else float(along @ motion.direction)) * motion.phasors
-    return (
-        supports
-        if modes is None
-        else np.asarray(supports + modes.points[sensor.name] @ along @ steady_modes(motion, modes))
-    )
+    direction = np.asarray(sensor.components)
+    # the supports move the plate as a whole, which does not strain it
+    along = 0.0 if sensor.sees_strain else float(direction @ motion.direction)
+    supports = along * motion.phasors
+    if modes is None:
+        return supports
+    shapes = modes.points[sensor.name] @ direction
+    return np.asarray(supports + shapes @ steady_modes(motion, modes))

@@ -1,6 +1,4 @@
-"""Rides: rigid spheres that a rigid plate carries, from an impact without rebound to
-where it falls away from under them.
-"""
+"""Rides: rigid spheres that a rigid plate carries, from an impact without rebound to a launch."""
 
 from __future__ import annotations
 
@@ -11,6 +9,9 @@ import numpy as np
 from vibroimpact.arrays import Floats
 from vibroimpact.dynamics.shaken.statement import PlateMotion
 from vibroimpact.dynamics.shaken.steady import steady_phasors
+
+_POINTS_PER_RADIAN = 8.0  # of a grid, of the fastest harmonic motion
+_MOST_POINTS = 4001
 
 
 @dataclass(frozen=True)
@@ -28,21 +29,23 @@ class Ride:
 
     def of(self, drop: int) -> Ride:
         """Return the ride of one sphere."""
-        here = np.array([drop])
-        return Ride(self.end[here], self.mass[here], self.gravity[here], self.motion)
+        drops = np.array([drop])
+        return Ride(self.end[drops], self.mass[drops], self.gravity[drops], self.motion)
 
     def surface(self, time: Floats) -> Floats:
-        """Return place [m], velocity [m/s] and acceleration [m/s^2] of the plate's
-        surface, upwards, at times [s] (...), (3, ...).
+        """Return the motion of the plate's surface upwards at times [s] (...), (3, ...).
+
+        It is its displacement [m], velocity [m/s] and acceleration [m/s^2].
         """
         return self.motion.at(time, steady_phasors(self.motion, None))
 
     def energy(self, time: Floats) -> Floats:
-        """Return the kinetic and potential energy of spheres that move with the plate [J]
-        at times [s], one each.
+        """Return the energy of spheres that move with the plate [J] at times [s], one each.
+
+        It is kinetic and potential.
         """
-        place, velocity, _ = self.surface(time)
-        return np.asarray(self.mass * (0.5 * velocity**2 + self.gravity * place))
+        displacement, velocity, _ = self.surface(time)
+        return np.asarray(self.mass * (0.5 * velocity**2 + self.gravity * displacement))
 
 
 @dataclass(frozen=True)
@@ -60,32 +63,22 @@ class RideSegment:
 
     def grid(self) -> Floats:
         """Return times since the start at which the segment is well resolved [s]."""
+        duration = self.end - self.start
         fastest = float(self.ride.motion.angular_frequency.max())
-        return np.linspace(
-            0.0,
-            self.end - self.start,
-            min(int(_POINTS * fastest * (self.end - self.start)) + 2, _MOST_POINTS),
-        )
+        points = min(int(_POINTS_PER_RADIAN * fastest * duration) + 2, _MOST_POINTS)
+        return np.linspace(0.0, duration, points)
 
     def at(self, time: Floats) -> tuple[Floats, Floats, Floats, Floats, Floats, Floats]:
-        """Return the motion at times [s] since the start of the segment."""
-        place, velocity, acceleration = self.ride.surface(self.start + time)
-        nothing = np.zeros_like(time)
-        return (
-            place,
-            velocity,
-            self.ride.mass * (self.ride.gravity + acceleration),
-            nothing,
-            nothing,
-            nothing,
-        )
+        """Return the motion at times [s] since the start of the segment, as `segments.Motion`."""
+        displacement, velocity, acceleration = self.ride.surface(self.start + time)
+        force = self.ride.mass * (self.ride.gravity + acceleration)
+        zeros = np.zeros_like(time)
+        return displacement, velocity, force, zeros, zeros, zeros
 
     def drive_work(self, time: Floats) -> Floats:
-        """Return the work of the drive beyond what is counted [J] at times [s] since the
-        start of the segment.
+        """Return the work of the drive beyond what is counted [J] at times [s].
+
+        These are since the start of the segment.
         """
-        return self.ride.energy(self.start + time) - self.ride.energy(np.array([self.counted_at]))
-
-
-# of a grid, per radian of the fastest harmonic motion, and at most
-_POINTS, _MOST_POINTS = 8.0, 4001
+        counted = self.ride.energy(np.array([self.counted_at]))
+        return self.ride.energy(self.start + time) - counted

@@ -51,36 +51,19 @@ class PlateMotion:
     direction: tuple[float, float, float] = (0.0, 0.0, 1.0)
 
     def __post_init__(self) -> None:
-        for name, words, least in (
-            ("amplitude", "not be negative", 0.0),
-            ("frequency", "be greater than 0 Hz", 1e-300),
-            ("phase", "", -np.inf),
-        ):
-            value = getattr(self, name)
-            if (
-                np.asarray(value).dtype.kind not in "iuf"
-                or np.ndim(value) > 1
-                or not np.all(np.isfinite(value))
-            ):
-                raise InputError(
-                    f"{name} of the plate's motion must be a finite number in SI, or a row "
-                    f"of them, not {value!r}"
-                )
-            if not np.all(np.asarray(value) >= least):
-                raise InputError(f"{name} of the plate's motion must {words}")
+        self._check("amplitude", "not be negative", 0.0)
+        self._check("frequency", "be greater than 0 Hz", 1e-300)
+        self._check("phase", "", -np.inf)
+        names = ("amplitude", "frequency", "phase")
+        values = [np.atleast_1d(np.asarray(getattr(self, name), dtype=float)) for name in names]
         try:
-            found = np.broadcast_arrays(
-                *(
-                    np.atleast_1d(np.asarray(part, dtype=float))
-                    for part in (self.amplitude, self.frequency, self.phase)
-                )
-            )
+            harmonics = np.broadcast_arrays(*values)
         except ValueError:
             raise InputError(
                 "amplitude, frequency and phase of the plate's motion must agree in number, "
                 "one for each harmonic"
             ) from None
-        for name, value in zip(("amplitude", "frequency", "phase"), found, strict=True):
+        for name, value in zip(names, harmonics, strict=True):
             object.__setattr__(self, name, value)
         direction: Any = np.asarray(self.direction)
         if (
@@ -94,6 +77,21 @@ class PlateMotion:
             )
         object.__setattr__(self, "direction", tuple(direction.astype(float).tolist()))
 
+    def _check(self, name: str, requirement: str, least: float) -> None:
+        """Raise InputError unless a value, or a row of them, is finite and not below the least."""
+        value = getattr(self, name)
+        if (
+            np.asarray(value).dtype.kind not in "iuf"
+            or np.ndim(value) > 1
+            or not np.all(np.isfinite(value))
+        ):
+            raise InputError(
+                f"{name} of the plate's motion must be a finite number in SI, or a row "
+                f"of them, not {value!r}"
+            )
+        if not np.all(np.asarray(value) >= least):
+            raise InputError(f"{name} of the plate's motion must {requirement}")
+
     @cached_property
     def angular_frequency(self) -> Floats:
         """Angular frequencies [rad/s] (k,)."""
@@ -101,26 +99,23 @@ class PlateMotion:
 
     @cached_property
     def phasors(self) -> Complex:
-        """Complex amplitudes C [m] (k,) of the motion, the imaginary part of the sum of C
-        exp(i omega t).
+        """Complex amplitudes C of the motion [m] (k,).
+
+        The motion is the imaginary part of the sum of C exp(i omega t).
         """
         return np.asarray(np.asarray(self.amplitude) * np.exp(1j * np.asarray(self.phase)))
 
     def at(self, time: Array, phasors: Complex | None = None) -> Floats:
-        """Return displacement [m], velocity [m/s] and acceleration [m/s^2] at times [s] (...), (3,
-        ...).
+        """Return displacement, velocity and acceleration at times [s] (...), (3, ...).
 
-        `phasors`: of another motion of these frequencies, (k,); by default those of the supports
-        along the direction.
+        They are in m, m/s and m/s^2. `phasors`: of another motion of these frequencies, (k,); by
+        default those of the supports along the direction.
         """
+        if phasors is None:
+            phasors = self.phasors
         omega = self.angular_frequency
-        turned = (self.phasors if phasors is None else phasors) * np.exp(
-            1j * omega * np.asarray(time, dtype=float)[..., None]
-        )
-        return np.array(
-            [
-                turned.imag.sum(axis=-1),
-                (omega * turned.real).sum(axis=-1),
-                -(omega**2 * turned.imag).sum(axis=-1),
-            ]
-        )
+        rotating = phasors * np.exp(1j * omega * np.asarray(time, dtype=float)[..., None])
+        displacement = rotating.imag.sum(axis=-1)
+        velocity = (omega * rotating.real).sum(axis=-1)
+        acceleration = -(omega**2 * rotating.imag).sum(axis=-1)
+        return np.array([displacement, velocity, acceleration])

@@ -26,8 +26,9 @@ if TYPE_CHECKING:
 def steady_phasors(
     motion: PlateMotion, modes: ModalBasis | None, shapes: Floats | None = None
 ) -> Complex:
-    """Return the phasors of the steady motion of a point of the plate along its normal [m] (k,), as
-    `PlateMotion.at` takes them.
+    """Return the phasors of the steady motion of a point of the plate along its normal [m] (k,).
+
+    They are as `PlateMotion.at` takes them.
 
     Parameters
     ----------
@@ -41,37 +42,31 @@ def steady_phasors(
     supports = motion.direction[2] * motion.phasors
     if modes is None:
         return np.asarray(supports)
-    return np.asarray(
-        supports + (modes.contact if shapes is None else shapes) @ steady_modes(motion, modes)
-    )
+    if shapes is None:
+        shapes = modes.contact
+    return np.asarray(supports + shapes @ steady_modes(motion, modes))
 
 
 def steady_surface(motion: PlateMotion, modes: ModalBasis) -> Complex:
-    """Return the phasors of the steady motion of the contact point along x, y and the normal [m]
-    (3, k), as `PlateMotion.at` takes them.
+    """Return the phasors of the steady motion of the contact point in space [m] (3, k).
 
-    The modes must tell how they move it along the plate.
+    They are along x, y and the normal, as `PlateMotion.at` takes them. The modes must tell how they
+    move the point along the plate.
     """
     assert modes.along is not None
     shapes = np.column_stack([modes.along, modes.contact])
-    return np.asarray(
-        np.outer(motion.direction, motion.phasors) + shapes.T @ steady_modes(motion, modes)
-    )
+    supports = np.outer(motion.direction, motion.phasors)
+    return np.asarray(supports + shapes.T @ steady_modes(motion, modes))
 
 
 def steady_modes(motion: PlateMotion, modes: ModalBasis) -> Complex:
-    """Return the phasors of the modes in the steady motion, relative to the supports
-    [kg^1/2 m] (modes, k).
+    """Return the phasors of the modes in the steady motion [kg^1/2 m] (modes, k).
+
+    They are relative to the supports.
     """
-    along = modes.participation @ np.array(motion.direction)
-    omega, ratio, driving = (
-        modes.angular_frequencies[:, None],
-        modes.damping_ratios[:, None],
-        motion.angular_frequency,
-    )
-    return np.asarray(
-        along[:, None]
-        * driving**2
-        * motion.phasors
-        / (omega**2 - driving**2 + 2j * ratio * omega * driving)
-    )
+    momentum = (modes.participation @ np.array(motion.direction))[:, None]  # Gamma
+    omega = modes.angular_frequencies[:, None]
+    ratio = modes.damping_ratios[:, None]
+    driving = motion.angular_frequency
+    dynamic_stiffness = omega**2 - driving**2 + 2j * ratio * omega * driving
+    return np.asarray(momentum * driving**2 * motion.phasors / dynamic_stiffness)

@@ -1,12 +1,11 @@
 r"""Tabulated motions of a plate as sums of harmonic ones, which pass through every sample.
 
-A displacement that is sampled at N + 1 equal steps over a time T is a sum of cosines :math:`c_k
-\cos(\pi k t/T)`, by the discrete cosine
-transform of the first kind. Their sum goes on evenly beyond both ends, where it would have a kink.
-Six harmonic motions of the frequencies
+A displacement that is sampled at N + 1 equal steps over a time T is a sum of cosines
+:math:`c_k \cos(\pi k t/T)`, by the discrete cosine transform of the first kind. Their sum goes on
+evenly beyond both ends, where it would have a kink. Six harmonic motions of the frequencies
 :math:`(m + 1/2)/(2T)` take the slopes and the third derivatives there, so that the coefficients of
-a smooth record fall with the sixth power of k. They are those that leave least in the upper quarter
-of the frequencies.
+a smooth record fall with the sixth power of k. They are those whose remainder is least in the upper
+quarter of the frequencies.
 
 One period of a motion that repeats is a trigonometric polynomial.
 """
@@ -19,14 +18,14 @@ from vibroimpact.arrays import Floats
 from vibroimpact.dynamics.shaken.statement import PlateMotion
 
 # of the largest acceleration: what all harmonic motions that are left out may add up to
-_KEPT = 1e-6
+_NEGLIGIBLE = 1e-6
 
+_SIGNIFICANT = 10.0  # of the standard deviation of the noise: what is more is no noise
 
-_SEEN = 10.0  # of the standard deviation of the noise: what is more is seen
+_HALF_WAVES = np.array([2, 4, 8])
+"""The m of the motions that take the slopes and the third derivatives at the ends.
 
-_HALVES = np.array([2, 4, 8])
-"""The m of the motions that take the slopes at the ends and the third derivatives there,
-and as many times more as N has 128ths.
+They are as many times more as N has 128ths.
 """
 
 
@@ -55,37 +54,41 @@ def tabulated_motion(
     from scipy.fft import dct  # here, as few plates are shaken
 
     last = len(displacement) - 1
-    length, time = step * last, step * np.arange(last + 1)
-    halves, places = (_HALVES * (1 + last // 128) + 0.5) * np.pi / length, np.arange(last + 1)
-    # sines have a slope at the start alone, and cosines at the end alone; their means are made up
-    # for in pairs
-    moving = np.concatenate([np.sin(halves[:, None] * time), np.cos(halves[:, None] * time)])
-    means = np.concatenate([1.0 / halves, np.sin(halves * length) / halves])
+    order = np.arange(last + 1)
+    length = step * last
+    time = step * order
+    # sines have a slope at the start alone, and cosines at the end alone; their means cancel in
+    # pairs
+    omega = (_HALF_WAVES * (1 + last // 128) + 0.5) * np.pi / length
+    waves = np.concatenate([np.sin(omega[:, None] * time), np.cos(omega[:, None] * time)])
+    means = np.concatenate([1.0 / omega, np.sin(omega * length) / omega])
     pairs = np.kron(np.eye(2), [[1.0, -1.0, 0.0], [0.0, 1.0, -1.0]]) / means
-    spectra, upper = (
-        dct(np.vstack([pairs @ moving, displacement]), 1, axis=1) / last,
-        places > 3 * last // 4,
-    )
-    # by least squares, without what is lost in the noise of the samples
-    left, singular, right = np.linalg.svd(spectra[:-1, upper].T, full_matrices=False)
-    seen = spectra[-1, upper] @ left
-    noise = float(np.std(spectra[-1, upper] - left @ seen))
-    sizes = np.where(np.abs(seen) > _SEEN * noise, seen, 0.0) / singular @ right
-    found = spectra[-1] - sizes @ spectra[:-1]
-    found[-1] *= 0.5
-    frequency = np.concatenate([halves, halves, np.pi / length * places[1:]]) / (2.0 * np.pi)
-    size = np.concatenate([sizes @ pairs, found[1:]])
-    phase = np.where(np.arange(len(size)) < len(halves), 0.0, 0.5 * np.pi) + np.pi * (size < 0.0)
-    return _motion(np.abs(size), frequency, phase, direction)
+    spectra = dct(np.vstack([pairs @ waves, displacement]), 1, axis=1) / last
+    pair_spectra = spectra[:-1]
+    spectrum = spectra[-1]
+    # by least squares in the upper quarter, without what is lost in the noise of the samples
+    upper = order > 3 * last // 4
+    left, singular_values, right = np.linalg.svd(pair_spectra[:, upper].T, full_matrices=False)
+    components = spectrum[upper] @ left
+    noise = float(np.std(spectrum[upper] - left @ components))
+    significant = np.where(np.abs(components) > _SIGNIFICANT * noise, components, 0.0)
+    pair_amplitudes = significant / singular_values @ right
+    cosines = spectrum - pair_amplitudes @ pair_spectra
+    cosines[-1] *= 0.5
+    frequency = np.concatenate([omega, omega, np.pi / length * order[1:]]) / (2.0 * np.pi)
+    amplitude = np.concatenate([pair_amplitudes @ pairs, cosines[1:]])
+    is_sine = np.arange(len(amplitude)) < len(omega)
+    phase = np.where(is_sine, 0.0, 0.5 * np.pi) + np.pi * (amplitude < 0.0)
+    return _motion(np.abs(amplitude), frequency, phase, direction)
 
 
 def periodic_motion(
     step: float, displacement: Floats, direction: tuple[float, float, float] = (0.0, 0.0, 1.0)
 ) -> PlateMotion:
-    """Return the motion through samples of one period of the displacement at equal steps, from its
-    mean position.
+    """Return the motion through samples of one period of the displacement at equal steps.
 
-    It is the trigonometric polynomial of least degree through them.
+    It is counted from its mean position, and is the trigonometric polynomial of least degree
+    through the samples.
 
     Parameters
     ----------
@@ -110,9 +113,11 @@ def periodic_motion(
     """
     number = len(displacement)
     spectrum = np.fft.rfft(displacement)[1:] / number
-    size = np.abs(spectrum) * np.where(2 * np.arange(1, len(spectrum) + 1) == number, 1.0, 2.0)
-    frequency = np.arange(1, len(spectrum) + 1) / (number * step)
-    return _motion(size, frequency, np.angle(spectrum) + 0.5 * np.pi, direction)
+    order = np.arange(1, len(spectrum) + 1)
+    # a real spectrum has two halves, which meet at half the sampling rate
+    amplitude = np.abs(spectrum) * np.where(2 * order == number, 1.0, 2.0)
+    frequency = order / (number * step)
+    return _motion(amplitude, frequency, np.angle(spectrum) + 0.5 * np.pi, direction)
 
 
 def _motion(
@@ -120,8 +125,9 @@ def _motion(
 ) -> PlateMotion:
     """Return a motion without those of its harmonic parts that hardly add to its acceleration."""
     acceleration = amplitude * frequency**2
-    smallest = np.argsort(acceleration)
-    kept = np.sort(smallest[np.cumsum(acceleration[smallest]) > _KEPT * acceleration.max()])
+    ascending = np.argsort(acceleration)
+    considerable = np.cumsum(acceleration[ascending]) > _NEGLIGIBLE * acceleration.max()
+    kept = np.sort(ascending[considerable])
     return PlateMotion(
         amplitude=amplitude[kept], frequency=frequency[kept], phase=phase[kept], direction=direction
     )
@@ -143,16 +149,16 @@ def integrated_twice(step: float, acceleration: Floats) -> Floats:
     from scipy.interpolate import CubicSpline
 
     time = step * np.arange(len(acceleration))
-    moved = CubicSpline(time, acceleration).antiderivative(2)(time)
-    return np.asarray(moved - np.polynomial.Polynomial.fit(time, moved, 2)(time))
+    displacement = CubicSpline(time, acceleration).antiderivative(2)(time)
+    parabola = np.polynomial.Polynomial.fit(time, displacement, 2)
+    return np.asarray(displacement - parabola(time))
 
 
 def integrated_twice_over_period(step: float, acceleration: Floats) -> Floats:
-    """Return the displacement [m] of samples of one period of an acceleration at equal steps [s],
-    (samples,).
+    """Return the displacement [m] of samples of one period of an acceleration, (samples,).
 
-    The means of acceleration, velocity and displacement are taken for zero, as they are for a
-    motion that stays where it is.
+    The samples are taken at equal steps [s]. The means of acceleration, velocity and displacement
+    are taken for zero, as they are for a motion that stays where it is.
 
     Examples
     --------
@@ -165,5 +171,6 @@ def integrated_twice_over_period(step: float, acceleration: Floats) -> Floats:
     """
     spectrum = np.fft.rfft(acceleration)
     spectrum[0] = 0.0
-    spectrum[1:] /= -((2.0 * np.pi * np.fft.rfftfreq(len(acceleration), step)[1:]) ** 2)
+    omega = 2.0 * np.pi * np.fft.rfftfreq(len(acceleration), step)[1:]
+    spectrum[1:] /= -(omega**2)
     return np.fft.irfft(spectrum, len(acceleration))

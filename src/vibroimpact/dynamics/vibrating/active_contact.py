@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import partial
+from operator import itemgetter
 
 import numpy as np
 
@@ -21,13 +22,15 @@ from vibroimpact.dynamics.vibrating.stretch import VibratingStretch
 
 # of the largest nodal value: stretches whose nodal values stay below can't hold the peak
 _PEAK = 0.98
-_NOTHING = 2e-15  # of the energy of the motion: less is a rounding error
+_ROUNDING = 2e-15  # of the energy of the motion: less is a rounding error
 
 
 @dataclass(frozen=True)
 class ContactDefinition:
-    """A contact of a system: its law, the compliance in series, and whether each impact
-    meets undeformed surfaces (`fresh_surface`).
+    """A contact of a system.
+
+    `law`: its law. `series`: the compliance in series. `fresh_surface`: whether each impact meets
+    undeformed surfaces.
     """
 
     law: CompliantLaw
@@ -54,8 +57,9 @@ class ContactPeak:
         stretch: VibratingStretch,
         peak: Callable[[], tuple[float, float]],
     ) -> None:
-        """Add a stretch that starts at a time [s], with its largest nodal value; `peak`
-        returns the x of the largest one, and that.
+        """Add a stretch that starts at a time [s], with its largest nodal value.
+
+        `peak` returns the x of the largest value between the nodes, and that value.
         """
         if nodal_max >= _PEAK * self.nodal_max:
             self._candidates.append((nodal_max, start, stretch, peak))
@@ -63,13 +67,16 @@ class ContactPeak:
 
     def locate(self) -> tuple[float, float]:
         """Return the largest value and its time [s]; zeros if there is none."""
-        found = (0.0, 0.0)
+        largest = 0.0
+        time = 0.0
         for nodal_max, start, stretch, peak in self._candidates:
-            if nodal_max >= _PEAK * self.nodal_max:
-                x, value = peak()
-                if value > found[0]:
-                    found = value, start + stretch.length * time_at(stretch.basis.basis, x)
-        return found
+            if nodal_max < _PEAK * self.nodal_max:
+                continue
+            x, value = peak()
+            if value > largest:
+                largest = value
+                time = start + stretch.length * time_at(stretch.basis.basis, x)
+        return largest, time
 
 
 @dataclass
@@ -91,11 +98,9 @@ class Impact:
 
 def locate_highest_peak(peaks: Sequence[ContactPeak]) -> tuple[float, float]:
     """Return the largest value of several peaks, and its time [s]."""
-    nodal_max = _PEAK * max(peak.nodal_max for peak in peaks)
-    return max(
-        (peak.locate() for peak in peaks if peak.nodal_max >= nodal_max),
-        key=lambda locate: locate[0],
-    )
+    least = _PEAK * max(peak.nodal_max for peak in peaks)
+    # of equal values the first
+    return max((peak.locate() for peak in peaks if peak.nodal_max >= least), key=itemgetter(0))
 
 
 @dataclass
@@ -133,24 +138,18 @@ class ActiveContact:
 
     def law_indentation(self, system: LinearSystem, state: State) -> float:
         """Return the indentation of its law in a state [m]."""
-        return law_indentation(
-            self.local.with_levels, self.overlap(system, state) + self.local.release_level
-        )
+        approach = self.overlap(system, state) + self.local.release_level
+        return law_indentation(self.local.with_levels, approach)
 
     def plastic_work(self, system: LinearSystem, state: State) -> float:
         """Return the plastic work since the last update of the law's memory [J], in a state."""
-        return float(
-            self.local.law.plastic_work(
-                np.asarray(max(self.law_indentation(system, state), self.local.release_indentation))
-            )
-        )
+        delta = max(self.law_indentation(system, state), self.local.release_indentation)
+        return float(self.local.law.plastic_work(np.asarray(delta)))
 
     def stored_energy_at(self, delta: float) -> float:
-        """Return the energy stored at an indentation of its law [J], with rounding errors
-        set to zero.
-        """
-        held = float(self.local.energy_at_indentation(delta))
-        return held if abs(held) > _NOTHING * self.energy else 0.0
+        """Return the energy stored at an indentation of its law [J]; rounding errors are zero."""
+        energy = float(self.local.energy_at_indentation(delta))
+        return energy if abs(energy) > _ROUNDING * self.energy else 0.0
 
 
 def closing_speed(system: LinearSystem, state: State, number: int) -> float:
@@ -163,35 +162,41 @@ def closing_speed(system: LinearSystem, state: State, number: int) -> float:
 
 
 def motion_speed(system: LinearSystem, number: int, law: CompliantLaw, closing: float) -> float:
-    """Return the speed scale of the motion in a contact [m/s]: the closing speed, or the
-    speed that gravity adds at a soft touch.
+    """Return the speed scale of the motion in a contact [m/s].
+
+    It is the closing speed, or the speed that gravity adds at a soft touch.
     """
-    mass, gravity = float(system.mass[number]), max(float(system.gravity[number]), 0.0)
-    if gravity and float(law.forces(closing**2 / gravity, 0.0, closing)[0]) >= mass * gravity:
-        return closing  # the sphere sinks in by less than the height of a fall to this speed
-    sag = float(static_indentation(law, np.array([mass * gravity]))[0]) if gravity else 0.0
+    mass = float(system.mass[number])
+    gravity = max(float(system.gravity[number]), 0.0)
+    if not gravity:
+        return closing
+    fall_height = closing**2 / gravity
+    if float(law.forces(fall_height, 0.0, closing)[0]) >= mass * gravity:
+        return closing  # the sphere sinks in by less than that height
+    sag = float(static_indentation(law, np.array([mass * gravity]))[0])
     return max(closing, float(np.sqrt(gravity * sag)))
 
 
 def record_peaks(
     impact: Impact,
     stretch: VibratingStretch,
-    place: int,
+    index: int,
     start: float,
     force: float,
     indentations: Floats,
 ) -> None:
     """Add the peaks of force and indentation of one contact within a stretch to its impact.
 
-    `start`: time at which the stretch begins [s]. `force`: the largest at a node [N].
-    `indentations`: of the centre above, at the start and the nodes [m] (N + 1,).
+    `index`: of the contact in the stretch. `start`: time at which the stretch begins [s]. `force`:
+    the largest at a node [N]. `indentations`: of the centre above, at the start and the nodes [m]
+    (N + 1,).
     """
-    law = stretch.contacts[place].local.law
+    law = stretch.contacts[index].local.law
     impact.force.add(
         force if law.tension == "kept" else max(force, 0.0),
         start,
         stretch,
-        partial(stretch.peak_force, place),
+        partial(stretch.peak_force, index),
     )
     impact.indentation.add(
         max(indentations[1:].tolist()),

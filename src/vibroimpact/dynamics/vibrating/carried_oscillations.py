@@ -1,19 +1,17 @@
-r"""Motion of a sphere that an elastic plate carries for good while its supports move: small
-oscillations about a steady motion.
+r"""Motion of a sphere that a shaken elastic plate carries for good: small oscillations.
 
-On the linear spring and dashpot :math:`\kappa(\omega) = k + i \omega c` of its contact, the sphere
-is one more coordinate of the plate.
-What drives the plate changes the approach of the surfaces by :math:`D e^{i \omega t}`; with the
-dynamic stiffness
-:math:`Z_i = \omega_i^2 - \omega^2 + 2 i \zeta_i \omega_i \omega` of each coordinate,
+They are those about a steady motion. On the linear spring and dashpot
+:math:`\kappa(\omega) = k + i \omega c` of its contact, the sphere is one more coordinate of the
+plate. What drives the plate changes the approach of the surfaces by :math:`D e^{i \omega t}`; with
+the dynamic stiffness :math:`Z_i = \omega_i^2 - \omega^2 + 2 i \zeta_i \omega_i \omega` of each
+coordinate,
 
 .. math::
 
     \hat F = \frac{D}{1/\kappa + \sum_i \chi_i^2/Z_i},\qquad \hat q_i = -\frac{\chi_i}{Z_i} \hat F
 
-Without :math:`1/\kappa` the force is that of a sphere that moves with the surface. What is left of
-the motion decays as on a plate at rest,
-since all is linear.
+Without :math:`1/\kappa` the force is that of a sphere that moves with the surface. Deviations from
+the steady motion decay as on a plate at rest, since all is linear.
 """
 
 from __future__ import annotations
@@ -53,90 +51,109 @@ class SteadyResponse:
     @cached_property
     def motions(self) -> Complex:
         """Phasors of the coordinates per unit of each driven one (n, d)."""
-        return np.asarray(-self._flexibility * self._forces[0])
+        return np.asarray(-self._receptances * self._force_phasors)
 
     @cached_property
-    def _flexibility(self) -> Complex:
-        """Shapes of the coordinates over their dynamic stiffnesses (n, d)."""
-        own, omega = self.still.system, self.driving.angular_frequency
-        damped = 2j * (own.damping_ratio * own.angular_frequency)[:, None] * omega
+    def _receptances(self) -> Complex:
+        """Shapes of the coordinates over their dynamic stiffnesses, chi_i / Z_i (n, d)."""
+        own = self.still.system
+        omega = self.driving.angular_frequency
+        damping = 2j * (own.damping_ratio * own.angular_frequency)[:, None] * omega
         # at the resonance of a mode without damping
         with np.errstate(divide="ignore", invalid="ignore"):
             return np.asarray(
-                own.shape[0][:, None] / (own.angular_frequency[:, None] ** 2 - omega**2 + damped)
+                own.shape[0][:, None] / (own.angular_frequency[:, None] ** 2 - omega**2 + damping)
             )
 
     @cached_property
-    def _forces(self) -> tuple[Complex, Complex]:
-        """Phasors of the contact force per unit of each driven coordinate (d,), and those
-        on a contact without compliance.
-        """
+    def _compliance(self) -> Complex:
+        """Dynamic compliance of sphere and plate at the contact, sum of chi_i^2 / Z_i (d,)."""
+        return np.asarray(self.still.shape @ self._receptances)
+
+    @cached_property
+    def _force_phasors(self) -> Complex:
+        """Phasors of the contact force per unit of each driven coordinate (d,)."""
         stiffness, damping = self.still.contact
-        yields = self.still.shape @ self._flexibility
+        contact_stiffness = stiffness + 1j * damping * self.driving.angular_frequency
+        compliance = self._compliance
         with np.errstate(divide="ignore", invalid="ignore"):
-            on_spring = 1.0 / (
-                1.0 / (stiffness + 1j * damping * self.driving.angular_frequency) + yields
-            )
-            return self.driving.shape[0] * on_spring, self.driving.shape[0] / yields
+            force_per_approach = 1.0 / (1.0 / contact_stiffness + compliance)
+            return np.asarray(self.driving.shape[0] * force_per_approach)
+
+    @cached_property
+    def _rigid_contact_force_phasors(self) -> Complex:
+        """Phasors of the force as in `_force_phasors` on a contact without compliance (d,)."""
+        compliance = self._compliance
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return np.asarray(self.driving.shape[0] / compliance)
 
     def phasors(self, state: State) -> Complex:
         """Return the phasors of the driven coordinates in states (..., d)."""
-        place, speed = state.displacement[..., self._driven], state.velocity[..., self._driven]
-        return np.asarray(speed / self.driving.angular_frequency + 1j * place)
+        displacement = state.displacement[..., self._driven]
+        velocity = state.velocity[..., self._driven]
+        return np.asarray(velocity / self.driving.angular_frequency + 1j * displacement)
 
     def steady(self, phasors: Complex) -> tuple[Floats, Floats]:
-        """Return displacements and velocities of the other coordinates in the steady
-        motion (..., n).
-        """
-        moved, faster = (
-            part @ self.motions.T
-            for part in (phasors, 1j * self.driving.angular_frequency * phasors)
-        )
-        return moved.imag, faster.imag
+        """Return displacements and velocities of the other coordinates (..., n)."""
+        velocity_phasors = 1j * self.driving.angular_frequency * phasors
+        displacements = phasors @ self.motions.T
+        velocities = velocity_phasors @ self.motions.T
+        return displacements.imag, velocities.imag
 
     def force(self, phasors: Complex) -> Floats:
         """Return the deviation of the contact force from the weight [N] (...)."""
-        return np.asarray((phasors @ self._forces[0]).imag)
+        return np.asarray((phasors @ self._force_phasors).imag)
 
     def deviation(self, state: State) -> State:
-        """Return what differs in a state from the steady motion, without the driven coordinates."""
-        (steady, faster), number = self.steady(self.phasors(state)), self.still.system.number
+        """Return the deviation of a state from the steady motion, without driven coordinates."""
+        displacement, velocity = self.steady(self.phasors(state))
+        number = self.still.system.number
         return State(
-            state.displacement[:number] - steady, state.velocity[:number] - faster, state.local
+            state.displacement[:number] - displacement,
+            state.velocity[:number] - velocity,
+            state.local,
         )
 
     def carries_for_good(self, state: State, force: float) -> bool:
         """Whether a sphere under a contact force [N] will never leave the plate again.
 
         The least force of the steady motion must exceed what its own oscillations and those of the
-        plate can add, and what the contact yields, which is not linear.
+        plate can add, and the effect of the compliance of the contact, which is not linear.
         """
-        amplitudes = np.abs(self.phasors(state))
-        least = self.still.weight - float(amplitudes @ np.abs(self._forces[0]))
-        left = REST_MARGIN * least - float(amplitudes @ np.abs(self._forces[0] - self._forces[1]))
-        if not (
-            self.still.linear
-            and abs(force - self.still.weight - float(self.force(self.phasors(state)))) < left
-        ):
+        if not self.still.linear:
             return False
-        return self.still.force_bound(self.deviation(state)) < left
+        phasors = self.phasors(state)
+        amplitudes = np.abs(phasors)
+        least_force = self.still.weight - float(amplitudes @ np.abs(self._force_phasors))
+        effect_of_compliance = float(
+            amplitudes @ np.abs(self._force_phasors - self._rigid_contact_force_phasors)
+        )
+        margin = REST_MARGIN * least_force - effect_of_compliance
+        deviation = abs(force - self.still.weight - float(self.force(phasors)))
+        # the bound over all later times takes the coupled modes, and comes last
+        return deviation < margin and self.still.force_bound(self.deviation(state)) < margin
 
 
 def steady_response(equilibrium: ContactEquilibrium) -> SteadyResponse | None:
-    """Return the steady motion of a sphere with an elastic plate that is shaken; None for
-    others, with friction or a local element.
+    """Return the steady motion of a sphere on a shaken elastic plate.
+
+    It is None on other plates, with friction, and with a local element.
     """
     system = equilibrium.system
-    if (
-        not system.driven
-        or system.number == 1 + system.driven
-        or system.rate.size
-        or system.along is not None
-    ):
+    elastic = system.number > 1 + system.driven
+    if not (system.driven and elastic) or system.rate.size or system.along is not None:
         return None
     own = slice(0, system.number - system.driven)
-    names = ("angular_frequency", "damping_ratio", "shape", "load", "inside", "below")
-    still = replace(system, **{name: getattr(system, name)[..., own] for name in names}, driven=0)
+    still = replace(
+        system,
+        angular_frequency=system.angular_frequency[own],
+        damping_ratio=system.damping_ratio[own],
+        shape=system.shape[..., own],
+        load=system.load[own],
+        inside=system.inside[own],
+        below=system.below[..., own],
+        driven=0,
+    )
     return SteadyResponse(equilibrium, ContactEquilibrium(still, equilibrium.local))
 
 
@@ -144,110 +161,119 @@ def steady_response(equilibrium: ContactEquilibrium) -> SteadyResponse | None:
 class CarriedOscillations(RestMotion):
     """Oscillations of a sphere and the elastic plate that carries it about their steady motion.
 
-    `response`: steady motion. `left`: what oscillates about it. The losses are those of both, in
-    the mean over time; the work of the drive is what they leave of the change of energy.
+    `response`: steady motion. `transient`: oscillations about it. The losses are those of both, in
+    the mean over time; the work of the drive follows from the energy balance.
     """
 
     response: SteadyResponse
-    left: RestMotion
+    transient: RestMotion
 
     @property
     def oscillations(self) -> FreeOscillations:
-        """The motion as that of independent oscillators: those of what is left, then the
-        driven coordinates.
+        """The motion as that of independent oscillators.
+
+        They are those of the transient, then the driven coordinates.
         """
-        left, response = self.left.oscillations, self.response
-        driving, moved = (
-            response.driving,
-            np.vstack([response.motions, np.eye(response.driving.number)]),
-        )
-        steady = np.stack([moved.real, moved.imag / driving.angular_frequency])
-        apart = np.concatenate(
-            [left.shapes, np.zeros((2, driving.number, left.oscillators.number))], axis=1
-        )
+        transient = self.transient.oscillations
+        response = self.response
+        driving = response.driving
+        omega = driving.angular_frequency
+        # Im(C exp(i omega t)) = Re(C) q + Im(C) / omega q', of a driven coordinate q
+        moved = np.vstack([response.motions, np.eye(driving.number)])
+        steady_shapes = np.stack([moved.real, moved.imag / omega])
+        # the transient does not move the driven coordinates
+        unmoved = np.zeros((2, driving.number, transient.oscillators.number))
+        transient_shapes = np.concatenate([transient.shapes, unmoved], axis=1)
         phasors = response.phasors(self.start)
-        start = np.stack([phasors.imag, driving.angular_frequency * phasors.real])
+        driven_start = np.stack([phasors.imag, omega * phasors.real])
         return FreeOscillations(
-            joined([left.oscillators, replace(driving, shape=driving.shape[0])]),
-            np.concatenate([left.start, start], axis=1),
-            np.concatenate([apart, steady], axis=2),
+            joined([transient.oscillators, replace(driving, shape=driving.shape[0])]),
+            np.concatenate([transient.start, driven_start], axis=1),
+            np.concatenate([transient_shapes, steady_shapes], axis=2),
         )
 
     def state(self, time: Floats) -> State:
         """Return the state at times since the start [s] (...)."""
-        left, response, omega = (
-            self.left.state(time),
-            self.response,
-            self.response.driving.angular_frequency,
-        )
+        transient = self.transient.state(time)
+        response = self.response
+        omega = response.driving.angular_frequency
         phasors = response.phasors(self.start) * np.exp(1j * omega * np.asarray(time)[..., None])
-        (steady, faster), turned = response.steady(phasors), omega * phasors
-        place, speed = left.displacement + steady, left.velocity + faster
+        displacement, velocity = response.steady(phasors)
+        driven_velocity = (omega * phasors).real
         return State(
-            np.concatenate([place, phasors.imag], axis=-1),
-            np.concatenate([speed, turned.real], axis=-1),
-            left.local,
+            np.concatenate([transient.displacement + displacement, phasors.imag], axis=-1),
+            np.concatenate([transient.velocity + velocity, driven_velocity], axis=-1),
+            transient.local,
         )
 
     def force(self, time: Floats) -> Floats:
         """Return the contact force [N] at times since the start [s]."""
-        return self.left.force(time) + self.response.force(self.response.phasors(self.state(time)))
+        steady_force = self.response.force(self.response.phasors(self.state(time)))
+        return self.transient.force(time) + steady_force
 
     def stored(self, time: Floats) -> Floats:
         """Return the energy stored by the contact [J] at times since the start [s]."""
         return self._stored(self.state(time))
 
     def _stored(self, state: State) -> Floats:
+        """Return the energy in the linear spring of the contact [J] in states (...)."""
         still = self.response.still
-        deeper = self.equilibrium.system.approach(state)[..., 0] - still.approach
-        return np.asarray(still.stored + (still.weight + 0.5 * still.stiffness * deeper) * deeper)
+        approach = self.equilibrium.system.approach(state)[..., 0]
+        deviation = approach - still.approach
+        return np.asarray(
+            still.stored + (still.weight + 0.5 * still.stiffness * deviation) * deviation
+        )
+
+    def _energy(self, state: State) -> Floats:
+        """Return the mechanical energy with that of the contact [J] in states (...)."""
+        return np.asarray(self.equilibrium.system.mechanical_energy(state) + self._stored(state))
 
     def lost_by(self, time: Floats) -> Floats:
-        """Return the energy lost since the start [J] at times (T,), (T, n + 1): the last
-        coordinate has minus the work of the drive.
+        """Return the energy lost since the start [J] at times (T,), (T, n + 1).
+
+        The last coordinate has minus the work of the drive, and the last column the contact.
         """
-        system, own = self.equilibrium.system, self.response.still.system.number
-        lost, left = np.zeros((*np.shape(time), system.number + 1)), self.left.lost_by(time)
-        lost[..., :own], lost[..., -1] = left[..., :-1], left[..., -1]
-        lost[..., [*range(own), -1]] += np.asarray(time)[..., None] * self._powers
-        before, now = (
-            system.mechanical_energy(state) + self._stored(state)
-            for state in (self.start, self.state(time))
-        )
-        lost[..., -2] = before - now - lost.sum(axis=-1)
+        own = self.response.still.system.number
+        lost = np.zeros((*np.shape(time), self.equilibrium.system.number + 1))
+        transient = self.transient.lost_by(time)
+        lost[..., :own] = transient[..., :-1]
+        lost[..., -1] = transient[..., -1]
+        lost[..., [*range(own), -1]] += np.asarray(time)[..., None] * self._mean_powers
+        initial_energy = self._energy(self.start)
+        # the drive closes the balance of energy
+        lost[..., -2] = initial_energy - self._energy(self.state(time)) - lost.sum(axis=-1)
         return lost
 
     @cached_property
-    def _powers(self) -> Floats:
-        """Mean power lost in the steady motion [W] in each coordinate, and last in the
-        contact (n + 1,).
-        """
-        response, still = self.response, self.response.still
-        speeds = response.driving.angular_frequency * np.abs(response.phasors(self.start))
-        closing = still.shape @ response.motions + response.driving.shape[0]
+    def _mean_powers(self) -> Floats:
+        """Mean power lost in the steady motion [W] (n + 1,): per coordinate, and in the contact."""
+        response = self.response
+        still = response.still
+        driven_speeds = response.driving.angular_frequency * np.abs(response.phasors(self.start))
+        approach = still.shape @ response.motions + response.driving.shape[0]
         damping = np.append(still.system.damping, still.contact[1])
-        return np.asarray(
-            0.5
-            * damping
-            * ((np.abs(np.vstack([response.motions, closing])) * speeds) ** 2).sum(axis=1)
-        )
+        speeds = np.abs(np.vstack([response.motions, approach])) * driven_speeds
+        # mean of the square of a harmonic motion: half that of its amplitude
+        return np.asarray(0.5 * damping * (speeds**2).sum(axis=1))
 
 
 def carry_oscillating(response: SteadyResponse, state: State, stored: float) -> CarriedOscillations:
-    """Return the oscillations that replace the contact of a sphere that will not leave the plate,
-    from a state on.
+    """Return the oscillations that replace the contact of a sphere that stays on the plate.
 
     The sphere is placed where the linear spring of its contact holds as much energy as the contact
-    did, which stores `stored` [J].
+    did in the given state, which stores `stored` [J].
     """
-    system, still = response.moving.system, response.still
-    deeper = float(system.approach(state)[0]) - still.approach
-    held = still.share * stored - still.stored - still.weight * deeper
-    on_spring = np.copysign(np.sqrt(2.0 * max(held, 0.0) / still.stiffness), deeper)
-    displacement = state.displacement.copy()
-    displacement[0] += (on_spring - deeper) * float(system.mass[0]) ** 0.5
-    start = replace(state, displacement=displacement)
-    left = RestMotion(still, response.deviation(start), np.nan, 0.0)
-    return CarriedOscillations(
-        response.moving, start, np.nan, (1.0 - still.share) * stored, response, left
+    system = response.moving.system
+    still = response.still
+    deviation = float(system.approach(state)[0]) - still.approach
+    # 1/2 k u^2 of the deviation u from equilibrium, in which the contact also carries the weight
+    strain_energy = still.share * stored - still.stored - still.weight * deviation
+    spring_deviation = np.copysign(
+        np.sqrt(2.0 * max(strain_energy, 0.0) / still.stiffness), deviation
     )
+    displacement = state.displacement.copy()
+    displacement[0] += (spring_deviation - deviation) * float(system.mass[0]) ** 0.5
+    start = replace(state, displacement=displacement)
+    transient = RestMotion(still, response.deviation(start), np.nan, 0.0)
+    written_off = (1.0 - still.share) * stored
+    return CarriedOscillations(response.moving, start, np.nan, written_off, response, transient)

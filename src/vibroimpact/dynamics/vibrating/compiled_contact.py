@@ -29,12 +29,15 @@ from vibroimpact.dynamics.vibrating.surface_friction import SlidingState, Slidin
 from vibroimpact.dynamics.vibrating.time_marching import MotionPart, TimeMarching
 
 _PARTS = 64
+"""Parts of the motion that the core writes before they are read."""
 
 
 @dataclass(frozen=True)
 class Limits:
-    """When a contact is left: at the time `until` [s] if the sphere rides, or after so
-    many steps; `longest`: of a stretch [s].
+    """When a contact is left.
+
+    `until`: time if the sphere rides [s]. `longest`: largest length of a stretch [s]. `most_steps`:
+    largest number of stretches.
     """
 
     until: float
@@ -86,7 +89,7 @@ class CompiledContact:
             sphere=sphere,
         )
         self.state = march.state.record
-        self.parts = _room(march.system.number, len(march.system.rate), sphere.directions)
+        self.parts = _empty_parts(march.system.number, len(march.system.rate), sphere.directions)
         self.locals = [active.local]
 
     @property
@@ -95,10 +98,12 @@ class CompiledContact:
         return self.progress.steps
 
     def follow(self) -> int:
-        """Follow the contact until something is to be decided; bring the march up to
-        there, and return how it goes on.
+        """Follow the contact until something is to be decided; return its outcome.
+
+        The march is brought up to there.
         """
-        march, outcome = self.march, core.FULL
+        march = self.march
+        outcome = core.FULL
         while outcome == core.FULL:
             outcome, count, self.progress, self.state, self.law = core.follow_contact(
                 bases_of(self.root),
@@ -111,83 +116,93 @@ class CompiledContact:
                 self.parts,
             )
             self._read(count)
-        active, progress = self.active, self.progress
+        progress = self.progress
         march.state = State(*self.state)
-        march.time, march.next_length = progress.time, progress.next_length
+        march.time = progress.time
+        march.next_length = progress.next_length
+        active = self.active
         active.local = self.locals[-1]
-        active.delta, active.force, active.trend = progress.delta, progress.force, progress.trend
-        active.fresh, active.pushes = progress.fresh, progress.pushes
+        active.delta = progress.delta
+        active.force = progress.force
+        active.trend = progress.trend
+        active.fresh = progress.fresh
+        active.pushes = progress.pushes
         return outcome
 
     def _read(self, count: int) -> None:
         """Append the parts that were written to the history of the march, and record the peaks."""
-        parts, march = self.parts, self.march
-        if parts.late_loss[0]:
+        march = self.march
+        late_loss = float(self.parts.late_loss[0])
+        if late_loss:  # at the end of the last part that was read
             last = march.parts[-1]
             assert isinstance(last.motion, VibratingStretch)
-            march.parts[-1] = replace(
-                last, motion=with_separation_loss(last.motion, 0, float(parts.late_loss[0]))
-            )
-        for turned_at in parts.turned_at[: self.progress.memories + 1 - len(self.locals)].tolist():
-            before = self.locals[-1]
-            march.plastic += float(before.law.plastic_work(turned_at))
-            self.locals.append(before.after_indentation(turned_at))
-        written = Parts._make(values[:count].copy() for values in parts)
-        largest = written.force.max(axis=1).tolist()
+            march.parts[-1] = replace(last, motion=with_separation_loss(last.motion, 0, late_loss))
+        self._update_memories()
+        parts = Parts._make(values[:count].copy() for values in self.parts)
+        largest_force = parts.force.max(axis=1).tolist()
+        starts = [
+            State(parts.displacement[part], parts.velocity[part], parts.local[part])
+            for part in range(count)
+        ]
+        ends = [*starts[1:], State(*self.state)]
         for part in range(count):
-            local = self.locals[written.memories[part]]
-            start = float(written.start[part])
-            begun = State(written.displacement[part], written.velocity[part], written.local[part])
-            if written.kind[part] == 0:
-                length = float(written.length[part])
-                march.parts.append(
-                    MotionPart(
-                        start, FreePhase(FreeMotion(march.system, begun), length, ((0, local),))
-                    )
-                )
+            local = self.locals[parts.memories[part]]
+            time = float(parts.start[part])
+            if parts.kind[part] == 0:
+                free = FreeMotion(march.system, starts[part])
+                recoil = FreePhase(free, float(parts.length[part]), ((0, local),))
+                march.parts.append(MotionPart(time, recoil))
                 continue
-            stretch = self._stretch(written, part, local, begun)
-            march.parts.append(MotionPart(start, stretch))
+            stretch = self._stretch(parts, part, local, starts[part])
+            march.parts.append(MotionPart(time, stretch))
             record_peaks(
-                self.active.impact, stretch, 0, start, largest[part], written.indentation[part]
+                self.active.impact, stretch, 0, time, largest_force[part], parts.indentation[part]
             )
-            end = State(*self.state)
-            if part + 1 < count:
-                end = State(
-                    written.displacement[part + 1],
-                    written.velocity[part + 1],
-                    written.local[part + 1],
-                )
-            stretch.__dict__["end"] = end  # which it would compute anew
+            stretch.__dict__["end"] = ends[part]  # which it would compute anew
+
+    def _update_memories(self) -> None:
+        """Add the contacts after the turns that the core has met since the last reading."""
+        turns = self.progress.memories + 1 - len(self.locals)
+        for indentation in self.parts.turned_at[:turns].tolist():
+            local = self.locals[-1]
+            self.march.plastic += float(local.law.plastic_work(indentation))
+            self.locals.append(local.after_indentation(indentation))
 
     def _stretch(
-        self, parts: Parts, part: int, local: LocalContact, begun: State
+        self, parts: Parts, part: int, local: LocalContact, start: State
     ) -> VibratingStretch:
+        """Return a stretch of contact from one of the parts."""
         basis = radau_eigenbasis(MAPS[parts.time_map[part]], self.root)
         static = parts.static[part]
         history = ContactHistory(
-            0,
-            local,
-            basis.rule,
-            static,
-            parts.force[part] - static,
-            parts.approach[part],
-            parts.rate[part],
-            parts.closing[part],
-            parts.delta[part],
+            number=0,
+            local=local,
+            rule=basis.rule,
+            static=static,
+            dissipative=parts.force[part] - static,
+            approach=parts.approach[part],
+            rate=parts.rate[part],
+            closing=parts.closing[part],
+            delta=parts.delta[part],
             work=float(parts.work[part]),
             dissipated=float(parts.dissipated[part]),
             separation_loss=float(parts.separation_loss[part]),
         )
         length = float(parts.length[part])
-        sliding = self._rubbed(parts, part, basis, length)
         return VibratingStretch(
-            self.view, basis, length, begun, (history,), float(parts.roughness[part]), sliding
+            view=self.view,
+            basis=basis,
+            length=length,
+            start=start,
+            contacts=(history,),
+            roughness=float(parts.roughness[part]),
+            sliding=self._sliding(parts, part, basis, length),
         )
 
-    def _rubbed(
+    def _sliding(
         self, parts: Parts, part: int, basis: RadauEigenbasis, length: float
     ) -> SlidingStretch | None:
+        """Return the friction through one of the parts; None without friction."""
         sphere = self.progress.sphere
         if not sphere.directions:
             return None
@@ -197,9 +212,10 @@ class CompiledContact:
         )
 
 
-def _room(number: int, elements: int, directions: int) -> Parts:
-    """Return room for parts of the motion of a system with so many coordinates, massless
-    elements, and directions of friction.
+def _empty_parts(number: int, elements: int, directions: int) -> Parts:
+    """Return arrays for the parts of the motion of a system.
+
+    `number`: of its coordinates. `elements`: of massless elements. `directions`: of friction.
     """
     nodes = NODES_PER_STRETCH
     return Parts(

@@ -1,5 +1,4 @@
-r"""Equilibrium of a sphere under its weight on bodies that vibrate, small oscillations about it,
-and criteria of rest.
+r"""Equilibrium of a sphere on bodies that vibrate, oscillations about it, and criteria of rest.
 
 At equilibrium the contact carries the weight m g, and the bodies have deflected by :math:`C m g`,
 with the static compliance
@@ -47,8 +46,9 @@ def weight_on(system: LinearSystem) -> float:
 
 
 def least_energy(system: LinearSystem, approach: float, stored: float) -> float:
-    """Return the least energy of a state with an approach of the surfaces [m] at which
-    the contact stores `stored` [J].
+    """Return the least energy of a state with an approach of the surfaces [m].
+
+    The contact stores `stored` [J] at that approach. See E(y) of the module.
     """
     weight = weight_on(system)
     return stored - weight * approach - 0.5 * float(system.compliance[0]) * weight * weight
@@ -57,8 +57,7 @@ def least_energy(system: LinearSystem, approach: float, stored: float) -> float:
 def separates_slower_than(
     system: LinearSystem, law: CompliantLaw, state: State, speed: float
 ) -> bool:
-    """Whether a sphere apart from the surface can nowhere reach a separation speed any more, for
-    lack of energy.
+    """Whether a sphere apart from the surface lacks the energy to reach a separation speed.
 
     Parameters
     ----------
@@ -76,26 +75,30 @@ def separates_slower_than(
 
 
 def near_equilibrium(system: LinearSystem, state: State, force: float, indentation: float) -> bool:
-    """Whether a riding sphere may be at rest, by a necessary condition that needs no eigenvalues.
+    """Whether a riding sphere may be at rest, by a condition that needs no eigenvalues.
 
-    The force must be close to the weight, and the speed low: the force decelerates and accelerates
-    the sphere at no lower an angular frequency than that from the trace of the flexibility, on a
-    contact with about the stiffness of force over indentation.
+    The condition is necessary. The force must be close to the weight, and the speed low: the force
+    decelerates and accelerates the sphere at no lower an angular frequency than that from the trace
+    of the flexibility, on a contact with about the stiffness of force over indentation.
     """
-    weight, mass = weight_on(system), float(system.mass[0])
-    most = REST_MARGIN * weight
-    if not weight or abs(force - weight) > most:
+    weight = weight_on(system)
+    mass = float(system.mass[0])
+    largest_deviation = REST_MARGIN * weight
+    if not weight or abs(force - weight) > largest_deviation:
         return False
-    on_springs = mass * (abs(indentation) / weight / REST_MARGIN + float(system.compliance[0]))
-    slowest = float((on_springs + system.flexibility.sum()) ** -0.5)
-    return mass * abs(float(system.rigid_motion(state)[1][0])) * slowest < most
+    contact_compliance = abs(indentation) / weight / REST_MARGIN
+    # trace of the flexibility: the sum of 1/omega^2 of all modes, at least that of the lowest
+    trace = mass * (contact_compliance + float(system.compliance[0])) + system.flexibility.sum()
+    lowest_frequency = float(trace**-0.5)
+    speed = abs(float(system.rigid_motion(state)[1][0]))
+    return mass * speed * lowest_frequency < largest_deviation
 
 
 def rides_for_good(equilibrium: ContactEquilibrium, state: State, force: float) -> bool:
     """Whether a sphere on a rigid plate that is shaken will never leave it again.
 
     The least force that carries it, its mass times gravity less the greatest downward acceleration
-    of the plate, must exceed what is left of its own oscillation on the contact: the difference of
+    of the plate, must exceed what remains of its own oscillation on the contact: the difference of
     the force [N] from that of a sphere that moves with the plate, and the amplitude of the force
     that the speed between them can still cause.
     """
@@ -103,22 +106,24 @@ def rides_for_good(equilibrium: ContactEquilibrium, state: State, force: float) 
     if system.number > 1 + system.driven or system.rate.size or system.along is not None:
         # other coordinates oscillate too (`carried_oscillations`), or it moves along the plate
         return False
-    driven, mass = slice(1, None), float(system.mass[0])
-    speeds = np.hypot(
-        state.velocity[driven], system.angular_frequency[driven] * state.displacement[driven]
-    )
-    greatest = float((np.abs(system.shape[0, driven]) * system.angular_frequency[driven]) @ speeds)
-    carried = equilibrium.weight + mass * float(system.driven_motion(state)[2])
-    left = abs(force - carried) + np.sqrt(equilibrium.contact[0] * mass) * abs(
+    driven = slice(1, None)
+    mass = float(system.mass[0])
+    omega = system.angular_frequency[driven]
+    speed_amplitudes = np.hypot(state.velocity[driven], omega * state.displacement[driven])
+    greatest_acceleration = float((np.abs(system.shape[0, driven]) * omega) @ speed_amplitudes)
+    _, _, acceleration = system.driven_motion(state)
+    carrying_force = equilibrium.weight + mass * float(acceleration)
+    stiffness, _ = equilibrium.contact
+    # a speed v on a spring causes a force of amplitude v sqrt(k m)
+    oscillation = abs(force - carrying_force) + np.sqrt(stiffness * mass) * abs(
         float(system.rates(state)[0])
     )
-    return bool(left < REST_MARGIN * (equilibrium.weight - mass * greatest))
+    return bool(oscillation < REST_MARGIN * (equilibrium.weight - mass * greatest_acceleration))
 
 
 @dataclass(frozen=True, eq=False)
 class ContactEquilibrium:
-    """Equilibrium of a sphere on bodies that vibrate, and small oscillations about it as one linear
-    system.
+    """Equilibrium of a sphere on bodies that vibrate, and small oscillations about it.
 
     Parameters
     ----------
@@ -139,16 +144,14 @@ class ContactEquilibrium:
 
     @cached_property
     def share(self) -> float:
-        """Ratio of the force without motion to the static force: less than one where a
-        law pushes less in restitution.
+        """Ratio of the force without motion to the static force [-].
+
+        It is less than one where a law pushes less in restitution.
         """
-        static, dissipative = (
-            float(part[0])
-            for part in self.local.forces_at_indentation(
-                static_indentation(self.local.law, np.array([self.weight])), np.zeros(1)
-            )
-        )
-        return 1.0 + dissipative / static if dissipative else 1.0
+        indentation = static_indentation(self.local.law, np.array([self.weight]))
+        static, dissipative = self.local.forces_at_indentation(indentation, np.zeros(1))
+        at_rest = float(dissipative[0])
+        return 1.0 + at_rest / float(static[0]) if at_rest else 1.0
 
     @cached_property
     def sag(self) -> float:
@@ -157,9 +160,7 @@ class ContactEquilibrium:
 
     @cached_property
     def approach(self) -> float:
-        """Approach of the surfaces at equilibrium, with the compliance in series with the
-        law [m].
-        """
+        """Approach of the surfaces at equilibrium [m], with the compliance in series."""
         return float(self.local.approach_at(np.array([self.sag]))[0])
 
     @cached_property
@@ -170,13 +171,14 @@ class ContactEquilibrium:
     @cached_property
     def contact(self) -> tuple[float, float]:
         """Stiffness [N/m] and damping [N s/m] of the contact at equilibrium."""
-        sag, slow = (
-            np.array([self.sag]),
-            np.array([1e-3 * np.sqrt(self.system.gravity[0] * abs(self.sag)) + 1e-12]),
-        )
+        sag = np.array([self.sag])
         stiffness = self.share * self.local.stiffness_at(self.sag)
-        towards, away = (self.local.forces_at_indentation(sag, rate)[1] for rate in (slow, -slow))
-        return max(stiffness, _NONE), max(float((towards - away)[0] / (2.0 * slow[0])), 0.0)
+        # central difference of the dissipative force, at a speed far below those of oscillations
+        rate = np.array([1e-3 * np.sqrt(self.system.gravity[0] * abs(self.sag)) + 1e-12])
+        _, approaching = self.local.forces_at_indentation(sag, rate)
+        _, separating = self.local.forces_at_indentation(sag, -rate)
+        damping = float((approaching - separating)[0] / (2.0 * rate[0]))
+        return max(stiffness, _NONE), max(damping, 0.0)
 
     @cached_property
     def stiffness(self) -> float:
@@ -186,16 +188,14 @@ class ContactEquilibrium:
     @cached_property
     def state(self) -> State:
         """State at equilibrium."""
-        system, weight = self.system, self.weight
-        displacement, local = (
-            -weight * system.shape[0] * system.flexibility,
-            -weight * system.local_compliance,
-        )
-        apart = self.approach - displacement @ system.shape[0] - local.sum()
-        rigid = system.rigid_shape[0]
-        return State(
-            displacement + rigid * apart * float(system.mass[0]), np.zeros_like(displacement), local
-        )
+        system = self.system
+        # static deflection of the modes and of the massless elements under the weight
+        deflection = -self.weight * system.shape[0] * system.flexibility
+        local = -self.weight * system.local_compliance
+        # the rigid motions add what is missing in the approach
+        rigid_approach = self.approach - deflection @ system.shape[0] - local.sum()
+        rigid = system.rigid_shape[0] * rigid_approach * float(system.mass[0])
+        return State(deflection + rigid, np.zeros_like(deflection), local)
 
     @property
     def linear(self) -> bool:
@@ -209,8 +209,9 @@ class ContactEquilibrium:
 
     @cached_property
     def modes(self) -> tuple[Floats, Floats]:
-        """Angular frequencies [rad/s] and mode shapes (n, n), a column per mode, of all
-        coordinates coupled by the contact spring.
+        """Angular frequencies [rad/s] and mode shapes (n, n) with the contact spring.
+
+        There is a column per mode; the spring couples all coordinates.
         """
         stiffness = np.diag(self.system.angular_frequency**2) + self.stiffness * np.outer(
             self.shape, self.shape
@@ -223,16 +224,18 @@ class ContactEquilibrium:
         return state.displacement - self.state.displacement, state.velocity.copy()
 
     def force_bound(self, state: State) -> float:
-        """Return the largest possible deviation of the contact force from the weight [N]
-        from a state on, for any phases of the modes.
+        """Return the bound of the deviation of the contact force from the weight [N].
+
+        It holds from a state on, for any phases of the modes.
         """
-        (omega, shapes), (place, speed) = self.modes, self.deviation(state)
-        amplitude = np.hypot(shapes.T @ place, (shapes.T @ speed) / omega)
-        lag = state.local + self.system.local_compliance * (
-            self.weight + self.stiffness * float(self.shape @ place)
-        )
+        omega, mode_shapes = self.modes
+        displacement, velocity = self.deviation(state)
+        amplitudes = np.hypot(mode_shapes.T @ displacement, (mode_shapes.T @ velocity) / omega)
+        # deviation of the massless elements from the deformation under the current force
+        spring_force = self.weight + self.stiffness * float(self.shape @ displacement)
+        lag = state.local + self.system.local_compliance * spring_force
         return float(
-            self.stiffness * np.abs(self.shape @ shapes) @ amplitude
+            self.stiffness * np.abs(self.shape @ mode_shapes) @ amplitudes
             + self.contact[0] * np.abs(lag).sum()
         )
 
@@ -241,34 +244,36 @@ class ContactEquilibrium:
         return self.force_bound(state) < REST_MARGIN * self.weight
 
     def excess(self, state: State, stored: float) -> float:
-        """Return the energy of sphere, oscillators and contact, which stores `stored`
-        [J], above their equilibrium [J].
+        """Return the energy of sphere, oscillators and contact above their equilibrium [J].
+
+        The contact stores `stored` [J].
         """
         energy = float(self.system.mechanical_energy(state) - self.system.common_energy(state))
         return energy + self.share * stored - least_energy(self.system, self.approach, self.stored)
 
 
 def coupled_oscillators(equilibrium: ContactEquilibrium) -> tuple[Oscillators, Floats]:
-    """Return the coupled modes of sphere and bodies as independent oscillators, and the
-    distribution of the energy that each loses.
+    """Return the coupled modes of sphere and bodies as independent oscillators, and their losses.
 
-    Each coupled mode has its own damping; the coupling of modes by damping is neglected. The
-    distribution is (n, n + 1): a row per coupled mode, with the part lost in each coordinate, and
-    last in the contact.
+    Each coupled mode has its own damping; the coupling of modes by damping is neglected. The losses
+    are the distribution of the energy that each loses, (n, n + 1): a row per coupled mode, with the
+    part lost in each coordinate, and last in the contact.
     """
-    (omega, shapes), system, damping = equilibrium.modes, equilibrium.system, equilibrium.contact[1]
+    omega, shapes = equilibrium.modes
+    system = equilibrium.system
+    contact_stiffness, damping = equilibrium.contact
+    contact_shape = equilibrium.shape @ shapes
     # the dashpots of the massless elements follow the force that their springs carry
     if system.rate.size:
-        damping = (
-            equilibrium.stiffness / equilibrium.contact[0]
-        ) ** 2 * damping + equilibrium.stiffness**2 * (
-            system.local_compliance**2 / system.mobility
-        ).sum()
-    lost = np.concatenate(
-        [shapes**2 * system.damping[:, None], damping * (equilibrium.shape @ shapes)[None] ** 2]
+        stiffness = equilibrium.stiffness
+        in_elements = (system.local_compliance**2 / system.mobility).sum()
+        damping = (stiffness / contact_stiffness) ** 2 * damping + stiffness**2 * in_elements
+    # damping of each coupled mode by each coordinate, and by the contact
+    modal_damping = np.concatenate(
+        [shapes**2 * system.damping[:, None], damping * contact_shape[None] ** 2]
     )
-    total_loss = lost.sum(axis=0)
-    coupled = Oscillators(omega, 0.5 * total_loss / omega, equilibrium.shape @ shapes)
-    return coupled, np.where(
-        total_loss > 0.0, lost / np.where(total_loss > 0.0, total_loss, 1.0), 0.0
-    ).T
+    total = modal_damping.sum(axis=0)
+    coupled = Oscillators(omega, 0.5 * total / omega, contact_shape)
+    damped = total > 0.0
+    distribution = np.where(damped, modal_damping / np.where(damped, total, 1.0), 0.0)
+    return coupled, distribution.T

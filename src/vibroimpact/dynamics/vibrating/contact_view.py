@@ -97,8 +97,9 @@ class ContactView:
 
     @property
     def sliding(self) -> ContactView:
-        """The system of a drop reduced to its contact and to the directions of friction
-        at it; itself where there are none.
+        """The system reduced to its contact and the directions of friction at it, of a drop.
+
+        It is the view itself where there are none.
         """
         if self.system.along is None:
             return self
@@ -106,8 +107,9 @@ class ContactView:
 
     @cached_property
     def bodies(self) -> Bodies:
-        """The system as the core takes it, with the directions of friction as further
-        contacts where there are any.
+        """The system as the core takes it.
+
+        The directions of friction are further contacts where there are any.
         """
         system = self.system.record_of(self.contacts[0])
         return Bodies(
@@ -124,15 +126,17 @@ class ContactView:
     def start(self, state: State) -> Start:
         """Return the state of the surfaces in a state of the system."""
         modes = self.modes
-        place = np.ascontiguousarray(state.displacement[modes.rigid :])
-        speed = np.ascontiguousarray(state.velocity[modes.rigid :])
-        outer_rate = self.rigid_shapes @ state.velocity[: modes.rigid] + modes.shapes[0] @ speed
-        inner_rate = modes.shapes[1] @ speed if modes.inside else np.zeros_like(outer_rate)
-        moved = (
-            self.rigid_shapes @ state.displacement[: modes.rigid] + modes.shapes.sum(axis=0) @ place
-        )
-        approach = self.offset + moved + modes.incidence @ state.local
-        return Start(place, speed, state.local, approach, outer_rate, inner_rate)
+        displacement = np.ascontiguousarray(state.displacement[modes.rigid :])
+        velocity = np.ascontiguousarray(state.velocity[modes.rigid :])
+        # by the rigid motions
+        rigid_approach = self.rigid_shapes @ state.displacement[: modes.rigid]
+        rigid_rate = self.rigid_shapes @ state.velocity[: modes.rigid]
+        # and by the modes, outside and inside the contacts
+        outer_rate = rigid_rate + modes.shapes[0] @ velocity
+        inner_rate = modes.shapes[1] @ velocity if modes.inside else np.zeros_like(outer_rate)
+        approach = rigid_approach + modes.shapes.sum(axis=0) @ displacement
+        approach = self.offset + approach + modes.incidence @ state.local
+        return Start(displacement, velocity, state.local, approach, outer_rate, inner_rate)
 
 
 def contact_view(system: LinearSystem, contacts: Iterable[int]) -> ContactView:
@@ -142,5 +146,5 @@ def contact_view(system: LinearSystem, contacts: Iterable[int]) -> ContactView:
         if numbers not in system.shared_modes:
             system.shared_modes[numbers] = ContactModes(system, numbers)
         system.views[numbers] = ContactView(system, numbers, system.shared_modes[numbers])
-    found: ContactView = system.views[numbers]
-    return found
+    view: ContactView = system.views[numbers]
+    return view

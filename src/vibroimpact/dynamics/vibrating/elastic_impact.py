@@ -1,8 +1,7 @@
-"""A visit: the impact of a sphere on a surface, from first touch to the last release, where bodies
-vibrate.
+"""The impact of a sphere on a surface, from first touch to the last release, where bodies vibrate.
 
 The contact is integrated by a `TimeMarching`. After separation the sphere is followed to the top of
-its flight: if the surfaces touch again before, the visit continues with another contact. It also
+its flight: if the surfaces touch again before, the impact continues with another contact. It also
 continues where the sphere separates more slowly than the rest speed while the vibration could still
 lift it: it chatters and then rides, until it separates, no energy is left to lift it
 (`contact_equilibrium`), or a limit of stretches or time is reached.
@@ -45,15 +44,19 @@ from vibroimpact.dynamics.vibrating.surface_friction import (
 )
 from vibroimpact.dynamics.vibrating.time_marching import MotionPart, TimeMarching
 
-MOST_STEPS, MOST_STEPS_TO_A_TIME = 5_000, 20_000
-"""Largest number of stretches of contact in a visit, some ten seconds' work; and where
-the run has an end in time.
-"""
+MOST_STEPS = 5_000
+"""Largest number of stretches of contact in an impact, some ten seconds' work."""
+
+MOST_STEPS_TO_A_TIME = 20_000
+"""That number where the run has an end in time."""
+
+_OUTCOMES = {core.CAPTURED: CAPTURED, core.RIDES: RIDING, core.TOO_STIFF: FAILED}
+"""Outcomes of a contact that the core has not followed to its release."""
 
 
 @dataclass
 class ElasticImpact:
-    """Result of a visit; `outcome` is RELEASED, SETTLED, CAPTURED, RIDING or FAILED.
+    """Result of an impact; `outcome` is RELEASED, SETTLED, CAPTURED, RIDING or FAILED.
 
     `state`: at the end. `duration`: from first touch to last release [s]. `contacts`: number of
     contacts. `max_indentation`, `max_force` and their times since first touch [m, N, s]. `lost`
@@ -128,7 +131,7 @@ def follow_elastic_impact(
 
 
 class _ImpactMarching:
-    """TimeMarching of one contact with the rules that end a visit."""
+    """TimeMarching of one contact with the rules that end an impact."""
 
     def __init__(
         self,
@@ -137,22 +140,16 @@ class _ImpactMarching:
         until: float,
         sphere: SlidingSphere,
     ) -> None:
-        self.march, self.rest_speed, self.until, self.sphere = (
-            march,
-            rest_speed,
-            until,
-            sphere,
-        )
-        self.system, self.gravity = march.system, float(march.system.gravity[0])
-        self.stretches, self.most_stretches = (
-            0,
-            MOST_STEPS if np.isinf(until) else MOST_STEPS_TO_A_TIME,
-        )
-        self.separation_time, self.stored, self.longest = (
-            0.0,
-            0.0,
-            _period_along(march.system, march.state),
-        )
+        self.march = march
+        self.rest_speed = rest_speed
+        self.until = until
+        self.sphere = sphere
+        self.system = march.system
+        self.gravity = float(march.system.gravity[0])
+        self.stretches = 0
+        self.most_stretches = MOST_STEPS if np.isinf(until) else MOST_STEPS_TO_A_TIME
+        self.longest_stretch = _tangential_period(march.system, march.state)
+        self.stored = 0.0
         self.equilibrium: ContactEquilibrium | None = None
         self.response: SteadyResponse | None = None
         self.active = march.begin_contact(0)
@@ -161,115 +158,117 @@ class _ImpactMarching:
     # ----------------------------------------------------------------------
 
     def run(self) -> ElasticImpact:
-        """Return the visit."""
-        march, contacts = self.march, 1
+        """Return the impact."""
+        march = self.march
+        contacts = 1
         while True:
-            outcome = self.contact()
-            self.separation_time = march.time
+            outcome = self.follow_contact()
+            separation_time = march.time
             if outcome != RELEASED:
                 break
             separation_speed = self.separation_speed
             slow = separation_speed < self.rest_speed and self.gravity > 0.0
-            if (
-                slow
-                and separation_speed > 0.0
-                and not self.system.driven
-                and separates_slower_than(self.system, self.next_law, march.state, self.rest_speed)
-            ):
+            if slow and separation_speed > 0.0 and self.settles():
                 outcome = SETTLED
                 break
             if not self.touches_again(slow) and separation_speed >= 0.0:
                 break
             contacts += 1
         local = self.active.local
-        if outcome == SETTLED and float(self.system.approach(march.state)[0]) <= float(
-            self.next_law.touch_level
-        ):
-            local = replace(local, law=self.next_law)  # the next contact does not meet the dent
-        deepest, hardest = (
-            locate_highest_peak([getattr(impact, name) for impact in march.impacts])
-            for name in ("indentation", "force")
+        if outcome == SETTLED:
+            approach = float(self.system.approach(march.state)[0])
+            if approach <= float(self.next_law.touch_level):
+                local = replace(local, law=self.next_law)  # the next contact avoids the dent
+        max_indentation, time_of_max_indentation = locate_highest_peak(
+            [impact.indentation for impact in march.impacts]
+        )
+        max_force, time_of_max_force = locate_highest_peak(
+            [impact.force for impact in march.impacts]
         )
         return ElasticImpact(
-            self.system,
-            march.state,
-            self.active.local.law,
-            march.lost,
-            outcome,
-            self.separation_time,
-            contacts,
-            march.parts,
-            *deepest,
-            *hardest,
-            march.plastic,
-            self.stored,
-            local,
+            system=self.system,
+            state=march.state,
+            law=self.active.local.law,
+            lost=march.lost,
+            outcome=outcome,
+            duration=separation_time,
+            contacts=contacts,
+            parts=march.parts,
+            max_indentation=max_indentation,
+            time_of_max_indentation=time_of_max_indentation,
+            max_force=max_force,
+            time_of_max_force=time_of_max_force,
+            plastic=march.plastic,
+            stored=self.stored,
+            local=local,
+        )
+
+    def settles(self) -> bool:
+        """Whether a sphere that has separated lacks the energy to exceed the rest speed again."""
+        return not self.system.driven and separates_slower_than(
+            self.system, self.next_law, self.march.state, self.rest_speed
         )
 
     # one contact
     # -----------------------------------------------------------------------------------
 
-    def contact(self) -> int:
+    def follow_contact(self) -> int:
         """Follow one contact in the core; return its outcome."""
-        longest = self.longest
+        longest = self.longest_stretch
         if self.sphere.directions:
             longest = min(longest, longest_with_friction(self.march.tolerance) * self.active.span)
         limits = Limits(self.until, longest, self.most_stretches - self.stretches)
         contact = CompiledContact(self.march, self.active, limits, self.sphere)
         outcome = contact.follow()
+        # the core asks where the force is near the weight
         while outcome == core.NEAR_REST:
-            if self.at_rest():
-                outcome = core.CAPTURED
-                break
-            outcome = contact.follow()
+            outcome = core.CAPTURED if self.at_rest() else contact.follow()
         self.stretches += contact.steps
         self.sphere = contact.progress.sphere
         if outcome != core.RELEASED:
-            return self.end_in_contact(
-                {core.CAPTURED: CAPTURED, core.RIDES: RIDING, core.TOO_STIFF: FAILED}[outcome]
-            )
+            self.end_in_contact()
+            return _OUTCOMES[outcome]
         self.march.end_contact(self.active)
         return RELEASED
 
-    def end_in_contact(self, outcome: int) -> int:
-        """End the visit in contact, with its stored energy; the law keeps its memory of
-        how deep it has come.
+    def end_in_contact(self) -> None:
+        """End the impact in contact, with its stored energy.
+
+        The law keeps its memory of the largest indentation.
         """
-        if self.active.local.updates_memory(self.active.delta):
+        local = self.active.local
+        if local.updates_memory(self.active.delta):
             self.march.update_memory(self.active)
         self.stored = float(self.active.local.energy_at_indentation(self.active.delta))
-        return outcome
 
     def at_rest(self) -> bool:
-        """Whether the contact carries the weight, and the bound of its force excludes
-        separation.
-        """
-        last, local = self.march.parts[-1].motion, self.active.local
+        """Whether the contact carries the weight, and its force will not vanish again."""
+        state = self.march.state
+        local = self.active.local
+        last = self.march.parts[-1].motion
         if not isinstance(last, VibratingStretch):
             return False
-        force, driven = float(last.contacts[0].force[-1]), self.system.driven
-        if not driven and not near_equilibrium(
-            self.system, self.march.state, force, self.active.overlap(self.system, self.march.state)
-        ):
-            return False
+        force = float(last.contacts[0].force[-1])
+        driven = self.system.driven > 0
+        if not driven:
+            indentation = self.active.overlap(self.system, state)
+            if not near_equilibrium(self.system, state, force, indentation):
+                return False
         if self.equilibrium is None or self.equilibrium.local.law is not local.law:
             self.equilibrium = ContactEquilibrium(self.system, local)
             self.response = steady_response(self.equilibrium)
-        if driven:
-            if rides_for_good(self.equilibrium, self.march.state, force):
-                return True
-            return self.response is not None and self.response.carries_for_good(
-                self.march.state, force
-            )
-        return self.equilibrium.linear and self.equilibrium.cannot_separate(self.march.state)
+        if not driven:
+            return self.equilibrium.linear and self.equilibrium.cannot_separate(state)
+        if rides_for_good(self.equilibrium, state, force):
+            return True
+        return self.response is not None and self.response.carries_for_good(state, force)
 
     @property
     def separation_speed(self) -> float:
         """Speed at which the centres move apart [m/s], or the sphere from what drives the plate."""
-        return -float(
-            self.system.rigid_motion(self.march.state)[1][0]
-            + self.system.driven_motion(self.march.state)[1]
-        )
+        _, rigid_rate = self.system.rigid_motion(self.march.state)
+        _, driven_rate, _ = self.system.driven_motion(self.march.state)
+        return -float(rigid_rate[0] + driven_rate)
 
     # apart
     # -----------------------------------------------------------------------------------------
@@ -280,56 +279,57 @@ class _ImpactMarching:
         return self.march.next_laws[0]
 
     def touches_again(self, without_limit: bool) -> bool:
-        """Follow the free sphere to the top of its flight, or without limit; return whether the
-        surfaces touch again before.
+        """Follow the free sphere to the top of its flight; return whether it touches again before.
 
-        Where the next contact meets undeformed surfaces, the visit continues at least until these
-        have separated. Where the plate is shaken, it continues as long as the surfaces meet more
-        slowly than the rest speed: any faster touch is an impact of its own.
+        It may be followed without limit. Where the next contact meets undeformed surfaces, the
+        impact continues at least until these have separated. Where the plate is shaken, it
+        continues as long as the surfaces meet more slowly than the rest speed: any faster touch is
+        an impact of its own.
         """
-        march, separation_speed, gravity = self.march, self.separation_speed, self.gravity
-        free = FreeMotion(self.system, march.state)
+        separation_speed = self.separation_speed
+        free = FreeMotion(self.system, self.march.state)
         shaken = self.system.driven > 0
-        top = (
-            np.inf
-            if separation_speed <= 0.0 or gravity == 0.0 or without_limit or shaken
-            else separation_speed / gravity
-        )
-        law, next_law = self.active.local.law, self.next_law
-        level = float(next_law.touch_level)
-        parted = time_to_separation(free, level)
-        if (
-            law.release_level > level
-            and (again := next_touch(free, float(law.release_level), parted)) < parted
-        ):
-            time = again  # before separation: into the same dent
-        else:
-            law = law if law.lasting else next_law
-            time = next_touch(free, float(law.touch_level), max(top, parted))
+        top = np.inf
+        if separation_speed > 0.0 and self.gravity != 0.0 and not (without_limit or shaken):
+            top = separation_speed / self.gravity
+        time, law = self.next_touch(free, top)
         if not np.isfinite(time):
             if separation_speed < 0.0:  # the next touch is within rounding of this one
-                self.active = march.begin_contact(0, law)
+                self.active = self.march.begin_contact(0, law)
             return False
-        if without_limit and separation_speed > 0.0 and time > self.until - march.time:
+        if without_limit and separation_speed > 0.0 and time > self.until - self.march.time:
             return False  # after the end of the run
-        if (
-            shaken
-            and separation_speed >= 0.0
-            and float(free.motion(np.array(time))[1][0]) >= self.rest_speed
-        ):
-            return False
-        march.append_free(free, time)
+        if shaken and separation_speed >= 0.0:
+            _, touch_rate = free.motion(np.array(time))
+            if float(touch_rate[0]) >= self.rest_speed:
+                return False
+        self.march.append_free(free, time)
         self.sphere = flown(self.sphere, time)
-        self.active = march.begin_contact(0, law)
+        self.active = self.march.begin_contact(0, law)
         return True
 
+    def next_touch(self, free: FreeMotion, top: float) -> tuple[float, CompliantLaw]:
+        """Return when the surfaces next touch after separation [s], and under which law.
 
-def _period_along(system: LinearSystem, state: State) -> float:
-    """Return about the period with which the plate is moved along itself under friction [s];
-    infinite where it is not.
+        The time is infinite if they do not until the top of the flight [s].
+        """
+        law = self.active.local.law
+        touch_level = float(self.next_law.touch_level)
+        separation = time_to_separation(free, touch_level)
+        if law.release_level > touch_level:
+            time = next_touch(free, float(law.release_level), separation)
+            if time < separation:  # into the same dent
+                return time, law
+        if not law.lasting:
+            law = self.next_law
+        return next_touch(free, float(law.touch_level), max(top, separation)), law
 
-    Friction turns with the slip. A stretch of many periods would meet it at too few instants, and
-    yet close its balance of energy.
+
+def _tangential_period(system: LinearSystem, state: State) -> float:
+    """Return about the period with which the plate is moved along itself under friction [s].
+
+    It is infinite where the plate is not moved so. Friction turns with the slip. A stretch of many
+    periods would meet it at too few instants, and yet close its balance of energy.
     """
     if system.along is None or not system.driven:
         return np.inf
@@ -338,5 +338,6 @@ def _period_along(system: LinearSystem, state: State) -> float:
     speeds = np.abs(system.along[:2, driven]) * np.hypot(
         state.velocity[driven], omega * state.displacement[driven]
     )
-    fastest, greatest = float(np.linalg.norm(speeds * omega)), float(np.linalg.norm(speeds))
-    return 2.0 * np.pi * greatest / fastest if fastest > 0.0 else np.inf
+    acceleration = float(np.linalg.norm(speeds * omega))
+    speed = float(np.linalg.norm(speeds))
+    return 2.0 * np.pi * speed / acceleration if acceleration > 0.0 else np.inf

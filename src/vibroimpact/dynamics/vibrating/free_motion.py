@@ -1,6 +1,4 @@
-"""Force-free phase of a march: between two contacts, or inside an indentation once the
-law has stopped pushing.
-"""
+"""Free phase of a march: between two contacts, or in recoil once a law has stopped pushing."""
 
 from __future__ import annotations
 
@@ -45,27 +43,27 @@ class FreePhase:
         return self.free.state(time)
 
     def lost_by(self, time: Floats) -> Floats:
-        """Return the energy lost since the start [J] at times since then [s], (..., n +
-        1): in each coordinate; last, in the contacts.
+        """Return the energy lost since the start [J] at times since then [s], (..., n + 1).
+
+        It is given for each coordinate, and last for the contacts.
         """
         return self.lost_at(self.free.state(time))
 
     def lost_at(self, state: State) -> Floats:
         """Return the energy lost since the start [J] as in `lost_by`, at states of this motion."""
-        lost, system = self.free.lost_at(state), self.free.system
+        lost = self.free.lost_at(state)
         for number, local in self.recoiling:
-            lost[..., -1] += coasting_loss(system, number, local, self.free.start, state)
+            lost[..., -1] += coasting_loss(self.free.system, number, local, self.free.start, state)
         return lost
 
 
 def coasting_loss(
-    system: LinearSystem, number: int, local: LocalContact, before: State, now: State
+    system: LinearSystem, number: int, local: LocalContact, start: State, states: State
 ) -> Floats:
-    """Return the stored energy that a recoiling contact has lost between a state and
-    later ones [J].
-    """
-    begun, left = (
-        local.elastic_energy(np.maximum(system.approach(at)[..., number], local.release_level))
-        for at in (before, now)
-    )
-    return np.asarray(begun - left)
+    """Return the stored energy that a recoiling contact has lost from a state to later ones [J]."""
+
+    def elastic_energy(state: State) -> Floats:
+        approach = system.approach(state)[..., number]
+        return np.asarray(local.elastic_energy(np.maximum(approach, local.release_level)))
+
+    return np.asarray(elastic_energy(start) - elastic_energy(states))

@@ -4,10 +4,8 @@ The difference of a neighbouring drop, from a slightly different height or speed
 linearised equations of motion. It is propagated along the computed history: in closed form through
 flights, by one linear solve through each stretch of contact. Where the contact force jumps, as when
 a dashpot meets the surface, the two drops meet the jump at different times: if the second is later
-by
-:math:`\delta t`, the difference gains :math:`(f_- - f_+)\,\delta t`, with the rates f of the state
-before and after (P. C. Mueller,
-Chaos, Solitons & Fractals 5:1671, 1995).
+by :math:`\delta t`, the difference gains :math:`(f_- - f_+)\,\delta t`, with the rates f of the
+state before and after (P. C. Mueller, Chaos, Solitons & Fractals 5:1671, 1995).
 """
 
 from __future__ import annotations
@@ -38,36 +36,34 @@ _JUMP = 1e-6  # of the force: a smaller change is no jump
 _SLOW = 0.1  # of the closing speed: lower bound of the separation speed in a relative change
 
 
-class SharedStatics:
+class NeighbouringDrops:
     """Neighbouring drops of a run, one of each, propagated along with it."""
 
     def __init__(self, problem: Problem, mass: Floats, system: LinearSystem) -> None:
         by_height = problem.speed is None
-        changed = np.broadcast_to(
+        height_or_speed = np.broadcast_to(
             np.asarray(problem.height if by_height else problem.speed, dtype=float), mass.shape
         )
-        self._drops = [
-            _Neighbour(system, value, by_height) for value in (np.sqrt(mass) * changed).tolist()
-        ]
+        changes = np.sqrt(mass) * height_or_speed  # of the coordinate of the sphere
+        self._drops = [_Neighbour(system, change, by_height) for change in changes.tolist()]
 
     def follow(self, bounce: Bounce) -> Floats:
-        """Return the growth of a relative change of the drop by the impact of a bounce [-], one
-        value per drop of its contact.
+        """Return the growth of a relative change of the drop by the impact of a bounce [-].
 
-        The drop is changed in its height, or in its speed where that is given. The growth is the
-        largest of the relative changes of the closing speed, of the largest force, and of the
-        separation speed (relative to at least a tenth of the closing speed). For a rigid drop from
-        a height it would be 0.6, as Hertz's force goes with the power 0.6 of the height.
+        There is one value per drop of its contact. The drop is changed in its height, or in its
+        speed where that is given. The growth is the largest of the relative changes of the closing
+        speed, of the largest force, and of the separation speed (relative to at least a tenth of
+        the closing speed). For a rigid drop from a height it would be 0.6, as Hertz's force goes
+        with the power 0.6 of the height.
 
         Parameters
         ----------
         bounce : Bounce
             The next flight and contact of the drops, of which a body vibrates.
         """
-        for drop, motion, length in zip(
-            bounce.drops, bounce.motions, bounce.flight_end - bounce.flight.start, strict=True
-        ):
-            self._drops[drop].fly(motion, float(length))
+        durations = bounce.flight_end - bounce.flight.start
+        for drop, motion, duration in zip(bounce.drops, bounce.motions, durations, strict=True):
+            self._drops[drop].fly(motion, float(duration))
         if bounce.contact is None:
             return np.zeros(0)
         motions: dict[int, list[VibratingStretch | FreePhase]] = {
@@ -76,15 +72,19 @@ class SharedStatics:
         for piece in bounce.contact.pieces:
             assert isinstance(piece.motion, (VibratingStretch, FreePhase))  # of bodies that vibrate
             motions[int(bounce.contact_drops[piece.drops[0]])].append(piece.motion)
-        for drop, parts in motions.items():
-            self._drops[drop].pass_visit(parts)
-        ends = zip(bounce.contact_drops, bounce.contact.final_rate, strict=True)
-        return np.array([self._drops[drop].leave(-float(speed)) for drop, speed in ends])
+        for drop, motions_of_drop in motions.items():
+            self._drops[drop].pass_impact(motions_of_drop)
+        return np.array(
+            [
+                self._drops[drop].leave(-float(rate))
+                for drop, rate in zip(bounce.contact_drops, bounce.contact.final_rate, strict=True)
+            ]
+        )
 
 
 @dataclass
 class _ImpactDifferences:
-    """Differences recorded during a visit.
+    """Differences recorded during an impact.
 
     `speed`, `closing`: closing speed, and its difference [m/s]. `force`: largest force at a node
     [N]. `strongest`: the stretch with that force, and the difference of the force at its nodes [N].
@@ -103,15 +103,15 @@ class _Neighbour:
     whenever a contact begins or ends, each drop is taken at its own time of that event.
     """
 
-    def __init__(self, system: LinearSystem, value: float, by_height: bool) -> None:
+    def __init__(self, system: LinearSystem, change: float, by_height: bool) -> None:
         self.difference = State(
             np.zeros(system.number), np.zeros(system.number), np.zeros(len(system.rate))
         )
         if by_height:
             # height is measured upwards, the coordinate of the approach downwards
-            self.difference.displacement[0] = -value
+            self.difference.displacement[0] = -change
         else:
-            self.difference.velocity[0] = value
+            self.difference.velocity[0] = change
         self.separated = True
         # the preceding stretch, if the drops come from one
         self.last_stretch: VibratingStretch | None = None
@@ -119,21 +119,22 @@ class _Neighbour:
         self.local: LocalContact | None = None  # the last contact of the reference drop
         # differences of the law's closing speed and memory
         self.law_differences: dict[str, float] = {}
-        self.visit: _ImpactDifferences | None = None
+        self.impact: _ImpactDifferences | None = None
 
-    def fly(self, motion: FreeMotion, length: float, inside: bool = False) -> None:
+    def fly(self, motion: FreeMotion, duration: float, inside: bool = False) -> None:
         """Propagate through free motion, in recoil (`inside`) or between contacts."""
         if not inside:
             self.separate()
         free = contact_view(motion.system, (0,)).without_load.system
-        self.difference = FreeMotion(free, self.difference).state_after(length)
-        self.separated, self.last_stretch = not inside, None
+        self.difference = FreeMotion(free, self.difference).state_after(duration)
+        self.separated = not inside
+        self.last_stretch = None
 
-    def pass_visit(self, motions: Sequence[VibratingStretch | FreePhase]) -> None:
-        """Propagate through the parts of a visit."""
-        for _, parts in groupby(motions, _contact_of):
+    def pass_impact(self, motions: Sequence[VibratingStretch | FreePhase]) -> None:
+        """Propagate through the parts of an impact."""
+        for _, phase in groupby(motions, _contact_identity):
             stretches = []
-            for motion in parts:  # all of them stretches under one law, or all of them free
+            for motion in phase:  # all of them stretches under one law, or all of them free
                 if isinstance(motion, FreePhase):
                     self.fly(motion.free, motion.length, inside=motion.local is not None)
                 else:
@@ -143,7 +144,8 @@ class _Neighbour:
 
     def pass_through(self, stretches: Sequence[VibratingStretch]) -> None:
         """Propagate through stretches of contact under one law."""
-        first, local = stretches[0], stretches[0].contacts[0].local
+        first = stretches[0]
+        local = first.contacts[0].local
         if self.separated:
             self.begin_contact(first)
         elif local is not self.local:
@@ -152,111 +154,120 @@ class _Neighbour:
         self.difference, force_differences = propagate_difference(
             stretches, self.difference, variations
         )
-        self.force_difference, self.last_stretch = float(force_differences[-1, -1]), stretches[-1]
-        assert self.visit is not None  # it has touched
+        self.force_difference = float(force_differences[-1, -1])
+        self.last_stretch = stretches[-1]
+        assert self.impact is not None  # it has touched
         for stretch, force_difference in zip(stretches, force_differences, strict=True):
             force = float(stretch.contacts[0].force.max())
-            if force > self.visit.force:
-                self.visit.force, self.visit.strongest = force, (stretch, force_difference)
+            if force > self.impact.force:
+                self.impact.force = force
+                self.impact.strongest = (stretch, force_difference)
 
     def leave(self, speed: float) -> float:
-        """End a visit with a speed upwards [m/s]; return the growth of the change."""
+        """End an impact with a speed upwards [m/s]; return the growth of the change."""
         self.separate()
-        visit, self.visit = self.visit, None
-        if visit is None or visit.strongest is None:
+        impact = self.impact
+        self.impact = None
+        if impact is None or impact.strongest is None:
             return float("nan")
-        stretch, force_difference = visit.strongest
-        top, force = stretch.peak_force()
-        force_change = nodal_value_between(stretch.basis.basis, force_difference, top) / force
-        speed_change = float(stretch.system.rigid_motion(self.difference)[1][0]) / max(
-            abs(speed), _SLOW * visit.speed
+        stretch, force_difference = impact.strongest
+        x_of_peak, peak_force = stretch.peak_force()
+        closing_change = impact.closing / impact.speed
+        force_change = (
+            nodal_value_between(stretch.basis.basis, force_difference, x_of_peak) / peak_force
         )
-        return max(abs(visit.closing) / visit.speed, abs(force_change), abs(speed_change))
+        _, rigid_rate = stretch.system.rigid_motion(self.difference)
+        separation_change = float(rigid_rate[0]) / max(abs(speed), _SLOW * impact.speed)
+        return max(abs(closing_change), abs(force_change), abs(separation_change))
 
     def begin_contact(self, stretch: VibratingStretch) -> None:
-        """Shift the difference to the touch of each drop, and take the differences of the
-        law's closing speed and memory.
+        """Shift the difference to the touch of each drop, and take those of the law.
+
+        These are of the law's closing speed and memory.
         """
-        system, start, local = stretch.system, stretch.start, stretch.contacts[0].local
-        same_surface = self.local is not None and self.local.law.memories() == local.law.memories()
+        system = stretch.system
+        start = stretch.start
+        local = stretch.contacts[0].local
+        memories = local.law.memories()
+        same_surface = self.local is not None and self.local.law.memories() == memories
         self.law_differences = {
-            name: self.law_differences.get(name, 0.0) if same_surface else 0.0
-            for name in local.law.memories()
+            name: self.law_differences.get(name, 0.0) if same_surface else 0.0 for name in memories
         }
-        laws = [
-            (varied.law, weight) for varied, weight in _law_variations(local, self.law_differences)
-        ]
-        level = sum(weight * (law.touch_level - local.law.touch_level) for law, weight in laws)
-        rate = float(system.rates(start)[0])
-        later = (level - float(system.approach(self.difference)[0])) / rate
-        self.difference = _shifted(self.difference, _state_rates(system, start, 0.0, 0.0), later)
-        closing = float(
-            (system.outer_rates if system.outer_rates(start)[0] >= rate else system.rates)(
-                self.difference
-            )[0]
+        # the level at which the surfaces touch depends on the memory
+        level_difference = sum(
+            weight * (varied.law.touch_level - local.law.touch_level)
+            for varied, weight in _law_variations(local, self.law_differences)
         )
+        rate = float(system.rates(start)[0])
+        delay = (level_difference - float(system.approach(self.difference)[0])) / rate
+        self.difference = _shifted(self.difference, _state_rates(system, start, 0.0, 0.0), delay)
+        # as in the closing speed of the drop itself
+        outer = system.outer_rates(start)[0] >= rate
+        closing_rates = system.outer_rates if outer else system.rates
+        closing = float(closing_rates(self.difference)[0])
         self.law_differences["approach_speed"] = closing
-        self.local, self.separated = local, False
-        self.visit = self.visit or _ImpactDifferences(local.approach_speed, closing)
+        self.local = local
+        self.separated = False
+        self.impact = self.impact or _ImpactDifferences(local.approach_speed, closing)
 
     def separate(self) -> None:
         """Shift the difference to the separation of each drop, if they come from a stretch."""
         if self.last_stretch is not None:
             excess = float(self.last_stretch.system.approach(self.difference)[0])
-            self.shift_to_event(
-                self.last_stretch, excess, float(self.last_stretch.contacts[0].closing[-1])
-            )
+            closing_rate = float(self.last_stretch.contacts[0].closing[-1])
+            self.shift_to_event(self.last_stretch, excess, closing_rate)
         self.last_stretch = None
 
     def update_memory(self, stretch: VibratingStretch) -> None:
-        """Update the differences of the law's memory at a turn: the largest indentation
-        differs by the difference of the approach.
+        """Update the differences of the law's memory at a turn.
+
+        The largest indentation differs by the difference of the approach.
         """
         assert self.local is not None  # it is in contact
-        assert self.last_stretch is not None
-        system, local, after = stretch.system, self.local, stretch.contacts[0].local
-        deepest = max(float(system.approach(stretch.start)[0]), local.release_level)
+        local = self.local
+        next_local = stretch.contacts[0].local
+        deepest = max(float(stretch.system.approach(stretch.start)[0]), local.release_level)
         if self.force_jumps(stretch):
-            x = np.array([1.0 - _STEP, 1.0])
-            closing, time = (
-                self.last_stretch.rule.weights(x).T @ self.last_stretch.contacts[0].closing,
-                self.last_stretch.length * self.last_stretch.rule.map_time(x),
-            )
-            excess = (
-                float(system.rates(self.difference)[0])
-                - system.mobility.sum() * self.force_difference
-            )
-            self.shift_to_event(
-                self.last_stretch, excess, float((closing[1] - closing[0]) / (time[1] - time[0]))
-            )
-        now = after.law.memories()
+            self.shift_to_turn()
+        # finite differences of the memory, by the largest indentation and the law before
         step = _STEP * deepest
-        found = dict.fromkeys(now, 0.0)
-        variations = [
-            (
-                local.after_compression(deepest + step),
-                float(system.approach(self.difference)[0]) / step,
-            )
-        ]
-        variations += [
-            (varied.after_compression(deepest), weight)
-            for varied, weight in _law_variations(local, self.law_differences)
-        ]
+        approach_difference = float(stretch.system.approach(self.difference)[0])
+        variations = [(local.after_compression(deepest + step), approach_difference / step)]
+        for varied, weight in _law_variations(local, self.law_differences):
+            variations.append((varied.after_compression(deepest), weight))
+        memories = next_local.law.memories()
+        differences = dict.fromkeys(memories, 0.0)
         for varied, weight in variations:
-            for name, value in varied.law.memories().items():
-                found[name] += weight * float(value - now[name])
-        self.law_differences.update(found)
-        self.local = after
+            for name, memory in varied.law.memories().items():
+                differences[name] += weight * float(memory - memories[name])
+        self.law_differences.update(differences)
+        self.local = next_local
+
+    def shift_to_turn(self) -> None:
+        """Shift the difference at the end of the last stretch to the turn of each drop."""
+        last = self.last_stretch
+        assert last is not None
+        system = last.system
+        # the approach turns where its rate is zero; its second derivative is a finite difference
+        x = np.array([1.0 - _STEP, 1.0])
+        closing = last.rule.weights(x).T @ last.contacts[0].closing
+        time = last.length * last.rule.map_time(x)
+        acceleration = float((closing[1] - closing[0]) / (time[1] - time[0]))
+        rate_difference = (
+            float(system.rates(self.difference)[0]) - system.mobility.sum() * self.force_difference
+        )
+        self.shift_to_event(last, rate_difference, acceleration)
 
     def force_jumps(self, stretch: VibratingStretch) -> bool:
         """Whether the force jumps between the last stretch and the next one."""
         assert self.last_stretch is not None
         (contact,) = stretch.contacts
-        before, after = (
-            float(self.last_stretch.force[0, -1]),
-            np.add(*contact.local.forces_at_indentation(contact.delta[:1], contact.rate[:1])),
+        elastic, dissipative = contact.local.forces_at_indentation(
+            contact.delta[:1], contact.rate[:1]
         )
-        return bool(abs(float(after[0]) - before) > _JUMP * abs(before))
+        before = float(self.last_stretch.force[0, -1])
+        after = float((elastic + dissipative)[0])
+        return bool(abs(after - before) > _JUMP * abs(before))
 
     def shift_to_event(self, stretch: VibratingStretch, excess: float, rate: float) -> None:
         """Shift the difference at the end of a stretch to the event of each drop.
@@ -271,57 +282,59 @@ class _Neighbour:
         self.difference = _shifted(self.difference, rates, -excess / rate)
 
 
-def _contact_of(motion: VibratingStretch | FreePhase) -> int:
-    """Return a number of the contact of a stretch, which stays the same until its law's
-    memory changes; 0 for free motion.
+def _contact_identity(motion: VibratingStretch | FreePhase) -> int:
+    """Return a number that stays the same until the memory of the contact law changes.
+
+    It is 0 for free motion.
     """
     return id(motion.contacts[0].local) if isinstance(motion, VibratingStretch) else 0
 
 
 def _state_rates(system: LinearSystem, state: State, force: float, static: float) -> State:
     """Return the time derivative of a state under a contact force and its static part [N]."""
-    pushed = system.outer_shape[0] * force + (system.shape[0] - system.outer_shape[0]) * static
-    return State(
-        state.velocity,
+    # the static part acts on the coordinates inside the contact
+    inner_shape = system.shape[0] - system.outer_shape[0]
+    generalised_force = system.outer_shape[0] * force + inner_shape * static
+    accelerations = (
         system.load
         - system.damping * state.velocity
         - system.angular_frequency**2 * state.displacement
-        - pushed,
-        -system.rate * state.local - system.mobility * force,
+        - generalised_force
+    )
+    return State(
+        state.velocity, accelerations, -system.rate * state.local - system.mobility * force
     )
 
 
-def _shifted(difference: State, rates: State, time: float) -> State:
-    """Return the difference if the neighbouring drop is taken later by a time, per unit
-    relative change.
+def _shifted(difference: State, rates: State, delay: float) -> State:
+    """Return the difference if the neighbouring drop is taken later by a time.
+
+    `delay`: that time per unit relative change [s].
     """
     return State(
-        *(
-            one + time * rate
-            for one, rate in zip(vars(difference).values(), vars(rates).values(), strict=True)
-        )
+        difference.displacement + delay * rates.displacement,
+        difference.velocity + delay * rates.velocity,
+        difference.local + delay * rates.local,
     )
 
 
 def _law_variations(
     local: LocalContact, law_differences: dict[str, float]
 ) -> list[tuple[LocalContact, float]]:
-    """Return contacts with the law's closing speed or a memory varied by a small step,
-    each with the factor of that variation.
+    """Return contacts with the law's closing speed or a memory varied by a small step.
+
+    Each comes with the factor of that variation.
     """
-    found = []
-    for name, change in law_differences.items():
-        if change == 0.0:
+    variations = []
+    for name, difference in law_differences.items():
+        if difference == 0.0:
             continue
         if name == "approach_speed":
             step = _STEP * local.approach_speed
-            found.append(
-                (replace(local, approach_speed=local.approach_speed + step), change / step)
-            )
+            varied = replace(local, approach_speed=local.approach_speed + step)
         else:
-            value = local.law.memories()[name]
-            step = _STEP * (abs(float(value)) or 1e-6)
-            found.append(
-                (replace(local, law=local.law.changed({name: value + step})), change / step)
-            )
-    return found
+            memory = local.law.memories()[name]
+            step = _STEP * (abs(float(memory)) or 1e-6)
+            varied = replace(local, law=local.law.changed({name: memory + step}))
+        variations.append((varied, difference / step))
+    return variations

@@ -37,7 +37,7 @@ from vibroimpact.dynamics.core.flight import state_after
 from vibroimpact.dynamics.vibrating.oscillators import Oscillators
 
 # of the sum of the magnitudes of the terms of an acceleration: smaller sums are rounding errors
-_ALIKE = 1e-12
+_ROUNDING = 1e-12
 
 
 @dataclass(frozen=True)
@@ -64,8 +64,9 @@ class State:
 
 @dataclass(frozen=True)
 class LinearSystem(Oscillators):
-    """Coordinates of unit mass of bodies with contacts, and massless elements of a spring parallel
-    to a dashpot.
+    """Coordinates of unit mass of bodies with contacts, and massless elements.
+
+    An element is a spring parallel to a dashpot.
 
     Parameters
     ----------
@@ -115,8 +116,9 @@ class LinearSystem(Oscillators):
 
     @cached_property
     def shared_modes(self) -> dict[tuple[int, ...], Any]:
-        """Cache of `ContactModes` for sets of contacts, by their numbers; shared by
-        systems with the same modes.
+        """Cache of `ContactModes` for sets of contacts, by their numbers.
+
+        Systems with the same modes share it.
         """
         return {}
 
@@ -149,27 +151,31 @@ class LinearSystem(Oscillators):
         return self._records[contact]
 
     def with_sphere(self, shape: float, load: float) -> LinearSystem:
-        """Return the same system with a sphere of another mass and weight, whose fall is
-        the first coordinate.
+        """Return the same system with a sphere of another mass and weight.
+
+        The fall of the sphere is the first coordinate.
         """
-        shapes, loads = self.shape.copy(), self.load.copy()
-        shapes[:, 0], loads[0] = shape, load
-        found = replace(self, shape=shapes, load=loads)
-        found.__dict__["shared_modes"] = self.shared_modes
-        return found
+        shapes = self.shape.copy()
+        loads = self.load.copy()
+        shapes[:, 0] = shape
+        loads[0] = load
+        system = replace(self, shape=shapes, load=loads)
+        # the modes stay the same, and so does what is computed from them
+        system.__dict__["shared_modes"] = self.shared_modes
+        return system
 
     @cached_property
     def sliding(self) -> LinearSystem:
-        """The same system with a further contact for each direction in which friction
-        acts, and about which its moments do.
-        """
+        """The same system with the directions of friction, and of its moments, as contacts."""
         assert self.along is not None
-        apart = np.concatenate([self.offset, np.zeros(len(self.along))])
-        shapes, below = (
-            np.concatenate([self.shape, -self.along]),
-            np.repeat(self.below, 1 + len(self.along), axis=0),
+        directions = len(self.along)
+        return replace(
+            self,
+            shape=np.concatenate([self.shape, -self.along]),
+            offset=np.concatenate([self.offset, np.zeros(directions)]),
+            below=np.repeat(self.below, 1 + directions, axis=0),
+            along=None,
         )
-        return replace(self, shape=shapes, offset=apart, below=below, along=None)
 
     @cached_property
     def rigid(self) -> Bools:
@@ -178,9 +184,7 @@ class LinearSystem(Oscillators):
 
     @property
     def ground(self) -> Bools:
-        """Mask of the coordinates of the body below, of a drop, without those that are
-        driven (n,).
-        """
+        """Mask of the coordinates of the body below, without the driven ones, of a drop (n,)."""
         return np.asarray(self.below[0] & (np.arange(self.number) < self.number - self.driven))
 
     @cached_property
@@ -200,8 +204,9 @@ class LinearSystem(Oscillators):
 
     @cached_property
     def indentation_shape(self) -> Floats:
-        """Shapes of the rigid motions and of the modes that count in the indentation,
-        zero for the others (contacts, n).
+        """Shapes of the coordinates that count in the indentation (contacts, n).
+
+        These are the rigid motions and the modes of `below`; the others are zero.
         """
         return np.where(self.below | self.rigid, self.shape, 0.0)
 
@@ -212,25 +217,26 @@ class LinearSystem(Oscillators):
 
     @cached_property
     def mass(self) -> Floats:
-        """Effective mass of the rigid motions at each contact [kg] (contacts,): of a free
-        and a held body the mass of the free one.
+        """Effective mass of the rigid motions at each contact [kg] (contacts,).
+
+        Of a free and a held body it is the mass of the free one.
         """
         return np.asarray(1.0 / (self.rigid_shape**2).sum(axis=1))
 
     @cached_property
     def gravity(self) -> Floats:
-        """Acceleration of the approach by gravity [m/s^2] (contacts,); exactly zero where
-        both bodies fall alike.
+        """Acceleration of the approach by gravity [m/s^2] (contacts,).
+
+        It is exactly zero where both bodies fall alike.
         """
-        parts = self.shape * self.load
-        found = parts.sum(axis=1)
-        return np.where(np.abs(found) > _ALIKE * np.abs(parts).sum(axis=1), found, 0.0)
+        terms = self.shape * self.load
+        acceleration = terms.sum(axis=1)
+        beyond_rounding = np.abs(acceleration) > _ROUNDING * np.abs(terms).sum(axis=1)
+        return np.where(beyond_rounding, acceleration, 0.0)
 
     @cached_property
     def local_incidence(self) -> Floats:
-        """Incidence matrix: one where a massless element is in series with a contact
-        (contacts, k).
-        """
+        """Incidence matrix of contacts and the massless elements in series (contacts, k)."""
         return np.asarray(self.local_contact == np.arange(len(self.shape))[:, None], dtype=float)
 
     @cached_property
@@ -240,9 +246,7 @@ class LinearSystem(Oscillators):
 
     @cached_property
     def flexibility(self) -> Floats:
-        """Inverse of the squared angular frequency of each mode, zero for rigid motions
-        [s^2] (n,).
-        """
+        """Inverse squared angular frequency of each mode, zero for rigid motions [s^2] (n,)."""
         return np.where(
             self.rigid, 0.0, 1.0 / np.where(self.rigid, 1.0, self.angular_frequency) ** 2
         )
@@ -255,15 +259,15 @@ class LinearSystem(Oscillators):
         )
 
     def energies(self, state: State) -> tuple[Floats, Floats]:
-        """Return the kinetic and the strain energy of each coordinate [J], zero for
-        driven ones; states may have leading axes.
+        """Return the kinetic and the strain energy of each coordinate [J] (..., n).
+
+        They are zero for driven coordinates. States may have leading axes.
         """
-        kinetic, strain = (
-            0.5 * state.velocity**2,
-            0.5 * (self.angular_frequency * state.displacement) ** 2,
-        )
+        kinetic = 0.5 * state.velocity**2
+        strain = 0.5 * (self.angular_frequency * state.displacement) ** 2
         if self.driven:
-            kinetic[..., -self.driven :] = strain[..., -self.driven :] = 0.0
+            kinetic[..., -self.driven :] = 0.0
+            strain[..., -self.driven :] = 0.0
         return kinetic, strain
 
     def local_energy(self, state: State) -> Floats:
@@ -271,27 +275,24 @@ class LinearSystem(Oscillators):
         return np.asarray(0.5 * (state.local**2 * self.rate / self.mobility).sum(axis=-1))
 
     def mechanical_energy(self, state: State) -> Floats:
-        """Return the kinetic, potential and strain energy [J], without the energy stored
-        by the contact laws.
-        """
-        total = sum(part.sum(axis=-1) for part in self.energies(state))
+        """Return the kinetic, potential and strain energy [J], without that of contact laws."""
+        kinetic, strain = self.energies(state)
+        total = kinetic.sum(axis=-1) + strain.sum(axis=-1)
         return np.asarray(total - state.displacement @ self.load + self.local_energy(state))
 
     def common_energy(self, state: State) -> Floats:
-        """Return the kinetic energy of rigid motions that do not change the first
-        approach [J], as of two free bodies moving together.
+        """Return the energy of rigid motions that do not change the first approach [J].
+
+        It is the kinetic energy of two free bodies that move together.
         """
         if np.count_nonzero(self.rigid) == 1:
             return np.zeros(state.velocity.shape[:-1])
-        along = state.velocity @ self.rigid_shape[0]
-        return np.asarray(
-            0.5 * ((state.velocity[..., self.rigid] ** 2).sum(axis=-1) - self.mass[0] * along**2)
-        )
+        approach_rate = state.velocity @ self.rigid_shape[0]
+        twice_kinetic = (state.velocity[..., self.rigid] ** 2).sum(axis=-1)
+        return np.asarray(0.5 * (twice_kinetic - self.mass[0] * approach_rate**2))
 
     def approach(self, state: State) -> Floats:
-        """Return the approach of the surfaces [m], negative where there is a gap (...,
-        contacts).
-        """
+        """Return the approach of the surfaces [m] (..., contacts), negative in a gap."""
         return np.asarray(
             self.offset + state.displacement @ self.shape.T + state.local @ self.local_incidence.T
         )
@@ -303,37 +304,40 @@ class LinearSystem(Oscillators):
         )
 
     def outer_rates(self, state: State) -> Floats:
-        """Return the rate at the dashpot of each contact law without contact force [m/s]
-        (..., contacts).
+        """Return the rate at the dashpot of each contact law [m/s] (..., contacts).
+
+        It is that without contact force.
         """
         return np.asarray(
             state.velocity @ self.outer_shape.T - (state.local * self.rate) @ self.local_incidence.T
         )
 
     def rigid_motion(self, state: State) -> tuple[Floats, Floats]:
-        """Return the contribution of the rigid motions, and of the offset, to the
-        approach [m] and to its rate [m/s] (..., contacts).
+        """Return the approach by the rigid motions [m] and its rate [m/s] (..., contacts).
+
+        The approach includes the offset.
         """
-        return (
-            self.offset + state.displacement @ self.rigid_shape.T,
-            state.velocity @ self.rigid_shape.T,
-        )
+        approach = self.offset + state.displacement @ self.rigid_shape.T
+        rate = state.velocity @ self.rigid_shape.T
+        return approach, rate
 
     def driven_motion(self, state: State) -> tuple[Floats, Floats, Floats]:
-        """Return what the driven coordinates contribute to the first approach [m], its
-        rate [m/s] and its acceleration [m/s^2] (...).
+        """Return the first approach by the driven coordinates, and its derivatives (...).
+
+        The derivatives are its rate and its acceleration [m, m/s, m/s^2].
         """
         driven = slice(self.number - self.driven, None)
-        shape, place = self.shape[0, driven], state.displacement[..., driven]
-        return (
-            place @ shape,
-            state.velocity[..., driven] @ shape,
-            -(place * self.angular_frequency[driven] ** 2) @ shape,
-        )
+        shape = self.shape[0, driven]
+        displacement = state.displacement[..., driven]
+        approach = displacement @ shape
+        rate = state.velocity[..., driven] @ shape
+        acceleration = -(displacement * self.angular_frequency[driven] ** 2) @ shape
+        return approach, rate, acceleration
 
     def accelerations(self, state: State, force: Floats) -> Floats:
-        """Return the accelerations of the coordinates outside the contacts, under contact
-        forces [N] (T, contacts): (T, n).
+        """Return the accelerations of the coordinates outside the contacts, (T, n).
+
+        `force`: contact forces [N] (T, contacts).
         """
         unforced = (
             self.load
@@ -352,16 +356,21 @@ class FreeMotion:
 
     def state(self, time: Floats) -> State:
         """Return the state at times since the start [s] (...)."""
-        system, start, time = self.system, self.start, np.asarray(time, dtype=float)
-        later = time[..., None]
+        system = self.system
+        start = self.start
+        time = np.asarray(time, dtype=float)
+        t = time[..., None]
         cosine, sine = system.propagators(time)
-        return State(
-            cosine * start.displacement + sine * start.velocity + 0.5 * system.load * later**2,
+        # only rigid motions have a load, under which they fall freely
+        displacement = (
+            cosine * start.displacement + sine * start.velocity + 0.5 * system.load * t**2
+        )
+        velocity = (
             (cosine - system.damping * sine) * start.velocity
             - system.angular_frequency**2 * sine * start.displacement
-            + system.load * later,
-            start.local * np.exp(-system.rate * later),
+            + system.load * t
         )
+        return State(displacement, velocity, start.local * np.exp(-system.rate * t))
 
     def state_after(self, time: float) -> State:
         """Return the state at one time since the start [s], without the arrays of many times."""
@@ -372,23 +381,24 @@ class FreeMotion:
         return FreeMotion(self.system, self.state_after(time))
 
     def lost_by(self, time: Floats) -> Floats:
-        """Return the energy lost since the start [J], (..., n + 1): in each coordinate,
-        and last in the massless elements.
+        """Return the energy lost since the start [J], (..., n + 1).
+
+        It is given for each coordinate, and last for the massless elements.
         """
         return self.lost_at(self.state(time))
 
     def lost_at(self, state: State) -> Floats:
         """Return the energy lost since the start [J] as in `lost_by`, at states of this motion."""
         system = self.system
-        coordinates = np.where(
-            system.rigid, 0.0, sum(system.energies(self.start)) - sum(system.energies(state))
-        )
+        initial_energy = sum(system.energies(self.start))
+        coordinates = np.where(system.rigid, 0.0, initial_energy - sum(system.energies(state)))
         massless = system.local_energy(self.start) - system.local_energy(state)
         return np.concatenate([coordinates, massless[..., None]], axis=-1)
 
     def motion(self, time: Floats) -> tuple[Floats, Floats]:
-        """Return the approach of the surfaces [m] and its rate [m/s] at times since the
-        start [s], (..., contacts).
+        """Return the approach of the surfaces [m] and its rate [m/s], (..., contacts).
+
+        Times [s] are since the start.
         """
         state = self.state(time)
         return self.system.approach(state), self.system.rates(state)

@@ -48,28 +48,30 @@ class LocalContact:
     approach_speed: float
 
     def forces(self, approach: Array, rate: Array) -> tuple[Array, Array]:
-        """Return the static and the dissipative force [N], before clipping, at the
-        approach y [m] and its rate [m/s].
+        """Return the static and the dissipative force [N], before clipping.
+
+        They are those at the approach y [m] and its rate [m/s].
         """
         return self.law.forces(self.indentation_at(approach), rate, self.approach_speed)
 
     def __getstate__(self) -> dict[str, object]:
-        """Return what is pickled: not the addresses of machine code, which are those of
-        this process.
-        """
+        """Return what is pickled, without addresses of machine code, which hold in this process."""
         return {"law": self.law, "series": self.series, "approach_speed": self.approach_speed}
 
     @cached_property
     def with_levels(self) -> Law:
-        """The law with the levels and the energy that follow from it and the compliance
-        in series, as the core finds them.
+        """The law with its levels and energies, as the core finds them.
+
+        They follow from the law and the compliance in series.
         """
         series = self.series
-        numbers = np.array([series.linear, series.unit, *series.factors, series.force], dtype=float)
+        coefficients_of_series = np.array(
+            [series.linear, series.unit, *series.factors, series.force], dtype=float
+        )
         return core.law_at_touch(
             law_addresses(type(self.law)),
             law_coefficients(self.law),
-            numbers,
+            coefficients_of_series,
             float(self.approach_speed),
         )
 
@@ -82,8 +84,9 @@ class LocalContact:
     # ---------------------------------------------------------
 
     def forces_at_indentation(self, delta: Array, rate: Array) -> tuple[Array, Array]:
-        """Return the static and the dissipative force [N], before clipping, at an
-        indentation of the law [m] and a rate [m/s].
+        """Return the static and the dissipative force [N], before clipping.
+
+        They are those at an indentation of the law [m] and a rate [m/s].
         """
         return self.law.forces(
             np.maximum(delta, self.release_indentation), rate, self.approach_speed
@@ -96,28 +99,26 @@ class LocalContact:
         return np.interp(approach, *self._table(self._scale(approach)))
 
     def stiffness_at(self, delta: float) -> float:
-        """Return the static stiffness of the law and what is in series with it [N/m], at
-        an indentation of the law [m].
+        """Return the static stiffness of the law and what is in series with it [N/m].
+
+        It is that at an indentation of the law [m].
         """
         delta = max(delta, self.release_indentation)
         step = _STEP * (abs(delta) + 1e-300)
-        static, deeper = self._static(np.array([delta, delta + step])).tolist()
-        stiffness = float(deeper - static) / step
-        return (
-            stiffness / (1.0 + float(self.series.linearised(static)[1]) * stiffness)
-            if self.series
-            else stiffness
-        )
+        force, next_force = self._static(np.array([delta, delta + step])).tolist()
+        stiffness = float(next_force - force) / step
+        if not self.series:
+            return stiffness
+        _, compliance = self.series.linearised(force)
+        return stiffness / (1.0 + float(compliance) * stiffness)
 
     def energy_at_indentation(self, delta: Array) -> Array:
         """Return the energy stored since touch, at an indentation of the law [J]."""
         delta = np.maximum(delta, self.release_indentation)
         stored = self.law.elastic_energy(delta)
-        return (
-            stored + self.series.energy(self._static(delta)) - self.energy_of_jump
-            if self.series
-            else stored
-        )
+        if not self.series:
+            return stored
+        return stored + self.series.energy(self._static(delta)) - self.energy_of_jump
 
     def work_at_indentation(self, delta: Array) -> Array:
         """Return the sum of stored energy and plastic work at an indentation of the law [J]."""
@@ -127,7 +128,9 @@ class LocalContact:
 
     def approach_at(self, delta: Array) -> Array:
         """Return the approach y [m] at an indentation of the law [m]."""
-        return delta + self.series.indentation(self._static(delta)) if self.series else delta
+        if not self.series:
+            return delta
+        return delta + self.series.indentation(self._static(delta))
 
     def indentation_at(self, approach: Array) -> Array:
         """Return the indentation of the law [m] at an approach [m], by Newton's method.
@@ -138,20 +141,18 @@ class LocalContact:
         approach = np.asarray(approach, dtype=float)
         if not self.series:
             return approach
-        size, delta, slope = (
-            self._scale(approach),
-            self.approximate_indentation(approach),
-            np.ones_like(approach),
-        )
-        step = _STEP * size
+        scale = self._scale(approach)
+        delta = self.approximate_indentation(approach)
+        slope = np.ones_like(approach)  # of the approach over the indentation
+        step = _STEP * scale
         offsets = np.array([0.0, step]).reshape((2,) + (1,) * approach.ndim)
         for _ in range(_MOST_ITERATIONS):
-            force, deeper = self._static(delta + offsets)
-            yielded, compliance = self.series.linearised(force)
-            slope = 1.0 + compliance * ((deeper - force) / step)
-            change = (delta + yielded - approach) / slope
-            delta = np.maximum(delta - change, self.release_indentation)
-            if np.abs(change).max() <= _CONVERGED * size:
+            force, next_force = self._static(delta + offsets)
+            series_indentation, compliance = self.series.linearised(force)
+            slope = 1.0 + compliance * ((next_force - force) / step)
+            correction = (delta + series_indentation - approach) / slope
+            delta = np.maximum(delta - correction, self.release_indentation)
+            if np.abs(correction).max() <= _CONVERGED * scale:
                 break
         return np.where(slope > 0.0, delta, np.nan)
 
@@ -159,22 +160,19 @@ class LocalContact:
         """Return a length scale of approaches [m]."""
         return max(float(np.abs(approach).max()), -2.0 * self.release_indentation) + 1e-300
 
-    def _table(self, size: float) -> tuple[Array, Array]:
-        """Return a cached table of approaches and indentations of the law, for approaches
-        up to a size [m].
-        """
-        reach = math.frexp(size)[1]
-        if reach not in self._tables:
-            delta = (
-                self.release_indentation
-                + 2.0 * math.ldexp(1.0, reach) * np.linspace(0.0, 1.0, _TABLE_ROWS) ** 2
-            )
-            self._tables[reach] = np.maximum.accumulate(self.approach_at(delta)), delta
-        return self._tables[reach]
+    def _table(self, scale: float) -> tuple[Array, Array]:
+        """Return a cached table of approaches up to a scale [m], and indentations of the law."""
+        exponent = math.frexp(scale)[1]
+        if exponent not in self._tables:
+            span = 2.0 * math.ldexp(1.0, exponent)
+            # denser near touch
+            delta = self.release_indentation + span * np.linspace(0.0, 1.0, _TABLE_ROWS) ** 2
+            self._tables[exponent] = np.maximum.accumulate(self.approach_at(delta)), delta
+        return self._tables[exponent]
 
     @cached_property
     def _tables(self) -> dict[int, tuple[Array, Array]]:
-        """Cache of `_table`, by the binary exponent of the size."""
+        """Cache of `_table`, by the binary exponent of the scale."""
         return {}
 
     def _static(self, delta: Array) -> Array:
@@ -187,11 +185,11 @@ class LocalContact:
 
     @property
     def energy_of_jump(self) -> float:
-        """Energy that an adhesive law and the compliance in series store as they jump into contact,
-        relative to the law alone [J], <= 0.
+        """Energy that an adhesive contact stores as it jumps into contact [J], <= 0.
 
-        Energies are those since touch, as those of the law are, so that this one is a part of what
-        is lost at release.
+        It is that of the law and the compliance in series, relative to the law alone. Energies are
+        those since touch, as those of the law are, so that this one is a part of what is lost at
+        release.
         """
         return self.with_levels.jump
 
@@ -202,21 +200,18 @@ class LocalContact:
 
     @property
     def release_indentation(self) -> float:
-        """Indentation of the law at release [m]; with a compliance in series a sticking
-        contact may snap off before the law releases.
+        """Indentation of the law at release [m].
+
+        With a compliance in series a sticking contact may snap off before the law releases.
         """
         return self.with_levels.release
 
     def elastic_energy(self, approach: Array) -> Array:
-        """Return the energy stored since touch by the law and in series with it [J], at
-        an approach [m].
-        """
+        """Return the energy stored since touch at an approach [m], with that in series [J]."""
         return self.energy_at_indentation(self.indentation_at(approach))
 
     def plastic_work(self, approach: Array) -> Array:
-        """Return the plastic work since the last update of the law's memory [J], at an
-        approach [m].
-        """
+        """Return the plastic work at an approach [m] since the last update of the memory [J]."""
         return self.law.plastic_work(self.indentation_at(approach))
 
     def after_compression(self, deepest: float) -> LocalContact:
@@ -225,16 +220,15 @@ class LocalContact:
 
     def after_indentation(self, deepest: Array) -> LocalContact:
         """Return the contact after a largest indentation of the law of `deepest` [m]."""
-        return (
-            replace(self, law=self.law.after_compression(deepest))
-            if self.updates_memory(deepest)
-            else self
-        )
+        if not self.updates_memory(deepest):
+            return self
+        return replace(self, law=self.law.after_compression(deepest))
 
     def updates_memory(self, deepest: Array) -> bool:
         """Whether an indentation of the law of `deepest` [m] changes its memory."""
-        before, after = self.law.memories(), self.law.after_compression(deepest).memories()
-        return not all(np.all(before[name] == after[name]) for name in before)
+        memories = self.law.memories()
+        changed = self.law.after_compression(deepest).memories()
+        return not all(np.all(memories[name] == changed[name]) for name in memories)
 
 
 def contacts_of(contacts: Sequence[LocalContact]) -> Contacts:

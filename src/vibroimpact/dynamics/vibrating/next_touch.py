@@ -1,6 +1,4 @@
-"""First touch of moving surfaces in free motion, and the time at which overlapping
-surfaces separate.
-"""
+"""First touch of surfaces in free motion, and separation of surfaces that overlap."""
 
 from __future__ import annotations
 
@@ -17,10 +15,9 @@ _SAMPLES = np.linspace(0.0, 1.0, 33)[1:]
 
 
 def next_touch(motion: FreeMotion, level: float, until: float, contact: int = 0) -> float:
-    """Return when the indentation first rises to a level [s since the start]; infinite if not
-    before `until`.
+    """Return when the indentation first rises to a level [s since the start].
 
-    From an open gap no touch is stepped over.
+    It is infinite if that is not before `until`. From an open gap no touch is stepped over.
 
     Parameters
     ----------
@@ -42,8 +39,9 @@ def next_touch(motion: FreeMotion, level: float, until: float, contact: int = 0)
 
 
 def time_to_separation(motion: FreeMotion, level: float, contact: int = 0) -> float:
-    """Return when surfaces that overlap beyond a level separate to it [s]; 0 if they do
-    not overlap, infinite if they never separate.
+    """Return when surfaces that overlap beyond a level separate to it [s].
+
+    It is 0 if they do not overlap, and infinite if they never separate.
     """
     if isinstance(motion, FluidMotion):
         return _time_to_separation_in_fluid(motion, level)
@@ -52,49 +50,57 @@ def time_to_separation(motion: FreeMotion, level: float, contact: int = 0) -> fl
     )
 
 
-# through a fluid, in which the sphere flies by steps that are not those of the core
+# through a fluid, where the flight is not that of the core
+# ------------------------------------------------------------------
 
 
 def _approach(motion: FluidMotion, time: float) -> Approach:
+    """Return the approach and its derivatives at a time [s]."""
     return touch.approach_in(motion.system.record_of(0), motion.state_after(time).record)
 
 
 def _next_touch_in_fluid(motion: FluidMotion, level: float, until: float) -> float:
+    """Return when the indentation first rises to a level [s], as `next_touch`."""
     time = _time_to_separation_in_fluid(motion, level)
     if not time < until:
         return np.inf
+    gravity = float(motion.system.gravity[0])
     for _ in range(_MOST_STEPS):
-        now = _approach(motion, time)
-        if touch.is_touch(now, level, time):
+        approach = _approach(motion, time)
+        if touch.is_touch(approach, level, time):
             return time
-        if touch.never_returns(now, level, float(motion.system.gravity[0])):
+        if touch.never_returns(approach, level, gravity):
             return np.inf
-        step = touch.time_apart(now, level, motion.pull(time))
+        # the surfaces stay apart for this time
+        step = touch.time_apart(approach, level, motion.pull(time))
         if time + step > until or not np.isfinite(step):
             return np.inf
-        if time + step == time:
-            return time if touch.is_closing(now, level) else np.inf
+        if time + step == time:  # the time step is below rounding
+            return time if touch.is_closing(approach, level) else np.inf
         time += step
     return time
 
 
 def _time_to_separation_in_fluid(motion: FluidMotion, level: float) -> float:
-    system, time = motion.system, 0.0
-    horizon, before = 0.0, np.nan
+    """Return when surfaces that overlap separate [s], as `time_to_separation`."""
+    gravity = float(motion.system.gravity[0])
+    time = 0.0
+    horizon = 0.0
+    last_approach = np.nan
     for _ in range(_MOST_HORIZONS):
-        now = _approach(motion, time)
+        approach = _approach(motion, time)
         # a shorter time is lost in that of the flight
         shortest = float(np.spacing(motion.flight.start[0] + time))
-        horizon = max(touch.next_horizon(now, level, horizon, before), shortest)
-        before = now.approach
-        if touch.is_apart(now, level):
+        horizon = max(touch.next_horizon(approach, level, horizon, last_approach), shortest)
+        last_approach = approach.approach
+        if touch.is_apart(approach, level):
             return time
-        if touch.never_separates(now, level, float(system.gravity[0])):
+        if touch.never_separates(approach, level, gravity):
             return np.inf
         times = time + horizon * _SAMPLES
-        parted = motion.motion(times)[0][:, 0] <= level
-        later = float(times[parted.argmax() if parted.any() else -1])
-        if later == time:  # the time step is below rounding
+        separated = motion.motion(times)[0][:, 0] <= level
+        next_time = float(times[separated.argmax() if separated.any() else -1])
+        if next_time == time:  # the time step is below rounding
             return time
-        time = later
+        time = next_time
     return np.inf

@@ -37,15 +37,18 @@ class Oscillators:
         """Twice the damping ratio times the angular frequency [1/s] (n,)."""
         return 2.0 * self.damping_ratio * self.angular_frequency
 
-    def pick(self, which: Indices | Bools | slice) -> Oscillators:
+    def pick(self, selection: Indices | Bools | slice) -> Oscillators:
         """Return a subset of the oscillators."""
         return Oscillators(
-            self.angular_frequency[which], self.damping_ratio[which], self.shape[..., which]
+            self.angular_frequency[selection],
+            self.damping_ratio[selection],
+            self.shape[..., selection],
         )
 
     def transition(self, time: Floats) -> Floats:
-        """Return the transition matrices of displacement and velocity of each over a free
-        motion of some time [s], (2, 2, ..., n).
+        """Return the transition matrices of free motion over times [s] (...): (2, 2, ..., n).
+
+        They take displacement and velocity at the start to those at the time, per oscillator.
         """
         cosine, sine = self.propagators(time)
         return np.array(
@@ -53,32 +56,39 @@ class Oscillators:
         )
 
     def propagators(self, time: Floats) -> tuple[Floats, Floats]:
-        """Return the response C to a unit initial displacement and S to a unit initial velocity,
-        after times [s] (...): (..., n) each.
+        """Return responses C and S to a unit initial displacement and velocity, (..., n) each.
 
-        Then q = C q0 + S v0, and the rates are C' = -omega^2 S and S' = C - 2 zeta omega S, for any
-        damping ratio.
+        They are given after times [s] (...). Then q = C q0 + S v0, and the rates are
+        C' = -omega^2 S and S' = C - 2 zeta omega S, for any damping ratio.
         """
-        omega, ratio, t = self.angular_frequency, self.damping_ratio, np.asarray(time)[..., None]
-        root = omega * np.sqrt(np.abs(1.0 - ratio * ratio))
-        fade, phase, swings = np.exp(-ratio * omega * t), root * t, root > 0.0
-        # sine and cosine take most of the time; without a phase, of rigid motions and critical
-        # damping, they are known
-        sine = np.sin(phase, where=swings, out=np.zeros_like(phase)) / np.where(swings, root, 1.0)
-        sine = fade * np.where(swings, sine, t)
-        cosine = fade * np.cos(phase, where=swings, out=np.ones_like(phase))
-        over = ratio > 1.0
-        if over.any():  # overdamped: factor out the slower exponential, so that none overflows
-            root, at = root[over], ratio[over] * omega[over]
-            slow = np.exp((root - at) * t)
-            sine[..., over] = slow * -np.expm1(-2.0 * root * t) / (2.0 * root)
-            cosine[..., over] = 0.5 * slow * (1.0 + np.exp(-2.0 * root * t))
-        return cosine + ratio * omega * sine, sine
+        omega = self.angular_frequency
+        zeta = self.damping_ratio
+        t = np.asarray(time)[..., None]
+        # damped angular frequency; of an overdamped oscillator its hyperbolic counterpart
+        damped_omega = omega * np.sqrt(np.abs(1.0 - zeta * zeta))
+        decay = np.exp(-zeta * omega * t)
+        phase = damped_omega * t
+        oscillates = damped_omega > 0.0
+        # sine and cosine take most of the time; they are known where the phase is always zero, for
+        # rigid motions and critical damping
+        sine_of_phase = np.sin(phase, where=oscillates, out=np.zeros_like(phase))
+        sine = sine_of_phase / np.where(oscillates, damped_omega, 1.0)
+        sine = decay * np.where(oscillates, sine, t)
+        cosine = decay * np.cos(phase, where=oscillates, out=np.ones_like(phase))
+        overdamped = zeta > 1.0
+        if overdamped.any():
+            # factor out the slower of the two exponentials, so that none overflows
+            rate = damped_omega[overdamped]
+            slow_decay = np.exp((rate - zeta[overdamped] * omega[overdamped]) * t)
+            sine[..., overdamped] = slow_decay * -np.expm1(-2.0 * rate * t) / (2.0 * rate)
+            cosine[..., overdamped] = 0.5 * slow_decay * (1.0 + np.exp(-2.0 * rate * t))
+        return cosine + zeta * omega * sine, sine
 
 
-def joined(parts: Sequence[Oscillators]) -> Oscillators:
-    """Return the oscillators of several parts, in order."""
-    fields = zip(
-        *((part.angular_frequency, part.damping_ratio, part.shape) for part in parts), strict=True
+def joined(groups: Sequence[Oscillators]) -> Oscillators:
+    """Return the oscillators of several groups, in order."""
+    return Oscillators(
+        np.concatenate([group.angular_frequency for group in groups], axis=-1),
+        np.concatenate([group.damping_ratio for group in groups], axis=-1),
+        np.concatenate([group.shape for group in groups], axis=-1),
     )
-    return Oscillators(*(np.concatenate(values, axis=-1) for values in fields))

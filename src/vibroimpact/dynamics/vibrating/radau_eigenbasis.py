@@ -17,8 +17,7 @@ NODES_PER_STRETCH = 12
 with fewer the stretches are too short.
 """
 
-
-_MAPS: tuple[Map, ...] = ("touch", "inside", "release")
+_TIME_MAPS: tuple[Map, ...] = ("touch", "inside", "release")
 
 STEPS_BETWEEN = 4
 """Steps in which friction is followed from each node to the next."""
@@ -39,23 +38,10 @@ class RadauEigenbasis:
 def radau_eigenbasis(time_map: Map, root: int) -> RadauEigenbasis:
     """Return the Radau rule under a time map, with the eigenbasis of its integration matrix."""
     rule = collocation_rule(NODES_PER_STRETCH, time_map, root)
-    values, vectors = np.linalg.eig(rule.integral)
-    half = np.flatnonzero(values.imag >= 0.0)
-    values = values[half].astype(np.complex128)
-    paired = values.imag > 0.0
-    # the sum of a conjugate pair is twice the real part of one
-    vectors = np.where(paired, 2.0, 1.0) * vectors[:, half]
-    parts = np.stack([vectors.real, -vectors.imag], axis=2)  # (N, H, 2)
-    kept = np.stack([np.ones_like(paired), paired], axis=1)
-    back = np.zeros((len(half), 2, NODES_PER_STRETCH))
-    # inverse of the real matrix, so that a round trip is exact to rounding
-    back[kept] = np.linalg.inv(parts[:, kept])
-    inverse = back[:, 0] + 1j * back[:, 1]
-    ends = np.append(0.0, rule.nodes)
-    between = (
-        ends[:-1, None] + np.diff(ends)[:, None] * np.arange(1, STEPS_BETWEEN + 1) / STEPS_BETWEEN
-    ).ravel()
-    filters = (vectors.T[:, :, None] * inverse[:, None, :]).reshape(len(half), -1)
+    eigenvalues, forward, backward, filters = _eigenbasis(rule.integral)
+    inverse = forward[:, 0] + 1j * forward[:, 1]
+    nodes = np.append(0.0, rule.nodes)
+    between_nodes = _between(nodes)
     basis = Basis(
         time=rule.time,
         integral=rule.integral,
@@ -63,30 +49,70 @@ def radau_eigenbasis(time_map: Map, root: int) -> RadauEigenbasis:
         spectrum=rule.coefficients * rule.slope,
         at_start=rule.weights_at_start[:, 0],
         at_end=np.zeros(NODES_PER_STRETCH) if time_map == "release" else rule.end_slope,
-        places=np.append(0.0, rule.nodes),
+        places=nodes,
         barycentric=rule.barycentric,
         grid=rule.weights(GRID).T,
-        forces_between=rule.interpolate(between, np.eye(NODES_PER_STRETCH)),
-        displacements_between=rule.weights(between)[1:].T,  # which are zero at the start
+        forces_between=rule.interpolate(between_nodes, np.eye(NODES_PER_STRETCH)),
+        displacements_between=rule.weights(between_nodes)[1:].T,  # which are zero at the start
         time_map=MAPS.index(time_map),
         root=root,
-        eigenvalues=_parts(values),
-        one=_parts(inverse.sum(axis=1)),
-        clock=_parts(inverse @ rule.time),
-        forward=back.reshape(-1, NODES_PER_STRETCH).T,
-        backward=parts.reshape(NODES_PER_STRETCH, -1).T,
-        filters=np.stack([filters.real, -filters.imag], axis=1).reshape(2 * len(half), -1),
+        eigenvalues=_real_and_imaginary(eigenvalues),
+        one=_real_and_imaginary(inverse.sum(axis=1)),
+        clock=_real_and_imaginary(inverse @ rule.time),
+        forward=forward.reshape(-1, NODES_PER_STRETCH).T,
+        backward=backward.reshape(NODES_PER_STRETCH, -1).T,
+        filters=filters,
     )
-    members: Any = (np.ascontiguousarray(part) if np.ndim(part) else part for part in basis)
-    return RadauEigenbasis(rule, Basis(*members))
+    contiguous: Any = (
+        np.ascontiguousarray(member) if np.ndim(member) else member for member in basis
+    )
+    return RadauEigenbasis(rule, Basis(*contiguous))
+
+
+def _eigenbasis(integral: Floats) -> tuple[Complex, Floats, Floats, Floats]:
+    """Return the eigenbasis of an integration matrix (N, N), with one of each conjugate pair.
+
+    Returns
+    -------
+    eigenvalues : array of complex, shape (H,)
+        Those with an imaginary part >= 0.
+    forward : array, shape (H, 2, N)
+        From values at the nodes to real and imaginary parts of the coordinates.
+    backward : array, shape (N, H, 2)
+        From these parts to values at the nodes.
+    filters : array, shape (2 H, N^2)
+        Real parts and minus imaginary parts of the projections on the eigenvectors.
+    """
+    eigenvalues, eigenvectors = np.linalg.eig(integral)
+    half = np.flatnonzero(eigenvalues.imag >= 0.0)
+    eigenvalues = eigenvalues[half].astype(np.complex128)
+    paired = eigenvalues.imag > 0.0
+    # the sum of a conjugate pair is twice the real part of one
+    eigenvectors = np.where(paired, 2.0, 1.0) * eigenvectors[:, half]
+    backward = np.stack([eigenvectors.real, -eigenvectors.imag], axis=2)
+    # a real eigenvalue has no imaginary part
+    present = np.stack([np.ones_like(paired), paired], axis=1)
+    forward = np.zeros((len(half), 2, len(integral)))
+    # inverse of the real matrix, so that a round trip is exact to rounding
+    forward[present] = np.linalg.inv(backward[:, present])
+    inverse = forward[:, 0] + 1j * forward[:, 1]
+    projections = (eigenvectors.T[:, :, None] * inverse[:, None, :]).reshape(len(half), -1)
+    filters = np.stack([projections.real, -projections.imag], axis=1)
+    return eigenvalues, forward, backward, filters.reshape(2 * len(half), -1)
+
+
+def _between(nodes: Floats) -> Floats:
+    """Return the points at which friction is followed, `STEPS_BETWEEN` from each node on."""
+    steps = np.diff(nodes)[:, None] * np.arange(1, STEPS_BETWEEN + 1) / STEPS_BETWEEN
+    return np.asarray(nodes[:-1, None] + steps).ravel()
 
 
 @cache
 def bases_of(root: int) -> Bases:
     """Return the rule under the three maps of time, as the core takes it."""
-    return Bases(*(radau_eigenbasis(time_map, root).basis for time_map in _MAPS))
+    return Bases(*(radau_eigenbasis(time_map, root).basis for time_map in _TIME_MAPS))
 
 
-def _parts(values: Complex | Floats) -> Floats:
+def _real_and_imaginary(values: Complex | Floats) -> Floats:
     """Return the real and the imaginary parts as rows."""
     return np.stack([values.real, values.imag])

@@ -1,6 +1,4 @@
-"""Motion after a sphere has come to rest on bodies that vibrate: small oscillations of
-all about their equilibrium under its weight.
-"""
+"""Small oscillations of a sphere at rest and the bodies that carry it, about their equilibrium."""
 
 from __future__ import annotations
 
@@ -58,68 +56,81 @@ class RestMotion:
     @cached_property
     def start_coupled(self) -> Floats:
         """Displacements and velocities of the coupled modes at the start, (2, n)."""
-        return np.stack(
-            [self.equilibrium.modes[1].T @ part for part in self.equilibrium.deviation(self.start)]
-        )
+        _, mode_shapes = self.equilibrium.modes
+        displacement, velocity = self.equilibrium.deviation(self.start)
+        return np.stack([mode_shapes.T @ displacement, mode_shapes.T @ velocity])
 
     @property
     def oscillations(self) -> FreeOscillations:
         """The motion as that of independent oscillators."""
-        shapes = self.equilibrium.modes[1]
+        _, mode_shapes = self.equilibrium.modes
         return FreeOscillations(
-            self.coupled, self.start_coupled, np.stack([shapes, np.zeros_like(shapes)])
+            self.coupled, self.start_coupled, np.stack([mode_shapes, np.zeros_like(mode_shapes)])
         )
 
     def coupled_state(self, time: Floats) -> Floats:
-        """Return displacements and velocities of the coupled modes at times since the
-        start [s], (2, ..., n).
+        """Return displacements and velocities of the coupled modes at times [s], (2, ..., n).
+
+        Times are since the start.
         """
-        later = self.coupled.transition(time)
-        return np.asarray(later[:, 0] * self.start_coupled[0] + later[:, 1] * self.start_coupled[1])
+        transition = self.coupled.transition(time)
+        displacement, velocity = self.start_coupled
+        return np.asarray(transition[:, 0] * displacement + transition[:, 1] * velocity)
 
     def state(self, time: Floats) -> State:
         """Return the state at times since the start [s] (...)."""
-        equilibrium, at = self.equilibrium, self.equilibrium.state
-        place, speed = self.coupled_state(time) @ equilibrium.modes[1].T
-        force = equilibrium.weight + equilibrium.stiffness * (place @ equilibrium.shape)
+        equilibrium = self.equilibrium
+        _, mode_shapes = equilibrium.modes
+        deviation, velocity = self.coupled_state(time) @ mode_shapes.T
+        force = equilibrium.weight + equilibrium.stiffness * (deviation @ equilibrium.shape)
+        # the massless elements follow the force quasi-statically
         return State(
-            at.displacement + place, speed, -force[..., None] * equilibrium.system.local_compliance
+            equilibrium.state.displacement + deviation,
+            velocity,
+            -force[..., None] * equilibrium.system.local_compliance,
         )
 
     def force(self, time: Floats) -> Floats:
-        """Return the contact force [N] at times since the start [s], from the
-        acceleration of the sphere.
+        """Return the contact force [N] at times since the start [s].
+
+        It follows from the acceleration of the sphere.
         """
-        (place, speed), coupled = self.coupled_state(time), self.coupled
-        restoring = coupled.damping * speed + coupled.angular_frequency**2 * place
+        coupled = self.coupled
+        displacement, velocity = self.coupled_state(time)
+        _, mode_shapes = self.equilibrium.modes
+        # minus the accelerations of the coupled modes
+        restoring = coupled.damping * velocity + coupled.angular_frequency**2 * displacement
         return np.asarray(
             self.equilibrium.weight
-            + np.sqrt(self.equilibrium.system.mass[0]) * (restoring @ self.equilibrium.modes[1][0])
+            + np.sqrt(self.equilibrium.system.mass[0]) * (restoring @ mode_shapes[0])
         )
 
     def stored(self, time: Floats) -> Floats:
-        """Return the energy stored by the contact [J] at times since the start [s],
-        without the massless elements.
+        """Return the energy stored by the contact [J] at times since the start [s].
+
+        It is that without the massless elements.
         """
         equilibrium = self.equilibrium
-        excess = equilibrium.stiffness * (
-            self.coupled_state(time)[0] @ (equilibrium.modes[1].T @ equilibrium.shape)
-        )
-        deeper = excess / equilibrium.contact[0]
-        return np.asarray(equilibrium.stored + (equilibrium.weight + 0.5 * excess) * deeper)
+        _, mode_shapes = equilibrium.modes
+        displacement, _ = self.coupled_state(time)
+        force = equilibrium.stiffness * (displacement @ (mode_shapes.T @ equilibrium.shape))
+        indentation = force / equilibrium.contact[0]  # both beyond those at equilibrium
+        return np.asarray(equilibrium.stored + (equilibrium.weight + 0.5 * force) * indentation)
 
     def lost_by(self, time: Floats) -> Floats:
-        """Return the energy lost since the start [J] at times (T,), (T, n + 1): in each
-        coordinate, and last in the contact.
+        """Return the energy lost since the start [J] at times (T,), (T, n + 1).
+
+        It is given for each coordinate, and last for the contact.
         """
         stiffness = self.coupled.angular_frequency**2
+        _, distribution = self._coupled
 
-        def energies(moved: Floats) -> Floats:
-            return np.asarray(0.5 * (moved[1] ** 2 + stiffness * moved[0] ** 2))
+        def energies(coupled_state: Floats) -> Floats:
+            displacement, velocity = coupled_state
+            return np.asarray(0.5 * (velocity**2 + stiffness * displacement**2))
 
-        return np.asarray(
-            (energies(self.start_coupled) - energies(self.coupled_state(time))) @ self._coupled[1]
-        )
+        lost_by_modes = energies(self.start_coupled) - energies(self.coupled_state(time))
+        return np.asarray(lost_by_modes @ distribution)
 
 
 def bring_to_rest(equilibrium: ContactEquilibrium, state: State, stored: float) -> RestMotion:
@@ -141,23 +152,28 @@ def bring_to_rest(equilibrium: ContactEquilibrium, state: State, stored: float) 
     stored : float
         Energy stored by the contact [J].
     """
-    system, shape, at = equilibrium.system, equilibrium.shape, equilibrium.state
-    (place, speed), held = equilibrium.deviation(state), equilibrium.excess(state, stored)
-    never = (1.0 - equilibrium.share) * stored
+    system = equilibrium.system
+    shape = equilibrium.shape
+    displacement, velocity = equilibrium.deviation(state)
+    approach = displacement @ shape  # beyond that at equilibrium
+    excess = equilibrium.excess(state, stored)
+    never_given_back = (1.0 - equilibrium.share) * stored
     # displacement of the sphere alone, per unit approach
-    alone = system.rigid / system.rigid_shape[0].sum()
+    sphere_alone = system.rigid / system.rigid_shape[0].sum()
     if equilibrium.linear and equilibrium.cannot_separate(state):
-        on_spring = held - 0.5 * float((speed**2 + (system.angular_frequency * place) ** 2).sum())
-        deeper = np.copysign(
-            np.sqrt(2.0 * max(on_spring, 0.0) / equilibrium.stiffness), place @ shape
+        in_coordinates = float((velocity**2 + (system.angular_frequency * displacement) ** 2).sum())
+        in_spring = excess - 0.5 * in_coordinates
+        spring_approach = np.copysign(
+            np.sqrt(2.0 * max(in_spring, 0.0) / equilibrium.stiffness), approach
         )
-        return RestMotion(
-            equilibrium,
-            replace(state, displacement=state.displacement + alone * (deeper - place @ shape)),
-            held,
-            never,
+        start = replace(
+            state, displacement=state.displacement + sphere_alone * (spring_approach - approach)
         )
-    speed -= shape * (speed @ shape) / (shape @ shape)
-    start = State(state.displacement - alone * (place @ shape), speed, at.local)
-    excess = equilibrium.excess(start, equilibrium.stored / equilibrium.share)
-    return RestMotion(equilibrium, start, excess, never + held - excess)
+        return RestMotion(equilibrium, start, excess, never_given_back)
+    # the impulse after which the rate of the approach is zero
+    velocity -= shape * (velocity @ shape) / (shape @ shape)
+    start = State(state.displacement - sphere_alone * approach, velocity, equilibrium.state.local)
+    excess_at_start = equilibrium.excess(start, equilibrium.stored / equilibrium.share)
+    return RestMotion(
+        equilibrium, start, excess_at_start, never_given_back + excess - excess_at_start
+    )

@@ -1,6 +1,4 @@
-"""History of one drop whose bodies vibrate, as a sequence of segments that can be
-evaluated at any time within them.
-"""
+"""History of one drop whose bodies vibrate: segments that give the motion at any time in them."""
 
 from __future__ import annotations
 
@@ -19,17 +17,20 @@ from vibroimpact.dynamics.vibrating.stretch import VibratingStretch
 if TYPE_CHECKING:
     from vibroimpact.dynamics.bounce import Bounce
 
-_STRETCH_POINTS, _GAP_POINTS = 49, 25
-_FREE_POINTS, _LATER_POINTS, _PERIODS = 2001, 1001, 10.0
-"""Grid of a free motion: points in the first periods of the lowest mode, points in the
-remainder, and number of those periods.
-"""
+_STRETCH_POINTS = 49
+_GAP_POINTS = 25
+
+# grid of a free motion: points in the first periods of the lowest mode, and in the remainder
+_FIRST_PERIODS = 10.0
+_POINTS_OF_FIRST_PERIODS = 2001
+_POINTS_OF_REMAINDER = 1001
 
 
 @dataclass(frozen=True)
 class VibratingSegment:
-    """A segment of the history of one drop: a flight, a stretch of contact, a gap between two
-    contacts, or rest.
+    """A segment of the history of one drop.
+
+    It is a flight, a stretch of contact, a gap between two contacts, or rest.
 
     `start`, `end` [s]. `lost_before`: energy lost before [J], (n + 2,): in each coordinate, in the
     contact, in plastic deformation.
@@ -49,47 +50,55 @@ class VibratingSegment:
     def system(self) -> LinearSystem:
         """The linear system."""
         trajectory = self.trajectory
-        return (trajectory.equilibrium if isinstance(trajectory, RestMotion) else trajectory).system
+        if isinstance(trajectory, RestMotion):
+            return trajectory.equilibrium.system
+        return trajectory.system
 
     @property
     def in_contact(self) -> bool:
         """Whether the surfaces overlap."""
-        return isinstance(self.motion, (VibratingStretch, RestMotion)) or (
-            isinstance(self.motion, FreePhase) and self.motion.local is not None
-        )
+        if isinstance(self.motion, FreePhase):
+            return self.motion.local is not None
+        return isinstance(self.motion, (VibratingStretch, RestMotion))
 
     def grid(self) -> Floats:
         """Times since the start that resolve the segment in a graph [s]."""
         span = self.end - self.start
         if isinstance(self.motion, VibratingStretch):
-            return np.asarray(
-                span * self.motion.rule.map_time(np.linspace(0.0, 1.0, _STRETCH_POINTS))
-            )
+            x = np.linspace(0.0, 1.0, _STRETCH_POINTS)
+            return np.asarray(span * self.motion.rule.map_time(x))
         if isinstance(self.motion, FreePhase):
             return np.linspace(0.0, span, _GAP_POINTS)
         lowest = float(self.system.angular_frequency[self.system.vibrating].min(initial=np.inf))
-        early = min(span, _PERIODS * 2.0 * np.pi / lowest) if np.isfinite(lowest) else 0.0
+        first = 0.0
+        if np.isfinite(lowest):
+            first = min(span, _FIRST_PERIODS * 2.0 * np.pi / lowest)
         return np.concatenate(
-            [np.linspace(0.0, early, _FREE_POINTS)[:-1], np.linspace(early, span, _LATER_POINTS)]
+            [
+                np.linspace(0.0, first, _POINTS_OF_FIRST_PERIODS)[:-1],
+                np.linspace(first, span, _POINTS_OF_REMAINDER),
+            ]
         )
 
     @property
     def lost_after(self) -> Floats:
         """Energy lost by the end [J], as in `lost_before`."""
         if isinstance(self.motion, VibratingStretch):
-            (contact,), lost = self.motion.contacts, self.motion.lost
-            local = contact.local
-            before, now = np.maximum(contact.approach[[0, -1]], local.release_level)
-            plastic = (
-                float(local.plastic_work(now) - local.plastic_work(before))
-                if local.law.yields
-                else 0.0
-            )
-            return np.asarray(self.lost_before + np.append(lost, plastic))
-        return np.asarray(
-            self.lost_before
-            + np.append(self.motion.lost_by(np.array([self.end - self.start]))[0], 0.0)
-        )
+            lost = np.append(self.motion.lost, self._plastic_work(self.motion))
+        else:
+            duration = np.array([self.end - self.start])
+            lost = np.append(self.motion.lost_by(duration)[0], 0.0)
+        return np.asarray(self.lost_before + lost)
+
+    def _plastic_work(self, stretch: VibratingStretch) -> float:
+        """Return the plastic work in a stretch of contact [J]."""
+        (contact,) = stretch.contacts
+        local = contact.local
+        if not local.law.yields:
+            return 0.0
+        # nothing yields before the surfaces touch
+        start, end = np.maximum(contact.approach[[0, -1]], local.release_level)
+        return float(local.plastic_work(end) - local.plastic_work(start))
 
     def state(self, time: Floats) -> State:
         """Return the state at times since the start [s] (T,)."""

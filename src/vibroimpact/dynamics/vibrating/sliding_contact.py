@@ -1,4 +1,4 @@
-"""The motion along the plate during visits of spheres to plates that deform."""
+"""The motion along the plate in impacts of spheres on plates that deform."""
 
 from __future__ import annotations
 
@@ -17,86 +17,94 @@ from vibroimpact.dynamics.vibrating.surface_friction import SlidingStretch
 
 @dataclass(frozen=True)
 class SlidingContact:
-    """The motion along the plate during the visit of one drop; see `ObliqueContact`.
+    """The motion along the plate in the impact of one drop; see `ObliqueContact`.
 
-    `sphere`, `before`: the sphere, and its state at first touch. `duration`: of the visit [s] (1,).
-    `parts`: starts of its stretches under friction since first touch [s], and these.
+    `sphere`, `before`: the sphere, and its state at first touch. `duration`: of the impact [s]
+    (1,). `stretches`: its stretches under friction, with their starts since first touch [s].
     """
 
     sphere: Sphere
     before: State
     duration: Floats
-    parts: Sequence[tuple[float, SlidingStretch]]
+    stretches: Sequence[tuple[float, SlidingStretch]]
 
     def of(self, drop: int) -> SlidingContact:
         """Return itself: it belongs to one drop."""
         return self
 
     def at(self, time: Floats) -> tuple[State, Floats, Floats]:
-        """Return states, friction forces on the sphere [N] (2, T) and energy taken [J]
-        (T,) at times since first touch [s] (T,).
+        """Return states, friction forces on the sphere [N] (2, T) and energy taken [J] (T,).
+
+        Times [s] (T,) are since first touch.
         """
-        sphere, before, now = self.sphere, self.before, np.minimum(time, self.duration)
-        slip = sphere.slip(before)
-        velocity, displacement = (
-            slip + sphere.gravity * now,
-            (slip + 0.5 * sphere.gravity * now) * now,
-        )
-        force, taken = np.zeros((2, len(now))), np.zeros(len(now))
-        turned, turned_way = np.zeros((3, len(now))), np.zeros((2, len(now)))
-        # what follows a stretch flies on from its end until the next one
-        for start, stretch in self.parts:
-            within, later = (
-                (now >= start) & (now <= start + stretch.length),
-                now > start + stretch.length,
-            )
+        time = np.minimum(time, self.duration)
+        slip = self.sphere.slip(self.before)
+        gravity = self.sphere.gravity
+        # without friction, until the first stretch
+        velocity = slip + gravity * time
+        displacement = (slip + 0.5 * gravity * time) * time
+        force = np.zeros((2, len(time)))
+        work = np.zeros(len(time))
+        turned = np.zeros((3, len(time)))
+        turned_way = np.zeros((2, len(time)))
+        for start, stretch in self.stretches:
+            finish = start + stretch.length
+            within = (time >= start) & (time <= finish)
             if within.any():
-                velocity[:, within], displacement[:, within], forces, taken[within] = stretch.at(
-                    now[within] - start
+                elapsed = time[within] - start
+                velocity[:, within], displacement[:, within], forces, work[within] = stretch.at(
+                    elapsed
                 )
                 force[:, within] = forces[:2]
-                turned[:, within], turned_way[:, within] = stretch.turned(now[within] - start)
+                turned[:, within], turned_way[:, within] = stretch.turned(elapsed)
+            # the sphere flies on from the end of a stretch until the next one
+            later = time > finish
             if later.any():
-                end, rest = stretch.end, now[later] - start - stretch.length
+                end = stretch.end
+                elapsed = time[later] - start - stretch.length
                 pull = stretch.sphere.pull[:, None]
-                velocity[:, later] = end.velocity[:, None] + pull * rest
+                velocity[:, later] = end.velocity[:, None] + pull * elapsed
                 displacement[:, later] = (
-                    end.displacement[:, None] + (end.velocity[:, None] + 0.5 * pull * rest) * rest
+                    end.displacement[:, None]
+                    + (end.velocity[:, None] + 0.5 * pull * elapsed) * elapsed
                 )
-                force[:, later], taken[later], turned[:, later] = 0.0, end.work, end.turned[:, None]
+                force[:, later] = 0.0
+                work[later] = end.work
+                turned[:, later] = end.turned[:, None]
                 turned_way[:, later] = (
-                    end.turned_way[:, None] + stretch.sphere.radius * end.turned[:2, None] * rest
+                    end.turned_way[:, None] + stretch.sphere.radius * end.turned[:2, None] * elapsed
                 )
-        return (
-            state_after(sphere, before, now, (velocity, displacement), (turned, turned_way)),
-            -force,
-            taken,
+        state = state_after(
+            self.sphere, self.before, time, (velocity, displacement), (turned, turned_way)
         )
+        return state, -force, work
 
     @property
     def end(self) -> tuple[State, Floats, Floats]:
-        """The state at the end of the visit, the energy that friction took in it, and the
-        part of that in microslip [J] (1,).
-        """
-        state, _, taken = self.at(self.duration)
-        return state, taken, np.array([self.parts[-1][1].end.microslip if self.parts else 0.0])
+        """The state at the end, and the energies that friction and microslip took [J] (1,)."""
+        state, _, work = self.at(self.duration)
+        microslip = self.stretches[-1][1].end.microslip if self.stretches else 0.0
+        return state, work, np.array([microslip])
 
 
 def sliding_contacts(
     oblique: ObliqueMotion, drops: Drops, contact: Contact, row: dict[str, Floats]
 ) -> ObliqueContacts:
-    """Advance drops through their visits along the plate, write their columns, and return
-    the motion in them.
+    """Advance drops along the plate through their impacts; return the motion in them.
+
+    Their columns are written to a row of the impact table.
     """
-    parts: list[list[tuple[float, SlidingStretch]]] = [[] for _ in drops]
+    stretches: list[list[tuple[float, SlidingStretch]]] = [[] for _ in drops]
     for piece in contact.pieces:
         if isinstance(piece.motion, VibratingStretch) and piece.motion.sliding is not None:
-            parts[int(piece.drops[0])].append((float(piece.start[0]), piece.motion.sliding))
-    found = []
-    for place, stretches in enumerate(parts):
-        here, one = np.array([place]), drops[place : place + 1]
-        sphere, before = oblique.now(one)
-        along = SlidingContact(sphere, before, contact.duration[here], stretches)
-        oblique.finish(one, *along.end, row)
-        found.append((here, along))
-    return tuple(found)
+            start = float(piece.start[0])
+            stretches[int(piece.drops[0])].append((start, piece.motion.sliding))
+    contacts = []
+    for number, drop in enumerate(drops):
+        index = np.array([number])
+        here = np.array([drop])
+        sphere, before = oblique.now(here)
+        sliding = SlidingContact(sphere, before, contact.duration[index], stretches[number])
+        oblique.finish(here, *sliding.end, row)
+        contacts.append((index, sliding))
+    return tuple(contacts)

@@ -47,17 +47,22 @@ class StretchAhead:
         view: ContactView,
         contacts: Sequence[LocalContact],
         state: State,
-        begun: Floats,
+        indentations: Floats,
         trend: Floats,
         manner: Manner,
     ) -> StretchAhead:
-        """Return the stretch from a state on; `begun`: indentations of the laws then [m],
-        approximately.
+        """Return the stretch from a state on.
+
+        `indentations`: those of the laws in that state, approximately [m].
         """
-        start, laws = view.start(state), contacts_of(contacts)
-        sliding = SlidStretch(view.surfaces, start, NO_FRICTION)
+        start = view.start(state)
+        laws = contacts_of(contacts)
         beginning = Beginning(
-            state.record, start, laws, begun_indentations(laws, start, begun), sliding
+            state.record,
+            start,
+            laws,
+            begun_indentations(laws, start, indentations),
+            SlidStretch(view.surfaces, start, NO_FRICTION),
         )
         return cls(view, contacts, state, trend, manner, beginning)
 
@@ -68,60 +73,58 @@ class StretchAhead:
 
     def solve(self, time_map: int, length: float) -> Attempt:
         """Return the stretch of a length [s] under a map of time, of `MAPS`."""
-        basis = radau_eigenbasis(MAPS[time_map], self.root).basis
-        given = Event(NO_EVENT, 0.0, length, 0)
+        no_event = Event(NO_EVENT, 0.0, length, 0)
         return core.attempt(
-            basis,
+            radau_eigenbasis(MAPS[time_map], self.root).basis,
             self.view.bodies,
             self.manner,
             self.beginning,
             _NO_GUESS,
             self.trend,
             False,
-            given,
+            no_event,
         )
 
-    def up_to_event(self, tried: Attempt, time_map: int) -> tuple[bool, Attempt, int, Event]:
-        """Return whether the stretch is solved again up to its first event, the solution,
-        its map of time, and the event.
+    def up_to_event(self, attempt: Attempt, time_map: int) -> tuple[bool, Attempt, int, Event]:
+        """Return the stretch solved again up to its first event.
+
+        It is given as whether that succeeds, the solution, its map of time, and the event.
         """
         return core.up_to_event(
-            bases_of(self.root), self.view.bodies, self.manner, self.beginning, tried, time_map
+            bases_of(self.root), self.view.bodies, self.manner, self.beginning, attempt, time_map
         )
 
-    def balance(self, tried: Attempt, time_map: int) -> Balance:
+    def balance(self, attempt: Attempt, time_map: int) -> Balance:
         """Return the motion through a solution, and whether it is resolved."""
         return core.balance_of(
             radau_eigenbasis(MAPS[time_map], self.root).basis,
             self.view.bodies,
             self.manner,
             self.beginning,
-            tried,
+            attempt,
         )
 
     def stretch(self, solved: Attempt, balance: Balance, time_map: int) -> VibratingStretch:
         """Return a solution with its histories."""
         basis = radau_eigenbasis(MAPS[time_map], self.root)
-        static, force = (
-            values.reshape(len(self.contacts), -1)
-            for values in (solved.nodes.static, solved.nodes.force)
-        )
+        static = solved.nodes.static.reshape(len(self.contacts), -1)
+        force = solved.nodes.force.reshape(len(self.contacts), -1)
         motion = solved.contact
         histories = tuple(
             ContactHistory(
-                self.view.contacts[number],
-                local,
-                basis.rule,
-                static[number],
-                force[number] - static[number],
-                motion.approach[number],
-                motion.rate[number],
-                motion.closing[number],
-                motion.delta[number],
-                work=float(balance.work[number]),
-                dissipated=float(motion.dissipated[number]),
+                number=self.view.contacts[index],
+                local=local,
+                rule=basis.rule,
+                static=static[index],
+                dissipative=force[index] - static[index],
+                approach=motion.approach[index],
+                rate=motion.rate[index],
+                closing=motion.closing[index],
+                delta=motion.delta[index],
+                work=float(balance.work[index]),
+                dissipated=float(motion.dissipated[index]),
             )
-            for number, local in enumerate(self.contacts)
+            for index, local in enumerate(self.contacts)
         )
         stretch = VibratingStretch(
             self.view, basis, solved.length, self.state, histories, motion.roughness

@@ -1,6 +1,4 @@
-"""A solved stretch of contact: motion of the coordinates, contact forces, energy balance
-and error measures.
-"""
+"""A solved stretch of contact: its motion, contact forces, energy balance and error measures."""
 
 from __future__ import annotations
 
@@ -24,17 +22,18 @@ from vibroimpact.dynamics.vibrating.radau_eigenbasis import RadauEigenbasis
 from vibroimpact.dynamics.vibrating.surface_friction import SlidingStretch
 
 _KEPT = 64
-"""Number of stretches whose motion a thread keeps in memory, the last ones that were
-solved or read: those of a few impacts.
+"""Number of stretches whose motion a thread keeps in memory: those of a few impacts.
+
+They are the last ones that were solved or read.
 """
 
 
 class _Kept(threading.local):
     """The stretches whose motion a thread keeps, oldest first.
 
-    They are those of a thread, so that runs beside each other, as for windows of the live page,
-    take nothing from one another. They are not those of a run: responses that are held would then
-    hold their motions, which is four times the memory.
+    Each thread has its own, so that runs beside each other, as for windows of the live page, take
+    nothing from one another. A run has none of its own: responses that are held would then hold
+    their motions, which is four times the memory.
     """
 
     def __init__(self) -> None:
@@ -109,21 +108,33 @@ class VibratingStretch:
     def motion(self) -> StretchMotion:
         """Motion of the coordinates; recomputed from the forces if it is no longer kept."""
         self.keep()
-        view, force = self.view, self.force
+        view = self.view
+        force = self.force
         static = np.stack([contact.static for contact in self.contacts])
         if self.sliding is not None:
+            # directions of friction are further contacts, without a static law
             view = view.sliding
             force = np.concatenate([force, self.sliding.force])
             static = np.concatenate([static, np.zeros_like(self.sliding.force)])
-        start = self.start.record
-        bodies = (view.surfaces, view.coordinates)
         path = stretch_path(
-            self.basis.basis, *bodies, start, self.length, force.ravel(), static.ravel(), True
+            self.basis.basis,
+            view.surfaces,
+            view.coordinates,
+            self.start.record,
+            self.length,
+            force.ravel(),
+            static.ravel(),
+            True,
         )
         gain, rounding = path.energies.tolist()
-        end = State(path.displacement, path.speed, path.local)
         return StretchMotion(
-            path.acceleration, path.velocity, path.massless.T, end, gain, rounding, path.lost
+            accelerations=path.acceleration,
+            velocities=path.velocity,
+            massless=path.massless.T,
+            end=State(path.displacement, path.speed, path.local),
+            gain=gain,
+            rounding=rounding,
+            lost=path.lost,
         )
 
     @property
@@ -141,27 +152,31 @@ class VibratingStretch:
         """State at the end."""
         return self.motion.end
 
+    def time_at(self, x: float) -> float:
+        """Return the time since the start at an x in [0, 1] [s]."""
+        return self.length * float(self.rule.map_time(np.array([x]))[0])
+
     def state(self, time: Floats) -> State:
         """Return the state at times since the start [s] (T,)."""
-        start, h, across, load = (
-            self.start,
-            self.length,
-            np.asarray(time)[:, None],
-            self.system.load,
-        )
-        integral = h * self.rule.integral_to(self._x(time))
-        driven = self.accelerations - load  # gravity is integrated in closed form
+        start = self.start
+        h = self.length
+        load = self.system.load
+        t = np.asarray(time)[:, None]
+        # gravity is integrated in closed form, the other accelerations by the rule
+        forced = self.accelerations - load
+        to_time = h * self.rule.integral_to(self._x(time))
+        forced_velocity = h * (self.rule.integral @ forced)
+        fall = t * (start.velocity + 0.5 * t * load)
         return State(
-            start.displacement
-            + across * (start.velocity + 0.5 * across * load)
-            + integral @ (h * (self.rule.integral @ driven)),
-            start.velocity + across * load + integral @ driven,
-            start.local + integral @ self.motion.massless,
+            start.displacement + fall + to_time @ forced_velocity,
+            start.velocity + t * load + to_time @ forced,
+            start.local + to_time @ self.motion.massless,
         )
 
     def peak_force(self, contact: int = 0) -> tuple[float, float]:
-        """Return the x in [0, 1] at which the force of a contact is largest, and that
-        force [N]; zero where it pulls and may not.
+        """Return the x in [0, 1] at which the force of a contact is largest, and that force [N].
+
+        The force is zero where it is tensile and the law cuts tension.
         """
         history = self.contacts[contact]
         x, force = peak_of_force(
@@ -170,32 +185,34 @@ class VibratingStretch:
         return x, force if history.local.law.tension == "kept" else max(force, 0.0)
 
     def indentations(self, contact: int = 0) -> Floats:
-        """Return the approach of the centre above to the surface below at a contact [m],
-        at the start and the nodes (N + 1,).
+        """Return the indentation of a contact at the start and the nodes [m] (N + 1,).
+
+        It is the approach of the centre above to the surface below.
         """
         number = self.contacts[contact].number
         shape = self.system.indentation_shape[number]
-        begun = float(self.system.offset[number] + self.start.displacement @ shape)
-        return np.append(
-            begun, begun + self.length * (self.rule.integral @ (self.velocities @ shape))
-        )
+        at_start = float(self.system.offset[number] + self.start.displacement @ shape)
+        rates = self.velocities @ shape
+        return np.append(at_start, at_start + self.length * (self.rule.integral @ rates))
 
     @cached_property
     def powers(self) -> Floats:
-        """Power lost at the nodes [W], (N, n + 1): in each coordinate, and last in the
-        laws and the massless elements.
+        """Power lost at the nodes [W], (N, n + 1).
+
+        It is given for each coordinate, and last for the laws and the massless elements.
         """
         system = self.system
         in_laws = sum(contact.power for contact in self.contacts)
-        lost = in_laws + (self.motion.massless**2 / system.mobility).sum(axis=1)
-        by_coordinate = system.damping * self.velocities**2
+        in_contacts = in_laws + (self.motion.massless**2 / system.mobility).sum(axis=1)
+        in_coordinates = system.damping * self.velocities**2
         if system.driven:
-            shapes = system.shape[self.view.contacts, -system.driven :]
-            pushed = self.force.T @ shapes
+            # a driven coordinate loses minus the work of its drive, which balances the contact
+            driven = slice(-system.driven, None)
+            generalised_force = self.force.T @ system.shape[self.view.contacts, driven]
             if self.sliding is not None and system.along is not None:
-                pushed -= self.sliding.force.T @ system.along[:, -system.driven :]
-            by_coordinate[:, -system.driven :] = -pushed * self.velocities[:, -system.driven :]
-        return np.concatenate([by_coordinate, lost[:, None]], axis=1)
+                generalised_force -= self.sliding.force.T @ system.along[:, driven]
+            in_coordinates[:, driven] = -generalised_force * self.velocities[:, driven]
+        return np.concatenate([in_coordinates, in_contacts[:, None]], axis=1)
 
     @cached_property
     def lost(self) -> Floats:
@@ -205,30 +222,30 @@ class VibratingStretch:
         return lost
 
     def lost_by(self, time: Floats) -> Floats:
-        """Return the energy lost since the start [J] at times since then [s], (T, n + 1)
-        as in `powers`.
-        """
+        """Return the energy lost at times since the start [s], (T, n + 1) as in `powers` [J]."""
         return np.asarray(self.length * self.rule.integrate(self._x(time), self.powers))
 
     @property
     def trend(self) -> Floats:
-        """Rates of change of the forces at the end [N/s] (c,); zero after a "release",
-        where they are not smooth in time.
+        """Rates of change of the forces at the end [N/s] (c,).
+
+        They are zero after a "release", where the forces are not smooth in time.
         """
         if self.rule.time_map == "release":
             return np.zeros(len(self.contacts))
         return np.asarray(self.force @ self.rule.end_slope / self.length)
 
     def keep(self) -> None:
-        """Keep the motion at the nodes in memory until others of this thread take its
-        place; the state and the losses at the end stay.
+        """Keep the motion at the nodes in memory until others of this thread take its place.
+
+        The state and the losses at the end stay.
         """
         kept = _kept.stretches
         kept.append(weakref.ref(self))
         while len(kept) > _KEPT:
             oldest = kept.popleft()()
             if oldest is not None:
-                _ = oldest.end, oldest.lost
+                _ = oldest.end, oldest.lost  # compute them while the motion is there
                 for name in ("motion", "powers", "force"):
                     oldest.__dict__.pop(name, None)
 

@@ -1,6 +1,4 @@
-"""End of a stretch of contact: solving it again up to an event of another contact, and
-choosing the length of the next one.
-"""
+"""End of a stretch of contact at an event of another contact, and the length of the next one."""
 
 from __future__ import annotations
 
@@ -12,7 +10,7 @@ import numpy as np
 from vibroimpact.arrays import Floats
 from vibroimpact.contact.roots import find_root
 from vibroimpact.dynamics.core.events import NO_EVENT
-from vibroimpact.dynamics.vibrating.coasting import along_motion
+from vibroimpact.dynamics.vibrating.events import along_motion
 from vibroimpact.dynamics.vibrating.linear_system import State
 from vibroimpact.dynamics.vibrating.radau_eigenbasis import GRID, NODES_PER_STRETCH
 from vibroimpact.dynamics.vibrating.solve_stretch import StretchAhead
@@ -29,10 +27,10 @@ def solve_to_zero(
     value: Callable[[State], Floats],
     near: float,
 ) -> VibratingStretch | None:
-    """Return a stretch solved again up to a zero of a function of the state, as at an event of
-    another contact.
+    """Return a stretch solved again up to a zero of a function of the state.
 
-    None if that fails, or if one of its own contacts has an event before.
+    The zero is an event of another contact. The result is None if that fails, or if a contact of
+    the stretch has an event before.
 
     Parameters
     ----------
@@ -47,12 +45,10 @@ def solve_to_zero(
     near : float
         First x of `GRID` at which it is positive.
     """
-    rule, full_length = stretch.rule, stretch.length
-    low, high = (
-        full_length * float(rule.map_time(np.array([x]))[0])
-        for x in (max(near - GRID[1], 0.0), near)
-    )
-    length = float(find_root(along_motion(stretch, value), np.array([low]), np.array([high]))[0])
+    full_length = stretch.length
+    low = np.array([stretch.time_at(max(near - GRID[1], 0.0))])
+    high = np.array([stretch.time_at(near)])
+    length = float(find_root(along_motion(stretch, value), low, high)[0])
     # Newton's method for the length, with the rate of the function by a finite difference
     for _ in range(_MOST_CORRECTIONS):
         solved = ahead.solve(time_map, length)
@@ -60,37 +56,35 @@ def solve_to_zero(
             return None
         ended = ahead.stretch(solved, ahead.balance(solved, time_map), time_map)
         step = 1e-6 * length
-        now, before = value(ended.end), value(ended.state(np.array([length - step])))[0]
-        missing = float(now / (now - before)) * step
-        if abs(missing) <= 1e-13 * full_length:
+        at_end = value(ended.end)
+        before_end = value(ended.state(np.array([length - step])))[0]
+        correction = float(at_end / (at_end - before_end)) * step
+        if abs(correction) <= 1e-13 * full_length:
             break
-        length -= missing
+        length -= correction
         if not 0.0 < length <= 1.01 * full_length:
             return None
     return ended if solved.event.kind == NO_EVENT else None
 
 
 def length_growth(stretch: VibratingStretch, tolerance: float) -> float:
-    """Return the ratio of the lengths of the next stretch and this one, 0.7 to 4, from
-    the convergence of its Legendre coefficients.
+    """Return the ratio of the lengths of the next stretch and this one, 0.7 to 4.
+
+    It follows from the convergence of the Legendre coefficients: the last one goes with the length
+    to the power of the number of nodes.
     """
-    return float(
-        min(
-            max(
-                (_EASY * tolerance**0.5 / max(stretch.roughness, 1e-300))
-                ** (1.0 / NODES_PER_STRETCH),
-                0.7,
-            ),
-            4.0,
-        )
-    )
+    roughness_ratio = _EASY * tolerance**0.5 / max(stretch.roughness, 1e-300)
+    growth = roughness_ratio ** (1.0 / NODES_PER_STRETCH)
+    return float(min(max(growth, 0.7), 4.0))
 
 
-def with_separation_loss(stretch: VibratingStretch, place: int, held: float) -> VibratingStretch:
-    """Return a stretch at whose end a contact loses its stored energy [J]."""
+def with_separation_loss(
+    stretch: VibratingStretch, index: int, stored_energy: float
+) -> VibratingStretch:
+    """Return a stretch at whose end one of its contacts loses its stored energy [J]."""
     contacts = list(stretch.contacts)
-    contacts[place] = replace(contacts[place], separation_loss=held)
-    found = replace(stretch, contacts=tuple(contacts))
-    found.__dict__["motion"] = stretch.motion  # unchanged
-    found.keep()
-    return found
+    contacts[index] = replace(contacts[index], separation_loss=stored_energy)
+    ended = replace(stretch, contacts=tuple(contacts))
+    ended.__dict__["motion"] = stretch.motion  # unchanged
+    ended.keep()
+    return ended

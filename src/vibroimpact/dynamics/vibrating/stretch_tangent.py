@@ -1,6 +1,4 @@
-"""Propagation of a small difference of the state through stretches of contact, as the
-core computes it.
-"""
+"""Propagation of a small difference of the state through stretches of contact."""
 
 from __future__ import annotations
 
@@ -22,8 +20,9 @@ def propagate_difference(
     difference: State,
     variations: Sequence[tuple[LocalContact, float]],
 ) -> tuple[State, Floats]:
-    """Return the difference of the state at the end of stretches, and of the contact force at their
-    nodes [N] (P, N).
+    """Return the differences of the state at the end of stretches, and of the contact force.
+
+    The latter is given at the nodes of the stretches [N] (P, N). The core computes both.
 
     Parameters
     ----------

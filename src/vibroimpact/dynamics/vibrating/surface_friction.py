@@ -1,6 +1,4 @@
-"""Friction at the contact of a rigid sphere with a surface that moves, stated for the
-core and read back from it.
-"""
+"""Friction of a rigid sphere on a surface that moves: stated for the core, and read back."""
 
 from __future__ import annotations
 
@@ -18,13 +16,13 @@ from vibroimpact.dynamics.core.tangential_history import TangentialHistory
 from vibroimpact.dynamics.oblique.state import Sphere, State
 from vibroimpact.dynamics.oblique.tangential_history import tangential_history
 
-_LONGEST = 0.03  # of the duration of a contact, at the default tolerance
+_LONGEST_STRETCH = 0.03  # of the duration of a contact, at the default tolerance
 _DEFAULT_TOLERANCE = 1e-9
 _ORDER = 4  # of the error in the length of stretches, about
 
 
 def surface_friction_at_touch(
-    law: CompliantFriction, largest_force: float, sphere: Sphere, before: State, directions: int
+    law: CompliantFriction, largest_force: float, sphere: Sphere, state: State, directions: int
 ) -> SlidingSphere:
     """Return the friction of one drop at first touch.
 
@@ -34,12 +32,12 @@ def surface_friction_at_touch(
         Of one drop.
     largest_force : float
         About the largest normal force that will come [N].
-    sphere, before : Sphere, State
+    sphere, state : Sphere, State
         The sphere, and its motion along the plate.
     directions : int
         Of friction: 2, or 5 where moments act.
     """
-    about_x, about_y, about_z = before.spin[:, 0]
+    about_x, about_y, about_z = state.spin[:, 0]
     return _no_surface_friction()._replace(
         directions=directions,
         rolling_coefficient=float(law.rolling_coefficient),
@@ -47,7 +45,7 @@ def surface_friction_at_touch(
         radius=float(sphere.radius[0]),
         inertia=float(sphere.inertia[0]),
         pull=sphere.gravity[:, 0].copy(),
-        velocity=sphere.slip(before)[:, 0].copy(),
+        velocity=sphere.slip(state)[:, 0].copy(),
         spin=np.array([-about_y, about_x, about_z]),
         history=tangential_history(law, largest_force),
     )
@@ -83,20 +81,21 @@ NO_FRICTION = _no_surface_friction()
 
 
 def longest_with_friction(tolerance: float) -> float:
-    """Return the length of a stretch with friction at most, over the duration of a contact.
+    """Return the largest length of a stretch with friction over the duration of a contact [-].
 
     The surfaces begin and cease to slip within stretches, which the balance of energy does not
     show. At the default tolerance the velocities along the plate after an impact are then known to
     1e-4 of those before.
     """
-    looser: float = (tolerance / _DEFAULT_TOLERANCE) ** (1.0 / _ORDER)
-    return _LONGEST * looser
+    ratio: float = (tolerance / _DEFAULT_TOLERANCE) ** (1.0 / _ORDER)
+    return _LONGEST_STRETCH * ratio
 
 
 @dataclass(frozen=True)
 class SlidingState:
-    """Friction of one drop, and the motion of the contact point of its sphere, at an end
-    of a stretch; as in `SlidingSphere`.
+    """Friction of one drop and motion of its contact point at an end of a stretch.
+
+    The contact point is that of the sphere; the fields are as in `SlidingSphere`.
     """
 
     velocity: Floats
@@ -140,41 +139,43 @@ class SlidingStretch:
     slip: Floats
 
     def at(self, time: Floats) -> tuple[Floats, Floats, Floats, Floats]:
-        """Return velocity and displacement of the contact point (2, T), friction (2 or 5,
-        T) and energy taken (T,), at times [s] (T,).
+        """Return the motion of the contact point, friction and energy taken, at times [s] (T,).
+
+        Velocity and displacement are (2, T), friction is (2 or 5, T), and energy (T,).
         """
-        rule, start, length = self.rule, self.start, self.length
-        x = rule.unmap_time(time / length)
-        integral, pull = length * rule.integral_to(x), self.sphere.pull[:, None]
-        slowed = slowing(self.sphere, np.ascontiguousarray(self.force)).T
-        velocity = start.velocity[:, None] + pull * time - (integral @ slowed).T
+        rule = self.rule
+        start = self.start
+        x = rule.unmap_time(time / self.length)
+        to_time = self.length * rule.integral_to(x)
+        pull = self.sphere.pull[:, None]
+        # deceleration of the contact point by friction, at the nodes
+        deceleration = slowing(self.sphere, np.ascontiguousarray(self.force)).T
+        velocity = start.velocity[:, None] + pull * time - (to_time @ deceleration).T
         free = start.displacement[:, None] + (start.velocity[:, None] + 0.5 * pull * time) * time
-        displacement = free - (integral @ (length * (rule.integral @ slowed))).T
-        # the moments begin about as at the first node
-        begun = np.append(start.force, self.force[2:, 0])
-        force = np.concatenate([begun[:, None], self.force], axis=1) @ rule.weights(x)
-        return (
-            velocity,
-            displacement,
-            force,
-            start.work + integral @ (self.force * self.slip).sum(axis=0),
-        )
+        velocity_lost = self.length * (rule.integral @ deceleration)
+        displacement = free - (to_time @ velocity_lost).T
+        # the moments at the start are about those at the first node
+        force_at_start = np.append(start.force, self.force[2:, 0])
+        force = np.concatenate([force_at_start[:, None], self.force], axis=1) @ rule.weights(x)
+        power = (self.force * self.slip).sum(axis=0)
+        return velocity, displacement, force, start.work + to_time @ power
 
     def turned(self, time: Floats) -> tuple[Floats, Floats]:
-        """Return what moments made of the spin [rad/s] (3, T), and of the displacement
-        [m] (2, T), at times since the start [s] (T,).
+        """Return the change of spin and of displacement by moments at times since the start [s].
+
+        The spin [rad/s] is (3, T), and the displacement [m] (2, T), at times (T,).
         """
-        rule, start, length = self.rule, self.start, self.length
-        radius, inertia = self.sphere.radius, self.sphere.inertia
-        turned, way = (
-            start.turned[:, None] + 0.0 * time,
-            start.turned_way[:, None] + radius * start.turned[:2, None] * time,
+        rule = self.rule
+        start = self.start
+        radius = self.sphere.radius
+        spin = start.turned[:, None] + 0.0 * time
+        displacement = start.turned_way[:, None] + radius * start.turned[:2, None] * time
+        if len(self.force) == 2:  # no moments act
+            return spin, displacement
+        to_time = self.length * rule.integral_to(rule.unmap_time(time / self.length))
+        angular_deceleration = (self.force[2:] / self.sphere.inertia).T
+        spin_lost = self.length * (rule.integral @ angular_deceleration[:, :2])
+        return (
+            spin - (to_time @ angular_deceleration).T,
+            displacement - radius * (to_time @ spin_lost).T,
         )
-        if len(self.force) == 2:
-            return turned, way
-        integral, slowed = (
-            length * rule.integral_to(rule.unmap_time(time / length)),
-            (self.force[2:] / inertia).T,
-        )
-        more = (integral @ (length * (rule.integral @ slowed[:, :2]))).T
-        return turned - (integral @ slowed).T, way - radius * more

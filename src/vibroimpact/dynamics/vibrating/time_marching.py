@@ -1,10 +1,9 @@
-"""Time marching of a linear system through its contacts: flights in closed form, stretches of
-contact, and the events that end them.
+"""Time marching of a linear system through its contacts.
 
-While no contact pushes, the motion is known in closed form, and the march advances to the next
-touch. Otherwise it advances by stretches of adaptive length. Each is searched for its first event:
-separation, zero force of a law that may not pull, a breakpoint of a law, a turn of an approach, or
-a touch at another contact. The stretch is then solved again so that it ends there.
+Flights are known in closed form: while no contact pushes, the march advances to the next touch.
+Otherwise it advances by stretches of contact of adaptive length. Each is searched for its first
+event: separation, zero force of a law that may not pull, a breakpoint of a law, a turn of an
+approach, or a touch at another contact. The stretch is then solved again so that it ends there.
 """
 
 from __future__ import annotations
@@ -12,12 +11,13 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
+from operator import attrgetter
 
 import numpy as np
 
 from vibroimpact.arrays import Floats
 from vibroimpact.contact.law import CompliantLaw
-from vibroimpact.dynamics.core.contact_records import Manner
+from vibroimpact.dynamics.core.contact_records import Attempt, Manner
 from vibroimpact.dynamics.core.events import NO_EVENT, NO_PUSH, NO_TENSION, PARTED, TURN
 from vibroimpact.dynamics.core.records import Event
 from vibroimpact.dynamics.impact_conditions import undamped_depths
@@ -29,9 +29,16 @@ from vibroimpact.dynamics.vibrating.active_contact import (
     motion_speed,
     record_peaks,
 )
-from vibroimpact.dynamics.vibrating.coasting import coasting_end_value, end_of_coasting
 from vibroimpact.dynamics.vibrating.contact_view import contact_view
-from vibroimpact.dynamics.vibrating.events import ZERO_RATE, OtherEvent, first_crossing
+from vibroimpact.dynamics.vibrating.events import (
+    PUSHES,
+    SEPARATES,
+    ZERO_RATE,
+    OtherEvent,
+    coasting_end_value,
+    end_of_coasting,
+    first_crossing,
+)
 from vibroimpact.dynamics.vibrating.free_motion import FreePhase, coasting_loss
 from vibroimpact.dynamics.vibrating.linear_system import FreeMotion, LinearSystem, State
 from vibroimpact.dynamics.vibrating.local import LocalContact
@@ -98,20 +105,20 @@ class TimeMarching:
         tolerance: float,
         scale: tuple[float, float] | None = None,
     ) -> None:
-        self.system, self.definitions, self.state, self.tolerance, self.scale = (
-            system,
-            definitions,
-            state,
-            tolerance,
-            scale,
-        )
-        self.next_laws = [law.law for law in definitions]
-        self.time, self.next_length = 0.0, np.inf
+        self.system = system
+        self.definitions = definitions
+        self.state = state
+        self.tolerance = tolerance
+        self.scale = scale
+        self.next_laws = [definition.law for definition in definitions]
+        self.time = 0.0
+        self.next_length = np.inf
         self.active: dict[int, ActiveContact] = {}
         self.dents: dict[int, CompliantLaw] = {}
         self.parts: list[MotionPart] = []
         self.impacts: list[Impact] = []
-        self.lost, self.plastic = np.zeros(system.number + 1), 0.0
+        self.lost = np.zeros(system.number + 1)
+        self.plastic = 0.0
 
     def run_until(self, end: float, progress: Callable[[float], None] | None = None) -> None:
         """Advance to a time [s]; a contact in progress is cut off there.
@@ -137,8 +144,9 @@ class TimeMarching:
                 progress(self.time / end)
 
     def step(self, longest: float) -> bool:
-        """Advance by one part of the history of at most a length [s]; return False if it
-        has to be retried with a shorter stretch.
+        """Advance by one part of the history of at most a length [s].
+
+        Return False if it has to be retried with a shorter stretch.
         """
         pushing = [contact for contact in self.active.values() if contact.pushes]
         if pushing:
@@ -150,21 +158,23 @@ class TimeMarching:
     # -------------------------------------------------------------------------
 
     def step_free(self, longest: float) -> None:
-        """Advance in free motion to the next touch, or to where a recoiling contact
-        pushes again or separates.
-        """
+        """Advance in free motion to the next touch, or to the end of a recoil."""
         free = FreeMotion(self.system, self.state)
-        apart = [number for number in range(len(self.definitions)) if number not in self.active]
-        touches = {number: self.next_touch(free, number, longest) for number in apart}
+        touches = {
+            number: self.next_touch(free, number, longest)
+            for number in range(len(self.definitions))
+            if number not in self.active
+        }
         length = min([longest, *(time for time, _ in touches.values())])
-        recoil = end_of_coasting(free, list(self.active.values()), length)
-        if recoil is not None:
-            length = recoil[0]
-        self.append_free(free, length)
-        if recoil is not None:
-            self.end_coasting(self.active[recoil[1]], parts=recoil[2])
+        recoil_end = end_of_coasting(free, list(self.active.values()), length)
+        if recoil_end is not None:
+            length, number, separates = recoil_end
+            self.append_free(free, length)
+            self.end_coasting(self.active[number], separates=separates)
             return
+        self.append_free(free, length)
         for number, (time, law) in touches.items():
+            # surfaces that touch at the same time
             if time <= length + 1e-13 * (self.time + length):
                 self.begin_contact(number, law)
 
@@ -172,78 +182,79 @@ class TimeMarching:
         self, free: FreeMotion, number: int, longest: float
     ) -> tuple[float, CompliantLaw]:
         """Return when a contact next touches in free motion [s from here], and under which law."""
-        law, dent = self.next_laws[number], self.dents.get(number)
+        law = self.next_laws[number]
+        dent = self.dents.get(number)
         if dent is not None:
-            parted = time_to_separation(free, float(law.touch_level), number)
-            again = next_touch(free, float(dent.release_level), min(parted, longest), number)
-            if again < parted:  # they touch the dent again before they have separated from it
-                return again, dent
+            separation = time_to_separation(free, float(law.touch_level), number)
+            touch = next_touch(free, float(dent.release_level), min(separation, longest), number)
+            if touch < separation:  # they touch the dent before they have separated from it
+                return touch, dent
         return next_touch(free, float(law.touch_level), longest, number), law
 
     def append_free(self, free: FreeMotion, length: float) -> None:
         """Append a free motion of a length [s] to the history."""
-        motion = FreePhase(
-            free, length, tuple((number, contact.local) for number, contact in self.active.items())
-        )
+        recoiling = tuple((number, contact.local) for number, contact in self.active.items())
+        motion = FreePhase(free, length, recoiling)
         state = free.state_after(length)
         self.append_motion(motion, state, motion.lost_at(state))
 
-    def end_coasting(self, contact: ActiveContact, *, parts: bool) -> None:
+    def end_coasting(self, contact: ActiveContact, *, separates: bool) -> None:
         """End the recoil of a contact, which separates or pushes again."""
-        if parts:
+        if separates:
             self.end_contact(contact)
         else:
-            contact.pushes, contact.delta, contact.trend = (
-                True,
-                contact.law_indentation(self.system, self.state),
-                0.0,
-            )
+            contact.pushes = True
+            contact.delta = contact.law_indentation(self.system, self.state)
+            contact.trend = 0.0
 
     # from touch to release
     # --------------------------------------------------------------------------
 
     def begin_contact(self, number: int, law: CompliantLaw | None = None) -> ActiveContact:
         """Begin an impact at a contact, under its next law or a given one."""
-        system, state, law = self.system, self.state, self.next_laws[number] if law is None else law
-        closing = closing_speed(system, state, number)
-        under_way = [contact.impact.closing_speed for contact in self.active.values()]
-        if under_way and closing < 1e-3 * max(under_way):
+        if law is None:
+            law = self.next_laws[number]
+        closing = closing_speed(self.system, self.state, number)
+        other_speeds = [contact.impact.closing_speed for contact in self.active.values()]
+        if other_speeds and closing < 1e-3 * max(other_speeds):
             # surfaces that touch almost without speed, pressed together by other contacts
-            closing = max(under_way)
-        local = LocalContact(law, self.definitions[number].series, closing)
+            closing = max(other_speeds)
         impact = Impact(number, self.time, closing)
         self.impacts.append(impact)
         speed, span = self.scale or self._scale(number, law, closing)
-        mass = float(system.mass[number])
         self.dents.pop(number, None)
-        self.active[number] = contact = ActiveContact(
-            number, local, mass, float(law.touch_level), speed, span, impact
+        contact = ActiveContact(
+            number,
+            LocalContact(law, self.definitions[number].series, closing),
+            float(self.system.mass[number]),
+            float(law.touch_level),
+            speed,
+            span,
+            impact,
         )
+        self.active[number] = contact
         contact.delta = contact.law_indentation(self.system, self.state)
         self.next_length = min(self.next_length, _FIRST_LENGTH * span)
         return contact
 
     def _scale(self, number: int, law: CompliantLaw, closing: float) -> tuple[float, float]:
         """Return the speed of the motion in a contact [m/s] and its approximate duration [s]."""
-        mass, speed = (
-            float(self.system.mass[number]),
-            motion_speed(self.system, number, law, closing),
-        )
-        depth = float(
-            undamped_depths(law, np.array([0.5 * mass * speed**2]), np.zeros(1))[0]
-            - law.touch_level
-        )
+        mass = float(self.system.mass[number])
+        speed = motion_speed(self.system, number, law, closing)
+        energy = np.array([0.5 * mass * speed**2])
+        depth = float(undamped_depths(law, energy, np.zeros(1))[0] - law.touch_level)
         return speed, 3.0 * depth / speed
 
     def end_contact(self, contact: ActiveContact) -> None:
-        """End an impact; the law keeps its memory where it is lasting and the next impact
-        falls on the same spot.
+        """End an impact.
+
+        The law keeps its memory where it is lasting and the next impact falls on the same spot.
         """
         contact.impact.end = self.time
-        law = self.definitions[contact.number]
-        if not law.fresh_surface and law.law.lasting:
+        definition = self.definitions[contact.number]
+        if not definition.fresh_surface and definition.law.lasting:
             self.next_laws[contact.number] = contact.local.law
-        elif float(contact.local.law.release_level) > float(law.law.touch_level):
+        elif float(contact.local.law.release_level) > float(definition.law.touch_level):
             self.dents[contact.number] = contact.local.law
         del self.active[contact.number]
 
@@ -251,75 +262,33 @@ class TimeMarching:
     # ---------------------------------------------------------------------------
 
     def step_contact(self, pushing: list[ActiveContact], longest: float) -> bool:
-        """Advance by one stretch of contact, up to its first event; return False if it
-        has to be retried with a shorter one.
+        """Advance by one stretch of contact, up to its first event.
+
+        Return False if it has to be retried with a shorter one.
         """
-        system, state = self.system, self.state
-        for contact in pushing:
-            if contact.fresh:
-                continue
-            # events at the end of the last stretch: another contact ended it, or this one is within
-            # rounding of its event
-            rounding = _ROUNDING * contact.impact.indentation.nodal_max
-            if (
-                contact.overlap(system, state) <= rounding
-                and float(system.rates(state)[contact.number]) < 0.0
-            ):
-                self.dissipate_stored(contact)
-                self.end_contact(contact)
-                return True
-            if (
-                contact.local.law.tension == "cut"
-                and contact.force <= _NO_FORCE * contact.impact.force.nodal_max
-                and contact.trend < 0.0
-            ):
-                self.end_force(contact)
-                return True
-            if contact.closing <= ZERO_RATE * contact.speed and contact.local.updates_memory(
-                contact.delta
-            ):
-                self.update_memory(contact)
-        span, speed = (
-            min(contact.span for contact in pushing),
-            max(contact.speed for contact in self.active.values()),
-        )
-        energy = max(contact.energy for contact in pushing)
+        if self.ends_at_once(pushing):
+            return True
+        span = min(contact.span for contact in pushing)
         if self.next_length < 1e-12 * span:
             raise NotIntegrable(
                 f"the contact at {self.time:g} s can't be integrated to the tolerance"
             )
-        ahead = self.stretch_ahead(pushing, speed, energy, span)
+        ahead = self.stretch_ahead(pushing, span)
         time_map = 0 if any(contact.fresh for contact in pushing) else 1
-        tried = ahead.solve(time_map, min(self.next_length, longest))
-        if not tried.solved:
+        attempt = ahead.solve(time_map, min(self.next_length, longest))
+        if not attempt.solved:
             self.next_length *= 0.5
             return False
-        balance = ahead.balance(tried, time_map)
-        stretch = ahead.stretch(tried, balance, time_map)
+        balance = ahead.balance(attempt, time_map)
+        stretch = ahead.stretch(attempt, balance, time_map)
         other = self.first_other_event(stretch)
         # an event of the pushing contacts: also tried if the stretch is not resolved, as the event
         # may be the only reason
-        if tried.event.kind != NO_EVENT and (other is None or tried.event.x <= other.x):
-            success, solved, ended_map, event = ahead.up_to_event(tried, time_map)
-            to_event = ahead.balance(solved, ended_map)
-            if not (success and to_event.resolved):
-                # short of the event if the stretch is resolved; otherwise the event is not certain
-                near = max(tried.event.x, GRID[1]) if balance.resolved else 1.0
-                self.next_length = 0.5 * min(
-                    self.next_length,
-                    stretch.length * float(stretch.rule.map_time(np.array([near]))[0]),
-                )
-                return False
-            ended = ahead.stretch(solved, to_event, ended_map)
-            missed = self.first_other_event(ended)
-            # an event at another contact lies between the estimate and the solved event
-            if missed is not None:
-                self.next_length = (
-                    0.5 * ended.length * float(ended.rule.map_time(np.array([missed.x]))[0])
-                )
-                return False
-            self.end(pushing, event, ended)
-            return True
+        event = attempt.event
+        if event.kind != NO_EVENT and (other is None or event.x <= other.x):
+            # short of the event if the stretch is resolved; otherwise the event is not certain
+            near = max(event.x, GRID[1]) if balance.resolved else 1.0
+            return self.step_to_event(pushing, ahead, attempt, time_map, stretch.time_at(near))
         if not balance.resolved:
             self.next_length *= 0.5
             return False
@@ -335,21 +304,72 @@ class TimeMarching:
         other.act()
         return True
 
+    def ends_at_once(self, pushing: list[ActiveContact]) -> bool:
+        """Treat events at the end of the last stretch; return whether one ends a contact.
+
+        Another contact has ended that stretch, or it ends within rounding of its event.
+        """
+        for contact in pushing:
+            if contact.fresh:
+                continue
+            overlap = contact.overlap(self.system, self.state)
+            rate = float(self.system.rates(self.state)[contact.number])
+            if overlap <= _ROUNDING * contact.impact.indentation.nodal_max and rate < 0.0:
+                self.dissipate_stored(contact)
+                self.end_contact(contact)
+                return True
+            if (
+                contact.local.law.tension == "cut"
+                and contact.force <= _NO_FORCE * contact.impact.force.nodal_max
+                and contact.trend < 0.0
+            ):
+                self.end_force(contact)
+                return True
+            turned = contact.closing <= ZERO_RATE * contact.speed
+            if turned and contact.local.updates_memory(contact.delta):
+                self.update_memory(contact)
+        return False
+
+    def step_to_event(
+        self,
+        pushing: list[ActiveContact],
+        ahead: StretchAhead,
+        attempt: Attempt,
+        time_map: int,
+        near: float,
+    ) -> bool:
+        """Advance by a stretch that ends at an event of the pushing contacts.
+
+        `attempt`: the stretch beyond the event. `near`: about the length up to the event [s].
+        Return False if it has to be retried with a shorter one.
+        """
+        success, solved, time_map_to_event, event = ahead.up_to_event(attempt, time_map)
+        balance = ahead.balance(solved, time_map_to_event)
+        if not (success and balance.resolved):
+            self.next_length = 0.5 * min(self.next_length, near)
+            return False
+        stretch = ahead.stretch(solved, balance, time_map_to_event)
+        missed = self.first_other_event(stretch)
+        # an event at another contact lies between the estimate and the solved event
+        if missed is not None:
+            self.next_length = 0.5 * stretch.time_at(missed.x)
+            return False
+        self.end(pushing, event, stretch)
+        return True
+
     def end(self, pushing: list[ActiveContact], event: Event, stretch: VibratingStretch) -> None:
         """Accept a stretch that ends with an event of one of its contacts."""
-        place = event.contact
-        contact = pushing[place]
-        parts = event.kind == PARTED or (
+        contact = pushing[event.contact]
+        separates = event.kind == PARTED or (
             event.kind == NO_PUSH and self.separates_at_zero_force(contact, stretch.end)
         )
         # stored energy is lost where a sticking contact breaks, or where the surface recovers more
         # slowly than the bodies part
-        if parts:
-            stretch = with_separation_loss(
-                stretch, place, contact.stored_energy_at(float(stretch.contacts[place].delta[-1]))
-            )
+        if separates:
+            delta = float(stretch.contacts[event.contact].delta[-1])
+            stretch = with_separation_loss(stretch, event.contact, contact.stored_energy_at(delta))
         self.accept(pushing, stretch)
-        if parts:
+        if separates:
             self.end_contact(contact)
         elif event.kind == NO_PUSH:
             contact.pushes = False
@@ -362,8 +382,9 @@ class TimeMarching:
         contact.local = contact.local.after_indentation(contact.delta)
 
     def end_force(self, contact: ActiveContact) -> None:
-        """Begin the recoil of a contact, or end it if its law releases at zero force, at
-        the end of its last stretch.
+        """Begin the recoil of a contact, or end it if its law releases at zero force.
+
+        It is at the end of its last stretch.
         """
         if self.separates_at_zero_force(contact, self.state):
             self.dissipate_stored(contact, contact.delta)
@@ -372,47 +393,41 @@ class TimeMarching:
             contact.pushes = False
 
     def dissipate_stored(self, contact: ActiveContact, delta: float | None = None) -> None:
-        """Add the energy that a contact stores at release, or at an indentation [m], to
-        the losses of the last accepted stretch.
+        """Add the energy that a contact stores to the losses of the last accepted stretch.
+
+        It is that at release, or at an indentation [m].
         """
-        last, held = (
-            self.parts[-1],
-            contact.stored_energy_at(contact.local.release_indentation if delta is None else delta),
-        )
+        if delta is None:
+            delta = contact.local.release_indentation
+        stored = contact.stored_energy_at(delta)
+        last = self.parts[-1]
         if (
-            held
+            stored
             and isinstance(last.motion, VibratingStretch)
             and contact.number in last.motion.view.contacts
         ):
-            place = last.motion.view.contacts.index(contact.number)
-            self.parts[-1] = replace(last, motion=with_separation_loss(last.motion, place, held))
-        self.lost[-1] += held
+            index = last.motion.view.contacts.index(contact.number)
+            self.parts[-1] = replace(last, motion=with_separation_loss(last.motion, index, stored))
+        self.lost[-1] += stored
 
     def separates_at_zero_force(self, contact: ActiveContact, state: State) -> bool:
-        """Whether a contact ends with its force: its law does, and the surfaces will
-        separate; otherwise they close again.
+        """Whether a contact ends with its force: its law does, and the surfaces will separate.
+
+        Otherwise they close again.
         """
         if contact.local.law.contact_end != "zero-force":
             return False
-        return bool(
-            np.isfinite(
-                time_to_separation(
-                    FreeMotion(self.system, state), contact.local.release_level, contact.number
-                )
-            )
-        )
+        free = FreeMotion(self.system, state)
+        separation = time_to_separation(free, contact.local.release_level, contact.number)
+        return bool(np.isfinite(separation))
 
-    def stretch_ahead(
-        self, pushing: list[ActiveContact], speed: float, energy: float, span: float
-    ) -> StretchAhead:
-        """Return the next stretch, of contacts of about a speed [m/s], an energy [J] and
-        a duration [s].
-        """
+    def stretch_ahead(self, pushing: list[ActiveContact], span: float) -> StretchAhead:
+        """Return the next stretch, of contacts of about a duration [s]."""
         manner = Manner(
             tension=NO_TENSION,  # each contact has its own
             contact_end=0,
-            motion_speed=speed,
-            energy=energy,
+            motion_speed=max(contact.speed for contact in self.active.values()),
+            energy=max(contact.energy for contact in pushing),
             span=span,
             tolerance=self.tolerance,
             begun=self.time,
@@ -421,38 +436,34 @@ class TimeMarching:
             most_steps=0,
         )
         view = contact_view(self.system, (contact.number for contact in pushing))
-        begun = np.array([contact.delta for contact in pushing])
+        indentations = np.array([contact.delta for contact in pushing])
         trend = np.array([contact.trend for contact in pushing])
         return StretchAhead.of(
-            view, [contact.local for contact in pushing], self.state, begun, trend, manner
+            view, [contact.local for contact in pushing], self.state, indentations, trend, manner
         )
 
     def accept(self, pushing: list[ActiveContact], stretch: VibratingStretch) -> None:
         """Append a stretch to the history, and update the contacts at its end."""
-        for place, (contact, history, trend) in enumerate(
+        for index, (contact, history, trend) in enumerate(
             zip(pushing, stretch.contacts, stretch.trend.tolist(), strict=True)
         ):
             record_peaks(
                 contact.impact,
                 stretch,
-                place,
+                index,
                 self.time,
                 float(history.force.max()),
-                stretch.indentations(place),
+                stretch.indentations(index),
             )
-            contact.impact.impulse += stretch.length * float(
-                stretch.rule.integral[-1] @ history.force
-            )
-            contact.delta, contact.force, contact.trend = (
-                float(history.delta[-1]),
-                float(history.force[-1]),
-                trend,
-            )
-            contact.fresh, contact.closing = (
-                False,
-                float(history.closing[-1]) if contact.local.law.memories() else np.inf,
-            )
-        end, lost = stretch.end, stretch.lost
+            mean_force = float(stretch.rule.integral[-1] @ history.force)
+            contact.impact.impulse += stretch.length * mean_force
+            contact.delta = float(history.delta[-1])
+            contact.force = float(history.force[-1])
+            contact.trend = trend
+            contact.fresh = False
+            contact.closing = float(history.closing[-1]) if contact.local.law.memories() else np.inf
+        end = stretch.end
+        lost = stretch.lost
         for contact in self.active.values():
             if not contact.pushes:  # recoiling contacts, which are not part of the stretch
                 self.lost[-1] += float(
@@ -467,69 +478,68 @@ class TimeMarching:
         """Append a motion to the history, and advance to its end."""
         self.parts.append(MotionPart(self.time, motion))
         self.lost += lost
-        self.time, self.state = self.time + motion.length, state
+        self.time += motion.length
+        self.state = state
 
     # events of contacts that are not part of a stretch
     # -----------------------------------------------
 
     def first_other_event(self, stretch: VibratingStretch) -> OtherEvent | None:
-        """Return the first touch, or end of a recoil, of another contact within a
-        stretch; or None.
+        """Return the first event of another contact within a stretch, or None.
+
+        It is a touch, or the end of a recoil.
         """
         others = [
             number for number in range(len(self.definitions)) if number not in stretch.view.contacts
         ]
         if not others:
             return None
+        recoiling = [number for number in others if number in self.active]
+        apart = [number for number in others if number not in self.active]
         states = stretch.state(stretch.length * stretch.rule.map_time(GRID))
         slack = _TOUCH_SLACK * max(float(history.delta.max()) for history in stretch.contacts)
-        possible = [
-            event
-            for number in others
-            if number in self.active
-            for event in self.ends_of_coasting(self.active[number])
-        ]
-        possible += self.touches_within(
-            states, [number for number in others if number not in self.active], slack, stretch.start
-        )
-        seen = [
-            replace(other, x=x)
-            for other in possible
-            if (x := first_crossing(other.value(states))) is not None
-        ]
-        return min(seen, key=lambda other: other.x, default=None)
+        possible: list[OtherEvent] = []
+        for number in recoiling:
+            possible += self.ends_of_coasting(self.active[number])
+        possible += self.touches_within(states, apart, slack, stretch.start)
+        events = []
+        for event in possible:
+            x = first_crossing(event.value(states))
+            if x is not None:
+                events.append(replace(event, x=x))
+        return min(events, key=attrgetter("x"), default=None)
 
     def ends_of_coasting(self, contact: ActiveContact) -> list[OtherEvent]:
-        """Return the two ways in which the recoil of a contact may end: its surfaces
-        part, or its law pushes again.
-        """
+        """Return the two ways in which the recoil of a contact may end."""
         return [
             OtherEvent(
-                partial(coasting_end_value, self.system, contact, kind),
-                partial(self.end_coasting, contact, parts=kind == 0),
+                partial(coasting_end_value, self.system, contact, end),
+                partial(self.end_coasting, contact, separates=end == SEPARATES),
             )
-            for kind in (0, 1)
+            for end in (SEPARATES, PUSHES)
         ]
 
     def touches_within(
         self, states: State, apart: list[int], slack: float, start: State
     ) -> list[OtherEvent]:
-        """Return the touches of surfaces that are apart at the start of some states in order, and
-        overlap by more than a slack [m] later.
+        """Return the touches of surfaces that are apart at the start of some states in order.
 
-        Of many contacts few come that near, so that all are looked at together first.
+        They overlap by more than a slack [m] later. Of many contacts few come that near, so that
+        all are looked at together first.
         """
         approaches = self.system.approach(states)[:, apart]
         levels = np.array([float(self.next_laws[number].touch_level) for number in apart])
+        touching = np.array(apart)[(approaches > levels + slack).any(axis=0)]
         touches = [
             OtherEvent(
                 partial(self.overlap_beyond, number, slack),
                 partial(self.begin_contacts, number, slack, start),
             )
-            for number in np.array(apart)[(approaches > levels + slack).any(axis=0)].tolist()
+            for number in touching.tolist()
         ]
         for number in apart:
-            if dent := self.dents.get(number):
+            dent = self.dents.get(number)
+            if dent:
                 touches.append(
                     OtherEvent(
                         partial(self.overlap_beyond, number, slack, law=dent),
@@ -541,20 +551,22 @@ class TimeMarching:
     def overlap_beyond(
         self, number: int, slack: float, states: State, law: CompliantLaw | None = None
     ) -> Floats:
-        """Return the overlap of surfaces beyond a slack [m], under the next law, or
-        beyond the dent of another.
+        """Return the overlap of surfaces beyond a slack [m].
+
+        It is that under the next law, or with the dent that another law has left.
         """
         level = self.next_laws[number].touch_level if law is None else law.release_level
         return np.asarray(self.system.approach(states)[..., number] - float(level) - slack)
 
-    def begin_contacts(self, number: int, slack: float, before: State) -> None:
-        """Begin an impact at a contact, and at all others that overlap by half a slack
-        [m] and did not before.
+    def begin_contacts(self, number: int, slack: float, start: State) -> None:
+        """Begin an impact at a contact, and at all others that touch with it.
+
+        They overlap by half a slack [m], and did not at the start.
         """
         self.begin_contact(number)
         for other in range(len(self.definitions)):
             apart = (
-                other not in self.active and float(self.overlap_beyond(other, slack, before)) <= 0.0
+                other not in self.active and float(self.overlap_beyond(other, slack, start)) <= 0.0
             )
             if apart and float(self.overlap_beyond(other, 0.5 * slack, self.state)) > 0.0:
                 self.begin_contact(other)

@@ -25,9 +25,7 @@ class ForceSensor(Proportional):
 
     @property
     def quantity(self) -> Quantity:
-        """What it puts out: the force of the support on the plate, or voltage if it has a
-        sensitivity.
-        """
+        """What it puts out: the force of the support, or voltage if it has a sensitivity."""
         return "force" if self.sensitivity is None else "voltage"
 
     def components(self, direction: Direction) -> Direction:

@@ -1,14 +1,13 @@
-r"""A geophone: a coil on a spring in the field of a magnet, whose voltage follows the velocity of
-the case above the natural frequency.
+r"""A geophone: a coil on a spring in the field of a magnet.
 
-The voltage over the velocity of the case is
+Its voltage follows the velocity of the case above the natural frequency. The voltage over that
+velocity is
 
 .. math:: \frac{V}{v} = \frac{S\,s^2}{s^2 + 2 \zeta \omega_0 s + \omega_0^2}
 
 with the sensitivity S (E. Wielandt, Seismic sensors and their calibration, in: P. Bormann, ed., New
-Manual of Seismological
-Observatory Practice, 2002, chapter 5). It is :math:`S / \omega_0^2` times the third derivative of
-the displacement behind a pair of poles.
+Manual of Seismological Observatory Practice, 2002, chapter 5). It is :math:`S / \omega_0^2` times
+the third derivative of the displacement behind a pair of poles.
 """
 
 from __future__ import annotations
@@ -60,8 +59,9 @@ class Geophone:
 
     @property
     def gain(self) -> float:
-        """Voltage over the third derivative of the displacement, below the natural
-        frequency [V s^3/m].
+        """Voltage over the third derivative of the displacement [V s^3/m].
+
+        It is that below the natural frequency.
         """
         return self.sensitivity / self.sections[0][0]
 

@@ -1,6 +1,4 @@
-"""What an instrument tells the chain behind the plate's motion, and the quantities that
-samples are of.
-"""
+"""The interface of instruments to the measuring chain, and the quantities that they measure."""
 
 from __future__ import annotations
 
@@ -27,8 +25,9 @@ Direction = tuple[float, float, float]
 
 
 class Instrument(Protocol):
-    r"""A transducer: :math:`y = g\,s^n \prod_k \frac{k_k}{s^2 + d_k s + k_k}\,u` of the
-    displacement or strain u that it sees.
+    r"""A transducer of the displacement or strain u that it sees.
+
+    Its output is :math:`y = g\,s^n \prod_k \frac{k_k}{s^2 + d_k s + k_k}\,u`.
     """
 
     @property
@@ -49,11 +48,13 @@ class Instrument(Protocol):
 
     @property
     def steepness(self) -> float:
-        """Power of the frequency by which u grows in modes of the same deflection, for
-        the effect of the modes left out.
+        """Power of the frequency by which u grows in modes of the same deflection.
+
+        The effect of the modes left out is estimated with it.
         """
 
     def components(self, direction: Direction) -> Direction:
-        """Return the weights in u of the three numbers that a mode has where it is, for
-        its direction.
+        """Return the weights in u of the three numbers that a mode has at the instrument.
+
+        `direction`: of the instrument.
         """

@@ -43,8 +43,9 @@ class Microphone:
 
     @property
     def gain(self) -> float:
-        """Output over the integral of the acceleration over the face by its distance, [V
-        s^2/m^2] or [kg/m^3].
+        """Output over the integral of the acceleration over the face by its distance.
+
+        It is in V s^2/m^2 or kg/m^3.
         """
         return self.air_density * (1.0 if self.sensitivity is None else self.sensitivity)
 

@@ -9,8 +9,9 @@ from vibroimpact.dynamics.sensors.pole_pairs import Section
 
 @dataclass(frozen=True)
 class Proportional:
-    """Instrument without poles, of what grows with the curvature of the plate; it puts
-    out voltage if it has a sensitivity.
+    """Instrument without poles, of what grows with the curvature of the plate.
+
+    It puts out voltage if it has a sensitivity.
     """
 
     sensitivity: float | None = None
@@ -32,7 +33,5 @@ class Proportional:
 
     @property
     def steepness(self) -> float:
-        """Growth of what it sees in a mode of given deflection with its frequency: that
-        of a curvature.
-        """
+        """Power of the frequency by which a curvature grows in modes of the same deflection."""
         return 1.0

@@ -29,8 +29,9 @@ class StrainGauge(Proportional):
         return "strain" if self.sensitivity is None else "voltage"
 
     def components(self, direction: Direction) -> Direction:
-        """Return the weights of the strains along x and y and of the shear in the strain
-        along a direction in the plane.
+        """Return the weights of the strains along x and y and of the shear.
+
+        They give the strain along a direction in the plane.
         """
         x, y, _ = direction
         return x * x, y * y, x * y
