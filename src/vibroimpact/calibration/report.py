@@ -1,4 +1,4 @@
-"""What is told of a calibration: by the terminal, the page and the files of its folder."""
+"""The report of a calibration, for the terminal, the page and the files of its folder."""
 
 from __future__ import annotations
 
@@ -17,16 +17,15 @@ _MOST_ROWS = 50
 
 def shortened(rows: list[list[str]]) -> list[list[str]]:
     """Return the first rows of a table, and an ellipsis if there are more."""
-    return (
-        rows
-        if len(rows) <= _MOST_ROWS
-        else [*rows[: _MOST_ROWS - 1], ["…", *[""] * (len(rows[0]) - 1)]]
-    )
+    if len(rows) <= _MOST_ROWS:
+        return rows
+    ellipsis = ["…", *[""] * (len(rows[0]) - 1)]
+    return [*rows[: _MOST_ROWS - 1], ellipsis]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class CalibrationReport:
-    """What is told of a calibration.
+    """The report of a calibration.
 
     Parameters
     ----------
