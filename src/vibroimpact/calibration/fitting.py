@@ -208,8 +208,9 @@ def _gauss_newton(
     *,
     noise_known: bool,
 ) -> tuple[Floats, Floats, float, int]:
-    """Return coefficients, their covariance, the scatter of the residuals in units of the noise,
-    and its degrees of freedom.
+    """Return coefficients, their covariance, the scatter of the residuals, and its freedom.
+
+    The scatter is in units of the noise; the freedom is the number of degrees of freedom.
 
     Parameters
     ----------
@@ -282,12 +283,11 @@ def _input_effects(observations: Observations, name: str, by_speed: Floats) -> F
 def _with_inputs(
     columns: Floats, targets: Floats, coefficient_count: int, noise_known: bool
 ) -> tuple[Floats, Floats, float]:
-    """Return coefficients, their covariance, and the scatter of the residuals in units of the
-    noise.
+    """Return coefficients, their covariance, and the scatter of the residuals.
 
-    Columns after those of the coefficients are typed inputs, each of which is off by an unknown
-    part of its standard deviation: a coefficient that is expected to be 0 within 1. Noise of
-    unknown magnitude is as large as the scatter.
+    The scatter is in units of the noise. Columns after those of the coefficients are typed inputs,
+    each of which is off by an unknown part of its standard deviation: a coefficient that is
+    expected to be 0 within 1. Noise of unknown magnitude is as large as the scatter.
     """
     input_count = columns.shape[1] - coefficient_count
     freedom = len(targets) - coefficient_count

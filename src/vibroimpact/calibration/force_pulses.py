@@ -267,11 +267,11 @@ def _duration_at_half(time: Floats, force: Floats, largest: float, top: int) -> 
 def _begin_of_rise(
     time: Floats, force: Floats, largest: float, noise: float, duration: float
 ) -> tuple[float, float]:
-    """Return when a force that rises to its largest value, at the end of the samples, has begun
-    [s], and its standard deviation by noise.
+    """Return when a force has begun to rise [s], and its standard deviation by noise.
 
-    The samples of the flank are placed on the rise of Hertz's force, over a time that is fitted
-    with the begin. A flank of one sample or none lasts as long as of a pulse of the given duration.
+    It rises to its largest value at the end of the samples. The samples of the flank are placed on
+    the rise of Hertz's force, over a time that is fitted with the begin. A flank of one sample or
+    none lasts as long as of a pulse of the given duration.
     """
     below = np.flatnonzero(force < max(_ABOVE_NOISE * noise, _FOOT * largest))
     first = int(below[-1]) + 1 if below.size else 0

@@ -399,11 +399,10 @@ def _separations(
 def _force_scale(
     pulses: Sequence[Pulse], separation: Floats, approach: Floats, mass: float, gravity: float
 ) -> tuple[float, float]:
-    """Return the ratio of the impulses expected from the times of flight to those of the record,
-    and its standard deviation; 1 and 0 if all pulses are clipped.
+    """Return the ratio of impulses expected from times of flight to recorded ones, with deviation.
 
-    It is the mean, weighted by what is known of each impulse. Where they differ by more than that,
-    their scatter is its deviation.
+    They are 1 and 0 if all pulses are clipped. The ratio is the mean, weighted by what is known of
+    each impulse. Where they differ by more than that, their scatter is its deviation.
     """
     scales = []
     relative_deviations = []

@@ -70,9 +70,10 @@ _TIMES_SCATTER = 3.84
 
 
 class Meetings(NamedTuple):
-    """What is known of the meetings of successive flights: radius of the sphere, the height at
-    which they meet, and the scatter about it [m]; expected duration of contact at 1 m/s and its
-    standard deviation [s].
+    """What is known of the meetings of successive flights.
+
+    Radius of the sphere, the height at which they meet, and the scatter about it [m]; expected
+    duration of contact at 1 m/s and its standard deviation [s].
     """
 
     radius: float
@@ -150,8 +151,9 @@ class JointFlights:
 
     @property
     def shared_deviations(self) -> dict[str, float]:
-        """Standard deviations of zero [m], drift [m/s], clock [-] and contact [s]; 0 of
-        one that is not estimated.
+        """Standard deviations of zero [m], drift [m/s], clock [-] and contact [s].
+
+        They are 0 where one is not estimated.
         """
         assert self.covariance_root is not None
         columns = {"zero": _ZERO, "drift": _DRIFT, "clock": _CLOCK, "contact": _CONTACT}
@@ -228,8 +230,10 @@ def _noise_and_timing(
     squared_speed = np.concatenate(speeds_of_flights)
 
     def deviance(ratio: float) -> float:
-        """Return minus twice the logarithm of the likelihood, with the variance of positions that
-        is most likely; `ratio` is the variance of times over that of positions [s^2/m^2].
+        """Return minus twice the logarithm of the likelihood.
+
+        The variance of positions is the one that is most likely; `ratio` is the variance of times
+        over it [s^2/m^2].
         """
         relative_variance = 1.0 + ratio * squared_speed
         return float(

@@ -95,11 +95,11 @@ def standard_deviations(noise: Noise) -> Floats:
 
 
 def whitened(noise: Noise, columns: Floats) -> Floats:
-    r"""Return columns (n, k), in another order, such that their noise is independent and of unit
-    variance.
+    r"""Return columns (n, k) such that their noise is independent and of unit variance.
 
-    They are multiplied by the inverse of a root of the covariance of their noise. The covariance
-    :math:`N N^T` is ordered into a narrow band, in which its Cholesky factor stays.
+    They are in another order, and multiplied by the inverse of a root of the covariance of their
+    noise. The covariance :math:`N N^T` is ordered into a narrow band, in which its Cholesky factor
+    stays.
 
     Raises
     ------

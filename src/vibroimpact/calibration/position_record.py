@@ -205,8 +205,10 @@ def _between_flights(
     first_speed: float,
     labels: tuple[str, ...],
 ) -> Observations:
-    """Return the impacts between flights: each approach speed from the flight before, and each
-    rebound height, as in a vacuum, from the flight after.
+    """Return the impacts between flights.
+
+    Each approach speed follows from the flight before, and each rebound height, as in a vacuum,
+    from the flight after.
     """
     apex_heights = joint.apex_heights
     sources = joint.noise_of_apex_heights()

@@ -215,9 +215,7 @@ def _best_shifted(
 def _nearest_shifted(
     differences: Floats, pairs: Sequence[tuple[int, int]]
 ) -> tuple[list[tuple[int, int]], float]:
-    """Return the pairs of the least sum aside from the median difference of other pairs, and
-    this sum.
-    """
+    """Return pairs of the least sum aside from the median difference of `pairs`, and this sum."""
     return _nearest(differences - float(np.median([differences[pair] for pair in pairs])))
 
 

@@ -252,8 +252,9 @@ def _check_first_rise(
 
 
 def _mostly_of_guess(height: Input, restitution: float, deviation: float) -> bool:
-    """Return whether most of the variance of the first restitution is that of a height whose
-    standard deviation was not given.
+    """Return whether most of the variance of the first restitution is that of the height.
+
+    False if the standard deviation of the height was given.
     """
     if height.value.stated:
         return False
@@ -289,8 +290,9 @@ def _input_effects(
     approach: Floats,
     separation: Floats,
 ) -> tuple[Floats, Floats]:
-    """Return what one standard deviation of gravity, height and contact time changes in the speeds
-    before and after, (3, n) [m/s].
+    """Return what one standard deviation of each input changes in the speeds, (3, n) [m/s].
+
+    The inputs are gravity, height and contact time; the speeds are those before and after.
     """
     # the first speed is that after the fall, sqrt(2 g h); the others are those of flights, g T / 2
     after_fall = np.zeros(len(approach))

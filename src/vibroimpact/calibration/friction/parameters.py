@@ -222,8 +222,9 @@ def impact_model(
 def _law_with_separation_speeds(
     problem: Problem, law: ContactLaw, impacts: ObliqueImpacts, separation_speed: Floats
 ) -> ContactLaw:
-    """Return the contact law with the values of its free parameter, one an impact, with which
-    spheres leave at measured speeds [m/s].
+    """Return the contact law with which spheres leave at measured speeds [m/s].
+
+    Its free parameter has one value an impact.
     """
     if law.free_parameter is None:
         raise InputError(
