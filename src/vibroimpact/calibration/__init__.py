@@ -1,3 +1,4 @@
-"""Calibration: the parameter of a contact law, or a modal damping, that matches measured
-or specified impacts.
+"""Calibration of a parameter of a contact law, or a modal damping, to measured impacts.
+
+The impacts may be specified by another law, too.
 """

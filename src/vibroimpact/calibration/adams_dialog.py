@@ -1,5 +1,6 @@
-"""Contacts of Adams' IMPACT as the dialog of a contact in Adams View has them: in
-newtons, millimetres and seconds.
+"""Contacts of Adams' IMPACT as in the dialog of a contact in Adams View.
+
+Units are newtons, millimetres and seconds.
 """
 
 from __future__ import annotations
@@ -24,8 +25,7 @@ DIALOG_TITLE = "For the dialog of a contact in Adams View (Impact; newton, mm, s
 
 
 def dialog_note(parameter: str) -> str:
-    """Return what is to be said of a dialog whose fields differ from impact to impact in a
-    parameter.
+    """Return a note on a dialog whose fields differ from impact to impact in a parameter.
 
     Examples
     --------
@@ -41,8 +41,9 @@ def dialog_note(parameter: str) -> str:
 
 
 def dialog_rows(laws: Iterable[ContactLaw]) -> list[dict[str, Any]]:
-    """Return the fields of the dialog for the contact law of each impact; one row if all are equal,
-    none if one is not IMPACT.
+    """Return the fields of the dialog for the contact law of each impact.
+
+    There is one row if all are equal, and none if a law is not IMPACT.
 
     Examples
     --------
@@ -55,31 +56,32 @@ def dialog_rows(laws: Iterable[ContactLaw]) -> list[dict[str, Any]]:
         if not isinstance(law, AdamsImpact):
             return []
         exponent = float(law.exponent)
-        values = (
-            float(law.stiffness) / 1000.0**exponent,
-            exponent,
-            float(law.damping_max) / 1000.0,
-            1000.0 * float(law.full_damping_penetration),
+        rows.append(
+            {
+                "stiffness_N_mm_n": float(law.stiffness) / 1000.0**exponent,
+                "force_exponent": exponent,
+                "damping_N_s_mm": float(law.damping_max) / 1000.0,
+                "penetration_depth_mm": 1000.0 * float(law.full_damping_penetration),
+            }
         )
-        rows.append(dict(zip(_FIELDS, values, strict=True)))
     return rows if any(row != rows[0] for row in rows) else rows[:1]
 
 
 def calibrated_dialog(found: Calibration) -> list[dict[str, Any]]:
-    """Return the fields of the dialog that match each impact; none if what was tuned is
-    not a parameter of IMPACT.
+    """Return the fields of the dialog that match each impact.
+
+    There are none if the tuned parameter is not one of IMPACT.
     """
-    law, name = found.problem.laws[0], found.parameter
-    return (
-        dialog_rows(law.changed({name: value}) for value in found.values.tolist())
-        if "." not in name
-        else []
-    )
+    if "." in found.parameter:
+        return []
+    law = found.problem.laws[0]
+    return dialog_rows(law.changed({found.parameter: value}) for value in found.values.tolist())
 
 
 def dialog_table(fields: Iterable[Mapping[str, Any]], names: Iterable[str]) -> Table:
-    """Return the fields of the dialog as a table, whose rows have the names of the impacts, or are
-    "every impact" if there is one.
+    """Return the fields of the dialog as a table, whose rows have the names of the impacts.
+
+    If there is one row, it is that of "every impact".
 
     Parameters
     ----------

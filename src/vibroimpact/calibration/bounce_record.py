@@ -11,8 +11,8 @@ from vibroimpact.calibration.observations import Observations
 from vibroimpact.signals.bounces.find import Bounces
 
 _UNLIKE = 1.25
-"""Ratio of the restitution of the first impact to that of the second up to which it is
-that of the drop.
+"""Ratio of the restitution of the first impact to that of the second up to which it is that of the
+drop.
 """
 
 
@@ -57,35 +57,41 @@ def impacts_in_bounces(
     >>> found.speeds.round(3).tolist(), found.wanted["separation_speed"].round(3).tolist()
     ([2.5, 2.0, 1.6], [2.0, 1.6, 1.28])
     """
-    flown = (flights or VacuumFlights(gravity)).end_speeds(bounces.flight)
-    number = len(bounces.flight)
+    flight_speeds = (flights or VacuumFlights(gravity)).end_speeds(bounces.flight)
+    flight_count = len(bounces.flight)
+    # the noise of the durations of the flights, by each touch
     readings = [-bounces.deviation[:-1], bounces.deviation[1:]]
-    # of the flights, by each touch
-    durations = diags_array(readings, offsets=[0, 1], shape=(number, number + 1))
-    after = scaled(flown.start_slope, durations)
-    before = of_the_impact_before(scaled(flown.end_slope, durations))
-    speeds = np.append(first_speed, flown.end[:-1])
-    labels = tuple(f"impact {one + 1}, {at:.6g} s" for one, at in enumerate(bounces.time[:-1]))
-    restitution = flown.start / speeds
-    heard = abs(np.log(restitution[0] / restitution[1])) <= np.log(_UNLIKE)
-    kept = slice(0 if heard else 1, None)
-    first = (
-        f"; the first is not taken for that of the drop, at {first_speed:.4g} m/s, as its "
-        f"restitution would be {restitution[0]:.3g} and "
-        f"that of the next is {restitution[1]:.3g}: it only begins the first flight"
+    durations = diags_array(readings, offsets=[0, 1], shape=(flight_count, flight_count + 1))
+    separation_noise = scaled(flight_speeds.start_slope, durations)
+    approach_noise = of_the_impact_before(scaled(flight_speeds.end_slope, durations))
+    speeds = np.append(first_speed, flight_speeds.end[:-1])
+    labels = tuple(
+        f"impact {number}, {time:.6g} s" for number, time in enumerate(bounces.time[:-1], 1)
     )
+    restitution = flight_speeds.start / speeds
+    # whether the first impact that is heard is the first one of the drop
+    first_is_heard = bool(abs(np.log(restitution[0] / restitution[1])) <= np.log(_UNLIKE))
+    kept = slice(0 if first_is_heard else 1, None)
+    note = f"{flight_count + 1} touches are detected"
     sounds = len(bounces.others)
-    others = f"; {sounds} other sound{'s are' if sounds > 1 else ' is'} no bounce" if sounds else ""
+    if sounds:
+        note += f"; {sounds} other sound{'s are' if sounds > 1 else ' is'} no bounce"
+    if not first_is_heard:
+        note += (
+            f"; the first is not taken for that of the drop, at {first_speed:.4g} m/s, as its "
+            f"restitution would be {restitution[0]:.3g} and "
+            f"that of the next is {restitution[1]:.3g}: it only begins the first flight"
+        )
     return Observations(
         speeds[kept],
-        {"separation_speed": flown.start[kept]},
-        before[kept],
-        {"separation_speed": after[kept]},
+        {"separation_speed": flight_speeds.start[kept]},
+        approach_noise[kept],
+        {"separation_speed": separation_noise[kept]},
         deviations_known=True,
         labels=labels[kept],
-        of_the_drop=bool(heard),
+        of_the_drop=first_is_heard,
         noise_from="the times of the touches",
         doubts=bounces.doubts,
         flights=flights,
-        notes=(f"{number + 1} touches are detected{others}{'' if heard else first}.",),
+        notes=(f"{note}.",),
     )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from typing import NamedTuple
 
 import numpy as np
 
@@ -15,7 +16,7 @@ from vibroimpact.calibration.calibrated_drops import (
     values_by_function,
 )
 from vibroimpact.calibration.calibration import Calibration
-from vibroimpact.calibration.match_target import match_drop, match_measurement
+from vibroimpact.calibration.match_target import MatchedTarget, match_drop, match_measurement
 from vibroimpact.calibration.matchable import (
     ALONG_PLATE,
     MATCHABLE,
@@ -35,7 +36,8 @@ from vibroimpact.dynamics.problem import Problem, StatesProblem
 from vibroimpact.dynamics.simulate import simulate
 from vibroimpact.errors import InputError
 
-_MET = 1e-6  # relative deviation below which the given value already meets the target
+_MET = 1e-6
+"""Relative deviation below which the value of the case already meets the target."""
 
 
 def calibrate(
@@ -52,13 +54,12 @@ def calibrate(
     moved: Sequence[Moved] = (),
     progress: Callable[[float], None] | None = None,
 ) -> Calibration:
-    """Return the parameter value with which each impact matches the target, and its fit over the
-    approach speed.
+    """Return the parameter value with which each impact matches the target, and its fit.
 
-    Each impact is matched separately at its own approach speed, including gravity, to rounding. If
-    the target is a drop, a polynomial of the approach speed is fitted to the values by unweighted
-    least squares. If it is a measurement, the polynomial is the maximum-likelihood estimate from
-    the readings with their noise.
+    The fit is a polynomial of the approach speed. Each impact is matched separately at its own
+    approach speed, including gravity, to rounding. If the target is a drop, the polynomial is
+    fitted to the values by unweighted least squares. If it is a measurement, the polynomial is the
+    maximum-likelihood estimate from the readings with their noise.
 
     Parameters
     ----------
@@ -104,36 +105,16 @@ def calibrate(
     Examples
     --------
     >>> import vibroimpact as vi
-    >>> found = calibrate(vi.load_case("paper:type1-constant"), vi.load_case("paper:type1-theory"))
-    >>> found.values.round(3).tolist()
+    >>> constant = vi.load_case("paper:type1-constant")
+    >>> calibration = calibrate(constant, vi.load_case("paper:type1-theory"))
+    >>> calibration.values.round(3).tolist()
     [179.79, 172.746, 166.419, 160.869, 156.663]
-    >>> [float(f"{value:.5g}") for value in found.fit.function.coefficients]
+    >>> [float(f"{value:.5g}") for value in calibration.fit.function.coefficients]
     [139.41, 5.8629, -0.1456]
     """
-    tell = progress or (lambda done: None)
+    report_progress = progress or (lambda fraction: None)
     stated = problem.to_problem()
-    if weights is None:
-        known = target.wanted if isinstance(target, Observations) else REBOUND
-        weights = REBOUND if set(REBOUNDS) & set(known) else dict.fromkeys(known, 1.0)
-    if (
-        isinstance(target, Observations)
-        and "separation_speed" not in target.wanted
-        and "rebound_height" in target.wanted
-    ):
-        # both describe the rebound; match the one that was measured
-        weights = {
-            name.replace("separation_speed", "rebound_height"): weight
-            for name, weight in weights.items()
-        }
-    check_weights(weights)
-    if by_friction := [name for name in weights if name in ALONG_PLATE]:
-        words = (
-            f"{', '.join(by_friction)} follow{'s' if len(by_friction) == 1 else ''} from "
-            "friction, and what is tuned is not of friction"
-        )
-        raise InputError(
-            f"{words}; match {', '.join(MATCHABLE)}, or tune friction.coefficient", "match"
-        )
+    weights = _checked_weights(weights, target)
     _check(stated, confidence, bootstrap)
     tuned = law_parameter(stated) if tunable is None else tunable
     if isinstance(target, Observations):
@@ -141,41 +122,43 @@ def calibrate(
             raise InputError(
                 "this target is matched at its own speeds alone; leave the speeds out", "speeds"
             )
-        found = match_measurement(
-            tuned, stated, target, weights, degree, confidence, bootstrap, seed, tell, moved
+        matched = match_measurement(
+            tuned,
+            stated,
+            target,
+            weights,
+            degree,
+            confidence,
+            bootstrap,
+            seed,
+            report_progress,
+            moved,
         )
     else:
-        found = match_drop(tuned, stated, target.to_problem(), weights, degree, speeds, tell)
-    tell(0.9)
-    # the whole drop with the values found, and with those given, for comparison with the target
-    seen, function = found.seen, found.fit.function
-    first = first_approach_speed(stated) if seen.flights is None else float(seen.speeds[0])
-    along, values = values_by_function(tuned, function, impact_count(stated), first, seen.flights)
-    each, by_speed = values, values
-    if seen.of_the_drop:  # compared with the target as it was measured, from its own first speed on
-        each = found.values
-        _, by_speed = values_by_function(
-            tuned, function, len(each), float(seen.speeds[0]), seen.flights
+        matched = match_drop(
+            tuned, stated, target.to_problem(), weights, degree, speeds, report_progress
         )
-    chain = (
-        (seen.speeds, each)
-        if seen.of_the_drop and not is_other_drop(stated, seen)
-        else (along, values)
-    )
-    drops = impact_tables(tuned, each, by_speed, seen)
-    along = along[: len(drops["function"]["impact"])]
+    report_progress(0.9)
+    seen = matched.seen
+    sequences = _impact_sequences(stated, tuned, matched)
+    drops = impact_tables(tuned, sequences.each, sequences.by_speed, seen)
     if not isinstance(target, Observations):
-        drops = {"target": simulate(limited_to(target.to_problem(), len(each))).impacts, **drops}
-    rows = seen.which
-    given = tuned.given[np.minimum(rows, len(tuned.given) - 1)]
-    as_given = {} if np.isnan(given).any() else tuned.respond(seen.speeds, given, rows)
-    missed = bool(as_given) and any(
-        not np.allclose(as_given[name], seen.wanted[name], rtol=_MET, atol=0.0) for name in weights
+        limited = limited_to(target.to_problem(), len(sequences.each))
+        drops = {"target": simulate(limited).impacts, **drops}
+    given = tuned.given[np.minimum(seen.which, len(tuned.given) - 1)]
+    as_given = {} if np.isnan(given).any() else tuned.respond(seen.speeds, given, seen.which)
+    others = {}
+    if _misses(as_given, seen, weights):
+        others = other_parameters(stated, tuned, seen, weights)
+    outcomes = tuned.respond(seen.speeds, matched.values, seen.which)
+    overlaid = overlays(tuned, seen, matched.values, outcomes)
+    drop_speeds = sequences.drop_speeds[: len(drops["function"]["impact"])]
+    doubts = (
+        *matched.doubts,
+        *other_drop_doubts(stated, tuned, seen),
+        *fit_doubts(stated, tuned, seen, matched.fit, matched.curve, drop_speeds),
     )
-    computed = all(np.isfinite(as_given[name][0]) for name in weights) if as_given else False
-    outcomes = tuned.respond(seen.speeds, found.values, rows)
-    overlaid = overlays(tuned, seen, found.values, outcomes)
-    tell(1.0)
+    report_progress(1.0)
     return Calibration(
         problem=stated,
         parameter=tuned.name,
@@ -183,25 +166,100 @@ def calibrate(
         allowed=tuned.allowed,
         weights=dict(weights),
         observations=seen,
-        values=found.values,
-        intervals=found.intervals,
+        values=matched.values,
+        intervals=matched.intervals,
         outcomes=outcomes,
         given=given,
         as_given=as_given,
-        others=other_parameters(stated, tuned, seen, weights) if missed and computed else {},
-        fit=found.fit,
-        curve=found.curve,
-        impacts=chain,
+        others=others,
+        fit=matched.fit,
+        curve=matched.curve,
+        impacts=sequences.of_the_drop,
         drops=drops,
         confidence=confidence,
-        bootstrap=found.draws,
+        bootstrap=matched.draws,
         overlays=overlaid,
-        doubts=(
-            *found.doubts,
-            *other_drop_doubts(stated, tuned, seen),
-            *fit_doubts(stated, tuned, seen, found.fit, found.curve, along),
-        ),
+        doubts=doubts,
     )
+
+
+def _checked_weights(
+    weights: Mapping[str, float] | None, target: StatesProblem | Observations
+) -> Mapping[str, float]:
+    """Return the weights of the quantities to be matched, by default those of the rebound."""
+    wanted = target.wanted if isinstance(target, Observations) else REBOUND
+    if weights is None:
+        weights = REBOUND if set(REBOUNDS) & set(wanted) else dict.fromkeys(wanted, 1.0)
+    if (
+        isinstance(target, Observations)
+        and "separation_speed" not in wanted
+        and "rebound_height" in wanted
+    ):
+        # both describe the rebound; match the one that was measured
+        weights = {
+            name.replace("separation_speed", "rebound_height"): weight
+            for name, weight in weights.items()
+        }
+    check_weights(weights)
+    by_friction = [name for name in weights if name in ALONG_PLATE]
+    if by_friction:
+        raise InputError(
+            f"{', '.join(by_friction)} follow{'s' if len(by_friction) == 1 else ''} from "
+            "friction, and what is tuned is not of friction; match "
+            f"{', '.join(MATCHABLE)}, or tune friction.coefficient",
+            "match",
+        )
+    return weights
+
+
+class _Sequences(NamedTuple):
+    """Values of the parameter in successive impacts.
+
+    `each` and `by_speed` are those of the impacts of the drop that is compared with the target, as
+    matched and by the polynomial. `of_the_drop` are approach speeds [m/s] and values of the drop as
+    stated. `drop_speeds` are its approach speeds with the polynomial [m/s].
+    """
+
+    each: Floats
+    by_speed: Floats
+    of_the_drop: tuple[Floats, Floats]
+    drop_speeds: Floats
+
+
+def _impact_sequences(stated: Problem, tuned: Tunable, matched: MatchedTarget) -> _Sequences:
+    """Return the values of the drop as stated, and of the drop compared with the target."""
+    seen = matched.seen
+    function = matched.fit.function
+    measured_first_speed = float(seen.speeds[0])
+    first_speed = first_approach_speed(stated) if seen.flights is None else measured_first_speed
+    drop_speeds, drop_values = values_by_function(
+        tuned, function, impact_count(stated), first_speed, seen.flights
+    )
+    if not seen.of_the_drop:
+        return _Sequences(drop_values, drop_values, (drop_speeds, drop_values), drop_speeds)
+    # compared with the target as it was measured, from its own first speed on
+    _, by_speed = values_by_function(
+        tuned, function, len(matched.values), measured_first_speed, seen.flights
+    )
+    of_the_drop = (seen.speeds, matched.values)
+    if is_other_drop(stated, seen):
+        of_the_drop = (drop_speeds, drop_values)
+    return _Sequences(matched.values, by_speed, of_the_drop, drop_speeds)
+
+
+def _misses(
+    as_given: Mapping[str, Floats], seen: Observations, weights: Mapping[str, float]
+) -> bool:
+    """Return whether the value of the case misses the target, and the first impact is computed.
+
+    `as_given` are the quantities of the impacts with that value; empty where there is none.
+    """
+    if not as_given:
+        return False
+    missed = any(
+        not np.allclose(as_given[name], seen.wanted[name], rtol=_MET, atol=0.0) for name in weights
+    )
+    return missed and all(np.isfinite(as_given[name][0]) for name in weights)
 
 
 def _check(problem: Problem, confidence: float, bootstrap: int | None) -> None:

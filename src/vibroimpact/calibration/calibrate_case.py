@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Container, Mapping
+from collections.abc import Callable, Container, Mapping, Sequence
 from dataclasses import fields, replace
 from os import PathLike
 from typing import Any, NamedTuple
@@ -20,7 +20,7 @@ from vibroimpact.calibration.observations import Observations
 from vibroimpact.calibration.section import FRICTION, CalibrateSection, FileTarget, friction_names
 from vibroimpact.calibration.targets import target_of
 from vibroimpact.calibration.tunables import law_parameter, modal_damping
-from vibroimpact.calibration.typed_inputs import moved_inputs, typed_inputs
+from vibroimpact.calibration.typed_inputs import Moved, moved_inputs, typed_inputs
 from vibroimpact.cases.build import problem_of, resolved_case
 from vibroimpact.cases.case import Case
 from vibroimpact.cases.fields.contact import read_contact
@@ -38,15 +38,23 @@ MODEL = "adams-impact"
 """The law that is tuned by default."""
 
 _LOCAL = tuple(LocalSection.model_fields)
+"""Keys of [contact] that are not of the contact law, but of the contact itself."""
+
 _COEFFICIENT = FrictionLaw.__dataclass_fields__["coefficient"].metadata["example"]
+"""Initial guess of the coefficient of friction."""
+
 _ANY_PAIR = ContactPair(1e9, 0.01, 0.01, 1e8, 0.3)
-_ITS_TARGET = "a table of measured oblique impacts; give its file"
+"""A pair of bodies with which the parameters of a law are tried."""
+
+_FRICTION_TARGET = "a table of measured oblique impacts; give its file"
 _DAMPINGS = ("sphere.damping", "plate.damping")
 
 
 class ToCalibrate(NamedTuple):
-    """A case whose contact law is to be tuned, whether the case gives the value of the parameter or
-    it is only an initial guess, and the key under which the law was given.
+    """A case whose contact law is to be tuned.
+
+    Whether the case gives the value of the parameter, or it is only an initial guess; and the key
+    under which the law was given.
     """
 
     case: Case
@@ -57,8 +65,9 @@ class ToCalibrate(NamedTuple):
 def load_calibration(
     source: str | PathLike[str], changes: Mapping[str, Any] | None = None
 ) -> ToCalibrate:
-    """Read a case to calibrate from a file, as `load_case` does, except that the parameter to be
-    found may be missing.
+    """Read a case to calibrate from a file, as `load_case` does.
+
+    The parameter to be found may be missing.
 
     Parameters
     ----------
@@ -94,46 +103,52 @@ def read_calibration(table: Mapping[str, Any]) -> ToCalibrate:
     ('adams-impact', RestitutionTarget(restitution=0.7, approach_speed=None,
     standard_deviation=None))
     """
-    # the contact law of the case is the target by default, and the law to be tuned takes its place
     whole = dict(table)
-    section = (
-        dict(whole.get("calibrate") or {})
-        if isinstance(whole.get("calibrate", {}), dict)
-        else whole["calibrate"]
-    )
-    contact = whole.get("contact")
-    if (
-        isinstance(section, dict)
-        and isinstance(contact, dict)
-        and set(section) <= set(CalibrateSection.model_fields)
-    ):
-        model = section.pop("model", None)
-        model = {"law": model} if isinstance(model, str) else model
-        own, law_at = "target" in section, "contact" if model is None else "calibrate.model"
-        if not own and (names := friction_names(section.get("parameter"))):
-            raise InputError(
-                f"it is missing; {names[0]} is fitted to {_ITS_TARGET}", "calibrate.target"
-            )
-        if not own:
-            if contact.get("law") == MODEL and model is None:
-                words = f"there is no target, since the law of the case is {MODEL} itself"
-                raise InputError(
-                    f"{words}; give a target, such as {{ restitution = 0.7 }}", "calibrate.target"
-                )
-            section["target"] = {key: value for key, value in contact.items() if key not in _LOCAL}
-            model = {"law": MODEL} if model is None else model
-        if model is not None:
-            kept = {key: value for key, value in contact.items() if key in _LOCAL}
-            whole["contact"] = contact = {**kept, **model} if isinstance(model, dict) else model
-        whole["contact"] = started = _with_start(contact, section.get("parameter"))
-        whole["calibrate"] = section
-        try:
-            return ToCalibrate(read_case(whole), started is contact, law_at)
-        except InputError as error:
-            raise InputError.of_several(
-                _where(fault, own, model is not None) for fault in error.faults
-            ) from None
-    return ToCalibrate(read_case(whole), True)
+    section = whole.get("calibrate", {})
+    section = dict(section or {}) if isinstance(section, dict) else section
+    contact: Any = whole.get("contact")
+    readable = isinstance(section, dict) and isinstance(contact, dict)
+    if not readable or not set(section) <= set(CalibrateSection.model_fields):
+        return ToCalibrate(read_case(whole), True)  # which reports what is wrong
+    model = section.pop("model", None)
+    if isinstance(model, str):
+        model = {"law": model}
+    law_at = "contact" if model is None else "calibrate.model"
+    own_target = "target" in section
+    if not own_target:
+        # the contact law of the case is the target, and the law to be tuned takes its place
+        _check_own_law(contact, model, section)
+        section["target"] = {key: value for key, value in contact.items() if key not in _LOCAL}
+        model = {"law": MODEL} if model is None else model
+    if isinstance(model, dict):
+        local = {key: value for key, value in contact.items() if key in _LOCAL}
+        contact = {**local, **model}
+    elif model is not None:
+        contact = model
+    started = _with_start(contact, section.get("parameter"))
+    whole["contact"] = started
+    whole["calibrate"] = section
+    try:
+        return ToCalibrate(read_case(whole), started is contact, law_at)
+    except InputError as error:
+        raise InputError.of_several(
+            _under_written_key(fault, own_target, model is not None) for fault in error.faults
+        ) from None
+
+
+def _check_own_law(contact: Mapping[str, Any], model: Any, section: Mapping[str, Any]) -> None:
+    """Check that the contact law of the case can be the target."""
+    names = friction_names(section.get("parameter"))
+    if names:
+        raise InputError(
+            f"it is missing; {names[0]} is fitted to {_FRICTION_TARGET}", "calibrate.target"
+        )
+    if contact.get("law") == MODEL and model is None:
+        raise InputError(
+            f"there is no target, since the law of the case is {MODEL} itself; give a target, "
+            "such as { restitution = 0.7 }",
+            "calibrate.target",
+        )
 
 
 def calibrate_case(
@@ -175,40 +190,45 @@ def calibrate_case(
         )
     problem = problem_of(case, progress, tell)
     names = friction_names(section.parameter)
-    if not names and problem.by_speed:
-        name = next(iter(problem.by_speed))
-        words = "a calibration begins from numbers, and takes no function of the approach speed"
-        raise InputError(
-            f"{words}; give a number in place of the function", f"{what.law_at}.{name}"
-        )
-    if (
-        not names
-        and problem.same_spot
-        and getattr(problem.laws[0], "lasting", False)
-        and impact_count(problem) > 1
-    ):
-        words = (
-            f"{case.contact.law} leaves a dent that the next impact falls into, and each "
-            "impact is matched on fresh surfaces"
-        )
-        raise InputError(f"{words}; set it to false, or run.impacts = 1", "drop.same_spot")
-    found: Calibration | FrictionCalibration
+    if not names:
+        _check_contact_law(what, problem)
+    calibration: Calibration | FrictionCalibration
     try:
         if names:
-            found = _calibrated_friction(what, problem, section, names, progress)
+            calibration = _calibrated_friction(what, problem, section, names, progress)
         else:
-            found = _calibrated_law(what, problem, section, progress)
+            calibration = _calibrated_law(what, problem, section, progress)
     except InputError as error:
         raise InputError(error.message, f"calibrate.{error.key}".rstrip(".")) from None
-    tuned = names if isinstance(found, FrictionCalibration) else (found.parameter,)
-    # its value is computed, and is not checked for slips of units
-    aside = {*tuned, *(f"contact.{name}" for name in tuned)}
-    return replace(found, doubts=(*_doubts_of_a_run(case, found, aside), *found.doubts))
+    tuned = names if isinstance(calibration, FrictionCalibration) else (calibration.parameter,)
+    # computed values are not checked for slips of units
+    not_checked = {*tuned, *(f"contact.{name}" for name in tuned)}
+    doubts = _doubts_of_a_run(case, calibration, not_checked)
+    return replace(calibration, doubts=(*doubts, *calibration.doubts))
+
+
+def _check_contact_law(what: ToCalibrate, problem: Problem) -> None:
+    """Check that the contact law can be tuned impact by impact."""
+    if problem.by_speed:
+        name = next(iter(problem.by_speed))
+        raise InputError(
+            "a calibration begins from numbers, and takes no function of the approach speed; "
+            "give a number in place of the function",
+            f"{what.law_at}.{name}",
+        )
+    leaves_dent = problem.same_spot and getattr(problem.laws[0], "lasting", False)
+    if leaves_dent and impact_count(problem) > 1:
+        raise InputError(
+            f"{what.case.contact.law} leaves a dent that the next impact falls into, and each "
+            "impact is matched on fresh surfaces; set it to false, or run.impacts = 1",
+            "drop.same_spot",
+        )
 
 
 def calibrated_case(case: Case, found: Calibration | FrictionCalibration) -> Case:
-    """Return the case with the calibrated values: one per impact for a law parameter, a single one
-    for modal damping and friction.
+    """Return the case with the calibrated values.
+
+    There is one per impact for a law parameter, a single one for modal damping and friction.
 
     Parameters
     ----------
@@ -229,10 +249,8 @@ def calibrated_case(case: Case, found: Calibration | FrictionCalibration) -> Cas
         key: value for key, value in resolved_case(case).items() if key != "calibrate"
     }
     if isinstance(found, FrictionCalibration):
-        friction = {
-            **table["contact"]["friction"],
-            **dict(zip(found.parameters.names, found.values.tolist(), strict=True)),
-        }
+        friction_values = dict(zip(found.parameters.names, found.values.tolist(), strict=True))
+        friction = {**table["contact"]["friction"], **friction_values}
         return read_case({**table, "contact": {**table["contact"], "friction": friction}})
     values = found.impacts[1].tolist()
     if found.parameter in _DAMPINGS:
@@ -242,12 +260,14 @@ def calibrated_case(case: Case, found: Calibration | FrictionCalibration) -> Cas
 
 
 def _doubts_of_a_run(
-    case: Case, found: Calibration | FrictionCalibration, aside: Container[str]
+    case: Case, calibration: Calibration | FrictionCalibration, not_checked: Container[str]
 ) -> list[str]:
-    """Return the doubts that a run of the calibrated case states: what is matched to a
-    rebound may still exceed a limit of the theory.
+    """Return the doubts that a run of the calibrated case states.
+
+    What is matched to a rebound may still exceed a limit of the theory.
     """
-    return result_of(simulate(calibrated_case(case, found).to_problem())).doubts_but(aside)
+    problem = calibrated_case(case, calibration).to_problem()
+    return result_of(simulate(problem)).doubts_but(not_checked)
 
 
 def _calibrated_law(
@@ -258,21 +278,25 @@ def _calibrated_law(
 ) -> Calibration:
     parameter = section.parameter
     assert not isinstance(parameter, tuple)
-    tunable, target = _tunable(problem, parameter), target_of(what.case, problem, section)
+    tunable = _tunable(problem, parameter)
+    if not what.given:
+        tunable = replace(tunable, given=np.full(1, np.nan))
+    target = target_of(what.case, problem, section)
 
     def evaluated(case: Case) -> tuple[Observations, Tunable]:
-        other = problem_of(case)
-        seen = target_of(case, other, section)
+        changed_problem = problem_of(case)
+        seen = target_of(case, changed_problem, section)
         assert isinstance(seen, Observations)
-        return seen, _tunable(other, parameter)
+        return seen, _tunable(changed_problem, parameter)
 
+    moved: Sequence[Moved] = ()
+    if isinstance(target, Observations) and target.measured:
+        moved = moved_inputs(what.case, evaluated, target)
     return calibrate(
         problem,
         target,
-        tunable=tunable if what.given else replace(tunable, given=np.full(1, np.nan)),
-        moved=moved_inputs(what.case, evaluated, target)
-        if isinstance(target, Observations) and target.measured
-        else (),
+        tunable=tunable,
+        moved=moved,
         weights=section.match,
         degree=section.degree,
         speeds=None if section.speeds is None else section.speeds.values(),
@@ -291,15 +315,15 @@ def _calibrated_friction(
     progress: Callable[[float], None] | None,
 ) -> FrictionCalibration:
     if not isinstance(section.target, FileTarget):
-        raise InputError(f"{names[0]} is fitted to {_ITS_TARGET}", "target")
+        raise InputError(f"{names[0]} is fitted to {_FRICTION_TARGET}", "target")
     for key in ("degree", "speeds", "air"):
         if getattr(section, key):
             raise InputError(
                 f"{names[0]} is one number, fitted to single impacts; leave this out", key
             )
-    # what is wrong with the names is told before what is wrong with the file
+    # an error in the names is reported before one in the file
     friction_parameters(problem, names)
-    found = calibrate_friction(
+    calibration = calibrate_friction(
         problem,
         oblique_impacts_in_file(what.case, section.target, section.match),
         names,
@@ -309,78 +333,77 @@ def _calibrated_friction(
         seed=section.seed,
         progress=progress,
     )
-    unused = [one.name for one in typed_inputs(what.case) if one.value.stated]
-    if unused and found.intervals is not None:
-        which = "deviations of" if len(unused) > 1 else "deviation of"
-        words = (
-            f"the standard {which} {listed(unused)} {'are' if len(unused) > 1 else 'is'} no "
-            "part of these intervals"
-        )
-        found = replace(found, doubts=(*found.doubts, words))
+    unused = [typed.name for typed in typed_inputs(what.case) if typed.value.stated]
+    if unused and calibration.intervals is not None:
+        if len(unused) > 1:
+            doubt = f"the standard deviations of {listed(unused)} are no part of these intervals"
+        else:
+            doubt = f"the standard deviation of {listed(unused)} is no part of these intervals"
+        calibration = replace(calibration, doubts=(*calibration.doubts, doubt))
     if what.given:
-        return found
-    unknown = np.array([name == "coefficient" for name in found.parameters.names])
-    return replace(found, given=np.where(unknown, np.nan, found.given), as_given={})
+        return calibration
+    unknown = np.array([name == "coefficient" for name in calibration.parameters.names])
+    given = np.where(unknown, np.nan, calibration.given)
+    return replace(calibration, given=given, as_given={})
 
 
-def _where(line: str, own_target: bool, own_model: bool) -> str:
-    """Return an error message under the key that the user wrote: target and law may come
-    from [contact], the law from calibrate.model.
+def _under_written_key(message: str, own_target: bool, own_model: bool) -> str:
+    """Return an error message under the key that the user wrote.
+
+    Target and law may come from [contact], the law from calibrate.model.
     """
-    if not own_target and line.startswith("calibrate.target"):
-        return line.replace("calibrate.target", "contact", 1)
-    if (
-        own_model
-        and line.startswith("contact")
-        and not line.startswith(tuple(f"contact.{key}" for key in _LOCAL))
-    ):
-        return line.replace("contact", "calibrate.model", 1)
-    return line
+    if not own_target and message.startswith("calibrate.target"):
+        return message.replace("calibrate.target", "contact", 1)
+    of_local = message.startswith(tuple(f"contact.{key}" for key in _LOCAL))
+    if own_model and message.startswith("contact") and not of_local:
+        return message.replace("contact", "calibrate.model", 1)
+    return message
 
 
-def _with_start(contact: dict[str, Any], parameter: Any) -> dict[str, Any]:
-    """Return a [contact] section with an initial guess of the tuned parameter; the same
-    object if it has a value.
+def _with_start(contact: Any, parameter: Any) -> Any:
+    """Return a [contact] section with an initial guess of the tuned parameter.
+
+    It is the same object if it has a value.
     """
-    if names := friction_names(parameter):
+    names = friction_names(parameter)
+    if names:
         return _with_coefficient(contact, names)
     try:
         section = read_contact(contact)
     except InputError:
         return contact  # reported when the case is read
     law = find_contact_law(section.law)
-    if not isinstance(parameter, str) or parameter not in {item.name for item in fields(law)}:
+    if not isinstance(parameter, str) or parameter not in {field.name for field in fields(law)}:
         parameter = None  # one that is not known, or is no name, is reported later
-    for item in fields(law):
-        start = item.metadata["example"]
-        if (
-            item.name in contact
-            or start is None
-            or (parameter is not None and item.name != parameter)
-        ):
+    values = {
+        key: value[0] if isinstance(value, tuple) else value
+        for key, value in section.parameters.items()
+    }
+    for field in fields(law):
+        start = field.metadata["example"]
+        if field.name in contact or start is None:
             continue
-        values = {
-            key: value[0] if isinstance(value, tuple) else value
-            for key, value in section.parameters.items()
-        }
+        if parameter is not None and field.name != parameter:
+            continue
         try:
-            made = law.for_pair(_ANY_PAIR, **{**values, item.name: start})
+            tried_law = law.for_pair(_ANY_PAIR, **{**values, field.name: start})
         except InputError:
             continue
-        if item.name == (parameter or made.free_parameter):
-            return {**contact, item.name: start}
+        if field.name == (parameter or tried_law.free_parameter):
+            return {**contact, field.name: start}
     return contact
 
 
 def _with_coefficient(contact: dict[str, Any], names: tuple[str, ...]) -> dict[str, Any]:
-    """Return a [contact] section with an initial guess of the coefficient of friction, if
-    it is tuned; the same object if it has one.
+    """Return a [contact] section with an initial guess of the coefficient of friction.
+
+    It is the same object if the coefficient is not tuned, or has a value.
     """
     friction = contact.get("friction")
     if not isinstance(friction, dict) or "coefficient" in friction:
         return contact
     law = friction_laws().get(str(friction.get("law")))
-    known = {f"{FRICTION}{item.name}" for item in fields(law)} if law else set()
+    known = {f"{FRICTION}{field.name}" for field in fields(law)} if law else set()
     # an unknown parameter is reported later
     if f"{FRICTION}coefficient" not in names and known.issuperset(names):
         return contact

@@ -17,32 +17,30 @@ COMPARED = {
 """Compared columns of the impact table, with their headings."""
 
 WAYS = ("constant", "variable", "function")
-"""How the value is prescribed: that of the first impact throughout, one per impact, or by
-the fitted polynomial.
+"""How the value is prescribed: that of the first impact throughout, one per impact, or by the
+fitted polynomial.
 """
 
 
 def reference(found: Calibration) -> dict[str, Floats]:
-    """Return the target values of the impacts of the drop by column: simulated, or
-    measured if the measurement is of this drop.
+    """Return the target values of the impacts of the drop by column.
+
+    They are simulated, or measured if the measurement is of this drop.
     """
-    number = len(found.impacts[1])
     if "target" in found.drops:
-        table = found.drops["target"]
-        return {
-            column: table[column][:number]
-            for column in COMPARED
-            if np.any(table[column][:number] > 0.0)
-        }
+        _, values = found.impacts
+        impact_count = len(values)
+        table = {column: found.drops["target"][column][:impact_count] for column in COMPARED}
+        return {column: target for column, target in table.items() if np.any(target > 0.0)}
     if not found.observations.of_the_drop:
         return {}
-    seen = found.observations.wanted
-    return {MATCHABLE[name].column: values for name, values in seen.items()}
+    return {MATCHABLE[name].column: target for name, target in found.observations.wanted.items()}
 
 
 def differences(found: Calibration) -> dict[str, Mapping[str, Floats]]:
-    """Return the relative deviations from the target by column and way of prescribing the value;
-    NaN after the last impact.
+    """Return the relative deviations from the target by column and way of prescribing the value.
+
+    They are NaN after the last impact.
 
     Examples
     --------
@@ -62,13 +60,14 @@ def differences(found: Calibration) -> dict[str, Mapping[str, Floats]]:
 
 
 def largest_misfit(found: Calibration) -> float:
-    """Return the largest deviation of the polynomial from the exact values over the
-    fitted range of speeds.
-    """
-    return found.fit.function.misfit(
-        *(found.curve if found.curve is not None else (found.observations.speeds, found.values))
-    )
+    """Return the largest deviation of the polynomial from the exact values."""
+    if found.curve is None:
+        return found.fit.function.misfit(found.observations.speeds, found.values)
+    speeds, values = found.curve
+    return found.fit.function.misfit(speeds, values)
 
 
-def _padded(values: Floats, number: int) -> Floats:
-    return np.append(values, np.full(max(number - len(values), 0), np.nan))[:number]
+def _padded(values: Floats, length: int) -> Floats:
+    """Return values cut to a length, or filled up with NaN."""
+    missing = max(length - len(values), 0)
+    return np.append(values, np.full(missing, np.nan))[:length]

@@ -1,6 +1,4 @@
-"""Evaluate a measurement with or without aerodynamic drag, and warn where drag was
-neglected but matters.
-"""
+"""Evaluate a measurement with or without drag, and warn where neglected drag matters."""
 
 from __future__ import annotations
 
@@ -22,14 +20,18 @@ from vibroimpact.dynamics.fluid import Fluid
 from vibroimpact.dynamics.liquid import Liquid
 from vibroimpact.errors import InputError
 
-_MATTERS = 0.002  # relative change of a restitution by drag above which a warning is given
+_MATTERS = 0.002
+"""Relative change of a restitution by drag above which a warning is given."""
 
-_ROOM = 2.0  # margin of the flight tables over the largest rise, for intermediate iterates of a fit
+_ROOM = 2.0
+"""Margin of the flight tables over the largest rise, for intermediate iterates of a fit."""
 
 
 class Measurement(NamedTuple):
-    """A measurement: a function that evaluates it for a model of the flights (None:
-    vacuum), and the largest rise in it [m].
+    """A measurement.
+
+    A function that evaluates it for a model of the flights (None: vacuum), and the largest rise in
+    it [m].
     """
 
     evaluated: Callable[[Flights | None], Observations]
@@ -37,19 +39,21 @@ class Measurement(NamedTuple):
 
 
 def speed_at_touch(case: Case, flights: Flights | None) -> float:
-    """Return the speed at first touch of a case [m/s], with drag if flights are given and
-    the case gives the height.
+    """Return the speed at first touch of a case [m/s].
+
+    It has drag if flights are given and the case gives the height.
     """
     if flights is None or case.drop.height is None or fluid_of(case) is not None:
         return touch_speed(case)
-    return float(flights.speed_after_fall(np.array(case.drop.height - case.sphere.radius))[0])
+    speed, _ = flights.speed_after_fall(np.array(case.drop.height - case.sphere.radius))
+    return float(speed)
 
 
 def evaluate(case: Case, measurement: Measurement, air: bool | None) -> Observations:
-    """Return the evaluated measurement, with drag if `air`, or if the drop of the case has it, as
-    in a liquid.
+    """Return the evaluated measurement, with or without drag.
 
-    If neither says so, it is without drag, and with a warning where drag matters.
+    It has drag if `air`, or if the drop of the case has it, as in a liquid. If neither says so, it
+    is without drag, and with a warning where drag matters.
 
     Raises
     ------
@@ -69,64 +73,66 @@ def evaluate(case: Case, measurement: Measurement, air: bool | None) -> Observat
         )
     if case.drop.gravity == 0.0:  # no flight returns
         return measurement.evaluated(None)
-    through, sphere = (
-        Air() if own is None else own,
-        (case.sphere.radius, float(sphere_density(case.sphere))),
-    )
-    fallen = (
-        0.0
-        if case.drop.height is None or isinstance(own, Liquid)
-        else case.drop.height - case.sphere.radius
-    )
-    pull = FluidFlights(case.drop.gravity, *sphere, 1.0, through).pull
-    flights = FluidFlights(
-        case.drop.gravity,
-        *sphere,
-        _ROOM * max(measurement.highest, fallen, 0.5 * touch_speed(case) ** 2 / pull),
-        through,
-    )
+    fluid = Air() if own is None else own
+    flights = _flights(case, measurement, fluid)
     if air or own is not None:
         seen = measurement.evaluated(flights)
-        heights = (
-            " Rebound heights are those that the sphere would reach without it."
-            if "rebound_height" in seen.wanted
-            else ""
-        )
-        return replace(seen, notes=(_note(through) + heights, *seen.notes))
+        note = _note(fluid)
+        if "rebound_height" in seen.wanted:
+            note += " Rebound heights are those that the sphere would reach without it."
+        return replace(seen, notes=(note, *seen.notes))
     seen = measurement.evaluated(None)
-    if air is None and (doubt := _doubt(seen, measurement, flights, case)):
-        return replace(seen, doubts=(*seen.doubts, doubt))
+    if air is None:
+        doubt = _drag_doubt(seen, measurement, flights, case)
+        if doubt:
+            return replace(seen, doubts=(*seen.doubts, doubt))
     return seen
 
 
-def _note(through: Fluid) -> str:
-    constant = through.drag_coefficient if isinstance(through, Air) else None
+def _flights(case: Case, measurement: Measurement, fluid: Fluid) -> FluidFlights:
+    """Return flights through a fluid that are tabulated as high as the measurement needs."""
+    gravity = case.drop.gravity
+    radius = case.sphere.radius
+    density = float(sphere_density(case.sphere))
+    if case.drop.height is None or isinstance(fluid, Liquid):
+        fall = 0.0
+    else:
+        fall = case.drop.height - radius
+    # the rise without drag from the approach speed
+    pull = FluidFlights(gravity, radius, density, 1.0, fluid).pull
+    rise = 0.5 * touch_speed(case) ** 2 / pull
+    highest = _ROOM * max(measurement.highest, fall, rise)
+    return FluidFlights(gravity, radius, density, highest, fluid)
+
+
+def _note(fluid: Fluid) -> str:
+    constant = fluid.drag_coefficient if isinstance(fluid, Air) else None
     source = "Clift and Gauvin" if constant is None else f"drag coefficient {constant:g}"
-    if isinstance(through, Liquid):
+    if isinstance(fluid, Liquid):
         return (
             "Flights have the buoyancy, drag and added mass of the liquid "
-            f"({through.density:g} kg/m³; {source})."
+            f"({fluid.density:g} kg/m³; {source})."
         )
-    return f"Flights have the drag of air ({through.density:g} kg/m³; {source})."
+    return f"Flights have the drag of air ({fluid.density:g} kg/m³; {source})."
 
 
-def _doubt(seen: Observations, measurement: Measurement, flights: Flights, case: Case) -> str:
+def _drag_doubt(seen: Observations, measurement: Measurement, flights: Flights, case: Case) -> str:
+    """Return a warning where the neglected drag of air matters; else an empty text."""
     try:
-        other = measurement.evaluated(flights)
+        seen_in_air = measurement.evaluated(flights)
     except InputError:  # impossible in air, so it was not measured in air
         return ""
-    without, with_air = (
-        measured_restitutions(one, case.sphere.radius, case.drop.gravity) for one in (seen, other)
-    )
+    without = measured_restitutions(seen, case.sphere.radius, case.drop.gravity)
+    with_air = measured_restitutions(seen_in_air, case.sphere.radius, case.drop.gravity)
     if without is None or with_air is None or len(without) != len(with_air):
         return ""
-    off = with_air / without - 1.0
-    worst = int(np.argmax(np.abs(off)))
-    if not abs(off[worst]) > _MATTERS:
+    change = with_air / without - 1.0
+    worst = int(np.argmax(np.abs(change)))
+    if not abs(change[worst]) > _MATTERS:
         return ""
     return (
         "the flights are evaluated without the drag of air, in which the restitution of "
         f"{seen.labels[worst]} would be "
-        f"{with_air[worst]:.4f}, not {without[worst]:.4f} ({100.0 * off[worst]:+.2g} %); "
+        f"{with_air[worst]:.4f}, not {without[worst]:.4f} ({100.0 * change[worst]:+.2g} %); "
         "set calibrate.air = true, or false if there was none"
     )

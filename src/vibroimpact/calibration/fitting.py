@@ -1,5 +1,6 @@
-"""Least-squares fit of a parameter as a polynomial of the approach speed, to values or to
-measurements.
+"""Least-squares fit of a parameter as a polynomial of the approach speed.
+
+It is fitted to values, or to measurements.
 """
 
 from __future__ import annotations
@@ -18,10 +19,16 @@ from vibroimpact.calibration.observations import Observations
 from vibroimpact.contact.speed_function import SpeedFunction
 from vibroimpact.errors import ComputationError, InputError
 
-_SWEEPS = 50
-_WITHIN = 1e-10
-_ROUNDS = 50
-_LEAST = 1e-9
+_MOST_ITERATIONS = 50
+
+_CONVERGED = 1e-10
+"""Change of the values, relative to the largest, at which the Gauss-Newton iteration ends."""
+
+_SCATTER_CONVERGED = 1e-6
+"""Relative change of the scatter at which its iteration ends."""
+
+_LEAST_SCATTER = 1e-9
+"""Least scatter of residuals, in units of the noise, by which typed inputs are weighted."""
 
 
 @dataclass(frozen=True)
@@ -59,12 +66,10 @@ class Fit:
         )
 
     def band(self, speeds: Floats, confidence: float) -> Floats:
-        """Return the half width of the confidence band of the polynomial at approach
-        speeds [m/s].
-        """
+        """Return the half width of the confidence band of the polynomial at speeds [m/s]."""
         powers = _powers(np.asarray(speeds, dtype=float), self.function.degree)
-        spread = np.einsum("ni,ij,nj->n", powers, self.covariance, powers)
-        return np.asarray(self.quantile(confidence) * np.sqrt(np.maximum(spread, 0.0)))
+        variance = np.einsum("ni,ij,nj->n", powers, self.covariance, powers)
+        return np.asarray(self.quantile(confidence) * np.sqrt(np.maximum(variance, 0.0)))
 
 
 def half_width(confidence: float, freedom: float) -> float:
@@ -83,17 +88,17 @@ def check_degree(speeds: Floats, degree: int) -> None:
     InputError
         If there are fewer than degree + 1.
     """
-    different = distinct(speeds)
-    if degree >= different:
-        have = f"{different} that differ by more than 1 % of the largest are there"
-        if different == 1:
-            have = (
-                "one speed is there"
-                if len(speeds) == 1
-                else "all that are there lie within 1 % of the largest"
-            )
-        needs = f"a polynomial of degree {degree} needs {degree + 1} speeds"
-        raise InputError(f"{needs}, and {have}; take {different - 1} at most", "degree")
+    distinct_count = distinct(speeds)
+    if degree < distinct_count:
+        return
+    if distinct_count > 1:
+        have = f"{distinct_count} that differ by more than 1 % of the largest are there"
+    elif len(speeds) == 1:
+        have = "one speed is there"
+    else:
+        have = "all that are there lie within 1 % of the largest"
+    needs = f"a polynomial of degree {degree} needs {degree + 1} speeds"
+    raise InputError(f"{needs}, and {have}; take {distinct_count - 1} at most", "degree")
 
 
 def distinct(speeds: Floats) -> int:
@@ -104,12 +109,14 @@ def distinct(speeds: Floats) -> int:
     >>> distinct(np.array([1.0, 1.001, 2.0])), distinct(np.linspace(1.0, 2.0, 1000))
     (2, 50)
     """
-    ordered, step = np.sort(speeds), 0.01 * speeds.max()
-    number, place = 0, 0
-    while place < len(ordered):
-        number += 1
-        place = int(np.searchsorted(ordered, ordered[place] + step, side="right"))
-    return number
+    ordered = np.sort(speeds)
+    step = 0.01 * speeds.max()
+    count = 0
+    index = 0
+    while index < len(ordered):
+        count += 1
+        index = int(np.searchsorted(ordered, ordered[index] + step, side="right"))
+    return count
 
 
 def fit_values(speeds: Floats, values: Floats, degree: int) -> Fit:
@@ -127,8 +134,8 @@ def fit_values(speeds: Floats, values: Floats, degree: int) -> Fit:
     powers = _powers(speeds, degree)
     coefficients, covariance = _least_squares(powers, values)
     freedom = len(values) - degree - 1
-    left = values - powers @ coefficients
-    scatter = float(np.sqrt((left @ left) / freedom)) if freedom else np.nan
+    residual = values - powers @ coefficients
+    scatter = float(np.sqrt((residual @ residual) / freedom)) if freedom else np.nan
     return Fit(_function(coefficients, speeds), scatter**2 * covariance, freedom, scatter)
 
 
@@ -160,22 +167,14 @@ def fit_observations(
     ComputationError
         If the iteration does not converge.
     """
-    speeds, known = observations.speeds, observations.deviations_known
+    speeds = observations.speeds
     check_degree(speeds, degree)
     powers = _powers(speeds, degree)
-    # initial guess: a polynomial through the values of the impacts that could be matched
-    some = np.isfinite(values)
-    first = min(degree, distinct(speeds[some]) - 1) if some.any() else 0
-    begin = (
-        fit_values(speeds[some], values[some], first).function(speeds)
-        if some.any()
-        else np.full(len(speeds), tunable.start)
-    )
-    at = tunable.allowed.clip(begin)
-    if known:
+    start = tunable.allowed.clip(_initial_values(tunable, speeds, values, degree))
+    if observations.deviations_known:
         try:
-            coefficients, covariance, scatter, freedom = _settled(
-                tunable, observations, weights, powers, at, noise_known=True
+            coefficients, covariance, scatter, freedom = _gauss_newton(
+                tunable, observations, weights, powers, start, noise_known=True
             )
         except ComputationError:
             if observations.effects is None:
@@ -184,23 +183,34 @@ def fit_observations(
             if not (freedom and misfits(scatter, freedom)):
                 return Fit(_function(coefficients, speeds), covariance, np.inf, scatter)
     # the noise is not known, or larger than it is said to be
-    coefficients, covariance, scatter, freedom = _settled(
-        tunable, observations, weights, powers, at, noise_known=False
+    coefficients, covariance, scatter, freedom = _gauss_newton(
+        tunable, observations, weights, powers, start, noise_known=False
     )
     return Fit(_function(coefficients, speeds), covariance, freedom, scatter)
 
 
-def _settled(
+def _initial_values(tunable: Tunable, speeds: Floats, values: Floats, degree: int) -> Floats:
+    """Return those of a polynomial through the values of the impacts that could be matched."""
+    matched = np.isfinite(values)
+    if not matched.any():
+        return np.full(len(speeds), tunable.start)
+    degree = min(degree, distinct(speeds[matched]) - 1)
+    polynomial_values = fit_values(speeds[matched], values[matched], degree).function(speeds)
+    return np.asarray(polynomial_values)
+
+
+def _gauss_newton(
     tunable: Tunable,
     observations: Observations,
     weights: Mapping[str, float],
     powers: Floats,
-    at: Floats,
+    start: Floats,
     *,
     noise_known: bool,
 ) -> tuple[Floats, Floats, float, int]:
-    """Return coefficients, their covariance, the scatter of the residuals in units of the noise,
-    and its degrees of freedom.
+    """Return coefficients, their covariance, the scatter of the residuals, and its freedom.
+
+    The scatter is in units of the noise; the freedom is the number of degrees of freedom.
 
     Parameters
     ----------
@@ -208,34 +218,33 @@ def _settled(
         As in `fit_observations`.
     powers : array, shape (n, k)
         Powers of the approach speeds.
-    at : array, shape (n,)
-        Values to begin with.
+    start : array, shape (n,)
+        Values of the parameter to begin with.
     noise_known : bool
         Whether the noise is as large as the observations have it; otherwise as large as the
         residuals.
     """
-    speeds, coefficients, number = (
-        observations.speeds,
-        _least_squares(powers, at)[0],
-        powers.shape[1],
-    )
-    shares: list[Floats] = []
-    for sweep in range(_SWEEPS):
-        found = derivatives(tunable, speeds, at, observations.which)
-        rows, targets, noises = [], [], []
+    coefficient_count = powers.shape[1]
+    coefficients = _least_squares(powers, start)[0]
+    values = start
+    input_effects: list[Floats] = []
+    for iteration in range(_MOST_ITERATIONS):
+        impacts = derivatives(tunable, observations.speeds, values, observations.which)
+        value_slope = polynomial.polyval(observations.speeds, polynomial.polyder(coefficients))
+        rows = []
+        targets = []
+        noises = []
         for name, weight in weights.items():
-            by_value = found.by_value[name]
+            by_value = impacts.by_value[name]
             rows.append(by_value[:, None] * powers)
-            targets.append(observations.wanted[name] - found.outcomes[name] + by_value * at)
+            targets.append(observations.wanted[name] - impacts.outcomes[name] + by_value * values)
             # noise of the approach speed also changes the value of the polynomial
-            along = found.by_speed[name] + by_value * polynomial.polyval(
-                speeds, polynomial.polyder(coefficients)
-            )
-            noise = observations.noise[name] - scaled(along, observations.speed_noise)
+            by_speed = impacts.by_speed[name] + by_value * value_slope
+            noise = observations.noise[name] - scaled(by_speed, observations.speed_noise)
             noises.append(noise / (1.0 if observations.deviations_known else np.sqrt(weight)))
             # to first order, so that an input that noise is nothing to lets the fit settle
-            if not sweep:
-                shares.append(_shared(observations, name, along))
+            if iteration == 0:
+                input_effects.append(_input_effects(observations, name, by_speed))
         if not any(np.any(row) for row in rows):
             raise InputError(
                 f"{tunable.name} has no influence on the measured "
@@ -243,55 +252,68 @@ def _settled(
                 "parameter",
             )
         # whitened, so that readings shared by two impacts count once
-        independent = whitened(
-            vstack(noises),
-            np.column_stack([np.concatenate(part) for part in (rows, shares, targets)]),
+        equations = np.column_stack(
+            [np.concatenate(rows), np.concatenate(input_effects), np.concatenate(targets)]
         )
+        independent = whitened(vstack(noises), equations)
         coefficients, covariance, scatter = _with_inputs(
-            independent[:, :-1], independent[:, -1], number, noise_known
+            independent[:, :-1], independent[:, -1], coefficient_count, noise_known
         )
-        before, at = at, tunable.allowed.clip(powers @ coefficients)
-        if np.all(np.abs(at - before) <= _WITHIN * np.abs(at).max()):
-            return coefficients, covariance, scatter, len(independent) - number
-    lower = "take a lower degree, or " if number > 1 else ""
+        previous = values
+        values = tunable.allowed.clip(powers @ coefficients)
+        if np.all(np.abs(values - previous) <= _CONVERGED * np.abs(values).max()):
+            return coefficients, covariance, scatter, len(independent) - coefficient_count
+    lower = "take a lower degree, or " if coefficient_count > 1 else ""
     raise ComputationError(
         f"the fit of {tunable.name} does not settle; {lower}look at the measurements"
     )
 
 
-def _shared(observations: Observations, name: str, along: Floats) -> Floats:
-    """Return what one standard deviation of each typed input changes in the residuals of
-    a quantity, (n, k).
+def _input_effects(observations: Observations, name: str, by_speed: Floats) -> Floats:
+    """Return what one standard deviation of each typed input changes in residuals, (n, k).
+
+    `name` is that of the quantity, and `by_speed` its derivative by the approach speed.
     """
     effects = observations.effects
     if effects is None:
         return np.zeros((len(observations.speeds), 0))
-    return np.asarray(effects.wanted[name] - along[:, None] * effects.speeds)
+    return np.asarray(effects.wanted[name] - by_speed[:, None] * effects.speeds)
 
 
 def _with_inputs(
-    columns: Floats, targets: Floats, number: int, known: bool
+    columns: Floats, targets: Floats, coefficient_count: int, noise_known: bool
 ) -> tuple[Floats, Floats, float]:
-    """Return coefficients, their covariance, and the scatter of the residuals in units of the
-    noise.
+    """Return coefficients, their covariance, and the scatter of the residuals.
 
-    Columns after the first `number` are typed inputs, each of which is off by an unknown part of
-    its standard deviation: a coefficient that is expected to be 0 within 1. Noise of unknown
-    magnitude is as large as the scatter.
+    The scatter is in units of the noise. Columns after those of the coefficients are typed inputs,
+    each of which is off by an unknown part of its standard deviation: a coefficient that is
+    expected to be 0 within 1. Noise of unknown magnitude is as large as the scatter.
     """
-    inputs, freedom = columns.shape[1] - number, len(targets) - number
-    prior = np.hstack([np.zeros((inputs, number)), np.eye(inputs)])
-    scatter, whole = (1.0 if known else np.nan), np.append(targets, np.zeros(inputs))
-    for _ in range(_ROUNDS):
-        # without a scatter to begin with, inputs are taken as exact
-        stiff = 1.0 if known else max(scatter, _LEAST) if scatter > 0.0 else 1.0 / _LEAST
-        rows = np.vstack([columns, stiff * prior])
-        found, inverse = _least_squares(rows, whole)
-        left = whole - rows @ found
-        before, scatter = scatter, float(np.sqrt((left @ left) / freedom)) if freedom else np.nan
-        if known or not inputs or not scatter > 0.0 or abs(scatter - before) <= 1e-6 * scatter:
+    input_count = columns.shape[1] - coefficient_count
+    freedom = len(targets) - coefficient_count
+    # an equation for each input, "0 within 1"
+    prior = np.hstack([np.zeros((input_count, coefficient_count)), np.eye(input_count)])
+    all_targets = np.append(targets, np.zeros(input_count))
+    scatter = 1.0 if noise_known else np.nan
+    for _ in range(_MOST_ITERATIONS):
+        if noise_known:
+            prior_weight = 1.0
+        elif scatter > 0.0:
+            prior_weight = max(scatter, _LEAST_SCATTER)
+        else:  # without a scatter to begin with, inputs are taken as exact
+            prior_weight = 1.0 / _LEAST_SCATTER
+        rows = np.vstack([columns, prior_weight * prior])
+        solution, inverse = _least_squares(rows, all_targets)
+        residual = all_targets - rows @ solution
+        previous = scatter
+        scatter = float(np.sqrt((residual @ residual) / freedom)) if freedom else np.nan
+        if noise_known or not input_count or not scatter > 0.0:
             break
-    return found[:number], (1.0 if known else scatter**2) * inverse[:number, :number], scatter
+        if abs(scatter - previous) <= _SCATTER_CONVERGED * scatter:
+            break
+    variance = 1.0 if noise_known else scatter**2
+    covariance = variance * inverse[:coefficient_count, :coefficient_count]
+    return solution[:coefficient_count], covariance, scatter
 
 
 def misfits(scatter: float, freedom: int) -> bool:
@@ -304,35 +326,38 @@ def misfits(scatter: float, freedom: int) -> bool:
 def value_deviations(
     tunable: Tunable, observations: Observations, weights: Mapping[str, float], values: Floats
 ) -> tuple[Floats, Floats]:
-    """Return the first-order standard deviation of the value that matches each impact,
-    (n,), and its parts by typed inputs, (n, k).
+    """Return the first-order standard deviation of the value that matches each impact, (n,).
+
+    Further, its parts by typed inputs, (n, k). The value minimizes the weighted sum of squared
+    deviations from the targets.
     """
-    found = derivatives(
+    impacts = derivatives(
         tunable,
         observations.speeds,
         np.where(np.isfinite(values), values, tunable.start),
         observations.which,
     )
-    above: Noise = no_noise(*observations.speed_noise.shape)
-    below = np.zeros(len(values))
+    gradient_noise: Noise = no_noise(*observations.speed_noise.shape)
+    curvature = np.zeros(len(values))
+    input_count = 0 if observations.effects is None else len(observations.effects.inputs)
+    input_effects = np.zeros((len(values), input_count))
     for name, weight in weights.items():
         scale = residual_scale(name, observations.speeds, observations.wanted[name])
-        by_value = found.by_value[name] / scale
-        noise = observations.noise[name] - scaled(found.by_speed[name], observations.speed_noise)
-        above = above + scaled(weight * by_value / scale, noise)
-        below += weight * by_value**2
-    effects = sum(
-        (
-            weight
-            * found.by_value[name]
-            / residual_scale(name, observations.speeds, observations.wanted[name]) ** 2
-        )[:, None]
-        * _shared(observations, name, found.by_speed[name])
-        for name, weight in weights.items()
-    )
+        by_speed = impacts.by_speed[name]
+        by_value = impacts.by_value[name] / scale
+        noise = observations.noise[name] - scaled(by_speed, observations.speed_noise)
+        gradient_noise = gradient_noise + scaled(weight * by_value / scale, noise)
+        curvature += weight * by_value**2
+        input_weight = weight * impacts.by_value[name] / scale**2
+        input_effects += input_weight[:, None] * _input_effects(observations, name, by_speed)
     with np.errstate(divide="ignore", invalid="ignore"):
-        every = np.hypot(standard_deviations(above), np.linalg.norm(effects, axis=1)) / below
-        return np.asarray(every), np.asarray(effects / below[:, None])
+        gradient_deviation = np.hypot(
+            standard_deviations(gradient_noise), np.linalg.norm(input_effects, axis=1)
+        )
+        return (
+            np.asarray(gradient_deviation / curvature),
+            np.asarray(input_effects / curvature[:, None]),
+        )
 
 
 def _powers(speeds: Floats, degree: int) -> Floats:
@@ -340,12 +365,13 @@ def _powers(speeds: Floats, degree: int) -> Floats:
 
 
 def _least_squares(powers: Floats, values: Floats) -> tuple[Floats, Floats]:
-    """Return the least-squares solution and the inverse of the normal matrix; columns are
-    normalized for conditioning.
+    """Return the least-squares solution and the inverse of the normal matrix.
+
+    Columns are normalized for conditioning.
     """
-    length = np.linalg.norm(powers, axis=0)
-    inverse = np.linalg.pinv(powers / length)
-    return inverse @ values / length, (inverse @ inverse.T) / np.outer(length, length)
+    norms = np.linalg.norm(powers, axis=0)
+    inverse = np.linalg.pinv(powers / norms)
+    return inverse @ values / norms, (inverse @ inverse.T) / np.outer(norms, norms)
 
 
 def _function(coefficients: Floats, speeds: Floats) -> SpeedFunction:

@@ -11,8 +11,9 @@ from vibroimpact.arrays import Floats
 
 
 class ReturnFlight(NamedTuple):
-    """A flight from the plate back to the plate: height [m], time of ascent and duration
-    [s], and the speed on return [m/s].
+    """A flight from the plate back to the plate.
+
+    Height [m], time of ascent and duration [s], and the speed on return [m/s].
     """
 
     height: Floats
@@ -22,9 +23,7 @@ class ReturnFlight(NamedTuple):
 
 
 class EndSpeeds(NamedTuple):
-    """The initial and final speeds of a flight [m/s], and their derivatives with respect
-    to its duration [m/s^2].
-    """
+    """The initial and final speeds of a flight [m/s], and their slopes by its duration [m/s^2]."""
 
     start: Floats
     end: Floats
@@ -33,8 +32,9 @@ class EndSpeeds(NamedTuple):
 
 
 class Flights(Protocol):
-    """Vertical flights of a sphere; heights are measured from its position in touch with
-    the plate, depths from the apex.
+    """Vertical flights of a sphere.
+
+    Heights are measured from its position in touch with the plate, depths from the apex.
     """
 
     @property
@@ -42,18 +42,13 @@ class Flights(Protocol):
         """Acceleration of gravity [m/s^2]."""
 
     def speed_after_fall(self, height: Floats) -> tuple[Floats, Floats]:
-        """Return the speed after a fall from rest through a height [m/s], and its
-        derivative with respect to the height [1/s].
-        """
+        """Return the speed after a fall from rest through a height [m/s], and its slope [1/s]."""
 
     def speed_to_rise(self, height: Floats) -> tuple[Floats, Floats]:
-        """Return the initial speed needed to rise by a height [m/s], and its derivative
-        with respect to the height [1/s].
-        """
+        """Return the initial speed needed to rise by a height [m/s], and its slope [1/s]."""
 
     def depth_at(self, time: Floats) -> tuple[Floats, Floats]:
-        """Return the depth below the apex [m] at a time relative to the apex [s], and the downward
-        velocity [m/s].
+        """Return the depth below the apex [m] at times from it [s], and downward velocity [m/s].
 
         Times before the apex are negative.
         """
@@ -83,35 +78,36 @@ class VacuumFlights:
     gravity: float
 
     def speed_after_fall(self, height: Floats) -> tuple[Floats, Floats]:
-        """Return the speed after a fall from rest through a height [m/s], and its
-        derivative with respect to the height [1/s].
-        """
+        """Return the speed after a fall from rest through a height [m/s], and its slope [1/s]."""
         speed = np.sqrt(2.0 * self.gravity * height)
         return speed, self.gravity / speed
 
     speed_to_rise = speed_after_fall
 
     def depth_at(self, time: Floats) -> tuple[Floats, Floats]:
-        """Return the depth below the apex [m] at a time relative to the apex [s], and the
-        downward velocity [m/s].
-        """
+        """Return the depth below the apex [m] at times from it [s], and downward velocity [m/s]."""
         return 0.5 * self.gravity * time**2, self.gravity * time
 
     def end_speeds(self, time: Floats) -> EndSpeeds:
         """Return the initial and final speeds of flights of given durations [s]."""
-        speed, slope = 0.5 * self.gravity * time, np.full_like(time, 0.5 * self.gravity)
-        return EndSpeeds(speed, speed, slope, slope)
+        speed = 0.5 * self.gravity * time
+        slope = np.full_like(time, 0.5 * self.gravity)
+        return EndSpeeds(start=speed, end=speed, start_slope=slope, end_slope=slope)
 
     def flight(self, speed: Floats) -> ReturnFlight:
         """Return the flights with given initial speeds [m/s]."""
         return ReturnFlight(
-            0.5 * speed**2 / self.gravity, speed / self.gravity, 2.0 * speed / self.gravity, speed
+            height=0.5 * speed**2 / self.gravity,
+            rise_time=speed / self.gravity,
+            duration=2.0 * speed / self.gravity,
+            return_speed=speed,
         )
 
 
 def vacuum_height(flights: Flights, height: Floats) -> tuple[Floats, Floats]:
-    """Return the rise in a vacuum [m] of a sphere that rises by a given height, and its derivative
-    with respect to that height.
+    """Return the rise in a vacuum [m] of a sphere that rises by a height, and its slope.
+
+    The slope is the derivative with respect to that height.
 
     Examples
     --------

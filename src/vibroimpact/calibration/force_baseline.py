@@ -6,27 +6,35 @@ from typing import NamedTuple
 
 import numpy as np
 
-from vibroimpact.arrays import Bools, Floats
+from vibroimpact.arrays import Bools, Floats, Indices
 
-_BLOCKS, _IN_BLOCK = 20, 25
-"""Maximum number of blocks of a record with a level each, and the minimum number of
-samples of a block.
+_MOST_BLOCKS = 20
+_FEWEST_IN_BLOCK = 25
+"""Maximum number of blocks of a record with a level each, and the minimum number of samples of a
+block.
 """
 
-_WIDTHS, _ENOUGH = (3.0, 1.5, 0.75), 0.5
+_WIDTHS = (3.0, 1.5, 0.75)
 """Widths of the intervals beside an impact from which its baseline is estimated, in durations of
-the impact; the widest at which the residuals are consistent with noise is used. Then the minimum
-width for a parabola.
+the impact; the widest at which the residuals are consistent with noise is used.
 """
+
+_ENOUGH_FOR_PARABOLA = 0.5
+"""Least width for a parabola, in durations of the impact."""
 
 _FEWEST = 5
-_NOT_NOISE = 0.999  # quantile of the residuals of white noise, above which they are a drift
+"""Least number of samples beside an impact."""
+
+_NOT_NOISE = 0.999
+"""Quantile of the residuals of white noise, above which they are a drift."""
 
 
 class Baseline(NamedTuple):
-    """The baseline under an impact: values at its samples [N]; its contribution to the impulse and
-    the standard deviation of that [N s]; its standard deviation in the middle [N]; the scatter
-    about the fitted curve [N], 0 if consistent with noise.
+    """The baseline under an impact.
+
+    Its values at the samples [N]; its contribution to the impulse and the standard deviation of
+    that [N s]; its standard deviation in the middle [N]; the scatter about the fitted curve [N], 0
+    if consistent with noise.
     """
 
     values: Floats
@@ -37,45 +45,49 @@ class Baseline(NamedTuple):
 
 
 def record_baseline(time: Floats, force: Floats, quiet: Bools) -> Floats:
-    """Return the baseline of a record at its times, linear between the medians of blocks of samples
-    outside the impacts.
+    """Return the baseline of a record at its times.
+
+    It is linear between the medians of blocks of samples outside the impacts.
 
     Examples
     --------
     >>> time = np.linspace(0.0, 1.0, 1001)
-    >>> level = record_baseline(time, 3.0 * time, np.ones(1001, dtype=bool))
-    >>> float(np.abs(level - 3.0 * time).max()) < 1e-9
+    >>> baseline = record_baseline(time, 3.0 * time, np.ones(1001, dtype=bool))
+    >>> float(np.abs(baseline - 3.0 * time).max()) < 1e-9
     True
     """
-    places = np.flatnonzero(quiet)
-    pieces = np.array_split(places, max(1, min(_BLOCKS, len(places) // _IN_BLOCK)))
-    at, levels = (
-        np.array([np.median(values[piece]) for piece in pieces]) for values in (time, force)
-    )
-    found = np.asarray(np.interp(time, at, levels))
-    if len(at) == 1:
-        return found
-    for outside, (one, other) in ((time < at[0], (0, 1)), (time > at[-1], (-1, -2))):
-        slope = (levels[other] - levels[one]) / (at[other] - at[one])
-        found[outside] = levels[one] + slope * (time[outside] - at[one])
-    return found
+    quiet_samples = np.flatnonzero(quiet)
+    block_count = max(1, min(_MOST_BLOCKS, len(quiet_samples) // _FEWEST_IN_BLOCK))
+    blocks = np.array_split(quiet_samples, block_count)
+    block_times = np.array([np.median(time[block]) for block in blocks])
+    levels = np.array([np.median(force[block]) for block in blocks])
+    baseline = np.asarray(np.interp(time, block_times, levels))
+    if block_count == 1:
+        return baseline
+    # beyond the first and the last block, the line through it and its neighbour
+    for outside, end, neighbour in (
+        (time < block_times[0], 0, 1),
+        (time > block_times[-1], -1, -2),
+    ):
+        slope = (levels[neighbour] - levels[end]) / (block_times[neighbour] - block_times[end])
+        baseline[outside] = levels[end] + slope * (time[outside] - block_times[end])
+    return baseline
 
 
 def baseline_under_impact(
     time: Floats,
     force: Floats,
     quiet: Bools,
-    part: slice,
+    pulse: slice,
     segment: tuple[int, int],
-    length: int,
+    contact_samples: int,
     noise: float,
 ) -> Baseline:
-    """Return the baseline under an impact from the samples on either side: a parabola, or a line if
-    there are few.
+    """Return the baseline under an impact, fitted to the samples on either side.
 
-    A parabola uses as many samples before as after the impact. The undershoot of a charge
-    amplifier, a lower level after the impact than before, is then halved under the impact, as it
-    should be.
+    It is a parabola, or a line if there are few samples. A parabola uses as many samples before as
+    after the impact. The undershoot of a charge amplifier, a lower level after the impact than
+    before, is then halved under the impact, as it should be.
 
     Parameters
     ----------
@@ -83,71 +95,92 @@ def baseline_under_impact(
         The record.
     quiet : array of bool
         Mask of the samples outside all impacts.
-    part : slice
+    pulse : slice
         The samples over which the impulse is integrated.
     segment : (int, int)
         Half-open index range of the samples nearer to this impact than to its neighbours.
-    length : int
+    contact_samples : int
         Number of samples in contact.
     noise : float
         Standard deviation of one sample [N].
     """
-    level, excess_scatter = (
-        _baseline(time, force, quiet, part, segment, length, noise, _WIDTHS[0]),
-        0.0,
-    )
+
+    def with_width(width: float) -> Baseline:
+        most = int(width * contact_samples) + 1
+        before, after = _samples_beside(quiet, pulse, segment, most)
+        return _fitted_baseline(time, force, quiet, pulse, before, after, contact_samples, noise)
+
+    baseline = with_width(_WIDTHS[0])
+    excess_scatter = 0.0
     for width in _WIDTHS[1:]:
-        if not level.excess_scatter:
+        if not baseline.excess_scatter:
             break
-        wider, level = level, _baseline(time, force, quiet, part, segment, length, noise, width)
+        wider = baseline
+        baseline = with_width(width)
         excess_scatter = max(excess_scatter, wider.excess_scatter)
         # the effect of the width on the impulse is an uncertainty in addition to noise
-        unsure = float(np.hypot(level.impulse_deviation, 0.5 * (level.impulse - wider.impulse)))
-        level = level._replace(impulse_deviation=unsure)
-    return level._replace(excess_scatter=max(excess_scatter, level.excess_scatter))
+        by_width = 0.5 * (baseline.impulse - wider.impulse)
+        impulse_deviation = float(np.hypot(baseline.impulse_deviation, by_width))
+        baseline = baseline._replace(impulse_deviation=impulse_deviation)
+    return baseline._replace(excess_scatter=max(excess_scatter, baseline.excess_scatter))
 
 
-def _baseline(
+def _samples_beside(
+    quiet: Bools, pulse: slice, segment: tuple[int, int], most: int
+) -> tuple[Indices, Indices]:
+    """Return the quiet samples nearest to an impact, at most `most` before it and after it."""
+    before = np.flatnonzero(quiet[segment[0] : pulse.start])[-most:] + segment[0]
+    after = np.flatnonzero(quiet[pulse.stop : segment[1]])[:most] + pulse.stop
+    return before, after
+
+
+def _fitted_baseline(
     time: Floats,
     force: Floats,
     quiet: Bools,
-    part: slice,
-    segment: tuple[int, int],
-    length: int,
+    pulse: slice,
+    before: Indices,
+    after: Indices,
+    contact_samples: int,
     noise: float,
-    width: float,
 ) -> Baseline:
-    most = int(width * length) + 1
-    before = np.flatnonzero(quiet[segment[0] : part.start])[-most:] + segment[0]
-    after = np.flatnonzero(quiet[part.stop : segment[1]])[:most] + part.stop
-    both, degree = min(len(before), len(after)), 1
-    if both >= max(_FEWEST, int(_ENOUGH * length)):
-        before, after, degree = before[-both:], after[:both], 2
-    beside = np.concatenate([before, after])
+    """Return the polynomial by least squares through the samples before and after an impact."""
+    fewer = min(len(before), len(after))
+    if fewer >= max(_FEWEST, int(_ENOUGH_FOR_PARABOLA * contact_samples)):
+        beside = np.concatenate([before[-fewer:], after[:fewer]])
+        degree = 2
+    else:
+        beside = np.concatenate([before, after])
+        degree = 1
     if len(beside) < _FEWEST:  # too few: a constant from all samples outside impacts
-        beside, degree = np.flatnonzero(quiet), 0
-    inside, span = time[part], float(time[beside].max() - time[beside].min())
-    middle = 0.5 * (inside[0] + inside[-1])
+        beside = np.flatnonzero(quiet)
+        degree = 0
+    pulse_time = time[pulse]
+    span = float(time[beside].max() - time[beside].min())
+    middle = 0.5 * (pulse_time[0] + pulse_time[-1])
 
-    def powers(at: Floats) -> Floats:
-        return np.vander((at - middle) / span, degree + 1, increasing=True)
+    def powers(times: Floats) -> Floats:
+        return np.vander((times - middle) / span, degree + 1, increasing=True)
 
-    coefficients, *_ = np.linalg.lstsq(powers(time[beside]), force[beside], rcond=None)
-    left = force[beside] - powers(time[beside]) @ coefficients
+    beside_time = time[beside]
+    coefficients, *_ = np.linalg.lstsq(powers(beside_time), force[beside], rcond=None)
+    residual = force[beside] - powers(beside_time) @ coefficients
+    # covariance of the coefficients by noise of unit variance
+    inverse = np.linalg.inv(powers(beside_time).T @ powers(beside_time))
+    # the impulse is linear in the coefficients
+    weights = np.trapezoid(powers(pulse_time), pulse_time, axis=0)
+    excess_scatter = 0.0
     freedom = len(beside) - degree - 1
-    inverse = np.linalg.inv(powers(time[beside]).T @ powers(time[beside]))
-    weights = np.trapezoid(powers(inside), inside, axis=0)
-    scatter = float(np.sqrt(left @ left / freedom)) if freedom > 0 else 0.0
-    excess_scatter = scatter if freedom > 0 and _exceeds_noise(scatter / noise, freedom) else 0.0
+    if freedom > 0:
+        scatter = float(np.sqrt(residual @ residual / freedom))
+        if _exceeds_noise(scatter / noise, freedom):
+            excess_scatter = scatter
+    impulse_by_noise = noise * np.sqrt(weights @ inverse @ weights)
+    impulse_by_drift = excess_scatter * (pulse_time[-1] - pulse_time[0])
     return Baseline(
-        values=powers(inside) @ coefficients,
+        values=powers(pulse_time) @ coefficients,
         impulse=float(weights @ coefficients),
-        impulse_deviation=float(
-            np.hypot(
-                noise * np.sqrt(weights @ inverse @ weights),
-                excess_scatter * (inside[-1] - inside[0]),
-            )
-        ),
+        impulse_deviation=float(np.hypot(impulse_by_noise, impulse_by_drift)),
         deviation=float(np.hypot(noise * np.sqrt(inverse[0, 0]), excess_scatter)),
         excess_scatter=excess_scatter,
     )

@@ -1,5 +1,6 @@
-"""Tables with one impact, or the mean of several, in each row: the names of their
-columns, and checks that name the line.
+"""Tables with one impact, or the mean of several, in each row.
+
+Here are the names of their columns, and checks that name the line.
 """
 
 from __future__ import annotations
@@ -18,18 +19,18 @@ from vibroimpact.measurements.table_file import TableFile, header_of, read_table
 DEVIATION = "_standard_deviation"
 """Ending of the names of columns with standard deviations."""
 
-_ALSO = {
+_SYNONYMS = {
     "approach_speed": "speed impact_speed incident_speed velocity impact_velocity "
     "approach_velocity incident_velocity v",
     "separation_speed": "rebound_speed rebound_velocity separation_velocity",
     "restitution": "e cor coefficient_of_restitution",
     "count": "n number counts",
 }
-"""Other names of columns, in a table without times; of a record of motion `velocity` is
-something else.
+"""Other names of columns, in a table without times; of a record of motion `velocity` is something
+else.
 """
 
-_RESTITUTIONS = {
+_RESTITUTION_UNITS = {
     "approach_speed": "m/s",
     "restitution": "",
     "separation_speed": "m/s",
@@ -49,8 +50,9 @@ _UNITS = {
 
 @dataclass(frozen=True)
 class ImpactTable(TableFile):
-    """A table whose columns have standard names, and the name in the file of each that
-    has another one there.
+    """A table whose columns have standard names.
+
+    `written`: the name in the file of each column that has another one there.
     """
 
     written: Mapping[str, str] = field(default_factory=dict)
@@ -73,23 +75,28 @@ def is_impact_table(names: Collection[str]) -> bool:
 
 
 def holds_restitutions(path: str | PathLike[str], columns: str | None = None) -> bool:
-    """Return whether a file is a table of restitutions over the approach speed, by its
-    header; False if it can't be read.
+    """Return whether a file is a table of restitutions over the approach speed, by its header.
+
+    False if it can't be read.
     """
     try:
         names = [name_and_unit(cell)[0] for cell in header_of(path, columns)]
-        return "time" not in names and is_impact_table(
-            [_standard(names).get(name, name) for name in names]
-        )
     except InputError:  # the reader of the file reports the error
         return False
+    standard_names = _standard_names(names)
+    return "time" not in names and is_impact_table(
+        [standard_names.get(name, name) for name in names]
+    )
 
 
 def read_impact_table(
-    path: str | PathLike[str], units: Mapping[str, str] = _RESTITUTIONS, columns: str | None = None
+    path: str | PathLike[str],
+    units: Mapping[str, str] = _RESTITUTION_UNITS,
+    columns: str | None = None,
 ) -> ImpactTable:
-    """Read the known columns of a table, some of which may have another usual name, such as
-    `speed`, `e` or `n`.
+    """Read the known columns of a table of impacts.
+
+    Some may have another usual name, such as `speed`, `e` or `n`.
 
     Parameters
     ----------
@@ -109,37 +116,42 @@ def read_impact_table(
         names = [name_and_unit(cell)[0] for cell in header_of(path, columns)]
     except InputError:  # reported below, with its line
         names = []
-    standard = {
-        name: other
-        for name, other in _standard(names).items()
-        if other in units and "time" not in names
+    standard_names = {
+        name: standard
+        for name, standard in _standard_names(names).items()
+        if standard in units and "time" not in names
     }
-    for other in set(standard.values()):
-        several = [name for name in names if standard.get(name, name) == other]
-        if len(several) > 1:
+    for standard in set(standard_names.values()):
+        synonyms = [name for name in names if standard_names.get(name, name) == standard]
+        if len(synonyms) > 1:
             raise InputError(
-                f"{path}: the columns {' and '.join(several)} "
-                f"{'all' if len(several) > 2 else 'both'} mean {other}; keep one of them"
+                f"{path}: the columns {' and '.join(synonyms)} "
+                f"{'all' if len(synonyms) > 2 else 'both'} mean {standard}; keep one of them"
             )
-    table = read_table_file(
-        path, {**units, **{name: units[other] for name, other in standard.items()}}, [], columns
-    )
-    renamed = {standard.get(name, name): values for name, values in table.columns.items()}
-    written = {other: name for name, other in standard.items()}
-    return ImpactTable(table.path, renamed, table.lines, table.empty, table.doubts, written)
-
-
-def _standard(names: Collection[str]) -> dict[str, str]:
-    """Return the standard names of those columns that have another one, and of their
-    standard deviations.
-    """
-    return {
-        f"{word}{ending}": f"{name}{ending}"
-        for name, words in _ALSO.items()
-        for word in words.split()
-        for ending in ("", DEVIATION)
-        if f"{word}{ending}" in names
+    units_in_file = {
+        **units,
+        **{name: units[standard] for name, standard in standard_names.items()},
     }
+    table = read_table_file(path, units_in_file, [], columns)
+    return ImpactTable(
+        table.path,
+        {standard_names.get(name, name): values for name, values in table.columns.items()},
+        table.lines,
+        table.empty,
+        table.doubts,
+        written={standard: name for name, standard in standard_names.items()},
+    )
+
+
+def _standard_names(names: Collection[str]) -> dict[str, str]:
+    """Return the standard names of columns, and of their standard deviations, with another name."""
+    standard_names = {}
+    for standard, synonyms in _SYNONYMS.items():
+        for synonym in synonyms.split():
+            for ending in ("", DEVIATION):
+                if f"{synonym}{ending}" in names:
+                    standard_names[f"{synonym}{ending}"] = f"{standard}{ending}"
+    return standard_names
 
 
 def check_positive(table: TableFile, column: str) -> None:
@@ -152,12 +164,14 @@ def check_positive(table: TableFile, column: str) -> None:
     """
     wrong = np.flatnonzero(~(table.columns[column] > 0.0))
     if wrong.size:
-        value = (
-            f"{table.columns[column][wrong[0]]:g} "
-            f"{_UNITS.get(column.removesuffix(DEVIATION), '')}".rstrip()
+        row = wrong[0]
+        unit = _UNITS.get(column.removesuffix(DEVIATION), "")
+        value = f"{table.columns[column][row]:g} {unit}".rstrip()
+        raise InputError(
+            f"{table.path}, line {table.lines[row]}: {name_in_file(table, column)} is {value}; "
+            "it must be greater than 0",
+            "target",
         )
-        words = f"{name_in_file(table, column)} is {value}; it must be greater than 0"
-        raise InputError(f"{table.path}, line {table.lines[wrong[0]]}: {words}", "target")
 
 
 def check_counts(table: TableFile) -> None:
@@ -169,14 +183,13 @@ def check_counts(table: TableFile) -> None:
         If one is not, with its line.
     """
     count = table.columns.get("count")
-    wrong = (
-        np.flatnonzero((count < 1.0) | (count != np.round(count)))
-        if count is not None
-        else np.zeros(0)
-    )
-    if count is not None and wrong.size:
-        words = (
-            f"{name_in_file(table, 'count')} is {count[wrong[0]]:g}; it must be a whole "
-            "number, 1 or more: of the impacts in this mean"
+    if count is None:
+        return
+    wrong = np.flatnonzero((count < 1.0) | (count != np.round(count)))
+    if wrong.size:
+        row = wrong[0]
+        raise InputError(
+            f"{table.path}, line {table.lines[row]}: {name_in_file(table, 'count')} is "
+            f"{count[row]:g}; it must be a whole number, 1 or more: of the impacts in this mean",
+            "target",
         )
-        raise InputError(f"{table.path}, line {table.lines[wrong[0]]}: {words}", "target")

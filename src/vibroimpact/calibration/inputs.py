@@ -1,5 +1,6 @@
-"""What a calibration takes as given, such as gravity and a height of fall, with its
-standard deviation and where that is from.
+"""Quantities that a calibration takes as given, such as gravity and a height of fall.
+
+Each has a standard deviation, and a reason where that was not given.
 """
 
 from __future__ import annotations
@@ -14,21 +15,23 @@ from vibroimpact.units.written import Written, read_written
 EARTH = Written(
     STANDARD_GRAVITY, 0.015, "9.80665 m/s^2", stated=False, why="as it varies over the Earth"
 )
-"""Gravity where none is given: at sea level it lies anywhere from 9.780 to 9.832 m/s^2,
-from the equator to the poles.
+"""Gravity where none is given: at sea level it lies anywhere from 9.780 to 9.832 m/s^2, from the
+equator to the poles.
 """
 
 BRIEF = Written(0.0, 1e-4, "0 ms", stated=False, why="as of hard balls")
-"""Contact time where none is given: that of balls of steel, glass or rock is some tenths
-of a millisecond at most.
+"""Contact time where none is given: that of balls of steel, glass or rock is some tenths of a
+millisecond at most.
 """
 
 _DIGITS = "since its last digit leaves open"
 
 
 class Input(NamedTuple):
-    """A quantity that was typed: its name, its value in SI with the standard deviation,
-    its unit, and where that is from if not given.
+    """A quantity that was typed.
+
+    Its name, its value in SI with the standard deviation, its unit, and the reason of the deviation
+    if that was not given.
     """
 
     name: str
@@ -38,8 +41,9 @@ class Input(NamedTuple):
 
 
 def as_input(name: str, value: float | str, unit: str) -> Input:
-    """Return a quantity with its standard deviation: a text has what is written in it, a number
-    without one is exact.
+    """Return a quantity with its standard deviation.
+
+    A text has the one that is written in it; a number is exact.
 
     Examples
     --------
@@ -53,12 +57,13 @@ def as_input(name: str, value: float | str, unit: str) -> Input:
         value = read_written(value, unit) if isinstance(value, str) else Written(value)
     if value.stated:
         return Input(name, value, unit)
+    # half a unit of the last digit, of whose uniform distribution the deviation is
     half = _short(value.deviation * 3.0**0.5, unit)
     return Input(name, value, unit, value.why or f"{_DIGITS} \u00b1 {half}")
 
 
 def inputs_sentence(inputs: Sequence[Input]) -> str:
-    """Return what was taken for given quantities and how well each is known.
+    """Return a sentence on the values of given quantities, and how well each is known.
 
     Examples
     --------
@@ -68,13 +73,14 @@ def inputs_sentence(inputs: Sequence[Input]) -> str:
     'The intervals include the standard deviations of these inputs: height 0.6 m, 29 mm (since its
     last digit leaves open \u00b1 50 mm).'
     """
-    words = "The intervals include the standard deviations of these inputs"
-    return f"{words}: {'; '.join(_words(one) for one in inputs)}." if inputs else ""
+    if not inputs:
+        return ""
+    values = "; ".join(_with_deviation(typed) for typed in inputs)
+    return f"The intervals include the standard deviations of these inputs: {values}."
 
 
-def guessed_doubt(one: Input, of_what: str) -> str:
-    """Return a warning that an interval is mostly that of an input whose standard deviation was not
-    given.
+def guessed_doubt(typed: Input, of_what: str) -> str:
+    """Return a warning that an interval is mostly that of an input of unstated deviation.
 
     Examples
     --------
@@ -83,15 +89,15 @@ def guessed_doubt(one: Input, of_what: str) -> str:
     since its last digit leaves open \u00b1 \
 50 mm; give the standard deviation, as in "0.6 m +- 10 mm"'
     """
-    spread, example = (
-        _short(one.value.deviation, one.unit),
-        _short(float(f"{one.value.deviation / 3.0:.0e}"), one.unit),
-    )
-    known = f"{one.name}, {_value(one)} with a standard deviation of {spread}, {one.why}"
-    written = f"{_value(one)} +- {example}".replace("\u00a0", " ")
+    deviation = typed.value.deviation
+    value = _value_text(typed)
+    # a third of the deviation, in one digit
+    example = _short(float(f"{deviation / 3.0:.0e}"), typed.unit)
+    written = f"{value} +- {example}".replace("\u00a0", " ")
     return (
-        f"the interval of {of_what} is mostly that of {known}; give the standard deviation, as "
-        f'in "{written}"'
+        f"the interval of {of_what} is mostly that of {typed.name}, {value} with a standard "
+        f"deviation of {_short(deviation, typed.unit)}, {typed.why}; give the standard deviation, "
+        f'as in "{written}"'
     )
 
 
@@ -99,29 +105,29 @@ def inputs_document(inputs: Sequence[Input]) -> list[dict[str, Any]]:
     """Return the given quantities as data."""
     return [
         {
-            "name": one.name,
-            "value": float(one.value),
-            "standard_deviation": one.value.deviation,
-            "unit": one.unit,
-            "stated": one.value.stated,
-            "as_typed": one.value.text,
+            "name": typed.name,
+            "value": float(typed.value),
+            "standard_deviation": typed.value.deviation,
+            "unit": typed.unit,
+            "stated": typed.value.stated,
+            "as_typed": typed.value.text,
         }
-        for one in inputs
+        for typed in inputs
     ]
 
 
-def _words(one: Input) -> str:
-    spread = _short(one.value.deviation, one.unit) if one.value.deviation else "exact"
-    return f"{one.name} {_value(one)}, {spread}{f' ({one.why})' if one.why else ''}"
+def _with_deviation(typed: Input) -> str:
+    deviation = typed.value.deviation
+    deviation_text = _short(deviation, typed.unit) if deviation else "exact"
+    reason = f" ({typed.why})" if typed.why else ""
+    return f"{typed.name} {_value_text(typed)}, {deviation_text}{reason}"
 
 
-def _value(one: Input) -> str:
-    by_digits = one.why.startswith(_DIGITS)
-    return (
-        one.value.text
-        if by_digits
-        else f"{one.value:.6g}\u00a0{multiple(one.unit, 0.0).unit}".rstrip("\u00a0")
-    )
+def _value_text(typed: Input) -> str:
+    """Return the value with its unit, as it was typed if its deviation is that of its digits."""
+    if typed.why.startswith(_DIGITS):
+        return typed.value.text
+    return f"{typed.value:.6g}\u00a0{multiple(typed.unit, 0.0).unit}".rstrip("\u00a0")
 
 
 def _short(value: float, unit: str) -> str:

@@ -41,13 +41,16 @@ _CURVE_POINTS = 41
 """Number of speeds at which the exact value is computed for comparison with the polynomial."""
 
 _PASSES = 20
+"""Largest number of corrections of the approach speeds."""
+
 _MOSTLY = 0.5
-"""Part of a variance from which on a single input is named as the origin of it."""
+"""Fraction of a variance from which on a single input is named as the origin of it."""
 
 
 class MatchedTarget(NamedTuple):
-    """Matched impacts, the value of each, their fit and its uncertainty; fields as in
-    `Calibration`.
+    """Matched impacts, the value of each, their fit and its uncertainty.
+
+    Fields are as in `Calibration`; `seen` are the matched impacts, `draws` bootstrap samples.
     """
 
     seen: Observations
@@ -68,78 +71,98 @@ def match_drop(
     speeds: Sequence[float] | Floats | None,
     tell: Callable[[float], None],
 ) -> MatchedTarget:
-    """Return the values with which the impacts match those of another problem, `target`,
-    with another law.
+    """Return the values with which the impacts match those of `target`, with another law."""
+    start = _target_speeds(problem, target, weights)
+    seen, values = _matched_impacts(tuned, problem, target, weights, start, tell)
+    # exact values over a range of speeds need one law for all impacts
+    one_law = len(target.laws) == 1 and _alike(problem, tuned)
+    if speeds is not None:
+        if not one_law:
+            raise InputError(
+                "the contact law has one value per impact, and over a range of speeds it "
+                "must have one for all; leave this out",
+                "speeds",
+            )
+        curve_speeds = np.asarray(speeds, dtype=float)
+        curve_values = _values_at(tuned, problem, target, weights, curve_speeds, required=True)
+        fit = fit_values(curve_speeds, curve_values, _degree(curve_speeds, degree))
+        return MatchedTarget(seen, values, fit, curve=(curve_speeds, curve_values))
+    curve = None
+    if len(seen.speeds) > 1 and len(weights) == 1 and not problem.vibrates and one_law:
+        curve_speeds = np.linspace(seen.speeds.min(), seen.speeds.max(), _CURVE_POINTS)
+        curve_values = _values_at(tuned, problem, target, weights, curve_speeds, required=False)
+        curve = (curve_speeds, curve_values)
+    fit = fit_values(seen.speeds, values, _degree(seen.speeds, degree))
+    return MatchedTarget(seen, values, fit, curve=curve)
+
+
+def _target_speeds(problem: Problem, target: Problem, weights: Mapping[str, float]) -> Floats:
+    """Return the approach speeds of the impacts of the target with a rebound [m/s].
+
+    Check that the quantities to be matched follow from it.
     """
     table = simulate(limited_to(target, impact_count(problem))).impacts
     # below this separation speed the sphere is at rest
-    least = float(simulate(limited_to(problem, 1)).rest.speed[0])
-    at = table["approach_speed_m_s"][table["separation_speed_m_s"] > least]
-    if not len(at):
+    rest_speed = float(simulate(limited_to(problem, 1)).rest.speed[0])
+    speeds = table["approach_speed_m_s"][table["separation_speed_m_s"] > rest_speed]
+    if not len(speeds):
         raise InputError(
             "under the law of the target the sphere comes to rest in the first impact; "
             "there is no rebound to match",
             "target",
         )
-
     for name in weights:
         column = MATCHABLE[name].column
-        if not np.all(table[column][: len(at)] > 0.0):
-            if name == "rebound_height" and target.gravity == 0.0:
-                raise InputError(
-                    "without gravity a sphere rises for ever; there is no rebound height to match",
-                    "match",
-                )
+        if np.all(table[column][: len(speeds)] > 0.0):
+            continue
+        if name == "rebound_height" and target.gravity == 0.0:
             raise InputError(
-                f"{name} does not follow from the target, {target.laws[0].name}; match "
-                "something else",
+                "without gravity a sphere rises for ever; there is no rebound height to match",
                 "match",
             )
-
-    def wanted_at(fast: Floats) -> tuple[Observations, Floats]:
-        outcomes = single_impacts(target, batched_law(target.laws, len(fast)), fast)
-        labels = tuple(f"impact {number + 1}" for number in range(len(fast)))
-        seen = Observations(fast, {name: outcomes[name] for name in weights}, labels=labels)
-        return seen, check_reached(
-            tuned, problem, seen, weights, match(tuned, fast, seen.wanted, weights, seen.which)
+        raise InputError(
+            f"{name} does not follow from the target, {target.laws[0].name}; match something else",
+            "match",
         )
+    return speeds
 
+
+def _matched_impacts(
+    tuned: Tunable,
+    problem: Problem,
+    target: Problem,
+    weights: Mapping[str, float],
+    speeds: Floats,
+    tell: Callable[[float], None],
+) -> tuple[Observations, Floats]:
+    """Return the impacts of the target and the value that matches each.
+
+    `speeds` are approach speeds to begin with [m/s].
+    """
     for _ in range(_PASSES):
-        seen, values = wanted_at(at)
+        outcomes = single_impacts(target, batched_law(target.laws, len(speeds)), speeds)
+        seen = Observations(
+            speeds,
+            {name: outcomes[name] for name in weights},
+            labels=tuple(f"impact {number + 1}" for number in range(len(speeds))),
+        )
+        matched = match(tuned, speeds, seen.wanted, weights, seen.which)
+        values = check_reached(tuned, problem, seen, weights, matched)
         tell(0.3)
         if set(weights) != {"separation_speed"}:
             # the rebound is not matched exactly: the approach speeds remain those of the target
             break
         # under a law that releases before the overlap has vanished the sphere comes back slightly
         # slower than it separated
-        after = return_speeds(
-            problem, tuned.respond(at, values, np.arange(len(at)))["next_speed"][:-1]
-        )
-        if np.allclose(after, at[1:], rtol=1e-10, atol=0.0):
+        next_speeds = tuned.respond(speeds, values, np.arange(len(speeds)))["next_speed"]
+        later_speeds = return_speeds(problem, next_speeds[:-1])
+        if np.allclose(later_speeds, speeds[1:], rtol=1e-10, atol=0.0):
             break
-        at = np.append(at[0], after)
-    # exact values over a range of speeds need one law for all impacts
-    over, curve = None, None
-    alike = len(target.laws) == 1 and _alike(problem, tuned)
-    if speeds is not None:
-        over = np.asarray(speeds, dtype=float)
-        if not alike:
-            raise InputError(
-                "the contact law has one value per impact, and over a range of speeds it "
-                "must have one for all; leave this out",
-                "speeds",
-            )
-    elif len(at) > 1 and len(weights) == 1 and not problem.vibrates and alike:
-        over = np.linspace(at.min(), at.max(), _CURVE_POINTS)
-    if over is not None:
-        curve = (over, _along(tuned, problem, target, weights, over, required=speeds is not None))
-    along, through = curve if curve is not None and speeds is not None else (seen.speeds, values)
-    return MatchedTarget(
-        seen, values, fit_values(along, through, _degree(along, degree)), curve=curve
-    )
+        speeds = np.append(speeds[0], later_speeds)
+    return seen, values
 
 
-def _along(
+def _values_at(
     tuned: Tunable,
     problem: Problem,
     target: Problem,
@@ -148,16 +171,19 @@ def _along(
     *,
     required: bool,
 ) -> Floats:
-    """Return the values at approach speeds with the first laws; without a solution NaN,
-    or an error if the user gave the speeds.
+    """Return the values at approach speeds with the first laws.
+
+    Without a solution they are NaN, or if they are required there is an error.
     """
     outcomes = single_impacts(target, target.laws[0], speeds)
     labels = tuple(f"an impact at {speed:.4g} m/s" for speed in speeds)
     seen = Observations(
         speeds, {name: outcomes[name] for name in weights}, labels=labels, of_the_drop=False
     )
-    found = match(tuned, speeds, seen.wanted, weights, seen.which)
-    return check_reached(tuned, problem, seen, weights, found) if required else found.values
+    matched = match(tuned, speeds, seen.wanted, weights, seen.which)
+    if not required:
+        return matched.values
+    return check_reached(tuned, problem, seen, weights, matched)
 
 
 def _alike(problem: Problem, tuned: Tunable) -> bool:
@@ -190,70 +216,74 @@ def match_measurement(
         raise InputError(
             f"{', '.join(missing)} {were} not measured; there is {', '.join(seen.wanted)}", "match"
         )
-    found = match(tuned, seen.speeds, seen.wanted, weights, seen.which)
-    alone = check_reached(tuned, problem, seen, weights, found)
+    matched = match(tuned, seen.speeds, seen.wanted, weights, seen.which)
+    exact_values = check_reached(tuned, problem, seen, weights, matched)
     tell(0.3)
-    values = with_nearest_bound(tuned, alone, seen.speeds, seen.wanted, weights, seen.which)
+    values = with_nearest_bound(tuned, exact_values, seen.speeds, seen.wanted, weights, seen.which)
     seen = replace(seen, effects=effects_of(moved, tuned, seen, weights, values))
-    fit = fit_observations(tuned, seen, weights, _degree(seen.speeds, degree), alone)
+    fit = fit_observations(tuned, seen, weights, _degree(seen.speeds, degree), exact_values)
     tell(0.5)
-    doubts = list(seen.doubts) + [
-        f"{label}: no {tuned.name} meets it exactly, though one does within the noise; the "
-        "nearest that is allowed, "
-        f"{f'{nearest:.5g} {tuned.unit}'.rstrip()}, is taken"
-        for label, value, nearest in zip(seen.labels, alone, values, strict=True)
-        if np.isnan(value)
-    ]
-    sized = seen if seen.deviations_known else with_noise_scale(seen, fit.scatter, weights)
-    deviations, by_input = value_deviations(tuned, sized, weights, values)
+    doubts = [*seen.doubts, *_not_met_doubts(tuned, seen.labels, exact_values, values)]
+    scaled = seen if seen.deviations_known else with_noise_scale(seen, fit.scatter, weights)
+    deviations, by_input = value_deviations(tuned, scaled, weights, values)
     if seen.effects is not None:
         doubts += _guessed_inputs(seen.effects, seen.labels, deviations, by_input)
-    half, draws = fit.quantile(confidence) * deviations, 0
-    intervals = (
-        np.stack([values - half, values + half], axis=1) if np.isfinite(half).all() else None
-    )
-    if intervals is not None:
+    half_widths = fit.quantile(confidence) * deviations
+    intervals = None
+    draws = 0
+    if np.isfinite(half_widths).all():
+        intervals = np.stack([values - half_widths, values + half_widths], axis=1)
         draws = default_draws(values, deviations) if bootstrap is None else bootstrap
     if draws:
         intervals, fit = bootstrap_intervals(
             tuned,
-            sized,
+            scaled,
             weights,
             fit,
             deviations,
             draws,
             confidence,
             seed,
-            lambda done: tell(0.5 + 0.4 * done),
+            lambda fraction: tell(0.5 + 0.4 * fraction),
         )
         # the samples have the noise as given, and the residuals are larger
         if seen.deviations_known and np.isfinite(fit.freedom):
             fit = replace(fit, covariance=fit.scatter**2 * fit.covariance)
     doubts += undetermined_doubts(tuned, values, intervals, seen, fit, confidence)
-    within = None if intervals is None else tuned.allowed.bounded(intervals)
-    return MatchedTarget(seen, values, fit, within, None, draws, doubts)
+    if intervals is not None:
+        intervals = tuned.allowed.bounded(intervals)
+    return MatchedTarget(seen, values, fit, intervals=intervals, draws=draws, doubts=doubts)
+
+
+def _not_met_doubts(
+    tuned: Tunable, labels: Sequence[str], exact_values: Floats, values: Floats
+) -> list[str]:
+    """Return warnings about impacts that no value meets exactly, where `exact_values` are NaN."""
+    doubts = []
+    for impact in np.flatnonzero(np.isnan(exact_values)):
+        nearest = f"{values[impact]:.5g} {tuned.unit}".rstrip()
+        doubts.append(
+            f"{labels[int(impact)]}: no {tuned.name} meets it exactly, though one does within the "
+            f"noise; the nearest that is allowed, {nearest}, is taken"
+        )
+    return doubts
 
 
 def _guessed_inputs(
     effects: Effects, labels: Sequence[str], deviations: Floats, by_input: Floats
 ) -> list[str]:
-    """Return warnings about inputs of unstated uncertainty that most of the interval of a
-    value is from.
-    """
-    parts = np.nan_to_num(by_input**2 / deviations[:, None] ** 2)
-    told = []
-    for number, one in enumerate(effects.inputs):
-        most = int(np.argmax(parts[:, number]))
-        if not one.value.stated and parts[most, number] > _MOSTLY:
-            several = np.count_nonzero(parts[:, number] > _MOSTLY) - 1
-            told.append(
-                guessed_doubt(one, f"{labels[most]}{f' and of {several} more' if several else ''}")
-            )
-    return told
+    """Return warnings about inputs of unstated uncertainty that most of an interval is from."""
+    fractions = np.nan_to_num(by_input**2 / deviations[:, None] ** 2)  # of the variances
+    doubts = []
+    for column, typed in enumerate(effects.inputs):
+        largest = int(np.argmax(fractions[:, column]))
+        if not typed.value.stated and fractions[largest, column] > _MOSTLY:
+            more = np.count_nonzero(fractions[:, column] > _MOSTLY) - 1
+            and_more = f" and of {more} more" if more else ""
+            doubts.append(guessed_doubt(typed, f"{labels[largest]}{and_more}"))
+    return doubts
 
 
 def _degree(speeds: Floats, degree: int | None) -> int:
-    """Return the given degree, or by default 2, less if there are fewer than three
-    distinct speeds.
-    """
+    """Return the stated degree, or by default 2, less with fewer than three distinct speeds."""
     return min(2, distinct(speeds) - 1) if degree is None else degree

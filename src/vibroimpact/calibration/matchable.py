@@ -73,8 +73,9 @@ def check_weights(weights: Mapping[str, float]) -> None:
                 f"{weight:g} is not allowed as a weight; it must be greater than 0 and finite",
                 f"match.{name}",
             )
-    for alike in (REBOUNDS, DIRECTIONS):
-        if len(given := [name for name in alike if name in weights]) > 1:
-            raise InputError(f"{' and '.join(given)} are equivalent; give one of them", "match")
+    for equivalent in (REBOUNDS, DIRECTIONS):
+        names = [name for name in equivalent if name in weights]
+        if len(names) > 1:
+            raise InputError(f"{' and '.join(names)} are equivalent; give one of them", "match")
     if not weights:
         raise InputError(f"name at least one of {', '.join(known)}", "match")

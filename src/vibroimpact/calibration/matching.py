@@ -1,5 +1,6 @@
-"""Solve for the parameter value with which each impact matches its target, and
-derivatives of the impact quantities.
+"""Solve for the parameter value with which each impact matches its target.
+
+Further, derivatives of the impact quantities.
 """
 
 from __future__ import annotations
@@ -21,6 +22,8 @@ rounding errors are both about 1e-8.
 """
 
 _CLOSE = 1e-11
+"""Relative deviation from the target that counts as zero."""
+
 GRID = np.append(0.0, 4.0 ** np.arange(-8.0, 9.0))
 """Multiples of the initial guess that are scanned before a root is refined."""
 
@@ -61,8 +64,10 @@ class Tunable:
 
 @dataclass(frozen=True)
 class Match:
-    """Values (n,), NaN without a solution; least and largest value of the matched
-    quantity found during the search (NaN for several).
+    """Values (n,) of the parameter, NaN without a solution.
+
+    `least` and `most` are the extreme values of the matched quantity that the search has met; NaN
+    for several quantities.
     """
 
     values: Floats
@@ -78,8 +83,9 @@ def match(
     which: Indices,
     max_steps: int = 20,
 ) -> Match:
-    """Return the value with which each impact matches its target, or for several quantities the
-    best compromise.
+    """Return the value with which each impact matches its target.
+
+    For several quantities it is the best compromise.
 
     Parameters
     ----------
@@ -98,110 +104,136 @@ def match(
         Maximum number of steps by a factor of four from the initial guess in the search for a
         bracket.
     """
-    scales = {name: residual_scale(name, speeds, wanted[name]) for name in weights}
-
-    def misses(values: Floats) -> dict[str, Floats]:
-        found = tunable.respond(speeds, values, which)
-        return {name: (found[name] - wanted[name]) / scales[name] for name in weights}
-
     start = np.full(len(speeds), tunable.start)
     if len(weights) == 1:
         (name,) = weights
-        falls = tunable.damps and name in REBOUNDS
-        # force over damping has a minimum: take the smallest solution
-        if tunable.damps and not falls:
-            grid = [tunable.allowed.clip(factor * start) for factor in GRID]
-            seen = np.array([misses(values)[name] for values in grid])
-            least, most = (
-                bound * scales[name] + wanted[name]
-                for bound in (np.nanmin(seen, axis=0), np.nanmax(seen, axis=0))
-            )
-            return Match(
-                _smallest_root(lambda values: misses(values)[name], start, grid, seen), least, most
-            )
-        found = solve_monotonic(
-            lambda values: misses(values)[name] + 1.0,
-            np.ones(len(speeds)),
-            start,
-            tunable.allowed,
-            falls=falls,
-            max_steps=max_steps,
+        return _match_one(tunable, speeds, name, wanted[name], which, start, max_steps)
+    scales = {name: residual_scale(name, speeds, wanted[name]) for name in weights}
+
+    def deviations(values: Floats) -> dict[str, Floats]:
+        outcomes = tunable.respond(speeds, values, which)
+        return {name: (outcomes[name] - wanted[name]) / scales[name] for name in weights}
+
+    values = _least_squares_value(deviations, start, weights, tunable.allowed)
+    unknown = np.full(len(speeds), np.nan)
+    return Match(values, least=unknown, most=unknown)
+
+
+def _match_one(
+    tunable: Tunable,
+    speeds: Floats,
+    name: str,
+    wanted: Floats,
+    which: Indices,
+    start: Floats,
+    max_steps: int,
+) -> Match:
+    """Return the value with which each impact matches one quantity, the root of its deviation."""
+    scale = residual_scale(name, speeds, wanted)
+
+    def deviation(values: Floats) -> Floats:
+        return (tunable.respond(speeds, values, which)[name] - wanted) / scale
+
+    falls = tunable.damps and name in REBOUNDS
+    # force over damping has a minimum: take the smallest solution
+    if tunable.damps and not falls:
+        grid = [tunable.allowed.clip(factor * start) for factor in GRID]
+        on_grid = np.array([deviation(values) for values in grid])
+        return Match(
+            _smallest_root(deviation, start, grid, on_grid),
+            least=np.nanmin(on_grid, axis=0) * scale + wanted,
+            most=np.nanmax(on_grid, axis=0) * scale + wanted,
         )
-        least, most = (
-            (bound - 1.0) * scales[name] + wanted[name] for bound in (found.least, found.most)
-        )
-        return Match(found.place, least, most)
+    # the solver wants values of the order of one: the deviation plus one is to be one
+    roots = solve_monotonic(
+        lambda values: deviation(values) + 1.0,
+        np.ones(len(speeds)),
+        start,
+        tunable.allowed,
+        falls=falls,
+        max_steps=max_steps,
+    )
     return Match(
-        _least_squares_value(misses, start, weights, tunable.allowed),
-        *np.full((2, len(speeds)), np.nan),
+        roots.place,
+        least=(roots.least - 1.0) * scale + wanted,
+        most=(roots.most - 1.0) * scale + wanted,
     )
 
 
 def _smallest_root(
-    miss: Callable[[Floats], Floats], start: Floats, grid: list[Floats], misses: Floats
+    deviation: Callable[[Floats], Floats], start: Floats, grid: list[Floats], on_grid: Floats
 ) -> Floats:
-    """Return the smallest root of the deviation, NaN if it has no sign change on the
-    grid; `misses` are its values there, (values, n).
+    """Return the smallest root of the deviation, NaN if it has no sign change on the grid.
+
+    `on_grid` are the deviations there, (values, n).
     """
-    above = misses > 0.0
-    turns = above[1:] != above[:-1]
-    first, which = turns.argmax(axis=0), np.arange(len(start))
-    some = turns.any(axis=0)
-    ends = [np.where(some, np.stack(grid)[first + side, which], start) for side in (0, 1)]
-    upwards = above[first + 1, which]  # find_root expects the function to become positive
-    low, high = (np.where(upwards, ends[side], ends[1 - side]) for side in (0, 1))
-    return np.where(some, find_root(miss, low, high, close=_CLOSE), np.nan)
+    positive = on_grid > 0.0
+    changes = positive[1:] != positive[:-1]
+    has_root = changes.any(axis=0)
+    first = changes.argmax(axis=0)  # the lower end of the first interval with a root
+    impacts = np.arange(len(start))
+    values = np.stack(grid)
+    lower = np.where(has_root, values[first, impacts], start)
+    upper = np.where(has_root, values[first + 1, impacts], start)
+    # find_root expects the function to become positive from its first end to its second
+    rises = positive[first + 1, impacts]
+    negative_end = np.where(rises, lower, upper)
+    positive_end = np.where(rises, upper, lower)
+    roots = find_root(deviation, negative_end, positive_end, close=_CLOSE)
+    return np.where(has_root, roots, np.nan)
 
 
 def _least_squares_value(
-    misses: Callable[[Floats], dict[str, Floats]],
+    deviations: Callable[[Floats], dict[str, Floats]],
     start: Floats,
     weights: Mapping[str, float],
     allowed: Range,
 ) -> Floats:
-    """Return the minimizer of the weighted sum of squares: the best point of a grid,
-    refined by a root of the derivative.
+    """Return the minimizer of the weighted sum of squared deviations.
+
+    It is the best point of a grid, refined by a root of the derivative.
     """
 
     def cost(values: Floats) -> Floats:
         return np.asarray(
-            sum(weight * misses(values)[name] ** 2 for name, weight in weights.items())
+            sum(weight * deviations(values)[name] ** 2 for name, weight in weights.items())
         )
 
-    inside = [allowed.clip(factor * start) for factor in GRID]
-    costs = np.array([cost(values) for values in inside])
+    grid = [allowed.clip(factor * start) for factor in GRID]
+    costs = np.array([cost(values) for values in grid])
     best = np.nanargmin(np.where(np.isnan(costs), np.inf, costs), axis=0)
-    ends = [
-        np.stack(inside)[np.clip(best + side, 0, len(inside) - 1), np.arange(len(start))]
-        for side in (-1, 1)
-    ]
+    impacts = np.arange(len(start))
+    lower = np.stack(grid)[np.clip(best - 1, 0, len(grid) - 1), impacts]
+    upper = np.stack(grid)[np.clip(best + 1, 0, len(grid) - 1), impacts]
 
     def slope(values: Floats) -> Floats:
+        """Return the central difference of the cost, up to its positive step."""
         step = _STEP * np.maximum(values, start * 1e-3)
-        up, down = (misses(allowed.clip(values + side * step)) for side in (1.0, -1.0))
+        up = deviations(allowed.clip(values + step))
+        down = deviations(allowed.clip(values - step))
         return np.asarray(
             sum(weight * (up[name] ** 2 - down[name] ** 2) for name, weight in weights.items())
         )
 
-    turns = (slope(ends[0]) < 0.0) & (slope(ends[1]) > 0.0)
-    if not turns.any():
-        return np.where(best == 0, inside[0], np.nan)
-    found = find_root(slope, *ends, tolerance=1e-10)
-    return np.where(turns, found, np.where(best == 0, inside[0], np.nan))
+    has_minimum = (slope(lower) < 0.0) & (slope(upper) > 0.0)
+    at_lowest_value = np.where(best == 0, grid[0], np.nan)
+    if not has_minimum.any():
+        return at_lowest_value
+    minimizer = find_root(slope, lower, upper, tolerance=1e-10)
+    return np.where(has_minimum, minimizer, at_lowest_value)
 
 
 def residual_scale(name: str, speeds: Floats, wanted: Floats) -> Floats:
-    """Return the scale of a deviation: the target value; for a separation speed, which
-    may be zero, the approach speed.
+    """Return the scale of a deviation, the target value.
+
+    For a separation speed, which may be zero, it is the approach speed.
     """
     return speeds if name == "separation_speed" else np.abs(wanted)
 
 
 @dataclass(frozen=True)
 class Derivatives:
-    """Impact quantities (n,) by name, and their derivatives with respect to the parameter
-    and to the approach speed.
-    """
+    """Impact quantities (n,) by name, and their derivatives by the parameter and by the speed."""
 
     outcomes: dict[str, Floats]
     by_value: dict[str, Floats]
@@ -209,22 +241,27 @@ class Derivatives:
 
 
 def derivatives(tunable: Tunable, speeds: Floats, values: Floats, which: Indices) -> Derivatives:
-    """Return impact quantities and their derivatives by central differences within the
-    allowed range of the parameter.
+    """Return impact quantities and their derivatives by central differences.
+
+    Values stay within the allowed range of the parameter.
     """
-    # one batch of impacts for all five points of the two differences
     step = _STEP * np.maximum(np.abs(values), 1e-3 * tunable.start)
-    high, low = tunable.allowed.clip(values + step), tunable.allowed.clip(values - step)
-    faster, slower = speeds * (1.0 + _STEP), speeds * (1.0 - _STEP)
-    rows = np.tile(which, 5)
-    every = tunable.respond(
+    high = tunable.allowed.clip(values + step)
+    low = tunable.allowed.clip(values - step)
+    faster = speeds * (1.0 + _STEP)
+    slower = speeds * (1.0 - _STEP)
+    # one batch of impacts for all five points of the two differences
+    batch = tunable.respond(
         np.concatenate([speeds, speeds, speeds, faster, slower]),
         np.concatenate([values, high, low, values, values]),
-        rows,
+        np.tile(which, 5),
     )
-    parts = {name: found.reshape(5, -1) for name, found in every.items()}
-    return Derivatives(
-        {name: part[0] for name, part in parts.items()},
-        {name: (part[1] - part[2]) / (high - low) for name, part in parts.items()},
-        {name: (part[3] - part[4]) / (faster - slower) for name, part in parts.items()},
-    )
+    outcomes = {}
+    by_value = {}
+    by_speed = {}
+    for name, quantity in batch.items():
+        centre, at_high, at_low, at_faster, at_slower = quantity.reshape(5, -1)
+        outcomes[name] = centre
+        by_value[name] = (at_high - at_low) / (high - low)
+        by_speed[name] = (at_faster - at_slower) / (faster - slower)
+    return Derivatives(outcomes, by_value, by_speed)

@@ -1,6 +1,4 @@
-"""Measurements given in the case file: restitutions, rebound heights, or quantities of
-the first impact.
-"""
+"""Measurements given in the case file: restitutions, rebound heights, or the first impact."""
 
 from __future__ import annotations
 
@@ -39,79 +37,87 @@ def heights_measurement(
     _check_above(case, heights, labels)
 
     def evaluated(flights: Flights | None) -> Observations:
-        speed, gravity = speed_at_touch(case, flights), case.drop.gravity
+        speed = speed_at_touch(case, flights)
         seen = from_heights(
             heights,
             deviation,
             first_speed=speed,
             radius=radius,
-            gravity=gravity,
+            gravity=case.drop.gravity,
             labels=labels,
             flights=flights,
         )
-        limit, values = _limit(seen, case), measured_restitutions(seen, radius, gravity)
-        assert values is not None
-        higher = np.flatnonzero(values > limit.most)
-        if higher.size:
-            at = int(higher[0])
-            start = case.drop.height or radius + 0.5 * speed**2 / gravity
-            fallen = heights[at - 1] if at else start
-            higher_than = "higher than" if heights[at] > fallen else "too high for"
-            what = f"{heights[at]:g} m is {higher_than} the {fallen:g} m from which the sphere fell"
-            words = (
-                f"{what}, and a restitution of "
-                f"{_beyond_noise(values[at], limit.most[at], limit.why)}"
-            )
-            raise InputError(f"{labels[at]}: {words}", "target")
+        _check_heights(seen, case, heights, speed)
         return seen
 
     return Measurement(evaluated, float(heights.max()) - radius)
+
+
+def _check_heights(seen: Observations, case: Case, heights: Floats, first_speed: float) -> None:
+    """Check that no height [m] exceeds that of the fall before it by more than noise."""
+    radius = case.sphere.radius
+    gravity = case.drop.gravity
+    limit = _limit(seen, case)
+    restitutions = measured_restitutions(seen, radius, gravity)
+    assert restitutions is not None
+    too_high = np.flatnonzero(restitutions > limit.most)
+    if not too_high.size:
+        return
+    impact = int(too_high[0])
+    height = heights[impact]
+    if impact:
+        fall_height = heights[impact - 1]
+    else:
+        fall_height = case.drop.height or radius + 0.5 * first_speed**2 / gravity
+    higher = "higher than" if height > fall_height else "too high for"
+    raise InputError(
+        f"{seen.labels[impact]}: {height:g} m is {higher} the {fall_height:g} m from which the "
+        "sphere fell, and a restitution of "
+        f"{_beyond_noise(restitutions[impact], limit.most[impact], limit.why)}",
+        "target",
+    )
 
 
 def first_impact_measurement(case: Case, target: ImpactTarget) -> Measurement:
     """Return the measurement of the first impact of the drop."""
     if target.rebound_height is not None:
         _check_above(case, np.array([target.rebound_height]), ("impact 1",))
-    radius, part = case.sphere.radius, target.relative_deviation
+    radius = case.sphere.radius
 
     def evaluated(flights: Flights | None) -> Observations:
-        speed, found = (
-            speed_at_touch(case, flights),
-            {name: getattr(target, name) for name in MATCHABLE},
-        )
+        speed = speed_at_touch(case, flights)
+        quantities = {name: getattr(target, name) for name in MATCHABLE}
         if target.restitution is not None:
-            found["separation_speed"] = target.restitution * speed
+            quantities["separation_speed"] = target.restitution * speed
         if target.rebound_height is not None:
-            rise = vacuum_height(
-                flights or VacuumFlights(case.drop.gravity),
-                np.array(target.rebound_height - radius),
-            )[0]
-            found["rebound_height"] = radius + float(rise)
-        wanted = {name: np.array([value]) for name, value in found.items() if value is not None}
-        deviations = (
-            None if part is None else {name: part * value for name, value in wanted.items()}
-        )
+            flight_model = flights or VacuumFlights(case.drop.gravity)
+            rise, _ = vacuum_height(flight_model, np.array(target.rebound_height - radius))
+            quantities["rebound_height"] = radius + float(rise)
+        wanted = {
+            name: np.array([value]) for name, value in quantities.items() if value is not None
+        }
+        deviations = None
+        if target.relative_deviation is not None:
+            deviations = {name: target.relative_deviation * value for name, value in wanted.items()}
         seen = from_table(np.array([speed]), wanted, deviations, ("impact 1",), of_the_drop=True)
         if target.restitution is not None:
             check_restitutions(seen, case)
         return replace(seen, flights=flights)
 
-    return Measurement(
-        evaluated, 0.0 if target.rebound_height is None else target.rebound_height - radius
-    )
+    highest = 0.0 if target.rebound_height is None else target.rebound_height - radius
+    return Measurement(evaluated, highest)
 
 
 def restitution_observations(case: Case, target: RestitutionTarget) -> Observations:
     """Return measured restitutions at several approach speeds."""
     assert isinstance(target.restitution, tuple)
-    speeds, values = np.array(target.approach_speed), np.array(target.restitution)
-    deviations = (
-        None
-        if target.standard_deviation is None
-        else {"separation_speed": target.standard_deviation * speeds}
-    )
+    speeds = np.array(target.approach_speed)
+    wanted = {"separation_speed": np.array(target.restitution) * speeds}
+    deviations = None
+    if target.standard_deviation is not None:
+        deviations = {"separation_speed": target.standard_deviation * speeds}
     labels = tuple(f"restitution {number + 1}" for number in range(len(speeds)))
-    seen = from_table(speeds, {"separation_speed": values * speeds}, deviations, labels)
+    seen = from_table(speeds, wanted, deviations, labels)
     check_restitutions(seen, case)
     return seen
 
@@ -124,45 +130,49 @@ def check_restitutions(seen: Observations, case: Case) -> None:
     InputError
         If one does; the message gives the limit.
     """
-    values = measured_restitutions(seen, case.sphere.radius, case.drop.gravity)
-    if values is None:
+    restitutions = measured_restitutions(seen, case.sphere.radius, case.drop.gravity)
+    if restitutions is None:
         return
     limit = _limit(seen, case)
-    over = np.flatnonzero(values > limit.most)
-    if over.size:
-        at = int(over[0])
-        words = (
-            f"restitution is {values[at]:.5g}; it is 1 at most, and "
-            f"{_beyond_noise(values[at], limit.most[at], limit.why)}"
+    above = np.flatnonzero(restitutions > limit.most)
+    if above.size:
+        impact = int(above[0])
+        restitution = restitutions[impact]
+        raise InputError(
+            f"{seen.labels[impact]}: restitution is {restitution:.5g}; it is 1 at most, and "
+            f"{_beyond_noise(restitution, limit.most[impact], limit.why)}",
+            "target",
         )
-        raise InputError(f"{seen.labels[at]}: {words}", "target")
 
 
 def _limit(seen: Observations, case: Case) -> RestitutionLimit:
-    values, deviations = measured_restitutions(seen, case.sphere.radius, case.drop.gravity), None
-    assert values is not None
-    if seen.deviations_known:
-        name = "separation_speed" if "separation_speed" in seen.wanted else "rebound_height"
-        left = values * seen.speeds
-        by_reading = (
-            np.ones(len(left))
-            if name == "separation_speed"
-            else case.drop.gravity / np.maximum(left, 1e-300)
-        )
-        noise = scaled(by_reading / seen.speeds, seen.noise[name]) - scaled(
-            values / seen.speeds, seen.speed_noise
-        )
-        deviations = standard_deviations(noise)
-    return restitution_limit(seen.speeds, values, deviations)
+    """Return the restitutions up to which measured ones are attributed to noise."""
+    restitutions = measured_restitutions(seen, case.sphere.radius, case.drop.gravity)
+    assert restitutions is not None
+    if not seen.deviations_known:
+        return restitution_limit(seen.speeds, restitutions, None)
+    separation = restitutions * seen.speeds
+    if "separation_speed" in seen.wanted:
+        name = "separation_speed"
+        speed_slope = np.ones(len(separation))
+    else:
+        name = "rebound_height"
+        # the derivative of sqrt(2 g h) by h
+        speed_slope = case.drop.gravity / np.maximum(separation, 1e-300)
+    by_reading = scaled(speed_slope / seen.speeds, seen.noise[name])
+    by_approach = scaled(restitutions / seen.speeds, seen.speed_noise)
+    deviations = standard_deviations(by_reading - by_approach)
+    return restitution_limit(seen.speeds, restitutions, deviations)
 
 
 def _beyond_noise(value: float, most: float, why: str) -> str:
-    """Return that a restitution is more than the most that is attributed to noise, in as
-    many digits as tell them apart.
+    """Return that a restitution is more than the most that is attributed to noise.
+
+    Both have as many digits as tell them apart.
     """
-    digits = next(
-        (number for number in range(4, 17) if f"{value:.{number}g}" != f"{most:.{number}g}"), 17
-    )
+    digits = 4
+    while digits < 17 and f"{value:.{digits}g}" == f"{most:.{digits}g}":
+        digits += 1
     return (
         f"{value:.{digits}g} is more than the {most:.{digits}g} that is attributed to noise "
         f"({why}); check speeds, heights and their units"
@@ -176,8 +186,8 @@ def _check_above(case: Case, heights: Floats, labels: tuple[str, ...]) -> None:
         )
     low = np.flatnonzero(heights <= case.sphere.radius)
     if low.size:
-        what = (
-            f"{heights[low[0]]:g} m is not above where the sphere lies on the plate, with its "
-            f"centre at {case.sphere.radius:g} m"
+        raise InputError(
+            f"{labels[low[0]]}: {heights[low[0]]:g} m is not above where the sphere lies on the "
+            f"plate, with its centre at {case.sphere.radius:g} m",
+            "target",
         )
-        raise InputError(f"{labels[low[0]]}: {what}", "target")

@@ -1,5 +1,4 @@
-"""Noise of measured impacts: what each independent source contributes to each impact, as sparse
-matrices.
+"""Noise of measured impacts: contributions of independent sources, as sparse matrices.
 
 A source reaches one or two neighbouring impacts, so that everything here is linear in the number of
 impacts.
@@ -32,21 +31,23 @@ def no_noise(impacts: int, sources: int) -> Noise:
 
 
 def own_noise(deviations: Mapping[str, Floats]) -> dict[str, Noise]:
-    """Return the noise of quantities that are read independently, by their standard deviations (n,)
-    at each impact.
+    """Return the noise of quantities that are read independently at each impact.
+
+    `deviations` are their standard deviations, (n,).
 
     Examples
     --------
-    >>> found = own_noise({"max_force": np.array([1.0, 2.0]), "duration": np.array([0.1, 0.2])})
-    >>> found["duration"].toarray().tolist()
+    >>> noise = own_noise({"max_force": np.array([1.0, 2.0]), "duration": np.array([0.1, 0.2])})
+    >>> noise["duration"].toarray().tolist()
     [[0.0, 0.0, 0.1, 0.0], [0.0, 0.0, 0.0, 0.2]]
     """
     names = list(deviations)
     impacts = len(deviations[names[0]])
     noise = {}
-    for place, name in enumerate(names):
-        before = no_noise(impacts, place * impacts)
-        after = no_noise(impacts, (len(names) - 1 - place) * impacts)
+    for number, name in enumerate(names):
+        # n sources for each quantity
+        before = no_noise(impacts, number * impacts)
+        after = no_noise(impacts, (len(names) - 1 - number) * impacts)
         noise[name] = csr_array(hstack([before, diags_array(deviations[name]), after]))
     return noise
 
@@ -54,8 +55,10 @@ def own_noise(deviations: Mapping[str, Floats]) -> dict[str, Noise]:
 def with_common_source(
     noise: Mapping[str, Noise], contributions: Mapping[str, Floats]
 ) -> dict[str, Noise]:
-    """Return noise with one more source that all impacts have in common, by what it contributes to
-    each (n,); to others nothing.
+    """Return noise with one more source that all impacts have in common.
+
+    `contributions` to each impact, (n,), are by quantity; to other quantities it contributes
+    nothing.
 
     Examples
     --------
@@ -63,12 +66,11 @@ def with_common_source(
     >>> with_common_source(own, {"duration": np.array([0.3, 0.4])})["duration"].toarray().tolist()
     [[0.1, 0.0, 0.3], [0.0, 0.2, 0.4]]
     """
-    return {
-        name: csr_array(
-            hstack([own, csr_array(contributions.get(name, np.zeros(own.shape[0]))[:, None])])
-        )
-        for name, own in noise.items()
-    }
+    with_common = {}
+    for name, own in noise.items():
+        contribution = contributions.get(name, np.zeros(own.shape[0]))
+        with_common[name] = csr_array(hstack([own, csr_array(contribution[:, None])]))
+    return with_common
 
 
 def scaled(factors: Floats, noise: Noise) -> Noise:
@@ -93,10 +95,11 @@ def standard_deviations(noise: Noise) -> Floats:
 
 
 def whitened(noise: Noise, columns: Floats) -> Floats:
-    r"""Return columns (n, k) times the inverse of a root of the covariance of their noise, which is
-    then independent; in another order.
+    r"""Return columns (n, k) such that their noise is independent and of unit variance.
 
-    The covariance :math:`N N^T` is ordered into a narrow band, in which its Cholesky factor stays.
+    They are in another order, and multiplied by the inverse of a root of the covariance of their
+    noise. The covariance :math:`N N^T` is ordered into a narrow band, in which its Cholesky factor
+    stays.
 
     Raises
     ------
@@ -112,11 +115,12 @@ def whitened(noise: Noise, columns: Floats) -> Floats:
     """
     covariance = csr_array(noise @ noise.T)
     order = reverse_cuthill_mckee(covariance, symmetric_mode=True)
-    inside = coo_array(covariance[order][:, order])
-    below = inside.row - inside.col
-    width = int(below.max(initial=0))
+    ordered = coo_array(covariance[order][:, order])
+    below_diagonal = ordered.row - ordered.col
+    width = int(below_diagonal.max(initial=0))
+    # the lower triangle, with a row for each of its diagonals
     band = np.zeros((width + 1, len(order)))
-    lower = below >= 0
-    band[below[lower], inside.col[lower]] = inside.data[lower]
+    lower = below_diagonal >= 0
+    band[below_diagonal[lower], ordered.col[lower]] = ordered.data[lower]
     root = cholesky_banded(band, lower=True, overwrite_ab=True)
     return np.asarray(solve_banded((width, 0), root, columns[order]))

@@ -23,8 +23,9 @@ from vibroimpact.calibration.noise import (
 
 
 class Correction(NamedTuple):
-    """What a record itself determines, and is corrected by: its value, standard deviation
-    (0 if it is not estimated), and their unit.
+    """What a record itself determines, and is corrected by.
+
+    Its value, standard deviation (0 if it is not estimated), and their unit.
     """
 
     value: float
@@ -33,9 +34,10 @@ class Correction(NamedTuple):
 
 
 class Effects(NamedTuple):
-    """What one standard deviation of each of k typed inputs, such as gravity or the radius,
-    changes: in the approach speeds [m/s], (n, k), and in the target values beyond what it changes
-    in the computed ones, (n, k) by name. All impacts share them.
+    """What one standard deviation of each of k typed inputs, such as gravity, changes.
+
+    It changes the approach speeds [m/s], (n, k), and the target values beyond the computed ones,
+    (n, k) by name. All impacts share the inputs.
     """
 
     inputs: tuple[Input, ...]
@@ -44,9 +46,10 @@ class Effects(NamedTuple):
 
 
 class Record(NamedTuple):
-    """A record over time: times [s] and forces above the baseline [N], one piece per impact; or
-    positions [m] in one piece, with the times at which the flights from the plate begin [s]. It is
-    corrected by what it determines itself.
+    """A record over time, corrected by what it determines itself.
+
+    It has times [s] and forces above the baseline [N], one piece per impact; or positions [m] in
+    one piece, with the times at which the flights from the plate begin [s].
     """
 
     quantity: Literal["force", "position"]
@@ -134,47 +137,40 @@ class Observations:
 
     @property
     def which(self) -> Indices:
-        """Index of the impact of the drop that each represents, (n,); 0 if they are not
-        impacts of the drop.
+        """Index of the impact of the drop that each represents, (n,).
+
+        It is 0 if they are not impacts of the drop.
         """
-        return (
-            np.arange(len(self.speeds))
-            if self.of_the_drop
-            else np.zeros(len(self.speeds), dtype=np.intp)
-        )
+        if self.of_the_drop:
+            return np.arange(len(self.speeds))
+        return np.zeros(len(self.speeds), dtype=np.intp)
 
     def redrawn(self, random: np.random.Generator) -> tuple[Floats, dict[str, Floats]]:
-        """Return approach speeds and target values with a random realization of the noise
-        and of the inputs.
-        """
+        """Return approach speeds and target values with random noise and random inputs."""
         draw = random.normal(size=self.speed_noise.shape[1])
         speeds = self.speeds + self.speed_noise @ draw
         wanted = {name: values + self.noise[name] @ draw for name, values in self.wanted.items()}
         if self.effects is None:
             return speeds, wanted
-        moved = random.normal(size=len(self.effects.inputs))
-        changed = {
-            name: values + self.effects.wanted[name] @ moved
-            for name, values in wanted.items()
-            if name in self.effects.wanted
-        }
-        return speeds + self.effects.speeds @ moved, {**wanted, **changed}
+        input_draw = random.normal(size=len(self.effects.inputs))
+        for name, effect in self.effects.wanted.items():
+            if name in wanted:
+                wanted[name] = wanted[name] + effect @ input_draw
+        return speeds + self.effects.speeds @ input_draw, wanted
 
     @property
     def speed_deviations(self) -> Floats:
-        """Standard deviations of the approach speeds [m/s], (n,): 0 where they are exact
-        or their noise is of unknown magnitude.
+        """Standard deviations of the approach speeds [m/s], (n,).
+
+        They are 0 where speeds are exact or their noise is of unknown magnitude.
         """
-        known = (
-            standard_deviations(self.speed_noise)
-            if self.deviations_known
-            else np.zeros(len(self.speeds))
-        )
-        return (
-            known
-            if self.effects is None
-            else np.hypot(known, np.linalg.norm(self.effects.speeds, axis=1))
-        )
+        if self.deviations_known:
+            by_noise = standard_deviations(self.speed_noise)
+        else:
+            by_noise = np.zeros(len(self.speeds))
+        if self.effects is None:
+            return by_noise
+        return np.asarray(np.hypot(by_noise, np.linalg.norm(self.effects.speeds, axis=1)))
 
 
 def from_heights(
@@ -208,30 +204,36 @@ def from_heights(
 
     Examples
     --------
-    >>> found = from_heights(
+    >>> impacts = from_heights(
     ...     np.array([0.525, 0.1]), None, first_speed=4.0, radius=0.025, gravity=9.8
     ... )
-    >>> found.speeds.round(4).tolist(), found.wanted["rebound_height"].round(9).tolist()
+    >>> impacts.speeds.round(4).tolist(), impacts.wanted["rebound_height"].round(9).tolist()
     ([4.0, 3.1305], [0.525, 0.1])
     """
-    flying = flights or VacuumFlights(gravity)
-    falls, slopes = flying.speed_after_fall(heights - radius)
-    rises, scales = vacuum_height(flying, heights - radius)
-    readings = own_noise(
-        {"rebound_height": np.ones(len(heights)) if deviation is None else deviation}
-    )["rebound_height"]
-    before = of_the_impact_before(scaled(slopes, readings))
-    names = labels or tuple(f"impact {number + 1}" for number in range(len(heights)))
-    speeds, known = np.append(first_speed, falls[:-1]), deviation is not None
-    wanted, noise = {"rebound_height": radius + rises}, {"rebound_height": scaled(scales, readings)}
-    return Observations(speeds, wanted, before, noise, known, names, flights=flights)
+    flight_model = flights or VacuumFlights(gravity)
+    fall_speeds, fall_slopes = flight_model.speed_after_fall(heights - radius)
+    rises, rise_slopes = vacuum_height(flight_model, heights - radius)
+    # without deviations, of unknown magnitude: the same for all heights
+    height_deviation = np.ones(len(heights)) if deviation is None else deviation
+    readings = own_noise({"rebound_height": height_deviation})["rebound_height"]
+    return Observations(
+        speeds=np.append(first_speed, fall_speeds[:-1]),
+        wanted={"rebound_height": radius + rises},
+        # an approach speed follows from the height before the impact
+        speed_noise=of_the_impact_before(scaled(fall_slopes, readings)),
+        noise={"rebound_height": scaled(rise_slopes, readings)},
+        deviations_known=deviation is not None,
+        labels=labels or tuple(f"impact {number + 1}" for number in range(len(heights))),
+        flights=flights,
+    )
 
 
 def with_noise_scale(
     seen: Observations, scatter: float, weights: Mapping[str, float]
 ) -> Observations:
-    """Return the observations with noise of known magnitude: `scatter` times the relative
-    one, over the root of the weight.
+    """Return the observations with noise of known magnitude.
+
+    It is `scatter` times the relative one, over the root of the weight.
     """
     noise = {
         name: scatter / np.sqrt(weights.get(name, 1.0)) * values
@@ -268,7 +270,12 @@ def from_table(
         name: np.abs(values) if deviations is None else deviations[name]
         for name, values in wanted.items()
     }
-    exact = no_noise(len(speeds), len(speeds) * len(wanted))
     return Observations(
-        speeds, wanted, exact, own_noise(sizes), deviations is not None, labels, of_the_drop
+        speeds=speeds,
+        wanted=wanted,
+        speed_noise=no_noise(len(speeds), len(speeds) * len(wanted)),
+        noise=own_noise(sizes),
+        deviations_known=deviations is not None,
+        labels=labels,
+        of_the_drop=of_the_drop,
     )

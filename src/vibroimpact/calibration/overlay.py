@@ -15,8 +15,11 @@ from vibroimpact.calibration.observations import Observations
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.simulate import simulate
 
-_MOST = 20  # contacts that are shown
+_MOST_CONTACTS = 20
+"""Number of contacts that are shown."""
+
 _POINTS = 801
+"""Points of a simulated contact."""
 
 
 @dataclass(frozen=True)
@@ -49,8 +52,9 @@ class Overlay:
 def overlays(
     tunable: Tunable, seen: Observations, values: Floats, outcomes: Mapping[str, Floats]
 ) -> tuple[Overlay, ...]:
-    """Return the measured record with its simulation: one overlay for each of the first contacts of
-    a force, one in all for a position.
+    """Return the measured record with its simulation.
+
+    There is one overlay for each of the first contacts of a force, one in all for a position.
 
     Parameters
     ----------
@@ -68,23 +72,30 @@ def overlays(
         return ()
     if seen.record.quantity == "position":
         return (_position(tunable.drop(values), seen, outcomes),)
-    drop, found = tunable.drop(values), []
     if not np.all(outcomes["max_force"] > 0.0):
         return ()  # an impulsive law has no force
-    for number, (time, force) in enumerate(seen.record.pieces[:_MOST]):
-        at, simulated = _contact(drop, number, float(seen.speeds[number]))
+    drop = tunable.drop(values)
+    contacts = []
+    for impact, (time, force) in enumerate(seen.record.pieces[:_MOST_CONTACTS]):
+        simulated_time, simulated_force = _contact(drop, impact, float(seen.speeds[impact]))
         # the centroid of a pulse is better determined than its ends
-        shift = _middle(time, force) - _middle(at, simulated)
-        found.append(
-            Overlay(seen.labels[number], "force", (time - shift, force), (at, simulated), shift)
+        touch = _centroid(time, force) - _centroid(simulated_time, simulated_force)
+        contacts.append(
+            Overlay(
+                seen.labels[impact],
+                "force",
+                measured=(time - touch, force),
+                simulated=(simulated_time, simulated_force),
+                touch=touch,
+            )
         )
-    return tuple(found)
+    return tuple(contacts)
 
 
-def _contact(drop: Problem, number: int, speed: float) -> tuple[Floats, Floats]:
+def _contact(drop: Problem, impact: int, speed: float) -> tuple[Floats, Floats]:
     """Return times since first touch [s] and the force [N] of a single impact."""
-    law = drop.laws[min(number, len(drop.laws) - 1)]
-    begun = replace(
+    law = drop.laws[min(impact, len(drop.laws) - 1)]
+    single_impact = replace(
         drop,
         laws=(law,),
         height=None,
@@ -94,34 +105,36 @@ def _contact(drop: Problem, number: int, speed: float) -> tuple[Floats, Floats]:
         rest_speed=0.0,
         sensors=(),
     )
-    response = simulate(begun)
+    response = simulate(single_impact)
     time = np.linspace(0.0, float(response.impacts["duration_s"].flat[0]), _POINTS)
     return time, response.at(time)["force_N"]
 
 
-def _middle(time: Floats, force: Floats) -> float:
+def _centroid(time: Floats, force: Floats) -> float:
+    """Return the time of the centroid of a pulse [s]."""
     push = np.maximum(force, 0.0)
     return float(np.trapezoid(time * push, time) / np.trapezoid(push, time))
 
 
 def _position(drop: Problem, seen: Observations, outcomes: Mapping[str, Floats]) -> Overlay:
-    """Return the record with the flight after each simulated impact, from when it begins in the
-    record.
+    """Return the record with the flight after each simulated impact.
 
-    One after the other, they would show errors of their durations that add up.
+    Each flight begins when it does in the record: one after the other, they would show errors of
+    their durations that add up.
     """
     assert seen.record is not None
-    radius, gravity = float(drop.sphere.contact_offset), float(drop.gravity)
-    flying = seen.flights or VacuumFlights(gravity)
+    radius = float(drop.sphere.contact_offset)
+    gravity = float(drop.gravity)
+    flight_model = seen.flights or VacuumFlights(gravity)
     time, position = seen.record.pieces[0]
-    simulated, flights = np.full_like(time, np.nan), []
-    for rebound, begin in zip(outcomes["rebound_height"], seen.record.begins, strict=True):
-        flown = flying.flight(
-            np.asarray(np.sqrt(2.0 * gravity * max(float(rebound) - radius, 0.0)))
-        )
-        inside = (time >= begin) & (time <= begin + flown.duration)
-        simulated[inside] = (
-            radius + flown.height - flying.depth_at(time[inside] - begin - flown.rise_time)[0]
-        )
-        flights.append((begin, begin + float(flown.duration)))
+    simulated = np.full_like(time, np.nan)
+    flights = []
+    for rebound_height, begin in zip(outcomes["rebound_height"], seen.record.begins, strict=True):
+        # the rebound height is that in a vacuum
+        speed = np.sqrt(2.0 * gravity * max(float(rebound_height) - radius, 0.0))
+        flight = flight_model.flight(np.asarray(speed))
+        inside = (time >= begin) & (time <= begin + flight.duration)
+        depth, _ = flight_model.depth_at(time[inside] - begin - flight.rise_time)
+        simulated[inside] = radius + flight.height - depth
+        flights.append((begin, begin + float(flight.duration)))
     return Overlay("", "position", (time, position), (time, simulated), flights=tuple(flights))

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
 
-from vibroimpact.arrays import Floats
+from vibroimpact.arrays import Floats, Indices
 from vibroimpact.calibration.flight_samples import (
     SMALL,
     lowest_points,
@@ -26,11 +26,12 @@ from vibroimpact.contact.roots import find_root
 from vibroimpact.errors import InputError
 from vibroimpact.units.display import fixed, text
 
-_LEAST = 1e-9  # lower bound of the noise, as a fraction of the range of the record
+_LEAST_NOISE = 1e-9
+"""Lower bound of the noise, as a fraction of the range of the record."""
 
 _SELECTIONS = 3
-"""Number of times that the samples of the flights are selected, each time by the flights
-that were fitted before.
+"""Number of times that the samples of the flights are selected, each time by the flights that were
+fitted before.
 """
 
 _FAR = 0.5
@@ -39,15 +40,20 @@ _FAR = 0.5
 _CLOCK_OFF = 0.1
 """Deviation of the clock from 1 above which unit, time or gravity are wrong."""
 
-_LARGE_ZERO, _LARGE_SCATTER, _LARGE_CLOCK = 0.1, 0.02, 0.005
-"""Deviations above which a warning is given: the zero as a fraction of the radius, the scatter of
-the level as a fraction of the lowest rebound, and the clock from 1.
-"""
+_LARGE_ZERO = 0.1
+"""Zero above which a warning is given, as a fraction of the radius."""
 
-_FINEST = 1e-6  # standard deviation below which corrections are printed no finer [mm], [mm/s], [-]
+_LARGE_SCATTER = 0.02
+"""Scatter of the level above which a warning is given, as a fraction of the lowest rebound."""
+
+_LARGE_CLOCK = 0.005
+"""Deviation of the clock from 1 above which a warning is given."""
 
 _SURE = 3.0
 """Standard deviations by which the clock has to deviate from 1 for a warning."""
+
+_FINEST = 1e-6
+"""Standard deviation below which corrections are printed no finer [mm], [mm/s], [-]."""
 
 
 def impacts_in_position(
@@ -112,151 +118,180 @@ def impacts_in_position(
     >>> found.wanted["rebound_height"].round(4).tolist(), round(found.corrections["zero"].value, 6)
     ([0.4842], 0.001)
     """
-    noise, at, flying = (
-        record_noise(position),
-        sample_label(lines),
-        flights or VacuumFlights(gravity),
-    )
-    lows = lowest_points(position, noise)
-    if not len(lows):
+    noise = record_noise(position)
+    label_of = sample_label(lines)
+    flight_model = flights or VacuumFlights(gravity)
+    minima = lowest_points(position, noise)
+    if not len(minima):
         rises = f"out of its noise and by {100.0 * SMALL:g} % of its range"
         raise InputError(
             "the record does not show an impact: nowhere does the sphere stop falling and "
             f"rise again, {rises}"
         )
-    ends = [
-        release(time, position, int(lows[0]), noise),
-        *(int(low) for low in lows),
+    boundaries = [
+        release(time, position, int(minima[0]), noise),
+        *(int(index) for index in minima),
         len(time) - 1,
     ]
-    selected, start = samples_above_impacts(position, ends, noise), None
-    least, middle = _LEAST * float(np.ptp(position)), float(time.mean())
-    for _ in range(_SELECTIONS):
-        kept = with_enough_samples(selected, ends, at)
-        pieces = [(time[inside], position[inside]) for inside in kept.values()]
-        if start is None:
-            start = _started(pieces, flying, middle, max(noise, least))
-        elif len(pieces) < len(start.tops):  # the first or the last flight has no samples left
-            still = [number in kept for number in selected]
-            start = replace(start, tops=start.tops[still], times=start.times[still])
-        alone = separate_flights(pieces, start, flying, least)
-        _check_clock(alone, gravity)
-        met = [ends[number + 1] for number in list(kept)[:-1]]
-        places = [at(index) for index in met]
-        levels = _levels(alone, places, radius, flying)
-        joint = meeting_flights(pieces, alone, flying, radius, levels, contact_duration)
-        _check_levels(joint, levels, time[met], places, radius)
-        selected = samples_of_flights(joint, kept, time, ends, radius, flying)
-        start = replace(joint, tops=joint.tops + joint.level(joint.times))
-    labels = tuple(f"impact {number}, {at(ends[number])}" for number in kept if number)
-    found = _between_flights(joint, 0 in kept, radius, flying, first_speed, labels)
-    return replace(
-        found,
-        flights=flights,
-        record=_corrected_record(joint, len(labels), time, position, radius, flying),
+    joint, kept = _fitted_flights(
+        time,
+        position,
+        boundaries,
+        noise,
+        label_of,
+        flight_model,
+        radius=radius,
+        gravity=gravity,
+        contact_duration=contact_duration,
     )
+    labels = tuple(f"impact {number}, {label_of(boundaries[number])}" for number in kept if number)
+    observations = _between_flights(joint, 0 in kept, radius, flight_model, first_speed, labels)
+    record = _corrected_record(joint, len(labels), time, position, radius, flight_model)
+    return replace(observations, flights=flights, record=record)
+
+
+def _fitted_flights(
+    time: Floats,
+    position: Floats,
+    boundaries: Sequence[int],
+    noise: float,
+    label_of: Callable[[int], str],
+    flight_model: Flights,
+    *,
+    radius: float,
+    gravity: float,
+    contact_duration: float | None,
+) -> tuple[JointFlights, dict[int, Indices]]:
+    """Return the flights fitted together, and the samples of each by its number in the record.
+
+    Which samples show flights above the plate is known only with the flights themselves: selection
+    and fit are repeated.
+    """
+    least_noise = _LEAST_NOISE * float(np.ptp(position))
+    reference_time = float(time.mean())
+    selected = samples_above_impacts(position, boundaries, noise)
+    start = None
+    for _ in range(_SELECTIONS):
+        kept = with_enough_samples(selected, boundaries, label_of)
+        samples = [(time[indices], position[indices]) for indices in kept.values()]
+        if start is None:
+            start = _parabolas(samples, flight_model, reference_time, max(noise, least_noise))
+        elif len(samples) < len(start.apex_heights):
+            # the first or the last flight has no samples any more
+            still_kept = [number in kept for number in selected]
+            start = replace(
+                start,
+                apex_heights=start.apex_heights[still_kept],
+                apex_times=start.apex_times[still_kept],
+            )
+        separate = separate_flights(samples, start, flight_model, least_noise)
+        _check_clock(separate, gravity)
+        impacts = [boundaries[number + 1] for number in list(kept)[:-1]]
+        labels = [label_of(index) for index in impacts]
+        levels = _levels(separate, labels, radius, flight_model)
+        joint = meeting_flights(samples, separate, flight_model, radius, levels, contact_duration)
+        _check_levels(joint, levels, time[impacts], labels, radius)
+        selected = samples_of_flights(joint, kept, time, boundaries, radius, flight_model)
+        # separate flights have heights as in the record
+        start = replace(joint, apex_heights=joint.apex_heights + joint.offset(joint.apex_times))
+    return joint, kept
 
 
 def _between_flights(
     joint: JointFlights,
     shows_fall: bool,
     radius: float,
-    flying: Flights,
+    flight_model: Flights,
     first_speed: float,
     labels: tuple[str, ...],
 ) -> Observations:
-    sources = joint.noise_of_tops()
-    falls, slopes = flying.speed_after_fall(joint.tops - radius)
-    by_fall = scaled(slopes, as_noise(sources))
+    """Return the impacts between flights.
+
+    Each approach speed follows from the flight before, and each rebound height, as in a vacuum,
+    from the flight after.
+    """
+    apex_heights = joint.apex_heights
+    sources = joint.noise_of_apex_heights()
+    fall_speeds, fall_slopes = flight_model.speed_after_fall(apex_heights - radius)
+    fall_noise = scaled(fall_slopes, as_noise(sources))
     if shows_fall:
-        first_speed, tops, sources = float(falls[0]), joint.tops[1:], sources[1:]
-        speeds, before = falls[:-1], by_fall[:-1]
+        # the first flight is the fall, and no rebound
+        apex_heights = apex_heights[1:]
+        sources = sources[1:]
+        speeds = fall_speeds[:-1]
+        speed_noise = fall_noise[:-1]
     else:
-        tops = joint.tops
-        speeds, before = np.append(first_speed, falls[:-1]), of_the_impact_before(by_fall)
-    rises, scales = vacuum_height(flying, tops - radius)
-    wanted, noise = (
-        {"rebound_height": radius + rises},
-        {"rebound_height": scaled(scales, as_noise(sources))},
-    )
-    doubts, notes = _told(
-        joint, tops - radius, radius, flying.gravity, float(speeds[0]), shows_fall
-    )
+        speeds = np.append(first_speed, fall_speeds[:-1])
+        speed_noise = of_the_impact_before(fall_noise)
+    rises, rise_slopes = vacuum_height(flight_model, apex_heights - radius)
     return Observations(
         speeds,
-        wanted,
-        before,
-        noise,
+        {"rebound_height": radius + rises},
+        speed_noise,
+        {"rebound_height": scaled(rise_slopes, as_noise(sources))},
         deviations_known=True,
         labels=labels,
         noise_from="the scatter of the record",
-        doubts=doubts,
-        notes=notes,
+        doubts=_doubts(joint, apex_heights - radius, radius, flight_model.gravity, shows_fall),
+        notes=_notes(joint),
         corrections=_corrections(joint),
     )
 
 
 def _corrections(joint: JointFlights) -> dict[str, Correction]:
-    deviations, units = joint.shared_deviations, {"zero": "m", "drift": "m/s", "clock": ""}
+    deviations = joint.shared_deviations
     return {
-        name: Correction(getattr(joint, name), deviations[name], unit)
-        for name, unit in units.items()
+        "zero": Correction(joint.zero, deviations["zero"], "m"),
+        "drift": Correction(joint.drift, deviations["drift"], "m/s"),
+        "clock": Correction(joint.clock, deviations["clock"], ""),
     }
 
 
-def _told(
-    joint: JointFlights,
-    rises: Floats,
-    radius: float,
-    gravity: float,
-    speed: float,
-    shows_fall: bool,
-) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """Return warnings, and sentences on what the record itself determines."""
-    doubts, notes = [], []
-    zero, drift, clock = _corrections(joint).values()
-    if len(joint.tops) == 1:
-        part = 100.0 * 0.5e-3 / float(rises[0])
+def _notes(joint: JointFlights) -> tuple[str, ...]:
+    """Return sentences on what the record itself determines."""
+    corrections = _corrections(joint)
+    notes = []
+    if len(joint.apex_heights) > 1:
+        drift = corrections["drift"]
+        if drift.deviation:
+            drifts = f" and drifts by {_with_deviation(drift)}"
+        else:
+            drifts = "; one impact does not tell whether it drifts"
+        notes.append(
+            f"Successive flights meet {_with_deviation(corrections['zero'])} above the radius: "
+            f"the zero of the positions is moved there{drifts}."
+        )
+    notes.append(
+        "By gravity, the clock of the record runs at "
+        f"{_with_deviation(corrections['clock'])} of the true rate."
+    )
+    return tuple(notes)
+
+
+def _doubts(
+    joint: JointFlights, rises: Floats, radius: float, gravity: float, shows_fall: bool
+) -> tuple[str, ...]:
+    """Return warnings; `rises` are the heights of the rebounds above touch [m]."""
+    doubts = []
+    if len(joint.apex_heights) == 1:
+        # the restitution goes with the root of the height
+        per_millimetre = 100.0 * 0.5e-3 / float(rises[0])
         doubts.append(
             "the record shows one flight alone, which does not determine the zero of its "
             "positions: it is taken as right, and 1 mm "
-            f"changes the restitution by {part:.2g} %; record the fall before the impact as well"
+            f"changes the restitution by {per_millimetre:.2g} %; record the fall before the "
+            "impact as well"
         )
-    else:
-        moves = (
-            f" and drifts by {_known(drift)}"
-            if drift.deviation
-            else "; one impact does not tell whether it drifts"
-        )
-        notes.append(
-            f"Successive flights meet {_known(zero)} above the radius: the zero of the "
-            f"positions is moved there{moves}."
-        )
-    notes.append(f"By gravity, the clock of the record runs at {_known(clock)} of the true rate.")
-    if abs(zero.value) > _LARGE_ZERO * radius:
+    if abs(joint.zero) > _LARGE_ZERO * radius:
         doubts.append(
-            f"the zero of the positions is off by {text(zero.value, 'm', 3)}, of a radius "
+            f"the zero of the positions is off by {text(joint.zero, 'm', 3)}, of a radius "
             f"of {text(radius, 'm', 3)}: it is corrected, but "
             "position must be the height of the sphere's centre above the plate; look at "
             "the radius and the zero of the record"
         )
-    if abs(clock.value - 1.0) > max(_LARGE_CLOCK, _SURE * clock.deviation):
-        off = 100.0 * (clock.value - 1.0)
-        # speeds are those of the time that is corrected
-        too_fast = 100.0 * (1.0 / clock.value - 1.0)
-        besides = (
-            ""
-            if shows_fall
-            else ", but for that of the first impact, whose approach speed is the case's"
-        )
-        doubts.append(
-            f"the flights curve as under {gravity / clock.value**2:.4g} m/s^2, not "
-            f"{gravity:.4g} m/s^2: the clock of the record is taken "
-            f"to run {abs(off):.2g} % too {'fast' if off > 0.0 else 'slowly'}, which is "
-            "corrected; if its lengths are wrong instead, all "
-            f"speeds taken from it are {too_fast:+.2g} % off, and "
-            f"the restitutions stay right{besides}"
-        )
+    clock_deviation = joint.shared_deviations["clock"]
+    if abs(joint.clock - 1.0) > max(_LARGE_CLOCK, _SURE * clock_deviation):
+        doubts.append(_clock_doubt(joint.clock, gravity, shows_fall))
     if joint.scatter > _LARGE_SCATTER * float(rises.min()):
         doubts.append(
             "the levels at which successive flights meet scatter by "
@@ -264,90 +299,139 @@ def _told(
             "the record, which the intervals include; look for a plate that moves, a sphere "
             "that is not round, or distortion by the lens"
         )
-    return tuple(doubts), tuple(notes)
+    return tuple(doubts)
 
 
-def _known(one: Correction) -> str:
+def _clock_doubt(clock: float, gravity: float, shows_fall: bool) -> str:
+    percent_off = 100.0 * (clock - 1.0)
+    # Flights that curve by another gravity have a wrong clock or a wrong length. The clock is
+    # corrected; if the length is wrong, the speeds of the corrected time are wrong.
+    speed_percent = 100.0 * (1.0 / clock - 1.0)
+    if shows_fall:
+        exception = ""
+    else:
+        exception = ", but for that of the first impact, whose approach speed is the case's"
+    return (
+        f"the flights curve as under {gravity / clock**2:.4g} m/s^2, not "
+        f"{gravity:.4g} m/s^2: the clock of the record is taken "
+        f"to run {abs(percent_off):.2g} % too {'fast' if percent_off > 0.0 else 'slowly'}, "
+        "which is corrected; if its lengths are wrong instead, all "
+        f"speeds taken from it are {speed_percent:+.2g} % off, and "
+        f"the restitutions stay right{exception}"
+    )
+
+
+def _with_deviation(correction: Correction) -> str:
     """Return a correction with its standard deviation, to two digits of it."""
-    factor, unit = (1e3, f" m{one.unit}") if one.unit else (1.0, "")
-    deviation = factor * max(one.deviation, _FINEST / factor)
+    if correction.unit:
+        factor = 1e3
+        unit = f" m{correction.unit}"
+    else:
+        factor = 1.0
+        unit = ""
+    deviation = factor * max(correction.deviation, _FINEST / factor)
     decimals = max(0, 1 - math.floor(math.log10(deviation)))
-    return f"{fixed(factor * one.value, decimals)} ± {fixed(deviation, decimals)}{unit}"
+    return f"{fixed(factor * correction.value, decimals)} ± {fixed(deviation, decimals)}{unit}"
 
 
 def _corrected_record(
     joint: JointFlights,
-    rebounds: int,
+    rebound_count: int,
     time: Floats,
     position: Floats,
     radius: float,
-    flying: Flights,
+    flight_model: Flights,
 ) -> Record:
-    """Return the record over time instead of that of its clock, from its own zero, with
-    the times at which rebounds begin.
+    """Return the record over true time and from its own zero, with the times of the rebounds.
+
+    The time is that of the record corrected by its clock.
     """
 
-    def corrected(at: Floats) -> Floats:
-        return joint.middle + (at - joint.middle) / joint.clock
+    def true_time(clock_time: Floats) -> Floats:
+        return joint.reference_time + (clock_time - joint.reference_time) / joint.clock
 
-    rises = flying.flight(flying.speed_to_rise(joint.tops[-rebounds:] - radius)[0]).rise_time
-    begins = corrected(joint.times[-rebounds:]) - rises
-    return Record(
-        "position", ((corrected(time), position - joint.level(time)),), tuple(begins.tolist())
+    rebound_heights = joint.apex_heights[-rebound_count:] - radius
+    initial_speed, _ = flight_model.speed_to_rise(rebound_heights)
+    rise_time = flight_model.flight(initial_speed).rise_time
+    begins = true_time(joint.apex_times[-rebound_count:]) - rise_time
+    height = position - joint.offset(time)
+    return Record("position", ((true_time(time), height),), tuple(begins.tolist()))
+
+
+def _parabolas(
+    samples: Sequence[tuple[Floats, Floats]],
+    flight_model: Flights,
+    reference_time: float,
+    noise: float,
+) -> JointFlights:
+    """Return each flight as a parabola by least squares, the initial guess."""
+    apex_heights = []
+    apex_times = []
+    for time, position in samples:
+        # with the fall by gravity added to the positions, the flight is a straight line
+        from_mean = time - time.mean()
+        powers = np.vander(from_mean, 2, increasing=True)
+        (height, speed), *_ = np.linalg.lstsq(
+            powers, position + 0.5 * flight_model.gravity * from_mean**2, rcond=None
+        )
+        apex_heights.append(float(height + 0.5 * speed**2 / flight_model.gravity))
+        apex_times.append(float(time.mean() + speed / flight_model.gravity))
+    return JointFlights(
+        np.array(apex_heights),
+        np.array(apex_times),
+        zero=0.0,
+        drift=0.0,
+        clock=1.0,
+        contact=0.0,
+        reference_time=reference_time,
+        noise=noise,
     )
 
 
-def _started(
-    pieces: Sequence[tuple[Floats, Floats]], flying: Flights, middle: float, noise: float
-) -> JointFlights:
-    """Return each flight as a parabola by least squares, the initial guess."""
-    tops, times = [], []
-    for time, position in pieces:
-        across = time - time.mean()
-        powers = np.vander(across, 2, increasing=True)
-        (height, speed), *_ = np.linalg.lstsq(
-            powers, position + 0.5 * flying.gravity * across**2, rcond=None
-        )
-        tops.append(float(height + 0.5 * speed**2 / flying.gravity))
-        times.append(float(time.mean() + speed / flying.gravity))
-    return JointFlights(np.array(tops), np.array(times), 0.0, 0.0, 1.0, 0.0, middle, noise=noise)
-
-
-def _check_clock(alone: JointFlights, gravity: float) -> None:
+def _check_clock(flights: JointFlights, gravity: float) -> None:
     """Check that the flights curve about as they do under gravity."""
-    if abs(alone.clock - 1.0) > _CLOCK_OFF:
+    if abs(flights.clock - 1.0) > _CLOCK_OFF:
         raise InputError(
-            f"the flights curve as under {gravity / alone.clock**2:.4g} m/s^2, and gravity "
+            f"the flights curve as under {gravity / flights.clock**2:.4g} m/s^2, and gravity "
             f"is {gravity:.4g} m/s^2; position must be the "
             "height of the sphere's centre above the plate, and its unit, time and gravity "
             "those of the record"
         )
 
 
-def _levels(alone: JointFlights, places: Sequence[str], radius: float, flying: Flights) -> Floats:
-    """Return the heights at which successive flights meet [m]."""
-    levels = np.array([_where_they_meet(alone, number, flying) for number in range(len(places))])
-    for level, place in zip(levels, places, strict=True):
+def _levels(
+    separate: JointFlights, labels: Sequence[str], radius: float, flight_model: Flights
+) -> Floats:
+    """Return the heights at which successive flights meet [m]; `labels` name the impacts."""
+    levels = np.array(
+        [_meeting_height(separate, flight, flight_model) for flight in range(len(labels))]
+    )
+    for level, label in zip(levels, labels, strict=True):
         if not np.isfinite(level):
             raise InputError(
-                f"the flights before and after {place} do not meet, {_touches_at(radius)}"
+                f"the flights before and after {label} do not meet, {_touches_at(radius)}"
             )
     return levels
 
 
 def _check_levels(
-    joint: JointFlights, levels: Floats, touches: Floats, places: Sequence[str], radius: float
+    joint: JointFlights,
+    levels: Floats,
+    impact_times: Floats,
+    labels: Sequence[str],
+    radius: float,
 ) -> None:
     """Check that successive flights meet near the height at which the sphere touches the plate.
 
     Each level by itself is as uncertain as a short flight between noisy samples; a line through
     them is better known.
     """
-    stated = radius + joint.level(touches) if joint.scatter <= _FAR * radius else levels
-    for level, place in zip(stated, places, strict=True):
+    if joint.scatter <= _FAR * radius:
+        levels = radius + joint.offset(impact_times)
+    for level, label in zip(levels, labels, strict=True):
         if abs(level - radius) > _FAR * radius:
             raise InputError(
-                f"the flights before and after {place} meet at {level:.4g} m, {_touches_at(radius)}"
+                f"the flights before and after {label} meet at {level:.4g} m, {_touches_at(radius)}"
             )
 
 
@@ -359,20 +443,22 @@ def _touches_at(radius: float) -> str:
     )
 
 
-def _where_they_meet(alone: JointFlights, number: int, flying: Flights) -> float:
-    """Return the height at which a flight crosses the following one between their apexes
-    [m]; NaN if it does not.
+def _meeting_height(flights: JointFlights, flight: int, flight_model: Flights) -> float:
+    """Return the height at which a flight crosses the following one between their apexes [m].
+
+    It is NaN if they do not cross.
     """
 
     def height(which: int, time: Floats) -> Floats:
-        return np.asarray(
-            alone.tops[which] - flying.depth_at((time - alone.times[which]) / alone.clock)[0]
-        )
+        since_apex = (time - flights.apex_times[which]) / flights.clock
+        return np.asarray(flights.apex_heights[which] - flight_model.depth_at(since_apex)[0])
 
-    def apart(time: Floats) -> Floats:
-        return height(number + 1, time) - height(number, time)
+    def height_difference(time: Floats) -> Floats:
+        return height(flight + 1, time) - height(flight, time)
 
-    ends = alone.times[number : number + 1], alone.times[number + 1 : number + 2]
-    if not (apart(ends[0])[0] < 0.0 < apart(ends[1])[0]):
+    apex = flights.apex_times[flight : flight + 1]
+    next_apex = flights.apex_times[flight + 1 : flight + 2]
+    if not (height_difference(apex)[0] < 0.0 < height_difference(next_apex)[0]):
         return float("nan")
-    return float(height(number, find_root(apart, *ends))[0])
+    meeting_time = find_root(height_difference, apex, next_apex)
+    return float(height(flight, meeting_time)[0])

@@ -13,8 +13,7 @@ ABOVE_NOISE = 6.0
 
 
 def record_noise(values: Floats) -> float:
-    """Return the standard deviation of the white noise of a record that is smooth for most of the
-    time.
+    """Return the standard deviation of the white noise of a record that is mostly smooth.
 
     Examples
     --------
@@ -24,16 +23,19 @@ def record_noise(values: Floats) -> float:
     """
     # robust estimate from third differences: 0.6745 is the median of |N(0, 1)|, and 20 the sum of
     # squares of 1, 3, 3, 1
-    third = np.diff(values, 3)
-    return float(np.median(np.abs(third)) / 0.6745 / np.sqrt(20.0)) if len(third) else 0.0
+    third_differences = np.diff(values, 3)
+    if not len(third_differences):
+        return 0.0
+    return float(np.median(np.abs(third_differences)) / 0.6745 / np.sqrt(20.0))
 
 
 def sample_label(lines: Sequence[int] | None) -> Callable[[int], str]:
-    """Return a function that names a sample by its line in the file, or by its number if
-    that is unknown.
+    """Return a function that names a sample by its line in the file, or by its number.
+
+    It has its number if the lines are not known.
     """
-    return (
-        (lambda index: f"sample {index + 1}")
-        if lines is None
-        else (lambda index: f"line {lines[index]}")
-    )
+
+    def label_of(index: int) -> str:
+        return f"sample {index + 1}" if lines is None else f"line {lines[index]}"
+
+    return label_of

@@ -10,10 +10,13 @@ from vibroimpact.arrays import Floats
 from vibroimpact.calibration.observations import Observations
 
 _DEVIATIONS = 3.0
-_LEAST, _MOST = 0.01, 0.1
-"""Excess over 1 that is accepted where the noise is unknown, and its upper bound where it
-is estimated from the scatter.
-"""
+"""Standard deviations above 1 that are attributed to noise."""
+
+_LEAST = 0.01
+"""Excess over 1 that is accepted where the noise is unknown."""
+
+_MOST = 0.1
+"""Largest excess over 1 that is accepted where the noise is estimated from the scatter."""
 
 
 class RestitutionLimit(NamedTuple):
@@ -60,20 +63,20 @@ def restitution_limit(
     """
     if deviations is not None:
         return RestitutionLimit(1.0 + _DEVIATIONS * deviations, "three standard deviations")
-    some = restitutions <= 1.0
-    degree = min(2, len(np.unique(speeds[some])) - 1)
-    freedom = int(np.count_nonzero(some)) - degree - 1
+    possible = restitutions <= 1.0
+    degree = min(2, len(np.unique(speeds[possible])) - 1)
+    freedom = int(np.count_nonzero(possible)) - degree - 1
     if degree < 0 or freedom < 1:
         return RestitutionLimit(
             np.full(len(speeds), 1.0 + _LEAST), "1 %, as no standard deviation is given"
         )
-    powers = np.vander(speeds[some] / speeds.max(), degree + 1)
-    left = restitutions[some] - powers @ np.linalg.lstsq(powers, restitutions[some], rcond=None)[0]
-    scatter = float(np.sqrt(left @ left / freedom))
-    part = float(np.clip(_DEVIATIONS * scatter, _LEAST, _MOST))
-    why = (
-        "three times the scatter of the others"
-        if _LEAST < part < _MOST
-        else f"{100.0 * part:g} %, as no standard deviation is given"
-    )
-    return RestitutionLimit(np.full(len(speeds), 1.0 + part), why)
+    powers = np.vander(speeds[possible] / speeds.max(), degree + 1)
+    coefficients = np.linalg.lstsq(powers, restitutions[possible], rcond=None)[0]
+    residual = restitutions[possible] - powers @ coefficients
+    scatter = float(np.sqrt(residual @ residual / freedom))
+    excess = float(np.clip(_DEVIATIONS * scatter, _LEAST, _MOST))
+    if _LEAST < excess < _MOST:
+        why = "three times the scatter of the others"
+    else:
+        why = f"{100.0 * excess:g} %, as no standard deviation is given"
+    return RestitutionLimit(np.full(len(speeds), 1.0 + excess), why)

@@ -333,8 +333,9 @@ class CalibrateSection(Section):
 
 
 def friction_names(parameter: Any) -> tuple[str, ...]:
-    """Return the parameters of the friction law that are fitted together; empty if it is another
-    one, or what a user wrote is not a name.
+    """Return the parameters of the friction law that are fitted together.
+
+    There are none if the parameter is another one, or what a user wrote is not a name.
 
     Examples
     --------
@@ -371,8 +372,9 @@ _MEASURED = FileKind(
 
 
 def check_target(section: CalibrateSection | None) -> None:
-    """Check that the file of a measurement, if there is one, can be read; its contents are not
-    evaluated.
+    """Check that the file of a measurement, if there is one, can be read.
+
+    Its contents are not evaluated.
 
     Raises
     ------

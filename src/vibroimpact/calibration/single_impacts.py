@@ -18,16 +18,19 @@ from vibroimpact.dynamics.response import Response
 from vibroimpact.dynamics.simulate import simulate
 from vibroimpact.dynamics.tabulate import tabulate
 
-_TOLERANCE = 1e-11  # with a smaller one the impacts are followed one by one
+_TOLERANCE = 1e-11
+"""Relative tolerance of an impact; with a smaller one the impacts are followed one by one."""
+
 AT_ONCE = 4000
 """Impacts that are computed together: more take memory and no less time."""
 
 
 def single_impacts(problem: Problem, law: ContactLaw, speeds: Floats) -> dict[str, Floats]:
-    """Return separation speed [m/s], largest force [N], largest indentation [m], duration [s] and
-    rebound height [m] of single impacts.
+    """Return the quantities of single impacts by the names of `MATCHABLE`.
 
-    Gravity acts during contact, as in a run, and each impact is on undeformed surfaces.
+    They are separation speed [m/s], largest force [N], largest indentation [m], duration [s] and
+    rebound height [m]. Gravity acts during contact, as in a run, and each impact is on undeformed
+    surfaces.
 
     Parameters
     ----------
@@ -54,31 +57,33 @@ def single_impacts(problem: Problem, law: ContactLaw, speeds: Floats) -> dict[st
     ... ).tolist()
     [6.838627]
     """
-    some = [slice(begin, begin + AT_ONCE) for begin in range(0, len(speeds), AT_ONCE)]
-    each = [_single_impacts(problem, law.take(rows), speeds[rows]) for rows in some]
-    return (
-        each[0]
-        if len(each) == 1
-        else {name: np.concatenate([found[name] for found in each]) for name in each[0]}
-    )
+    blocks = []
+    for begin in range(0, len(speeds), AT_ONCE):
+        rows = slice(begin, begin + AT_ONCE)
+        blocks.append(_single_impacts(problem, law.take(rows), speeds[rows]))
+    if len(blocks) == 1:
+        return blocks[0]
+    return {name: np.concatenate([block[name] for block in blocks]) for name in blocks[0]}
 
 
 def _single_impacts(problem: Problem, law: ContactLaw, speeds: Floats) -> dict[str, Floats]:
     response = simulate(replace(_one_impact(problem, law, speeds), tolerance=_TOLERANCE))
-    found = _first_impacts(response, MATCHABLE)
+    outcomes = _first_impacts(response, MATCHABLE)
+    offset = problem.sphere.contact_offset
     if problem.liquid is not None and problem.gravity > 0.0:  # the flight of the response is in it
-        found["rebound_height"] = (
-            problem.sphere.contact_offset + 0.5 * found["separation_speed"] ** 2 / problem.gravity
+        outcomes["rebound_height"] = (
+            offset + 0.5 * outcomes["separation_speed"] ** 2 / problem.gravity
         )
-    rise = np.maximum(found["rebound_height"] - problem.sphere.contact_offset, 0.0)
-    return {**found, "next_speed": np.sqrt(2.0 * problem.gravity * rise)}
+    rise = np.maximum(outcomes["rebound_height"] - offset, 0.0)
+    return {**outcomes, "next_speed": np.sqrt(2.0 * problem.gravity * rise)}
 
 
 def oblique_impacts(
     problem: Problem, law: ContactLaw, speeds: Floats, oblique: Oblique
 ) -> dict[str, Floats]:
-    """Return what friction determines of single oblique impacts, by the names of `ALONG_PLATE`, and
-    their separation speeds [m/s].
+    """Return the quantities of single oblique impacts that friction determines.
+
+    They have the names of `ALONG_PLATE`; the separation speeds [m/s] are there, too.
 
     Parameters
     ----------
@@ -101,19 +106,24 @@ def oblique_impacts(
     ... ].tolist()
     [1.0]
     """
-    response = tabulate(
-        replace(_one_impact(problem, law, speeds), oblique=oblique, same_spot=False)
-    )
-    return _first_impacts(
-        response, {"separation_speed": MATCHABLE["separation_speed"], **ALONG_PLATE}
-    )
+    impacts = replace(_one_impact(problem, law, speeds), oblique=oblique, same_spot=False)
+    quantities = {"separation_speed": MATCHABLE["separation_speed"], **ALONG_PLATE}
+    return _first_impacts(tabulate(impacts), quantities)
 
 
 def _one_impact(problem: Problem, law: ContactLaw, speeds: Floats) -> Problem:
-    begun = replace(
-        problem, laws=(law,), height=None, speed=np.asarray(speeds, dtype=float), air=None
+    """Return a batch of drops, one for each approach speed [m/s], that end after one impact."""
+    return replace(
+        problem,
+        laws=(law,),
+        height=None,
+        speed=np.asarray(speeds, dtype=float),
+        air=None,
+        impacts=1,
+        duration=None,
+        rest_speed=0.0,
+        sensors=(),
     )
-    return replace(begun, impacts=1, duration=None, rest_speed=0.0, sensors=())
 
 
 def _first_impacts(
@@ -122,8 +132,8 @@ def _first_impacts(
     """Return quantities of the first impacts, NaN of those that could not be computed."""
     failed = np.array([outcome is Outcome.FAILED for outcome in response.outcomes])
     return {
-        name: np.where(failed, np.nan, response.impacts[column][:, 0])
-        for name, (column, *_) in quantities.items()
+        name: np.where(failed, np.nan, response.impacts[quantity.column][:, 0])
+        for name, quantity in quantities.items()
     }
 
 
@@ -133,25 +143,25 @@ def first_approach_speed(problem: Problem) -> float:
         return float(problem.speed)
     if problem.fluid is not None:
         return speed_of_fall(problem)
-    return float(
-        np.sqrt(
-            2.0 * problem.gravity * (np.asarray(problem.height) - problem.sphere.contact_offset)
-        )
-    )
+    fall = np.asarray(problem.height) - problem.sphere.contact_offset
+    return float(np.sqrt(2.0 * problem.gravity * fall))
 
 
 def return_speeds(problem: Problem, speeds: Floats) -> Floats:
-    """Return the speeds at which spheres come back that leave the plate with given ones
-    [m/s], through what a drop flies through.
+    """Return the speeds at which spheres come back that leave the plate with `speeds` [m/s].
+
+    They fly through the fluid of the drop.
     """
     if problem.fluid is None:
         return speeds
-    return flights_of(problem, np.zeros(len(speeds)), speeds).touch(np.zeros(1))[1]
+    _, touch_speeds = flights_of(problem, np.zeros(len(speeds)), speeds).touch(np.zeros(1))
+    return touch_speeds
 
 
 def batched_law(laws: Sequence[ContactLaw], number: int) -> ContactLaw:
-    """Return the laws of the first impacts as one law with array parameters; the last law holds for
-    all further impacts.
+    """Return the laws of the first impacts as one law with array parameters.
+
+    The last law holds for all further impacts.
 
     Examples
     --------
@@ -161,7 +171,10 @@ def batched_law(laws: Sequence[ContactLaw], number: int) -> ContactLaw:
     """
     if len(laws) == 1:
         return laws[0]
-    each = [laws[min(impact, len(laws) - 1)] for impact in range(number)]
+    law_of_impact = [laws[min(impact, len(laws) - 1)] for impact in range(number)]
     return laws[0].changed(
-        {item.name: np.array([getattr(law, item.name) for law in each]) for item in fields(laws[0])}
+        {
+            field.name: np.array([getattr(law, field.name) for law in law_of_impact])
+            for field in fields(laws[0])
+        }
     )

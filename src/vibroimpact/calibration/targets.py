@@ -48,8 +48,10 @@ def target_of(case: Case, problem: Problem, section: CalibrateSection) -> Proble
         )
     if isinstance(target, ContactSection):
         try:
-            other = case.model_copy(update={"contact": target})
-            return replace(problem, laws=contact_laws_of(other), by_speed=by_speed_of(other))
+            target_case = case.model_copy(update={"contact": target})
+            return replace(
+                problem, laws=contact_laws_of(target_case), by_speed=by_speed_of(target_case)
+            )
         except InputError as error:
             raise InputError(error.message, error.key.replace("contact", "target", 1)) from None
     assert isinstance(target, RestitutionTarget)
@@ -74,17 +76,12 @@ def _measured(
 ) -> Measurement:
     if isinstance(target, HeightsTarget):
         heights = np.array(target.rebound_heights)
-        deviation = (
-            None
-            if target.standard_deviation is None
-            else np.full(len(heights), target.standard_deviation)
-        )
-        return heights_measurement(
-            case,
-            heights,
-            deviation,
-            tuple(f"impact {number + 1}" for number in range(len(heights))),
-        )
+        deviation = None
+        if target.standard_deviation is not None:
+            deviation = np.full(len(heights), target.standard_deviation)
+        labels = tuple(f"impact {number + 1}" for number in range(len(heights)))
+        return heights_measurement(case, heights, deviation, labels)
     if isinstance(target, ImpactTarget):
         return first_impact_measurement(case, target)
-    return file_measurement(case, target, set(section.match or REBOUND) <= set(REBOUNDS))
+    by_rebound = set(section.match or REBOUND) <= set(REBOUNDS)
+    return file_measurement(case, target, by_rebound)

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import fields, replace
-from typing import Literal
+from dataclasses import Field, fields, replace
+from typing import Any, Literal
 
 import numpy as np
 
@@ -16,6 +16,8 @@ from vibroimpact.errors import InputError, choices
 from vibroimpact.ranges import Range
 
 _MODAL_START = 0.02
+"""Initial guess of a damping ratio."""
+
 _FAR = 1e6
 """Ratio of a given value to the example of its parameter above which the search begins at the
 example: so far off, contacts may take a second each, or fail.
@@ -43,61 +45,72 @@ def law_parameter(problem: Problem, name: str | None = None) -> Tunable:
     >>> law_parameter(vi.load_case("paper:type1-constant").to_problem()).given.tolist()
     [179.75]
     """
-    laws, first = problem.laws, problem.laws[0]
-    known = {
-        item.name: item
-        for item in fields(first)
-        if not item.metadata["memory"] and getattr(first, item.name) is not None
-    }
-    if name is None and first.free_parameter is None:
-        other = f"or, to match something other than the rebound, one of {', '.join(known)}"
-        raise InputError(
-            f"{first.name} has no loss parameter; name another law, {other}", "parameter"
-        )
-    chosen = name or str(first.free_parameter)
-    if chosen in {item.name for item in fields(first) if not item.metadata["memory"]} - set(known):
-        words = (
-            f"the case gives no {chosen} of {first.name}, in whose place it gives another parameter"
-        )
-        raise InputError(
-            f"{words}; give {chosen} alone, or tune one of {', '.join(known)}", "parameter"
-        )
-    if chosen not in known:
-        raise InputError(
-            f'{first.name} has no parameter "{chosen}"; it has {choices(known, chosen)}',
-            "parameter",
-        )
-    # what is sought takes the place of a function of the approach speed
-    problem = replace(
-        problem,
-        by_speed={key: function for key, function in problem.by_speed.items() if key != chosen},
-    )
-    told = known[chosen].metadata
+    laws = problem.laws
+    first = laws[0]
+    field = _chosen_field(first, name)
+    chosen = field.name
+    # the value that is sought takes the place of a function of the approach speed
+    by_speed = {key: function for key, function in problem.by_speed.items() if key != chosen}
+    problem = replace(problem, by_speed=by_speed)
     given = np.array([float(getattr(law, chosen)) for law in laws])
-    start = _start(float(given[0]), told["example"])
 
     def respond(speeds: Floats, values: Floats, which: Indices) -> dict[str, Floats]:
         law = batched_law(laws, int(which.max()) + 1)
         return single_impacts(problem, law.take(which).changed({chosen: values}), speeds)
 
     def drop(values: Floats) -> Problem:
-        number = max(len(values), len(laws))
-        return replace(
-            problem,
-            laws=tuple(
-                _law(laws, impact).changed({chosen: _at(values, impact)})
-                for impact in range(number)
-            ),
+        changed_laws = tuple(
+            _law(laws, impact).changed({chosen: _value(values, impact)})
+            for impact in range(max(len(values), len(laws)))
         )
+        return replace(problem, laws=changed_laws)
 
-    unit = unit_of(known[chosen], getattr(first, "exponent", 1.0))
-    allowed: Range = told["range"]
+    allowed: Range = field.metadata["range"]
     damps = (
         chosen == first.free_parameter
         and allowed.at_least == 0.0
         and not np.isfinite(allowed.at_most)
     )
-    return Tunable(chosen, unit, allowed, float(start), given, respond, drop, damps)
+    return Tunable(
+        name=chosen,
+        unit=unit_of(field, getattr(first, "exponent", 1.0)),
+        allowed=allowed,
+        start=float(_start(float(given[0]), field.metadata["example"])),
+        given=given,
+        respond=respond,
+        drop=drop,
+        damps=damps,
+    )
+
+
+def _chosen_field(law: ContactLaw, name: str | None) -> Field[Any]:
+    """Return the field of a law that is tuned, by default that of its free parameter.
+
+    Raises
+    ------
+    InputError
+        If the law has no such parameter, or gives another one in its place.
+    """
+    parameters = {field.name: field for field in fields(law) if not field.metadata["memory"]}
+    known = {key: field for key, field in parameters.items() if getattr(law, key) is not None}
+    if name is None and law.free_parameter is None:
+        raise InputError(
+            f"{law.name} has no loss parameter; name another law, or, to match something other "
+            f"than the rebound, one of {', '.join(known)}",
+            "parameter",
+        )
+    chosen = name or str(law.free_parameter)
+    if chosen in known:
+        return known[chosen]
+    if chosen in parameters:
+        raise InputError(
+            f"the case gives no {chosen} of {law.name}, in whose place it gives another "
+            f"parameter; give {chosen} alone, or tune one of {', '.join(known)}",
+            "parameter",
+        )
+    raise InputError(
+        f'{law.name} has no parameter "{chosen}"; it has {choices(known, chosen)}', "parameter"
+    )
 
 
 def modal_damping(problem: Problem, body: Literal["sphere", "plate"]) -> Tunable:
@@ -135,51 +148,60 @@ def modal_damping(problem: Problem, body: Literal["sphere", "plate"]) -> Tunable
     >>> vi.modal_damping(problem, "sphere").given.tolist()
     [0.02]
     """
-    modes = getattr(problem, body).modes
+    modal_body = getattr(problem, body)
+    modes = modal_body.modes
     if modes is None:
         raise InputError(
             f'the {body} is rigid and has no modes to damp; give it model = "elastic"', "parameter"
         )
 
     def damped(ratio: float) -> Problem:
+        # rigid motions have no damping
         ratios = np.where(modes.frequencies > 0.0, ratio, 0.0)
-        return replace(
-            problem,
-            **{body: replace(getattr(problem, body), modes=replace(modes, damping_ratios=ratios))},
-        )
+        damped_modes = replace(modes, damping_ratios=ratios)
+        return replace(problem, **{body: replace(modal_body, modes=damped_modes)})
 
     def respond(speeds: Floats, values: Floats, which: Indices) -> dict[str, Floats]:
-        each = [
-            single_impacts(damped(float(value)), _law(problem.laws, int(impact)), np.array([speed]))
-            for speed, value, impact in zip(speeds, values, which, strict=True)
-        ]
-        return {name: np.concatenate([one[name] for one in each]) for name in each[0]}
+        # other modes for each value: no batch
+        impacts = []
+        for speed, value, impact in zip(speeds, values, which, strict=True):
+            law = _law(problem.laws, int(impact))
+            impacts.append(single_impacts(damped(float(value)), law, np.array([speed])))
+        return {
+            name: np.concatenate([outcomes[name] for outcomes in impacts]) for name in impacts[0]
+        }
+
+    def drop(values: Floats) -> Problem:
+        return damped(float(values[0]))
 
     ratios = np.unique(modes.damping_ratios[modes.frequencies > 0.0])
     given = np.array([ratios[0] if len(ratios) == 1 else np.nan])
     start = float(given[0]) if given[0] > 0.0 else _MODAL_START
     return Tunable(
-        f"{body}.damping",
-        "",
-        Range(at_least=0, at_most=10),
-        start,
-        given,
-        respond,
-        lambda values: damped(float(values[0])),
+        name=f"{body}.damping",
+        unit="",
+        allowed=Range(at_least=0, at_most=10),
+        start=start,
+        given=given,
+        respond=respond,
+        drop=drop,
     )
 
 
 def _law(laws: tuple[ContactLaw, ...], impact: int) -> ContactLaw:
+    """Return the law of an impact; the last one holds for all further impacts."""
     return laws[min(impact, len(laws) - 1)]
 
 
-def _at(values: Floats, impact: int) -> float:
+def _value(values: Floats, impact: int) -> float:
+    """Return the value of an impact; the last one holds for all further impacts."""
     return float(values[min(impact, len(values) - 1)])
 
 
 def _start(given: float, example: float | None) -> float:
-    """Return the value at which a search begins: the given one, unless it is zero or out
-    of proportion.
+    """Return the value at which a search begins.
+
+    It is the given one, unless that is zero or out of proportion.
     """
     if not example:
         return given or 1.0

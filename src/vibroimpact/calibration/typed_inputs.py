@@ -1,5 +1,6 @@
-"""What the uncertainty of the numbers of a case, such as the height of fall, changes in a
-measurement and in the impacts that match it.
+"""What the uncertainty of the numbers of a case, such as the height of fall, changes.
+
+It changes a measurement, and the impacts that match it.
 """
 
 from __future__ import annotations
@@ -40,9 +41,7 @@ _STEP = 1e-4
 
 
 class Moved(NamedTuple):
-    """An input, a step from its value in SI, and the measurement and the impacts with the
-    value after the step.
-    """
+    """An input, a step from its value in SI, and measurement and impacts after the step."""
 
     typed: Input
     step: float
@@ -51,8 +50,7 @@ class Moved(NamedTuple):
 
 
 def typed_inputs(case: Case) -> list[Input]:
-    """Return the numbers of a case that evaluate a measurement, by their keys; not those that are
-    exact.
+    """Return the numbers of a case that evaluate a measurement, except those that are exact.
 
     Examples
     --------
@@ -60,7 +58,7 @@ def typed_inputs(case: Case) -> list[Input]:
     >>> case = vi.load_case(
     ...     "paper:type1-theory", {"drop.height": "4 m +- 1 cm", "sphere.radius": "25.0 mm +- 0"}
     ... )
-    >>> [(one.name, round(one.value.deviation, 5)) for one in typed_inputs(case)]
+    >>> [(typed.name, round(typed.value.deviation, 5)) for typed in typed_inputs(case)]
     [('drop.height', 0.01), ('drop.gravity', 0.02887), ('sphere.material.density', 13.8)]
     """
     inputs = []
@@ -93,19 +91,20 @@ def moved_inputs(
         If the measurement can't be evaluated a little above the number nor below it; the message is
         that of the evaluation.
     """
-    found = []
-    for one in typed_inputs(case):
-        for step in (_STEP * one.value, -_STEP * one.value):
+    steps = []
+    for typed in typed_inputs(case):
+        # a little above the number, or if it can't be evaluated there, below it
+        for step in (_STEP * typed.value, -_STEP * typed.value):
             try:
-                moved, tunable = evaluated(_with_number(case, one.name, one.value + step))
+                moved, tunable = evaluated(_with_number(case, typed.name, typed.value + step))
             except InputError:
                 if step < 0.0:
                     raise
                 continue
             if len(moved.speeds) == len(seen.speeds):
-                found.append(Moved(one, step, moved, tunable))
+                steps.append(Moved(typed, step, moved, tunable))
                 break
-    return found
+    return steps
 
 
 def effects_of(
@@ -115,8 +114,7 @@ def effects_of(
     weights: Mapping[str, float],
     values: Floats,
 ) -> Effects | None:
-    """Return what one standard deviation of each input changes; None if there are none that change
-    anything.
+    """Return what one standard deviation of each input changes; None if nothing changes.
 
     Parameters
     ----------
@@ -131,44 +129,49 @@ def effects_of(
     values : array, shape (n,)
         The values of the parameter.
     """
-    at = np.where(np.isfinite(values), values, tunable.start)
-    computed = tunable.respond(seen.speeds, at, seen.which) if moved else {}
-    inputs, speeds = [], []
-    wanted: dict[str, list[Floats]] = {name: [] for name in weights}
-    for typed, step, other, changed in moved:
-        per = typed.value.deviation / step
-        faster = per * (other.speeds - seen.speeds)
-        computes = changed.respond(seen.speeds, at, seen.which)
-        more = {
-            name: per * (other.wanted[name] - seen.wanted[name] - computes[name] + computed[name])
+    values = np.where(np.isfinite(values), values, tunable.start)
+    computed = tunable.respond(seen.speeds, values, seen.which) if moved else {}
+    inputs = []
+    speed_effects = []
+    wanted_effects: dict[str, list[Floats]] = {name: [] for name in weights}
+    for typed, step, moved_seen, moved_tunable in moved:
+        deviations_per_step = typed.value.deviation / step
+        speed_effect = deviations_per_step * (moved_seen.speeds - seen.speeds)
+        moved_computed = moved_tunable.respond(seen.speeds, values, seen.which)
+        # of the targets beyond that of the computed quantities
+        effects = {
+            name: deviations_per_step
+            * (moved_seen.wanted[name] - seen.wanted[name] - moved_computed[name] + computed[name])
             for name in weights
         }
-        if np.any(faster) or any(np.any(part) for part in more.values()):
+        if np.any(speed_effect) or any(np.any(effect) for effect in effects.values()):
             inputs.append(typed)
-            speeds.append(faster)
-            for name, part in more.items():
-                wanted[name].append(part)
+            speed_effects.append(speed_effect)
+            for name, effect in effects.items():
+                wanted_effects[name].append(effect)
     if not inputs:
         return None
     return Effects(
-        tuple(inputs),
-        np.stack(speeds, axis=1),
-        {name: np.stack(parts, axis=1) for name, parts in wanted.items()},
+        inputs=tuple(inputs),
+        speeds=np.stack(speed_effects, axis=1),
+        wanted={name: np.stack(effects, axis=1) for name, effects in wanted_effects.items()},
     )
 
 
 def _number(case: Case, key: str) -> float | None:
-    """Return a number of a case with its standard deviation, a plain number if it is
-    exact, and None if there is none.
+    """Return a number of a case with its standard deviation, None if there is none.
+
+    It is a plain number if it is exact.
     """
-    section, *way = key.split(".")
+    section, field, *_ = key.split(".")
     body = getattr(case, section)
-    value: float | None = body.material.density if way[0] == "material" else getattr(body, way[0])
+    of_material = field == "material"
+    value: float | None = body.material.density if of_material else getattr(body, field)
     if value is None or (isinstance(value, Written) and value.stated):
         return value
     if key == "drop.gravity" and value == STANDARD_GRAVITY:
         return EARTH
-    if way[0] == "material" and body.material.name in material_library():
+    if of_material and body.material.name in material_library():
         name = body.material.name
         return Written(
             value, _NAMED * value, name, stated=False, why=f"as of a material by its name, {name}"
@@ -178,11 +181,9 @@ def _number(case: Case, key: str) -> float | None:
 
 def _with_number(case: Case, key: str, value: float) -> Case:
     """Return a case with another number at a key."""
-    section, *way = key.split(".")
+    section, field, *_ = key.split(".")
     body = getattr(case, section)
-    changed = (
-        {"material": replace(body.material, density=value)}
-        if way[0] == "material"
-        else {way[0]: value}
-    )
-    return case.model_copy(update={section: body.model_copy(update=changed)})
+    changes = {field: value}
+    if field == "material":
+        changes = {"material": replace(body.material, density=value)}
+    return case.model_copy(update={section: body.model_copy(update=changes)})

@@ -1,3 +1,4 @@
-"""Test-analysis correlation: records of an impact or of a hammer beside the simulation of
-the case, and the modes of both.
+"""Test-analysis correlation: records of an impact or of a hammer beside the simulation.
+
+The modes of both are compared, too.
 """

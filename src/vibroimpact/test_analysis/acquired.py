@@ -1,6 +1,4 @@
-"""Records of a test: the motion of sensors and, if it was measured, the force of the
-hammer, hit by hit.
-"""
+"""Records of a test: the motion of sensors and, if measured, the force of the hammer by hits."""
 
 from __future__ import annotations
 
@@ -22,12 +20,15 @@ from vibroimpact.signals.record import Record, Removed
 
 _SAME_HIT = 0.05
 """Pulses of force that follow each other within so long are one hit [s]."""
+
 _APART = 5e-4
 """Pulses of force that are further apart than so long are two [s]."""
+
 _DRIFT = 0.1
-"""Samples by which records of one rate may drift apart until their end, as rates differ
-by rounding.
+"""Samples by which records of one rate may drift apart until their end, as rates differ by
+rounding.
 """
+
 LEAD = HALF_LENGTH + 1
 """Samples before an onset that belong to it: as early as a converter's filter lets it be heard."""
 
@@ -76,13 +77,15 @@ class Acquired:
 
     @property
     def pulse_times(self) -> Floats:
-        """Begin and end of each pulse of force, after the first sample, with what a
-        converter's filter spreads of it, (pulses, 2) [s].
+        """Begin and end of each pulse of force, after the first sample, (pulses, 2) [s].
+
+        They include what a converter's filter spreads of it, up to the middle between two pulses.
         """
-        pulses = np.array(self.pulses, dtype=float).reshape(-1, 2)
-        room = np.minimum(LEAD, 0.5 * (pulses[1:, 0] - pulses[:-1, 1]))
-        before, after = np.append(LEAD, room), np.append(room, LEAD)
-        return np.stack([pulses[:, 0] - before, pulses[:, 1] + after], axis=1) / self.rate
+        first, last = np.array(self.pulses, dtype=float).reshape(-1, 2).T
+        spread_between = np.minimum(LEAD, 0.5 * (first[1:] - last[:-1]))
+        begins = first - np.append(LEAD, spread_between)
+        ends = last + np.append(spread_between, LEAD)
+        return np.stack([begins, ends], axis=1) / self.rate
 
     @property
     def passed(self) -> float:
@@ -110,67 +113,101 @@ def acquired_of(
         If there is no record, no sensor of its name, its unit is another, rates differ, records do
         not overlap in time, one is constant or not finite, or the force is not one.
     """
-    every = [*records, *([] if force is None else [force])]
-    for one in every:
-        if abs(one.rate / every[0].rate - 1.0) * len(one.value) > _DRIFT:
-            words = (
-                f"the record {quoted(one.name)} has {one.rate:.9g} samples per second, and "
-                f"{quoted(every[0].name)} {every[0].rate:.9g}"
-            )
-            raise InputError(f"{words}; give records of one acquisition, or resample one of them")
-        if not np.isfinite(one.value).all():
-            raise InputError(
-                f"a sample of the record {quoted(one.name)} is not a finite "
-                "number; give it without gaps"
-            )
-    rate = every[0].rate if every else 1.0
-    every = [without_baseline(replace(one, rate=rate)) for one in every]
-    used = sensors_of([replace(sensor, rate=rate) for sensor in sensors], every[: len(records)])
+    all_records = list(records) if force is None else [*records, force]
+    _check_samples(all_records)
+    rate = all_records[0].rate if all_records else 1.0
+    # one rate for all, and no baselines
+    all_records = [without_baseline(replace(record, rate=rate)) for record in all_records]
+    used_sensors = sensors_of(
+        [replace(sensor, rate=rate) for sensor in sensors], all_records[: len(records)]
+    )
     if force is not None and force.unit != "N":
         unit = "has no unit" if force.unit in ("", "1") else f"is in {force.unit}"
         raise InputError(f"the record {quoted(force.name)} {unit}; the force of a hammer is in N")
-    whole, start = on_common_time(every)
-    if whole.shape[1] < 2 * LEAD:
-        words = (
-            f"the records have {whole.shape[1]} sample{'' if whole.shape[1] == 1 else 's'} in "
-            "common"
-        )
-        remedy = "give longer records that overlap in time"
-        if len(every) == 1:
-            words, remedy = (
-                f"the record {quoted(every[0].name)} has {whole.shape[1]} samples",
-                "give a longer one",
+    samples, start = on_common_time(all_records)
+    _check_length(all_records, samples.shape[1])
+    for record, values in zip(all_records, samples, strict=True):
+        if np.ptp(values) == 0.0:
+            where = " where it overlaps with the others" if len(all_records) > 1 else ""
+            raise InputError(
+                f"the record {quoted(record.name)} is constant{where}; it has no onset"
             )
-        raise InputError(f"{words}, and {2 * LEAD} are needed; {remedy}")
-    for one, value in zip(every, whole, strict=True):
-        if np.ptp(value) == 0.0:
-            where = " where it overlaps with the others" if len(every) > 1 else ""
-            raise InputError(f"the record {quoted(one.name)} is constant{where}; it has no onset")
     recorded, _ = on_common_time(
-        [one if one.recorded is None else replace(one, value=one.recorded) for one in every]
+        [
+            record if record.recorded is None else replace(record, value=record.recorded)
+            for record in all_records
+        ]
     )
-    removed = tuple(one.removed or Removed(0.0, 0.0) for one in every)
-    value = whole[: len(records)]
+    removed = tuple(record.removed or Removed(0.0, 0.0) for record in all_records)
+    motion = samples[: len(records)]
     if force is None:
         onset = min(
-            onset_time(Record(one.name, part, rate, one.unit, removed=one.removed))
-            for one, part in zip(every, value, strict=True)
+            onset_time(Record(record.name, values, rate, record.unit, removed=record.removed))
+            for record, values in zip(all_records, motion, strict=True)
         )
-        return Acquired(used, value, None, start, (round(onset * rate),), (), (), recorded, removed)
-    push = whole[-1]
+        return Acquired(
+            sensors=used_sensors,
+            value=motion,
+            force=None,
+            start=start,
+            onsets=(round(onset * rate),),
+            ends=(),
+            pulses=(),
+            recorded=recorded,
+            removed=removed,
+        )
+    force_samples = samples[-1]
     hits = find_packets(
-        Record(force.name, push, rate, "N", removed=removed[-1]), dead_time=_SAME_HIT
+        Record(force.name, force_samples, rate, "N", removed=removed[-1]), dead_time=_SAME_HIT
     )
-    onsets, ends = (tuple(part.tolist()) for part in (hits.first, hits.last))
-    return Acquired(used, value, push, start, onsets, ends, _pulses(push, rate), recorded, removed)
+    return Acquired(
+        sensors=used_sensors,
+        value=motion,
+        force=force_samples,
+        start=start,
+        onsets=tuple(hits.first.tolist()),
+        ends=tuple(hits.last.tolist()),
+        pulses=_pulses(force_samples, rate),
+        recorded=recorded,
+        removed=removed,
+    )
+
+
+def _check_samples(records: Sequence[Record]) -> None:
+    """Check that records have one rate, and finite samples."""
+    for record in records:
+        first = records[0]
+        if abs(record.rate / first.rate - 1.0) * len(record.value) > _DRIFT:
+            raise InputError(
+                f"the record {quoted(record.name)} has {record.rate:.9g} samples per second, and "
+                f"{quoted(first.name)} {first.rate:.9g}; give records of one acquisition, or "
+                "resample one of them"
+            )
+        if not np.isfinite(record.value).all():
+            raise InputError(
+                f"a sample of the record {quoted(record.name)} is not a finite "
+                "number; give it without gaps"
+            )
+
+
+def _check_length(records: Sequence[Record], sample_count: int) -> None:
+    """Check that records have enough samples in common."""
+    if sample_count >= 2 * LEAD:
+        return
+    if len(records) == 1:
+        have = f"the record {quoted(records[0].name)} has {sample_count} samples"
+        remedy = "give a longer one"
+    else:
+        have = f"the records have {sample_count} sample{'' if sample_count == 1 else 's'} in common"
+        remedy = "give longer records that overlap in time"
+    raise InputError(f"{have}, and {2 * LEAD} are needed; {remedy}")
 
 
 def _pulses(force: Floats, rate: float) -> tuple[tuple[int, int], ...]:
-    """Return the first and the last sample of each pulse of a force, where it is above a tenth of
-    its largest.
+    """Return the first and the last sample of each pulse of a force.
 
-    The envelope, by which hits are found, falls so slowly beside a pulse that it joins pulses which
-    are near.
+    A pulse is where the force is above a tenth of its largest. The envelope, by which hits are
+    found, falls so slowly beside a pulse that it joins pulses which are near.
     """
     high = np.flatnonzero(np.abs(force) >= THRESHOLD * np.abs(force).max())
     gaps = np.flatnonzero(np.diff(high) > max(1.0, _APART * rate))

@@ -1,5 +1,6 @@
-"""What of the files of a test is compared: their records over time, or their frequency
-responses. A universal file may have both.
+"""What of the files of a test is compared: their records over time, or frequency responses.
+
+A universal file may have both.
 """
 
 from __future__ import annotations
@@ -18,9 +19,7 @@ KINDS = ("records", "responses")
 
 
 class Compared(NamedTuple):
-    """What is compared, one of `KINDS`, and what is said of the rest, sentences without
-    full stops.
-    """
+    """What is compared, one of `KINDS`, and sentences about the rest without full stops."""
 
     kind: str
     remarks: tuple[str, ...]
@@ -55,35 +54,41 @@ def compared_kind(
         raise InputError(
             f"{quoted(asked)} can't be compared; there are {choices(KINDS, asked)}", "--compare"
         )
-    every = [(path, contents_of(path)) for path in paths]
-    records = [path for path, one in every if not one.responses]
-    responses = [path for path, one in every if one.responses and not one.records]
-    if asked is None and records and responses:
-        words = f"{responses[0]} has frequency responses, and {records[0]} records over time"
-        raise InputError(f"{words}; compare them one after the other")
-    kind = asked or _kind(every, hammer, windowed=windowed)
-    lacking = responses if kind == "records" else records
+    contents = {path: contents_of(path) for path in paths}
+    only_records = [path for path in paths if not contents[path].responses]
+    only_responses = [
+        path for path in paths if contents[path].responses and not contents[path].records
+    ]
+    if asked is None and only_records and only_responses:
+        raise InputError(
+            f"{only_responses[0]} has frequency responses, and {only_records[0]} records over "
+            "time; compare them one after the other"
+        )
+    kind = asked or _default_kind(list(contents.values()), hammer, windowed=windowed)
+    lacking = only_responses if kind == "records" else only_records
     if lacking:
         has = "no record over time" if kind == "records" else "no frequency response"
         raise InputError(f"{lacking[0]} has {has}; leave it out", "--compare" if asked else "")
-    return Compared(
-        kind,
-        tuple(_remark(path, one, kind) for path, one in every if one.records and one.responses),
-    )
+    remarks = [
+        _remark(path, contents[path], kind)
+        for path in paths
+        if contents[path].records and contents[path].responses
+    ]
+    return Compared(kind, tuple(remarks))
 
 
-def _kind(
-    every: Sequence[tuple[str | Path, Contents]], hammer: str | None, *, windowed: bool
-) -> str:
-    """Return what is compared where nothing is asked for."""
-    if not any(one.responses for _, one in every):
+def _default_kind(contents: Sequence[Contents], hammer: str | None, *, windowed: bool) -> str:
+    """Return what is compared where nothing is asked for, of the contents of all files."""
+    if not any(file.responses for file in contents):
         return "records"
-    if not any(one.records for _, one in every):
+    if not any(file.records for file in contents):
         return "responses"
-    alone = any(not one.responses for _, one in every)
-    channels = () if hammer is None else (hammer, name_and_unit(hammer)[0])
-    named = any(channel in one.records for _, one in every for channel in channels)
-    return "records" if alone or windowed or named else "responses"
+    a_file_has_records_alone = any(not file.responses for file in contents)
+    hammer_names = () if hammer is None else (hammer, name_and_unit(hammer)[0])
+    hammer_is_recorded = any(name in file.records for file in contents for name in hammer_names)
+    if a_file_has_records_alone or windowed or hammer_is_recorded:
+        return "records"
+    return "responses"
 
 
 def _remark(path: str | Path, contents: Contents, kind: str) -> str:
@@ -95,5 +100,5 @@ def _remark(path: str | Path, contents: Contents, kind: str) -> str:
     return f"{path} has {records} and {responses}: the {kind} are compared, and the {other} {how}"
 
 
-def _counted(number: int, one: str, several: str) -> str:
-    return f"{number} {one if number == 1 else several}"
+def _counted(count: int, singular: str, plural: str) -> str:
+    return f"{count} {singular if count == 1 else plural}"

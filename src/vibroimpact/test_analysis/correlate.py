@@ -29,13 +29,17 @@ from vibroimpact.test_analysis.doubts import doubts_about
 from vibroimpact.test_analysis.excitation import Excited, force_ends, is_excited
 from vibroimpact.test_analysis.mode_pairs import ModePair, pairs_of
 from vibroimpact.test_analysis.octaves import frac_of_octaves, octaves_of
-from vibroimpact.test_analysis.shared_differences import doubts_of_differences, shared_differences
+from vibroimpact.test_analysis.shared_differences import (
+    SharedDifferences,
+    doubts_of_differences,
+    shared_differences,
+)
 from vibroimpact.test_analysis.simulated import (
-    Listening,
-    Pushes,
-    listening,
+    ForceImpulses,
+    ImpulseResponses,
+    impact_force,
+    impulse_responses,
     plate_problem,
-    pushes_of_impact,
 )
 
 
@@ -175,8 +179,9 @@ def correlate(
     band: tuple[float, float] | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> Correlation:
-    r"""Compare records of a test with the simulation of a case: overlay, residual, frequency
-    responses, and the modes of both.
+    r"""Compare records of a test with the simulation of a case.
+
+    Compared are the signals, the frequency responses, and the modes of both.
 
     Parameters
     ----------
@@ -239,135 +244,166 @@ def correlate(
     (True, 1.0)
     """
     problem = plate_problem(case, progress)
-    records, force = (
-        [without_baseline(one) for one in records],
-        None if force is None else without_baseline(force),
-    )
+    records = [without_baseline(record) for record in records]
+    if force is not None:
+        force = without_baseline(force)
     acquired = acquired_of(problem.sensors, records, force)
+    rate = acquired.rate
+    sample_count = acquired.value.shape[1]
     sought = _band(problem, acquired, band)
-    rate, samples = acquired.rate, acquired.value.shape[1]
-    hears = listening(problem, acquired.sensors, samples)
-    acting = _acting(problem, acquired, hears, window)
-    ends = force_ends(acting.pushes, sought[1])
-    used = (
-        (sought[0], ends)
-        if band is None and ends is not None and is_excited(sought, ends)
-        else sought
-    )
-    heard = _heard(hears, acquired, acting, used)
-    delay, simulated = heard.delay, heard.value
-    value = delay.polarity[:, None] * acquired.value
-    touch = acting.about + delay.time if acquired.force is None else acquired.onsets[0] / rate
-    onsets = acquired.onsets if acquired.force is not None else (max(0, round(touch * rate)),)
-    pieces = _pieces(onsets, int(acting.length * rate), samples)
-    measured_response, coherence = _responses(value, acquired.force, pieces)
-    frequency = np.arange(measured_response.shape[1]) * rate / (pieces[0].stop - pieces[0].start)
-    inside = (frequency >= used[0]) & (frequency <= used[1])
-    measured_response = measured_response[:, inside]
-    pairs = pairs_of(
-        problem, acquired.sensors, _decays(acquired, value, pieces, acting.over, sought), sought
-    )
+    responses = impulse_responses(problem, acquired.sensors, sample_count)
+    acting = _acting_force(problem, acquired, responses, window)
+    ends = force_ends(acting.force, sought[1])
+    compared = sought
+    if band is None and ends is not None and is_excited(sought, ends):
+        compared = (sought[0], ends)
+    plain = _simulation(responses, acquired, acting, compared)
+    delay = plain.delay
+    measured = delay.polarity[:, None] * acquired.value
+    onsets = acquired.onsets
+    if acquired.force is None:
+        first_touch = acting.start + delay.time
+        onsets = (max(0, round(first_touch * rate)),)
+    else:
+        first_touch = onsets[0] / rate
+    pieces = _pieces(onsets, int(acting.length * rate), sample_count)
+    decays = _decays(acquired, measured, pieces, acting.end, sought)
+    pairs = pairs_of(problem, acquired.sensors, decays, sought)
     differences = shared_differences(pairs)
-    as_scaled = differences.scaled(problem)
-    as_damped = differences.damped(as_scaled)
-    scaled = (
-        heard
-        if as_scaled is problem
-        else _heard(listening(as_scaled, acquired.sensors, samples), acquired, acting, used)
-    )
-    damped = (
-        scaled
-        if as_damped is as_scaled
-        else _heard(listening(as_damped, acquired.sensors, samples), acquired, acting, used)
-    )
-    responses = [
-        _responses(one.value, acquired.force, pieces)[0][:, inside]
-        for one in (heard, scaled, damped)
-    ]
-    plain_frac, scaled_frac, damped_frac = (frac(measured_response, one) for one in responses)
-    octaves = octaves_of(used)
-    whole = [*records, *([] if force is None else [force])]
-    of_files = dict.fromkeys(doubt for record in whole for doubt in record.named_doubts)
+    scaled, damped = _corrected(plain, problem, differences, acquired, acting, compared)
+    measured_response, coherence = _responses(measured, acquired.force, pieces)
+    frequency = np.arange(measured_response.shape[1]) * rate / (pieces[0].stop - pieces[0].start)
+    inside = (frequency >= compared[0]) & (frequency <= compared[1])
+    frequency = frequency[inside]
+    measured_response = measured_response[:, inside]
+
+    def response_of(simulation: _Simulation) -> Complex:
+        return _responses(simulation.signals, acquired.force, pieces)[0][:, inside]
+
+    simulated_response = response_of(plain)
+    plain_frac = frac(measured_response, simulated_response)
+    scaled_frac = frac(measured_response, response_of(scaled))
+    damped_frac = frac(measured_response, response_of(damped))
+    octaves = octaves_of(compared)
     aligned = aligned_time(rate, acting.length)
-    of_test = doubts_about(
-        problem, acquired, delay, damped.delay, heard.skew, Excited(used, sought, ends), aligned
+    all_records = records if force is None else [*records, force]
+    doubts = (
+        *dict.fromkeys(doubt for record in all_records for doubt in record.named_doubts),
+        *doubts_of_differences(differences, plain_frac, scaled_frac, damped_frac),
+        *doubts_about(
+            problem,
+            acquired,
+            delay,
+            damped.delay,
+            plain.skew,
+            Excited(compared, sought, ends),
+            aligned,
+        ),
     )
     return Correlation(
         case=case,
         sensors=acquired.sensors,
-        band=used,
-        first_touch=acquired.start + touch,
-        delay=delay.time if acquired.force is not None else acquired.start + touch,
+        band=compared,
+        first_touch=acquired.start + first_touch,
+        delay=delay.time if acquired.force is not None else acquired.start + first_touch,
         polarity=delay.polarity,
         coefficient=delay.correlation,
-        time=np.arange(pieces[0].start, pieces[0].stop) / rate - touch,
-        measured=band_limited(value, rate, used)[:, pieces[0]],
-        simulated=band_limited(simulated, rate, used)[:, pieces[0]],
-        frequency=frequency[inside],
+        time=np.arange(pieces[0].start, pieces[0].stop) / rate - first_touch,
+        measured=band_limited(measured, rate, compared)[:, pieces[0]],
+        simulated=band_limited(plain.signals, rate, compared)[:, pieces[0]],
+        frequency=frequency,
         measured_response=measured_response,
-        simulated_response=responses[0],
+        simulated_response=simulated_response,
         coherence=None if coherence is None else coherence[:, inside],
         hits=len(pieces) if acquired.force is not None else 0,
         octaves=octaves,
         frac=plain_frac,
-        octave_frac=frac_of_octaves(octaves, frequency[inside], measured_response, responses[0]),
+        octave_frac=frac_of_octaves(octaves, frequency, measured_response, simulated_response),
         scaled_frac=scaled_frac,
         damped_frac=damped_frac,
         modes=pairs,
-        removed={one.name: part for one, part in zip(whole, acquired.removed, strict=True)},
-        skew=heard.skew,
-        doubts=(
-            *of_files,
-            *doubts_of_differences(differences, plain_frac, scaled_frac, damped_frac),
-            *of_test,
-        ),
+        removed={
+            record.name: baseline
+            for record, baseline in zip(all_records, acquired.removed, strict=True)
+        },
+        skew=plain.skew,
+        doubts=doubts,
         aligned=aligned,
     )
 
 
-class _Heard(NamedTuple):
-    """A simulation in the time of the records: how much later they are, as `delay_of`
-    returns it, and its samples, (S, samples).
+class _Simulation(NamedTuple):
+    """A simulation in the time of the records.
+
+    How much later the records are, as `delay_of` returns it, and its samples, (S, samples).
     """
 
     delay: Delay
     skew: Floats
-    value: Floats
+    signals: Floats
 
 
-def _heard(
-    hears: Listening, acquired: Acquired, acting: _Acting, band: tuple[float, float]
-) -> _Heard:
-    """Return what sensors hear of a force, aligned with the records within a band."""
-    delay, skew = delay_of(acquired, hears.to(acting.pushes, acting.about), band, acting.length)
-    return _Heard(delay, skew, hears.to(acting.pushes, acting.about + delay.time))
+def _simulation(
+    responses: ImpulseResponses,
+    acquired: Acquired,
+    acting: _ActingForce,
+    band: tuple[float, float],
+) -> _Simulation:
+    """Return the response to a force, aligned with the records within a band."""
+    unaligned = responses.signals(acting.force, acting.start)
+    delay, skew = delay_of(acquired, unaligned, band, acting.length)
+    return _Simulation(delay, skew, responses.signals(acting.force, acting.start + delay.time))
+
+
+def _corrected(
+    plain: _Simulation,
+    problem: Problem,
+    differences: SharedDifferences,
+    acquired: Acquired,
+    acting: _ActingForce,
+    band: tuple[float, float],
+) -> tuple[_Simulation, _Simulation]:
+    """Return simulations with frequencies as they were measured, and with the damping too.
+
+    `plain` is that of the problem itself, which is taken where nothing differs.
+    """
+
+    def simulation_of(changed: Problem) -> _Simulation:
+        responses = impulse_responses(changed, acquired.sensors, acquired.value.shape[1])
+        return _simulation(responses, acquired, acting, band)
+
+    scaled_problem = differences.scaled(problem)
+    damped_problem = differences.damped(scaled_problem)
+    scaled = plain if scaled_problem is problem else simulation_of(scaled_problem)
+    damped = scaled if damped_problem is scaled_problem else simulation_of(damped_problem)
+    return scaled, damped
 
 
 @dataclass(frozen=True)
-class _Acting:
+class _ActingForce:
     """The force that the simulation answers to.
 
     Parameters
     ----------
-    pushes : Pushes
+    force : ForceImpulses
         The force.
-    about : float
+    start : float
         About when its time begins, after the first sample of the records [s].
     length : float
         Time from the first touch on that is compared [s].
-    over : float
+    end : float
         When the force is over, after the first touch [s].
     """
 
-    pushes: Pushes
-    about: float
+    force: ForceImpulses
+    start: float
     length: float
-    over: float
+    end: float
 
 
-def _acting(
-    problem: Problem, acquired: Acquired, hears: Listening, window: float | None
-) -> _Acting:
+def _acting_force(
+    problem: Problem, acquired: Acquired, responses: ImpulseResponses, window: float | None
+) -> _ActingForce:
     """Return the force that was measured, or that of the case's impact.
 
     Raises
@@ -377,52 +413,88 @@ def _acting(
     """
     if window is not None and not window > 0.0:
         raise InputError(f"a window of {window:g} s is not allowed; it must be longer than 0 s")
-    rate = acquired.rate
-    length = min(np.inf if window is None else window, _longest(acquired))
     if acquired.force is None:
-        pushes = pushes_of_impact(problem, rate, length, 2 if window is None else None)
-        if window is None and len(pushes.contacts) > 1:
-            length = min(length, float(pushes.contacts[1, 0]) - HALF_LENGTH / rate)
-        pushes = replace(pushes, contacts=pushes.contacts[pushes.contacts[:, 0] < max(length, 0.0)])
-        over = float(pushes.contacts[:, 1].max(initial=0.0))
-        # both reach a tenth of their largest at the same time
-        reached = min(onset_time(Record("", one, rate, "")) for one in hears.to(pushes, 0.0))
-        acting = _Acting(pushes, acquired.onsets[0] / rate - reached, length, over)
+        acting = _simulated_force(problem, acquired, responses, window)
     else:
-        time = np.arange(len(acquired.force)) / rate
-        over = (
-            max(end - onset for end, onset in zip(acquired.ends, acquired.onsets, strict=True))
-            / rate
-        )
-        acting = _Acting(
-            Pushes(time, acquired.force / rate, acquired.pulse_times), 0.0, length, over
-        )
-    if length * rate < LEAST:
-        until, remedy = "to the next one, or to the end of the records", "give longer records"
-        if len(acquired.onsets) > 1:
-            remedy += ", or of hits that are further apart"
-        if window is not None and length == window:
-            until, remedy = f"within the window of {window:g} s", "give a longer one"
-        elif acquired.force is None:
-            remedy = "give longer records" if length == _longest(acquired) else "state a window"
-        words = f"there are {max(0, int(length * rate))} samples from the first touch on {until}"
-        raise InputError(
-            f"{words}; {LEAST} are needed, that is {1e3 * LEAST / rate:.3g} ms at {rate:g} "
-            f"Hz; {remedy}"
-        )
+        acting = _measured_force(acquired, acquired.force, window)
+    if acting.length * acquired.rate < LEAST:
+        raise InputError(_too_short(acquired, window, acting.length))
     return acting
 
 
+def _simulated_force(
+    problem: Problem, acquired: Acquired, responses: ImpulseResponses, window: float | None
+) -> _ActingForce:
+    """Return the contact force of the case's impact, and without a window up to the next one."""
+    rate = acquired.rate
+    length = _compared_length(acquired, window)
+    force = impact_force(problem, rate, length, impacts=2 if window is None else None)
+    if window is None and len(force.contacts) > 1:
+        second_touch = float(force.contacts[1, 0])
+        length = min(length, second_touch - HALF_LENGTH / rate)
+    begins = force.contacts[:, 0]
+    force = replace(force, contacts=force.contacts[begins < max(length, 0.0)])
+    # records and simulation reach a tenth of their largest at the same time
+    onset = min(
+        onset_time(Record("", signal, rate, "")) for signal in responses.signals(force, 0.0)
+    )
+    return _ActingForce(
+        force,
+        start=acquired.onsets[0] / rate - onset,
+        length=length,
+        end=float(force.contacts[:, 1].max(initial=0.0)),
+    )
+
+
+def _measured_force(acquired: Acquired, samples: Floats, window: float | None) -> _ActingForce:
+    """Return the force of the hammer, an impulse at each of its samples."""
+    rate = acquired.rate
+    time = np.arange(len(samples)) / rate
+    durations = [end - onset for end, onset in zip(acquired.ends, acquired.onsets, strict=True)]
+    return _ActingForce(
+        ForceImpulses(time, samples / rate, acquired.pulse_times),
+        start=0.0,
+        length=_compared_length(acquired, window),
+        end=max(durations) / rate,
+    )
+
+
+def _compared_length(acquired: Acquired, window: float | None) -> float:
+    """Return the time from the first touch on that is compared [s], as far as the records go."""
+    return min(np.inf if window is None else window, _longest(acquired))
+
+
+def _too_short(acquired: Acquired, window: float | None, length: float) -> str:
+    """Return the message that too few samples are compared, with a remedy."""
+    if window is not None and length == window:
+        until = f"within the window of {window:g} s"
+        remedy = "give a longer one"
+    else:
+        until = "to the next one, or to the end of the records"
+        remedy = "give longer records"
+        if acquired.force is None:
+            if length != _longest(acquired):
+                remedy = "state a window"
+        elif len(acquired.onsets) > 1:
+            remedy += ", or of hits that are further apart"
+    rate = acquired.rate
+    return (
+        f"there are {max(0, int(length * rate))} samples from the first touch on {until}; "
+        f"{LEAST} are needed, that is {1e3 * LEAST / rate:.3g} ms at {rate:g} Hz; {remedy}"
+    )
+
+
 def _pieces(onsets: Sequence[int], length: int, samples: int) -> list[slice]:
-    """Return what is compared of each hit: of equal lengths, so that hits too near to an
-    end of the records are left out.
+    """Return the samples that are compared of each hit.
+
+    They are of equal lengths, so that hits too near to an end of the records are left out.
     """
-    whole = [
+    complete = [
         slice(onset - LEAD, onset + length)
         for onset in onsets
         if onset >= LEAD and onset + length <= samples
     ]
-    return whole or [slice(max(0, onsets[0] - LEAD), min(samples, onsets[0] + length))]
+    return complete or [slice(max(0, onsets[0] - LEAD), min(samples, onsets[0] + length))]
 
 
 def _rms(value: Floats) -> Floats:
@@ -443,18 +515,17 @@ def _band(
     assert modes is not None  # `plate_problem` has seen to it
     if band is not None:
         if not 0.0 < band[0] < band[1] <= acquired.passed:
-            words = (
-                f"a band from {band[0]:g} to {band[1]:g} Hz is not allowed; it must rise from "
-                f"above 0 to at most {acquired.passed:g} Hz"
-            )
             raise InputError(
-                f"{words}, which the sensors pass at {acquired.rate:g} samples per second"
+                f"a band from {band[0]:g} to {band[1]:g} Hz is not allowed; it must rise from "
+                f"above 0 to at most {acquired.passed:g} Hz, which the sensors pass at "
+                f"{acquired.rate:g} samples per second"
             )
         return band
-    lowest, highest = float(modes.frequencies[0]), float(modes.frequencies[-1])
+    lowest = float(modes.frequencies[0])
+    highest = float(modes.frequencies[-1])
     if lowest >= acquired.passed:
-        held = any(sensor.corner == acquired.passed for sensor in acquired.sensors)
-        faster = "raise the corner of the anti-alias filter" if held else "sample faster"
+        by_filter = any(sensor.corner == acquired.passed for sensor in acquired.sensors)
+        faster = "raise the corner of the anti-alias filter" if by_filter else "sample faster"
         raise InputError(
             f"the lowest mode of the plate has {lowest:.5g} Hz, and the sensors pass "
             f"{acquired.passed:g} Hz; {faster}"
@@ -463,20 +534,23 @@ def _band(
 
 
 def _longest(acquired: Acquired) -> float:
-    """Return the time that every hit has before the next one, or the end of the records
-    [s]; a last one with less than half is left out.
+    """Return the time that every hit has before the next one, or the end of the records [s].
+
+    A last one with less than half is left out.
     """
-    gaps = [after - onset - LEAD for onset, after in itertools.pairwise(acquired.onsets)]
+    gaps = [next_onset - onset - LEAD for onset, next_onset in itertools.pairwise(acquired.onsets)]
     last = acquired.value.shape[1] - acquired.onsets[-1]
     shortest = min(gaps, default=last)
-    return (last if 0.5 * shortest <= last < shortest else shortest) / acquired.rate
+    last_is_shorter = 0.5 * shortest <= last < shortest
+    return (last if last_is_shorter else shortest) / acquired.rate
 
 
 def _responses(
     value: Floats, force: Floats | None, pieces: Sequence[slice]
 ) -> tuple[Complex, Floats | None]:
-    """Return frequency responses and their coherence from the pieces of a record; of a
-    record without a force the spectrum of the first.
+    """Return frequency responses of records and their coherence from the pieces of each hit.
+
+    Without a force they are the spectra of the first piece. With one hit there is no coherence.
     """
     samples = pieces[0].stop - pieces[0].start
     # keeps the onset, and fades the end
@@ -484,30 +558,29 @@ def _responses(
     spectra = np.stack([fft.rfft(window * value[:, piece]) for piece in pieces])
     if force is None:
         return spectra[0] * 2.0 / window.sum(), None
-    push = np.stack([fft.rfft(window * force[piece]) for piece in pieces])[:, None]
-    cross, power = (spectra * push.conj()).sum(axis=0), (np.abs(push) ** 2).sum(axis=0)
-    response = cross / np.maximum(power, 1e-300)
+    force_spectra = np.stack([fft.rfft(window * force[piece]) for piece in pieces])[:, None]
+    # the sums over the hits estimate the spectral densities S_aF, S_FF and S_aa
+    cross = (spectra * force_spectra.conj()).sum(axis=0)
+    force_power = (np.abs(force_spectra) ** 2).sum(axis=0)
+    response = cross / np.maximum(force_power, 1e-300)  # H_1
     if len(pieces) == 1:
         return response, None
-    return response, np.abs(cross) ** 2 / np.maximum(
-        power * (np.abs(spectra) ** 2).sum(axis=0), 1e-300
-    )
+    powers = force_power * (np.abs(spectra) ** 2).sum(axis=0)
+    return response, np.abs(cross) ** 2 / np.maximum(powers, 1e-300)
 
 
 def _decays(
     acquired: Acquired,
     value: Floats,
     pieces: Sequence[slice],
-    over: float,
+    force_end: float,
     band: tuple[float, float],
 ) -> Sequence[DecayMode]:
-    """Return the modes in the free decay of records: from the end of the force on."""
-    after = LEAD + int(np.ceil(over * acquired.rate)) + HALF_LENGTH + 1
-    free = [
-        Record(sensor.name, part, acquired.rate, sensor.unit)
-        for piece in pieces
-        for sensor, part in zip(
-            acquired.sensors, value[:, piece.start + after : piece.stop], strict=True
-        )
-    ]
-    return modes_in_decay(free, band)
+    """Return the modes in the free decay of records, from the end of the force on [s]."""
+    skipped = LEAD + int(np.ceil(force_end * acquired.rate)) + HALF_LENGTH + 1
+    decays = []
+    for piece in pieces:
+        free = value[:, piece.start + skipped : piece.stop]
+        for sensor, signal in zip(acquired.sensors, free, strict=True):
+            decays.append(Record(sensor.name, signal, acquired.rate, sensor.unit))
+    return modes_in_decay(decays, band)

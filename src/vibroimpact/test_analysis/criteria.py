@@ -1,5 +1,6 @@
-"""What correlations of records and of frequency responses have in common: criteria over
-octaves, and modes.
+"""What correlations of records and of frequency responses have in common.
+
+They are the criteria over octaves, and the modes.
 """
 
 from __future__ import annotations

@@ -16,11 +16,14 @@ from vibroimpact.test_analysis.excitation import Excited, is_excited
 
 _ALIKE = 0.7
 """Correlation coefficient below which the delay may be off by a period."""
+
 _TOGETHER = 0.5
 """Delay behind a force of the same acquisition that is none, in samples."""
-_GAIN, _GAIN_ALIKE = 0.05, 0.95
-"""Logarithm of a gain from which on it is doubted, and the correlation coefficient from
-which on it is one.
+
+_GAIN = 0.05
+_GAIN_ALIKE = 0.95
+"""Logarithm of a gain from which on it is doubted, and the correlation coefficient from which on
+it is one.
 """
 
 
@@ -52,50 +55,10 @@ def doubts_about(
     aligned : float
         Time from the first touch on by which they were aligned [s].
     """
-    early = f"in the first {1e3 * aligned:.3g} ms"
-    rates = {
-        sensor.rate
-        for sensor in problem.sensors
-        if sensor.name in {one.name for one in acquired.sensors}
-    } - {acquired.rate}
-    if rates:
-        others = ", ".join(f"{rate:g}" for rate in sorted(rates))
-        words = "it was simulated at the rate of the records"
-        yield (
-            f"the records have {acquired.rate:g} samples per second, and the case specifies "
-            f"{others}: {words}"
-        )
-    of_sensors = acquired.recorded[: len(acquired.sensors)]
-    parts = zip(
-        acquired.sensors, acquired.value, of_sensors, delay.polarity, delay.correlation, strict=True
-    )
-    for sensor, value, recorded, sign, alike in parts:
-        name = quoted(sensor.name)
-        if sign < 0.0:
-            yield f"the record {name} has inverted polarity; its sign is changed"
-        if alike < _ALIKE:
-            words = (
-                f"the first {1e3 * aligned:.3g} ms of {name} and of its simulation differ "
-                f"(correlation {alike:.2f})"
-            )
-            yield f"{words}: the delay may be wrong by a period"
-        suffers = (
-            "its FRAC and residual suffer, and its damping if it is clipped after "
-            "the end of the force"
-        )
-        yield from _clipped(f"the record {name}", value, recorded, acquired.onsets[0], suffers)
-    for sensor, late in zip(acquired.sensors, skew, strict=True):
-        if late:
-            words = (
-                f"{abs(late) * acquired.rate:.3g} samples "
-                f"{'later' if late > 0.0 else 'earlier'} than the others and its simulation"
-            )
-            cause = "its channel may not have been sampled with theirs, or it passed another filter"
-            yield (
-                f"the record {quoted(sensor.name)} comes {words}: {cause}; its FRAC and "
-                "residual suffer"
-            )
-    yield from _of_gains(acquired, corrected, early)
+    yield from _of_rates(problem, acquired)
+    yield from _of_records(acquired, delay, aligned)
+    yield from _of_skew(acquired, skew)
+    yield from _of_gains(acquired, corrected, f"in the first {1e3 * aligned:.3g} ms")
     if acquired.force is not None:
         yield from _of_force(acquired, delay)
     yield from _of_excitation(acquired, excited)
@@ -108,40 +71,93 @@ def doubts_about(
         )
 
 
+def _of_rates(problem: Problem, acquired: Acquired) -> Iterator[str]:
+    """Yield the doubt about sensors of the case with another rate than the records."""
+    recorded = {sensor.name for sensor in acquired.sensors}
+    rates = {sensor.rate for sensor in problem.sensors if sensor.name in recorded}
+    rates -= {acquired.rate}
+    if rates:
+        others = ", ".join(f"{rate:g}" for rate in sorted(rates))
+        yield (
+            f"the records have {acquired.rate:g} samples per second, and the case specifies "
+            f"{others}: it was simulated at the rate of the records"
+        )
+
+
+def _of_records(acquired: Acquired, delay: Delay, aligned: float) -> Iterator[str]:
+    """Yield the doubts about each record: its polarity, its correlation, and clipping."""
+    for row, sensor in enumerate(acquired.sensors):
+        name = quoted(sensor.name)
+        if delay.polarity[row] < 0.0:
+            yield f"the record {name} has inverted polarity; its sign is changed"
+        if delay.correlation[row] < _ALIKE:
+            yield (
+                f"the first {1e3 * aligned:.3g} ms of {name} and of its simulation differ "
+                f"(correlation {delay.correlation[row]:.2f}): the delay may be wrong by a period"
+            )
+        yield from _clipped(
+            f"the record {name}",
+            acquired.value[row],
+            acquired.recorded[row],
+            acquired.onsets[0],
+            "its FRAC and residual suffer, and its damping if it is clipped after "
+            "the end of the force",
+        )
+
+
+def _of_skew(acquired: Acquired, skew: Floats) -> Iterator[str]:
+    """Yield the doubts about records that are later than the others, by `skew` [s]."""
+    for sensor, delay in zip(acquired.sensors, skew, strict=True):
+        if delay:
+            direction = "later" if delay > 0.0 else "earlier"
+            yield (
+                f"the record {quoted(sensor.name)} comes {abs(delay) * acquired.rate:.3g} samples "
+                f"{direction} than the others and its simulation: its channel may not have been "
+                "sampled with theirs, or it passed another filter; its FRAC and residual suffer"
+            )
+
+
 def _clipped(
-    what: str, value: np.ndarray, recorded: np.ndarray, onset: int, suffers: str
+    subject: str, value: Floats, recorded: Floats, onset: int, consequence: str
 ) -> Iterator[str]:
-    samples = clipped_count(value, recorded, value[: max(0, onset - LEAD)])
-    if samples:
-        yield f"{what} is clipped: at least {samples} samples lie at an end of its range; {suffers}"
+    count = clipped_count(value, recorded, value[: max(0, onset - LEAD)])
+    if count:
+        yield (
+            f"{subject} is clipped: at least {count} samples lie at an end of its range; "
+            f"{consequence}"
+        )
 
 
 def _of_gains(acquired: Acquired, delay: Delay, early: str) -> Iterator[str]:
-    """Yield the doubts about records that are larger or smaller than their simulations,
-    which else are like them; `early`: when.
+    """Yield the doubts about records that are larger or smaller than their simulations.
+
+    Else they are like them. `early`: when.
     """
-    gain, like = np.abs(delay.gain), delay.correlation > _GAIN_ALIKE
-    others = (
-        "the impact and the contact of the case"
-        if acquired.force is None
-        else "the calibration of the force"
-    )
-    off = like & (np.abs(np.log(np.maximum(gain, 1e-300))) > _GAIN)
-    if off.all() and np.ptp(np.log(gain)) < _GAIN:
-        every = (
-            f"{'all records are' if len(gain) > 1 else 'the record is'} "
-            f"{np.exp(np.mean(np.log(gain))):.3g} times the simulation"
+    gain = np.abs(delay.gain)
+    log_gain = np.log(np.maximum(gain, 1e-300))
+    doubtful = (delay.correlation > _GAIN_ALIKE) & (np.abs(log_gain) > _GAIN)
+    if doubtful.all() and np.ptp(np.log(gain)) < _GAIN:
+        # all by the same factor: an error that they have in common
+        if len(gain) > 1:
+            subject = "all records are"
+            sensitivities = "the sensitivities"
+        else:
+            subject = "the record is"
+            sensitivities = "the sensitivity"
+        if acquired.force is None:
+            source = "the impact and the contact of the case"
+        else:
+            source = "the calibration of the force"
+        yield (
+            f"{subject} {np.exp(np.mean(np.log(gain))):.3g} times the simulation {early}: check "
+            f"{source}, {sensitivities}, and mass and damping of the plate"
         )
-        sensitivities = "the sensitivities" if len(gain) > 1 else "the sensitivity"
-        yield f"{every} {early}: check {others}, {sensitivities}, and mass and damping of the plate"
         return
-    for sensor, times, wrong in zip(acquired.sensors, gain, off, strict=True):
-        if wrong:
-            words = "check its sensitivity and place, and the damping of the case"
-            yield (
-                f"the record {quoted(sensor.name)} is {times:.3g} times its simulation {early}: "
-                f"{words}"
-            )
+    for row in np.flatnonzero(doubtful):
+        yield (
+            f"the record {quoted(acquired.sensors[row].name)} is {gain[row]:.3g} times its "
+            f"simulation {early}: check its sensitivity and place, and the damping of the case"
+        )
 
 
 def _of_force(acquired: Acquired, delay: Delay) -> Iterator[str]:
@@ -155,15 +171,15 @@ def _of_force(acquired: Acquired, delay: Delay) -> Iterator[str]:
         "frequency responses and simulation suffer",
     )
     if (delay.polarity < 0.0).all():
-        every = "all records have" if len(delay.polarity) > 1 else "the only record has"
-        yield f"{every} inverted polarity: the sign of the force may be wrong"
+        subject = "all records have" if len(delay.polarity) > 1 else "the only record has"
+        yield f"{subject} inverted polarity: the sign of the force may be wrong"
     samples = delay.time * acquired.rate
     if abs(samples) > _TOGETHER:
-        way = "later" if samples > 0.0 else "earlier"
-        words = f"the records come {abs(samples):.3g} samples {way} than computed from the force"
+        direction = "later" if samples > 0.0 else "earlier"
         yield (
-            f"{words}: the channels may not have been sampled simultaneously, or passed "
-            "different filters"
+            f"the records come {abs(samples):.3g} samples {direction} than computed from the "
+            "force: the channels may not have been sampled simultaneously, or passed different "
+            "filters"
         )
     if len(acquired.pulses) > len(acquired.onsets):
         yield (
@@ -174,7 +190,8 @@ def _of_force(acquired: Acquired, delay: Delay) -> Iterator[str]:
 
 def _of_excitation(acquired: Acquired, excited: Excited) -> Iterator[str]:
     """Yield where the force excites little."""
-    band, ends = excited.compared, excited.ends
+    band = excited.compared
+    ends = excited.ends
     if ends is None:
         return
     measured = acquired.force is not None

@@ -17,8 +17,9 @@ are, of n that are unrelated about 1/n.
 
 
 def octaves_of(band: tuple[float, float]) -> tuple[tuple[float, float], ...]:
-    """Return the octaves within a band: their centres are 1 kHz times powers of 2, and the outer
-    ones end with the band.
+    """Return the octaves within a band, whose centres are 1 kHz times powers of 2.
+
+    The outer ones end with the band.
 
     Examples
     --------
@@ -34,15 +35,14 @@ def octaves_of(band: tuple[float, float]) -> tuple[tuple[float, float], ...]:
 def frac_of_octaves(
     octaves: Sequence[tuple[float, float]], frequency: Floats, measured: Complex, simulated: Complex
 ) -> Floats:
-    """Return the criterion of responses, (S, frequencies), over each octave, (S,
-    octaves); NaN with fewer than four frequencies in it.
+    """Return the criterion of responses, (S, frequencies), over each octave, (S, octaves).
+
+    It is NaN with fewer than four frequencies in it.
     """
-    untold = np.full(len(measured), np.nan)
-    parts = [(frequency >= low) & (frequency <= high) for low, high in octaves]
-    return np.stack(
-        [
-            frac(measured[:, part], simulated[:, part]) if part.sum() >= FEW else untold
-            for part in parts
-        ],
-        axis=1,
-    )
+    unknown = np.full(len(measured), np.nan)
+    criteria = []
+    for low, high in octaves:
+        inside = (frequency >= low) & (frequency <= high)
+        enough = inside.sum() >= FEW
+        criteria.append(frac(measured[:, inside], simulated[:, inside]) if enough else unknown)
+    return np.stack(criteria, axis=1)

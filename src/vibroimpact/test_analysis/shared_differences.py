@@ -1,5 +1,6 @@
-"""What the modes of a case have in common: an error of its modulus, thickness or density,
-and one of its damping.
+"""What the modes of a case have in common.
+
+It is an error of its modulus, thickness or density, and one of its damping.
 """
 
 from __future__ import annotations
@@ -15,14 +16,18 @@ from vibroimpact.structures.modal_model import ModalBasis
 from vibroimpact.test_analysis.mode_pairs import FEWEST, WEAK, ModePair
 
 _LEAST = 2e-3
-"""Least relative difference of frequencies that is told."""
+"""Least relative difference of frequencies that is reported."""
+
 _ALIKE = 0.35
 """Largest distance from their median, relative to it, of differences that are alike: thick plates
-and coarse meshes make them differ by some of it."""
-_DAMPED = float(np.log(1.25))
-"""Least logarithm of a ratio of dampings that is told: FRAC of two resonances that differ
-in nothing else is then 0.99.
+and coarse meshes make them differ by some of it.
 """
+
+_DAMPED = float(np.log(1.25))
+"""Least logarithm of a ratio of dampings that is reported: FRAC of two resonances that differ in
+nothing else is then 0.99.
+"""
+
 _SURE = 3.0
 """Standard deviations that a difference must exceed."""
 
@@ -47,21 +52,19 @@ class CommonDifference:
     @property
     def sentence(self) -> str:
         """What it says of the case, without a full stop."""
-        way = "higher" if self.value > 0.0 else "lower"
-        frequency, stiffness = 100.0 * abs(self.value), 100.0 * ((1.0 + self.value) ** 2 - 1.0)
-        ends = sorted(
-            100.0 * (end if self.value > 0.0 else -end) for end in (self.least, self.largest)
-        )
-        thickness = f"a thickness that differs by about {100.0 * self.value:+.2g} %"
-        causes = (
+        sign = 1.0 if self.value > 0.0 else -1.0
+        direction = "higher" if self.value > 0.0 else "lower"
+        low, high = sorted((100.0 * (sign * self.least), 100.0 * (sign * self.largest)))
+        # frequencies are proportional to the root of the modulus over the density, and of a plate
+        # in bending to its thickness
+        modulus_percent = 100.0 * ((1.0 + self.value) ** 2 - 1.0)
+        return (
+            f"the frequencies of {self.modes} modes are {100.0 * abs(self.value):.2g} % "
+            f"{direction} than the case's ({low:.2g} to {high:.2g} %), "
             "as with a Young's modulus over density of the plate that differs from the case's "
-            f"by {stiffness:+.2g} %, or {thickness}"
+            f"by {modulus_percent:+.2g} %, or a thickness that differs by about "
+            f"{100.0 * self.value:+.2g} %"
         )
-        differ = (
-            f"the frequencies of {self.modes} modes are {frequency:.2g} % {way} than the "
-            f"case's ({ends[0]:.2g} to {ends[1]:.2g} %)"
-        )
-        return f"{differ}, {causes}"
 
 
 @dataclass(frozen=True)
@@ -90,31 +93,33 @@ class DampingDifference:
         Modes whose damping was not measured have the median multiple of that of the case; without
         any, the median of the measured ones.
         """
-        usual = float(np.median(list(self.measured.values())))
-        found = self.value * ratios if np.isfinite(self.value) else np.full(len(ratios), usual)
+        if np.isfinite(self.value):
+            damping_ratios = self.value * ratios
+        else:
+            median = float(np.median(list(self.measured.values())))
+            damping_ratios = np.full(len(ratios), median)
         for number, ratio in self.measured.items():
-            found[number - 1] = ratio
-        return found
+            damping_ratios[number - 1] = ratio
+        return damping_ratios
 
     @property
     def sentence(self) -> str:
         """What it says of the case, without a full stop."""
-        number = len(self.measured)
-        modes = (
-            f"the measured damping ratios of {number} modes are"
-            if number > 1
-            else "the measured damping ratio of a mode is"
-        )
-        if np.isfinite(self.value):
-            ends = range_of((self.least, self.largest), 2)
-            ends = f" ({ends})" if " " in ends else ""
-            differ = f"{modes} {self.value:.2g} times the case's{ends}"
+        if len(self.measured) > 1:
+            subject = f"the measured damping ratios of {len(self.measured)} modes are"
         else:
-            differ = (
-                f"{modes} {range_of(list(self.measured.values()), 2)}, and the case has no damping"
-            )
-        agree = f"the frequencies agree within {100.0 * _LEAST:.1g} %, and the damping does not: "
-        return f"{agree if self.apart < _LEAST else ''}{differ}"
+            subject = "the measured damping ratio of a mode is"
+        if np.isfinite(self.value):
+            multiples = range_of((self.least, self.largest), 2)
+            in_brackets = f" ({multiples})" if " " in multiples else ""
+            differ = f"{subject} {self.value:.2g} times the case's{in_brackets}"
+        else:
+            ratios = range_of(list(self.measured.values()), 2)
+            differ = f"{subject} {ratios}, and the case has no damping"
+        if self.apart < _LEAST:
+            agree = f"the frequencies agree within {100.0 * _LEAST:.1g} %"
+            return f"{agree}, and the damping does not: {differ}"
+        return differ
 
 
 @dataclass(frozen=True)
@@ -127,30 +132,33 @@ class SharedDifferences:
     @property
     def sentences(self) -> tuple[str, ...]:
         """What they say of the case, without full stops."""
-        return tuple(one.sentence for one in (self.frequency, self.damping) if one is not None)
+        differences = (self.frequency, self.damping)
+        return tuple(difference.sentence for difference in differences if difference is not None)
 
     def scaled(self, problem: Problem) -> Problem:
-        """Return a problem with the frequencies of its plate scaled by what they share,
-        as by another modulus; itself if by none.
+        """Return a problem with the frequencies of its plate scaled by what they share.
+
+        They are scaled as by another modulus, so that compliances go with the inverse square. It is
+        the problem itself if they share nothing.
         """
         if self.frequency is None:
             return problem
-        modes, factor = _modes_of(problem), 1.0 + self.frequency.value
+        modes = _modes_of(problem)
+        factor = 1.0 + self.frequency.value
+        frequencies = factor * modes.frequencies
         residuals = {name: residual / factor**2 for name, residual in modes.residuals.items()}
-        return _with_modes(
-            problem, replace(modes, frequencies=factor * modes.frequencies, residuals=residuals)
-        )
+        return _with_modes(problem, replace(modes, frequencies=frequencies, residuals=residuals))
 
     def damped(self, problem: Problem) -> Problem:
-        """Return a problem with the measured damping ratios of its plate; itself if they
-        do not differ.
+        """Return a problem with the measured damping ratios of its plate.
+
+        It is the problem itself if they do not differ.
         """
         if self.damping is None:
             return problem
         modes = _modes_of(problem)
-        return _with_modes(
-            problem, replace(modes, damping_ratios=self.damping.applied_to(modes.damping_ratios))
-        )
+        damping_ratios = self.damping.applied_to(modes.damping_ratios)
+        return _with_modes(problem, replace(modes, damping_ratios=damping_ratios))
 
 
 def _modes_of(problem: Problem) -> ModalBasis:
@@ -170,8 +178,9 @@ def shared_differences(pairs: Sequence[ModePair]) -> SharedDifferences:
 def doubts_of_differences(
     differences: SharedDifferences, frac: Floats, scaled_frac: Floats, damped_frac: Floats
 ) -> Iterator[str]:
-    """Yield what measured modes have in common that the case has not, with what it does to FRAC,
-    one sentence each without its full stop.
+    """Yield what measured modes have in common that the case has not, and what it does to FRAC.
+
+    There is one sentence for each, without its full stop.
 
     Parameters
     ----------
@@ -181,10 +190,12 @@ def doubts_of_differences(
         FRAC of each record or response; that with frequencies as they were measured; and that with
         the damping too.
     """
-    plain, scaled, damped = (range_of(one) for one in (frac, scaled_frac, damped_frac))
+    scaled = range_of(scaled_frac)
     if differences.frequency is not None:
+        plain = range_of(frac)
         yield f"{differences.frequency.sentence}; with that FRAC is {scaled}, and {plain} without"
     if differences.damping is not None:
+        damped = range_of(damped_frac)
         yield (
             f"{differences.damping.sentence}; with the measured damping FRAC is {damped}, and "
             f"{scaled} without"
@@ -192,64 +203,71 @@ def doubts_of_differences(
 
 
 def common_difference(pairs: Sequence[ModePair]) -> CommonDifference | None:
-    """Return the difference that all paired frequencies have from the case's; None if
-    they have none in common.
+    """Return the difference that all paired frequencies have from the case's.
+
+    None if they have none in common.
     """
-    both = [
-        (pair.frequency, pair.measured.frequency)
-        for pair in pairs
-        if pair.number is not None and pair.measured is not None
-    ]
-    told = [
-        (measured.value / frequency - 1.0, measured.deviation / frequency)
-        for frequency, measured in both
-    ]
-    if len(told) < FEWEST:
+    relative_differences = []
+    relative_deviations = []
+    for pair in pairs:
+        if pair.number is not None and pair.measured is not None:
+            measured = pair.measured.frequency
+            relative_differences.append(measured.value / pair.frequency - 1.0)
+            relative_deviations.append(measured.deviation / pair.frequency)
+    if len(relative_differences) < FEWEST:
         return None
-    differences, deviations = np.array(told).T
-    middle = float(np.median(differences))
-    alike = np.abs(differences - middle) <= np.maximum(_ALIKE * abs(middle), _SURE * deviations)
-    if abs(middle) < max(_LEAST, _SURE * float(np.median(deviations))) or not alike.all():
+    differences = np.array(relative_differences)
+    deviations = np.array(relative_deviations)
+    median = float(np.median(differences))
+    tolerance = np.maximum(_ALIKE * abs(median), _SURE * deviations)
+    alike = np.abs(differences - median) <= tolerance
+    if abs(median) < max(_LEAST, _SURE * float(np.median(deviations))) or not alike.all():
         return None
-    return CommonDifference(middle, float(differences.min()), float(differences.max()), len(told))
+    return CommonDifference(
+        median, float(differences.min()), float(differences.max()), len(differences)
+    )
 
 
 def damping_difference(pairs: Sequence[ModePair]) -> DampingDifference | None:
-    """Return how the measured damping ratios differ from the case's; None if they do not, most of
-    them in one direction.
+    """Return how the measured damping ratios differ from the case's.
 
-    Modes that hardly contribute to the records are left aside, and those whose damping could not be
-    determined.
+    None if they do not, most of them in one direction. Modes that hardly contribute to the records
+    are left aside, and those whose damping could not be determined.
     """
-    told = [
+    compared = [
         (pair, pair.measured)
         for pair in pairs
         if pair.damping_measured and pair.measured is not None and pair.response >= WEAK
     ]
-    if not told:
+    if not compared:
         return None
-    of_case = np.array([pair.damping_ratio for pair, _ in told])
-    measured = np.array([mode.damping_ratio.value for _, mode in told])
-    deviation = float(np.median([mode.damping_ratio.deviation for _, mode in told]))
+    of_case = np.array([pair.damping_ratio for pair, _ in compared])
+    measured = np.array([mode.damping_ratio.value for _, mode in compared])
+    deviation = float(np.median([mode.damping_ratio.deviation for _, mode in compared]))
     with np.errstate(divide="ignore"):
         multiples = measured / of_case
-    middle = float(np.median(multiples))
-    if abs(np.log(middle)) < max(_DAMPED, _SURE * deviation):
+    median = float(np.median(multiples))
+    if abs(np.log(median)) < max(_DAMPED, _SURE * deviation):
         return None
     return DampingDifference(
-        middle,
-        float(multiples.min()),
-        float(multiples.max()),
-        {pair.number: mode.damping_ratio.value for pair, mode in told if pair.number is not None},
-        max(abs(pair.frequency_difference) for pair, _ in told),
+        value=median,
+        least=float(multiples.min()),
+        largest=float(multiples.max()),
+        measured={
+            pair.number: mode.damping_ratio.value
+            for pair, mode in compared
+            if pair.number is not None
+        },
+        apart=max(abs(pair.frequency_difference) for pair, _ in compared),
     )
 
 
 def range_of(values: Floats | Sequence[float], digits: int = 0) -> str:
-    """Return the least and the largest of numbers as text, or the one that they are: with
-    three decimals, or with so many digits.
+    """Return the least and the largest of numbers as text, or the one that they are.
+
+    They have three decimals, or so many digits.
     """
-    least, largest = (
-        f"{end:.{digits}g}" if digits else f"{end:.3f}" for end in (min(values), max(values))
-    )
+    number_format = f".{digits}g" if digits else ".3f"
+    least = f"{min(values):{number_format}}"
+    largest = f"{max(values):{number_format}}"
     return least if least == largest else f"{least} to {largest}"

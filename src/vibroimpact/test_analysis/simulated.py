@@ -19,16 +19,18 @@ from vibroimpact.dynamics.simulate import simulate
 from vibroimpact.errors import InputError
 from vibroimpact.identification.plate import compliances_of, shapes_of
 
-_NODES = np.polynomial.legendre.leggauss(96)
-"""Nodes on [-1, 1] and weights of the quadrature of a force."""
+_QUADRATURE = np.polynomial.legendre.leggauss(96)
+"""Nodes on [-1, 1] and weights of the Gauss quadrature of a force."""
+
 _SPAN = 16.0
 """Samples within a quadrature."""
+
 _BEFORE = 4 * HALF_LENGTH
 """Samples before a record that are computed too: what begins before it may reach into it."""
 
 
 @dataclass(frozen=True)
-class Pushes:
+class ForceImpulses:
     """A force on a plate.
 
     Parameters
@@ -61,7 +63,8 @@ def plate_problem(case: CaseTable, progress: Callable[[float], None] | None = No
         raise InputError(
             "only an impact on a plate at rest can be correlated; leave this out", "plate.motion"
         )
-    if keys := oblique_keys(case):
+    keys = oblique_keys(case)
+    if keys:
         raise InputError("only a normal impact can be correlated; leave this out", keys[0])
     if not case.sensors:
         raise InputError(
@@ -70,7 +73,9 @@ def plate_problem(case: CaseTable, progress: Callable[[float], None] | None = No
     return problem_of(case, progress)
 
 
-def pushes_of_impact(problem: Problem, rate: float, duration: float, impacts: int | None) -> Pushes:
+def impact_force(
+    problem: Problem, rate: float, duration: float, impacts: int | None
+) -> ForceImpulses:
     """Return the contact forces of a problem, in time since the first touch.
 
     Parameters
@@ -78,51 +83,56 @@ def pushes_of_impact(problem: Problem, rate: float, duration: float, impacts: in
     problem : Problem
         The problem.
     rate : float
-        Rate at which they are heard [Hz].
+        Rate at which they are sampled [Hz].
     duration : float
         Time from the first touch on within which contacts are sought [s].
     impacts : int, optional
         Impacts after which no more are sought; None for all.
     """
-    speed = problem.speed
-    if speed is None:
-        speed = (
-            simulate(replace(problem, impacts=1, duration=None, sensors=()))
-            .impacts["approach_speed_m_s"]
-            .flat[0]
-        )
-    response = simulate(
-        replace(
-            problem,
-            height=None,
-            velocity=0.0,
-            speed=float(speed),
-            impacts=impacts,
-            duration=duration,
-            sensors=(),
-        )
+    from_first_touch = replace(
+        problem,
+        height=None,
+        velocity=0.0,
+        speed=_approach_speed(problem),
+        impacts=impacts,
+        duration=duration,
+        sensors=(),
     )
-    begin, lasting = (response.impacts[name].ravel() for name in ("time_s", "duration_s"))
-    nodes, weights = _NODES
-    times, impulses = [], []
-    for first, span in zip(begin.tolist(), lasting.tolist(), strict=True):
-        edges = first + np.linspace(0.0, span, int(np.ceil(span * rate / _SPAN)) + 1)
+    response = simulate(from_first_touch)
+    begins = response.impacts["time_s"].ravel()
+    durations = response.impacts["duration_s"].ravel()
+    nodes, weights = _QUADRATURE
+    times = []
+    impulses = []
+    for begin, contact_duration in zip(begins.tolist(), durations.tolist(), strict=True):
+        interval_count = int(np.ceil(contact_duration * rate / _SPAN))
+        edges = begin + np.linspace(0.0, contact_duration, interval_count + 1)
         half = 0.5 * np.diff(edges)[:, None]
         time = (edges[:-1, None] + half * (1.0 + nodes)).ravel()
         times.append(time)
         impulses.append((half * weights).ravel() * response.at(time, ["force_N"])["force_N"])
-    return Pushes(
-        np.concatenate(times), np.concatenate(impulses), np.stack([begin, begin + lasting], axis=1)
+    return ForceImpulses(
+        time=np.concatenate(times),
+        impulse=np.concatenate(impulses),
+        contacts=np.stack([begins, begins + durations], axis=1),
     )
 
 
+def _approach_speed(problem: Problem) -> float:
+    """Return the approach speed of the first impact [m/s]."""
+    if problem.speed is not None:
+        return float(problem.speed)
+    first_impact = simulate(replace(problem, impacts=1, duration=None, sensors=())).impacts
+    return float(first_impact["approach_speed_m_s"].flat[0])
+
+
 @dataclass(frozen=True)
-class Listening:
-    """Sensors that hear a force at the contact point of a plate.
+class ImpulseResponses:
+    """Responses of sensors to an impulse at the contact point of a plate.
 
     Parameters
     ----------
-    answers : array, shape (S, points)
+    responses : array, shape (S, points)
         Their responses to a unit impulse, as of `PlaceResponses`.
     rate : float
         Samples per second [Hz].
@@ -130,24 +140,31 @@ class Listening:
         Number of samples.
     """
 
-    answers: Floats
+    responses: Floats
     rate: float
     samples: int
 
-    def to(self, pushes: Pushes, at: float) -> Floats:
-        """Return the samples, (S, samples), of pushes whose time begins at a time after
-        the first sample [s].
+    def signals(self, force: ForceImpulses, start: float) -> Floats:
+        """Return the samples, (S, samples), of the response to a force.
+
+        The time of the force begins at `start` after the first sample [s].
         """
-        times = pushes.time + at + _BEFORE / self.rate
-        heard = times >= 0.0
-        whole = sampled_responses(
-            self.answers, self.rate, times[heard], pushes.impulse[heard], self.samples + _BEFORE
+        times = force.time + start + _BEFORE / self.rate
+        computed = times >= 0.0
+        signals = sampled_responses(
+            self.responses,
+            self.rate,
+            times[computed],
+            force.impulse[computed],
+            self.samples + _BEFORE,
         )
-        return whole[:, _BEFORE:]
+        return signals[:, _BEFORE:]
 
 
-def listening(problem: Problem, sensors: Sequence[Sensor], samples: int) -> Listening:
-    """Return sensors that hear the plate of a problem for a number of samples.
+def impulse_responses(
+    problem: Problem, sensors: Sequence[Sensor], samples: int
+) -> ImpulseResponses:
+    """Return the responses of sensors on the plate of a problem, for a number of samples.
 
     Raises
     ------
@@ -155,10 +172,12 @@ def listening(problem: Problem, sensors: Sequence[Sensor], samples: int) -> List
         If one of them is a microphone, or has no anti-alias filter.
     """
     rate = sensors[0].rate
-    there = replace(problem, sensors=tuple(sensors))
-    compliance = compliances_of(there, [sensor.name for sensor in sensors])
-    return Listening(
-        responses_at(there, sensors, (samples + _BEFORE) / rate, shapes_of(there), compliance),
-        rate,
-        samples,
+    with_sensors = replace(problem, sensors=tuple(sensors))
+    responses = responses_at(
+        with_sensors,
+        sensors,
+        (samples + _BEFORE) / rate,
+        shapes_of(with_sensors),
+        compliances_of(with_sensors, [sensor.name for sensor in sensors]),
     )
+    return ImpulseResponses(responses, rate, samples)

@@ -14,7 +14,9 @@ from vibroimpact.errors import InputError
 from vibroimpact.report.reported import Reported
 from vibroimpact.signals.bounces.find import Bounces
 
-_UNLIKE = 1.25  # ratio of the first restitution to the second one above which a doubt is raised
+_UNLIKE = 1.25
+"""Ratio of the first restitution to the second one, or its inverse, above which a doubt is raised.
+"""
 
 
 @dataclass(frozen=True)
@@ -138,116 +140,179 @@ def rebounds_of(
     ...     np.zeros(0),
     ...     (),
     ... )
-    >>> found = rebounds_of(heard, gravity=9.81)
+    >>> rebounds = rebounds_of(heard, gravity=9.81)
     >>> (
-    ...     found.approach_speed.round(3).tolist(),
-    ...     found.restitution.round(3).tolist(),
-    ...     round(found.drop_height, 3),
+    ...     rebounds.approach_speed.round(3).tolist(),
+    ...     rebounds.restitution.round(3).tolist(),
+    ...     round(rebounds.drop_height, 3),
     ... )
     ([nan, 1.962, 1.57, 1.256], [nan, 0.8, 0.8, nan], 0.307)
-    >>> found = rebounds_of(heard, gravity=9.81, height="0.3 m +- 5 mm")
-    >>> found.restitution[:2].round(3).tolist(), found.deviation[:2].round(5).tolist()
+    >>> rebounds = rebounds_of(heard, gravity=9.81, height="0.3 m +- 5 mm")
+    >>> rebounds.restitution[:2].round(3).tolist(), rebounds.deviation[:2].round(5).tolist()
     ([0.809, 0.8], [0.00674, 6e-05])
     """
-    pull = as_input("gravity", EARTH if gravity is None else gravity, "m/s^2")
-    fall = None if height is None else as_input("height", height, "m")
-    lasting = as_input("contact time", bounces.contact, "s")
-    for name, value, unit in (
-        ("gravity", pull.value, "m/s^2"),
-        ("height", None if fall is None else fall.value, "m"),
-    ):
-        if value is not None and not 0.0 < value < np.inf:
-            raise InputError(f"the {name} is {value:g} {unit}; it must be above 0 and finite")
-    g = float(pull.value)
-    flown = 0.5 * g * bounces.flight
-    approach, separation = np.append(np.nan, flown), np.append(flown, np.nan)
-    slope, doubts = bounces.by_time, list(bounces.doubts)
-    inner = np.arange(1, len(flown))
-    if fall is not None:
-        approach[0] = np.sqrt(2.0 * g * fall.value)
-        first = np.zeros(len(bounces.time))
-        first[:2] = np.array([-0.5, 0.5]) * g / approach[0]
-        slope, inner = np.vstack([first, slope]), np.arange(len(flown))
+    gravity_input = as_input("gravity", EARTH if gravity is None else gravity, "m/s^2")
+    height_input = None if height is None else as_input("height", height, "m")
+    contact_time = as_input("contact time", bounces.contact, "s")
+    _check_positive(gravity_input)
+    if height_input is not None:
+        _check_positive(height_input)
+    g = float(gravity_input.value)
+    flight_speed = 0.5 * g * bounces.flight
+    approach = np.append(np.nan, flight_speed)
+    separation = np.append(flight_speed, np.nan)
+    # derivatives by the times of the touches of the restitutions of the impacts `known`
+    by_time = bounces.by_time
+    known = np.arange(1, len(flight_speed))
+    if height_input is not None:
+        approach[0] = np.sqrt(2.0 * g * height_input.value)
+        # of the first impact, e = g (t_1 - t_0) / (2 v)
+        first_by_time = np.zeros(len(bounces.time))
+        first_by_time[:2] = np.array([-0.5, 0.5]) * g / approach[0]
+        by_time = np.vstack([first_by_time, by_time])
+        known = np.arange(len(flight_speed))
     restitution = separation / approach
-    of_approach, of_separation = _shared(pull, fall, lasting, approach, separation)
+    of_approach, of_separation = _input_effects(
+        gravity_input, height_input, contact_time, approach, separation
+    )
     of_restitution = restitution * (of_separation / separation - of_approach / approach)
-    noise = slope * bounces.deviation
+    noise = by_time * bounces.deviation
     covariance = noise @ noise.T
     deviation = np.full(len(restitution), np.nan)
-    deviation[inner] = np.sqrt(np.diag(covariance) + np.sum(of_restitution[:, inner] ** 2, axis=0))
-    by_times = 0.5 * g * np.hypot(bounces.deviation[1:], bounces.deviation[:-1])
-    arrives, leaves = (np.sqrt(np.sum(part**2, axis=0)) for part in (of_approach, of_separation))
-    if fall is not None:
-        if restitution[0] > 1.0 + 3.0 * deviation[0]:
-            risen = 0.5 * flown[0] ** 2 / g
-            words = (
-                f"after the first touch the ball rises by {risen:.4g} m, more than the height "
-                f"of {fall.value:g} m from which it fell"
-            )
-            raise InputError(
-                f"{words}; look at height and gravity and their units, and whether the "
-                "first touch is that of the fall"
-            )
+    deviation[known] = np.sqrt(np.diag(covariance) + np.sum(of_restitution[:, known] ** 2, axis=0))
+    doubts = list(bounces.doubts)
+    fitted = known
+    if height_input is not None:
+        _check_first_rise(flight_speed[0], g, restitution[0], deviation[0], height_input)
         if abs(np.log(restitution[0] / restitution[1])) > np.log(_UNLIKE):
-            words = (
-                f"the height gives the first touch a restitution of {restitution[0]:.3g}, and "
-                f"the next one has {restitution[1]:.3g}"
-            )
             doubts.append(
-                f"{words}: the height may be wrong, or it is not the first impact of the "
-                "fall; it is left out of the fits"
+                f"the height gives the first touch a restitution of {restitution[0]:.3g}, and "
+                f"the next one has {restitution[1]:.3g}: the height may be wrong, or it is not "
+                "the first impact of the fall; it is left out of the fits"
             )
-            inner, covariance = inner[1:], covariance[1:, 1:]
-        if (
-            not fall.value.stated
-            and fall.value.deviation**2 * (0.5 * restitution[0] / fall.value) ** 2
-            > 0.5 * deviation[0] ** 2
-        ):
-            doubts.append(guessed_doubt(fall, "impact 1"))
-    shared = np.stack([of_restitution, of_approach], axis=1)[:, :, inner]
-    laws = speed_laws(approach[inner], restitution[inner], covariance, shared=shared)
-    mean, spread = float(laws[0].coefficients[0]), float(np.sqrt(laws[0].covariance[0, 0]))
-    fallen = 0.5 * (flown[0] / mean) ** 2 / g
-    leaving = np.hypot(2.0 * spread / mean, pull.value.deviation / g)
-    drop = (fallen, fallen * leaving) if fall is None else (fall.value, fall.value.deviation)
+            fitted = known[1:]
+            covariance = covariance[1:, 1:]
+        if _mostly_of_guess(height_input, restitution[0], deviation[0]):
+            doubts.append(guessed_doubt(height_input, "impact 1"))
+    shared = np.stack([of_restitution, of_approach], axis=1)[:, :, fitted]
+    laws = speed_laws(approach[fitted], restitution[fitted], covariance, shared=shared)
+    drop_height, drop_deviation = _drop_height(
+        flight_speed[0], gravity_input, height_input, mean_restitution=laws[0]
+    )
+    by_times = 0.5 * g * np.hypot(bounces.deviation[1:], bounces.deviation[:-1])
+    approach_by_inputs = np.sqrt(np.sum(of_approach**2, axis=0))
+    separation_by_inputs = np.sqrt(np.sum(of_separation**2, axis=0))
+    inputs = [gravity_input]
+    if height_input is not None:
+        inputs.append(height_input)
+    if contact_time.value or contact_time.value.deviation:
+        inputs.append(contact_time)
     return Rebounds(
-        bounces,
-        g,
-        None if fall is None else float(fall.value),
-        approach,
-        separation,
-        restitution,
-        deviation,
-        laws,
-        float(drop[0]),
-        float(drop[1]),
-        confidence,
-        tuple(doubts),
-        np.append(arrives[0], np.hypot(arrives[1:], by_times)),
-        np.append(np.hypot(leaves[:-1], by_times), np.nan),
-        tuple(
-            one
-            for one in (pull, fall, lasting)
-            if one is not None and (one is not lasting or one.value or one.value.deviation)
+        bounces=bounces,
+        gravity=g,
+        height=None if height_input is None else float(height_input.value),
+        approach_speed=approach,
+        separation_speed=separation,
+        restitution=restitution,
+        deviation=deviation,
+        laws=laws,
+        drop_height=drop_height,
+        drop_deviation=drop_deviation,
+        confidence=confidence,
+        doubts=tuple(doubts),
+        approach_deviation=np.append(
+            approach_by_inputs[0], np.hypot(approach_by_inputs[1:], by_times)
         ),
+        separation_deviation=np.append(np.hypot(separation_by_inputs[:-1], by_times), np.nan),
+        inputs=tuple(inputs),
     )
 
 
-def _shared(
-    pull: Input, fall: Input | None, lasting: Input, approach: Floats, separation: Floats
-) -> tuple[Floats, Floats]:
-    """Return what one standard deviation of gravity, height and contact time changes in
-    the speeds before and after, (3, n) [m/s].
+def _check_positive(quantity: Input) -> None:
+    if not 0.0 < quantity.value < np.inf:
+        raise InputError(
+            f"the {quantity.name} is {quantity.value:g} {quantity.unit}; it must be above 0 and "
+            "finite"
+        )
+
+
+def _check_first_rise(
+    speed: float, gravity: float, restitution: float, deviation: float, height: Input
+) -> None:
+    """Check that the ball does not rise higher from the first touch than it fell.
+
+    `speed` is that after the first touch [m/s].
     """
-    first = np.zeros(len(approach))
-    first[0] = approach[0] if fall is not None else 0.0
-    later = np.append(0.0, approach[1:])
-    g, height = pull.value, 0.0 if fall is None else fall.value.deviation / fall.value
-    shorter = -0.5 * g * lasting.value.deviation
-    before = [
-        (later + 0.5 * first) * pull.value.deviation / g,
-        0.5 * height * first,
-        np.append(0.0, np.full(len(later) - 1, shorter)),
+    if restitution > 1.0 + 3.0 * deviation:
+        rise = 0.5 * speed**2 / gravity
+        raise InputError(
+            f"after the first touch the ball rises by {rise:.4g} m, more than the height "
+            f"of {height.value:g} m from which it fell; look at height and gravity and their "
+            "units, and whether the first touch is that of the fall"
+        )
+
+
+def _mostly_of_guess(height: Input, restitution: float, deviation: float) -> bool:
+    """Return whether most of the variance of the first restitution is that of the height.
+
+    False if the standard deviation of the height was given.
+    """
+    if height.value.stated:
+        return False
+    # the restitution is proportional to the height to the power -1/2
+    by_height = height.value.deviation**2 * (0.5 * restitution / height.value) ** 2
+    return bool(by_height > 0.5 * deviation**2)
+
+
+def _drop_height(
+    speed: float, gravity: Input, height: Input | None, *, mean_restitution: SpeedLaw
+) -> tuple[float, float]:
+    """Return the height of the fall before the first touch and its standard deviation [m].
+
+    Where it is not given, it follows from the speed after the first touch [m/s] and the mean
+    restitution.
+    """
+    if height is not None:
+        return float(height.value), float(height.value.deviation)
+    mean = float(mean_restitution.coefficients[0])
+    spread = float(np.sqrt(mean_restitution.covariance[0, 0]))
+    # the speed is proportional to gravity, so that the height is, too
+    drop_height = 0.5 * (speed / mean) ** 2 / float(gravity.value)
+    relative_deviation = np.hypot(
+        2.0 * spread / mean, gravity.value.deviation / float(gravity.value)
+    )
+    return float(drop_height), float(drop_height * relative_deviation)
+
+
+def _input_effects(
+    gravity: Input,
+    height: Input | None,
+    contact_time: Input,
+    approach: Floats,
+    separation: Floats,
+) -> tuple[Floats, Floats]:
+    """Return what one standard deviation of each input changes in the speeds, (3, n) [m/s].
+
+    The inputs are gravity, height and contact time; the speeds are those before and after.
+    """
+    # the first speed is that after the fall, sqrt(2 g h); the others are those of flights, g T / 2
+    after_fall = np.zeros(len(approach))
+    relative_height_deviation = 0.0
+    if height is not None:
+        after_fall[0] = approach[0]
+        relative_height_deviation = height.value.deviation / height.value
+    after_flight = np.append(0.0, approach[1:])
+    g = gravity.value
+    # a longer contact leaves less time for the flight
+    by_contact = -0.5 * g * contact_time.value.deviation
+    of_approach = [
+        (after_flight + 0.5 * after_fall) * gravity.value.deviation / g,
+        0.5 * relative_height_deviation * after_fall,
+        np.append(0.0, np.full(len(after_flight) - 1, by_contact)),
     ]
-    after = [separation * pull.value.deviation / g, 0.0 * separation, shorter + 0.0 * separation]
-    return np.array(before), np.array(after)
+    of_separation = [
+        separation * gravity.value.deviation / g,
+        0.0 * separation,
+        by_contact + 0.0 * separation,
+    ]
+    return np.array(of_approach), np.array(of_separation)

@@ -13,8 +13,10 @@ from vibroimpact.calibration.fitting import half_width
 
 CONSTANT, LINEAR, POWER = "constant", "linear", "power"
 
-_ROUNDS = 200
+_MOST_BISECTIONS = 200
+
 _PASSES = 3
+"""Number of fits, each with the slope of the previous one."""
 
 
 @dataclass(frozen=True)
@@ -45,8 +47,11 @@ class SpeedLaw:
 
     def __call__(self, speed: Floats) -> Floats:
         """Return the restitution at approach speeds [m/s]."""
-        first, second = (*self.coefficients, 0.0)[:2]
-        return np.asarray(first * speed**second if self.name == POWER else first + second * speed)
+        first = self.coefficients[0]
+        second = self.coefficients[1] if len(self.coefficients) > 1 else 0.0
+        if self.name == POWER:
+            return np.asarray(first * speed**second)
+        return np.asarray(first + second * speed)
 
     def intervals(self, confidence: float) -> Floats:
         """Return the confidence intervals of the coefficients, (k, 2)."""
@@ -58,17 +63,15 @@ class SpeedLaw:
 
     def band(self, speed: Floats, confidence: float) -> tuple[Floats, Floats]:
         """Return the ends of the confidence band of the restitution at approach speeds [m/s]."""
-        power = self.name == POWER
-        design = np.vander(
-            np.log(speed) if power else speed, len(self.coefficients), increasing=True
-        )
-        half = half_width(confidence, self.freedom) * np.sqrt(
-            np.einsum("ni,ij,nj->n", design, self.covariance, design)
-        )
-        value = self(speed)
-        return (
-            (value * np.exp(-half), value * np.exp(half)) if power else (value - half, value + half)
-        )
+        # the power law is linear in logarithms
+        abscissa = np.log(speed) if self.name == POWER else speed
+        design = np.vander(abscissa, len(self.coefficients), increasing=True)
+        variance = np.einsum("ni,ij,nj->n", design, self.covariance, design)
+        half = half_width(confidence, self.freedom) * np.sqrt(variance)
+        restitution = self(speed)
+        if self.name == POWER:
+            return restitution * np.exp(-half), restitution * np.exp(half)
+        return restitution - half, restitution + half
 
 
 class Fitted(Protocol):
@@ -102,8 +105,9 @@ def speed_laws(
     count: Floats | None = None,
     shared: Floats | None = None,
 ) -> list[SpeedLaw]:
-    """Return the fits to restitutions at several speeds: those with fewer coefficients than there
-    are restitutions, the constant always.
+    """Return the fits to restitutions at several speeds.
+
+    They are those with fewer coefficients than there are restitutions, the constant always.
 
     Real bounces scatter by more than times are uncertain: to their covariance that of a scatter is
     added, such that the sum of squared residuals is what is expected (Paule and Mandel 1982, J.
@@ -131,82 +135,110 @@ def speed_laws(
     ... ][-1]
     [0.8, -0.25]
     """
-    one = np.ones(len(speed)) if count is None else 1.0 / count
-    of_value, of_speed = (
-        np.zeros((2, 0, len(speed))) if shared is None else (shared[:, 0], shared[:, 1])
-    )
-    found = [
-        _fitted(
-            CONSTANT, np.ones((len(speed), 1)), restitution, covariance + of_value.T @ of_value, one
-        )
-    ]
+    # a mean of several impacts has a part of the variance of the scatter of one
+    variance_shares = np.ones(len(speed)) if count is None else 1.0 / count
+    if shared is None:
+        of_restitution = np.zeros((0, len(speed)))
+        of_speed = np.zeros((0, len(speed)))
+    else:
+        of_restitution = shared[:, 0]
+        of_speed = shared[:, 1]
+    constant = np.ones((len(speed), 1))
+    by_inputs = of_restitution.T @ of_restitution
+    laws = [_fitted(CONSTANT, constant, restitution, covariance + by_inputs, variance_shares)]
     if len(speed) > 2 and np.ptp(speed) > 0.0:
-        found.append(_along(LINEAR, speed, restitution, covariance, one, (of_value, of_speed)))
-        relative = covariance / np.outer(restitution, restitution)
-        found.append(
-            _along(
+        laws.append(
+            _straight_fit(
+                LINEAR, speed, restitution, covariance, variance_shares, of_restitution, of_speed
+            )
+        )
+        laws.append(
+            _straight_fit(
                 POWER,
                 np.log(speed),
                 np.log(restitution),
-                relative,
-                one,
-                (of_value / restitution, of_speed / speed),
+                covariance / np.outer(restitution, restitution),
+                variance_shares,
+                of_restitution / restitution,
+                of_speed / speed,
             )
         )
-    return found
+    return laws
 
 
-def _along(
+def _straight_fit(
     name: str,
-    place: Floats,
-    value: Floats,
+    abscissa: Floats,
+    ordinate: Floats,
     covariance: Floats,
-    shares: Floats,
-    shared: tuple[Floats, Floats],
+    variance_shares: Floats,
+    of_ordinate: Floats,
+    of_abscissa: Floats,
 ) -> SpeedLaw:
-    """Return a straight fit; what the inputs change in the places counts by the slope,
-    which is found in a few rounds.
+    """Return a straight fit; `of_ordinate` and `of_abscissa` are what inputs change, (k, n).
+
+    What they change in the abscissa counts by the slope, which is found in a few passes.
     """
-    design, slope, (of_value, of_place) = np.vander(place, 2, increasing=True), 0.0, shared
+    design = np.vander(abscissa, 2, increasing=True)
+    slope = 0.0
     for _ in range(_PASSES):
-        moved = of_value - slope * of_place
-        fitted = _fitted(name, design, value, covariance + moved.T @ moved, shares)
-        slope = float(fitted.coefficients[1])
-    return fitted
+        of_residual = of_ordinate - slope * of_abscissa
+        by_inputs = of_residual.T @ of_residual
+        law = _fitted(name, design, ordinate, covariance + by_inputs, variance_shares)
+        slope = float(law.coefficients[1])
+    return law
 
 
 def _fitted(
-    name: str, design: Floats, value: Floats, covariance: Floats, shares: Floats
+    name: str, design: Floats, ordinate: Floats, covariance: Floats, variance_shares: Floats
 ) -> SpeedLaw:
-    """Return a fit; `shares`: parts of the variance of the scatter that the values have, (n,)."""
-    freedom = len(value) - design.shape[1]
+    """Return a fit by generalized least squares, with the variance of the scatter.
 
-    def fit(added: float) -> tuple[Floats, Floats, float]:
-        root = np.linalg.cholesky(covariance + added * np.diag(shares))
-        white, target = np.linalg.solve(root, design), np.linalg.solve(root, value)
-        inverse = np.linalg.pinv(white)
-        solution = inverse @ target
-        return solution, inverse @ inverse.T, float(np.sum((target - white @ solution) ** 2))
+    `variance_shares`: parts of the variance of the scatter that the ordinates have, (n,).
+    """
+    freedom = len(ordinate) - design.shape[1]
 
-    added = _where(lambda one: fit(one)[2] - freedom, float(np.var(value))) if freedom else 0.0
-    coefficients, spread, _ = fit(added)
+    def fit(scatter_variance: float) -> tuple[Floats, Floats, float]:
+        """Return coefficients, their covariance, and the sum of squared residuals."""
+        root = np.linalg.cholesky(covariance + scatter_variance * np.diag(variance_shares))
+        white_design = np.linalg.solve(root, design)
+        white_ordinate = np.linalg.solve(root, ordinate)
+        inverse = np.linalg.pinv(white_design)
+        solution = inverse @ white_ordinate
+        squares = float(np.sum((white_ordinate - white_design @ solution) ** 2))
+        return solution, inverse @ inverse.T, squares
+
+    def excess(scatter_variance: float) -> float:
+        return float(fit(scatter_variance)[2] - freedom)
+
+    # the sum of squares is that expected, the degrees of freedom (Paule and Mandel 1982)
+    scatter_variance = _root_of_falling(excess, float(np.var(ordinate))) if freedom else 0.0
+    coefficients, coefficient_covariance, _ = fit(scatter_variance)
     if name == POWER:
         coefficients = np.array([np.exp(coefficients[0]), coefficients[1]])
-    return SpeedLaw(name, coefficients, spread, freedom if added else np.inf, float(np.sqrt(added)))
+    return SpeedLaw(
+        name,
+        coefficients,
+        coefficient_covariance,
+        freedom=freedom if scatter_variance else np.inf,
+        scatter=float(np.sqrt(scatter_variance)),
+    )
 
 
-def _where(excess: Callable[[float], float], most: float) -> float:
-    """Return where a falling function of the added variance is zero; 0 if it is not above
-    zero there.
-    """
-    if excess(0.0) <= 0.0:
+def _root_of_falling(function: Callable[[float], float], guess: float) -> float:
+    """Return the positive root of a falling function by bisection; 0 if it is not above 0 at 0."""
+    if function(0.0) <= 0.0:
         return 0.0
-    low, high = 0.0, most
-    while excess(high) > 0.0:
+    low = 0.0
+    high = guess
+    while function(high) > 0.0:
         high *= 2.0
-    for _ in range(_ROUNDS):
+    for _ in range(_MOST_BISECTIONS):
         middle = 0.5 * (low + high)
         if not low < middle < high:
             break
-        low, high = (middle, high) if excess(middle) > 0.0 else (low, middle)
+        if function(middle) > 0.0:
+            low = middle
+        else:
+            high = middle
     return high

@@ -1,3 +1,1 @@
-"""Calibration of the friction law: parameters that are fitted together to measured
-oblique impacts.
-"""
+"""Calibration of parameters of the friction law, together, to measured oblique impacts."""

@@ -25,9 +25,16 @@ from vibroimpact.calibration.section import FRICTION
 from vibroimpact.dynamics.problem import Problem, StatesProblem
 from vibroimpact.errors import ComputationError, InputError
 
-_NEARLY = 0.999  # gravity acts too
-_ALIKE = 1e-6  # relative difference of sums of squares
-_STARTS = 3  # of the best combinations of values, from which the search goes on
+_NEARLY = 0.999
+"""Fraction of the largest impulse of friction from which an impact slips throughout; gravity acts
+too.
+"""
+
+_EQUAL = 1e-6
+"""Relative difference of sums of squares that count as equal."""
+
+_STARTS = 3
+"""Number of the best combinations of values, from which the search goes on."""
 
 
 @dataclass(frozen=True)
@@ -127,8 +134,9 @@ class FrictionCalibration:
 
     @property
     def slips(self) -> Bools:
-        """Which impacts slip throughout with the values found, (n,): friction changes
-        their velocity as much as it can.
+        """Which impacts slip throughout with the values found, (n,).
+
+        Friction changes their velocity as much as it can.
         """
         return _slips(self.parameters, self.values, self.impacts, self.outcomes)
 
@@ -206,109 +214,73 @@ def calibrate_friction(
     >>> vi.calibrate_friction(case, impacts, ["friction.coefficient"]).values.round(3).tolist()
     [0.2]
     """
-    tell, stated = progress or (lambda done: None), problem.to_problem()
-    if stated.shape != ():
-        raise InputError("one drop is calibrated at a time; take one of the batch")
-    if stated.vibrates or stated.motion is not None:
-        words = "friction is fitted to single impacts of rigid bodies on a plate that lies still"
-        raise InputError(
-            f'{words}; leave out what deforms or moves, such as model = "elastic"', "parameter"
-        )
-    if bootstrap != 0 and not bootstrap >= 20:
-        raise InputError(
-            f"{bootstrap} draws give no interval; it must be 0, or at least 20", "bootstrap"
-        )
+    report_progress = progress or (lambda fraction: None)
+    stated = problem.to_problem()
+    _check(stated, bootstrap)
     parameters = friction_parameters(stated, names)
-    seen, bounds = impacts.seen, parameters.bounds
-    model, counted = (
-        impact_model(stated, parameters, impacts),
-        dict.fromkeys(seen.wanted, 1.0) if weights is None else dict(weights),
-    )
-    sizes = {
-        name: standard_deviations(seen.noise[name])
-        / (1.0 if seen.deviations_known else np.sqrt(weight))
-        for name, weight in counted.items()
-    }
-
-    def off(values: Floats, wanted: Mapping[str, Floats]) -> Floats:
-        found = model(values)
-        return np.concatenate(
-            [(found[name] - wanted[name]) / size for name, size in sizes.items()], axis=1
-        )
-
-    def measured(values: Floats, _: Indices) -> Floats:
-        return off(values, seen.wanted)
-
-    begin = parameters.starts()
-    costs = (off(begin, seen.wanted) ** 2).sum(axis=1)
-    best = begin[np.argsort(np.where(np.isnan(costs), np.inf, costs), kind="stable")[:_STARTS]]
-    tell(0.1)
-    found = minimize(measured, best, bounds)
-    at = int(np.argmin(found.cost))
-    if not np.isfinite(found.cost[at]):
-        raise ComputationError(
-            _not_computed(
-                seen,
-                np.isnan(off(found.values[[at]], seen.wanted)[0])
-                .reshape(len(sizes), -1)
-                .any(axis=0),
-            )
-        )
-    least = _as_given(
-        measured, Minimum(found.values[[at]], found.cost[[at]]), parameters.given, bounds
-    )
-    tell(0.3)
-    freedom = float(len(sizes) * len(seen.speeds) - len(names))
-    scatter = float(np.sqrt(least.cost[0] / freedom)) if freedom > 0 else np.nan
-    known = seen.deviations_known and not (freedom > 0 and misfits(scatter, int(freedom)))
+    model = impact_model(stated, parameters, impacts)
+    if weights is None:
+        weights = dict.fromkeys(impacts.seen.wanted, 1.0)
+    misfit = _Misfit(model, impacts.seen, weights)
+    report_progress(0.1)
+    best = _best_fit(misfit, parameters)
+    report_progress(0.3)
+    freedom = float(len(weights) * len(impacts.seen.speeds) - len(names))
+    scatter = float(np.sqrt(best.cost[0] / freedom)) if freedom > 0 else np.nan
+    # noise that is stated too small counts as unknown
+    known = impacts.seen.deviations_known and not (freedom > 0 and misfits(scatter, int(freedom)))
     intervals = None
     if known or freedom > 0:
-        width = half_width(confidence, np.inf if known else freedom)
-        intervals = profile_intervals(measured, least, bounds, width * (1.0 if known else scatter))
-        open_ends = np.stack(
-            [intervals[:, 0] <= bounds.least, intervals[:, 1] >= bounds.most], axis=1
-        )
-        tell(0.5)
+        quantile = half_width(confidence, np.inf if known else freedom)
+        rise = quantile * (1.0 if known else scatter)
+        intervals = profile_intervals(misfit.of_measurement, best, parameters.bounds, rise)
+        open_ends = _open_ends(intervals, parameters.bounds)
+        report_progress(0.5)
         if bootstrap:
-            noisy = (
-                seen
-                if known
-                else with_noise_scale(seen, scatter, {} if seen.deviations_known else counted)
-            )
-            drawn = _samples(noisy, bootstrap, seed)
-
-            def sampled(values: Floats, chains: Indices) -> Floats:
-                return off(values, {name: rows[chains] for name, rows in drawn.items()})
-
+            noisy = impacts.seen
+            if not known:
+                relative_weights = {} if impacts.seen.deviations_known else weights
+                noisy = with_noise_scale(impacts.seen, scatter, relative_weights)
             ends = bootstrap_intervals(
-                sampled, least, bounds, bootstrap, confidence, lambda done: tell(0.5 + 0.4 * done)
+                misfit.of_samples(_samples(noisy, bootstrap, seed)),
+                best,
+                parameters.bounds,
+                bootstrap,
+                confidence,
+                lambda fraction: report_progress(0.5 + 0.4 * fraction),
             )
             # the samples assume a known noise; widen the intervals where it is only estimated
-            best_values = least.values[0][:, None]
-            ends = best_values + width / half_width(confidence, np.inf) * (ends - best_values)
+            best_values = best.values[0][:, None]
+            widening = quantile / half_width(confidence, np.inf)
+            ends = best_values + widening * (ends - best_values)
             intervals = np.where(open_ends, intervals, ends)
         intervals = np.where(open_ends, parameters.allowed, intervals)
-        idle = np.atleast_2d(open_ends.all(axis=1))
-        if idle.any():  # what the measurement does not determine stays as it is
-            start = np.where(idle, parameters.given, least.values)
-            least = minimize(measured, start, bounds, idle)
-    values, given = least.values[0], parameters.given
-    outcomes = _one(model, values)
+        best = _with_undetermined_as_given(misfit, best, parameters, open_ends)
+    values = best.values[0]
+    outcomes = _outcomes(model, values)
     slips = _slips(parameters, values, impacts, outcomes)
     doubts = friction_doubts(
-        parameters, values, intervals, seen, confidence, freedom, scatter, slips, known=known
+        parameters,
+        values,
+        intervals,
+        impacts.seen,
+        confidence,
+        freedom,
+        scatter,
+        slips,
+        known=known,
     )
     return FrictionCalibration(
         problem=stated,
         parameters=parameters,
         impacts=impacts,
-        weights=counted,
+        weights=dict(weights),
         model=model,
         values=values,
         intervals=intervals,
         outcomes=outcomes,
-        given=given,
-        as_given=_one(model, given),
+        given=parameters.given,
+        as_given=_outcomes(model, parameters.given),
         freedom=np.inf if known else freedom,
         scatter=scatter,
         confidence=confidence,
@@ -320,16 +292,114 @@ def calibrate_friction(
     )
 
 
-def _not_computed(seen: Observations, failed: Bools) -> str:
-    """Return in words which impacts could not be computed; `failed`: whether each could
-    not, (n,).
+def _check(problem: Problem, bootstrap: int) -> None:
+    if problem.shape != ():
+        raise InputError("one drop is calibrated at a time; take one of the batch")
+    if problem.vibrates or problem.motion is not None:
+        raise InputError(
+            "friction is fitted to single impacts of rigid bodies on a plate that lies still; "
+            'leave out what deforms or moves, such as model = "elastic"',
+            "parameter",
+        )
+    if bootstrap != 0 and not bootstrap >= 20:
+        raise InputError(
+            f"{bootstrap} draws give no interval; it must be 0, or at least 20", "bootstrap"
+        )
+
+
+class _Misfit:
+    """Computed less measured quantities over their standard deviations, as functions of values.
+
+    Residuals of S chains of values (S, K) have the shape (S, N): n impacts, quantity by quantity.
     """
-    number, first = int(failed.sum()), int(np.argmax(failed))
-    which = seen.labels[first] if seen.labels else f"impact {first + 1}"
-    words = f"{number} of these {len(failed)} impacts could not be computed, the first {which}"
+
+    def __init__(
+        self, model: ImpactModel, observations: Observations, weights: Mapping[str, float]
+    ) -> None:
+        self.model = model
+        self.observations = observations
+        self.deviations = {
+            name: standard_deviations(observations.noise[name])
+            / (1.0 if observations.deviations_known else np.sqrt(weight))
+            for name, weight in weights.items()
+        }
+
+    def residuals(self, values: Floats, wanted: Mapping[str, Floats]) -> Floats:
+        """Return the residuals from wanted quantities, (n,) or (S, n)."""
+        computed = self.model(values)
+        return np.concatenate(
+            [
+                (computed[name] - wanted[name]) / deviation
+                for name, deviation in self.deviations.items()
+            ],
+            axis=1,
+        )
+
+    def of_measurement(self, values: Floats, _: Indices) -> Floats:
+        """Return the residuals from what was measured, the same for all chains."""
+        return self.residuals(values, self.observations.wanted)
+
+    def of_samples(self, samples: Mapping[str, Floats]) -> Residuals:
+        """Return the residuals from samples of the measurement, one for each chain."""
+
+        def residuals(values: Floats, chains: Indices) -> Floats:
+            wanted = {name: sample[chains] for name, sample in samples.items()}
+            return self.residuals(values, wanted)
+
+        return residuals
+
+
+def _best_fit(misfit: _Misfit, parameters: FrictionParameters) -> Minimum:
+    """Return the values with the least sum of squares, from the best points of a grid.
+
+    Values that make no difference are as given.
+    """
+    grid = parameters.starts()
+    costs = (misfit.residuals(grid, misfit.observations.wanted) ** 2).sum(axis=1)
+    order = np.argsort(np.where(np.isnan(costs), np.inf, costs), kind="stable")
+    minima = minimize(misfit.of_measurement, grid[order[:_STARTS]], parameters.bounds)
+    lowest = int(np.argmin(minima.cost))
+    values = minima.values[[lowest]]
+    if not np.isfinite(minima.cost[lowest]):
+        residual = misfit.residuals(values, misfit.observations.wanted)[0]
+        failed = np.isnan(residual).reshape(len(misfit.deviations), -1).any(axis=0)
+        raise ComputationError(_not_computed(misfit.observations, failed))
+    return _with_idle_as_given(
+        misfit.of_measurement,
+        Minimum(values, minima.cost[[lowest]]),
+        parameters.given,
+        parameters.bounds,
+    )
+
+
+def _open_ends(intervals: Floats, bounds: Bounds) -> Bools:
+    """Return which ends of intervals the measurement does not set, (K, 2)."""
+    return np.stack([intervals[:, 0] <= bounds.least, intervals[:, 1] >= bounds.most], axis=1)
+
+
+def _with_undetermined_as_given(
+    misfit: _Misfit, best: Minimum, parameters: FrictionParameters, open_ends: Bools
+) -> Minimum:
+    """Return the minimum with parameters as given that the measurement does not determine."""
+    undetermined = np.atleast_2d(open_ends.all(axis=1))
+    if not undetermined.any():
+        return best
+    start = np.where(undetermined, parameters.given, best.values)
+    return minimize(misfit.of_measurement, start, parameters.bounds, undetermined)
+
+
+def _not_computed(observations: Observations, failed: Bools) -> str:
+    """Return which impacts could not be computed; `failed`: whether each could not, (n,)."""
+    first = int(np.argmax(failed))
+    label = observations.labels[first] if observations.labels else f"impact {first + 1}"
     if len(failed) == 1:
-        words = f"{which} could not be computed"
-    return f"{words}; look at the measured speeds, and at the case"
+        sentence = f"{label} could not be computed"
+    else:
+        sentence = (
+            f"{int(failed.sum())} of these {len(failed)} impacts could not be computed, "
+            f"the first {label}"
+        )
+    return f"{sentence}; look at the measured speeds, and at the case"
 
 
 def _slips(
@@ -338,35 +408,42 @@ def _slips(
     impacts: ObliqueImpacts,
     outcomes: Mapping[str, Floats],
 ) -> Bools:
-    """Return which impacts slip throughout, (n,)."""
-    taken = np.abs(outcomes["separation_velocity_x"] - impacts.velocity)
+    """Return which impacts slip throughout, (n,).
+
+    Friction then changes the velocity by its coefficient times the change of the normal velocity.
+    """
+    velocity_change = np.abs(outcomes["separation_velocity_x"] - impacts.velocity)
     coefficient = parameters.with_values(values).coefficient
     return np.asarray(
-        taken >= _NEARLY * coefficient * (impacts.seen.speeds + outcomes["separation_speed"])
+        velocity_change
+        >= _NEARLY * coefficient * (impacts.seen.speeds + outcomes["separation_speed"])
     )
 
 
-def _as_given(residuals: Residuals, best: Minimum, given: Floats, bounds: Bounds) -> Minimum:
-    """Return a minimum that is as low, in which parameters are as given whose values make
-    no difference.
-    """
+def _with_idle_as_given(
+    residuals: Residuals, best: Minimum, given: Floats, bounds: Bounds
+) -> Minimum:
+    """Return a minimum that is as low, with parameters as given that make no difference."""
     fixed = np.zeros((1, len(given)), dtype=bool)
-    for place in range(len(given)):
+    for parameter in range(len(given)):
         start = best.values.copy()
-        start[0, place] = given[place]
-        fixed[0, place] = True
-        found = minimize(residuals, start, bounds, fixed)
-        fixed[0, place] = found.cost[0] <= best.cost[0] * (1.0 + _ALIKE) + _ALIKE**2
-        best = found if fixed[0, place] else best
+        start[0, parameter] = given[parameter]
+        fixed[0, parameter] = True
+        minimum = minimize(residuals, start, bounds, fixed)
+        as_low = minimum.cost[0] <= best.cost[0] * (1.0 + _EQUAL) + _EQUAL**2
+        fixed[0, parameter] = as_low
+        if as_low:
+            best = minimum
     return best
 
 
-def _samples(seen: Observations, number: int, seed: int) -> dict[str, Floats]:
-    """Return measured quantities with realizations of their noise, (number, n)."""
+def _samples(observations: Observations, count: int, seed: int) -> dict[str, Floats]:
+    """Return measured quantities with realizations of their noise, (count, n)."""
     random = np.random.default_rng(seed)
-    rows = [seen.redrawn(random)[1] for _ in range(number)]
-    return {name: np.stack([row[name] for row in rows]) for name in seen.wanted}
+    samples = [observations.redrawn(random)[1] for _ in range(count)]
+    return {name: np.stack([sample[name] for sample in samples]) for name in observations.wanted}
 
 
-def _one(model: ImpactModel, values: Floats) -> dict[str, Floats]:
-    return {name: column[0] for name, column in model(values[None]).items()}
+def _outcomes(model: ImpactModel, values: Floats) -> dict[str, Floats]:
+    """Return the quantities of the impacts (n,) with values (K,) of the parameters."""
+    return {name: rows[0] for name, rows in model(values[None]).items()}

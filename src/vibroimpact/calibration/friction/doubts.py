@@ -1,5 +1,6 @@
-"""Warnings about calibrated friction: what the impacts do not determine, and laws that do
-not follow them.
+"""Warnings about calibrated friction.
+
+They are about what the impacts do not determine, and laws that do not follow them.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ _WIDE = 1.0
 undetermined.
 """
 
-_WOULD_TELL = {
+_DETERMINING_IMPACTS = {
     "coefficient": "; impacts at larger angles from the normal, which slip throughout, would "
     "determine it",
     "slip_restitution": "; impacts at smaller angles from the normal, which do not slip "
@@ -28,7 +29,7 @@ _WOULD_TELL = {
     "effective_shear_modulus": "; impacts at smaller angles from the normal, which do not slip "
     "throughout, would determine it",
 }
-
+"""Impacts that would determine a parameter which others do not."""
 
 _MISSED = 1e-3
 """Relative deviation of a separation speed above which the contact law counts as not
@@ -37,8 +38,9 @@ reaching it.
 
 
 def rebound_doubts(impacts: ObliqueImpacts, separation_speed: Floats, law: str) -> Iterator[str]:
-    """Yield a warning about measured normal rebounds that the contact law does not reach with any
-    value of its parameter.
+    """Yield a warning about measured normal rebounds that the contact law does not reach.
+
+    It does not reach them with any value of its parameter.
 
     Parameters
     ----------
@@ -51,18 +53,19 @@ def rebound_doubts(impacts: ObliqueImpacts, separation_speed: Floats, law: str) 
     """
     if impacts.separation_speed is None:
         return
-    off = np.abs(separation_speed - impacts.separation_speed)
-    missed = off > _MISSED * impacts.seen.speeds
-    if missed.any():
-        worst = int(np.argmax(np.where(missed, off / impacts.seen.speeds, -1.0)))
-        label = impacts.seen.labels[worst] if impacts.seen.labels else f"impact {worst + 1}"
-        yield (
-            f"{law} does not reach the normal rebound of {int(missed.sum())} of {len(off)} "
-            f"impacts, least that of {label}: its "
-            f"separation speed is {text(float(separation_speed[worst]), 'm/s')} instead of "
-            f"{text(float(impacts.separation_speed[worst]), 'm/s')}; take another contact "
-            "law, as friction is fitted with this impulse"
-        )
+    deviation = np.abs(separation_speed - impacts.separation_speed)
+    missed = deviation > _MISSED * impacts.seen.speeds
+    if not missed.any():
+        return
+    worst = int(np.argmax(np.where(missed, deviation / impacts.seen.speeds, -1.0)))
+    label = impacts.seen.labels[worst] if impacts.seen.labels else f"impact {worst + 1}"
+    yield (
+        f"{law} does not reach the normal rebound of {int(missed.sum())} of {len(deviation)} "
+        f"impacts, least that of {label}: its "
+        f"separation speed is {text(float(separation_speed[worst]), 'm/s')} instead of "
+        f"{text(float(impacts.separation_speed[worst]), 'm/s')}; take another contact "
+        "law, as friction is fitted with this impulse"
+    )
 
 
 def friction_doubts(
@@ -77,11 +80,9 @@ def friction_doubts(
     *,
     known: bool,
 ) -> Iterator[str]:
-    """Yield warnings about parameters that the measurement does not determine, and about a law that
-    does not follow it.
+    """Yield warnings about what the measurement does not determine, and a law that does not follow.
 
-    `slips`: which impacts slip throughout, (n,). Only where all are of the kind that tells nothing
-    of a parameter, others would tell it.
+    `slips`: which impacts slip throughout, (n,).
     """
     if intervals is None:
         yield (
@@ -89,35 +90,68 @@ def friction_doubts(
             "their uncertainty is unknown"
         )
         return
-    at = f"at {100.0 * confidence:g} %"
-    for name, unit, value, interval, ends in zip(
-        parameters.names, parameters.units, values, intervals, parameters.allowed, strict=True
-    ):
-        low, high, shown = *(text(float(end), unit) for end in interval), text(float(value), unit)
-        below, above = interval == ends
-        silent = not slips.any() if name == "coefficient" else bool(slips.all())
-        full, more = f"{FRICTION}{name}", _WOULD_TELL.get(name, "") if silent else ""
-        wide = interval[1] - interval[0] > _WIDE * (
-            0.5 * np.ptp(ends) if np.isfinite(ends).all() else abs(value)
+    at_confidence = f"at {100.0 * confidence:g} %"
+    for row, name in enumerate(parameters.names):
+        doubt = _parameter_doubt(
+            name,
+            parameters.units[row],
+            float(values[row]),
+            intervals[row],
+            parameters.allowed[row],
+            slips,
+            at_confidence,
         )
-        if below and above:
-            yield (
-                f"these impacts do not determine {full}, which is left at its first value, "
-                f"{shown}: {at} they exclude none{more}"
-            )
-        elif above:
-            stick = " (they stick with more friction)" if name == "coefficient" and silent else ""
-            yield f"these impacts give only a lower bound of {full}, {low} {at}{stick}{more}"
-        elif below and wide:
-            yield (
-                f"these impacts give only an upper bound of {full}, {high} "
-                f"{at}{more if name != 'coefficient' else ''}"
-            )
-        elif wide:
-            yield f"these impacts do not determine {full}: {shown}, but {low} to {high} {at}"
+        if doubt:
+            yield doubt
     if seen.deviations_known and freedom > 0 and not known:
         yield (
             f"residuals are {digits(scatter, 3)} times as large as their standard "
             f"deviations: {parameters.law.name} does not fit the "
             "measurement, or its noise is larger; the intervals are widened accordingly"
         )
+
+
+def _parameter_doubt(
+    name: str,
+    unit: str,
+    value: float,
+    interval: Floats,
+    allowed: Floats,
+    slips: Bools,
+    at_confidence: str,
+) -> str:
+    """Return a warning about a parameter that the measurement does not determine, or an empty text.
+
+    Impacts that stick throughout say nothing of the coefficient, and those that slip throughout
+    nothing of the other parameters. Only where all are such, others would determine it.
+    """
+    open_below, open_above = interval == allowed
+    low, high = (text(float(end), unit) for end in interval)
+    full_name = f"{FRICTION}{name}"
+    is_coefficient = name == "coefficient"
+    all_silent = not slips.any() if is_coefficient else bool(slips.all())
+    hint = _DETERMINING_IMPACTS.get(name, "") if all_silent else ""
+    scale = 0.5 * np.ptp(allowed) if np.isfinite(allowed).all() else abs(value)
+    wide = interval[1] - interval[0] > _WIDE * scale
+    if open_below and open_above:
+        return (
+            f"these impacts do not determine {full_name}, which is left at its first value, "
+            f"{text(value, unit)}: {at_confidence} they exclude none{hint}"
+        )
+    if open_above:
+        stick = " (they stick with more friction)" if is_coefficient and all_silent else ""
+        return (
+            f"these impacts give only a lower bound of {full_name}, {low} {at_confidence}"
+            f"{stick}{hint}"
+        )
+    if open_below and wide:
+        return (
+            f"these impacts give only an upper bound of {full_name}, {high} "
+            f"{at_confidence}{'' if is_coefficient else hint}"
+        )
+    if wide:
+        return (
+            f"these impacts do not determine {full_name}: {text(value, unit)}, but {low} to {high} "
+            f"{at_confidence}"
+        )
+    return ""

@@ -1,5 +1,6 @@
-"""Intervals of parameters that are fitted together: by the profile of the sum of squares,
-or by a parametric bootstrap.
+"""Intervals of parameters that are fitted together.
+
+They follow from the profile of the sum of squares, or from a parametric bootstrap.
 """
 
 from __future__ import annotations
@@ -18,20 +19,23 @@ from vibroimpact.calibration.friction.least_squares import (
 )
 from vibroimpact.contact.roots import find_root
 
-_FURTHER = 4.0 ** np.arange(-1.0, 7.0)
-"""Distances from the best value in the search for the ends of an interval, in first-order
-half widths.
+_DISTANCES = 4.0 ** np.arange(-1.0, 7.0)
+"""Distances from the best value in the search for the ends of an interval, in first-order half
+widths.
 """
 
 _CLOSE = 1e-3
+"""Tolerance of the ends of an interval."""
+
 _AT_ONCE = 100
+"""Number of samples that are fitted at once."""
 
 
 def profile_intervals(residuals: Residuals, best: Minimum, bounds: Bounds, rise: float) -> Floats:
-    r"""Return the ends of the intervals (K, 2) within which the sum of squares rises by at most
-    :math:`r^2`, all other values refitted.
+    r"""Return the ends of the intervals (K, 2) by the profile of the sum of squares.
 
-    An end is infinite, or the bound, where no value on that side makes it rise so far.
+    Within an interval it rises by at most :math:`r^2`, with all other values refitted. An end is
+    infinite, or the bound, where no value on that side makes it rise so far.
 
     Parameters
     ----------
@@ -58,52 +62,57 @@ def profile_intervals(residuals: Residuals, best: Minimum, bounds: Bounds, rise:
     ... ).tolist()
     [[0.75, inf]]
     """
-    count = best.values.shape[1]
-    which, sides = np.repeat(np.arange(count), 2), np.tile([-1.0, 1.0], count)
+    parameter_count = best.values.shape[1]
+    # each parameter has two ends, below and above the best value
+    parameter = np.repeat(np.arange(parameter_count), 2)
+    sides = np.tile([-1.0, 1.0], parameter_count)
 
-    def excess(ends: Indices, places: Floats) -> Floats:
-        """Return by how much the root of the rise exceeds r, with the value of each end
-        at a place.
-        """
-        start, rows = np.repeat(best.values, len(ends), axis=0), np.arange(len(ends))
-        start[rows, which[ends]] = places
+    def excess(ends: Indices, end_values: Floats) -> Floats:
+        """Return by how much the root of the rise exceeds r, with values of some ends."""
+        chains = np.arange(len(ends))
+        start = np.repeat(best.values, len(ends), axis=0)
+        start[chains, parameter[ends]] = end_values
         fixed = np.zeros(start.shape, dtype=bool)
-        fixed[rows, which[ends]] = True
-        found = minimize(residuals, start, bounds, fixed)
-        return np.asarray(np.sqrt(np.maximum(found.cost - best.cost[0], 0.0)) - rise)
+        fixed[chains, parameter[ends]] = True
+        minimum = minimize(residuals, start, bounds, fixed)
+        return np.asarray(np.sqrt(np.maximum(minimum.cost - best.cost[0], 0.0)) - rise)
 
-    half = _half_widths(residuals, best, bounds, rise)[which]
-    most = np.where(sides > 0.0, bounds.most[which], bounds.least[which])
-    trials = best.values[0, which] + sides * _FURTHER[:, None] * half
-    trials = np.where(sides > 0.0, np.minimum(trials, most), np.maximum(trials, most))
-    every = np.tile(np.arange(2 * count), len(_FURTHER))
-    beyond = (excess(every, trials.ravel()) > 0.0).reshape(trials.shape)
+    all_ends = np.arange(2 * parameter_count)
+    best_values = best.values[0, parameter]
+    half_widths = _half_widths(residuals, best, bounds, rise)[parameter]
+    furthest = np.where(sides > 0.0, bounds.most[parameter], bounds.least[parameter])
+    trials = best_values + sides * _DISTANCES[:, None] * half_widths
+    trials = np.where(sides > 0.0, np.minimum(trials, furthest), np.maximum(trials, furthest))
+    trial_ends = np.tile(all_ends, len(_DISTANCES))
+    beyond = (excess(trial_ends, trials.ravel()) > 0.0).reshape(trials.shape)
     closed = np.flatnonzero(beyond.any(axis=0))
-    first = beyond.argmax(axis=0)
-    inner = np.where(first > 0, trials[first - 1, np.arange(2 * count)], best.values[0, which])
-    outer = trials[first, np.arange(2 * count)]
-    found = most.copy()
+    first_beyond = beyond.argmax(axis=0)
+    inner = np.where(first_beyond > 0, trials[first_beyond - 1, all_ends], best_values)
+    outer = trials[first_beyond, all_ends]
+    interval_ends = furthest.copy()
     if closed.size:
-        found[closed] = find_root(
-            lambda places: excess(closed, places),
+        interval_ends[closed] = find_root(
+            lambda end_values: excess(closed, end_values),
             inner[closed],
             outer[closed],
             tolerance=_CLOSE,
             close=_CLOSE * rise,
         )
-    return found.reshape(count, 2)
+    return interval_ends.reshape(parameter_count, 2)
 
 
 def _half_widths(residuals: Residuals, best: Minimum, bounds: Bounds, rise: float) -> Floats:
-    """Return half widths of the intervals (K,) to first order; where a value has no
-    influence, its size.
+    """Return half widths of the intervals (K,) to first order.
+
+    Where a value has no influence, it is the size of the value.
     """
-    chains = np.zeros(1, dtype=np.intp)
-    slopes = jacobian(residuals, best.values, residuals(best.values, chains), chains, bounds)[0]
+    chain = np.zeros(1, dtype=np.intp)
+    slopes = jacobian(residuals, best.values, residuals(best.values, chain), chain, bounds)[0]
     size = bounds.size(best.values[0])
     scaled = slopes * size
-    spread = np.sqrt(np.diag(np.linalg.pinv(scaled.T @ scaled, hermitian=True)))
-    return np.asarray(np.where((spread > 0.0) & (rise * spread < 1.0), rise * spread, 1.0) * size)
+    deviations = np.sqrt(np.diag(np.linalg.pinv(scaled.T @ scaled, hermitian=True)))
+    relative = rise * deviations
+    return np.asarray(np.where((deviations > 0.0) & (relative < 1.0), relative, 1.0) * size)
 
 
 def bootstrap_intervals(
@@ -131,15 +140,18 @@ def bootstrap_intervals(
     progress : callable
         Called with the fraction done.
     """
-    found = []
+    fitted_values = []
     for begin in range(0, draws, _AT_ONCE):
-        some = np.arange(begin, min(begin + _AT_ONCE, draws))
-        start = np.repeat(best.values, len(some), axis=0)
+        samples = np.arange(begin, min(begin + _AT_ONCE, draws))
+        start = np.repeat(best.values, len(samples), axis=0)
 
-        def residuals_of_samples(values: Floats, chains: Indices, some: Indices = some) -> Floats:
-            return residuals(values, some[chains])
+        def residuals_of_samples(
+            values: Floats, chains: Indices, samples: Indices = samples
+        ) -> Floats:
+            return residuals(values, samples[chains])
 
-        found.append(minimize(residuals_of_samples, start, bounds).values)
-        progress(float(some[-1] + 1) / draws)
-    tails = 50.0 * (1.0 - confidence)
-    return np.asarray(np.percentile(np.concatenate(found), [tails, 100.0 - tails], axis=0).T)
+        fitted_values.append(minimize(residuals_of_samples, start, bounds).values)
+        progress(float(samples[-1] + 1) / draws)
+    tail = 50.0 * (1.0 - confidence)
+    ends = np.percentile(np.concatenate(fitted_values), [tail, 100.0 - tail], axis=0)
+    return np.asarray(ends.T)

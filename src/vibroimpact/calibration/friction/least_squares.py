@@ -1,5 +1,6 @@
-"""Least squares with bounds for many chains at once, which differ in their start, their
-data, or what they hold fixed.
+"""Least squares with bounds for many chains at once.
+
+The chains differ in their start, their data, or what they hold fixed.
 """
 
 from __future__ import annotations
@@ -16,13 +17,21 @@ Residuals = Callable[[Floats, Indices], Floats]
 standard deviations, (S, N).
 """
 
-_SWEEPS = 100
-_STEP = 1e-3
-_CLOSE = 1e-7
-"""Step of the difference quotients, and last change of the values, relative to the values."""
+_MOST_ITERATIONS = 100
 
-_IDLE = 1e-9  # gain of a step, as a part of the sum of squares, with which a chain has settled
-_SMALLEST, _LARGEST = 1e-12, 1e8  # of the damping of steps
+_STEP = 1e-3
+"""Step of the difference quotients, relative to the values."""
+
+_CLOSE = 1e-7
+"""Last change of the values, relative to the values."""
+
+_IDLE = 1e-9
+"""Gain of a step, as a fraction of the sum of squares, with which a chain has settled."""
+
+_FIRST_DAMPING = 1e-3
+_LEAST_DAMPING = 1e-12
+_MOST_DAMPING = 1e8
+"""Damping of the steps, relative to the diagonal of the normal matrix."""
 
 
 class Bounds(NamedTuple):
@@ -47,8 +56,7 @@ class Minimum(NamedTuple):
 def minimize(
     residuals: Residuals, start: Floats, bounds: Bounds, fixed: Bools | None = None
 ) -> Minimum:
-    """Return the values with the least sum of squares near their start, by the method of Levenberg
-    and Marquardt.
+    """Return the values with the least sum of squares near their start, by Levenberg-Marquardt.
 
     Parameters
     ----------
@@ -75,53 +83,73 @@ def minimize(
     """
     values = np.clip(start, bounds.least, bounds.most)
     held = np.zeros(values.shape, dtype=bool) if fixed is None else fixed
-    left = residuals(values, np.arange(len(values)))
-    cost, damping, moving = _sum(left), np.full(len(values), 1e-3), np.arange(len(values))
-    for _ in range(_SWEEPS):
+    residual = residuals(values, np.arange(len(values)))
+    cost = _cost(residual)
+    damping = np.full(len(values), _FIRST_DAMPING)
+    moving = np.arange(len(values))
+    for _ in range(_MOST_ITERATIONS):
         if not moving.size:
             break
-        here = values[moving]
-        slopes = jacobian(residuals, here, left[moving], moving, bounds)
-        uphill = np.einsum("snk,sn->sk", slopes, left[moving])
-        outward = ((here <= bounds.least) & (uphill > 0.0)) | (
-            (here >= bounds.most) & (uphill < 0.0)
+        current = values[moving]
+        slopes = jacobian(residuals, current, residual[moving], moving, bounds)
+        gradient = np.einsum("snk,sn->sk", slopes, residual[moving])
+        # values at a bound stay there if the sum of squares falls beyond it
+        outward = ((current <= bounds.least) & (gradient > 0.0)) | (
+            (current >= bounds.most) & (gradient < 0.0)
         )
         free = ~(held[moving] | outward)
-        slopes = np.where(free[:, None, :], slopes, 0.0)
-        squares = np.einsum("snk,snj->skj", slopes, slopes)
-        diagonal = np.einsum("skk->sk", squares)
-        scales = damping[moving, None] * np.where(diagonal > 0.0, diagonal, 1.0)
-        step = np.linalg.solve(
-            squares + scales[:, :, None] * np.eye(values.shape[1]),
-            np.where(free, uphill, 0.0)[:, :, None],
-        )
-        trial = np.clip(here - step[:, :, 0], bounds.least, bounds.most)
-        left_there = residuals(trial, moving)
-        cost_there = _sum(left_there)
-        better = cost_there < cost[moving]
+        step = _damped_step(slopes, gradient, free, damping[moving])
+        trial = np.clip(current - step, bounds.least, bounds.most)
+        trial_residual = residuals(trial, moving)
+        trial_cost = _cost(trial_residual)
+        better = trial_cost < cost[moving]
         with np.errstate(invalid="ignore"):  # infinite where an impact could not be computed
-            idle = better & (cost[moving] - cost_there <= _IDLE * cost[moving])
-        gone = moving[better]
-        values[gone], left[gone], cost[gone] = trial[better], left_there[better], cost_there[better]
-        damping[moving] = np.clip(damping[moving] * np.where(better, 0.1, 10.0), _SMALLEST, None)
-        settled = idle | (np.abs(trial - here) <= _CLOSE * bounds.size(here)).all(axis=1)
-        moving = moving[~settled & (damping[moving] < _LARGEST)]
+            idle = better & (cost[moving] - trial_cost <= _IDLE * cost[moving])
+        accepted = moving[better]
+        values[accepted] = trial[better]
+        residual[accepted] = trial_residual[better]
+        cost[accepted] = trial_cost[better]
+        damping[moving] = np.clip(
+            damping[moving] * np.where(better, 0.1, 10.0), _LEAST_DAMPING, None
+        )
+        settled = idle | (np.abs(trial - current) <= _CLOSE * bounds.size(current)).all(axis=1)
+        moving = moving[~settled & (damping[moving] < _MOST_DAMPING)]
     return Minimum(values, cost)
 
 
-def jacobian(
-    residuals: Residuals, values: Floats, left: Floats, chains: Indices, bounds: Bounds
-) -> Floats:
-    """Return the derivatives of the residuals by the values, (S, N, K); `left`: the
-    residuals at the values.
+def _damped_step(slopes: Floats, gradient: Floats, free: Bools, damping: Floats) -> Floats:
+    """Return the steps (S, K) that solve the normal equations with Marquardt's damping.
+
+    Its scale is the diagonal of the normal matrix. Values that are not `free` do not move.
     """
-    number, count = values.shape
+    slopes = np.where(free[:, None, :], slopes, 0.0)
+    normal = np.einsum("snk,snj->skj", slopes, slopes)
+    diagonal = np.einsum("skk->sk", normal)
+    scales = damping[:, None] * np.where(diagonal > 0.0, diagonal, 1.0)
+    step = np.linalg.solve(
+        normal + scales[:, :, None] * np.eye(slopes.shape[2]),
+        np.where(free, gradient, 0.0)[:, :, None],
+    )
+    return np.asarray(step[:, :, 0])
+
+
+def jacobian(
+    residuals: Residuals, values: Floats, residual: Floats, chains: Indices, bounds: Bounds
+) -> Floats:
+    """Return the derivatives of the residuals by the values, (S, N, K).
+
+    `residual`: the residuals at the values, (S, N).
+    """
+    chain_count, value_count = values.shape
     step = _STEP * bounds.size(values)
     step = np.where(values + step > bounds.most, -step, step)
-    ahead = values + np.eye(count)[:, None, :] * step  # (K, S, K), one value moved in each
-    there = residuals(ahead.reshape(-1, count), np.tile(chains, count)).reshape(count, number, -1)
-    return np.asarray(np.moveaxis((there - left) / step.T[:, :, None], 0, 2))
+    moved = values + np.eye(value_count)[:, None, :] * step  # (K, S, K), one value moved in each
+    moved_residual = residuals(moved.reshape(-1, value_count), np.tile(chains, value_count))
+    moved_residual = moved_residual.reshape(value_count, chain_count, -1)
+    return np.asarray(np.moveaxis((moved_residual - residual) / step.T[:, :, None], 0, 2))
 
 
-def _sum(left: Floats) -> Floats:
-    return np.where(np.isnan(left).any(axis=1), np.inf, np.einsum("sn,sn->s", left, left))
+def _cost(residual: Floats) -> Floats:
+    """Return the sums of squares, (S,); infinite where an impact could not be computed."""
+    squares = np.einsum("sn,sn->s", residual, residual)
+    return np.where(np.isnan(residual).any(axis=1), np.inf, squares)

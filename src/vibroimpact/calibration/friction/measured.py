@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -78,29 +78,27 @@ class ObliqueImpacts:
 
 
 def default_weights(measured: Iterable[str]) -> dict[str, float]:
-    """Return the quantities that are matched by default: the first measure of the motion along the
-    plate, and the spin.
+    """Return the quantities that are matched by default.
+
+    They are the first measure of the motion along the plate, and the spin.
 
     Examples
     --------
     >>> default_weights(["spin_y_after", "rebound_angle", "tangential_restitution"])
     {'tangential_restitution': 1.0, 'spin_y_after': 1.0}
     """
-    there = set(measured)
-    others = set(
-        next(
-            ([*DIRECTIONS[place + 1 :]] for place, name in enumerate(DIRECTIONS) if name in there),
-            [],
-        )
-    )
-    return {name: 1.0 for name in ALONG_PLATE if name in there - others}
+    available = set(measured)
+    directions = [name for name in DIRECTIONS if name in available]
+    redundant = set(directions[1:])
+    return {name: 1.0 for name in ALONG_PLATE if name in available - redundant}
 
 
 def oblique_impacts_in_file(
     case: Case, target: FileTarget, match: Iterable[str] | None
 ) -> ObliqueImpacts:
-    """Return the oblique impacts of a file; `match`: the names of what is matched, by default those
-    of `default_weights`.
+    """Return the oblique impacts of a file.
+
+    `match`: the names of the quantities that are matched, by default those of `default_weights`.
 
     Raises
     ------
@@ -125,37 +123,50 @@ def oblique_impacts_in_file(
             "target",
         )
     if "tangential_restitution" in measured and not velocity.all():
-        words = "a sphere that does not move along the plate has no tangential restitution"
+        line = table.lines[int(np.argmin(np.abs(velocity)))]
         raise InputError(
-            f"{table.path}, line {table.lines[int(np.argmin(np.abs(velocity)))]}: {words}", "target"
+            f"{table.path}, line {line}: a sphere that does not move along the plate has no "
+            "tangential restitution",
+            "target",
         )
     names = tuple(default_weights(measured) if match is None else match)
-    if others := [name for name in names if name not in ALONG_PLATE]:
-        raise InputError(
-            f"friction is not fitted to {', '.join(others)}; match {', '.join(measured)}", "match"
-        )
-    if missing := [name for name in names if name not in measured]:
-        raise InputError(
-            f"the file has no column {', '.join(missing)}; there is {', '.join(measured)}", "match"
-        )
+    _check_names(names, measured)
     wanted = {name: measured[name] for name in names}
     for name in names:
         if f"{name}{DEVIATION}" in table.columns:
             check_positive(table, f"{name}{DEVIATION}")
     deviations = known_deviations(table.path, table.columns, names)
-    # of unknown magnitude: the same for all impacts, and of several quantities the same part of the
-    # largest of each
-    sizes = deviations or {
-        name: np.full(len(speeds), np.abs(values).max() or 1.0) for name, values in wanted.items()
-    }
+    sizes = deviations
+    if not sizes:
+        # of unknown magnitude: the same for all impacts, and of several quantities the same part of
+        # the largest of each
+        sizes = {
+            name: np.full(len(speeds), np.abs(quantity).max() or 1.0)
+            for name, quantity in wanted.items()
+        }
     labels = tuple(f"line {line}" for line in table.lines)
-    seen = replace(
-        from_table(speeds, wanted, sizes, labels), deviations_known=deviations is not None
-    )
-    spin = table.columns.get("spin_y_before", np.zeros(len(speeds)))
+    seen = from_table(speeds, wanted, sizes, labels)
     return ObliqueImpacts(
-        seen, velocity, spin, measured, _separation_speed(case, table, speeds, labels)
+        seen=replace(seen, deviations_known=deviations is not None),
+        velocity=velocity,
+        spin=table.columns.get("spin_y_before", np.zeros(len(speeds))),
+        measured=measured,
+        separation_speed=_separation_speed(case, table, speeds, labels),
     )
+
+
+def _check_names(names: Sequence[str], measured: Mapping[str, Floats]) -> None:
+    """Check that quantities to be matched follow from friction, and were measured."""
+    others = [name for name in names if name not in ALONG_PLATE]
+    if others:
+        raise InputError(
+            f"friction is not fitted to {', '.join(others)}; match {', '.join(measured)}", "match"
+        )
+    missing = [name for name in names if name not in measured]
+    if missing:
+        raise InputError(
+            f"the file has no column {', '.join(missing)}; there is {', '.join(measured)}", "match"
+        )
 
 
 def _approach(table: TableFile) -> tuple[Floats, Floats]:
@@ -165,12 +176,12 @@ def _approach(table: TableFile) -> tuple[Floats, Floats]:
         check_positive(table, "speed")
         steep = np.flatnonzero(np.abs(columns["angle"]) >= 90.0)
         if steep.size:
-            value = columns["angle"][steep[0]]
-            words = (
-                f"angle is {value:g} deg; it is that from the plate's normal, greater than -90 "
-                "and less than 90 deg"
+            row = steep[0]
+            raise InputError(
+                f"{table.path}, line {table.lines[row]}: angle is {columns['angle'][row]:g} deg; "
+                "it is that from the plate's normal, greater than -90 and less than 90 deg",
+                "target",
             )
-            raise InputError(f"{table.path}, line {table.lines[steep[0]]}: {words}", "target")
         angle = np.radians(columns["angle"])
         return columns["speed"] * np.cos(angle), columns["speed"] * np.sin(angle)
     if {"approach_speed", "approach_velocity_x"} <= set(columns):
@@ -187,20 +198,17 @@ def _separation_speed(
     case: Case, table: TableFile, speeds: Floats, labels: tuple[str, ...]
 ) -> Floats | None:
     """Return the measured separation speeds along the normal [m/s], if there are any."""
-    name = next(
-        (
-            name
-            for name in ("separation_speed", "restitution", "restitution_achieved")
-            if name in table.columns
-        ),
-        None,
-    )
+    names = ("separation_speed", "restitution", "restitution_achieved")
+    name = next((name for name in names if name in table.columns), None)
     if name is None:
         return None
     check_positive(table, name)
-    found = table.columns[name] if name == "separation_speed" else table.columns[name] * speeds
+    separation_speed = table.columns[name]
+    if name != "separation_speed":
+        separation_speed = separation_speed * speeds
+    wanted = {"separation_speed": separation_speed}
     try:
-        check_restitutions(from_table(speeds, {"separation_speed": found}, None, labels), case)
+        check_restitutions(from_table(speeds, wanted, None, labels), case)
     except InputError as error:
         raise in_file(str(table.path), error) from None
-    return found
+    return separation_speed

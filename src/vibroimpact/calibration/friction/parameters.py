@@ -1,6 +1,4 @@
-"""The parameters of a friction law that are fitted together, and oblique impacts as a
-function of them.
-"""
+"""Parameters of a friction law fitted together, and oblique impacts as a function of them."""
 
 from __future__ import annotations
 
@@ -26,8 +24,11 @@ from vibroimpact.dynamics.problem import Problem
 from vibroimpact.errors import InputError, choices
 from vibroimpact.ranges import Range
 
-_FAR = 1e4  # times the size of a value: that of a contact that sticks, or is stiff
+_FAR = 1e4
+"""Multiple of the size of a value at which a contact sticks, or is stiff."""
+
 _SMALL = 1e-2
+"""Fraction of the size of a value below which it counts as small."""
 
 
 @dataclass(frozen=True)
@@ -48,7 +49,7 @@ class FrictionParameters:
     @property
     def units(self) -> tuple[str, ...]:
         """SI units."""
-        return tuple(self._told(name)["unit"] for name in self.names)
+        return tuple(self._metadata(name)["unit"] for name in self.names)
 
     @property
     def given(self) -> Floats:
@@ -58,12 +59,14 @@ class FrictionParameters:
     @property
     def bounds(self) -> Bounds:
         """Bounds of the values within which they matter."""
-        sizes, ends = np.array([self._size(name) for name in self.names]), self.allowed.T
+        sizes = np.array([self._size(name) for name in self.names])
+        lower, upper = self.allowed.T
+        # the end of a range that is open below is not allowed itself
         open_below = [np.isfinite(self._range(name).above) for name in self.names]
         return Bounds(
-            np.where(open_below, sizes / _FAR, ends[0]),
-            np.minimum(ends[1], _FAR * sizes),
-            _SMALL * sizes,
+            least=np.where(open_below, sizes / _FAR, lower),
+            most=np.minimum(upper, _FAR * sizes),
+            small=_SMALL * sizes,
         )
 
     @property
@@ -74,37 +77,35 @@ class FrictionParameters:
         )
 
     def starts(self) -> Floats:
-        """Return the values from which the search begins, (S, K): all combinations of
-        some of each.
-        """
-        each = []
-        for name, ends in zip(self.names, self.allowed, strict=True):
-            inside = np.isfinite(ends).all()
-            each.append(
-                np.linspace(float(ends[0]), float(ends[1]), 5)[1:-1]
-                if inside
-                else self._size(name) * 2.0 ** np.arange(-4.0, 4.0)
-            )
-        return np.stack(np.meshgrid(*each, indexing="ij"), axis=-1).reshape(-1, len(self.names))
+        """Return the grid of values from which the search begins, (S, K)."""
+        axes = []
+        for name, (lower, upper) in zip(self.names, self.allowed, strict=True):
+            if np.isfinite(lower) and np.isfinite(upper):
+                axes.append(np.linspace(float(lower), float(upper), 5)[1:-1])
+            else:
+                axes.append(self._size(name) * 2.0 ** np.arange(-4.0, 4.0))
+        return np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, len(self.names))
 
     def with_values(self, values: Floats) -> FrictionLaw:
         """Return the law with values of the parameters, (K,) or (n, K)."""
-        return self.law.changed({name: values[..., place] for place, name in enumerate(self.names)})
+        return self.law.changed(
+            {name: values[..., column] for column, name in enumerate(self.names)}
+        )
 
-    def _told(self, name: str) -> Any:
+    def _metadata(self, name: str) -> Any:
         return self.law.__dataclass_fields__[name].metadata
 
     def _range(self, name: str) -> Range:
-        found: Range = self._told(name)["range"]
-        return found
+        allowed: Range = self._metadata(name)["range"]
+        return allowed
 
     def _size(self, name: str) -> float:
-        return float(self._told(name)["example"] or getattr(self.law, name) or 1.0)
+        """Return a typical value: that of the example, or that of the law as given."""
+        return float(self._metadata(name)["example"] or getattr(self.law, name) or 1.0)
 
 
 def friction_parameters(problem: Problem, names: Sequence[str]) -> FrictionParameters:
-    """Return parameters of the friction law of a drop, by their names such as
-    "friction.coefficient".
+    """Return parameters of the friction law of a drop by names such as "friction.coefficient".
 
     Raises
     ------
@@ -135,17 +136,15 @@ def friction_parameters(problem: Problem, names: Sequence[str]) -> FrictionParam
         )
     known = [f"{FRICTION}{item.name}" for item in fields(law)]
     for name in names:
-        if name not in known:
-            words = (
-                f'{law.name} has no parameter "{name.removeprefix(FRICTION)}"; there are '
-                f"{choices(known, name)}"
-            )
-            raise InputError(
-                words
-                if name.startswith(FRICTION)
-                else f"{name} is not fitted together with friction",
-                "parameter",
-            )
+        if name in known:
+            continue
+        if not name.startswith(FRICTION):
+            raise InputError(f"{name} is not fitted together with friction", "parameter")
+        raise InputError(
+            f'{law.name} has no parameter "{name.removeprefix(FRICTION)}"; there are '
+            f"{choices(known, name)}",
+            "parameter",
+        )
     if len(set(names)) < len(names):
         raise InputError("a parameter is named twice", "parameter")
     return FrictionParameters(law, tuple(name.removeprefix(FRICTION) for name in names))
@@ -176,24 +175,23 @@ class ImpactModel:
     spin: Floats
 
     def __call__(self, values: Floats) -> dict[str, Floats]:
-        """Return the quantities of the impacts (S, n), as `oblique_impacts` has them,
-        with values (S, K) of the parameters.
+        """Return the quantities of the impacts (S, n) with values (S, K) of the parameters.
+
+        The quantities are those of `oblique_impacts`.
         """
-        number = len(self.speeds)
-        every = np.arange(len(values) * number)
+        shape = (len(values), len(self.speeds))
+        pairs = np.arange(len(values) * len(self.speeds))
         blocks = [
-            self._impacts(values, every[begin : begin + AT_ONCE])
-            for begin in range(0, len(every), AT_ONCE)
+            self._impacts(values, pairs[begin : begin + AT_ONCE])
+            for begin in range(0, len(pairs), AT_ONCE)
         ]
         return {
-            name: np.concatenate([block[name] for block in blocks]).reshape(len(values), number)
+            name: np.concatenate([block[name] for block in blocks]).reshape(shape)
             for name in blocks[0]
         }
 
     def _impacts(self, values: Floats, pairs: Indices) -> dict[str, Floats]:
-        """Return the quantities of some pairs of values and impacts, numbered along the
-        rows of (S, n).
-        """
+        """Return the quantities of pairs of values and impacts, numbered along rows of (S, n)."""
         assert self.problem.oblique is not None
         chains, impacts = np.divmod(pairs, len(self.speeds))
         oblique = Oblique(
@@ -209,25 +207,37 @@ class ImpactModel:
 def impact_model(
     problem: Problem, parameters: FrictionParameters, impacts: ObliqueImpacts
 ) -> ImpactModel:
-    """Return the measured impacts as a function of the parameters; with measured
-    separation speeds, the contact law meets each of them.
+    """Return the measured impacts as a function of the parameters.
+
+    With measured separation speeds, the contact law meets each of them.
     """
-    law, speeds = problem.laws[0], impacts.seen.speeds
+    law = problem.laws[0]
     if impacts.separation_speed is not None:
-        if law.free_parameter is None:
-            words = (
-                f"the normal rebound was measured too, and {law.name} has no "
-                "parameter to meet it with"
-            )
-            raise InputError(
-                f"{words}; take another contact law, or leave that column out", "target"
-            )
-        alone = replace(problem, oblique=None, laws=(law,))
-        tuned, wanted = law_parameter(alone), {"separation_speed": impacts.separation_speed}
-        seen = from_table(speeds, wanted, None, impacts.seen.labels)
-        weights = {"separation_speed": 1.0}
-        values = match(tuned, speeds, wanted, weights, seen.which).values
-        law = law.changed(
-            {tuned.name: with_nearest_bound(tuned, values, speeds, wanted, weights, seen.which)}
+        law = _law_with_separation_speeds(problem, law, impacts, impacts.separation_speed)
+    return ImpactModel(
+        problem, law, parameters, impacts.seen.speeds, impacts.velocity, impacts.spin
+    )
+
+
+def _law_with_separation_speeds(
+    problem: Problem, law: ContactLaw, impacts: ObliqueImpacts, separation_speed: Floats
+) -> ContactLaw:
+    """Return the contact law with which spheres leave at measured speeds [m/s].
+
+    Its free parameter has one value an impact.
+    """
+    if law.free_parameter is None:
+        raise InputError(
+            f"the normal rebound was measured too, and {law.name} has no "
+            "parameter to meet it with; take another contact law, or leave that column out",
+            "target",
         )
-    return ImpactModel(problem, law, parameters, speeds, impacts.velocity, impacts.spin)
+    # the normal rebound is that of a drop without motion along the plate
+    tuned = law_parameter(replace(problem, oblique=None, laws=(law,)))
+    speeds = impacts.seen.speeds
+    wanted = {"separation_speed": separation_speed}
+    weights = {"separation_speed": 1.0}
+    which = from_table(speeds, wanted, None, impacts.seen.labels).which
+    values = match(tuned, speeds, wanted, weights, which).values
+    values = with_nearest_bound(tuned, values, speeds, wanted, weights, which)
+    return law.changed({tuned.name: values})

@@ -1,3 +1,4 @@
-"""Restitutions at several approach speeds from a table: their fits over the speed, as
-data, text and a page.
+"""Restitutions at several approach speeds from a table, and their fits over the speed.
+
+They are written as data, text and a page.
 """

@@ -27,6 +27,7 @@ _MOST = 1.1
 """Largest restitution that noise can explain."""
 
 _MOST_DIGITS = 9
+"""Number of decimals that a rounding is sought in."""
 
 
 @dataclass(frozen=True)
@@ -80,23 +81,24 @@ class Restitutions(Reported, reported_in="vibroimpact.calibration.restitutions.r
 
     @property
     def function(self) -> SpeedFunction | None:
-        """The linear fit as a function of the approach speed, as a case takes it; None if
-        there is none, or it leaves 0 to 1.
+        """The linear fit as a function of the approach speed, as a case takes it.
+
+        None if there is none, or it leaves 0 to 1.
         """
-        linear = [law for law in self.laws if law.name == LINEAR]
-        if not linear:
+        linear = next((law for law in self.laws if law.name == LINEAR), None)
+        if linear is None:
             return None
-        ends = float(self.approach_speed.min()), float(self.approach_speed.max())
-        found = SpeedFunction(
-            (float(linear[0].coefficients[0]), float(linear[0].coefficients[1])), *ends
+        function = SpeedFunction(
+            (float(linear.coefficients[0]), float(linear.coefficients[1])),
+            float(self.approach_speed.min()),
+            float(self.approach_speed.max()),
         )
-        return found if found.extremes[0] > 0.0 and found.extremes[1] <= 1.0 else None
+        least, largest = function.extremes
+        return function if least > 0.0 and largest <= 1.0 else None
 
     @property
     def intervals(self) -> Floats:
-        """Confidence intervals of the restitutions, (n, 2); NaN where the deviation is
-        not known.
-        """
+        """Confidence intervals of the restitutions, (n, 2); NaN where the deviation is unknown."""
         half = half_width(self.confidence, np.inf) * self.deviation
         return np.stack([self.restitution - half, self.restitution + half], axis=1)
 
@@ -145,86 +147,100 @@ def read_restitutions(
         raise InputError(
             f"{path}: it has no approach_speed [m/s] with a restitution or a separation_speed [m/s]"
         )
-    given = table.columns
-    for name in given:
+    quantities = table.columns
+    for name in quantities:
         if name != "count":
             check_positive(table, name)
     check_counts(table)
-    speed, count = given["approach_speed"], given.get("count", np.ones(len(table.lines)))
-    by_speeds = "restitution" not in given
-    restitution = given["separation_speed"] / speed if by_speeds else given["restitution"]
+    speed = quantities["approach_speed"]
+    count = quantities.get("count", np.ones(len(table.lines)))
+    by_speeds = "restitution" not in quantities
+    measured = "separation_speed" if by_speeds else "restitution"
+    restitution = quantities[measured] / speed if by_speeds else quantities[measured]
     _check_height(table, restitution, by_speeds=by_speeds)
-    measured, other = (
-        ("separation_speed", "restitution") if by_speeds else ("restitution", "separation_speed")
-    )
-    if f"{other}{DEVIATION}" in given:
-        has, of = (name_in_file(table, name) for name in (f"{other}{DEVIATION}", measured))
-        raise InputError(
-            f"{path}: it has {has}, but restitutions are those of {of}; give {of}{DEVIATION}"
-        )
-    known = given.get(f"{measured}{DEVIATION}")
-    rounding = rounding_step(given["separation_speed"] if by_speeds else restitution)
-    scale = 1.0 / speed if by_speeds else np.ones(len(speed))
-    deviation = np.full(len(speed), np.nan) if known is None else scale * known / np.sqrt(count)
-    variance = np.nan_to_num(deviation) ** 2 + (scale * rounding) ** 2 / 12.0
+    _check_deviations(table, measured)
+    rounding = rounding_step(quantities[measured])
+    known = quantities.get(f"{measured}{DEVIATION}")
+    # of the restitution by what was measured
+    slope = 1.0 / speed if by_speeds else np.ones(len(speed))
+    deviation = np.full(len(speed), np.nan) if known is None else slope * known / np.sqrt(count)
+    # that of a uniform distribution over a step
+    rounding_variance = (slope * rounding) ** 2 / 12.0
+    variance = np.nan_to_num(deviation) ** 2 + rounding_variance
     laws = speed_laws(speed, restitution, np.diag(variance), count)
-    doubts = _doubts(table, restitution, laws)
     return Restitutions(
-        str(path),
-        speed,
-        restitution,
-        deviation,
-        count,
-        rounding,
-        laws,
-        confidence,
-        doubts,
-        by_speeds,
+        source=str(path),
+        approach_speed=speed,
+        restitution=restitution,
+        deviation=deviation,
+        count=count,
+        rounding=rounding,
+        laws=laws,
+        confidence=confidence,
+        doubts=_doubts(table, restitution, laws),
+        by_speeds=by_speeds,
     )
+
+
+def _check_deviations(table: TableFile, measured: str) -> None:
+    """Check that standard deviations are those of the measured column."""
+    other = "restitution" if measured == "separation_speed" else "separation_speed"
+    if f"{other}{DEVIATION}" in table.columns:
+        has = name_in_file(table, f"{other}{DEVIATION}")
+        column = name_in_file(table, measured)
+        raise InputError(
+            f"{table.path}: it has {has}, but restitutions are those of {column}; give "
+            f"{column}{DEVIATION}"
+        )
 
 
 def rounding_step(values: Floats) -> float:
-    """Return the largest power of ten of which all values are multiples: the step to which they are
-    rounded; at least 1e-9.
+    """Return the step to which values are rounded; at least 1e-9.
+
+    It is the largest power of ten of which all are multiples.
 
     Examples
     --------
     >>> rounding_step(np.array([0.81, 0.8])), rounding_step(np.array([0.8125, 1.0]))
     (0.01, 0.0001)
     """
-    for places in range(_MOST_DIGITS):
-        shifted = values * 10.0**places
-        if np.all(np.abs(shifted - np.round(shifted)) <= 1e-9 * np.maximum(np.abs(shifted), 1.0)):
-            return float(10.0**-places)
+    for decimals in range(_MOST_DIGITS):
+        shifted = values * 10.0**decimals
+        tolerance = 1e-9 * np.maximum(np.abs(shifted), 1.0)
+        if np.all(np.abs(shifted - np.round(shifted)) <= tolerance):
+            return float(10.0**-decimals)
     return float(10.0**-_MOST_DIGITS)
 
 
 def _check_height(table: TableFile, restitution: Floats, *, by_speeds: bool) -> None:
     """Raise InputError if a restitution is higher than noise makes it."""
     wrong = np.flatnonzero(restitution > _MOST)
-    if wrong.size:
-        value = restitution[wrong[0]]
-        words = f"the restitution is {value:.4g}, more than {_MOST:g}, which is not taken for noise"
-        hint = "look at the speeds and their units" if by_speeds else "look at the value"
-        if value > 10.0 and not by_speeds:
-            hint = f"if it is in per cent, name its unit: {name_in_file(table, 'restitution')} [%]"
-        raise InputError(f"{table.path}, line {table.lines[wrong[0]]}: {words}; {hint}")
+    if not wrong.size:
+        return
+    row = wrong[0]
+    if by_speeds:
+        hint = "look at the speeds and their units"
+    elif restitution[row] > 10.0:
+        hint = f"if it is in per cent, name its unit: {name_in_file(table, 'restitution')} [%]"
+    else:
+        hint = "look at the value"
+    raise InputError(
+        f"{table.path}, line {table.lines[row]}: the restitution is {restitution[row]:.4g}, more "
+        f"than {_MOST:g}, which is not taken for noise; {hint}"
+    )
 
 
 def _doubts(table: TableFile, restitution: Floats, laws: list[SpeedLaw]) -> tuple[str, ...]:
-    found = list(table.doubts)
-    above = np.flatnonzero(restitution > 1.0)
-    if above.size:
-        worst = int(np.argmax(restitution))
-        words = (
-            f"the restitution in line {table.lines[worst]} is {restitution[worst]:.4g}: more "
-            "than 1 gains energy"
+    doubts = list(table.doubts)
+    if np.any(restitution > 1.0):
+        largest = int(np.argmax(restitution))
+        doubts.append(
+            f"the restitution in line {table.lines[largest]} is {restitution[largest]:.4g}: more "
+            "than 1 gains energy; a case takes 1 at most"
         )
-        found.append(f"{words}; a case takes 1 at most")
     if len(laws) == 1:
-        words = (
+        doubts.append(
             "of fewer than three restitutions, or at one speed, nothing tells a dependence on "
-            "the speed from scatter"
+            "the speed from scatter: only a constant is fitted"
         )
-        found.append(f"{words}: only a constant is fitted")
-    return tuple(found)
+    return tuple(doubts)

@@ -57,16 +57,16 @@ def modes_of_files(paths: Sequence[str | PathLike[str]]) -> MeasuredModes:
     """
     responses, frequency, value = _read(paths)
     nan = float("nan")
-    found = modes_in_responses(responses)
-    pairs = tuple(ModePair(None, nan, nan, nan, mode, mode.doubt) for mode in found)
-    return MeasuredModes(responses, frequency, value, pairs, _doubts(responses, found, frequency))
+    modes = modes_in_responses(responses)
+    pairs = tuple(ModePair(None, nan, nan, nan, mode, mode.doubt) for mode in modes)
+    return MeasuredModes(responses, frequency, value, pairs, _doubts(responses, modes, frequency))
 
 
 def modes_beside(basis: ModalBasis | None, paths: Sequence[str | PathLike[str]]) -> MeasuredModes:
-    """Return the modes in the frequency responses of universal files beside those of a plate,
-    whatever places they were measured at.
+    """Return the modes in the frequency responses of files beside those of a plate.
 
-    Modes are compared from half the lowest frequency of the plate to its highest.
+    The files are universal ones, of whatever places. Modes are compared from half the lowest
+    frequency of the plate to its highest.
 
     Raises
     ------
@@ -80,22 +80,22 @@ def modes_beside(basis: ModalBasis | None, paths: Sequence[str | PathLike[str]])
             "plate.model",
         )
     responses, frequency, value = _read(paths)
-    lowest, highest = float(basis.frequencies[0]), float(basis.frequencies[-1])
+    lowest = float(basis.frequencies[0])
+    highest = float(basis.frequencies[-1])
     band = (
         max(0.5 * lowest, float(frequency[0])),
         min(max(highest, 1.5 * lowest), float(frequency[-1])),
     )
     if band[0] >= band[1] or lowest >= frequency[-1]:
-        words = f"the modes of the plate are from {lowest:.5g} to {highest:.5g} Hz"
         raise InputError(
-            f"{words}, and the responses from {frequency[0]:.5g} to {frequency[-1]:.5g} "
-            "Hz; they have no mode in common"
+            f"the modes of the plate are from {lowest:.5g} to {highest:.5g} Hz, and the responses "
+            f"from {frequency[0]:.5g} to {frequency[-1]:.5g} Hz; they have no mode in common"
         )
-    found = modes_in_responses(responses, band)
-    pairs = paired(
-        basis.frequencies, basis.damping_ratios, np.ones(len(basis.frequencies)), found, band
-    )
-    doubts = (*_doubts(responses, found, frequency), *shared_differences(pairs).sentences)
+    modes = modes_in_responses(responses, band)
+    # the places are not known: any mode may be in the responses
+    response = np.ones(len(basis.frequencies))
+    pairs = paired(basis.frequencies, basis.damping_ratios, response, modes, band)
+    doubts = (*_doubts(responses, modes, frequency), *shared_differences(pairs).sentences)
     return MeasuredModes(responses, frequency, value, pairs, doubts)
 
 
@@ -107,21 +107,21 @@ def _read(
 
 
 def _doubts(
-    responses: Sequence[FrequencyResponse], found: Sequence[DecayMode], frequency: Floats
+    responses: Sequence[FrequencyResponse], modes: Sequence[DecayMode], frequency: Floats
 ) -> tuple[str, ...]:
     return (
         *_of_records(responses),
         *doubts_of_files(responses),
-        *doubts_of_resolution(found, frequency),
+        *doubts_of_resolution(modes, frequency),
     )
 
 
 def _of_records(responses: Sequence[FrequencyResponse]) -> Iterator[str]:
     """Yield which files have records over time too."""
-    for source in dict.fromkeys(one.source for one in responses):
-        number = len(contents_of(source).records)
-        if number:
-            records = f"{number} record{'s' if number > 1 else ''} over time"
+    for source in dict.fromkeys(response.source for response in responses):
+        count = len(contents_of(source).records)
+        if count:
+            records = f"{count} record{'s' if count > 1 else ''} over time"
             yield (
                 f"{source} also has {records}, which these modes are not from; correlate "
                 "--compare records compares them with a case"

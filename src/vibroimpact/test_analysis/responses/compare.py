@@ -25,6 +25,7 @@ from vibroimpact.test_analysis.simulated import plate_problem
 
 _OPPOSITE = -0.5
 """Correlation coefficient below which a response is upside down."""
+
 _FEWEST = 8
 """Least number of frequencies in the band."""
 
@@ -37,8 +38,9 @@ def correlate_responses(
     band: tuple[float, float] | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> ResponseCorrelation:
-    """Compare measured frequency responses with those of a case: amplitudes, phases, FRAC, and the
-    modes of both.
+    """Compare measured frequency responses with those of a case.
+
+    Compared are amplitudes, phases, FRAC, and the modes of both.
 
     Parameters
     ----------
@@ -92,73 +94,81 @@ def correlate_responses(
     """
     problem = plate_problem(case, progress)
     match = matched(problem.sensors, responses, reference)
-    frequency, value = common_lines(match.responses)
-    used = _band(problem, frequency, band)
-    inside = (frequency >= used[0]) & (frequency <= used[1])
-    if inside.sum() < _FEWEST:
-        there = {0: "there is no frequency", 1: "there is one frequency"}.get(
-            int(inside.sum()), f"there are {inside.sum()} frequencies"
-        )
-        words = (
-            f"{there} from {used[0]:.5g} to {used[1]:.5g} Hz, and the responses are from "
-            f"{frequency[0]:.5g} to {frequency[-1]:.5g} Hz"
-        )
-        remedy = (
-            "measure at more frequencies"
-            if band is None
-            else "state a wider band, or measure at more frequencies"
-        )
-        raise InputError(f"{words}; {_FEWEST} are needed: {remedy}")
-    found = modes_in_responses(match.responses, used)
-    pairs = pairs_of(problem, match.sensors, found, used)
+    all_frequencies, all_values = common_lines(match.responses)
+    compared = _band(problem, all_frequencies, band)
+    inside = (all_frequencies >= compared[0]) & (all_frequencies <= compared[1])
+    _check_lines(all_frequencies, inside, compared, stated=band is not None)
+    frequency = all_frequencies[inside]
+    modes = modes_in_responses(match.responses, compared)
+    pairs = pairs_of(problem, match.sensors, modes, compared)
     differences = shared_differences(pairs)
     units = tuple(
-        one.unit or unit_of(sensor)
-        for sensor, one in zip(match.sensors, match.responses, strict=True)
+        response.unit or unit_of(sensor)
+        for sensor, response in zip(match.sensors, match.responses, strict=True)
     )
-    stated = np.array(match.signs)[:, None]
-    as_scaled = differences.scaled(problem)
-    plates = (problem, as_scaled, differences.damped(as_scaled))
-    simulated, scaled, damped = (
-        stated * computed_responses(plate, match.sensors, units, frequency[inside])
-        for plate in plates
-    )
-    polarity = _polarity(value[:, inside], damped, match)
-    measured = polarity[:, None] * value[:, inside]
-    octaves = octaves_of(used)
-    compared = ResponseCorrelation(
+    signs = np.array(match.signs)[:, None]
+
+    def computed(plate: Problem) -> Complex:
+        return signs * computed_responses(plate, match.sensors, units, frequency)
+
+    scaled_problem = differences.scaled(problem)
+    simulated = computed(problem)
+    scaled = computed(scaled_problem)
+    damped = computed(differences.damped(scaled_problem))
+    # of the simulation that is most like the measurement
+    polarity = _polarity(all_values[:, inside], damped, match)
+    measured = polarity[:, None] * all_values[:, inside]
+    octaves = octaves_of(compared)
+    correlation = ResponseCorrelation(
         case=case,
         sensors=match.sensors,
         units=units,
         reference=match.reference,
         reciprocal=match.reciprocal,
-        band=used,
+        band=compared,
         polarity=polarity if match.sense_known else polarity * _majority(polarity),
-        frequency=frequency[inside],
+        frequency=frequency,
         measured_response=measured,
         simulated_response=simulated,
         coherence=_coherence(match, inside),
         octaves=octaves,
         frac=frac(measured, simulated),
-        octave_frac=frac_of_octaves(octaves, frequency[inside], measured, simulated),
+        octave_frac=frac_of_octaves(octaves, frequency, measured, simulated),
         scaled_frac=frac(measured, scaled),
         damped_frac=frac(measured, damped),
         modes=pairs,
         doubts=(),
     )
-    return replace(
-        compared,
-        doubts=tuple(
-            doubts_about(compared, problem, match, differences, _norms(measured) / _norms(damped))
-        ),
+    scale = _norms(measured) / _norms(damped)
+    doubts = doubts_about(correlation, problem, match, differences, scale)
+    return replace(correlation, doubts=tuple(doubts))
+
+
+def _check_lines(
+    frequency: Floats, inside: Bools, band: tuple[float, float], *, stated: bool
+) -> None:
+    """Check that there are enough frequencies in the band; `stated`: whether the user stated it."""
+    count = int(inside.sum())
+    if count >= _FEWEST:
+        return
+    there_are = {0: "there is no frequency", 1: "there is one frequency"}.get(
+        count, f"there are {count} frequencies"
+    )
+    remedy = "measure at more frequencies"
+    if stated:
+        remedy = f"state a wider band, or {remedy}"
+    raise InputError(
+        f"{there_are} from {band[0]:.5g} to {band[1]:.5g} Hz, and the responses are from "
+        f"{frequency[0]:.5g} to {frequency[-1]:.5g} Hz; {_FEWEST} are needed: {remedy}"
     )
 
 
 def responses_of_case(
     case: CaseTable, frequency: object, progress: Callable[[float], None] | None = None
 ) -> tuple[FrequencyResponse, ...]:
-    """Return the frequency responses of the sensors of a case to a force upwards at the place of
-    its impact.
+    """Return the frequency responses of the sensors of a case to a force at its impact's place.
+
+    The force acts upwards.
 
     Parameters
     ----------
@@ -202,7 +212,8 @@ def responses_of_case(
     problem = plate_problem(case, progress)
     lines = np.asarray(frequency, dtype=float)
     units = tuple(unit_of(sensor) for sensor in problem.sensors)
-    told = [
+    # responses of any values check the sensors as measured ones do
+    responses = [
         FrequencyResponse(
             DegreeOfFreedom((sensor.name,)),
             DegreeOfFreedom(("impact",), UP),
@@ -212,9 +223,11 @@ def responses_of_case(
         )
         for sensor, unit in zip(problem.sensors, units, strict=True)
     ]
-    match = matched(problem.sensors, told, None)
+    match = matched(problem.sensors, responses, None)
     values = computed_responses(problem, match.sensors, units, lines)
-    return tuple(replace(one, value=value) for one, value in zip(told, values, strict=True))
+    return tuple(
+        replace(response, value=value) for response, value in zip(responses, values, strict=True)
+    )
 
 
 def _band(
@@ -229,7 +242,8 @@ def _band(
     """
     modes = problem.plate.modes
     assert modes is not None  # `plate_problem` has seen to it
-    first, last = float(frequency[0]), float(frequency[-1])
+    first = float(frequency[0])
+    last = float(frequency[-1])
     if band is not None:
         if not (first <= band[0] < band[1] <= last):
             raise InputError(
@@ -237,7 +251,8 @@ def _band(
                 f"within the {first:g} to {last:g} Hz measured"
             )
         return band
-    lowest, highest = float(modes.frequencies[0]), float(modes.frequencies[-1])
+    lowest = float(modes.frequencies[0])
+    highest = float(modes.frequencies[-1])
     if lowest >= last:
         raise InputError(
             f"the lowest mode of the plate has {lowest:.5g} Hz, and the responses end at "
@@ -247,15 +262,16 @@ def _band(
 
 
 def _polarity(measured: Complex, simulated: Complex, match: Matched) -> Floats:
-    """Return 1, or -1 for responses that are upside down: where it is not stated how the
-    force is positive, as the clearest one is.
+    """Return 1, or -1 for responses that are upside down, (S,).
+
+    Where it is not stated how the force is positive, they are compared with the clearest one.
     """
-    alike = np.real(np.sum(measured * simulated.conj(), axis=1))
-    alike /= np.linalg.norm(measured, axis=1) * np.linalg.norm(simulated, axis=1)
-    usual = 1.0
-    if not match.sense_known and alike[np.argmax(np.abs(alike))] < _OPPOSITE:
-        usual = -1.0
-    return np.where(usual * alike < _OPPOSITE, -usual, usual)
+    correlation = np.real(np.sum(measured * simulated.conj(), axis=1))
+    correlation /= np.linalg.norm(measured, axis=1) * np.linalg.norm(simulated, axis=1)
+    common = 1.0
+    if not match.sense_known and correlation[np.argmax(np.abs(correlation))] < _OPPOSITE:
+        common = -1.0
+    return np.where(common * correlation < _OPPOSITE, -common, common)
 
 
 def _majority(polarity: Floats) -> float:
@@ -268,9 +284,10 @@ def _norms(response: Complex) -> Floats:
 
 def _coherence(match: Matched, inside: Bools) -> Floats | None:
     """Return the coherences in the band, NaN of a response without; None if none has any."""
-    if all(one.coherence is None for one in match.responses):
+    coherences = [response.coherence for response in match.responses]
+    if all(coherence is None for coherence in coherences):
         return None
-    untold = np.full(int(inside.sum()), np.nan)
+    unknown = np.full(int(inside.sum()), np.nan)
     return np.stack(
-        [untold if one.coherence is None else one.coherence[inside] for one in match.responses]
+        [unknown if coherence is None else coherence[inside] for coherence in coherences]
     )

@@ -19,14 +19,14 @@ _ORDERS = {"m/N": 0, "m/s/N": 1, "m/s2/N": 2}
 def computed_responses(
     problem: Problem, sensors: Sequence[Sensor], units: Sequence[str], frequency: Floats
 ) -> Complex:
-    r"""Return the frequency responses of sensors to a force upwards at the contact point, (S,
-    frequencies).
+    r"""Return the frequency responses of sensors to a force upwards at the contact point.
+
+    They have the shape (S, frequencies).
 
     .. math::
 
-        H = G(i \omega) \left(\sum_r \frac{\varphi_r(x_s)\,\varphi_r(x_c)}{\omega_r^2 - \omega^2 + 2
-        i \zeta_r \omega_r \omega}
-        + C\right)
+        H = G(i \omega) \left(\sum_r \frac{\varphi_r(x_s)\,\varphi_r(x_c)}
+        {\omega_r^2 - \omega^2 + 2 i \zeta_r \omega_r \omega} + C\right)
 
     with rigid motions and modes of unit modal mass, the static compliance C of the modes left out,
     and the instrument G. Anti-alias filters are left out: force and motion pass through the same,
@@ -45,37 +45,26 @@ def computed_responses(
     """
     omega = 2.0 * np.pi * np.asarray(frequency)
     bases = bases_of_plate(problem)
-    natural, ratios = (
-        np.concatenate(part)
-        for part in zip(
-            *((one.angular_frequencies, one.damping_ratios) for one in bases), strict=True
-        )
-    )
+    natural = np.concatenate([basis.angular_frequencies for basis in bases])
+    ratios = np.concatenate([basis.damping_ratios for basis in bases])
     resonances = 1.0 / (natural[:, None] ** 2 - omega**2 + 2j * (ratios * natural)[:, None] * omega)
-    touched, left_out = (
-        shapes_of(problem),
-        compliances_of(problem, [sensor.name for sensor in sensors]),
-    )
-    found = []
-    for sensor, unit, compliance in zip(sensors, units, left_out, strict=True):
-        shapes = np.concatenate([basis.points[sensor.name] for basis in bases]) @ np.asarray(
-            sensor.components
-        )
-        found.append(
-            _transfer(sensor, unit, omega) * ((touched * shapes) @ resonances + compliance)
-        )
-    return np.stack(found)
+    contact_shapes = shapes_of(problem)
+    compliances = compliances_of(problem, [sensor.name for sensor in sensors])
+    responses = []
+    for sensor, unit, compliance in zip(sensors, units, compliances, strict=True):
+        components = np.concatenate([basis.points[sensor.name] for basis in bases])
+        sensor_shapes = components @ np.asarray(sensor.components)
+        receptance = (contact_shapes * sensor_shapes) @ resonances + compliance
+        responses.append(_transfer(sensor, unit, omega) * receptance)
+    return np.stack(responses)
 
 
 def _transfer(sensor: Sensor, unit: str, omega: Floats) -> Complex:
     """Return what a sensor makes of the displacement or the strain that it sees."""
     if sensor.instrument is None:
         return np.asarray((1j * omega) ** _ORDERS.get(unit, sensor.order))
-    passed = np.full(
-        len(omega),
-        sensor.instrument.gain * (sensor.amplifier.gain if sensor.amplifier else 1.0),
-        dtype=complex,
-    )
+    amplification = sensor.amplifier.gain if sensor.amplifier else 1.0
+    transfer = np.full(len(omega), sensor.instrument.gain * amplification, dtype=complex)
     for stiffness, damping in sensor.sections:
-        passed *= stiffness / (stiffness - omega**2 + 1j * damping * omega)
-    return np.asarray(passed * (1j * omega) ** sensor.order)
+        transfer *= stiffness / (stiffness - omega**2 + 1j * damping * omega)
+    return np.asarray(transfer * (1j * omega) ** sensor.order)

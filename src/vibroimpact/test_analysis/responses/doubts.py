@@ -16,22 +16,29 @@ from vibroimpact.test_analysis.responses.result import ResponseCorrelation
 from vibroimpact.test_analysis.shared_differences import SharedDifferences, doubts_of_differences
 
 COHERENT = 0.9
-"""Coherence below which a response is not sure: its standard deviation is then a quarter
-of it, of one average.
+"""Coherence below which a response is not sure: its standard deviation is then a quarter of it, of
+one average.
 """
+
 _MANY = 0.2
-"""Part of the frequencies with a low coherence from which on it is said; antiresonances
+"""Fraction of the frequencies with a low coherence from which on it is reported; antiresonances
 have some.
 """
-_ALIKE, _GAIN = 0.9, 0.05
-"""FRAC from which on a scale is that of a sensitivity, and the relative error of it that
-is said.
+
+_ALIKE = 0.9
+_GAIN = 0.05
+"""FRAC from which on a scale is that of a sensitivity, and the relative error of it that is
+reported.
 """
+
 _LARGE_GAIN = 0.5
-"""Relative error of the size of a response that is said of others."""
+"""Relative error of the size of other responses that is reported."""
+
 _LINES = 3
 """Steps of the frequencies in a half-power bandwidth below which its damping is not resolved."""
+
 _NAMED = 4
+"""Number of names in a sentence."""
 
 
 def doubts_about(
@@ -58,26 +65,27 @@ def doubts_about(
     """
     yield from doubts_of_files(match.responses)
     if match.left_out:
-        number, have = match.left_out, "responses have" if match.left_out > 1 else "response has"
+        several = match.left_out > 1
         yield (
-            f"{number} {have} no sensor of that name and direction in the case, and "
-            f"{'are' if number > 1 else 'is'} not compared"
+            f"{match.left_out} {'responses have' if several else 'response has'} no sensor of that "
+            f"name and direction in the case, and {'are' if several else 'is'} not compared"
         )
     if match.reciprocal:
         yield (
             "the hammer was at the sensors, and the motion was measured at "
             f"{quoted(match.reference)}: taken as equal, by reciprocity"
         )
-    for name, sign in zip((sensor.name for sensor in found.sensors), found.polarity, strict=True):
-        if sign < 0.0:
-            yield f"the response {quoted(name)} has inverted polarity; its sign is changed"
+    for sensor, polarity in zip(found.sensors, found.polarity, strict=True):
+        if polarity < 0.0:
+            yield f"the response {quoted(sensor.name)} has inverted polarity; its sign is changed"
     yield from doubts_of_differences(differences, found.frac, found.scaled_frac, found.damped_frac)
-    for name, size, of in zip(
-        (sensor.name for sensor in found.sensors), scale, found.damped_frac, strict=True
-    ):
-        if abs(size - 1.0) > (_GAIN if of > _ALIKE else _LARGE_GAIN):
-            words = f"the response {quoted(name)} has {size:.3g} times the simulated magnitude"
-            yield f"{words}: check the sensitivity, and mass and damping of the plate"
+    for row, sensor in enumerate(found.sensors):
+        tolerance = _GAIN if found.damped_frac[row] > _ALIKE else _LARGE_GAIN
+        if abs(scale[row] - 1.0) > tolerance:
+            yield (
+                f"the response {quoted(sensor.name)} has {scale[row]:.3g} times the simulated "
+                "magnitude: check the sensitivity, and mass and damping of the plate"
+            )
     yield from _of_coherence(found)
     yield from doubts_of_resolution(
         [pair.measured for pair in found.modes if pair.measured is not None], found.frequency
@@ -93,15 +101,16 @@ def doubts_about(
 
 def doubts_of_files(responses: Sequence[FrequencyResponse]) -> Iterator[str]:
     """Yield the doubts about measured responses, each once for all that share it."""
-    shared: dict[tuple[str, str], list[str]] = {}
-    for one in responses:
-        for doubt in one.doubts:
-            shared.setdefault((one.source, doubt), []).append(quoted(one.name))
-    for (source, doubt), names in shared.items():
+    names_of: dict[tuple[str, str], list[str]] = {}
+    for response in responses:
+        for doubt in response.doubts:
+            names_of.setdefault((response.source, doubt), []).append(quoted(response.name))
+    for (source, doubt), names in names_of.items():
         yield f"{source or 'the file'}, {_few(names)}: {doubt}"
 
 
 def _few(names: Sequence[str]) -> str:
+    """Return the first names, and that there are more."""
     return f"{', '.join(names[:_NAMED])}{' and more' if len(names) > _NAMED else ''}"
 
 
@@ -109,21 +118,25 @@ def _of_coherence(found: ResponseCorrelation) -> Iterator[str]:
     """Yield where a response is not coherent with the force."""
     if found.coherence is None:
         return
-    places = [pair.measured.frequency.value for pair in found.modes if pair.measured is not None]
-    nearest = [int(np.argmin(np.abs(found.frequency - place))) for place in places]
+    mode_frequencies = [
+        pair.measured.frequency.value for pair in found.modes if pair.measured is not None
+    ]
+    mode_lines = [
+        int(np.argmin(np.abs(found.frequency - frequency))) for frequency in mode_frequencies
+    ]
     for sensor, coherence in zip(found.sensors, found.coherence, strict=True):
-        part = float((coherence < COHERENT).mean())
-        low = [f"{found.frequency[line]:.4g}" for line in nearest if coherence[line] < COHERENT]
-        at = f"at the mode{'s' if len(low) > 1 else ''} of {_few(low)} Hz" if low else ""
-        many = f"at {100.0 * part:.2g} % of the frequencies" if part > _MANY else ""
-        if at or many:
-            words = (
-                f"the coherence of {quoted(sensor.name)} is below {COHERENT} "
-                f"{' and '.join(filter(None, (at, many)))}"
-            )
+        where = []
+        low = [f"{found.frequency[line]:.4g}" for line in mode_lines if coherence[line] < COHERENT]
+        if low:
+            where.append(f"at the mode{'s' if len(low) > 1 else ''} of {_few(low)} Hz")
+        fraction = float((coherence < COHERENT).mean())
+        if fraction > _MANY:
+            where.append(f"at {100.0 * fraction:.2g} % of the frequencies")
+        if where:
             yield (
-                f"{words}: noise, leakage, a second hit, or a nonlinearity; magnitude and "
-                "damping are uncertain there"
+                f"the coherence of {quoted(sensor.name)} is below {COHERENT} "
+                f"{' and '.join(where)}: noise, leakage, a second hit, or a nonlinearity; "
+                "magnitude and damping are uncertain there"
             )
 
 
@@ -136,15 +149,11 @@ def doubts_of_resolution(modes: Sequence[DecayMode], frequency: Floats) -> Itera
         if 2.0 * mode.damping_ratio.value * mode.frequency.value < _LINES * step
     ]
     if narrow:
-        places = (
-            f"bandwidths of the modes of {_few(narrow)} Hz are"
-            if len(narrow) > 1
-            else f"bandwidth of the mode of {narrow[0]} Hz is"
-        )
-        words = (
-            f"the half-power {places} below {_LINES} steps of the frequencies, {step:.3g} Hz each"
-        )
+        if len(narrow) > 1:
+            bandwidths = f"bandwidths of the modes of {_few(narrow)} Hz are"
+        else:
+            bandwidths = f"bandwidth of the mode of {narrow[0]} Hz is"
         yield (
-            f"{words}: a window or a record that was cut off makes "
-            "damping look larger; measure longer"
+            f"the half-power {bandwidths} below {_LINES} steps of the frequencies, {step:.3g} Hz "
+            "each: a window or a record that was cut off makes damping look larger; measure longer"
         )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from vibroimpact.dynamics.sensors.instruments.microphone import Microphone
 from vibroimpact.dynamics.sensors.sensor import Sensor
@@ -13,8 +14,10 @@ from vibroimpact.signals.frequency_response import DegreeOfFreedom, FrequencyRes
 
 UP = 3
 """Direction of a force along the normal of the plate, upwards."""
+
 _ALONG = 0.99
 """Component of a unit vector along an axis that it is along."""
+
 _AXES = "xyz"
 
 
@@ -75,83 +78,105 @@ def matched(
     """
     if not responses:
         raise InputError("there is no frequency response; give at least one")
-    name, pairs, reciprocal = _of_impact(responses, reference)
-    across = [(one, there) for one, here, there in pairs if abs(here.direction) in (0, UP)]
-    if not across:
+    name, at_impact, reciprocal = _of_impact(responses, reference)
+    normal = [response for response in at_impact if abs(response.at_impact.direction) in (0, UP)]
+    if not normal:
         raise InputError(
             f"the {'motions' if reciprocal else 'forces'} at {quoted(name)} are along the "
             "plate, and the case's force is normal to it; "
             "give responses with those along z"
         )
-    chosen: dict[str, tuple[Sensor, FrequencyResponse, DegreeOfFreedom]] = {}
+    response_of: dict[str, _PlacedResponse] = {}
     for sensor in sensors:
-        fitting = [(one, there) for one, there in across if sensor.name in there.names]
-        along = [(one, there) for one, there in fitting if _axis_fits(sensor, there)]
-        if fitting and not along:
-            words = (
-                f"the response {quoted(sensor.name)} is along "
-                f"{_AXES[abs(fitting[0][1].direction) - 1]}, and the case's sensor along"
-            )
-            raise InputError(
-                f"{words} {list(sensor.direction)}; write its direction as it was measured",
-                "sensors.direction",
-            )
-        if len(along) > 1:
-            motion, force = (name, sensor.name) if reciprocal else (sensor.name, name)
-            words = (
-                f"there are {len(along)} frequency responses of the motion at {quoted(motion)} "
-                f"to a force at {quoted(force)}"
-            )
-            raise InputError(f"{words}; leave one of them in the file")
-        if along:
-            chosen[sensor.name] = (sensor, *along[0])
-    if not chosen:
-        named = listed(dict.fromkeys(there.name for _, there in across), sensors[0].name)
-        what = (
-            f"a force with a response at {quoted(name)}"
-            if reciprocal
-            else f"a response to the force at {quoted(name)}"
-        )
-        words = (
-            f"no sensor of the case ({listed(one.name for one in sensors)}) is named after {what}"
-        )
-        remedy = (
-            f'write the name of the sensor as the file has it, such as name = "{across[0][1].name}"'
-        )
-        raise InputError(f"{words}: {named}; {remedy}", "sensors.name")
-    for sensor, one, _ in chosen.values():
-        _check_unit(sensor, one)
-    here = {id(one): here for one, here, _ in pairs}
-    directions = [here[id(one)].direction for _, one, _ in chosen.values()]
+        response = _response_of(sensor, normal, name, reciprocal=reciprocal)
+        if response is not None:
+            response_of[sensor.name] = response
+    if not response_of:
+        raise _no_sensor(sensors, normal, name, reciprocal=reciprocal)
+    used = [sensor for sensor in sensors if sensor.name in response_of]
+    signs = []
+    for sensor in used:
+        response = response_of[sensor.name]
+        _check_unit(sensor, response.response)
+        force_sign = 1.0 if response.at_impact.direction > 0 else -1.0
+        signs.append(force_sign * _sense(sensor, response.at_sensor))
+    chosen = [response_of[sensor.name] for sensor in used]
     return Matched(
-        tuple(sensor for sensor, _, _ in chosen.values()),
-        tuple(one for _, one, _ in chosen.values()),
-        tuple(
-            (1.0 if here[id(one)].direction > 0 else -1.0) * _sense(sensor, there)
-            for sensor, one, there in chosen.values()
-        ),
-        name,
-        reciprocal,
-        all(directions),
-        len(across) - len(chosen),
+        sensors=tuple(used),
+        responses=tuple(response.response for response in chosen),
+        signs=tuple(signs),
+        reference=name,
+        reciprocal=reciprocal,
+        sense_known=all(response.at_impact.direction for response in chosen),
+        left_out=len(normal) - len(chosen),
+    )
+
+
+class _PlacedResponse(NamedTuple):
+    """A frequency response, its end at the place of the impact, and its end at a sensor."""
+
+    response: FrequencyResponse
+    at_impact: DegreeOfFreedom
+    at_sensor: DegreeOfFreedom
+
+
+def _response_of(
+    sensor: Sensor, responses: Sequence[_PlacedResponse], place: str, *, reciprocal: bool
+) -> _PlacedResponse | None:
+    """Return the response of a sensor to a force at a place; None if it has none.
+
+    Raises
+    ------
+    InputError
+        If its direction is another, or there are several.
+    """
+    named = [response for response in responses if sensor.name in response.at_sensor.names]
+    along = [response for response in named if _axis_fits(sensor, response.at_sensor)]
+    if named and not along:
+        axis = _AXES[abs(named[0].at_sensor.direction) - 1]
+        raise InputError(
+            f"the response {quoted(sensor.name)} is along {axis}, and the case's sensor along "
+            f"{list(sensor.direction)}; write its direction as it was measured",
+            "sensors.direction",
+        )
+    if len(along) > 1:
+        motion, force = (place, sensor.name) if reciprocal else (sensor.name, place)
+        raise InputError(
+            f"there are {len(along)} frequency responses of the motion at {quoted(motion)} "
+            f"to a force at {quoted(force)}; leave one of them in the file"
+        )
+    return along[0] if along else None
+
+
+def _no_sensor(
+    sensors: Sequence[Sensor], responses: Sequence[_PlacedResponse], place: str, *, reciprocal: bool
+) -> InputError:
+    """Return the error that no sensor of the case is named after a response."""
+    if reciprocal:
+        expected = f"a force with a response at {quoted(place)}"
+    else:
+        expected = f"a response to the force at {quoted(place)}"
+    names = dict.fromkeys(response.at_sensor.name for response in responses)
+    return InputError(
+        f"no sensor of the case ({listed(sensor.name for sensor in sensors)}) is named after "
+        f"{expected}: {listed(names, sensors[0].name)}; write the name of the sensor as the file "
+        f'has it, such as name = "{responses[0].at_sensor.name}"',
+        "sensors.name",
     )
 
 
 def _of_impact(
     responses: Sequence[FrequencyResponse], reference: str | None
-) -> tuple[str, list[tuple[FrequencyResponse, DegreeOfFreedom, DegreeOfFreedom]], bool]:
-    """Return the name of the place of the impact, the responses with that place and the other one,
-    and whether they are reciprocal.
+) -> tuple[str, list[_PlacedResponse], bool]:
+    """Return the name of the place of the impact, its responses, and whether they are reciprocal.
 
     Raises
     ------
     InputError
         If there is no such place, or there are several and none is named.
     """
-    by_force, by_motion = [one.reference for one in responses], [one.response for one in responses]
-    forces, motions = (
-        list(dict.fromkeys(place.name for place in places)) for places in (by_force, by_motion)
-    )
+    forces = list(dict.fromkeys(response.reference.name for response in responses))
+    motions = list(dict.fromkeys(response.response.name for response in responses))
     if reference is None:
         if len(forces) > 1 and len(motions) > 1:
             raise InputError(
@@ -161,38 +186,40 @@ def _of_impact(
         reciprocal = len(forces) > 1
         name = motions[0] if reciprocal else forces[0]
     else:
-        at_force, at_motion = (
-            sum(reference in place.names for place in places) for places in (by_force, by_motion)
-        )
-        if not at_force and not at_motion:
-            acting = f"forces act at {listed(forces)}, motion was measured at {listed(motions)}"
+        force_count = sum(reference in response.reference.names for response in responses)
+        motion_count = sum(reference in response.response.names for response in responses)
+        if not force_count and not motion_count:
             meant = did_you_mean(reference, [*motions, *forces])
             raise InputError(
                 f"no force acts, and no motion was measured, at {quoted(reference)}; "
-                f"{acting}.{meant}",
+                f"forces act at {listed(forces)}, motion was measured at {listed(motions)}.{meant}",
                 "--hammer",
             )
-        name, reciprocal = reference, at_motion > at_force
-    ends = [
-        (one, one.response, one.reference) if reciprocal else (one, one.reference, one.response)
-        for one in responses
-    ]
-    return name, [(one, here, there) for one, here, there in ends if name in here.names], reciprocal
+        reciprocal = motion_count > force_count
+        name = reference
+    placed = []
+    for response in responses:
+        force = response.reference
+        motion = response.response
+        at_impact, at_sensor = (motion, force) if reciprocal else (force, motion)
+        if name in at_impact.names:
+            placed.append(_PlacedResponse(response, at_impact, at_sensor))
+    return name, placed, reciprocal
 
 
-def _axis_fits(sensor: Sensor, there: DegreeOfFreedom) -> bool:
+def _axis_fits(sensor: Sensor, end: DegreeOfFreedom) -> bool:
     return (
-        there.direction == 0
+        end.direction == 0
         or sensor.sees_strain
-        or abs(sensor.direction[abs(there.direction) - 1]) > _ALONG
+        or abs(sensor.direction[abs(end.direction) - 1]) > _ALONG
     )
 
 
-def _sense(sensor: Sensor, there: DegreeOfFreedom) -> float:
+def _sense(sensor: Sensor, end: DegreeOfFreedom) -> float:
     """Return 1, or -1 where the response is measured against the direction of a sensor."""
-    if there.direction == 0 or sensor.sees_strain:
+    if end.direction == 0 or sensor.sees_strain:
         return 1.0
-    return 1.0 if there.direction * sensor.direction[abs(there.direction) - 1] > 0.0 else -1.0
+    return 1.0 if end.direction * sensor.direction[abs(end.direction) - 1] > 0.0 else -1.0
 
 
 def unit_of(sensor: Sensor) -> str:
@@ -201,8 +228,9 @@ def unit_of(sensor: Sensor) -> str:
 
 
 def _check_unit(sensor: Sensor, response: FrequencyResponse) -> None:
-    """Raise InputError if a response can't be that of a sensor: one without an instrument
-    may be of any motion.
+    """Raise InputError if a response can't be that of a sensor.
+
+    One of a sensor without an instrument may be of any motion.
     """
     if isinstance(sensor.instrument, Microphone):
         raise InputError(
@@ -214,11 +242,9 @@ def _check_unit(sensor: Sensor, response: FrequencyResponse) -> None:
         sensor.instrument is None and response.unit in motions and unit_of(sensor) in motions
     )
     if response.unit not in ("", unit_of(sensor)) and not any_motion:
-        words = (
-            f"the response {quoted(sensor.name)} is in {response.unit}, and the sensor of that "
-            f"name gives {unit_of(sensor)}"
-        )
         raise InputError(
-            f"{words}; give the case's sensor the quantity or the instrument that was used",
+            f"the response {quoted(sensor.name)} is in {response.unit}, and the sensor of that "
+            f"name gives {unit_of(sensor)}; give the case's sensor the quantity or the instrument "
+            "that was used",
             "sensors",
         )

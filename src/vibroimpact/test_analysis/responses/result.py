@@ -103,8 +103,9 @@ class ResponseCorrelation(Reported, reported_in="vibroimpact.test_analysis.respo
 
     @property
     def scale(self) -> Floats:
-        """The size of the multiple of the simulated response that is nearest to the
-        measured one, by least squares, (S,).
+        """The size of the multiple of the simulated response nearest to the measured one, (S,).
+
+        It is nearest by least squares.
         """
         return np.abs(_multiple(self.measured_response, self.simulated_response))
 
@@ -117,18 +118,14 @@ class ResponseCorrelation(Reported, reported_in="vibroimpact.test_analysis.respo
     @property
     def phase_difference(self) -> Floats:
         """Median of the absolute difference of phases over the band, (S,) [rad]."""
-        return np.asarray(
-            np.median(
-                np.abs(np.angle(self.measured_response * self.simulated_response.conj())), axis=1
-            )
-        )
+        phase = np.angle(self.measured_response * self.simulated_response.conj())
+        return np.asarray(np.median(np.abs(phase), axis=1))
 
 
 def _multiple(measured: Complex, simulated: Complex) -> Complex:
     """Return the multiples of simulated responses that are nearest to the measured ones, (S,)."""
-    return np.asarray(
-        np.sum(measured * simulated.conj(), axis=1) / np.sum(np.abs(simulated) ** 2, axis=1)
-    )
+    products = np.sum(measured * simulated.conj(), axis=1)
+    return np.asarray(products / np.sum(np.abs(simulated) ** 2, axis=1))
 
 
 def _sizes(response: Complex) -> Floats:
