@@ -11,20 +11,22 @@ from vibroimpact.cases.schema import CaseTable
 from vibroimpact.errors import InputError
 from vibroimpact.signals.record import Record
 
-_RUN = ("result.nc", "case.toml")
-"""Files of the folder of a run: its signals, and its case."""
+_SIGNALS = "result.nc"
+"""File of the signals in the folder of a run."""
+_CASE = "case.toml"
+"""File of its case."""
 
 
 def is_own_run(case: CaseTable, records: Sequence[Record]) -> bool:
-    """Return whether records are from the folder of a run whose plate is modelled as in a
-    case: then they have no errors of that model.
+    """Return whether records are from the folder of a run whose plate is modelled as in a case.
+
+    Then they have no errors of that model.
     """
-    folders = {
-        Path(record.source).parent for record in records if Path(record.source).name == _RUN[0]
-    }
-    if len(folders) != 1 or any(Path(record.source).name != _RUN[0] for record in records):
+    sources = {Path(record.source) for record in records}
+    folders = {source.parent for source in sources}
+    if len(folders) != 1 or any(source.name != _SIGNALS for source in sources):
         return False
-    file = folders.pop() / _RUN[1]
+    file = folders.pop() / _CASE
     if not file.is_file():
         return False
     try:

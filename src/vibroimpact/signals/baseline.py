@@ -252,7 +252,7 @@ def _rise(blocks: Floats) -> Floats:
     size = blocks.shape[1]
     first_half, _ = _middle_half(blocks[:, : size // 2])
     second_half, _ = _middle_half(blocks[:, size - size // 2 :])
-    return (second_half - first_half) * size / (size - size // 2)
+    return np.asarray((second_half - first_half) * size / (size - size // 2))
 
 
 def _quiet(scatter: Floats) -> Bools:

@@ -267,7 +267,7 @@ def _modes(tones: Tones, rate: float) -> Iterator[DecayMode]:
 
 def _deviation(slope: Floats, covariance: Floats) -> float:
     """Return the standard deviation of a number with a slope by parameters with a covariance."""
-    return float(np.sqrt(max(slope @ covariance @ slope, 0.0)))
+    return float(np.sqrt(max(float(slope @ covariance @ slope), 0.0)))
 
 
 def with_doubts(modes: Sequence[DecayMode], duration: float) -> Iterator[DecayMode]:
