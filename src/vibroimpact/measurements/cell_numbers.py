@@ -1,5 +1,6 @@
-"""Numbers in the cells of a table, as programs and languages write them: with a decimal
-comma, grouped, missing, or over the range.
+"""Numbers in the cells of a table, as programs and languages write them.
+
+They may have a decimal comma, be grouped, missing, or over the range.
 """
 
 from __future__ import annotations
@@ -38,7 +39,7 @@ _DECIMAL_COMMA = re.compile(r"[+-]?\d*,\d+([eE][+-]?\d+)?")
 _EITHER = re.compile(r"[+-]?[1-9]\d{0,2}[.,]\d{3}")
 
 
-def number_in(text: str, mark: str | None) -> float:
+def number_in(text: str, delimiter: str | None) -> float:
     """Return the number in a cell; nan where it is missing, and infinite where the sample is over
     the range.
 
@@ -46,7 +47,7 @@ def number_in(text: str, mark: str | None) -> float:
     ----------
     text : str
         The cell.
-    mark : str or None
+    delimiter : str or None
         What separates the fields of the table: where it is no comma, a comma is the decimal point.
 
     Raises
@@ -67,7 +68,7 @@ def number_in(text: str, mark: str | None) -> float:
     try:
         if "_" in text:  # allowed in numbers by Python
             raise ValueError(text)
-        return float(text) if mark == "," or "," not in text else float(text.replace(",", "."))
+        return float(text) if delimiter == "," or "," not in text else float(text.replace(",", "."))
     except ValueError:
         plain = text.strip()
     if (lower := plain.lower()) in _MISSING:
@@ -83,7 +84,7 @@ def number_in(text: str, mark: str | None) -> float:
     raise ValueError(text)
 
 
-def is_number(text: str, mark: str | None) -> bool:
+def is_number(text: str, delimiter: str | None) -> bool:
     """Return whether a cell has a number, or one that is missing.
 
     Examples
@@ -92,7 +93,7 @@ def is_number(text: str, mark: str | None) -> bool:
     (True, True, False)
     """
     try:
-        number_in(text, mark)
+        number_in(text, delimiter)
     except ValueError:
         return False
     return True
