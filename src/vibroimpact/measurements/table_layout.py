@@ -400,7 +400,8 @@ def _with_stated_units(
         fields = fields_of(line, delimiter)
         if fields and fields[0].strip():
             stated[fields[0].strip().lower()] = [field.strip() for field in fields[1:]]
-    horizontal = stated.get("horizontal units", [""])[0].lower()
+    # a line may have its name alone
+    horizontal = next(iter(stated.get("horizontal units", [])), "").lower()
     vertical = stated.get("vertical units", [])
     if not horizontal or not any(vertical) or name_and_unit(cells[0])[1] is not None:
         return cells
