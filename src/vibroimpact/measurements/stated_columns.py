@@ -88,9 +88,8 @@ def remedy_for(header: Sequence[str]) -> str:
 
     Examples
     --------
-    >>> remedy_for(["t", "x", "force [N]"])
-    'or give --columns "time=s,x=UNIT,force=N", with - for a column to leave out (in a case the key
-    columns)'
+    >>> remedy_for(["t", "x", "force [N]"]).partition(", with")[0]
+    'or give --columns "time=s,x=UNIT,force=N"'
     >>> remedy_for(["sound"])
     'or give --columns "rate=10 kHz,sound=UNIT" (in a case the key columns)'
     """
