@@ -38,10 +38,10 @@ _NAMED = 3
 class Cause(NamedTuple):
     """A difference of the set-up from the case.
 
-    In words, which of `SetupErrors` states it, and its size.
+    Its description in words, which of `SetupErrors` states it, and its size.
     """
 
-    words: str
+    description: str
     name: str
     size: float
 
@@ -101,7 +101,7 @@ def remedy(plate: Plate, found: list[Cause]) -> str:
 def told(found: list[Cause]) -> str:
     """Return the largest differences in words."""
     more = f", and {len(found) - _NAMED} more" if len(found) > _NAMED else ""
-    return ", ".join(cause.words for cause in found[:_NAMED]) + more
+    return ", ".join(cause.description for cause in found[:_NAMED]) + more
 
 
 def _stretch(free: SphereFit, exponent: float) -> Iterator[Cause]:
@@ -115,11 +115,11 @@ def _stretch(free: SphereFit, exponent: float) -> Iterator[Cause]:
     by_numbers = np.append([exponent, 0.5], np.zeros(len(free.setting.numbers) - 2))
     deviation = float(np.linalg.norm(by_numbers @ free.setting.errors))
     if abs(stretch) > max(_LEAST["thickness"], _SURE * deviation):
-        words = (
+        description = (
             f"the plate's frequencies are on average {_percent(stretch)} than in the case, by "
             "another thickness or modulus"
         )
-        yield Cause(words, "thickness", abs(stretch) / exponent)
+        yield Cause(description, "thickness", abs(stretch) / exponent)
 
 
 def _sensor_differences(free: SphereFit, number: int, name: str) -> Iterator[Cause]:
@@ -128,20 +128,21 @@ def _sensor_differences(free: SphereFit, number: int, name: str) -> Iterator[Cau
     x, y, _, resonance_deviations = free.setting.deviations[2:].reshape(4, -1)
     distance = float(np.hypot(*setup.moved[number]))
     if distance > max(_LEAST["sensor_place"], _SURE * math.hypot(x[number], y[number])):
-        words = (
+        description = (
             f"{quoted(name)} lies about {digits(1e3 * distance, 2)} mm from its place in the case"
         )
-        yield Cause(words, "sensor_place", distance)
+        yield Cause(description, "sensor_place", distance)
     gains, gain_deviations = _gains(free)
     gain = float(gains[number])
     if abs(gain) > max(_LEAST["gain"], _SURE * float(gain_deviations[number])):
         beside = " beside the others" if len(gains) > 1 else ""
-        words = f"{quoted(name)} reads {_percent(gain)} than it should{beside}"
-        yield Cause(words, "gain", abs(gain))
+        description = f"{quoted(name)} reads {_percent(gain)} than it should{beside}"
+        yield Cause(description, "gain", abs(gain))
     resonance = float(setup.resonance[number])
     if abs(resonance) > max(_LEAST["resonance"], _SURE * resonance_deviations[number]):
-        words = f"{quoted(name)} has a mounted resonance {_percent(resonance)} than in the case"
-        yield Cause(words, "resonance", abs(resonance))
+        higher = _percent(resonance)
+        description = f"{quoted(name)} has a mounted resonance {higher} than in the case"
+        yield Cause(description, "resonance", abs(resonance))
 
 
 def _gains(free: SphereFit) -> tuple[Floats, Floats]:

@@ -16,8 +16,7 @@ from vibroimpact.cases.schema import CaseTable
 from vibroimpact.errors import InputError
 from vibroimpact.identification.doubts import contradiction, doubts_about
 from vibroimpact.identification.force import Force, force_behind
-from vibroimpact.identification.measured import Measured, measured_of
-from vibroimpact.identification.own_run import is_own_run
+from vibroimpact.identification.measured import Measured, is_own_run, measured_of
 from vibroimpact.identification.plate import Place, Plate, plate_of
 from vibroimpact.identification.polarity import upright
 from vibroimpact.identification.pulses import Search
@@ -130,8 +129,9 @@ def identify(
     errors: SetupErrors | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> Identification:
-    """Return force, place, size and speed of an impact on an elastic plate, identified from records
-    of its sensors.
+    """Return force, place, size and speed of an impact, identified from records of a plate.
+
+    The plate is elastic, and the records are those of its sensors.
 
     Parameters
     ----------
@@ -291,8 +291,9 @@ def identify_on(
 def identify_force(
     case: CaseTable, records: Sequence[Record], place: Place, *, window: float = WINDOW
 ) -> Force:
-    """Return the force behind records at a place that is known, from the records alone: no contact
-    law is assumed.
+    """Return the force behind records at a place that is known, from the records alone.
+
+    No contact law is assumed.
 
     Parameters
     ----------

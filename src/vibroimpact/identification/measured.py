@@ -4,10 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
 
 import numpy as np
 
 from vibroimpact.arrays import Bools, Floats
+from vibroimpact.cases.build import resolved_case
+from vibroimpact.cases.reader import load_case
+from vibroimpact.cases.schema import CaseTable
 from vibroimpact.dynamics.sensors.antialias import HALF_LENGTH
 from vibroimpact.dynamics.sensors.sensor import Sensor
 from vibroimpact.errors import InputError, did_you_mean
@@ -29,6 +33,10 @@ _STRAIN = ("1", "m/m")
 """Unit of a strain, as a record has it and as a sensor."""
 _SAME = 1e-3
 """Relative difference of rates, and difference of instants in sampling periods, that is none."""
+_SIGNALS = "result.nc"
+"""File of the signals in the folder of a run."""
+_CASE = "case.toml"
+"""File of its case."""
 
 
 @dataclass(frozen=True)
@@ -250,3 +258,22 @@ def _check(record: Record, sensor: Sensor) -> None:
         raise InputError(f"the record {name} has no samples; it shows no impact")
     if np.ptp(record.value) == 0.0:
         raise InputError(f"the record {name} is constant; it shows no impact")
+
+
+def is_own_run(case: CaseTable, records: Sequence[Record]) -> bool:
+    """Return whether records are from the folder of a run whose plate is modelled as in a case.
+
+    Then they have no errors of that model.
+    """
+    sources = {Path(record.source) for record in records}
+    folders = {source.parent for source in sources}
+    if len(folders) != 1 or any(source.name != _SIGNALS for source in sources):
+        return False
+    file = folders.pop() / _CASE
+    if not file.is_file():
+        return False
+    try:
+        other = load_case(file)
+    except InputError:  # of another version, or changed by hand
+        return False
+    return bool(resolved_case(other)["plate"] == resolved_case(case)["plate"])

@@ -46,8 +46,9 @@ def _largest(name: str) -> float:
 
 @dataclass(frozen=True)
 class SetupErrors:
-    """Standard deviations of what a case states about the plate and its sensors; what is not given
-    here is taken as certain.
+    """Standard deviations of what a case states about the plate and its sensors.
+
+    What is not given here is taken as certain.
 
     Parameters
     ----------

@@ -19,8 +19,9 @@ with a prior, so that the intervals contain them:
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import lru_cache, partial
+from functools import cached_property, lru_cache, partial
 from typing import NamedTuple
 
 import numpy as np
@@ -28,7 +29,7 @@ import numpy as np
 from vibroimpact.arrays import Floats
 from vibroimpact.cases.pair import contact_pair, sphere_density
 from vibroimpact.dynamics.problem import Problem
-from vibroimpact.dynamics.sensors.place_responses import sampled_responses
+from vibroimpact.dynamics.sensors.place_responses import PlaceResponses, sampled_responses
 from vibroimpact.identification.contact import ContactForce, Spheres, contact_forces_of
 from vibroimpact.identification.measured import Measured
 from vibroimpact.identification.model_errors import model_error_signals
@@ -157,7 +158,6 @@ def fit_sphere(
     """
     sensors = len(measured.sensors)
     setup_deviations = plate.errors.deviations(sensors)
-    of_setup = slice(-len(setup_deviations), None)
     expected = _expected_unknowns(plate, sensors, len(setup_deviations))
     unknowns = len(expected)
     prior_slopes = np.concatenate([np.zeros((unknowns, _FITTED)), np.eye(unknowns)], axis=1)
@@ -199,12 +199,6 @@ def fit_sphere(
         noise = noise_of_fit
 
     sphere = explained(fit.parameters.tobytes())
-    vectors, variances, _ = np.linalg.svd(fit.covariance[of_setup, of_setup], hermitian=True)
-    setting = Setting(
-        plate,
-        numbers=fit.parameters[of_setup] * setup_deviations,
-        errors=setup_deviations[:, None] * vectors * np.sqrt(variances),
-    )
     fitted_place = np.clip(fit.parameters[:2], *plate.bounds)
     return SphereFit(
         parameters=np.append(fitted_place, fit.parameters[2:_FITTED]),
@@ -215,8 +209,20 @@ def fit_sphere(
         noise=noise,
         problem=sphere.problem,
         plate=sphere.plate,
-        setting=setting,
+        setting=_setting(plate, fit, setup_deviations),
         converged=fit.converged,
+    )
+
+
+def _setting(plate: Plate, fit: Fit, deviations: Floats) -> Setting:
+    """Return the set-up of a fit, whose last unknowns are its numbers in these deviations."""
+    of_setup = slice(-len(deviations), None)
+    # a square root of the covariance: its principal axes, each times its deviation
+    axes, variances, _ = np.linalg.svd(fit.covariance[of_setup, of_setup], hermitian=True)
+    return Setting(
+        plate,
+        numbers=fit.parameters[of_setup] * deviations,
+        errors=deviations[:, None] * axes * np.sqrt(variances),
     )
 
 
@@ -259,91 +265,174 @@ def _explained(plate: Plate, measured: Measured, parameters: Floats) -> _Explain
 
     Unknowns are in their deviations.
     """
-    names = [sensor.name for sensor in measured.sensors]
-    samples = measured.value.shape[1]
+    names = tuple(sensor.name for sensor in measured.sensors)
     setup_deviations = plate.errors.deviations(len(names))
     place = np.clip(parameters[:2], *plate.bounds)
     log_radius, log_speed, touch = parameters[2:_FITTED]
     of_model = parameters[_FITTED : -len(setup_deviations)]
     numbers = parameters[-len(setup_deviations) :] * setup_deviations
 
-    setup = Setup.of(numbers)
-    gains = 1.0 + setup.gain[:, None]
-    here = plate if plate.errors.is_none else plate.under(setup, names)
+    here = plate if plate.errors.is_none else plate.under(Setup.of(numbers), names)
     position = (float(place[0]), float(place[1]))
     touched = here.at(position)
-    heard = here.heard(names)
-    responses = heard.at(shapes_of(touched), compliances_of(touched, names))
     forces = _contact_forces(plate, here, touched, position, numbers, names, log_radius, log_speed)
+    impact = _Impact(measured, names, plate, here, touched, numbers, place, touch, forces)
     force = forces.of_sphere
 
-    def signals(of_sensors: Floats, force: ContactForce = force, later: float = 0.0) -> Floats:
-        """Return the records of sensors with responses to unit impulses, of a contact force."""
-        times = touch + later + force.time
-        return gains * sampled_responses(of_sensors, measured.rate, times, force.impulse, samples)
-
-    bare = signals(responses)
-
-    # derivatives in the set-up, by the way to the sensors and by the contact force
-    by_setup = np.zeros((len(setup_deviations), *bare.shape))
-    facts_by_setup = np.zeros((len(force.facts), len(setup_deviations)))
-    if not plate.errors.is_none:
-        by_setup = setup_slopes(
-            plate, here, numbers, names, position, lambda answers: signals(answers) / gains
-        )
-    for number, changed in forces.by_setup.items():
-        by_setup[number] += (signals(responses, changed) - bare) / STEPS[number]
-        facts_by_setup[:, number] = (changed.facts - force.facts) / STEPS[number]
-
-    # derivatives in the errors of the model, in their deviations
-    contact_deviations = here.model_error * np.array([_NEXT_OCTAVE, 1.0, 1.0])
-    contact_changes = [signals(responses, changed) - bare for changed in forces.by_model]
-    path_errors = model_error_signals(
-        here, touched, names, measured.rate, touch + force.time, force.impulse, samples
-    )
-    by_model = np.concatenate(
-        [contact_deviations[:, None, None] * contact_changes, gains * path_errors]
-    )
-    facts_by_contact = contact_deviations * np.stack(
-        [changed.facts - force.facts for changed in forces.by_model], axis=1
-    )
-
-    # derivatives in x, y, logarithms of radius and speed, and first touch
-    at_place, *beside = here.deflections(
-        place + _NUDGE * np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
-    )
-    no_compliance = np.zeros(len(names))
-    later = _LEAP / measured.rate
-    by_parameters = [
-        *(signals(heard.at((shapes - at_place) / _NUDGE, no_compliance)) for shapes in beside),
-        (signals(responses, forces.larger) - bare) / _RATIO,
-        (signals(responses, forces.faster) - bare) / _RATIO,
-        (signals(responses, later=later) - bare) / later,
-    ]
-    facts_by_sphere = np.stack(
-        [(changed.facts - force.facts) / _RATIO for changed in (forces.larger, forces.faster)],
-        axis=1,
-    )
-
+    by_model = impact.by_model
     slopes = np.concatenate(
-        [np.stack(by_parameters), by_model, setup_deviations[:, None, None] * by_setup]
+        [
+            np.stack(impact.by_parameters),
+            by_model,
+            setup_deviations[:, None, None] * impact.by_setup,
+        ]
     )
+    facts_by_contact = impact.contact_deviations * impact.facts_by(forces.by_model)
+    facts_by_setup = np.zeros((len(force.facts), len(setup_deviations)))
+    for number, changed in forces.by_setup.items():
+        facts_by_setup[:, number] = (changed.facts - force.facts) / STEPS[number]
     force_slopes = [
         np.zeros((3, 2)),  # the force is taken as the same at neighbouring places
-        facts_by_sphere,
+        impact.facts_by([forces.larger, forces.faster]) / _RATIO,
         np.zeros((3, 1)),  # when it touches does not matter
         facts_by_contact,
         np.zeros((len(force.facts), len(by_model) - _OF_CONTACT)),
         facts_by_setup * setup_deviations,
     ]
     return _Explained(
-        misfit=bare + np.tensordot(of_model, by_model, 1) - measured.value,
+        misfit=impact.bare + np.tensordot(of_model, by_model, 1) - measured.value,
         slopes=np.moveaxis(slopes, 0, -1),
         force=replace(force, facts=force.facts + facts_by_contact @ of_model[:_OF_CONTACT]),
         force_slopes=np.concatenate(force_slopes, axis=1),
         problem=touched,
         plate=here,
     )
+
+
+@dataclass(frozen=True, eq=False)
+class _Impact:
+    """A sphere that hits a plate at a place, and its records with their derivatives.
+
+    `stated`: the plate as the case states it; `here`: in its set-up, which has the `numbers`;
+    `touched`: with the contact at the place [m]. `touch`: first touch after the first sample [s].
+    """
+
+    measured: Measured
+    names: tuple[str, ...]
+    stated: Plate
+    here: Plate
+    touched: Problem
+    numbers: Floats
+    place: Floats
+    touch: float
+    forces: _Forces
+
+    @cached_property
+    def gains(self) -> Floats:
+        """What each sensor reads, over what it should, (S, 1)."""
+        return 1.0 + Setup.of(self.numbers).gain[:, None]
+
+    @cached_property
+    def heard(self) -> PlaceResponses:
+        """Responses of the sensors to forces anywhere on the plate."""
+        return self.here.heard(self.names)
+
+    @cached_property
+    def responses(self) -> Floats:
+        """Responses of the sensors to a unit impulse at the place, (S, points)."""
+        shapes = shapes_of(self.touched)
+        compliances = compliances_of(self.touched, self.names)
+        return self.heard.at(shapes, compliances)
+
+    def signals(
+        self, responses: Floats, force: ContactForce | None = None, later: float = 0.0
+    ) -> Floats:
+        """Return the records of sensors with some responses, of its contact force or another."""
+        if force is None:
+            force = self.forces.of_sphere
+        times = self.touch + later + force.time
+        samples = self.measured.value.shape[1]
+        return self.gains * sampled_responses(
+            responses, self.measured.rate, times, force.impulse, samples
+        )
+
+    @cached_property
+    def bare(self) -> Floats:
+        """Its records, without errors of the model, (S, samples)."""
+        return self.signals(self.responses)
+
+    def change(self, force: ContactForce) -> Floats:
+        """Return by how much the records of another contact force differ."""
+        return self.signals(self.responses, force) - self.bare
+
+    def facts_by(self, forces: Sequence[ContactForce]) -> Floats:
+        """Return by how much the facts of other contact forces differ, (3, n)."""
+        facts = self.forces.of_sphere.facts
+        return np.stack([force.facts - facts for force in forces], axis=1)
+
+    @property
+    def by_parameters(self) -> list[Floats]:
+        """Derivatives in x, y, logarithms of radius and speed, and first touch."""
+        nudges = _NUDGE * np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
+        at_place, *beside = self.here.deflections(self.place + nudges)
+        no_compliance = np.zeros(len(self.names))
+        by_place = [
+            self.signals(self.heard.at((shapes - at_place) / _NUDGE, no_compliance))
+            for shapes in beside
+        ]
+        later = _LEAP / self.measured.rate
+        return [
+            *by_place,
+            self.change(self.forces.larger) / _RATIO,
+            self.change(self.forces.faster) / _RATIO,
+            (self.signals(self.responses, later=later) - self.bare) / later,
+        ]
+
+    @property
+    def contact_deviations(self) -> Floats:
+        """Standard deviations of the unknowns of the contact, in changes of its force, (3,)."""
+        return self.here.model_error * np.array([_NEXT_OCTAVE, 1.0, 1.0])
+
+    @cached_property
+    def by_model(self) -> Floats:
+        """Derivatives in the errors of the model, in their deviations, the contact's first."""
+        contact_changes = [self.change(force) for force in self.forces.by_model]
+        force = self.forces.of_sphere
+        path_changes = model_error_signals(
+            self.here,
+            self.touched,
+            self.names,
+            self.measured.rate,
+            self.touch + force.time,
+            force.impulse,
+            self.measured.value.shape[1],
+        )
+        return np.concatenate(
+            [
+                self.contact_deviations[:, None, None] * contact_changes,
+                self.gains * path_changes,
+            ]
+        )
+
+    @property
+    def by_setup(self) -> Floats:
+        """Derivatives in the numbers of the set-up, (2 + 4 S, S, samples).
+
+        The set-up changes the way to the sensors, and the plate that is touched.
+        """
+        if self.stated.errors.is_none:
+            return np.zeros((len(self.numbers), *self.bare.shape))
+
+        def without_gains(responses: Floats) -> Floats:
+            return self.signals(responses) / self.gains
+
+        position = (float(self.place[0]), float(self.place[1]))
+        slopes = setup_slopes(
+            self.stated, self.here, self.numbers, self.names, position, without_gains
+        )
+        for number, force in self.forces.by_setup.items():
+            slopes[number] += self.change(force) / STEPS[number]
+        return slopes
 
 
 class _Forces(NamedTuple):
@@ -366,7 +455,7 @@ def _contact_forces(
     touched: Problem,
     position: Place,
     numbers: Floats,
-    names: list[str],
+    names: Sequence[str],
     log_radius: float,
     log_speed: float,
 ) -> _Forces:

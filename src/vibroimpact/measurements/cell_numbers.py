@@ -40,8 +40,7 @@ _EITHER = re.compile(r"[+-]?[1-9]\d{0,2}[.,]\d{3}")
 
 
 def number_in(text: str, delimiter: str | None) -> float:
-    """Return the number in a cell; nan where it is missing, and infinite where the sample is over
-    the range.
+    """Return the number in a cell; nan where it is missing, infinite where it is over the range.
 
     Parameters
     ----------
@@ -100,8 +99,7 @@ def is_number(text: str, delimiter: str | None) -> bool:
 
 
 def is_either(text: str) -> bool:
-    """Return whether a number is another one where a sign in it groups digits than where it is the
-    decimal point.
+    """Return whether a point or comma in a number may group digits, or be the decimal sign.
 
     Examples
     --------

@@ -105,11 +105,11 @@ def recorded_channels(
     try:
         time_columns = _time_columns(cells.layout)
         names = _names(channels)
-        found = []
+        recorded = []
         for column, channel in channels.items():
             time_column = _time_of(column, time_columns, channels)
-            found.append(_channel(cells, column, time_column, names[column], channel.unit))
-        return found
+            recorded.append(_channel(cells, column, time_column, names[column], channel.unit))
+        return recorded
     except InputError as error:
         raise in_table(path, error) from None
 

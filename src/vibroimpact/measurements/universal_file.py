@@ -31,8 +31,9 @@ SPHERE_FUNCTIONS = {
     "acceleration_m_s2": ("acceleration of the sphere", 12, "m/s2"),
     "force_N": ("contact force on the sphere", 13, "N"),
 }
-"""The motion of the sphere as this program writes and recognizes it: first identification
-line, data type, unit.
+"""The motion of the sphere as this program writes and recognizes it.
+
+First identification line, data type, unit.
 """
 
 _LARGEST = 1e30

@@ -180,12 +180,12 @@ def _most_likely(log_likelihood: Floats, lags: Floats, span: _Span) -> tuple[flo
     """Return the most likely lag and its standard deviation, in samples."""
     top = int(np.clip(np.argmax(log_likelihood), 1, len(lags) - 2))
     # a parabola through the highest value and its neighbours
-    left, middle, right = log_likelihood[top - 1 : top + 2]
-    curvature = max(float(2.0 * middle - left - right), _TINY)
-    offset = float(np.clip(0.5 * (right - left) / curvature, -1.0, 1.0))
+    earlier, highest, later = log_likelihood[top - 1 : top + 2]
+    curvature = max(float(2.0 * highest - earlier - later), _TINY)
+    offset = float(np.clip(0.5 * (later - earlier) / curvature, -1.0, 1.0))
     lag = lags[top] + offset / span.lags_per_sample
     # the variance is that of this peak, or what lies in others
-    likelihood = np.exp(log_likelihood - middle)
+    likelihood = np.exp(log_likelihood - highest)
     likelihood[top - 1 : top + 2] = 0.0
     others = float(likelihood @ (lags - lag) ** 2 / (1.0 + likelihood.sum()))
     own = min(1.0 / curvature / span.lags_per_sample**2, float(span.reach) ** 2)

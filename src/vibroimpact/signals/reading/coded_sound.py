@@ -140,8 +140,9 @@ class _Opened:
 def _samples(
     container: InputContainer, stream: AudioStream, rate: float
 ) -> tuple[Floats, tuple[str, ...]]:
-    """Return the samples, (channels, samples), with full scale as 1, and a doubt where
-    the file ends in a fault.
+    """Return the samples, (channels, samples), with full scale as 1.
+
+    With them comes a doubt where the file ends in a fault.
     """
     import av
 

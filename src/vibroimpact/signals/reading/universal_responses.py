@@ -66,8 +66,9 @@ def contents_of(path: str | PathLike[str]) -> Contents:
 
 
 def read_responses(path: str | PathLike[str]) -> tuple[FrequencyResponse, ...]:
-    """Return the frequency responses of a universal file (dataset 58, function type 4), with their
-    coherences (type 6).
+    """Return the frequency responses of a universal file with their coherences.
+
+    They are in datasets 58, of function type 4, and the coherences of type 6.
 
     Values are brought to SI by the labels of their units, else by dataset 164; without either they
     are taken as SI, with a doubt.
