@@ -139,7 +139,7 @@ def measured_of(sensors: Sequence[Sensor], records: Sequence[Record], window: fl
     rms = rms_of(value, heard)
     before = whole[:, :first]
     quiet_noise = np.std(before, axis=1) if first >= _QUIET else np.zeros(len(whole))
-    # records of a run are exactly zero before first touch, which tells no noise
+    # zeros before first touch tell no noise
     quiet = bool(first >= _QUIET and np.all(quiet_noise > 1e-9 * rms))
     return Measured(
         sensors=used,

@@ -105,7 +105,7 @@ def aligned(
             noise = _noise_variance(sounds, gain, touch, slope, unclipped)
             energy = np.maximum(span.correlation(window, common**2), _TINY)
             match = np.maximum(span.correlation(window * sounds[touch], common), 0.0)
-            # a shift is found within the span: normal, of half of that as its deviation
+            # the prior of a shift is normal, with half the reach as its deviation
             prior = 0.5 * ((shift[touch] + lags) / (0.5 * span.reach)) ** 2
             log_likelihood = match**2 / energy / (2.0 * noise) - prior
             step, deviation[touch] = _most_likely(log_likelihood, lags, span)

@@ -226,7 +226,7 @@ class Bins(Spectra):
         best = np.zeros(2)
         for nepers in _DECAYS:
             decay = nepers / self.samples
-            # the tone in the middle of all bins; at others it is the same, but for the phase
+            # the spectrum of a tone at one bin, by the distance from it: that of others is shifted
             shape = (1.0 - np.exp(-nepers - 1j * self.samples * offset)) / (
                 1.0 - np.exp(-decay - 1j * offset)
             )

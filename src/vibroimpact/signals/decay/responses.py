@@ -25,10 +25,10 @@ _LEAST_NOISE = 1e-4
 """Least noise, relative to the rms value of a response: no plate is linear beyond."""
 _RATIOS = np.geomspace(3e-4, 0.1, 7)
 """Damping ratios at which a further mode is sought."""
-_LEAST_RESOLUTION = 0.25
-"""Standard deviation of a frequency, in distances of the measured ones, that is no mode.
+_UNRESOLVED = 0.25
+"""Standard deviation of a frequency, in distances of those measured, that is of no mode.
 
-It is that of what has no damping ratio either.
+It counts where the damping is in doubt.
 """
 _TRIED = 64
 """Frequencies at which a further mode is sought."""
@@ -245,7 +245,7 @@ def modes_in_responses(
     return tuple(
         mode
         for mode in modes
-        if not mode.doubt or mode.frequency.deviation * duration < _LEAST_RESOLUTION
+        if not mode.doubt or mode.frequency.deviation * duration < _UNRESOLVED
     )
 
 
