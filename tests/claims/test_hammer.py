@@ -84,7 +84,7 @@ def test_what_of_damping_is_not_told() -> None:
         "is wider than from {} to {} times its value",
         *Estimate(1.0, find._VAGUE, logarithmic=True).interval,
     )
-    says(PAGE, "Modes with damping ratios above {} are not reported", find._WIDEST)
+    says(PAGE, "Modes with damping ratios above {} are not reported", find._LARGEST_DAMPING)
 
 
 @pytest.mark.slow

@@ -166,7 +166,7 @@ def test_a_contact_in_a_flight() -> None:
 
 
 def test_how_bounces_are_found() -> None:
-    says(PAGE, "a sudden rise of the power above {} Hz", touches._LOWEST)
+    says(PAGE, "a sudden rise of the power above {} Hz", touches._HUM_CUT_OFF)
     says(PAGE, "by a factor between {} and {} that changes slowly", chain.LOWEST, chain.HIGHEST)
 
 

@@ -12,9 +12,13 @@ PAGE = "docs/signals.md"
 
 
 def test_numbers_of_the_baseline() -> None:
-    says(PAGE, "A drift is sought only if these parts span {} % of it", 100.0 * baseline._WIDE)
+    says(
+        PAGE, "A drift is sought only if these parts span {} % of it", 100.0 * baseline._DRIFT_SPAN
+    )
     says(PAGE, "removed only if it exceeds {} of its standard deviations", baseline._SURE)
-    says(PAGE, "Of a record of fewer than {} samples no baseline is removed", baseline._LEAST)
+    says(
+        PAGE, "Of a record of fewer than {} samples no baseline is removed", baseline._LEAST_SAMPLES
+    )
     says(PAGE, "of {} samples or more, that are not equally spaced", equal_steps._FEWEST)
     assert equal_steps._LONGEST_STEP == 3.0
     assert equal_steps._LARGEST_JITTER == 0.5

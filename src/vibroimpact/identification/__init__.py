@@ -1,3 +1,4 @@
-"""From records of sensors on a plate: the force, the place, and the size and speed of the
-sphere, with intervals.
+"""From records of sensors on a plate: the force, its place, and the sphere, with intervals.
+
+Of the sphere it is the size and the speed.
 """

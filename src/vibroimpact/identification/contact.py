@@ -1,6 +1,4 @@
-"""The contact force of a sphere of some size and speed, as the case's contact law has it
-on the elastic plate.
-"""
+"""The contact force of a sphere of some size and speed, by the contact law of a case."""
 
 from __future__ import annotations
 
@@ -20,10 +18,10 @@ from vibroimpact.dynamics.simulate import simulate_together
 
 _NODES = np.polynomial.legendre.leggauss(96)
 """Nodes on [-1, 1] and weights of the quadrature of a force."""
-_INSTANTS, _REFINEMENTS = 400, 4
-"""Instants at which it is seen where the first of several touches ends, and how often
-they are refined.
-"""
+_INSTANTS = 400
+"""Instants at which it is seen where the first of several touches ends."""
+_REFINEMENTS = 4
+"""How often these instants are refined."""
 
 
 @dataclass(frozen=True)
@@ -62,20 +60,18 @@ class Spheres(NamedTuple):
     @property
     def problem(self) -> Problem:
         """The problem of their impacts."""
-        case, radius, speed = self.case, self.radius, self.speed
-        drop = case.drop.model_copy(
-            update={"speed": speed, "height": None, "velocity": None, "air": None}
+        drop = self.case.drop.model_copy(
+            update={"speed": self.speed, "height": None, "velocity": None, "air": None}
         )
-        rigid = rigid_problem(
-            case.model_copy(update={"sphere": resized(case.sphere, radius), "drop": drop})
-        )
+        sphere = resized(self.case.sphere, self.radius)
+        rigid = rigid_problem(self.case.model_copy(update={"sphere": sphere, "drop": drop}))
         return replace(
             self.plate,
             sphere=rigid.sphere,
             laws=rigid.laws,
             height=None,
             velocity=0.0,
-            speed=speed,
+            speed=self.speed,
             air=None,
             sensors=(),
             sensitivity=False,
@@ -96,50 +92,56 @@ def contact_forces(
 
 
 def contact_forces_of(several: Sequence[Spheres]) -> list[ContactForce]:
-    """Return the contact forces of spheres that hit different plates, computed side by side, in
-    order.
+    """Return the contact forces of spheres that hit different plates, in order.
 
-    A sphere that leaves the plate more slowly than the plate follows it touches again within one
-    impact. These touches come and go with the parameters, and the records that are used end before
-    the next touch.
+    They are computed side by side. A sphere that leaves the plate more slowly than the plate
+    follows it touches again within one impact. These touches come and go with the parameters, and
+    the records that are used end before the next touch.
     """
-    found = []
-    for spheres, response in zip(
-        several, simulate_together([spheres.problem for spheres in several]), strict=True
-    ):
+    responses = simulate_together([spheres.problem for spheres in several])
+    forces = []
+    for spheres, response in zip(several, responses, strict=True):
         if isinstance(response, Exception):
             raise response
-        found += _forces_in(response, len(spheres.radius))
-    return found
+        for number in range(len(spheres.radius)):
+            forces.append(_contact_force(response.drop(number)))
+    return forces
 
 
-def _forces_in(response: Response, number_of_drops: int) -> list[ContactForce]:
-    """Return the contact forces of the drops of a response."""
-    nodes, weights = _NODES
-    found = []
-    for number in range(number_of_drops):
-        one = response.drop(number)
-        duration, peak = (float(one.impacts[name][0]) for name in ("duration_s", "max_force_N"))
-        time = 0.5 * duration * (1.0 + nodes)
-        value = one.at(time, ["force_N"])["force_N"]
-        if (value[:-1] == 0.0)[: np.flatnonzero(value)[-1]].any():
-            duration, peak = _first_touch(one, duration)
-            time = 0.5 * duration * (1.0 + nodes)
-            value = one.at(time, ["force_N"])["force_N"]
-        impulse = 0.5 * duration * weights * value
-        found.append(ContactForce(time, impulse, value, np.array([peak, impulse.sum(), duration])))
-    return found
+def _contact_force(response: Response) -> ContactForce:
+    """Return the contact force of one drop."""
+    duration = float(response.impacts["duration_s"][0])
+    peak = float(response.impacts["max_force_N"][0])
+    time, value = _at_nodes(response, duration)
+    # without a force before the last one: there are several touches
+    until_last = value[: np.flatnonzero(value)[-1]]
+    if (until_last == 0.0).any():
+        duration, peak = _first_touch(response, duration)
+        time, value = _at_nodes(response, duration)
+    _, weights = _NODES
+    impulse = 0.5 * duration * weights * value
+    return ContactForce(time, impulse, value, np.array([peak, impulse.sum(), duration]))
+
+
+def _at_nodes(response: Response, duration: float) -> tuple[Floats, Floats]:
+    """Return the nodes of the quadrature over a duration [s], and the force there [N]."""
+    nodes, _ = _NODES
+    time = 0.5 * duration * (1.0 + nodes)
+    return time, _force(response, time)
+
+
+def _force(response: Response, time: Floats) -> Floats:
+    return response.at(time, ["force_N"])["force_N"]
 
 
 def _first_touch(response: Response, duration: float) -> tuple[float, float]:
-    """Return the duration [s] and the largest force [N] of the first touch of an impact
-    that has several.
-    """
-    begin, end = 0.0, duration
+    """Return the duration [s] and the largest force [N] of the first of several touches."""
+    begin = 0.0
+    end = duration
     for _ in range(_REFINEMENTS):  # between the last instant with a force and the first without one
         time = np.linspace(begin, end, _INSTANTS)
-        without = 1 + int(np.argmax(response.at(time[1:], ["force_N"])["force_N"] == 0.0))
-        begin, end = time[without - 1], time[without]
-    return float(begin), float(
-        response.at(np.linspace(0.0, begin, _INSTANTS), ["force_N"])["force_N"].max()
-    )
+        first_without = 1 + int(np.argmax(_force(response, time[1:]) == 0.0))
+        begin = time[first_without - 1]
+        end = time[first_without]
+    peak = _force(response, np.linspace(0.0, begin, _INSTANTS)).max()
+    return float(begin), float(peak)

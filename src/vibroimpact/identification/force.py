@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -16,14 +17,16 @@ from vibroimpact.identification.plate import Place, Plate, compliances_of, shape
 from vibroimpact.identification.setting import Setting, setup_slopes
 from vibroimpact.signals.inverse.deconvolve import Deconvolved, deconvolve
 
-_BEFORE, _AFTER = 0.35, 1.8
-"""Where the force may act: in durations of the pulse before its first touch, and after it."""
-_MOST = 120
+_BEFORE = 0.35
+"""How long before first touch the force may act, in durations of the pulse."""
+_AFTER = 1.8
+"""How long after first touch it may, in durations of the pulse."""
+_MOST_NODES = 120
 """Largest number of nodes."""
-_KINK, _KINKS = 0.06, (0.0, 3.0, 15.0, 63.0, 255.0)
-"""How far the kinks of a force at its begin and end reach, in durations, and how much
-larger its third differences may be there.
-"""
+_KINK_WIDTH = 0.06
+"""How far the kinks of a force at its begin and end reach, in durations."""
+_KINK_SIZES = (0.0, 3.0, 15.0, 63.0, 255.0)
+"""How much larger its third differences may be there."""
 
 
 @dataclass(frozen=True)
@@ -52,8 +55,8 @@ class Force:
     @property
     def peak(self) -> tuple[float, float]:
         """Largest force with its standard deviation [N]."""
-        place = int(np.argmax(self.found.force))
-        return float(self.found.force[place]), float(self.found.deviation[place])
+        node = int(np.argmax(self.found.force))
+        return float(self.found.force[node]), float(self.found.deviation[node])
 
     @property
     def impulse(self) -> tuple[float, float]:
@@ -85,62 +88,97 @@ def force_behind(
     setting : Setting, optional
         The set-up that was found, with its errors, if not all of it is certain.
     """
-    there = plate.at(place)
-    names, samples = [sensor.name for sensor in measured.sensors], measured.value.shape[1]
+    touched = plate.at(place)
+    names = [sensor.name for sensor in measured.sensors]
+    samples = measured.value.shape[1]
     gains = np.ones((len(names), 1)) if setting is None else 1.0 + setting.found.gain[:, None]
-    answers = gains * plate.heard(names).at(shapes_of(there), compliances_of(there, names))
-    points = max(1.0, np.ceil((_BEFORE + _AFTER) * duration * measured.rate * FINENESS / _MOST))
-    step = float(points) / (measured.rate * FINENESS)
-    time = (
-        touch - _BEFORE * duration + step * np.arange(int((_BEFORE + _AFTER) * duration / step) + 1)
-    )
-    # the force of a node is a hat, by Gauss's rule on either half of it
-    nodes, weights = np.polynomial.legendre.leggauss(4)
-    half = 0.5 * (1.0 + nodes)
-    spread, share = (
-        step * np.concatenate([half - 1.0, 1.0 - half]),
-        0.5 * step * np.concatenate([weights * half, weights * half]),
-    )
-    columns = [
-        sampled_responses(answers, measured.rate, one + spread, share, samples) for one in time
-    ]
-    matrix = np.stack([(column * measured.weights).ravel() for column in columns], axis=1)
+    responses = gains * plate.heard(names).at(shapes_of(touched), compliances_of(touched, names))
+
+    nodes = _nodes(touch, duration, measured.rate)
+    offsets, shares = _hat(nodes.step)
+    columns = []
+    for time in nodes.time:
+        of_node = sampled_responses(responses, measured.rate, time + offsets, shares, samples)
+        columns.append((of_node * measured.weights).ravel())
+    matrix = np.stack(columns, axis=1)
     record = (measured.value * measured.weights).ravel()
-    # third differences lie between the nodes; those of a kink are large
-    beside = time[0] + step * (np.arange(len(time) + 3) - 1.5)
-    kinks = sum(
-        np.exp(-(((beside - one) / (_KINK * duration)) ** 2)) for one in (touch, touch + duration)
-    )
+    kinks = _kinks(nodes, touch, duration)
+
+    # errors of the model move the records in proportion to the force, which a first estimate tells
     first = _smooth(matrix, record, kinks)
-    times, impulses = (time[:, None] + spread).ravel(), (first.force[:, None] * share).ravel()
+    times = (nodes.time[:, None] + offsets).ravel()
+    impulses = (first.force[:, None] * shares).ravel()
+
+    def signals(responses: Floats) -> Floats:
+        return sampled_responses(responses, measured.rate, times, impulses, samples)
+
     errors = gains * model_error_signals(
-        plate, there, names, measured.rate, times, impulses, samples
+        plate, touched, names, measured.rate, times, impulses, samples
     )
     if setting is not None:
-
-        def signals(of: Floats) -> Floats:
-            return sampled_responses(of, measured.rate, times, impulses, samples)
-
         by_setup = setup_slopes(setting.plate, plate, setting.numbers, names, place, signals)
         errors = np.concatenate([errors, np.tensordot(setting.errors.T, by_setup, 1)])
-    white = whitening((errors * measured.weights).reshape(len(errors), -1).T)
-    found = _smooth(white(matrix), white(record), kinks)
-    left = (record - matrix @ found.force).reshape(measured.value.shape)
-    return Force(np.asarray(time), found, measured.noise[:, None] * left)
+    whiten = whitening((errors * measured.weights).reshape(len(errors), -1).T)
+    found = _smooth(whiten(matrix), whiten(record), kinks)
+
+    residual = (record - matrix @ found.force).reshape(measured.value.shape)
+    return Force(nodes.time, found, measured.noise[:, None] * residual)
+
+
+class _Nodes(NamedTuple):
+    """Times of the nodes of a force and their distance [s]."""
+
+    time: Floats
+    step: float
+
+
+def _nodes(touch: float, duration: float, rate: float) -> _Nodes:
+    """Return nodes about a pulse, at the instants at which responses are sampled, or at fewer."""
+    span = _BEFORE + _AFTER
+    fine_samples = max(1.0, np.ceil(span * duration * rate * FINENESS / _MOST_NODES))
+    step = float(fine_samples) / (rate * FINENESS)
+    time = touch - _BEFORE * duration + step * np.arange(int(span * duration / step) + 1)
+    return _Nodes(np.asarray(time), step)
+
+
+def _hat(step: float) -> tuple[Floats, Floats]:
+    """Return impulses that stand for the force of a node, a hat of unit height.
+
+    Their times from the node [s] and their sizes are by Gauss's rule on either half of the hat.
+    """
+    nodes, weights = np.polynomial.legendre.leggauss(4)
+    half = 0.5 * (1.0 + nodes)
+    offsets = step * np.concatenate([half - 1.0, 1.0 - half])
+    shares = 0.5 * step * np.concatenate([weights * half, weights * half])
+    return offsets, shares
+
+
+def _kinks(nodes: _Nodes, touch: float, duration: float) -> Floats:
+    """Return where third differences are those of a kink, where a pulse begins and ends."""
+    # third differences lie between the nodes
+    between = nodes.time[0] + nodes.step * (np.arange(len(nodes.time) + 3) - 1.5)
+    width = _KINK_WIDTH * duration
+    kinks = np.zeros(len(between))
+    for kink in (touch, touch + duration):
+        kinks += np.exp(-(((between - kink) / width) ** 2))
+    return kinks
 
 
 def _smooth(matrix: Floats, record: Floats, kinks: Floats) -> Deconvolved:
     """Return the force with the kinks, where it begins and ends, that the records prefer."""
-    return max(
-        (deconvolve(matrix, record, 1.0 + more * kinks) for more in _KINKS),
-        key=lambda found: found.evidence,
-    )
+    forces = [deconvolve(matrix, record, 1.0 + size * kinks) for size in _KINK_SIZES]
+    return max(forces, key=lambda force: force.evidence)
 
 
 def whitening(errors: Floats) -> Callable[[Floats], Floats]:
-    """Return the map that makes the sum of unit white noise and of errors (samples, n)
-    with unit deviations white.
+    """Return the map that makes unit white noise and errors white.
+
+    The errors, (samples, n), have unit deviations.
     """
     vectors, deviations, _ = np.linalg.svd(errors, full_matrices=False)
-    less = 1.0 - 1.0 / np.sqrt(1.0 + deviations**2)
-    return lambda values: values - (vectors * less) @ (vectors.T @ values)
+    reduction = 1.0 - 1.0 / np.sqrt(1.0 + deviations**2)
+
+    def whiten(values: Floats) -> Floats:
+        return np.asarray(values - (vectors * reduction) @ (vectors.T @ values))
+
+    return whiten

@@ -1,5 +1,6 @@
-"""Identification: from records of sensors on a plate to the force, its place, and the
-size and speed of the sphere, with intervals.
+"""Identification: from records of sensors on a plate to the impact, with intervals.
+
+It gives the force, its place, and the size and speed of the sphere.
 """
 
 from __future__ import annotations
@@ -15,8 +16,7 @@ from vibroimpact.cases.schema import CaseTable
 from vibroimpact.errors import InputError
 from vibroimpact.identification.doubts import contradiction, doubts_about
 from vibroimpact.identification.force import Force, force_behind
-from vibroimpact.identification.measured import Measured, measured_of
-from vibroimpact.identification.own_run import is_own_run
+from vibroimpact.identification.measured import Measured, is_own_run, measured_of
 from vibroimpact.identification.plate import Place, Plate, plate_of
 from vibroimpact.identification.polarity import upright
 from vibroimpact.identification.pulses import Search
@@ -38,10 +38,10 @@ _ALWAYS_CERTAIN = (
     "contact law",
 )
 """What is always taken as certain."""
-_TOLD = 0.5
+_LEAST_CYCLES = 0.5
 """Least product of band and duration for which a force has a shape that is heard."""
 _VAGUE = 0.5
-"""Standard deviation of the logarithm of the duration from which on it is not told."""
+"""Standard deviation of the logarithm of the duration from which on it is not determined."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -130,8 +130,9 @@ def identify(
     errors: SetupErrors | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> Identification:
-    """Return force, place, size and speed of an impact on an elastic plate, identified from records
-    of its sensors.
+    """Return force, place, size and speed of an impact, identified from records of a plate.
+
+    The plate is elastic, and the records are those of its sensors.
 
     Parameters
     ----------
@@ -265,42 +266,35 @@ def identify_on(
     records = [without_baseline(record) for record in records]
     measured, search = _started(plate, records, place)
     sphere = fit_sphere(plate, measured, search.candidates[0], place)
-    at, duration = (
-        (float(sphere.parameters[0]), float(sphere.parameters[1])),
-        float(sphere.force.facts[2]),
-    )
-    about = replace(measured, noise=np.maximum(measured.noise, sphere.noise))
+    x, y, _, _, touch = sphere.parameters.tolist()
+    _, _, duration = sphere.force.facts.tolist()
+    # with the noise about the fit, where that is larger
+    noise = np.maximum(measured.noise, sphere.noise)
     force = force_behind(
         sphere.plate,
-        about,
-        at,
-        float(sphere.parameters[4]),
+        replace(measured, noise=noise),
+        (x, y),
+        touch,
         duration,
         None if plate.errors.is_none else sphere.setting,
     )
-    withheld = contradiction(sphere, force)
-    estimates = _estimates(plate.case, measured, sphere, None if withheld else force)
-    doubts = [
-        *doubts_about(plate, measured, search, sphere, place),
-        *([withheld] if withheld else []),
-    ]
-    of_files = dict.fromkeys(doubt for record in records for doubt in record.named_doubts)
-    return Identification(
-        plate,
-        measured,
-        search,
-        sphere,
-        None if withheld else force,
-        estimates,
-        (*of_files, *doubts),
-    )
+    doubts = [doubt for record in records for doubt in record.named_doubts]
+    doubts = list(dict.fromkeys(doubts))  # of a file with several records, once
+    doubts += doubts_about(plate, measured, search, sphere, place)
+    contradicts = contradiction(sphere, force)
+    if contradicts:
+        doubts.append(contradicts)
+    force_told = None if contradicts else force
+    estimates = _estimates(plate.case, measured, sphere, force_told)
+    return Identification(plate, measured, search, sphere, force_told, estimates, tuple(doubts))
 
 
 def identify_force(
     case: CaseTable, records: Sequence[Record], place: Place, *, window: float = WINDOW
 ) -> Force:
-    """Return the force behind records at a place that is known, from the records alone: no contact
-    law is assumed.
+    """Return the force behind records at a place that is known, from the records alone.
+
+    No contact law is assumed.
 
     Parameters
     ----------
@@ -360,40 +354,27 @@ def _started(
     """
     low, high = plate.bounds
     if place is not None and not ((low <= place) & (place <= high)).all():
-        words = (
-            f"the place ({place[0]:.10g}, {place[1]:.10g}) m is off the plate, or too near its edge"
-        )
         raise InputError(
-            f"{words}; x must be from {low[0]:.10g} to {high[0]:.10g} m, and y from "
+            f"the place ({place[0]:.10g}, {place[1]:.10g}) m is off the plate, or too near its "
+            f"edge; x must be from {low[0]:.10g} to {high[0]:.10g} m, and y from "
             f"{low[1]:.10g} to {high[1]:.10g} m"
         )
     measured, search = upright(
         plate, measured_of(plate.problem.sensors, records, plate.window), place
     )
     pulse = search.candidates[0]
-    if pulse.duration * measured.band < _TOLD:
-        shortest = digits(1e6 * _TOLD / measured.band, 3)
-        words = (
-            f"the sensors hear up to {measured.band:,.0f} Hz, enough for contacts of "
-            f"{shortest} us or longer"
-        )
-        remedy = (
-            f"sample faster than at {measured.rate:.10g} Hz, with an "
-            "anti-alias filter that passes more"
-        )
+    if pulse.duration * measured.band < _LEAST_CYCLES:
+        shortest = digits(1e6 * _LEAST_CYCLES / measured.band, 3)
         raise InputError(
-            f"the records do not determine the duration of the contact: {words}; {remedy}"
+            "the records do not determine the duration of the contact: the sensors hear up to "
+            f"{measured.band:,.0f} Hz, enough for contacts of {shortest} us or longer; sample "
+            f"faster than at {measured.rate:.10g} Hz, with an anti-alias filter that passes more"
         )
     if pulse.spread > _VAGUE:
-        words = (
-            f"the standard deviation of its logarithm is {digits(pulse.spread, 2)}, from what "
-            "the best pulse leaves of them"
-        )
-        remedy = (
-            "measure with less noise, or check that they are of an impact on the plate of the case"
-        )
         raise InputError(
-            f"the records do not determine the duration of the contact: {words}; {remedy}"
+            "the records do not determine the duration of the contact: the standard deviation of "
+            f"its logarithm is {digits(pulse.spread, 2)}, from what the best pulse leaves of them; "
+            "measure with less noise, or check that they are of an impact on the plate of the case"
         )
     return measured, search
 
@@ -402,28 +383,25 @@ def _estimates(
     case: CaseTable, measured: Measured, sphere: SphereFit, force: Force | None
 ) -> dict[str, Estimate]:
     """Return what was found, by names that end in their units."""
-    at_x, at_y, radius, speed, touch = sphere.parameters.tolist()
-    deviations = np.sqrt(np.diag(sphere.covariance)).tolist()
-    of_force = np.sqrt(np.diag(sphere.force_covariance)).tolist()
-    peak, impulse, duration = (
-        Estimate(*pair) for pair in zip(sphere.force.facts.tolist(), of_force, strict=True)
-    )
-    mass = float(ball_of(resized(case.sphere, math.exp(radius))).mass)
-    found = {
-        "place_x_m": Estimate(at_x, deviations[0]),
-        "place_y_m": Estimate(at_y, deviations[1]),
-        "first_touch_s": Estimate(measured.start + touch, deviations[4]),
-        "radius_m": Estimate(math.exp(radius), deviations[2], logarithmic=True),
-        "mass_kg": Estimate(mass, 3.0 * deviations[2], logarithmic=True),
-        "speed_m_s": Estimate(math.exp(speed), deviations[3], logarithmic=True),
-        "duration_s": duration,
-        "max_force_N": peak,
-        "impulse_N_s": impulse,
+    x, y, log_radius, log_speed, touch = sphere.parameters.tolist()
+    of_x, of_y, of_log_radius, of_log_speed, of_touch = np.sqrt(np.diag(sphere.covariance)).tolist()
+    peak, impulse, duration = sphere.force.facts.tolist()
+    of_peak, of_impulse, of_duration = np.sqrt(np.diag(sphere.force_covariance)).tolist()
+    radius = math.exp(log_radius)
+    mass = float(ball_of(resized(case.sphere, radius)).mass)
+    estimates = {
+        "place_x_m": Estimate(x, of_x),
+        "place_y_m": Estimate(y, of_y),
+        "first_touch_s": Estimate(measured.start + touch, of_touch),
+        "radius_m": Estimate(radius, of_log_radius, logarithmic=True),
+        # the mass is proportional to the cube of the radius
+        "mass_kg": Estimate(mass, 3.0 * of_log_radius, logarithmic=True),
+        "speed_m_s": Estimate(math.exp(log_speed), of_log_speed, logarithmic=True),
+        "duration_s": Estimate(duration, of_duration),
+        "max_force_N": Estimate(peak, of_peak),
+        "impulse_N_s": Estimate(impulse, of_impulse),
     }
-    if force is None:
-        return found
-    return {
-        **found,
-        "recovered_max_force_N": Estimate(*force.peak),
-        "recovered_impulse_N_s": Estimate(*force.impulse),
-    }
+    if force is not None:
+        estimates["recovered_max_force_N"] = Estimate(*force.peak)
+        estimates["recovered_impulse_N_s"] = Estimate(*force.impulse)
+    return estimates

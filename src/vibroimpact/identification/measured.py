@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
 
 import numpy as np
 
 from vibroimpact.arrays import Bools, Floats
+from vibroimpact.cases.build import resolved_case
+from vibroimpact.cases.reader import load_case
+from vibroimpact.cases.schema import CaseTable
 from vibroimpact.dynamics.sensors.antialias import HALF_LENGTH
 from vibroimpact.dynamics.sensors.sensor import Sensor
 from vibroimpact.errors import InputError, did_you_mean
@@ -29,6 +33,10 @@ _STRAIN = ("1", "m/m")
 """Unit of a strain, as a record has it and as a sensor."""
 _SAME = 1e-3
 """Relative difference of rates, and difference of instants in sampling periods, that is none."""
+_SIGNALS = "result.nc"
+"""File of the signals in the folder of a run."""
+_CASE = "case.toml"
+"""File of its case."""
 
 
 @dataclass(frozen=True)
@@ -91,8 +99,9 @@ class Measured:
 
 
 def measured_of(sensors: Sequence[Sensor], records: Sequence[Record], window: float) -> Measured:
-    """Return records around their first touch, without their baselines, for the sensors that they
-    are named after.
+    """Return records around their first touch, for the sensors that they are named after.
+
+    Their baselines are removed.
 
     Parameters
     ----------
@@ -113,42 +122,44 @@ def measured_of(sensors: Sequence[Sensor], records: Sequence[Record], window: fl
     rate = used[0].rate
     records = [without_baseline(record) for record in records]
     whole, start = on_common_time(records)
-    of_samples = [
-        replace(record, value=clipped_samples(record).astype(float)) for record in records
-    ]
-    clipped = on_common_time(of_samples)[0] > 0.0
+    clipped = _clipped_on_common_time(records)
     end = start + whole.shape[1] / rate
     onset = min(onset_time(record) for record in records)
-    first = max(0, round((onset - start) * rate) - HALF_LENGTH - 1)
+    onset_sample = round((onset - start) * rate)
+    first = max(0, onset_sample - HALF_LENGTH - 1)
     last = min(round((onset + window - start) * rate), round((end - start) * rate))
-    if last - round((onset - start) * rate) < _LEAST:
-        words = (
-            f"the records have {max(0, last - round((onset - start) * rate))} samples in "
-            "common from first touch on, to at most"
-        )
+    if last - onset_sample < _LEAST:
         raise InputError(
-            f"{words} {1e3 * window:g} ms; {_LEAST} are needed, which are "
+            f"the records have {max(0, last - onset_sample)} samples in common from first touch "
+            f"on, to at most {1e3 * window:g} ms; {_LEAST} are needed, which are "
             f"{digits(1e3 * _LEAST / rate, 3)} ms at {rate:.10g} Hz"
         )
-    value, heard = whole[:, first:last], ~clipped[:, first:last]
-    quiet = first >= _QUIET
-    noise = np.std(whole[:, :first], axis=1) if quiet else np.zeros(len(whole))
+    value = whole[:, first:last]
+    heard = ~clipped[:, first:last]
     rms = rms_of(value, heard)
-    quiet = bool(quiet and np.all(noise > 1e-9 * rms))
-    removed = tuple(record.removed or Removed(0.0, 0.0) for record in records)
-    deviation = noise if quiet else _UNKNOWN * rms
+    before = whole[:, :first]
+    quiet_noise = np.std(before, axis=1) if first >= _QUIET else np.zeros(len(whole))
+    # zeros before first touch tell no noise
+    quiet = bool(first >= _QUIET and np.all(quiet_noise > 1e-9 * rms))
     return Measured(
-        used,
-        value,
-        heard,
-        rate,
-        start + first / rate,
-        onset - start - first / rate,
-        deviation,
-        quiet,
-        removed,
-        np.ones(len(used)),
+        sensors=used,
+        value=value,
+        heard=heard,
+        rate=rate,
+        start=start + first / rate,
+        onset=onset - start - first / rate,
+        noise=quiet_noise if quiet else _UNKNOWN * rms,
+        quiet=quiet,
+        removed=tuple(record.removed or Removed(0.0, 0.0) for record in records),
+        polarity=np.ones(len(used)),
     )
+
+
+def _clipped_on_common_time(records: Sequence[Record]) -> Bools:
+    """Return which samples of records are clipped, in the time that they have in common."""
+    clipped = [replace(record, value=clipped_samples(record).astype(float)) for record in records]
+    on_time, _ = on_common_time(clipped)
+    return on_time > 0.0
 
 
 def rms_of(value: Floats, heard: Bools) -> Floats:
@@ -168,20 +179,9 @@ def sensors_of(sensors: Sequence[Sensor], records: Sequence[Record]) -> tuple[Se
     known = {sensor.name: sensor for sensor in sensors}
     chosen: dict[str, Sensor] = {}
     for record in records:
-        name = next(
-            (name for name in (record.name, *known) if name in known and is_named(record, name)),
-            None,
-        )
+        name = _sensor_name(record, known)
         if name is None:
-            there = ", ".join(f'"{name}"' for name in known)
-            words = f"the case has no sensor {quoted(record.name)}; it has {there}"
-            first = next(iter(known.values()))
-            if record.source.lower().endswith(".csv"):
-                words += (
-                    "; a column of a CSV file is named after its sensor and has its unit, "
-                    f'such as "{first.name} [{first.unit}]"'
-                )
-            raise InputError(f"{words}.{did_you_mean(record.name, known)}")
+            raise InputError(_no_sensor(record, known))
         if name in chosen:
             raise InputError(f"there are two records {quoted(name)}; give those of one fall")
         _check(record, known[name])
@@ -191,9 +191,32 @@ def sensors_of(sensors: Sequence[Sensor], records: Sequence[Record]) -> tuple[Se
     return tuple(chosen.values())
 
 
+def _sensor_name(record: Record, known: Mapping[str, Sensor]) -> str | None:
+    """Return the name of the sensor that a record is named after; None if there is none."""
+    # its own name first, then the cells of headers
+    for name in (record.name, *known):
+        if name in known and is_named(record, name):
+            return name
+    return None
+
+
+def _no_sensor(record: Record, known: Mapping[str, Sensor]) -> str:
+    """Return the message that there is no sensor with the name of a record."""
+    names = ", ".join(f'"{name}"' for name in known)
+    message = f"the case has no sensor {quoted(record.name)}; it has {names}"
+    if record.source.lower().endswith(".csv"):
+        first = next(iter(known.values()))
+        message += (
+            "; a column of a CSV file is named after its sensor and has its unit, "
+            f'such as "{first.name} [{first.unit}]"'
+        )
+    return f"{message}.{did_you_mean(record.name, known)}"
+
+
 def on_common_time(records: Sequence[Record]) -> tuple[Floats, float]:
-    """Return the samples of records in the time that they have in common, (S, samples), and its
-    begin [s].
+    """Return the samples of records in the time that they have in common, and its begin [s].
+
+    The samples are (S, samples).
 
     Raises
     ------
@@ -208,35 +231,49 @@ def on_common_time(records: Sequence[Record]) -> tuple[Floats, float]:
         raise InputError(
             "the records were not sampled at the same instants; give those of one acquisition"
         )
-    samples = max(0, round((end - start) * rate))
-    whole = [record.value[round(offset) :] for record, offset in zip(records, offsets, strict=True)]
-    samples = min(samples, *(len(one) for one in whole))
-    return np.stack([one[:samples] for one in whole]), start
+    from_start = [
+        record.value[round(offset) :] for record, offset in zip(records, offsets, strict=True)
+    ]
+    samples = min(max(0, round((end - start) * rate)), *(len(value) for value in from_start))
+    return np.stack([value[:samples] for value in from_start]), start
 
 
 def _check(record: Record, sensor: Sensor) -> None:
     """Raise InputError unless a record can be that of a sensor."""
+    name = quoted(record.name)
     if record.unit.replace("^", "") != sensor.unit and (record.unit, sensor.unit) != _STRAIN:
-        given = f"in {record.unit}" if record.unit else "without a unit"
+        unit = f"in {record.unit}" if record.unit else "without a unit"
         raise InputError(
-            f"the record {quoted(record.name)} is {given}, and the sensor of that name "
-            f"reads {sensor.unit}"
+            f"the record {name} is {unit}, and the sensor of that name reads {sensor.unit}"
         )
     if abs(record.rate / sensor.rate - 1.0) > _SAME:
-        words = (
-            f"the record {quoted(record.name)} has {record.rate:.10g} samples per second, and "
-            f"the sensor of that name {sensor.rate:.10g}"
-        )
         raise InputError(
-            f"{words}; write rate = {record.rate:.10g} in the case, with the anti-alias "
-            "filter that the record has"
+            f"the record {name} has {record.rate:.10g} samples per second, and the sensor of that "
+            f"name {sensor.rate:.10g}; write rate = {record.rate:.10g} in the case, with the "
+            "anti-alias filter that the record has"
         )
     if not np.isfinite(record.value).all():
-        raise InputError(
-            f"the record {quoted(record.name)} has samples that are not finite numbers"
-        )
-    if not len(record.value) or np.ptp(record.value) == 0.0:
-        raise InputError(
-            f"the record {quoted(record.name)} "
-            f"{'is constant' if len(record.value) else 'has no samples'}; it shows no impact"
-        )
+        raise InputError(f"the record {name} has samples that are not finite numbers")
+    if not len(record.value):
+        raise InputError(f"the record {name} has no samples; it shows no impact")
+    if np.ptp(record.value) == 0.0:
+        raise InputError(f"the record {name} is constant; it shows no impact")
+
+
+def is_own_run(case: CaseTable, records: Sequence[Record]) -> bool:
+    """Return whether records are from the folder of a run whose plate is modelled as in a case.
+
+    Then they have no errors of that model.
+    """
+    sources = {Path(record.source) for record in records}
+    folders = {source.parent for source in sources}
+    if len(folders) != 1 or any(source.name != _SIGNALS for source in sources):
+        return False
+    file = folders.pop() / _CASE
+    if not file.is_file():
+        return False
+    try:
+        other = load_case(file)
+    except InputError:  # of another version, or changed by hand
+        return False
+    return bool(resolved_case(other)["plate"] == resolved_case(case)["plate"])

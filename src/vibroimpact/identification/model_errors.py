@@ -21,11 +21,11 @@ def model_error_signals(
     impulses: Floats,
     samples: int,
 ) -> Floats:
-    """Return the changes of the records of a force by one standard deviation of each error of the
-    plate's model, (S + modes, S, samples).
+    """Return the changes of records by one standard deviation of each error of the plate's model.
 
-    The errors are those of the static response of the modes left out to each sensor, whose standard
-    deviation is that response, as it grows towards their frequencies, and those of the frequencies.
+    They are (S + modes, S, samples). The errors are those of the static response of the modes left
+    out to each sensor, whose standard deviation is that response, as it grows towards their
+    frequencies, and those of the frequencies.
 
     Parameters
     ----------
@@ -42,22 +42,17 @@ def model_error_signals(
     samples : int
         Number of samples of a record.
     """
-    shapes, residual = shapes_of(there), plate.heard(names).residual
+    sensors = len(names)
 
-    def signals(at: Floats) -> Floats:
-        return sampled_responses(at, rate, times, impulses, samples)
+    def signals(responses: Floats) -> Floats:
+        return sampled_responses(responses, rate, times, impulses, samples)
 
-    static = (
-        plate.model_error
-        * np.eye(len(names))[:, :, None]
-        * signals(compliances_of(there, names)[:, None] * residual)
-    )
-    scaled = (plate.frequency_errors * shapes)[:, None, None] * plate.detuned(names)
-    return np.concatenate(
-        [
-            static,
-            signals(scaled.reshape(len(shapes) * len(names), -1)).reshape(
-                len(shapes), len(names), samples
-            ),
-        ]
-    )
+    residual = compliances_of(there, names)[:, None] * plate.heard(names).residual
+    # the error of a sensor's static response moves its record alone
+    of_residuals = plate.model_error * np.eye(sensors)[:, :, None] * signals(residual)
+
+    shapes = shapes_of(there)
+    modes = len(shapes)
+    detuned = (plate.frequency_errors * shapes)[:, None, None] * plate.detuned(names)
+    of_frequencies = signals(detuned.reshape(modes * sensors, -1))
+    return np.concatenate([of_residuals, of_frequencies.reshape(modes, sensors, samples)])

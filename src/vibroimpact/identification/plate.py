@@ -27,7 +27,7 @@ from vibroimpact.dynamics.sensors.sensor import Sensor
 from vibroimpact.dynamics.vibrating.vibrating_bodies import bases_of_plate
 from vibroimpact.errors import InputError
 from vibroimpact.identification.setup import Setup, SetupErrors, stretched, with_resonance
-from vibroimpact.structures.modal_model import ModalBasis, rigid_basis
+from vibroimpact.structures.modal_model import ModalBasis, ModalModel, rigid_basis
 from vibroimpact.structures.recipe import PlateOfPlates, PlateOfSolids
 from vibroimpact.structures.static_compliance import computed_compliances
 from vibroimpact.structures.surface import Side, place_of
@@ -35,22 +35,25 @@ from vibroimpact.structures.surface import Side, place_of
 Place = tuple[float, float]
 """x and y on the plate [m]."""
 
-_PER_WAVE = 6.0
+_PER_WAVELENGTH = 6.0
 """Places of the grid per shortest wavelength of the modes."""
 _DETUNED = 1e-5
 """Relative step of a frequency in derivatives."""
-_ALIKE = 1e-4
+_SIMILAR = 1e-4
 """Largest relative difference of frequencies between plates that share these derivatives."""
-_TOUCHED = 4
+_KEPT_CONTACTS = 4
 """Number of places of the contact that are kept."""
 _LEFT_OUT = 16
-"""Number of modes that stand for those left out: so dense that they do not swing back
-during a contact.
+"""Number of modes that stand for those left out.
+
+They are so dense that they do not swing back during a contact.
 """
-_FINER, _PLACES, _MIDDLE = 1.5, 32, 0.6
-"""How much finer a mesh is whose static compliance is compared, at how many places, over
-what part of the length and width of the plate.
-"""
+_FINER = 1.5
+"""How much finer a mesh is whose static compliance is compared."""
+_PLACES = 32
+"""At how many places it is compared."""
+_MIDDLE = 0.6
+"""Part of the length and width of the plate over which these places lie."""
 _MARGIN = 1.5
 """Least distance of a place from the edge, in thicknesses."""
 _SHEAR = 5.0 / 6.0
@@ -101,12 +104,19 @@ class Plate:
     @property
     def bounds(self) -> tuple[Floats, Floats]:
         """Least and largest x and y of a place [m], (2,) each."""
-        model = self.problem.models["plate"]
-        nodes, margin = (
-            model.mesh.nodes[:, :2],
-            _MARGIN * (model.thickness or float(model.mesh.extent[2])),
-        )
+        nodes = self._model.mesh.nodes[:, :2]
+        margin = _MARGIN * self._thickness
         return nodes.min(axis=0) + margin, nodes.max(axis=0) - margin
+
+    @property
+    def _model(self) -> ModalModel:
+        """Its mesh with all of its modes."""
+        return self.problem.models["plate"]
+
+    @property
+    def _thickness(self) -> float:
+        """Its thickness as the case states it [m]."""
+        return self._model.thickness or float(self._model.mesh.extent[2])
 
     @property
     def modes(self) -> ModalBasis:
@@ -117,13 +127,12 @@ class Plate:
 
     @cached_property
     def grid(self) -> tuple[Floats, Floats, Floats]:
-        """x and y of a grid of places that no mode oscillates between [m], and the
-        deflections there, (y, x, modes).
-        """
+        """A grid of places that no mode oscillates between: x, y [m], deflections (y, x, modes)."""
         low, high = self.bounds
-        (length, width), modes = high - low, len(self.problem.models["plate"].angular_frequencies)
+        length, width = high - low
+        modes = len(self._model.angular_frequencies)
         # a mode has the area of its wavelength squared over pi (Weyl)
-        step = np.sqrt(np.pi * length * width / modes) / _PER_WAVE
+        step = np.sqrt(np.pi * length * width / modes) / _PER_WAVELENGTH
         x, y = (
             np.linspace(start, end, max(5, round((end - start) / step) + 1))
             for start, end in zip(low.tolist(), high.tolist(), strict=True)
@@ -133,45 +142,42 @@ class Plate:
 
     @cached_property
     def lacking(self) -> tuple[float, float]:
-        """Mean and deviation over places of the part of its static compliance that the mesh lacks,
-        0 for the mesh of a file [-].
+        """Mean and deviation over places of the part of its static compliance that the mesh lacks.
 
-        It is what a finer mesh adds, which is most of it: near a point force the error falls with
-        the square of the element size or faster.
+        It is what a finer mesh adds [-], which is most of it: near a point force the error falls
+        with the square of the element size or faster. For the mesh of a file it is 0.
         """
         if self.stated is not None:  # it is relative to what changes
             return self.stated.lacking
         recipe = elastic_bodies(self.case)["plate"].recipe
         if not isinstance(recipe.shape, PlateOfPlates | PlateOfSolids):
             return 0.0, 0.0
-        finer = replace(
-            recipe, shape=replace(recipe.shape, element_size=recipe.shape.element_size / _FINER)
-        )
-        spread = (
-            _MIDDLE
-            * np.asarray(recipe.shape.size[:2])
-            * (Halton(2, scramble=False).random(_PLACES + 1)[1:] - 0.5)
-        )
-        places = [(x, y) for x, y in spread.tolist()]
+        element_size = recipe.shape.element_size / _FINER
+        finer = replace(recipe, shape=replace(recipe.shape, element_size=element_size))
+        size = np.asarray(recipe.shape.size[:2])
+        # the first point of the sequence is the origin
+        in_square = Halton(2, scramble=False).random(_PLACES + 1)[1:] - 0.5
+        places = [(x, y) for x, y in (_MIDDLE * size * in_square).tolist()]
         added = computed_compliances(finer, places) / computed_compliances(recipe, places) - 1.0
         return float(added.mean()), float(added.std())
 
     @cached_property
     def thickness_exponents(self) -> Floats:
-        r"""Exponent n of each mode, by which its frequency is proportional to :math:`h^n` with the
-        thickness h, (modes,).
+        r"""Exponents n of the modes, whose frequencies are proportional to :math:`h^n`, (modes,).
 
-        That of a plane bending wave of the wavenumber k in Mindlin's theory, :math:`\omega \propto
-        k^2 h\,(1 + c (k h)^2)^{-1/2}`: one in
-        thin plates, and less where shear and rotary inertia count.
+        With the thickness h it is that of a plane bending wave of the wavenumber k in Mindlin's
+        theory, :math:`\omega \propto k^2 h\,(1 + c (k h)^2)^{-1/2}`: one in thin plates, and less
+        where shear and rotary inertia count.
         """
-        material, model = self.case.plate.material, self.problem.models["plate"]
-        thickness, ratio = model.thickness or float(model.mesh.extent[2]), material.poissons_ratio
-        share = (1.0 + 2.0 / (_SHEAR * (1.0 - ratio))) / 12.0
+        material = self.case.plate.material
+        ratio = material.poissons_ratio
+        # c, of shear and rotary inertia
+        inertia = (1.0 + 2.0 / (_SHEAR * (1.0 - ratio))) / 12.0
         speed = np.sqrt(material.youngs_modulus / (12.0 * material.density * (1.0 - ratio**2)))
-        # (kh)^4 / (1 + c (kh)^2)
-        square = (self.modes.angular_frequencies * thickness / speed) ** 2
-        shear = 0.5 * share * (share * square + np.sqrt((share * square) ** 2 + 4.0 * square))
+        # (kh)^4 / (1 + c (kh)^2), which the frequency gives
+        square = (self.modes.angular_frequencies * self._thickness / speed) ** 2
+        # c (kh)^2 is the root of that quadratic equation
+        shear = 0.5 * inertia * (inertia * square + np.sqrt((inertia * square) ** 2 + 4.0 * square))
         return np.asarray(1.0 / (1.0 + shear))
 
     @property
@@ -180,12 +186,10 @@ class Plate:
         if self.setup is None or not self.setup.modulus:
             return self.case
         material = self.case.plate.material
-        stiffer = replace(
-            material, youngs_modulus=(1.0 + self.setup.modulus) * material.youngs_modulus
-        )
-        return self.case.model_copy(
-            update={"plate": self.case.plate.model_copy(update={"material": stiffer})}
-        )
+        modulus = (1.0 + self.setup.modulus) * material.youngs_modulus
+        stiffer = replace(material, youngs_modulus=modulus)
+        plate = self.case.plate.model_copy(update={"material": stiffer})
+        return self.case.model_copy(update={"plate": plate})
 
     def under(self, setup: Setup, names: Sequence[str]) -> Plate:
         """Return the plate of a set-up that differs from the case, whose sensors are these."""
@@ -212,62 +216,64 @@ class Plate:
         )
 
     def _at_sensor(self, name: str, by: Place) -> Floats:
-        """Return the mode shapes at a sensor that is moved along x and y [m], (modes, 3);
-        those of supports are not moved.
+        """Return the mode shapes at a sensor that is moved along x and y [m], (modes, 3).
+
+        Sensors of supports are not moved.
         """
-        model, body = self.problem.models["plate"], elastic_bodies(self.case)["plate"]
+        model = self._model
+        body = elastic_bodies(self.case)["plate"]
         if name in body.pressed:
             return self.modes.points[name]
         spot, side = body.sensors[name]
         x, y = place_of(model.mesh, spot, side)
-        low, high = model.mesh.nodes[:, :2].min(axis=0), model.mesh.nodes[:, :2].max(axis=0)
+        nodes = model.mesh.nodes[:, :2]
+        stated = np.array([x, y])
+        moved = np.clip([x + by[0], y + by[1]], nodes.min(axis=0), nodes.max(axis=0))
 
         def seen(place: Floats, side: Side) -> Floats:
             if name in body.strained:
                 return model.strains((float(place[0]), float(place[1])), side)
             return model.at(place[None], side)[0][:, 0]
 
-        there, here = np.clip([x + by[0], y + by[1]], low, high), np.array([x, y])
         # the difference, since the shapes at the sensor include what the theory of plates adds at a
         # face
-        return np.asarray(self.modes.points[name] + seen(there, side) - seen(here, side))
+        return np.asarray(self.modes.points[name] + seen(moved, side) - seen(stated, side))
 
     def deflections(self, places: Floats) -> Floats:
-        """Return the upward deflection at places (P, 2) in each rigid motion and mode,
-        (P, modes) [kg^-1/2].
+        """Return the upward deflection at places (P, 2), (P, modes) [kg^-1/2].
+
+        The modes are rigid motions, if the plate has some, and those of vibration.
         """
-        model, lighter = (
-            self.problem.models["plate"],
-            1.0 if self.setup is None else (1.0 + self.setup.thickness) ** -0.5,
-        )
-        of_modes = lighter * model.at(places, "upper")[0][:, :, 2].T
+        # of unit modal mass, of a plate that is thicker by a part
+        lighter = 1.0 if self.setup is None else (1.0 + self.setup.thickness) ** -0.5
+        of_modes = lighter * self._model.at(places, "upper")[0][:, :, 2].T
         if self.problem.plate.rigid is None:
             return np.asarray(of_modes)
-        rigid = [rigid_basis(model, ((float(x), float(y)), "upper"), {}) for x, y in places]
-        return np.concatenate(
-            [[lighter * one.contact for one in rigid if one is not None], of_modes], axis=1
-        )
+        of_rigid = []
+        for x, y in places:
+            rigid = rigid_basis(self._model, ((float(x), float(y)), "upper"), {})
+            if rigid is not None:
+                of_rigid.append(lighter * rigid.contact)
+        return np.concatenate([of_rigid, of_modes], axis=1)
 
     def at(self, place: Place) -> Problem:
         """Return the problem with the contact at a place."""
         if self.setup is None or self.stated is None:
             return self._touched(place)
-        touched = self.stated._touched(place)
-        there = stretched(
-            self.problem.on_plate(touched.plate, touched.quasi_static),
-            self.setup,
-            self.thickness_exponents,
-        )
-        assert there.plate.modes is not None  # as those of the plate
-        modes = replace(there.plate.modes, points=self.modes.points)
-        return there.on_plate(replace(there.plate, modes=modes), there.quasi_static)
+        as_stated = self.stated._touched(place)
+        on_this_plate = self.problem.on_plate(as_stated.plate, as_stated.quasi_static)
+        touched = stretched(on_this_plate, self.setup, self.thickness_exponents)
+        assert touched.plate.modes is not None  # as those of the plate
+        modes = replace(touched.plate.modes, points=self.modes.points)
+        return touched.on_plate(replace(touched.plate, modes=modes), touched.quasi_static)
 
     @cached_property
     def _touched(self) -> Callable[[Place], Problem]:
-        """The problem with the contact at a place; the last ones are kept, as plates in
-        similar set-ups are touched at one place.
+        """The problem with the contact at a place of the plate as the case states it.
+
+        The last ones are kept, as plates in similar set-ups are touched at one place.
         """
-        return lru_cache(maxsize=_TOUCHED)(partial(at_place, self.case, self.problem))
+        return lru_cache(maxsize=_KEPT_CONTACTS)(partial(at_place, self.case, self.problem))
 
     def sensors(self, names: Sequence[str]) -> list[Sensor]:
         """Return the sensors of some names."""
@@ -276,8 +282,8 @@ class Plate:
 
     def heard(self, names: Sequence[str]) -> PlaceResponses:
         """Return the responses of some sensors."""
-        found = self.unit(names)
-        return replace(found, values=self.seen(names)[:, :, None] * found.values)
+        unit = self.unit(names)
+        return replace(unit, values=self.seen(names)[:, :, None] * unit.values)
 
     def seen(self, names: Sequence[str]) -> Floats:
         """Return what each rigid motion and mode does at some sensors, (modes, S)."""
@@ -285,43 +291,44 @@ class Plate:
 
     def unit(self, names: Sequence[str]) -> PlaceResponses:
         """Return the responses of some sensors at which each mode is one."""
-        if (key := tuple(names)) not in self.responses:
+        key = tuple(names)
+        if key not in self.responses:
             self.responses[key] = unit_responses(self.problem, self.sensors(names), self.window)
         return self.responses[key]
 
     def detuned(self, names: Sequence[str]) -> Floats:
-        """Return the derivatives of the responses in the logarithm of the frequency of
-        each mode, (modes, S, points).
+        """Return the derivatives of responses by the logarithms of frequencies.
+
+        They are (modes, S, points).
         """
         return np.asarray(self.seen(names)[:, :, None] * self.unit_detuned(names))
 
     def unit_detuned(self, names: Sequence[str]) -> Floats:
-        """Return those of `unit`; those of a set-up that differs little in frequency are
-        taken from there.
-        """
-        key, frequencies = tuple(names), self.modes.frequencies
-        if (
-            key not in self.detunings
-            or np.abs(frequencies / self.detunings[key][0] - 1.0).max() > _ALIKE
-        ):
-            modes = replace(self.modes, frequencies=(1.0 + _DETUNED) * frequencies)
-            problem = replace(self.problem, plate=replace(self.problem.plate, modes=modes))
-            higher = unit_responses(problem, self.sensors(names), self.window)
-            self.detunings[key] = frequencies, (higher.values - self.unit(names).values) / _DETUNED
-        return self.detunings[key][1]
+        """Return those of `unit`; of a similar set-up, those that are known of it."""
+        key = tuple(names)
+        frequencies = self.modes.frequencies
+        if key in self.detunings:
+            known_frequencies, derivatives = self.detunings[key]
+            if np.abs(frequencies / known_frequencies - 1.0).max() <= _SIMILAR:
+                return derivatives
+        modes = replace(self.modes, frequencies=(1.0 + _DETUNED) * frequencies)
+        problem = replace(self.problem, plate=replace(self.problem.plate, modes=modes))
+        higher = unit_responses(problem, self.sensors(names), self.window)
+        derivatives = (higher.values - self.unit(names).values) / _DETUNED
+        self.detunings[key] = frequencies, derivatives
+        return derivatives
 
 
 def shapes_of(problem: Problem) -> Floats:
-    """Return the upward displacement of the contact point of a problem in each rigid
-    motion and mode of its plate, (modes,).
+    """Return the upward displacement of the contact point in each mode of the plate, (modes,).
+
+    Rigid motions are the first of these modes, if the plate has some.
     """
     return np.concatenate([basis.contact for basis in bases_of_plate(problem)])
 
 
 def compliances_of(problem: Problem, names: Sequence[str]) -> Floats:
-    """Return the residual compliances between the contact point of a problem and sensors
-    [m/N], (S,).
-    """
+    """Return the residual compliances between the contact point and sensors [m/N], (S,)."""
     assert problem.plate.modes is not None  # `plate_of` has seen to it
     directions = {sensor.name: np.asarray(sensor.components) for sensor in problem.sensors}
     residuals = problem.plate.modes.residuals
@@ -331,82 +338,83 @@ def compliances_of(problem: Problem, names: Sequence[str]) -> Floats:
 
 
 def with_modes_left_out(problem: Problem) -> list[Problem]:
-    r"""Return problems whose plate has an estimate of the modes left out at the contact: those of
-    the next octave, and those above it.
+    r"""Return problems whose plate has an estimate of the modes left out at the contact.
 
-    Where the modes above the last, at :math:`\omega_c`, are as dense as in the octave below it and
-    move the contact as much, their
-    receptance at :math:`\omega` is :math:`\int_{\omega_c}^\infty C \omega_c\,d\varpi/(\varpi^2 -
-    \omega^2)`, with their static compliance
-    C. By the rule of Gauss and Legendre in :math:`\xi = \omega_c/\varpi`, with nodes :math:`\xi_k`
-    and weights :math:`w_k`, it is that of
-    modes at :math:`\omega_c/\xi_k` of compliances :math:`C w_k`, those of the next octave with
-    :math:`\xi_k > 1/2`. Statically nothing
-    changes, since all compliance is there already.
+    These are two: with the modes of the next octave, and with those above it. Where the modes above
+    the last, at :math:`\omega_c`, are as dense as in the octave below it and move the contact as
+    much, their receptance at :math:`\omega` is :math:`\int_{\omega_c}^\infty C
+    \omega_c\,d\varpi/(\varpi^2 - \omega^2)`, with their static compliance C. By the rule of Gauss
+    and Legendre in :math:`\xi = \omega_c/\varpi`, with nodes :math:`\xi_k` and weights
+    :math:`w_k`, it is that of modes at :math:`\omega_c/\xi_k` of compliances :math:`C w_k`, those
+    of the next octave with :math:`\xi_k > 1/2`. Statically nothing changes, since all compliance is
+    there already.
     """
     modes = problem.plate.modes
     assert modes is not None  # `plate_of` has seen to it
     last = float(modes.angular_frequencies[-1])
-    octave = modes.angular_frequencies > 0.5 * last
-    compliance = float((modes.contact[octave] ** 2).sum()) / (0.5 * last) / last
-    nodes, weights = (
-        both[: _LEFT_OUT - 1 : -1] for both in np.polynomial.legendre.leggauss(2 * _LEFT_OUT)
-    )
+    in_octave = modes.angular_frequencies > 0.5 * last
+    compliance = float((modes.contact[in_octave] ** 2).sum()) / (0.5 * last) / last
+    # the rule on (0, 1) for an even function: the positive half of that on (-1, 1), from 1 down
+    nodes, weights = np.polynomial.legendre.leggauss(2 * _LEFT_OUT)
+    nodes = nodes[: _LEFT_OUT - 1 : -1]
+    weights = weights[: _LEFT_OUT - 1 : -1]
     next_octave = nodes > 0.5
     return [
-        _with_modes(problem, last / nodes[part], compliance * weights[part])
-        for part in (next_octave, ~next_octave)
+        _with_modes(problem, last / nodes[chosen], compliance * weights[chosen])
+        for chosen in (next_octave, ~next_octave)
     ]
 
 
 def _with_modes(problem: Problem, frequencies: Floats, compliances: Floats) -> Problem:
-    """Return a problem whose plate has more modes at the contact, of angular frequencies
-    [rad/s] and static compliances [m/N] (n,).
+    """Return a problem whose plate has more modes at the contact.
+
+    They have angular frequencies [rad/s] and static compliances [m/N], (n,).
     """
     modes = problem.plate.modes
     assert modes is not None
-    number = len(frequencies)
-    above = replace(
+    count = len(frequencies)
+    damping_ratios = np.full(count, modes.damping_ratios[-1])
+    more_modes = replace(
         modes,
         frequencies=np.append(modes.frequencies, frequencies / (2.0 * np.pi)),
-        damping_ratios=np.append(modes.damping_ratios, np.full(number, modes.damping_ratios[-1])),
+        damping_ratios=np.append(modes.damping_ratios, damping_ratios),
         contact=np.append(modes.contact, frequencies * np.sqrt(compliances)),
-        participation=np.concatenate([modes.participation, np.zeros((number, 3))]),
+        participation=np.concatenate([modes.participation, np.zeros((count, 3))]),
         points={},
         rotation=None,
         frequency_errors=None,
         residuals={},
         along=None,
     )
+    # what they add statically is in the quasi-static compliance already
     return replace(
         with_compliance(problem, -compliances.sum()),
-        plate=replace(problem.plate, modes=above),
+        plate=replace(problem.plate, modes=more_modes),
         sensors=(),
     )
 
 
 def with_compliance(problem: Problem, more: float) -> Problem:
     """Return a problem with more static compliance at its contact [m/N]."""
-    return replace(
-        problem,
-        quasi_static=replace(problem.quasi_static, linear=problem.quasi_static.linear + more),
-    )
+    linear = problem.quasi_static.linear + more
+    return replace(problem, quasi_static=replace(problem.quasi_static, linear=linear))
 
 
 def compliance_error(plate: Plate, problem: Problem) -> tuple[float, float]:
-    """Return mean and standard deviation of what the static compliance of the plate lacks at the
-    contact of a problem [m/N].
+    """Return what the static compliance of the plate lacks at the contact of a problem [m/N].
 
-    Its mesh makes a plate too stiff. What makes the frequencies too high does too: the errors of
-    all its modes have one sign.
+    These are its mean and its standard deviation. The mesh of the plate makes it too stiff. What
+    makes the frequencies too high does too: the errors of all its modes have one sign.
     """
     modes = problem.plate.modes
     assert modes is not None  # `plate_of` has seen to it
     of_modes = (modes.contact / modes.angular_frequencies) ** 2
-    mean, spread = (float(part * of_modes.sum()) for part in plate.lacking)
-    return mean, math.hypot(
-        spread, 2.0 * float(plate.frequency_errors[-len(of_modes) :] @ of_modes)
-    )
+    mean_share, deviation_share = plate.lacking
+    mean = float(mean_share * of_modes.sum())
+    deviation = float(deviation_share * of_modes.sum())
+    # the compliance of a mode goes with the inverse square of its frequency
+    by_frequencies = 2.0 * float(plate.frequency_errors[-len(of_modes) :] @ of_modes)
+    return mean, math.hypot(deviation, by_frequencies)
 
 
 def plate_of(
@@ -443,6 +451,22 @@ def plate_of(
         would change with its size.
     """
     check_case(case)
+    _check_identifiable(case)
+    problem = replace(problem_of(case, progress), impacts=1, duration=None)
+    frequency_errors = _frequency_errors(problem, model_error, frequency_error)
+    plate = Plate(case, problem, window, frequency_errors, errors or SetupErrors(), model_error)
+    low, high = plate.bounds
+    if not (low < high).all():
+        raise InputError(
+            f"an impact is identified {_MARGIN:g} thicknesses or more from the edge, and the plate "
+            f"is at most {2.0 * _MARGIN:g} thicknesses long or wide",
+            "plate",
+        )
+    return plate
+
+
+def _check_identifiable(case: CaseTable) -> None:
+    """Raise InputError unless impacts on the plate of a case can be identified."""
     if case.plate.model == "rigid":
         raise InputError(
             'the plate is rigid, so that its points do not move; give it model = "elastic"',
@@ -473,25 +497,16 @@ def plate_of(
         )
     if keys := oblique_keys(case):
         raise InputError("only an impact along the normal is identified; leave this out", keys[0])
-    problem = replace(problem_of(case, progress), impacts=1, duration=None)
-    rigid, modes = problem.plate.rigid, problem.plate.modes
+
+
+def _frequency_errors(problem: Problem, model_error: float, frequency_error: float) -> Floats:
+    """Return standard deviations of the relative errors of frequencies, of rigid motions first."""
+    rigid = problem.plate.rigid
+    modes = problem.plate.modes
     assert modes is not None  # the plate is elastic
-    of_mesh = (
-        np.zeros(len(modes.frequencies))
-        if modes.frequency_errors is None
-        else np.nan_to_num(modes.frequency_errors)
-    )
-    of_frequencies = np.concatenate(
-        [
-            np.zeros(0 if rigid is None else len(rigid.frequencies)),
-            np.hypot(model_error * of_mesh, frequency_error),
-        ]
-    )
-    plate = Plate(case, problem, window, of_frequencies, errors or SetupErrors(), model_error)
-    low, high = plate.bounds
-    if not (low < high).all():
-        words = f"an impact is identified {_MARGIN:g} thicknesses or more from the edge"
-        raise InputError(
-            f"{words}, and the plate is at most {2.0 * _MARGIN:g} thicknesses long or wide", "plate"
-        )
-    return plate
+    of_rigid = np.zeros(0 if rigid is None else len(rigid.frequencies))
+    if modes.frequency_errors is None:
+        of_mesh = np.zeros(len(modes.frequencies))
+    else:
+        of_mesh = np.nan_to_num(modes.frequency_errors)
+    return np.concatenate([of_rigid, np.hypot(model_error * of_mesh, frequency_error)])

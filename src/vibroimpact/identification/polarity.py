@@ -29,18 +29,19 @@ def upright(
     """
     search = search_place(plate, measured, place)
     sensors = len(measured.sensors)
+    signs = [1.0 - 2.0 * np.eye(sensors)[sensor] for sensor in range(sensors)]
+    if sensors > 1:
+        signs.append(-np.ones(sensors))
     for _ in range(sensors // 2 + 1):
-        if float(search.misfit.min()) < _POOR:
+        misfit = float(search.misfit.min())
+        if misfit < _POOR:
             break
-        signs = [1.0 - 2.0 * np.eye(sensors)[one] for one in range(sensors)]
-        if sensors > 1:
-            signs.append(-np.ones(sensors))
-        tried = [
-            (other, search_place(plate, other, place))
-            for other in (measured.inverted(one) for one in signs)
-        ]
-        best = min(tried, key=lambda one: float(one[1].misfit.min()))
-        if float(best[1].misfit.min()) > _BETTER * float(search.misfit.min()):
+        inverted = [measured.inverted(sign) for sign in signs]
+        searches = [search_place(plate, records, place) for records in inverted]
+        misfits = [float(other.misfit.min()) for other in searches]
+        best = int(np.argmin(misfits))
+        if misfits[best] > _BETTER * misfit:
             break
-        measured, search = best
+        measured = inverted[best]
+        search = searches[best]
     return measured, search

@@ -1,6 +1,4 @@
-"""What the records change with the set-up: the plate and its sensors as they differ from
-the case.
-"""
+"""What the records change with the set-up: the plate and its sensors as they differ from a case."""
 
 from __future__ import annotations
 
@@ -15,13 +13,14 @@ from vibroimpact.identification.plate import Place, Plate, compliances_of, shape
 from vibroimpact.identification.setup import Setup
 
 STEPS = np.array([1e-4, 1e-4, 1e-5, 1e-5, 1e-3, 1e-3])
-"""Steps of derivatives in thickness, modulus [-], and of each sensor x, y [m],
-sensitivity and resonance [-].
+"""Steps of derivatives in the numbers of a set-up.
+
+Those of thickness, modulus [-], and of each sensor x, y [m], sensitivity and resonance [-].
 """
 OF_PLATE = 2
 """Number of those of the plate, which come first."""
 _GAIN = 4
-"""Which of them is the sensitivity, of which the records are linear."""
+"""Which of them is the sensitivity, in which the records are linear."""
 
 
 @dataclass(frozen=True)
@@ -61,8 +60,9 @@ def setup_slopes(
     place: Place,
     signals: Callable[[Floats], Floats],
 ) -> Floats:
-    """Return derivatives of the records of a force in the numbers of a set-up that are not certain,
-    zero for others, (2 + 4 S, S, samples).
+    """Return derivatives of the records of a force in the numbers of a set-up.
+
+    They are (2 + 4 S, S, samples), and zero for numbers that are certain.
 
     Parameters
     ----------
@@ -80,59 +80,58 @@ def setup_slopes(
         Takes the responses of the sensors to a unit impulse at the place, (S, points), and returns
         the records (S, samples).
     """
-    sensors, deviations = len(names), plate.errors.deviations(len(names))
-    gains, unit = 1.0 + Setup.of(numbers).gain[:, None], here.unit(names)
-
-    def answers_of(there: Plate) -> Floats:
-        """Return responses to an impulse in a set-up that differs little: shapes exactly,
-        frequencies by derivatives.
-        """
-        touched = there.at(place)
-        shapes, compliances = shapes_of(touched), compliances_of(touched, names)
-        if any(
-            one != other
-            for one, other in zip(there.sensors(names), here.sensors(names), strict=True)
-        ):
-            return responses_at(
-                there.problem, there.sensors(names), plate.window, shapes, compliances
-            )
-        both = shapes[:, None] * there.seen(names)
-        higher = np.zeros(len(both))
-        higher[-len(there.modes.frequencies) :] = np.log(
-            there.modes.frequencies / here.modes.frequencies
-        )
-        found: Floats = (
-            np.einsum("is,isp->sp", both, unit.values) + compliances[:, None] * unit.residual
-        )
-        if higher.any():
-            found += np.einsum("is,isp->sp", higher[:, None] * both, here.unit_detuned(names))
-        return found
-
-    bare = signals(answers_of(here))
-    found = np.zeros((len(deviations), *bare.shape))
+    sensors = len(names)
+    deviations = plate.errors.deviations(sensors)
+    gains = 1.0 + Setup.of(numbers).gain[:, None]
+    here_signals = signals(_responses_near(here, here, names, place))
+    slopes = np.zeros((len(deviations), *here_signals.shape))
     for number, step in enumerate(STEPS):
         which = numbers_of(number, sensors)
         if not deviations[which].any():
             continue
         if number == _GAIN:
-            change = bare
+            slope = here_signals
         else:
-            change = (
-                gains
-                * (signals(answers_of(plate.under(Setup.of(numbers + step * which), names))) - bare)
-                / step
-            )
-        # a sensor of its own place, gain and resonance alone
-        found[which] = change if number < OF_PLATE else np.eye(sensors)[:, :, None] * change
-    return found
+            other = plate.under(Setup.of(numbers + step * which), names)
+            other_signals = signals(_responses_near(other, here, names, place))
+            slope = gains * (other_signals - here_signals) / step
+        if number < OF_PLATE:
+            slopes[which] = slope
+        else:  # a sensor of its own place, gain and resonance alone
+            slopes[which] = np.eye(sensors)[:, :, None] * slope
+    return slopes
+
+
+def _responses_near(other: Plate, here: Plate, names: Sequence[str], place: Place) -> Floats:
+    """Return responses to a unit impulse on a plate in a set-up that differs little from `here`.
+
+    They are (S, points), by its shapes exactly, and by derivatives in the frequencies.
+    """
+    touched = other.at(place)
+    shapes = shapes_of(touched)
+    compliances = compliances_of(touched, names)
+    sensors = other.sensors(names)
+    if sensors != here.sensors(names):  # another resonance
+        return responses_at(other.problem, sensors, other.window, shapes, compliances)
+    amplitudes = shapes[:, None] * other.seen(names)
+    unit = here.unit(names)
+    responses: Floats = (
+        np.einsum("is,isp->sp", amplitudes, unit.values) + compliances[:, None] * unit.residual
+    )
+    # rigid motions have no frequency
+    detuning = np.zeros(len(amplitudes))
+    frequencies = other.modes.frequencies
+    detuning[-len(frequencies) :] = np.log(frequencies / here.modes.frequencies)
+    if detuning.any():
+        by_frequency = here.unit_detuned(names)
+        responses += np.einsum("is,isp->sp", detuning[:, None] * amplitudes, by_frequency)
+    return responses
 
 
 def numbers_of(number: int, sensors: int) -> Floats:
-    """Return which of the numbers of a set-up are one of `STEPS`, (2 + 4 S,) of bool: one
-    of the plate, or one of each sensor.
+    """Return which of the numbers of a set-up are one of `STEPS`, (2 + 4 S,) of bool.
+
+    It is one of the plate, or one of each sensor.
     """
-    return np.asarray(
-        np.repeat(
-            np.arange(len(STEPS)) == number, [1] * OF_PLATE + [sensors] * (len(STEPS) - OF_PLATE)
-        )
-    )
+    repeats = [1] * OF_PLATE + [sensors] * (len(STEPS) - OF_PLATE)
+    return np.asarray(np.repeat(np.arange(len(STEPS)) == number, repeats))

@@ -1,5 +1,6 @@
-"""What a laboratory does not know exactly of a plate and its sensors: errors that are
-stated, and values that a fit finds.
+"""What a laboratory does not know exactly of a plate and its sensors.
+
+Errors that are stated, and values that a fit finds.
 """
 
 from __future__ import annotations
@@ -32,14 +33,22 @@ _OPTIONS = {
     "modulus": "--modulus-error",
     "resonance": "--resonance-error",
 }
-_MOST_PLACE, _MOST_PART = 0.1, 0.3
-"""Largest standard deviations that are allowed: of the place of a sensor [m], and of parts [-]."""
+_LARGEST_OF_PLACE = 0.1
+"""Largest standard deviation of the place of a sensor that is allowed [m]."""
+_LARGEST_SHARE = 0.3
+"""Largest relative standard deviation that is allowed [-]."""
+
+
+def _largest(name: str) -> float:
+    """Return the largest standard deviation that is allowed of one of `SetupErrors`."""
+    return _LARGEST_OF_PLACE if name == "sensor_place" else _LARGEST_SHARE
 
 
 @dataclass(frozen=True)
 class SetupErrors:
-    """Standard deviations of what a case states about the plate and its sensors; what is not given
-    here is taken as certain.
+    """Standard deviations of what a case states about the plate and its sensors.
+
+    What is not given here is taken as certain.
 
     Parameters
     ----------
@@ -76,27 +85,30 @@ class SetupErrors:
 
     def __post_init__(self) -> None:
         for name, meaning in _MEANINGS.items():
-            of_place = name == "sensor_place"
-            most, given = _MOST_PLACE if of_place else _MOST_PART, getattr(self, name)
-            if not 0.0 <= given <= most:
-                allowed = (
-                    f"it must be 0 to {most:g} m (5 mm is 0.005)"
-                    if of_place
-                    else f"it must be 0 to {most:g} (2 % is 0.02)"
-                )
-                raise InputError(
-                    f"an error of {given:.10g} of the {meaning} is not allowed; {allowed}"
-                )
+            deviation = getattr(self, name)
+            largest = _largest(name)
+            if 0.0 <= deviation <= largest:
+                continue
+            if name == "sensor_place":
+                allowed = f"{largest:g} m (5 mm is 0.005)"
+            else:
+                allowed = f"{largest:g} (2 % is 0.02)"
+            raise InputError(
+                f"an error of {deviation:.10g} of the {meaning} is not allowed; it must be 0 to "
+                f"{allowed}"
+            )
 
     @property
     def options(self) -> str:
         """The options of the command that state them."""
-        stated = {name: getattr(self, name) for name in _OPTIONS if getattr(self, name)}
-        texts = {
-            name: f'"{1e3 * value:g} mm"' if name == "sensor_place" else f"{value:g}"
-            for name, value in stated.items()
-        }
-        return " ".join(f"{_OPTIONS[name]} {text}" for name, text in texts.items())
+        options = []
+        for name, option in _OPTIONS.items():
+            deviation = getattr(self, name)
+            if not deviation:
+                continue
+            text = f'"{1e3 * deviation:g} mm"' if name == "sensor_place" else f"{deviation:g}"
+            options.append(f"{option} {text}")
+        return " ".join(options)
 
     @property
     def certain(self) -> tuple[str, ...]:
@@ -116,19 +128,16 @@ class SetupErrors:
         >>> SetupErrors(gain=0.02).at_least({"gain": 0.6, "thickness": 0.01}).options
         '--gain-error 0.3 --thickness-error 0.01'
         """
-        most = {name: _MOST_PLACE if name == "sensor_place" else _MOST_PART for name in _MEANINGS}
-        return replace(
-            self,
-            **{
-                name: min(max(getattr(self, name), size), most[name])
-                for name, size in sizes.items()
-            },
-        )
+        raised = {
+            name: min(max(getattr(self, name), size), _largest(name))
+            for name, size in sizes.items()
+        }
+        return replace(self, **raised)
 
     def deviations(self, sensors: int) -> Floats:
         """Return the standard deviations of the numbers of a `Setup` of S sensors, (2 + 4 S,)."""
-        of_sensors = (self.sensor_place, self.sensor_place, self.gain, self.resonance)
-        return np.array([self.thickness, self.modulus, *np.repeat(of_sensors, sensors)])
+        of_sensor = (self.sensor_place, self.sensor_place, self.gain, self.resonance)
+        return np.array([self.thickness, self.modulus, *np.repeat(of_sensor, sensors)])
 
 
 @dataclass(frozen=True)
@@ -153,8 +162,9 @@ class Setup:
 
     @classmethod
     def of(cls, numbers: Floats) -> Setup:
-        """Return a set-up from its numbers: thickness, modulus, then x, y, gain and
-        resonance, each of all sensors, (2 + 4 S,).
+        """Return a set-up from its numbers, (2 + 4 S,).
+
+        They are thickness, modulus, then x, y, gain and resonance, each of all sensors.
         """
         x, y, gain, resonance = numbers[2:].reshape(4, -1)
         return cls(float(numbers[0]), float(numbers[1]), np.stack([x, y], axis=1), gain, resonance)
@@ -164,56 +174,65 @@ def stretched(problem: Problem, setup: Setup, exponents: Floats) -> Problem:
     r"""Return a problem whose plate has the thickness and the modulus of a set-up.
 
     With the thickness h, the modulus E and modes of unit modal mass, deflections are proportional
-    to :math:`h^{-1/2}`, frequencies to
-    :math:`E^{1/2} h^n` with the exponent n of each mode, static compliances to :math:`1/(E h^3)`;
-    strains of a face to h times the deflections, forces of supports to :math:`E h^3` times these.
+    to :math:`h^{-1/2}`, frequencies to :math:`E^{1/2} h^n` with the exponent n of each mode, static
+    compliances to :math:`1/(E h^3)`; strains of a face to h times the deflections, forces of
+    supports to :math:`E h^3` times these.
     """
-    modes, thicker, stiffer = problem.plate.modes, 1.0 + setup.thickness, 1.0 + setup.modulus
-    assert modes is not None  # `plate_of` has seen to it
-    softer, moved = 1.0 / (stiffer * thicker**3), thicker**-0.5
-    seen = dict.fromkeys(modes.points, 1.0)
+    modes = problem.plate.modes
+    assert modes is not None
+    thickness = 1.0 + setup.thickness
+    modulus = 1.0 + setup.modulus
+    compliance = 1.0 / (modulus * thickness**3)
+    deflection = thickness**-0.5
+    # of what a sensor reads, over the deflection
+    reading = dict.fromkeys(modes.points, 1.0)
     for sensor in problem.sensors:
         if sensor.sees_strain:
-            seen[sensor.name] = thicker
+            reading[sensor.name] = thickness
         elif isinstance(sensor.instrument, ForceSensor):
-            seen[sensor.name] = 1.0 / softer
+            reading[sensor.name] = 1.0 / compliance
     changed = replace(
         modes,
-        frequencies=modes.frequencies * stiffer**0.5 * thicker**exponents,
-        contact=moved * modes.contact,
-        along=None if modes.along is None else moved * modes.along,
-        participation=modes.participation / moved,
-        points={name: moved * seen[name] * at for name, at in modes.points.items()},
-        residuals={name: softer * seen[name] * at for name, at in modes.residuals.items()},
+        frequencies=modes.frequencies * modulus**0.5 * thickness**exponents,
+        contact=deflection * modes.contact,
+        along=None if modes.along is None else deflection * modes.along,
+        participation=modes.participation / deflection,
+        points={name: deflection * reading[name] * shapes for name, shapes in modes.points.items()},
+        residuals={
+            name: compliance * reading[name] * residual
+            for name, residual in modes.residuals.items()
+        },
     )
-    rigid = None if problem.plate.rigid is None else _lighter(problem.plate.rigid, moved)
+    rigid = problem.plate.rigid
+    if rigid is not None:
+        rigid = _of_other_mass(rigid, deflection)
     plate = replace(problem.plate, modes=changed, rigid=rigid)
-    return problem.on_plate(
-        plate, replace(problem.quasi_static, linear=softer * problem.quasi_static.linear)
-    )
+    quasi_static = replace(problem.quasi_static, linear=compliance * problem.quasi_static.linear)
+    return problem.on_plate(plate, quasi_static)
 
 
-def _lighter(rigid: ModalBasis, moved: float) -> ModalBasis:
-    """Return rigid motions of unit modal mass of a body whose mass changes, by the change
-    of their shapes.
+def _of_other_mass(rigid: ModalBasis, deflection: float) -> ModalBasis:
+    """Return rigid motions of unit modal mass of a body whose mass changes.
+
+    The change is given by that of their deflections.
     """
     return replace(
         rigid,
-        contact=moved * rigid.contact,
-        along=None if rigid.along is None else moved * rigid.along,
-        turning=None if rigid.turning is None else moved * rigid.turning,
-        participation=rigid.participation / moved,
-        points={name: moved * at for name, at in rigid.points.items()},
+        contact=deflection * rigid.contact,
+        along=None if rigid.along is None else deflection * rigid.along,
+        turning=None if rigid.turning is None else deflection * rigid.turning,
+        participation=rigid.participation / deflection,
+        points={name: deflection * shapes for name, shapes in rigid.points.items()},
     )
 
 
 def with_resonance(sensor: Sensor, difference: float) -> Sensor:
-    """Return a sensor whose accelerometer has another mounted resonance, by a relative
-    difference, if it has one.
+    """Return a sensor with another mounted resonance, by a relative difference.
+
+    Sensors other than accelerometers with a resonance stay the same.
     """
     instrument = sensor.instrument
     if not isinstance(instrument, Accelerometer) or instrument.resonance is None:
         return sensor
-    return replace(
-        sensor, instrument=replace(instrument, resonance=(1.0 + difference) * instrument.resonance)
-    )
+    resonance = (1.0 + difference) * instrument.resonance
+    return replace(sensor, instrument=replace(instrument, resonance=resonance))

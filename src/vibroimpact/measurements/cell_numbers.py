@@ -1,5 +1,6 @@
-"""Numbers in the cells of a table, as programs and languages write them: with a decimal
-comma, grouped, missing, or over the range.
+"""Numbers in the cells of a table, as programs and languages write them.
+
+They may have a decimal comma, be grouped, missing, or over the range.
 """
 
 from __future__ import annotations
@@ -38,15 +39,14 @@ _DECIMAL_COMMA = re.compile(r"[+-]?\d*,\d+([eE][+-]?\d+)?")
 _EITHER = re.compile(r"[+-]?[1-9]\d{0,2}[.,]\d{3}")
 
 
-def number_in(text: str, mark: str | None) -> float:
-    """Return the number in a cell; nan where it is missing, and infinite where the sample is over
-    the range.
+def number_in(text: str, delimiter: str | None) -> float:
+    """Return the number in a cell; nan where it is missing, infinite where it is over the range.
 
     Parameters
     ----------
     text : str
         The cell.
-    mark : str or None
+    delimiter : str or None
         What separates the fields of the table: where it is no comma, a comma is the decimal point.
 
     Raises
@@ -67,7 +67,7 @@ def number_in(text: str, mark: str | None) -> float:
     try:
         if "_" in text:  # allowed in numbers by Python
             raise ValueError(text)
-        return float(text) if mark == "," or "," not in text else float(text.replace(",", "."))
+        return float(text) if delimiter == "," or "," not in text else float(text.replace(",", "."))
     except ValueError:
         plain = text.strip()
     if (lower := plain.lower()) in _MISSING:
@@ -83,7 +83,7 @@ def number_in(text: str, mark: str | None) -> float:
     raise ValueError(text)
 
 
-def is_number(text: str, mark: str | None) -> bool:
+def is_number(text: str, delimiter: str | None) -> bool:
     """Return whether a cell has a number, or one that is missing.
 
     Examples
@@ -92,15 +92,14 @@ def is_number(text: str, mark: str | None) -> bool:
     (True, True, False)
     """
     try:
-        number_in(text, mark)
+        number_in(text, delimiter)
     except ValueError:
         return False
     return True
 
 
 def is_either(text: str) -> bool:
-    """Return whether a number is another one where a sign in it groups digits than where it is the
-    decimal point.
+    """Return whether a point or comma in a number may group digits, or be the decimal sign.
 
     Examples
     --------

@@ -1,6 +1,4 @@
-"""Cells of a table's header: names of columns and their units, as people, languages and
-programs write them.
-"""
+"""Cells of a header: names of columns and their units, as people and programs write them."""
 
 from __future__ import annotations
 
@@ -37,8 +35,9 @@ _ENDINGS = {
     "_kPa": "kPa",
     "_MPa": "MPa",
 }
-"""Units at the end of a name. MATLAB makes names of variables of a header, in which
-brackets and signs become underscores.
+"""Units at the end of a name.
+
+MATLAB makes names of variables of a header, in which brackets and signs become underscores.
 """
 
 _LONGEST_FIRST = sorted(_ENDINGS.items(), key=lambda item: -len(item[0]))
@@ -47,9 +46,7 @@ _LANGUAGES = {
     "time": "t zeit temps tiempo tempo tijd tid aika czas čas idő zaman время 时间 時間",
     "force": "kraft fuerza forza força kracht voima siła síla erő kuvvet сила 力",
 }
-"""Names of a column in other languages, which instruments write by the language that they
-are set to.
-"""
+"""Names of a column in other languages: instruments write that which they are set to."""
 
 _ENGLISH = {word: name for name, words in _LANGUAGES.items() for word in words.split()}
 
@@ -58,8 +55,9 @@ _QUANTITIES = ("s", "V", "m/s^2", "m/s", "m", "N", "Pa", "A", "Hz", "rad", "rad/
 
 
 def name_and_unit(cell: str) -> tuple[str, str | None]:
-    """Return name and unit of a header cell; None if it has no unit. The words of other languages
-    for time and force are translated.
+    """Return name and unit of a header cell; None if it has no unit.
+
+    The words of other languages for time and force are translated.
 
     Examples
     --------
@@ -81,10 +79,9 @@ def name_and_unit(cell: str) -> tuple[str, str | None]:
         # a long line of brackets
         inside = whole[:-1]
         start = max(inside.rfind("]"), inside.rfind(")")) + 1
-        opening = min(
-            (at for at in (inside.find("[", start), inside.find("(", start)) if at >= 0), default=-1
-        )
-        if opening >= 0:
+        openings = [inside.find(bracket, start) for bracket in "[("]
+        opening = min((position for position in openings if position >= 0), default=None)
+        if opening is not None:
             return _plain(inside[:opening]), inside[opening + 1 :].strip()
     for ending, unit in _LONGEST_FIRST:
         if whole.endswith((ending, f"{ending}_")):
@@ -93,8 +90,9 @@ def name_and_unit(cell: str) -> tuple[str, str | None]:
 
 
 def is_time(name: str, unit: str | None) -> bool:
-    """Return whether a column has times: by its name, or since its unit is one of time, which no
-    signal has.
+    """Return whether a column has times, by its name or its unit.
+
+    A unit of time is that of no signal.
 
     Examples
     --------
@@ -117,10 +115,11 @@ def are_units(cells: Sequence[str]) -> bool:
     ... )
     (True, True, False, False)
     """
-    full = [cell.strip() for cell in cells if cell.strip()]
-    return bool(full) and (
-        all(cell[0] + cell[-1] in ("[]", "()") for cell in full) or all(map(_is_unit, full))
-    )
+    texts = [cell.strip() for cell in cells if cell.strip()]
+    if not texts:
+        return False
+    in_brackets = all(text[0] + text[-1] in ("[]", "()") for text in texts)
+    return in_brackets or all(_is_unit(text) for text in texts)
 
 
 def with_unit(cell: str, unit: str) -> str:
@@ -131,10 +130,11 @@ def with_unit(cell: str, unit: str) -> str:
     >>> with_unit("Channel A", "(mV)"), with_unit("CH1", "Volt"), with_unit("count", "")
     ('Channel A (mV)', 'CH1 [Volt]', 'count')
     """
+    name = cell.strip()
     unit = unit.strip()
     if not unit:
-        return cell.strip()
-    return f"{cell.strip()} {unit}" if unit[0] in "[(" else f"{cell.strip()} [{unit}]"
+        return name
+    return f"{name} {unit}" if unit[0] in "[(" else f"{name} [{unit}]"
 
 
 def _plain(name: str) -> str:
@@ -147,12 +147,13 @@ def _is_unit(text: str) -> bool:
     """Return whether a text is a unit that a column may have."""
     if not any(character.isalpha() or character in "%-" for character in text):
         return False
-    return plain_factor(text) is not None or any(
-        _measures(text, quantity) for quantity in _QUANTITIES
-    )
+    if plain_factor(text) is not None:
+        return True
+    return any(_measures(text, quantity) for quantity in _QUANTITIES)
 
 
 def _measures(unit: str, quantity: str) -> bool:
+    """Return whether a unit is one of a quantity, which is given by its SI unit."""
     try:
         to_si(f"1 {unit}", quantity)
     except InputError:

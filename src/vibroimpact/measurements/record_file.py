@@ -29,7 +29,7 @@ _KINDS: dict[int, tuple[Quantity, str]] = {
     12: ("acceleration", "m/s^2"),
 }
 _DIMENSIONS = {"m": "m", "N": "N", "m/s^2": "m"}
-_OWN = {words for words, *_ in SPHERE_FUNCTIONS.values()}
+_OWN_IDENTIFICATIONS = {identification for identification, *_ in SPHERE_FUNCTIONS.values()}
 SPHERE_ACCELERATION = SPHERE_FUNCTIONS["acceleration_m_s2"][0]
 """Identification line of the sphere's acceleration in files written by this program."""
 
@@ -65,95 +65,131 @@ def read_universal_record(path: str | Path, which: str | None, by_rebound: bool)
         If the file can't be read, has no such function, or more than one.
     """
     file = read_universal_file(path)
-    functions = [one for one in file.functions if one.kind in _KINDS]
     if which is not None:
-        one = _requested(path, file.functions, which)
+        function = _requested(path, file.functions, which)
     else:
-        order: tuple[Quantity, ...] = ("position", "force") if by_rebound else ("force", "position")
-        groups = (
-            [one for one in functions if _KINDS[one.kind][0] == quantity]
-            for quantity in (*order, "acceleration")
-        )
-        group = next((group for group in groups if group), [])
-        if not group:
-            raise InputError(
-                f"{path}: there is no force, displacement or acceleration over time in it; "
-                f"{_there(file.functions)}",
-                "target",
-            )
-        own = [one for one in group if one.identification in _OWN]
-        group = own if len(own) == 1 else group
-        if len(group) > 1:
-            raise InputError(
-                f"{path}: name the function to use: {_there(group)}", "target.function"
-            )
-        one = group[0]
-    quantity, unit = _KINDS[one.kind]
-    steps = np.diff(one.time)
+        function = _only_function(path, file.functions, by_rebound)
+    quantity, unit = _KINDS[function.kind]
+    steps = np.diff(function.time)
     if np.any(steps <= 0.0):
         raise InputError(
-            f'{path}: "{one.identification}": time does not rise at sample '
+            f'{path}: "{function.identification}": time does not rise at sample '
             f"{int(np.argmin(steps > 0.0)) + 2}",
             "target",
         )
-    return UniversalRecord(
-        one.identification, quantity, one.time, one.values * _in_si(path, one, unit, file)
-    )
+    values = function.values * _factor_to_si(path, function, unit, file)
+    return UniversalRecord(function.identification, quantity, function.time, values)
+
+
+def _only_function(path: str | Path, functions: list[Function], by_rebound: bool) -> Function:
+    """Return the only function of the first quantity that there is, or that of this program.
+
+    Raises
+    ------
+    InputError
+        If there is none, or several.
+    """
+    order: tuple[Quantity, ...] = ("force", "position", "acceleration")
+    if by_rebound:
+        order = ("position", "force", "acceleration")
+    candidates: list[Function] = []
+    for quantity in order:
+        candidates = [
+            function
+            for function in functions
+            if function.kind in _KINDS and _KINDS[function.kind][0] == quantity
+        ]
+        if candidates:
+            break
+    if not candidates:
+        raise InputError(
+            f"{path}: there is no force, displacement or acceleration over time in it; "
+            f"{_listed(functions)}",
+            "target",
+        )
+    own = [function for function in candidates if function.identification in _OWN_IDENTIFICATIONS]
+    if len(own) == 1:
+        return own[0]
+    if len(candidates) > 1:
+        raise InputError(
+            f"{path}: name the function to use: {_listed(candidates)}", "target.function"
+        )
+    return candidates[0]
 
 
 def _requested(path: str | Path, functions: list[Function], which: str) -> Function:
-    found = [one for one in functions if which in (one.identification, str(one.number))]
-    if len(found) != 1:
-        several = "there are several functions" if found else "there is no function"
-        hint = "" if found else did_you_mean(which, [one.identification for one in functions])
+    """Return the function with an identification or a number.
+
+    Raises
+    ------
+    InputError
+        If there is none, there are several, or it is of another quantity.
+    """
+    requested = [
+        function
+        for function in functions
+        if which in (function.identification, str(function.number))
+    ]
+    if not requested:
+        hint = did_you_mean(which, [function.identification for function in functions])
         raise InputError(
-            f'{path}: {several} "{which}"; {_there(functions)}.{hint}', "target.function"
-        )
-    if found[0].kind not in _KINDS:
-        raise InputError(
-            f'{path}: "{which}" is no force, displacement or acceleration; {_there(functions)}',
+            f'{path}: there is no function "{which}"; {_listed(functions)}.{hint}',
             "target.function",
         )
-    return found[0]
-
-
-def _there(functions: list[Function]) -> str:
-    named = [f'{one.number} "{one.identification[:40]}"' for one in functions[:_MOST_NAMED]]
-    more = f" and {len(functions) - _MOST_NAMED} more" if len(functions) > _MOST_NAMED else ""
-    return (
-        f"there are {', '.join(named)}{more}" if functions else "there is no real function of time"
-    )
-
-
-def _in_si(path: str | Path, one: Function, unit: str, file: UniversalFile) -> float:
-    """Return the conversion factor to SI, from the unit label or from dataset 164; if
-    both are given, they must agree.
-    """
-    by_label, by_file = (
-        _by_label(one.unit, unit),
-        None if file.factors is None else 1.0 / file.factors[_DIMENSIONS[unit]],
-    )
-    if by_label is None and by_file is None:
-        label = (
-            f'the label "{one.unit}" is no known unit of this quantity, such as {unit}'
-            if one.unit
-            else "it has no unit"
-        )
+    if len(requested) > 1:
         raise InputError(
-            f'{path}: "{one.identification}": {label}, and there is no dataset 164 with '
-            "the units of the file",
+            f'{path}: there are several functions "{which}"; {_listed(functions)}.',
+            "target.function",
+        )
+    function = requested[0]
+    if function.kind not in _KINDS:
+        raise InputError(
+            f'{path}: "{which}" is no force, displacement or acceleration; {_listed(functions)}',
+            "target.function",
+        )
+    return function
+
+
+def _listed(functions: list[Function]) -> str:
+    """Return which functions there are, for messages."""
+    if not functions:
+        return "there is no real function of time"
+    listed = ", ".join(
+        f'{function.number} "{function.identification[:40]}"'
+        for function in functions[:_MOST_NAMED]
+    )
+    more = f" and {len(functions) - _MOST_NAMED} more" if len(functions) > _MOST_NAMED else ""
+    return f"there are {listed}{more}"
+
+
+def _factor_to_si(path: str | Path, function: Function, unit: str, file: UniversalFile) -> float:
+    """Return the conversion factor to SI, from the unit label or from dataset 164.
+
+    If both are given, they must agree.
+    """
+    named = f'{path}: "{function.identification}"'
+    by_label = _factor_of_label(function.unit, unit)
+    by_file = None if file.factors is None else 1.0 / file.factors[_DIMENSIONS[unit]]
+    if by_label is None and by_file is None:
+        label = "it has no unit"
+        if function.unit:
+            label = f'the label "{function.unit}" is no known unit of this quantity, such as {unit}'
+        raise InputError(
+            f"{named}: {label}, and there is no dataset 164 with the units of the file", "target"
+        )
+    if by_label is None:
+        return float(by_file or 1.0)
+    if by_file is not None and abs(by_label / by_file - 1.0) > _SAME:
+        raise InputError(
+            f'{named}: its unit is "{function.unit}", and by dataset 164 the values are in units '
+            f"of {by_file:g} {unit}; correct one of them",
             "target",
         )
-    if by_label is not None and by_file is not None and abs(by_label / by_file - 1.0) > _SAME:
-        words = (
-            f'its unit is "{one.unit}", and by dataset 164 the values are in units of '
-            f"{by_file:g} {unit}"
-        )
-        raise InputError(f'{path}: "{one.identification}": {words}; correct one of them', "target")
-    return by_label if by_label is not None else float(by_file or 1.0)
+    return by_label
 
 
-def _by_label(label: str, unit: str) -> float | None:
+def _factor_of_label(label: str, unit: str) -> float | None:
+    """Return the factor of a unit label; None if there is none, or it is of another quantity."""
     if not label:
         return None
     try:

@@ -1,5 +1,6 @@
-"""Channels that a table records over time, each with its own times: of several rates,
-with cells that are missing or over the range.
+"""Channels that a table records over time, each with its own times.
+
+They may be of several rates, with cells that are missing or over the range.
 """
 
 from __future__ import annotations
@@ -22,10 +23,10 @@ _LONGEST_GAP = 3
 """Largest number of samples in a row that are filled in where they are missing."""
 _MOST_MISSING = 0.05
 """Largest part of the samples that is filled in."""
-_ROUNDED_TIMES, _OFF = 1e-6, 0.01
-"""Distance of times from a clock within which both agree: that of times with six decimals
-[s], and a part of a step.
-"""
+_ROUNDED_TIMES = 1e-6
+"""Distance of times from a clock within which both agree [s]: that of six decimals."""
+_PART_OF_STEP = 0.01
+"""The same as a part of a step."""
 
 
 class RecordedChannel(NamedTuple):
@@ -89,53 +90,86 @@ def recorded_channels(
         If the file can't be read, there is no time, a unit is missing or unknown, or a channel has
         no samples.
     """
-    found: dict[int, tuple[str, str]] = {}
-    times: dict[int, int | None] = {}
+    channels: dict[int, _ChannelColumn] = {}
 
     def wanted(layout: Layout) -> dict[int, float]:
-        factors = {}
-        at = [
-            place
-            for place, cell in enumerate(layout.header)
-            if cell and is_time(*name_and_unit(cell))
-        ]
-        if not at and not layout.clocks:
-            remedy = (
-                "state time=s for it" if layout.is_stated else f"Name the times so, {layout.remedy}"
-            )
-            words = (
-                f"there is no column time [s]; {layout.understood}. {remedy[0].upper()}{remedy[1:]}"
-            )
-            raise InputError(
-                f'{words}; rows without times need their rate, --columns "rate=10 kHz,force=N"'
-            )
-        for place, cell in enumerate(layout.header):
-            name, unit = name_and_unit(cell)
-            if place in at:
-                factors[place] = factor_to_si(layout, cell, unit, "s")
-            elif cell and (told := unit_of(layout, cell)) is not None:
-                factors[place], found[place] = told[0], (name, told[1])
-        if not found:
+        factors = _channel_columns(layout, unit_of, channels)
+        if not channels:
             raise InputError(
                 "there is no column beside the time; each other one is a channel, such as "
                 f"geophone [V]; {layout.understood}"
             )
-        times.update({place: _time_of(place, at, found) for place in found})
         return factors
 
     cells = read_cells(path, wanted, _missing, doubts, columns)
     try:
-        names = _names(found)
-        return [
-            _channel(cells, place, times[place], names[place], found[place][1]) for place in found
-        ]
+        time_columns = _time_columns(cells.layout)
+        names = _names(channels)
+        recorded = []
+        for column, channel in channels.items():
+            time_column = _time_of(column, time_columns, channels)
+            recorded.append(_channel(cells, column, time_column, names[column], channel.unit))
+        return recorded
     except InputError as error:
         raise in_table(path, error) from None
 
 
+class _ChannelColumn(NamedTuple):
+    """Name and SI unit of a column of a channel."""
+
+    name: str
+    unit: str
+
+
+def _time_columns(layout: Layout) -> list[int]:
+    """Return the indices of the columns of times.
+
+    Raises
+    ------
+    InputError
+        If there is none, and no clock either.
+    """
+    columns = [
+        column
+        for column, cell in enumerate(layout.header)
+        if cell and is_time(*name_and_unit(cell))
+    ]
+    if not columns and not layout.clocks:
+        if layout.is_stated:
+            remedy = "State time=s for it"
+        else:
+            remedy = f"Name the times so, {layout.remedy}"
+        raise InputError(
+            f"there is no column time [s]; {layout.understood}. {remedy}; rows without times need "
+            'their rate, --columns "rate=10 kHz,force=N"'
+        )
+    return columns
+
+
+def _channel_columns(
+    layout: Layout,
+    unit_of: Callable[[Layout, str], tuple[float, str] | None],
+    channels: dict[int, _ChannelColumn],
+) -> dict[int, float]:
+    """Return the factors to SI of the columns of times and of channels; add these to `channels`."""
+    time_columns = _time_columns(layout)
+    factors = {}
+    for column, cell in enumerate(layout.header):
+        name, unit = name_and_unit(cell)
+        if column in time_columns:
+            factors[column] = factor_to_si(layout, cell, unit, "s")
+        elif cell:
+            factor_and_unit = unit_of(layout, cell)
+            if factor_and_unit is not None:
+                factors[column], si_unit = factor_and_unit
+                channels[column] = _ChannelColumn(name, si_unit)
+    return factors
+
+
 def filled_in(channel: RecordedChannel) -> tuple[Floats, Floats, str]:
-    """Return times and samples of a channel, by cubic splines where they are missing, and what that
-    adds, as a sentence.
+    """Return times and samples of a channel, by cubic splines where they are missing.
+
+    The third is what that adds, as a sentence.
 
     Raises
     ------
@@ -144,43 +178,40 @@ def filled_in(channel: RecordedChannel) -> tuple[Floats, Floats, str]:
     """
     from scipy.interpolate import CubicSpline
 
-    count, where = len(channel.missing), f"line {channel.missing[0]}, column {quoted(channel.cell)}"
+    count = len(channel.missing)
+    where = f"line {channel.missing[0]}, column {quoted(channel.cell)}"
     time = np.concatenate([channel.time, channel.missing_time])
     order = np.argsort(time, kind="stable")
     time = time[order]
-    longest = int(np.diff(np.flatnonzero(order < len(channel.time))).max()) - 1
-    if longest > _LONGEST_GAP or count > _MOST_MISSING * len(time):
-        words = (
-            f"{count} cells from there on have no number, up to {longest} in a row"
-            if count > 1
-            else "the cell has no number"
-        )
-        limit = f"only {_LONGEST_GAP} in a row and {100.0 * _MOST_MISSING:g} % of all are filled in"
-        them = "them" if count > 1 else "it"
+    is_recorded = order < len(channel.time)
+    longest_gap = int(np.diff(np.flatnonzero(is_recorded)).max()) - 1
+    if longest_gap > _LONGEST_GAP or count > _MOST_MISSING * len(time):
+        if count > 1:
+            cells = f"{count} cells from there on have no number, up to {longest_gap} in a row"
+            them = "them"
+        else:
+            cells = "the cell has no number"
+            them = "it"
         raise InputError(
-            f"{where}: {words}; {limit}. Fill {them} in, or keep the part before or after {them}"
+            f"{where}: {cells}; only {_LONGEST_GAP} in a row and {100.0 * _MOST_MISSING:g} % of "
+            f"all are filled in. Fill {them} in, or keep the part before or after {them}"
         )
     if not (np.diff(channel.time) > 0.0).all():
         raise InputError(
             f"{where}: the cell has no number, and the times do not rise; fill it in, or "
             "leave out the line"
         )
-    new = np.array(CubicSpline(channel.time, channel.value)(time))
-    part = (
-        100.0
-        * float(np.abs(new - np.interp(time, channel.time, channel.value)).max())
-        / (float(np.ptp(channel.value)) or 1.0)
-    )
-    words = (
+    value = np.array(CubicSpline(channel.time, channel.value)(time))
+    # what lines between the samples would give tells how much the splines may be off
+    linear = np.interp(time, channel.time, channel.value)
+    span = float(np.ptp(channel.value)) or 1.0
+    error = 100.0 * float(np.abs(value - linear).max()) / span
+    sentence = (
         f"{count} of its samples {'is' if count == 1 else 'are'} missing, the first in line "
-        f"{channel.missing[0]}"
+        f"{channel.missing[0]}: filled in by cubic splines, which adds an error, by estimate, of "
+        f"up to {error:.2g} % of its range there"
     )
-    return (
-        time,
-        new,
-        f"{words}: filled in by cubic splines, which adds an error, by estimate, of up to "
-        f"{part:.2g} % of its range there",
-    )
+    return time, value, sentence
 
 
 def rising(channel: RecordedChannel) -> Bools:
@@ -192,14 +223,14 @@ def rising(channel: RecordedChannel) -> Bools:
         If the times decrease, with the line, or are all the same.
     """
     steps = np.diff(channel.time)
-    back = np.flatnonzero(steps < 0.0)
-    if back.size:
-        at = int(back[0])
-        one, other = channel.time[at : at + 2]
-        words = f"time goes backwards, from {one:.9g} s to {other:.9g} s"
+    backwards = np.flatnonzero(steps < 0.0)
+    if backwards.size:
+        sample = int(backwards[0])
+        earlier = channel.time[sample]
+        later = channel.time[sample + 1]
         raise InputError(
-            f"line {channel.lines[at + 1]}: {words}; if the file has "
-            "several records, keep one of them"
+            f"line {channel.lines[sample + 1]}: time goes backwards, from {earlier:.9g} s to "
+            f"{later:.9g} s; if the file has several records, keep one of them"
         )
     if not (steps > 0.0).any():
         raise InputError("all samples have the same time; a record needs at least two times")
@@ -207,56 +238,57 @@ def rising(channel: RecordedChannel) -> Bools:
 
 
 def _channel(
-    cells: Cells, place: int, time_at: int | None, name: str, unit: str
+    cells: Cells, column: int, time_column: int | None, name: str, unit: str
 ) -> RecordedChannel:
-    """Return a channel: without the cells that are missing, and with what is over the
-    range at the range.
+    """Return a channel without the cells that are missing.
+
+    What is over the range is set to the range.
     """
-    cell, value = cells.layout.header[place], cells.columns[place]
-    time = _times(
-        None if time_at is None else cells.columns[time_at],
-        cells.layout.clocks.get(place),
-        len(value),
-    )
-    is_there = ~np.isnan(value)
+    layout = cells.layout
+    cell = layout.header[column]
+    value = cells.columns[column]
+    stated_times = None if time_column is None else cells.columns[time_column]
+    time = _times(stated_times, layout.clocks.get(column), len(value))
+    has_number = ~np.isnan(value)
+    has_time = np.isfinite(time)
     where = f"column {quoted(cell)}"
-    if not is_there.any():
-        raise InputError(
-            f"{where}: there is no number in it; delete the column, {cells.layout.remedy}"
-        )
-    untimed = np.flatnonzero(is_there & ~np.isfinite(time))
+    if not has_number.any():
+        raise InputError(f"{where}: there is no number in it; delete the column, {layout.remedy}")
+    untimed = np.flatnonzero(has_number & ~has_time)
     if untimed.size:
         raise InputError(
             f"line {cells.lines[int(untimed[0])]}, {where}: the sample has no time; fill "
             "it in, or leave out the line"
         )
-    first, last = np.flatnonzero(is_there)[[0, -1]]
-    missing = first + np.flatnonzero(
-        ~is_there[first : last + 1] & np.isfinite(time[first : last + 1])
-    )
+    # what is empty before the first sample and after the last is no part of the channel
+    first, last = np.flatnonzero(has_number)[[0, -1]]
+    inside = slice(first, last + 1)
+    missing = first + np.flatnonzero(~has_number[inside] & has_time[inside])
     lines = np.asarray(cells.lines)
-    value, doubts = _in_range(value[is_there], where)
-    granted = (cells.layout.doubts[place],) if place in cells.layout.doubts else ()
-    times_from = "" if time_at is None else f"column {quoted(cells.layout.header[time_at])}: "
-    where_missing = tuple(lines[missing].tolist())
-    told = (*granted, *doubts)
+    in_range, doubts = _in_range(value[has_number], where)
+    if column in layout.doubts:
+        doubts = (layout.doubts[column], *doubts)
+    times_from = ""
+    if time_column is not None:
+        times_from = f"column {quoted(layout.header[time_column])}: "
     return RecordedChannel(
-        name,
-        cell,
-        unit,
-        time[is_there],
-        value,
-        lines[is_there].tolist(),
-        where_missing,
-        time[missing],
-        told,
-        times_from,
+        name=name,
+        cell=cell,
+        unit=unit,
+        time=time[has_number],
+        value=in_range,
+        lines=lines[has_number].tolist(),
+        missing=tuple(lines[missing].tolist()),
+        missing_time=time[missing],
+        doubts=doubts,
+        times_from=times_from,
     )
 
 
 def _in_range(value: Floats, where: str) -> tuple[Floats, tuple[str, ...]]:
-    """Return samples with the largest finite ones in place of those over the range, and a
-    sentence on them.
+    """Return samples with the largest finite ones in place of those over the range.
+
+    With them comes a sentence, if there are some.
     """
     over: Bools = np.isinf(value)
     if not over.any():
@@ -264,56 +296,62 @@ def _in_range(value: Floats, where: str) -> tuple[Floats, tuple[str, ...]]:
     if over.all():
         raise InputError(f"{where}: all samples are over the range; record it with a larger one")
     finite = value[~over]
-    are, they_are = ("are", "they are") if over.sum() > 1 else ("is", "it is")
-    words = (
-        f"{over.sum()} of its samples {are} over the range (infinite): {they_are} set to the "
-        "largest or smallest of the others"
+    count = over.sum()
+    are, they_are = ("are", "they are") if count > 1 else ("is", "it is")
+    doubt = (
+        f"{count} of its samples {are} over the range (infinite): {they_are} set to the "
+        "largest or smallest of the others, so that the peak is too small; record it with a "
+        "larger range"
     )
-    return np.clip(value, finite.min(), finite.max()), (
-        f"{words}, so that the peak is too small; record it with a larger range",
-    )
+    return np.clip(value, finite.min(), finite.max()), (doubt,)
 
 
-def _times(column: Floats | None, clock: Clock | None, rows: int) -> Floats:
-    """Return the times of a channel: those of a clock, which has more digits, if its
-    column of times agrees with it.
+def _times(stated: Floats | None, clock: Clock | None, rows: int) -> Floats:
+    """Return the times of a channel, by its column of times or by its clock.
+
+    A clock has more digits; its times are taken if those of the column agree with it.
     """
     if clock is None:
-        assert column is not None
-        return column
+        assert stated is not None
+        return stated
     regular: Floats = clock.start + clock.step * np.arange(rows, dtype=np.float64)
-    if column is None or clock.alone:
+    if stated is None or clock.alone:
         return regular
-    known = np.isfinite(column)
-    return (
-        regular
-        if np.all(np.abs(column - regular)[known] <= max(_ROUNDED_TIMES, _OFF * clock.step))
-        else column
-    )
+    known = np.isfinite(stated)
+    distance = np.abs(stated - regular)[known]
+    agrees = np.all(distance <= max(_ROUNDED_TIMES, _PART_OF_STEP * clock.step))
+    return regular if agrees else stated
 
 
-def _time_of(place: int, times: Sequence[int], channels: dict[int, tuple[str, str]]) -> int | None:
-    """Return the column of times of a channel: the nearest on its left, of several side
-    by side the first; without one the first of all.
+def _time_of(
+    column: int, time_columns: Sequence[int], channels: dict[int, _ChannelColumn]
+) -> int | None:
+    """Return the column of times of a channel: the nearest on its left, or the first of all.
+
+    Of several side by side, with no channel between them, it is the first.
     """
-    left = [at for at in times if at < place]
-    if not left:
-        return times[0] if times else None
-    at = left[-1]
-    while (before := max((one for one in times if one < at), default=None)) is not None and not any(
-        before < one < at for one in channels
-    ):
-        at = before
-    return at
+    on_left = [time_column for time_column in time_columns if time_column < column]
+    if not on_left:
+        return time_columns[0] if time_columns else None
+    nearest = on_left.pop()
+    while on_left:
+        before = on_left.pop()
+        if any(before < channel < nearest for channel in channels):
+            break
+        nearest = before
+    return nearest
 
 
-def _names(channels: dict[int, tuple[str, str]]) -> dict[int, str]:
-    """Return the names of channels, with a number where several have one."""
-    every = [name for name, _ in channels.values()]
-    return {
-        place: name if every.count(name) == 1 else f"{name}_{every[:at].count(name) + 1}"
-        for at, (place, (name, _)) in enumerate(channels.items())
-    }
+def _names(channels: dict[int, _ChannelColumn]) -> dict[int, str]:
+    """Return the names of channels by their column, with a number where several have one."""
+    all_names = [channel.name for channel in channels.values()]
+    names = {}
+    for number, (column, channel) in enumerate(channels.items()):
+        name = channel.name
+        if all_names.count(name) > 1:
+            name = f"{name}_{all_names[:number].count(name) + 1}"
+        names[column] = name
+    return names
 
 
 def _missing(value: float, _: str) -> float:

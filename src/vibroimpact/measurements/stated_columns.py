@@ -12,8 +12,9 @@ from vibroimpact.units.quantity_text import number_and_unit
 from vibroimpact.units.reading import to_si
 
 STATED = "--columns"
-"""The option, by which messages name where the columns were stated; in a case it is the
-key `columns`.
+"""The option, by which messages name where the columns were stated.
+
+In a case it is the key `columns`.
 """
 
 _LEFT_OUT = "-"
@@ -38,8 +39,9 @@ class StatedColumns(NamedTuple):
 
 
 def stated_columns(text: str) -> StatedColumns:
-    """Return the columns that a text states: NAME=UNIT for each, - for one that is left out, and
-    rate=VALUE without times.
+    """Return the columns that a text states.
+
+    It has NAME=UNIT for each, - for one that is left out, and rate=VALUE without times.
 
     Raises
     ------
@@ -53,6 +55,7 @@ def stated_columns(text: str) -> StatedColumns:
     >>> stated_columns("rate=44.1 kHz, sound=1")
     StatedColumns(cells=('sound [1]',), rate=44100.0)
     """
+    where = f"{STATED} {quoted(text)}"
     cells: list[str] = []
     rate = None
     for entry in text.split(","):
@@ -62,21 +65,19 @@ def stated_columns(text: str) -> StatedColumns:
         elif name == _LEFT_OUT and not sign:
             cells.append("")
         elif not name or (sign and not unit):
-            words = (
-                f"{quoted(entry.strip())} is no column; state NAME=UNIT for each, and - for one "
-                'that is left out: "time=s,-,force=N"'
+            raise InputError(
+                f"{where}: {quoted(entry.strip())} is no column; state NAME=UNIT for each, and - "
+                'for one that is left out: "time=s,-,force=N"'
             )
-            raise InputError(f"{STATED} {quoted(text)}: {words}")
         else:
             cells.append(f"{name} [{unit}]" if sign else name)
     if not any(cells):
         raise InputError(
-            f"{STATED} {quoted(text)}: it names no column; state NAME=UNIT for each, such "
-            'as "time=s,force=N"'
+            f'{where}: it names no column; state NAME=UNIT for each, such as "time=s,force=N"'
         )
     if rate is not None and any(is_time(*name_and_unit(cell)) for cell in cells if cell):
         raise InputError(
-            f"{STATED} {quoted(text)}: the rate follows from the column of times; leave "
+            f"{where}: the rate follows from the column of times; leave "
             "rate out, or - for that column"
         )
     return StatedColumns(tuple(cells), rate)
@@ -87,9 +88,8 @@ def remedy_for(header: Sequence[str]) -> str:
 
     Examples
     --------
-    >>> remedy_for(["t", "x", "force [N]"])
-    'or give --columns "time=s,x=UNIT,force=N", with - for a column to leave out (in a case the key
-    columns)'
+    >>> remedy_for(["t", "x", "force [N]"]).partition(", with")[0]
+    'or give --columns "time=s,x=UNIT,force=N"'
     >>> remedy_for(["sound"])
     'or give --columns "rate=10 kHz,sound=UNIT" (in a case the key columns)'
     """
@@ -109,16 +109,24 @@ def remedy_for(header: Sequence[str]) -> str:
 
 
 def _stated(cell: str) -> str:
+    """Return a column as a user states it."""
     if not cell.strip():
         return _LEFT_OUT
     name, unit = name_and_unit(cell)
-    return f"{shortened(name, _LONG_NAME)}={unit or ('s' if name == 'time' else 'UNIT')}"
+    if not unit:
+        unit = "s" if name == "time" else "UNIT"
+    return f"{shortened(name, _LONG_NAME)}={unit}"
 
 
 def _rate(text: str) -> float:
+    """Return a rate [Hz] that is stated, in Hz if it has no unit."""
     try:
         parts = number_and_unit(text)
-        rate = to_si(text if parts is None or parts[1] else parts[0], "Hz")
+        if parts is not None and not parts[1]:
+            number, _ = parts
+            rate = to_si(number, "Hz")
+        else:
+            rate = to_si(text, "Hz")
     except InputError as error:
         raise InputError(f"{STATED}: rate: {error.message}") from None
     if not rate > 0.0:

@@ -41,8 +41,10 @@ _LONGEST_PATH = 200  # characters of a path in a message
 
 @dataclass(frozen=True)
 class TableFile:
-    """Content of a file: columns (rows,) in SI units by name, the line number of each
-    row, empty lines before the last row, and doubts.
+    """Content of a file.
+
+    Columns (rows,) in SI units by name, the line number of each row, empty lines before the last
+    row, and doubts.
     """
 
     path: Path
@@ -53,8 +55,9 @@ class TableFile:
 
 
 class Cells(NamedTuple):
-    """Columns of a table in SI units by their place (rows,), the number of the line of
-    each row, empty lines, and the layout.
+    """Columns of a table in SI units by their index (rows,).
+
+    With them come the layout, the number of the line of each row, and empty lines.
     """
 
     layout: Layout
@@ -106,18 +109,17 @@ def read_table_file(
     names: dict[int, str] = {}
 
     def known(layout: Layout) -> dict[int, float]:
-        places, factors = _places(layout, units)
-        names.update({place: name for name, place in places.items()})
-        return dict(zip(places.values(), factors, strict=True))
+        columns = _known_columns(layout, units)
+        names.update({column: name for column, (name, _) in columns.items()})
+        return {column: factor for column, (_, factor) in columns.items()}
 
-    found = read_cells(path, known, _refused, doubts, columns)
-    last = found.lines[-1]
-    values = {names[place]: column for place, column in found.columns.items()}
+    cells = read_cells(path, known, _refused, doubts, columns)
+    last_row = cells.lines[-1]
     return TableFile(
         Path(path),
-        values,
-        found.lines,
-        [number for number in found.empty if number < last],
+        {names[column]: values for column, values in cells.columns.items()},
+        cells.lines,
+        [number for number in cells.empty if number < last_row],
         tuple(doubts or ()),
     )
 
@@ -136,7 +138,7 @@ def read_cells(
     path : path
         The file.
     wanted : callable
-        Returns the places of the columns to read, with the factors that convert them to SI.
+        Returns the indices of the columns to read, with the factors that convert them to SI.
     without_number : callable
         Returns the value of a cell that has none (nan), or an infinite one, from this and a
         sentence on the cell; or raises.
@@ -152,24 +154,27 @@ def read_cells(
     file = Path(path)
     try:
         layout = table_layout(_numbered(text_lines(file, TABLE, _LONGEST, doubts)), columns)
-        header, mark = layout.header, layout.mark
-        places = wanted(layout)
-        found: list[array[float]] = [array("d") for _ in places]
-        appended = list(
-            zip([values.append for values in found], places, places.values(), strict=True)
-        )
-        lines, empty, decimal = array("q"), array("q"), _DecimalPoint(mark)
+        header = layout.header
+        delimiter = layout.delimiter
+        factors = wanted(layout)
+        values: dict[int, array[float]] = {column: array("d") for column in factors}
+        # bound methods, since tables have millions of rows
+        readers = [(column, factor, values[column].append) for column, factor in factors.items()]
+        lines = array("q")
+        empty = array("q")
+        decimal = _DecimalPoint()
         for number, line in layout.rows:
             if not line:
                 empty.append(number)
                 continue
-            cells = fields_of(line, mark)
+            cells = fields_of(line, delimiter)
             if len(cells) > len(header) and filled(cells) > len(header):
                 raise InputError(_too_many(number, filled(cells), layout))
-            if mark != ",":
+            if delimiter != ",":
                 decimal.check(number, line, cells)
-            for append, place, factor in appended:
-                append(_number(number, header[place], cells, place, mark, without_number) * factor)
+            for column, factor, append in readers:
+                value = _number(number, header[column], cells, column, delimiter, without_number)
+                append(value * factor)
             lines.append(number)
     except InputError as error:
         raise in_table(file, error) from None
@@ -179,10 +184,7 @@ def read_cells(
             f"{layout.understood}"
         )
     return Cells(
-        layout,
-        {place: np.array(values) for place, values in zip(places, found, strict=True)},
-        lines,
-        empty,
+        layout, {column: np.array(numbers) for column, numbers in values.items()}, lines, empty
     )
 
 
@@ -195,9 +197,8 @@ def in_table(path: str | PathLike[str], error: InputError) -> InputError:
     'drop.csv, line 3: the cell is empty'
     """
     where = shortened(str(path), _LONGEST_PATH)
-    return InputError(
-        f"{where}{', ' if error.message.startswith('line ') else ': '}{error.message}"
-    )
+    separator = ", " if error.message.startswith("line ") else ": "
+    return InputError(f"{where}{separator}{error.message}")
 
 
 def header_of(path: str | PathLike[str], columns: str | None = None) -> list[str]:
@@ -232,85 +233,88 @@ def _numbered(text: Iterable[str]) -> Iterator[tuple[int, str]]:
 
 
 class _DecimalPoint:
-    """Watches whether a table with decimal commas also has points, which may group
-    digits: 1.234 is 1234 or 1.234 then.
+    """Watches whether a table with decimal commas also has points, which may group digits.
+
+    1.234 is 1234 or 1.234 then.
     """
 
-    def __init__(self, mark: str | None) -> None:
-        self.comma, self.either = 0, (0, "")
+    def __init__(self) -> None:
+        # number of the first line with a decimal comma; 0 if there was none yet
+        self.comma_line = 0
+        # number of the first line with a point that may group digits, and its cell
+        self.point_line = 0
+        self.point_cell = ""
 
     def check(self, number: int, line: str, cells: Sequence[str]) -> None:
         """Raise if a line leaves open what a point in the table means."""
-        if (
-            not self.comma
-            and "," in line
-            and any(
-                "," in cell for cell in cells if cell[:1].strip('"+- ').isdigit() or cell[:1] == "-"
-            )
-        ):
-            self.comma = number
-        if not self.either[0] and "." in line:
-            self.either = next(
-                ((number, cell) for cell in cells if "." in cell and is_either(cell)), self.either
-            )
-        if self.comma and self.either[0]:
-            at, cell = self.either
-            words = (
-                f"{quoted(cell.strip())} has a point, and a number in line {self.comma} a "
-                "comma: either may group digits"
-            )
+        is_first = not self.comma_line and "," in line
+        if is_first and any("," in cell and _begins_as_number(cell) for cell in cells):
+            self.comma_line = number
+        if not self.point_line and "." in line:
+            for cell in cells:
+                if "." in cell and is_either(cell):
+                    self.point_line = number
+                    self.point_cell = cell
+                    break
+        if self.comma_line and self.point_line:
             raise InputError(
-                f"line {at}: {words}; write all numbers with the same decimal sign, and do "
-                "not group digits"
+                f"line {self.point_line}: {quoted(self.point_cell.strip())} has a point, and a "
+                f"number in line {self.comma_line} a comma: either may group digits; write all "
+                "numbers with the same decimal sign, and do not group digits"
             )
+
+
+def _begins_as_number(cell: str) -> bool:
+    return cell[:1].strip('"+- ').isdigit() or cell[:1] == "-"
 
 
 def _too_many(number: int, fields: int, layout: Layout) -> str:
-    hint = (
-        "; where a comma is the decimal point, semicolons separate the fields"
-        if layout.mark == ","
-        else ""
-    )
+    """Return the message that a line has more fields than the header."""
     columns = len(layout.header)
-    known = (
-        f"{columns} {'is' if columns == 1 else 'are'} stated"
-        if layout.is_stated
-        else f"the header has {columns}"
-    )
+    if layout.is_stated:
+        known = f"{columns} {'is' if columns == 1 else 'are'} stated"
+    else:
+        known = f"the header has {columns}"
+    hint = ""
+    if layout.delimiter == ",":
+        hint = "; where a comma is the decimal point, semicolons separate the fields"
     return f"line {number}: there are {fields} fields, and {known}{hint}; {layout.understood}"
 
 
-def _places(layout: Layout, units: Mapping[str, str]) -> tuple[dict[str, int], list[float]]:
-    """Return the positions of the known columns, and their conversion factors to SI."""
-    places: dict[str, int] = {}
-    factors = []
-    for place, cell in enumerate(layout.header):
+def _known_columns(layout: Layout, units: Mapping[str, str]) -> dict[int, tuple[str, float]]:
+    """Return the names of the known columns, and their factors to SI, by their index.
+
+    Raises
+    ------
+    InputError
+        If there is none, a name is that of two, or a unit is missing or of another dimension.
+    """
+    columns: dict[int, tuple[str, float]] = {}
+    names = set()
+    for column, cell in enumerate(layout.header):
         name, unit = name_and_unit(cell)
         if name not in units:
             continue
-        if name in places:
+        if name in names:
             raise InputError(
                 f'{layout.where}: there are two columns "{name}"; rename one, {layout.remedy}'
             )
-        places[name] = place
-        factors.append(factor_to_si(layout, cell, unit, units[name]))
-    if not places:
-        names = [name_and_unit(cell)[0] for cell in layout.header[:_MOST_NAMED]]
-        hint = next(
-            (
-                words
-                for name in names
-                if len(name) < _LONG_NAME and (words := did_you_mean(name, units))
-            ),
-            "",
-        )
-        listed = ", ".join(shortened(name, _LONG_NAME) for name in names) + (
-            ", ..." if len(layout.header) > _MOST_NAMED else ""
-        )
-        raise InputError(
-            f"{layout.where}: no column is known among {listed}; {_allowed(units)}.{hint}"
-        )
-    return places, factors
+        names.add(name)
+        columns[column] = (name, factor_to_si(layout, cell, unit, units[name]))
+    if not columns:
+        raise InputError(_no_known_column(layout, units))
+    return columns
+
+
+def _no_known_column(layout: Layout, units: Mapping[str, str]) -> str:
+    """Return the message that no column of a table is known."""
+    names = [name_and_unit(cell)[0] for cell in layout.header[:_MOST_NAMED]]
+    hints = (did_you_mean(name, units) for name in names if len(name) < _LONG_NAME)
+    hint = next((hint for hint in hints if hint), "")
+    listed = ", ".join(shortened(name, _LONG_NAME) for name in names)
+    if len(layout.header) > _MOST_NAMED:
+        listed += ", ..."
+    return f"{layout.where}: no column is known among {listed}; {_allowed(units)}.{hint}"
 
 
 def factor_to_si(layout: Layout, cell: str, unit: str | None, wanted: str) -> float:
@@ -327,66 +331,62 @@ def factor_to_si(layout: Layout, cell: str, unit: str | None, wanted: str) -> fl
         if factor is None:
             raise InputError(f"{where}: it is a plain number, and must have no unit")
         return factor
-    if unit is None or not unit:
+    if not unit:
         name = shortened(cell.split("[")[0].strip(), _LONG_NAME)
         raise InputError(f"{where}: the unit is missing; {layout.with_unit(name, wanted)}")
     try:
         return to_si(f"1 {unit}", wanted)
     except InputError as error:
         # without the 1 before the unit, and without the hint how to write a number
-        given, one = quoted(unit, 80), quoted(f"1 {unit}", 80)
-        words = (
-            error.message.partition(" (a number in ")[0]
-            .replace(f"{given} in {one}", given)
-            .replace(one, given)
-        )
-        raise InputError(f"{where}: {words}, such as {wanted}") from None
+        unit_alone = quoted(unit, 80)
+        with_one = quoted(f"1 {unit}", 80)
+        cause = error.message.partition(" (a number in ")[0]
+        cause = cause.replace(f"{unit_alone} in {with_one}", unit_alone)
+        cause = cause.replace(with_one, unit_alone)
+        raise InputError(f"{where}: {cause}, such as {wanted}") from None
 
 
 def _number(
     line: int,
-    column: str,
+    name: str,
     row: list[str],
-    place: int,
-    mark: str | None,
-    without: Callable[[float, str], float],
+    column: int,
+    delimiter: str | None,
+    without_number: Callable[[float, str], float],
 ) -> float:
-    text = row[place] if place < len(row) else ""
+    """Return the number in a cell of a row, or what the callable makes of a cell that has none."""
+    text = row[column] if column < len(row) else ""
     try:
-        value = number_in(text, mark)
+        value = number_in(text, delimiter)
     except ValueError:
         hint = f"; {_EITHER}" if is_either(text) else ""
         raise InputError(
-            f"line {line}, column {quoted(column)}: {quoted(text.strip())} is not a number{hint}"
+            f"line {line}, column {quoted(name)}: {quoted(text.strip())} is not a number{hint}"
         ) from None
     if -_LARGEST_NUMBER < value < _LARGEST_NUMBER:
         return value
-    where = f"line {line}, column {quoted(column)}"
-    if place >= len(row):
-        return without(
-            nan,
-            f"{where}: the cell is missing; the line has {len(row)} "
-            f"field{'' if len(row) == 1 else 's'}",
-        )
+    where = f"line {line}, column {quoted(name)}"
+    if column >= len(row):
+        fields = f"{len(row)} field{'' if len(row) == 1 else 's'}"
+        return without_number(nan, f"{where}: the cell is missing; the line has {fields}")
     coded = SCPI.get(value, value)
     if isnan(coded) or isinf(coded):
-        return without(coded, f"{where}: {_what_is_there(text.strip(), value, coded)}")
+        return without_number(coded, f"{where}: {_content_of(text.strip(), value, coded)}")
     raise InputError(
         f"{where}: {quoted(text.strip())} is not a measurement; it must be less than 1e30 in size"
     )
 
 
-def _what_is_there(text: str, value: float, coded: float) -> str:
-    """Return what a cell without a number has: nothing, words for a missing one, or the
-    code of an instrument for one.
+def _content_of(text: str, value: float, coded: float) -> str:
+    """Return what a cell without a number has.
+
+    It has nothing, words for a missing one, or the code of an instrument for one.
     """
     if not text:
         return "the cell is empty"
     if not (isnan(value) or isinf(value)):
-        return (
-            f"{quoted(text)} stands for a sample that is "
-            f"{'missing' if isnan(coded) else 'over the range'} (SCPI)"
-        )
+        meaning = "missing" if isnan(coded) else "over the range"
+        return f"{quoted(text)} stands for a sample that is {meaning} (SCPI)"
     try:
         float(text)
     except ValueError:
@@ -405,8 +405,10 @@ def _refused(_: float, fault: str) -> float:
 
 
 def _allowed(units: Mapping[str, str]) -> str:
-    return "known are " + ", ".join(
+    """Return the names of known columns with their units."""
+    columns = [
         f"{name} [{unit}]" if unit else name
         for name, unit in units.items()
         if "deviation" not in name
-    )
+    ]
+    return f"known are {', '.join(columns)}"

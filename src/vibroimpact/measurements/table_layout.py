@@ -1,5 +1,6 @@
-"""Where the header of a table stands, and what separates its fields: as people,
-instruments and languages write them.
+"""Where the header of a table stands, and what separates its fields.
+
+It is found as people, instruments and languages write tables.
 """
 
 from __future__ import annotations
@@ -20,23 +21,23 @@ from vibroimpact.measurements.stated_columns import (
     stated_columns,
 )
 from vibroimpact.measurements.table_lines import (
-    MARKS,
+    DELIMITERS,
     Clock,
-    Found,
     Head,
+    HeaderLines,
     content,
+    delimiter_of,
     fields_of,
     filled,
     first_rows,
     has_digits,
     header_cells,
     is_row,
-    mark_of,
 )
 from vibroimpact.quoting import shortened
 
 _MOST_COLUMNS = 1000
-_MARK_WORDS = {"\t": "tabs", ";": "semicolons", ",": "commas", None: "blanks"}
+_DELIMITER_NAMES = {"\t": "tabs", ";": "semicolons", ",": "commas", None: "blanks"}
 _LOOKED = 100
 """Lines before which a header is sought."""
 _SEPARATOR = re.compile(r"sep=(\t|;|,)\s*", re.IGNORECASE)
@@ -53,21 +54,21 @@ class Layout(NamedTuple):
         Number of the line of the header; of the first row, where the user states the columns.
     header : list of str
         Its cells; "" for a column that is left out.
-    mark : str or None
+    delimiter : str or None
         What separates fields; None for blanks.
     rows : iterator of (int, str)
         Number and text of each line below, without comments; an empty line is "".
     clocks : mapping of int to Clock
-        By the place of a column what its times follow from, if it is not a column of times.
+        By the index of a column what its times follow from, if it is not a column of times.
     is_stated : bool
         Whether the user states the columns.
     doubts : mapping of int to str
-        By the place of a column what was taken for granted, as a sentence.
+        By the index of a column what was taken for granted, as a sentence.
     """
 
     number: int
     header: list[str]
-    mark: str | None
+    delimiter: str | None
     rows: Iterator[tuple[int, str]]
     clocks: Mapping[int, Clock] = {}
     is_stated: bool = False
@@ -84,27 +85,24 @@ class Layout(NamedTuple):
         if self.is_stated:
             return f"the columns are those stated, and the first row is line {self.number}"
         cells = shortened(", ".join(cell for cell in self.header if cell), _LONGEST_SHOWN)
-        parts = (
-            f"separated by {_MARK_WORDS[self.mark]}" if len(self.header) > 1 else "of one column"
-        )
-        return f"line {self.number} was taken for the header: {cells}, {parts}"
+        if len(self.header) > 1:
+            separated = f"separated by {_DELIMITER_NAMES[self.delimiter]}"
+        else:
+            separated = "of one column"
+        return f"line {self.number} was taken for the header: {cells}, {separated}"
 
     @property
     def remedy(self) -> str:
         """How a user reads the table if it is not as understood, for messages."""
-        return (
-            'or state others, such as "time=s,force=N"'
-            if self.is_stated
-            else remedy_for(self.header)
-        )
+        if self.is_stated:
+            return 'or state others, such as "time=s,force=N"'
+        return remedy_for(self.header)
 
     def with_unit(self, name: str, unit: str) -> str:
         """Return how a user states the unit of a column, for messages."""
-        return (
-            f"state it, such as {name}={unit}"
-            if self.is_stated
-            else f"write it in brackets, such as {name} [{unit}], {self.remedy}"
-        )
+        if self.is_stated:
+            return f"state it, such as {name}={unit}"
+        return f"write it in brackets, such as {name} [{unit}], {self.remedy}"
 
 
 def table_layout(lines: Iterator[tuple[int, str]], columns: str | None = None) -> Layout:
@@ -139,97 +137,118 @@ def table_layout(lines: Iterator[tuple[int, str]], columns: str | None = None) -
     (1, ['time [s]', 'force [N]'], ',')
     """
     stated = None if columns is None else stated_columns(columns)
-    mark, comment, first = _beginning(lines)
-    head = Head([first, *((at, content(one)) for at, one in islice(lines, _LOOKED))], mark)
-    found = instrument_layout(head)
+    delimiter, comment, first = _beginning(lines)
+    looked_at = ((number, content(line)) for number, line in islice(lines, _LOOKED))
+    head = Head([first, *looked_at], delimiter)
+    header = instrument_layout(head)
     if stated is not None:
-        found = _stated(head, stated, found)
-    elif found is None:
-        found = _first_line_is_row(head, comment) or _header_above_rows(head)
-    if len(found.cells) > _MOST_COLUMNS:
+        header = _stated(head, stated, header)
+    elif header is None:
+        header = _first_line_is_row(head, comment) or _header_above_rows(head)
+    if len(header.cells) > _MOST_COLUMNS:
         raise InputError(
-            f"line {found.number}: there are {len(found.cells)} columns; a table has "
+            f"line {header.number}: there are {len(header.cells)} columns; a table has "
             f"{_MOST_COLUMNS} at most"
         )
-    rows = rows_of_instrument(
-        head, chain(head.lines[found.below :], ((at, content(one)) for at, one in lines))
-    )
+    further = ((number, content(line)) for number, line in lines)
+    rows = rows_of_instrument(head, chain(head.lines[header.below :], further))
     return Layout(
-        found.number, found.cells, found.mark, rows, found.clocks, stated is not None, found.doubts
+        header.number,
+        header.cells,
+        header.delimiter,
+        rows,
+        header.clocks,
+        stated is not None,
+        header.doubts,
     )
 
 
 def _beginning(
     lines: Iterator[tuple[int, str]],
 ) -> tuple[str | None, tuple[int, str], tuple[int, str]]:
-    """Return the separator that the file states, its last comment before the first line,
-    and this line.
+    """Return the separator that a file states, its last comment, and its first line.
+
+    The comment is the last one before the first line that is none.
     """
-    mark: str | None = None
-    comment, seen = (0, ""), ""
+    delimiter: str | None = None
+    comment = (0, "")
+    has_text = False
     for number, whole in lines:
         line = content(whole)
-        seen = seen or whole.strip()
-        if stated := _SEPARATOR.fullmatch(line) if number == 1 else None:
-            mark = stated.group(1)
+        has_text = has_text or bool(whole.strip())
+        separator = _SEPARATOR.fullmatch(line) if number == 1 else None
+        if separator is not None:
+            delimiter = separator.group(1)
         elif line:
-            return mark, comment, (number, line)
+            return delimiter, comment, (number, line)
         elif "#" in whole:
-            comment = number, whole.partition("#")[2].strip()
-    raise InputError(
-        "the file is empty but for comments, separators and blanks" if seen else "the file is empty"
-    )
+            comment = (number, whole.partition("#")[2].strip())
+    if has_text:
+        raise InputError("the file is empty but for comments, separators and blanks")
+    raise InputError("the file is empty")
 
 
-def _stated(head: Head, stated: StatedColumns, instrument: Found | None) -> Found:
-    """Return the columns that the user states, above the first line in which all of them
-    have numbers.
-    """
-    count = len(stated.cells)
+def _stated(head: Head, stated: StatedColumns, instrument: HeaderLines | None) -> HeaderLines:
+    """Return the columns that the user states, above the first line with numbers in all of them."""
     cells = list(stated.cells)
-    clocks = {} if instrument is None else dict(instrument.clocks)
-    if any(is_time(*name_and_unit(cell)) for cell in cells if cell):
-        clocks = {}
-    if stated.rate is not None:
-        clocks = {place: Clock(0.0, 1.0 / stated.rate) for place, cell in enumerate(cells) if cell}
-    nearest, stated_are = "", f"{count} columns are stated" if count > 1 else "one column is stated"
-    for place, (number, line) in enumerate(head.lines):
-        if not line or (instrument is not None and place < instrument.below):
+    count = len(cells)
+    named = [column for column, cell in enumerate(cells) if cell]
+    stated_are = f"{count} columns are stated" if count > 1 else "one column is stated"
+    first_row = 0 if instrument is None else instrument.below
+    nearest = ""
+    for index, (number, line) in enumerate(head.lines):
+        if not line or index < first_row:
             continue
-        mark = (instrument.mark if instrument is not None else head.mark) or (
-            mark_of(line) if count > 1 else None
+        delimiter = head.delimiter if instrument is None else instrument.delimiter
+        if not delimiter and count > 1:
+            delimiter = delimiter_of(line)
+        fields = fields_of(line, delimiter)
+        has_numbers = has_digits(line) and all(
+            column < len(fields) and is_number(fields[column], delimiter) for column in named
         )
-        fields = fields_of(line, mark)
-        named = [at for at, cell in enumerate(cells) if cell]
-        if not has_digits(line) or not all(
-            at < len(fields) and is_number(fields[at], mark) for at in named
-        ):
-            if is_row(line, mark):
-                nearest = nearest or f"line {number} has {_fields_are(filled(fields), mark)}"
-            continue
-        if filled(fields) > count:
-            words = f"line {number} has {_fields_are(filled(fields), mark)}, and {stated_are}"
+        fields_are = _fields_are(filled(fields), delimiter)
+        if has_numbers and filled(fields) > count:
             raise InputError(
-                f"{STATED}: {words}; state each, and - for one that is left out, such as "
-                '"time=s,-,force=N"'
+                f"{STATED}: line {number} has {fields_are}, and {stated_are}; state each, and - "
+                'for one that is left out, such as "time=s,-,force=N"'
             )
-        return Found(number, cells, mark, place, clocks)
-    none_has = (
-        f"none of the first {len(head.lines)} lines has"
-        if len(head.lines) > 1
-        else "the only line does not have"
-    )
-    words = nearest or f"{none_has} a number in each column that is named"
+        if has_numbers:
+            clocks = _stated_clocks(stated, instrument)
+            return HeaderLines(number, cells, delimiter, index, clocks)
+        if not nearest and is_row(line, delimiter):
+            nearest = f"line {number} has {fields_are}"
+    if not nearest:
+        if len(head.lines) > 1:
+            lines_have = f"none of the first {len(head.lines)} lines has"
+        else:
+            lines_have = "the only line does not have"
+        nearest = f"{lines_have} a number in each column that is named"
     raise InputError(
-        f"{STATED}: {words}, and {stated_are}; state each column, and - for one that is left out"
+        f"{STATED}: {nearest}, and {stated_are}; state each column, and - for one that is left out"
     )
 
 
-def _fields_are(count: int, mark: str | None) -> str:
-    return f"{count} fields, separated by {_MARK_WORDS[mark]}" if count > 1 else "one field"
+def _stated_clocks(stated: StatedColumns, instrument: HeaderLines | None) -> Mapping[int, Clock]:
+    """Return the clocks of columns that the user states, by their index.
+
+    A rate that is stated, or a column of times, takes the place of the clocks of an instrument.
+    """
+    if stated.rate is not None:
+        clock = Clock(0.0, 1.0 / stated.rate)
+        return {column: clock for column, cell in enumerate(stated.cells) if cell}
+    has_times = any(is_time(*name_and_unit(cell)) for cell in stated.cells if cell)
+    if has_times or instrument is None:
+        return {}
+    return dict(instrument.clocks)
 
 
-def _first_line_is_row(head: Head, comment: tuple[int, str]) -> Found | None:
+def _fields_are(count: int, delimiter: str | None) -> str:
+    if count > 1:
+        return f"{count} fields, separated by {_DELIMITER_NAMES[delimiter]}"
+    return "one field"
+
+
+def _first_line_is_row(head: Head, comment: tuple[int, str]) -> HeaderLines | None:
     """Return the header in the comment before rows that begin at once; None if they do not.
 
     Raises
@@ -238,87 +257,108 @@ def _first_line_is_row(head: Head, comment: tuple[int, str]) -> Found | None:
         If it has another number of fields than they have.
     """
     number, line = head.lines[0]
-    mark = head.mark or mark_of(line)
-    if not is_row(line, mark):
+    delimiter = head.delimiter or delimiter_of(line)
+    if not is_row(line, delimiter):
         return None
-    columns = len(fields_of(line, mark))
+    columns = len(fields_of(line, delimiter))
+    comment_number, comment_text = comment
     for separator in (",", ";", "\t", None):
-        cells = header_cells(comment[1], separator)
+        cells = header_cells(comment_text, separator)
         if len(cells) == columns and all(cells):
-            return Found(comment[0], cells, mark, 0)
-    seen = (
-        f"the comment before it does not have as many names ({comment[1][:40]!r})"
-        if comment[1]
-        else "no header is above it"
-    )
-    columns_are = f"{columns} numbers" if columns > 1 else "a number"
-    remedy = (
-        remedy_for([])
-        if columns > 1
-        else 'or give --columns "rate=10 kHz,force=N" with the rate of the rows (in a case the '
-        "key columns)"
-    )
+            return HeaderLines(comment_number, cells, delimiter, 0)
+    if comment_text:
+        above = f"the comment before it does not have as many names ({comment_text[:40]!r})"
+    else:
+        above = "no header is above it"
+    if columns > 1:
+        columns_are = f"{columns} numbers"
+        remedy = remedy_for([])
+    else:
+        columns_are = "a number"
+        remedy = (
+            'or give --columns "rate=10 kHz,force=N" with the rate of the rows (in a case the key '
+            "columns)"
+        )
     raise InputError(
-        f"line {number}: it has {columns_are}, and {seen}; write a header, such as time "
+        f"line {number}: it has {columns_are}, and {above}; write a header, such as time "
         f"[s],force [N], {remedy}"
     )
 
 
-def _header_above_rows(head: Head) -> Found:
-    """Return the header: the first line, or, if this can be none, the nearest one above
-    the rows; with units from a line below it.
+def _header_above_rows(head: Head) -> HeaderLines:
+    """Return the header with its units, from a line below it.
+
+    It is the first line, or, if this can be none, the nearest one above the rows.
     """
+    texts = [line for _, line in head.lines]
     rows = first_rows(head)
-    at = 0
-    mark: str | None = head.mark or next((mark for mark in MARKS if mark in head.lines[0][1]), ",")
-    if rows is not None:
-        above = _above(head, *rows)
-        if above is not None or _fits(
-            header_cells(head.lines[0][1], rows[1]), fields_of(head.lines[rows[0]][1], rows[1])
-        ):
-            at, mark = above or 0, rows[1]
-    cells = header_cells(head.lines[at][1], mark)
-    below = at + 1
-    full = [place for place in range(at + 1, len(head.lines)) if head.lines[place][1]]
-    for place in full[:1]:
-        units = fields_of(head.lines[place][1], mark)
+    header, delimiter = _header_and_delimiter(head, rows)
+    cells = header_cells(texts[header], delimiter)
+    below = header + 1
+
+    # units may stand in the next line that is not empty
+    following = next((index for index in range(below, len(texts)) if texts[index]), None)
+    if following is not None:
+        units = fields_of(texts[following], delimiter)
         if filled(units) <= len(cells) and are_units(units):
-            cells, below = (
-                list(map(with_unit, cells, [*units, *[""] * (len(cells) - len(units))])),
-                place + 1,
-            )
-    if rows is not None and rows[0] > below and at > 0:
-        below = rows[0]  # further lines about the columns
-    cells = _with_groups(head, at, cells, mark)
-    return Found(head.lines[at][0], _with_stated_units(head.lines[:at], cells, mark), mark, below)
+            missing = [""] * (len(cells) - len(units))
+            cells = list(map(with_unit, cells, [*units, *missing]))
+            below = following + 1
+    if rows is not None and header > 0:
+        first_row, _ = rows
+        below = max(below, first_row)  # further lines about the columns
+    cells = _with_groups(head, header, cells, delimiter)
+    cells = _with_stated_units(head.lines[:header], cells, delimiter)
+    return HeaderLines(head.lines[header][0], cells, delimiter, below)
 
 
-def _above(head: Head, rows: int, mark: str | None) -> int | None:
-    """Return the place of the header above rows; None if it is the first line, or there is none."""
+def _header_and_delimiter(
+    head: Head, rows: tuple[int, str | None] | None
+) -> tuple[int, str | None]:
+    """Return the index of the header and what separates its cells, with the first of the rows."""
+    _, first_line = head.lines[0]
+    if rows is not None:
+        first_row, delimiter = rows
+        header = _above(head, first_row, delimiter)
+        if header is not None:
+            return header, delimiter
+        row = fields_of(head.lines[first_row][1], delimiter)
+        if _fits(header_cells(first_line, delimiter), row):
+            return 0, delimiter
+    in_first_line = next((delimiter for delimiter in DELIMITERS if delimiter in first_line), ",")
+    return 0, head.delimiter or in_first_line
+
+
+def _above(head: Head, rows: int, delimiter: str | None) -> int | None:
+    """Return the index of the header above rows; None if it is the first line, or there is none."""
     cells = {
-        place: header_cells(head.lines[place][1], mark)
-        for place in range(rows + 1)
-        if head.lines[place][1]
+        index: header_cells(line, delimiter)
+        for index, (_, line) in enumerate(head.lines[: rows + 1])
+        if line
     }
-    above = [place for place in cells if place < rows and _fits(cells[place], cells[rows])]
-    for before, place in pairwise(above):
-        if are_units(cells[place]) and not are_units(cells[before]):
-            return before
+    above = [index for index in cells if index < rows and _fits(cells[index], cells[rows])]
+    # the line above one of units
+    for index, following in pairwise(above):
+        if are_units(cells[following]) and not are_units(cells[index]):
+            return index
     # a line with numbers is one about the measurement, or a row with something else than a number
     # in it
-    above = [
-        place
-        for place in above
-        if not any(cell.strip() and is_number(cell, mark) for cell in cells[place])
-    ]
+    above = [index for index in above if not _has_numbers(cells[index], delimiter)]
     if not above or (above[0] == 0 and _has_units(cells[0])):
         return None
-    return next((place for place in reversed(above) if _has_units(cells[place])), above[-1])
+    with_units = [index for index in above if _has_units(cells[index])]
+    return with_units[-1] if with_units else above[-1]
+
+
+def _has_numbers(cells: list[str], delimiter: str | None) -> bool:
+    """Return whether a cell of a line is a number."""
+    return any(cell.strip() and is_number(cell, delimiter) for cell in cells)
 
 
 def _fits(cells: list[str], row: list[str]) -> bool:
-    """Return whether a line may be the header of a row: it has as many fields, with or
-    without empty ones at their ends.
+    """Return whether a line may be the header of a row: it has as many fields.
+
+    Empty ones at the ends may count or not.
     """
     return bool(filled(cells)) and (len(cells) == len(row) or filled(cells) == filled(row))
 
@@ -328,45 +368,46 @@ def _has_units(cells: list[str]) -> bool:
     return any(name_and_unit(cell)[1] for cell in cells)
 
 
-def _with_groups(head: Head, at: int, cells: list[str], mark: str | None) -> list[str]:
-    """Return header cells with the names of their groups, where several have one name and
-    the line above names groups (Tracker).
+def _with_groups(head: Head, at: int, cells: list[str], delimiter: str | None) -> list[str]:
+    """Return header cells with the names of their groups, as Tracker writes them.
+
+    Several cells have one name then, and the line above names groups.
     """
-    names = [name_and_unit(cell)[0] for cell in cells if cell]
-    if at == 0 or len(set(names)) == len(names):
+    names = [name_and_unit(cell)[0] for cell in cells]
+    names_in_use = [name for name, cell in zip(names, cells, strict=True) if cell]
+    if at == 0 or len(set(names_in_use)) == len(names_in_use):
         return cells
-    groups = [cell.strip() for cell in fields_of(head.lines[at - 1][1], mark)]
+    groups = [cell.strip() for cell in fields_of(head.lines[at - 1][1], delimiter)]
     if not 0 < len(list(filter(None, groups))) < len(cells) or len(groups) > len(cells):
         return cells
-    group, found = "", []
-    for place, cell in enumerate(cells):
-        group = groups[place] if place < len(groups) and groups[place] else group
-        is_alone = names.count(name_and_unit(cell)[0]) == 1 or name_and_unit(cell)[0] == "time"
-        found.append(cell if is_alone or not cell else f"{group} {cell}".strip())
-    return found
+    groups += [""] * (len(cells) - len(groups))
+    # the name of a group stands above its first column
+    group = ""
+    with_groups = []
+    for name, cell, group_above in zip(names, cells, groups, strict=True):
+        group = group_above or group
+        is_alone = names_in_use.count(name) == 1 or name == "time"
+        with_groups.append(cell if is_alone or not cell else f"{group} {cell}".strip())
+    return with_groups
 
 
 def _with_stated_units(
-    above: list[tuple[int, str]], cells: list[str], mark: str | None
+    above: list[tuple[int, str]], cells: list[str], delimiter: str | None
 ) -> list[str]:
-    """Return header cells with the units that lines about the measurement state, as
-    Tektronix writes them.
-    """
-    units = {
-        fields[0].strip().lower(): fields[1:]
-        for _, line in above
-        if (fields := fields_of(line, mark)) and fields[0].strip()
-    }
-    horizontal, vertical = (
-        units.get("horizontal units", [""])[0].strip().lower(),
-        [one.strip() for one in units.get("vertical units", [])],
-    )
+    """Return header cells with the units that Tektronix states in lines about the measurement."""
+    stated = {}
+    for _, line in above:
+        fields = fields_of(line, delimiter)
+        if fields and fields[0].strip():
+            stated[fields[0].strip().lower()] = [field.strip() for field in fields[1:]]
+    # a line may have its name alone
+    horizontal = next(iter(stated.get("horizontal units", [])), "").lower()
+    vertical = stated.get("vertical units", [])
     if not horizontal or not any(vertical) or name_and_unit(cells[0])[1] is not None:
         return cells
-    return [
-        with_unit(cells[0], horizontal),
-        *(
-            with_unit(cell, vertical[min(at, len(vertical) - 1)] or vertical[0])
-            for at, cell in enumerate(cells[1:])
-        ),
-    ]
+    with_units = [with_unit(cells[0], horizontal)]
+    for channel, cell in enumerate(cells[1:]):
+        # the last one is that of all further channels
+        unit = vertical[min(channel, len(vertical) - 1)] or vertical[0]
+        with_units.append(with_unit(cell, unit))
+    return with_units

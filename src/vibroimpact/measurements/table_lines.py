@@ -1,6 +1,4 @@
-"""Lines of a table: what separates their fields, which are rows of numbers, and the
-beginning of a file in which a header is sought.
-"""
+"""Lines of a table: what separates their fields, which are rows, and the beginning of a file."""
 
 from __future__ import annotations
 
@@ -12,7 +10,7 @@ from typing import NamedTuple
 
 from vibroimpact.measurements.cell_numbers import is_number
 
-MARKS = ("\t", ";", ",")
+DELIMITERS = ("\t", ";", ",")
 """What separates fields, beside blanks."""
 
 _NOT_A_COMMENT = ("N/A", "NV", "NUM!", "DIV/0!", "WERT!", "VALUE!")
@@ -20,11 +18,10 @@ _NOT_A_COMMENT = ("N/A", "NV", "NUM!", "DIV/0!", "WERT!", "VALUE!")
 
 
 class Clock(NamedTuple):
-    """Times of a column without a column of times of its own: that of its first row [s], and the
-    step from row to row [s].
+    """Times of a column without a column of times of its own.
 
-    `alone` tells whether the column of times beside it, if there is one, belongs to another
-    channel.
+    That of its first row [s], and the step from row to row [s]. `alone` tells whether the column of
+    times beside it, if there is one, belongs to another channel.
     """
 
     start: float
@@ -33,15 +30,16 @@ class Clock(NamedTuple):
 
 
 class Head(NamedTuple):
-    """The beginning of a table: number and text of its lines, without comments, and the
-    separator that the file states.
+    """The beginning of a table, in which a header is sought.
+
+    Number and text of its lines, without comments, and the separator that the file states.
     """
 
     lines: list[tuple[int, str]]
-    mark: str | None
+    delimiter: str | None
 
 
-class Found(NamedTuple):
+class HeaderLines(NamedTuple):
     """The header in the beginning of a table.
 
     Parameters
@@ -50,36 +48,35 @@ class Found(NamedTuple):
         Number of its line.
     cells : list of str
         Its cells; "" for a column that is left out.
-    mark : str or None
+    delimiter : str or None
         What separates fields; None for blanks.
     below : int
-        Place of the first line below it.
+        Index of the first line below it.
     clocks : mapping of int to Clock
-        By the place of a column what its times follow from, if it is not a column of times.
+        By the index of a column what its times follow from, if it is not a column of times.
     doubts : mapping of int to str
-        By the place of a column what was taken for granted, as a sentence.
+        By the index of a column what was taken for granted, as a sentence.
     """
 
     number: int
     cells: list[str]
-    mark: str | None
+    delimiter: str | None
     below: int
     clocks: Mapping[int, Clock] = {}
     doubts: Mapping[int, str] = {}
 
 
-def fields_of(line: str, mark: str | None) -> list[str]:
+def fields_of(line: str, delimiter: str | None) -> list[str]:
     """Return the fields of a line."""
-    return (
-        line.split(mark)
-        if mark is None or '"' not in line
-        else next(csv.reader([line], delimiter=mark))
-    )
+    if delimiter is None or '"' not in line:
+        return line.split(delimiter)
+    return next(csv.reader([line], delimiter=delimiter))
 
 
-def header_cells(line: str, mark: str | None) -> list[str]:
-    """Return the cells of a header; where blanks separate them, a unit in brackets belongs to the
-    word before it.
+def header_cells(line: str, delimiter: str | None) -> list[str]:
+    """Return the cells of a header.
+
+    Where blanks separate them, a unit in brackets belongs to the word before it.
 
     Examples
     --------
@@ -87,8 +84,8 @@ def header_cells(line: str, mark: str | None) -> list[str]:
     ['time [s]', 'force [N]']
     """
     cells: list[str] = []
-    for cell in fields_of(line, mark):
-        if mark is None and cells and cell.startswith(("[", "(")):
+    for cell in fields_of(line, delimiter):
+        if delimiter is None and cells and cell.startswith(("[", "(")):
             cells[-1] += f" {cell}"
         else:
             cells.append(cell.strip())
@@ -103,60 +100,64 @@ def filled(cells: Sequence[str]) -> int:
     >>> filled(["0", "", "1", "", " "])
     3
     """
-    return next((place + 1 for place in reversed(range(len(cells))) if cells[place].strip()), 0)
+    for count in range(len(cells), 0, -1):
+        if cells[count - 1].strip():
+            return count
+    return 0
 
 
 def content(whole: str) -> str:
     """Return a line without its comment; "" if there is nothing in it."""
     line = whole.rstrip("\r\n ")  # a tab at the end may stand before an empty field
-    if "#" not in line:
-        return line if line.strip(" ,;\t") else ""
-    start = next(
-        (found.start() for found in re.finditer("#", line) if _begins_comment(line, found.start())),
-        len(line),
-    )
-    line = line[:start].rstrip()
+    if "#" in line:
+        signs = [sign.start() for sign in re.finditer("#", line)]
+        comment = next((sign for sign in signs if _begins_comment(line, sign)), len(line))
+        line = line[:comment].rstrip()
     return line if line.strip(" ,;\t") else ""
 
 
-def _begins_comment(line: str, place: int) -> bool:
-    """Return whether a # begins a comment: in a name (Channel #1) and in what
-    spreadsheets write (#N/A) it does not.
+def _begins_comment(line: str, position: int) -> bool:
+    """Return whether a # begins a comment.
+
+    In a name (Channel #1) and in what spreadsheets write (#N/A) it does not.
     """
-    before, after = line[:place], line[place + 1 :]
+    before = line[:position]
+    after = line[position + 1 :]
     if after.upper().startswith(_NOT_A_COMMENT):
         return False
-    has_words = any(one.isalpha() and one not in "eE" for one in before)
+    # an e or E is that of an exponent
+    has_words = any(character.isalpha() and character not in "eE" for character in before)
     return not has_words or not after or after[0].isspace()
 
 
-def mark_of(line: str) -> str | None:
+def delimiter_of(line: str) -> str | None:
     """Return what separates the numbers of a line."""
-    mark = next((mark for mark in MARKS if mark in line), None)
+    delimiter = next((delimiter for delimiter in DELIMITERS if delimiter in line), None)
     # a comma beside blanks is the decimal point
-    return None if mark == "," and " " in line.strip() and is_row(line, None) else mark
+    if delimiter == "," and " " in line.strip() and is_row(line, None):
+        return None
+    return delimiter
 
 
-def is_row(line: str, mark: str | None) -> bool:
+def is_row(line: str, delimiter: str | None) -> bool:
     """Return whether a line is a row of numbers, some of which may be missing."""
-    cells = fields_of(line, mark)
-    return has_digits(line) and all(is_number(cell, mark) for cell in cells)
+    cells = fields_of(line, delimiter)
+    return has_digits(line) and all(is_number(cell, delimiter) for cell in cells)
 
 
 def first_rows(head: Head, least: int = 2) -> tuple[int, str | None] | None:
-    """Return the place of the first of two rows of at least so many fields, one after the
-    other, and what separates their fields.
+    """Return the index of the first of two rows, one after the other, and what separates fields.
+
+    The first has at least so many fields.
     """
-    full = [place for place, (_, line) in enumerate(head.lines) if line]
-    for here, after in pairwise(full):
-        mark = head.mark or mark_of(head.lines[here][1])
-        line = head.lines[here][1]
-        if (
-            len(fields_of(line, mark)) >= least
-            and is_row(line, mark)
-            and is_row(head.lines[after][1], mark)
-        ):
-            return here, mark
+    not_empty = [index for index, (_, line) in enumerate(head.lines) if line]
+    for index, following in pairwise(not_empty):
+        _, line = head.lines[index]
+        _, next_line = head.lines[following]
+        delimiter = head.delimiter or delimiter_of(line)
+        has_fields = len(fields_of(line, delimiter)) >= least
+        if has_fields and is_row(line, delimiter) and is_row(next_line, delimiter):
+            return index, delimiter
     return None
 
 

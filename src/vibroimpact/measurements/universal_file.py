@@ -1,5 +1,6 @@
-"""Reading of universal files (UFF): functions of time and frequency responses in datasets
-58, text or binary, and units of dataset 164.
+"""Reading of universal files (UFF): functions of time, frequency responses, and units.
+
+Functions are those of datasets 58, text or binary; units those of dataset 164.
 """
 
 from __future__ import annotations
@@ -30,31 +31,38 @@ SPHERE_FUNCTIONS = {
     "acceleration_m_s2": ("acceleration of the sphere", 12, "m/s2"),
     "force_N": ("contact force on the sphere", 13, "N"),
 }
-"""The motion of the sphere as this program writes and recognizes it: first identification
-line, data type, unit.
+"""The motion of the sphere as this program writes and recognizes it.
+
+First identification line, data type, unit.
 """
 
 _LARGEST = 1e30
 """Bound of measured values, so that their powers do not overflow."""
 
 _BEGINNING = 4000
-"""Bytes at the beginning in which the first line of -1 stands; the rest of another file
-is not read.
-"""
+"""Bytes at the beginning in which the first line of -1 stands; the rest is not read else."""
 
 _MARK = b"-1"
 # at the current position: binary data does not end with a line break
 _HERE = re.compile(rb"[ \t]*-1[ \t\r]*(?:\n|\Z)")
 _MARKED = re.compile(rb"^" + _HERE.pattern, re.MULTILINE)
 _HEADER_LINES = 11
-_REAL, _COMPLEX = (2, 4), (5, 6)
+_REAL = (2, 4)
+_COMPLEX = (5, 6)
+"""Types of the ordinate: real and complex, in single and in double precision."""
 _SINGLE = (2, 5)
-_TIME, _FREQUENCY, _UNSTATED = 17, 18, (0, 1)
+_TIME = 17
+_FREQUENCY = 18
+_UNSTATED = (0, 1)
+"""Types of the abscissa."""
 _HERTZ = "hz"
-FREQUENCY_RESPONSE, COHERENCE = 4, 6
+FREQUENCY_RESPONSE = 4
+COHERENCE = 6
 """Types of functions of frequency that are read."""
 
-_WIDTHS = {2: 13, 4: 20, 5: 13, 6: 20}  # columns of a number in text, single and double precision
+_WIDTHS = {2: 13, 4: 20, 5: 13, 6: 20}
+"""Columns of a number in text, in single and double precision."""
+_WIDTH_OF_VARIABLE = 13
 _ENDS = {1: "<", 2: ">"}
 _IEEE = 2
 
@@ -87,9 +95,10 @@ class Function:
 
 
 class Freedom(NamedTuple):
-    """A degree of freedom: name of its entity, "" if there is none; node, 0 if there is none; and
-    direction, 1 to 3 along x, y, z, negative against the axis, 4 to 6 of rotations, 0 if it is not
-    stated.
+    """A degree of freedom.
+
+    The name of its entity, "" if there is none; its node, 0 if there is none; and its direction, 1
+    to 3 along x, y, z, negative against the axis, 4 to 6 of rotations, 0 if it is not stated.
     """
 
     entity: str
@@ -133,8 +142,10 @@ class FunctionOfFrequency:
 
 
 class UniversalFile(NamedTuple):
-    """Functions of time of a universal file, the divisors that convert its lengths ("m") and forces
-    ("N") to SI, None if the file does not state them, and its frequency responses and coherences.
+    """Content of a universal file.
+
+    Its functions of time; the divisors that convert its lengths ("m") and forces ("N") to SI, None
+    if the file does not state them; and its frequency responses and coherences.
     """
 
     functions: list[Function]
@@ -172,64 +183,74 @@ def read_universal_file(path: str | Path) -> UniversalFile:
         raise with_path(file, error) from None
     functions: list[Function] = []
     of_frequency: list[FunctionOfFrequency] = []
-    factors, number = None, 0
-    for header, place in _datasets(raw):
-        kind = header.split()[0] if header.split() else b""
+    factors = None
+    number = 0
+    for header, offset in _datasets(raw):
+        dataset = header.split()[0] if header.split() else b""
         try:
-            if kind == b"164":
-                factors = _factors(raw, place)
-            elif kind in (b"58", b"58b"):
+            if dataset == b"164":
+                factors = _factors(raw, offset)
+            elif dataset in (b"58", b"58b"):
                 number += 1
-                found = _function(raw, header, place, number)
-                if isinstance(found, Function):
-                    functions.append(found)
-                elif found is not None:
-                    of_frequency.append(found)
+                function = _function(raw, header, offset, number)
+                if isinstance(function, Function):
+                    functions.append(function)
+                elif function is not None:
+                    of_frequency.append(function)
         except (ValueError, IndexError, KeyError, OverflowError):
-            what = f"function {number}" if kind != b"164" else "dataset 164, with the units,"
-            size = (
-                ""
-                if kind == b"164"
-                else f", or a number there is not finite or not below {_LARGEST:g} in size"
-            )
-            words = f"the file is damaged, or not of the format stated in its first lines{size}"
-            raise InputError(f"{file}: {what} can't be read; {words}") from None
+            cause = "the file is damaged, or not of the format stated in its first lines"
+            if dataset == b"164":
+                what = "dataset 164, with the units,"
+            else:
+                what = f"function {number}"
+                cause += f", or a number there is not finite or not below {_LARGEST:g} in size"
+            raise InputError(f"{file}: {what} can't be read; {cause}") from None
     return UniversalFile(functions, factors, of_frequency)
 
 
 def _datasets(raw: bytes) -> Iterator[tuple[bytes, int]]:
     """Yield the first line of each dataset, and the offset after it."""
-    place, inside = 0, False
-    while (mark := _HERE.match(raw, place) or _MARKED.search(raw, place)) is not None:
-        inside, place = not inside, mark.end()
-        if inside:
-            header, place = _line(raw, place)
-            yield header, place
-            words = header.split()
-            # skip binary data, which may contain the bytes of a mark
-            if words and words[0] == b"58b":
-                place = _binary_end(raw, words, place)
+    offset = 0
+    inside = False
+    while True:
+        mark = _HERE.match(raw, offset) or _MARKED.search(raw, offset)
+        if mark is None:
+            return
+        inside = not inside
+        offset = mark.end()
+        if not inside:
+            continue
+        header, offset = _line(raw, offset)
+        yield header, offset
+        fields = header.split()
+        # skip binary data, which may contain the bytes of a mark
+        if fields and fields[0] == b"58b":
+            offset = _binary_end(raw, fields, offset)
 
 
-def _binary_end(raw: bytes, words: list[bytes], place: int) -> int:
+def _binary_end(raw: bytes, fields: list[bytes], offset: int) -> int:
+    """Return the offset after the binary data of a dataset, by the fields of its first line."""
     for _ in range(_HEADER_LINES):
-        _, place = _line(raw, place)
-    size = int(words[4]) if len(words) > 4 and words[4].isdigit() else 0
-    return min(place + size, len(raw))
+        _, offset = _line(raw, offset)
+    size = int(fields[4]) if len(fields) > 4 and fields[4].isdigit() else 0
+    return min(offset + size, len(raw))
 
 
-def _line(raw: bytes, place: int) -> tuple[bytes, int]:
+def _line(raw: bytes, offset: int) -> tuple[bytes, int]:
     """Return the line at an offset, and the offset after it."""
-    end = raw.find(b"\n", place)
-    return (raw[place:], len(raw)) if end < 0 else (raw[place:end].rstrip(b"\r"), end + 1)
+    end = raw.find(b"\n", offset)
+    if end < 0:
+        return raw[offset:], len(raw)
+    return raw[offset:end].rstrip(b"\r"), end + 1
 
 
-def _lines(raw: bytes, place: int, number: int) -> tuple[list[str], int]:
+def _lines(raw: bytes, offset: int, count: int) -> tuple[list[str], int]:
+    """Return the lines of a header at an offset, and the offset after them."""
     lines = []
-    for _ in range(number):
-        line, place = _line(raw, place)
+    for _ in range(count):
+        line, offset = _line(raw, offset)
         lines.append(_text_of(line[:200]))
-    return lines, place
+    return lines, offset
 
 
 def _text_of(line: bytes) -> str:
@@ -240,72 +261,100 @@ def _text_of(line: bytes) -> str:
         return line.decode("latin-1")
 
 
-def _factors(raw: bytes, place: int) -> dict[str, float]:
-    lines, _ = _lines(raw, place, 2)
-    numbers = [float(lines[1][at : at + 25].replace("D", "E").replace("d", "e")) for at in (0, 25)]
-    if not all(0.0 < number < np.inf for number in numbers):
+def _factors(raw: bytes, offset: int) -> dict[str, float]:
+    """Return the divisors of dataset 164, in fields of 25 characters with D for the exponent."""
+    lines, _ = _lines(raw, offset, 2)
+    fields = [lines[1][start : start + 25] for start in (0, 25)]
+    length, force = (float(field.replace("D", "E").replace("d", "e")) for field in fields)
+    if not 0.0 < length < np.inf or not 0.0 < force < np.inf:
         raise ValueError
-    return {"m": numbers[0], "N": numbers[1]}
+    return {"m": length, "N": force}
 
 
 def _function(
-    raw: bytes, header: bytes, place: int, number: int
+    raw: bytes, header: bytes, offset: int, number: int
 ) -> Function | FunctionOfFrequency | None:
-    """Return a function of time, a frequency response or a coherence; None of any other
-    function.
-    """
-    lines, place = _lines(raw, place, _HEADER_LINES)
-    ordinate, count, even = (int(lines[6][at : at + 10]) for at in (0, 10, 20))
-    start, step = (float(lines[6][at : at + 13]) for at in (30, 43))
-    function_type, variable = _whole(lines[5][:5]), int(lines[7][:10])
-    of_time = ordinate in _REAL and variable == _TIME
-    if not of_time and not _is_of_frequency(function_type, variable, ordinate, lines[7][47:67]):
+    """Return a function of time, a frequency response or a coherence; None of another function."""
+    lines, offset = _lines(raw, offset, _HEADER_LINES)
+    # the fields of these lines have fixed columns
+    form = _OrdinateForm(
+        ordinate=int(lines[6][0:10]), length=int(lines[6][10:20]), even=int(lines[6][20:30]) == 1
+    )
+    start = float(lines[6][30:43])
+    step = float(lines[6][43:56])
+    function_type = _whole(lines[5][:5])
+    abscissa = int(lines[7][:10])
+    of_time = form.ordinate in _REAL and abscissa == _TIME
+    unit = lines[7][47:67]
+    if not of_time and not _is_of_frequency(function_type, abscissa, form.ordinate, unit):
         return None
-    if not 0 < count <= len(raw):
+    if not 0 < form.length <= len(raw):
         raise ValueError
-    if even == 1 and not abs(start) < _LARGEST > abs(step):  # nor are they NaN
+    if form.even and not abs(start) < _LARGEST > abs(step):  # nor are they NaN
         raise ValueError
     if header.split()[0] == b"58b":
         with np.errstate(invalid="ignore"):  # of bytes that are no number, which are refused below
-            given, values = _binary(raw, header, place, ordinate, count, even == 1)
+            uneven, values = _binary(raw, header, offset, form)
     else:
-        given, values = _text(raw, place, ordinate, count, even == 1)
-    variables = start + step * np.arange(count, dtype=float) if given is None else given
-    words = "".join(letter for letter in lines[0] if letter.isprintable()).strip()
-    if not (np.abs(variables) < _LARGEST).all():  # nor are they NaN
+        uneven, values = _text(raw, offset, form)
+    variable = start + step * np.arange(form.length, dtype=float) if uneven is None else uneven
+    identification = "".join(letter for letter in lines[0] if letter.isprintable()).strip()
+    if not (np.abs(variable) < _LARGEST).all():  # nor are they NaN
         raise ValueError
-    if not of_time:
-        if (np.abs(values) >= _LARGEST).any():
+    if of_time:
+        if not (np.abs(values) < _LARGEST).all():
             raise ValueError
-        kinds, units = (
-            (_whole(lines[8][:10]), _whole(lines[9][:10])),
-            (_unit_label(lines[8]), _unit_label(lines[9])),
-        )
-        ends = _freedom(lines[5], 30), _freedom(lines[5], 55)
-        return FunctionOfFrequency(
-            number, words, function_type, kinds, units, *ends, variables, values
-        )
-    if not (np.abs(values) < _LARGEST).all():
+        kind = int(lines[8][:10])
+        label = _unit_label(lines[8])
+        return Function(number, identification, kind, label, variable, values.real)
+    if (np.abs(values) >= _LARGEST).any():
         raise ValueError
-    return Function(
-        number, words, int(lines[8][:10]), _unit_label(lines[8]), variables, values.real
+    return FunctionOfFrequency(
+        number=number,
+        identification=identification,
+        function_type=function_type,
+        kinds=(_whole(lines[8][:10]), _whole(lines[9][:10])),
+        units=(_unit_label(lines[8]), _unit_label(lines[9])),
+        response=_freedom(lines[5], 30),
+        reference=_freedom(lines[5], 55),
+        frequency=variable,
+        values=values,
     )
 
 
-def _is_of_frequency(function_type: int, variable: int, ordinate: int, unit: str) -> bool:
-    """Return whether a function is a frequency response or a coherence that is read:
-    programs leave the kind of the abscissa out.
+class _OrdinateForm(NamedTuple):
+    """Form of the numbers of a function: type of the ordinate, how many, and even spacing."""
+
+    ordinate: int
+    length: int
+    even: bool
+
+    @property
+    def parts(self) -> int:
+        """Numbers of a value: two of a complex one."""
+        return 2 if self.ordinate in _COMPLEX else 1
+
+    @property
+    def is_single(self) -> bool:
+        """Whether they have single precision."""
+        return self.ordinate in _SINGLE
+
+
+def _is_of_frequency(function_type: int, abscissa: int, ordinate: int, unit: str) -> bool:
+    """Return whether a function is a frequency response or a coherence that is read.
+
+    Programs leave the type of the abscissa out; then its unit tells it.
     """
-    if variable != _FREQUENCY and not (variable in _UNSTATED and unit.strip().lower() == _HERTZ):
+    is_hertz = abscissa in _UNSTATED and unit.strip().lower() == _HERTZ
+    if abscissa != _FREQUENCY and not is_hertz:
         return False
-    return (function_type, ordinate in _COMPLEX, ordinate in _REAL) in (
-        (FREQUENCY_RESPONSE, True, False),
-        (COHERENCE, False, True),
-    )
+    if function_type == FREQUENCY_RESPONSE:
+        return ordinate in _COMPLEX
+    return function_type == COHERENCE and ordinate in _REAL
 
 
 def _whole(text: str) -> int:
-    """Return a number of a header that programs leave out, or fill with something else: 0."""
+    """Return a number of a header; 0 where programs leave it out or write something else."""
     return int(text) if text.strip().lstrip("+-").isdigit() else 0
 
 
@@ -325,57 +374,53 @@ def _freedom(line: str, at: int) -> Freedom:
 
 
 def _binary(
-    raw: bytes, header: bytes, place: int, ordinate: int, count: int, even: bool
+    raw: bytes, header: bytes, offset: int, form: _OrdinateForm
 ) -> tuple[Floats | None, Floats | Complex]:
-    order, form, _, size = (int(word) for word in header.split()[1:5])
-    end, values, parts = (
-        _ENDS[order],
-        "f4" if ordinate in _SINGLE else "f8",
-        2 if ordinate in _COMPLEX else 1,
-    )
-    if form != _IEEE or place + size > len(raw):
+    """Return the variables, None if they are even, and the values of a binary function."""
+    byte_order, floating_format, _, size = (int(field) for field in header.split()[1:5])
+    order = _ENDS[byte_order]
+    precision = "f4" if form.is_single else "f8"
+    if floating_format != _IEEE or offset + size > len(raw):
         raise ValueError
-    if even:
-        return None, _joined(
-            np.frombuffer(raw, f"{end}{values}", parts * count, place).astype(float), parts
-        )
+    if form.even:
+        numbers = np.frombuffer(raw, f"{order}{precision}", form.parts * form.length, offset)
+        return None, _joined(numbers.astype(float), form.parts)
     # with double-precision values, times occur in single and in double precision, and the stated
-    # size may omit them
-    after = place + (8 + parts * int(values[1])) * count
-    wide = raw[after : after + 12].lstrip().startswith(_MARK)
-    times = "f8" if wide else "f4"
-    pairs = np.frombuffer(
-        raw, [("x", f"{end}{times}"), ("y", f"{end}{values}", (parts,))], count, place
-    )
-    return pairs["x"].astype(float), _joined(pairs["y"].astype(float).ravel(), parts)
+    # size may omit them: the mark of the end lies behind them if they are double
+    number_size = int(precision[1])
+    end_if_double = offset + (8 + form.parts * number_size) * form.length
+    is_double = raw[end_if_double : end_if_double + 12].lstrip().startswith(_MARK)
+    variable = f"{order}{'f8' if is_double else 'f4'}"
+    row = [("x", variable), ("y", f"{order}{precision}", (form.parts,))]
+    rows = np.frombuffer(raw, row, form.length, offset)
+    return rows["x"].astype(float), _joined(rows["y"].astype(float).ravel(), form.parts)
 
 
-def _text(
-    raw: bytes, place: int, ordinate: int, count: int, even: bool
-) -> tuple[Floats | None, Floats | Complex]:
-    width, parts = _WIDTHS[ordinate], 2 if ordinate in _COMPLEX else 1
-    single = ordinate in _SINGLE
+def _text(raw: bytes, offset: int, form: _OrdinateForm) -> tuple[Floats | None, Floats | Complex]:
+    """Return the variables, None if they are even, and the values of a function in text."""
+    width = _WIDTHS[form.ordinate]
+    in_line = 6 if form.is_single else 4
     # columns of fixed width, not necessarily separated by blanks
-    widths = (
-        [width] * (6 if single else 4)
-        if even
-        else [13, *[width] * parts] * ((6 if single else 4) // (1 + parts))
-    )
+    if form.even:
+        row = form.parts
+        widths = [width] * in_line
+    else:
+        row = 1 + form.parts
+        widths = [_WIDTH_OF_VARIABLE, *[width] * form.parts] * (in_line // row)
     edges = np.concatenate([[0], np.cumsum(widths)])
-    found: list[float] = []
-    wanted = (parts if even else 1 + parts) * count
-    while len(found) < wanted:
-        if place >= len(raw):
+    numbers: list[float] = []
+    while len(numbers) < row * form.length:
+        if offset >= len(raw):
             raise ValueError
-        line, place = _line(raw, place)
+        line, offset = _line(raw, offset)
         text = line.decode("ascii").upper().replace("D", "E")
-        cells = [text[begin:stop].strip() for begin, stop in itertools.pairwise(edges)]
-        found += [float(cell) for cell in cells if cell]
-    numbers = np.array(found[:wanted])
-    if even:
-        return None, _joined(numbers, parts)
-    rows = numbers.reshape(count, 1 + parts)
-    return rows[:, 0], _joined(rows[:, 1:].ravel(), parts)
+        cells = [text[start:end].strip() for start, end in itertools.pairwise(edges)]
+        numbers += [float(cell) for cell in cells if cell]
+    values = np.array(numbers[: row * form.length])
+    if form.even:
+        return None, _joined(values, form.parts)
+    rows = values.reshape(form.length, row)
+    return rows[:, 0], _joined(rows[:, 1:].ravel(), form.parts)
 
 
 def _joined(numbers: Floats, parts: int) -> Floats | Complex:

@@ -1,5 +1,6 @@
-"""A block of signals of equal length with what several features ask of them: spectrum,
-envelope, packets, each computed once.
+"""A block of signals of equal length with what several features need of them.
+
+Spectrum, envelope and packets are each computed once.
 """
 
 from __future__ import annotations
@@ -61,9 +62,7 @@ class Block:
 
     @cached_property
     def transform(self) -> Complex:
-        """Fourier transform at the frequencies from zero to half the rate, (n, samples //
-        2 + 1).
-        """
+        """Fourier transform at frequencies from zero to half the rate, (n, samples // 2 + 1)."""
         return np.asarray(fft.rfft(self.value))
 
     @cached_property
@@ -73,10 +72,12 @@ class Block:
 
     @cached_property
     def power(self) -> Floats:
-        """Energy at the frequencies of the transform: the sum over them is that of the
-        squares of the samples (Parseval).
+        """Energy at the frequencies of the transform.
+
+        The sum over them is that of the squares of the samples (Parseval).
         """
         power = (self.transform.real**2 + self.transform.imag**2) / self.samples
+        # all but zero and half the rate have a negative frequency of the same energy
         power[:, 1 : (self.samples + 1) // 2] *= 2.0
         return np.asarray(power)
 
@@ -88,7 +89,9 @@ class Block:
     @cached_property
     def threshold(self) -> Floats:
         """Threshold of the envelope, (n,)."""
-        return THRESHOLD * self.envelope.max(axis=1) if self.given is None else self.given
+        if self.given is not None:
+            return self.given
+        return THRESHOLD * self.envelope.max(axis=1)
 
     @cached_property
     def packets(self) -> Packets:

@@ -7,21 +7,19 @@ import numpy as np
 from vibroimpact.arrays import Bools
 from vibroimpact.signals.record import Record
 
-_STEPS = 3.0
-"""Steps of a converter by which a peak rises above its neighbours where it is cut, and
-not round.
-"""
-_ALL = 3
+_LEAST_STEPS = 3.0
+"""Steps of a converter by which a cut peak rises above its neighbours, and a round one does not."""
+_LEAST_IN_ALL = 3
 """Number of samples at an extreme that are no chance, wherever they are."""
 _AT_REST = 1e-6
-"""Part of the largest magnitude up to which a signal rests: the level of a force between
-impacts is no end of a converter's range.
+"""Part of the largest magnitude up to which a signal rests.
+
+The level of a force between impacts is no end of a converter's range.
 """
 
 
 def clipped_samples(record: Record) -> Bools:
-    """Return which samples of a record are clipped: at its largest or its lowest value, twice in a
-    row or three times in all.
+    """Return which samples of a record are clipped: at an extreme twice in a row, or three times.
 
     A converter of few bits repeats the extreme of a round peak too; there the next value is only a
     step or two lower.
@@ -40,20 +38,22 @@ def clipped_samples(record: Record) -> Bools:
     (0, [15, 16, 17, 36, 37, 38])
     """
     recorded = record.value if record.recorded is None else record.recorded
-    found = np.zeros(len(recorded), dtype=bool)
+    clipped = np.zeros(len(recorded), dtype=bool)
     levels = np.unique(recorded)
     if len(levels) < 2 or not np.isfinite(recorded).all():
-        return found
-    rest, step = _AT_REST * float(np.abs(record.value).max()), float(np.diff(levels).min())
+        return clipped
+    rest = _AT_REST * float(np.abs(record.value).max())
+    converter_step = float(np.diff(levels).min())
     for sign in (1.0, -1.0):
         side = sign * recorded
-        at_end = (side == side.max()) & (sign * record.value > rest)
-        beside = np.concatenate([[False], at_end, [False]])
-        runs = at_end & (beside[:-2] | beside[2:])
-        if not (runs.any() or np.count_nonzero(at_end) >= _ALL):
+        at_extreme = (side == side.max()) & (sign * record.value > rest)
+        neighbours = np.concatenate([[False], at_extreme, [False]])
+        in_runs = at_extreme & (neighbours[:-2] | neighbours[2:])
+        if not (in_runs.any() or np.count_nonzero(at_extreme) >= _LEAST_IN_ALL):
             continue
-        lower = np.unique(side)[-2]
-        jumps = np.abs(np.diff(side))[np.flatnonzero(at_end[1:] != at_end[:-1])]
-        if len(jumps) and max(jumps.max(), side.max() - lower) > _STEPS * step:
-            found |= at_end
-    return found
+        # the steps up to the extreme and down from it
+        jumps = np.abs(np.diff(side))[np.flatnonzero(at_extreme[1:] != at_extreme[:-1])]
+        next_lower = np.unique(side)[-2]
+        if len(jumps) and max(jumps.max(), side.max() - next_lower) > _LEAST_STEPS * converter_step:
+            clipped |= at_extreme
+    return clipped

@@ -1,5 +1,6 @@
-"""Monotone cubics through chosen samples of many signals at once, as empirical mode
-decomposition needs them.
+"""Monotone cubics through chosen samples of many signals at once.
+
+Empirical mode decomposition needs them.
 """
 
 from __future__ import annotations
@@ -29,44 +30,65 @@ def cubic_through(value: Floats, knots: Indices) -> Floats:
         The cubics.
     """
     count, samples = value.shape
-    number = np.diff(np.searchsorted(knots, samples * np.arange(count + 1)))
-    row = np.repeat(np.arange(count), number)
-    # of each signal: one before it, its knots, one after it; the two have the heights of their
-    # neighbours
-    last = np.cumsum(number + 2) - 1
-    first = last - number - 1
-    inner = np.arange(len(knots)) + 2 * row + 1
-    place, height = np.empty((2, len(knots) + 2 * count))
-    place[inner], height[inner] = knots - samples * row, value.ravel()[knots]
-    place[first], height[first] = -1.0, height[first + 1]
-    place[last], height[last] = samples, height[last - 1]
-    step, slope = np.diff(place), np.diff(height)
-    slope /= step
-    # slopes at the knots: weighted harmonic means of those beside, zero where these have different
-    # signs
-    before, after, bent = slope[:-1], slope[1:], np.zeros(len(place))
-    near, distant = 2.0 * step[1:] + step[:-1], step[1:] + 2.0 * step[:-1]
-    same = before * after > 0.0
-    np.divide(
-        (near + distant) * before * after,
-        near * after + distant * before,
-        out=bent[1:-1],
-        where=same,
-    )
-    bent[first] = bent[last] = 0.0
-    square = (3.0 * slope - 2.0 * bent[:-1] - bent[1:]) / step
-    cubic = (bent[:-1] + bent[1:] - 2.0 * slope) / step**2
+    knots_of_each = np.diff(np.searchsorted(knots, samples * np.arange(count + 1)))
+    signal = np.repeat(np.arange(count), knots_of_each)
+    # the knots of each signal lie between one before its samples and one after them, which have the
+    # heights of their neighbours
+    last = np.cumsum(knots_of_each + 2) - 1
+    first = last - knots_of_each - 1
+    inner = np.arange(len(knots)) + 2 * signal + 1
+    position, height = np.empty((2, len(knots) + 2 * count))
+    position[inner] = knots - samples * signal
+    height[inner] = value.ravel()[knots]
+    position[first] = -1.0
+    height[first] = height[first + 1]
+    position[last] = samples
+    height[last] = height[last - 1]
+    width = np.diff(position)
+    secant = np.diff(height)
+    secant /= width
+    slope = _monotone_slopes(width, secant)
+    slope[first] = slope[last] = 0.0
+    # of the cubic in the distance from the left knot of each interval
+    quadratic = (3.0 * secant - 2.0 * slope[:-1] - slope[1:]) / width
+    cubic = (slope[:-1] + slope[1:] - 2.0 * secant) / width**2
+
     # the samples of each interval between knots
-    bound = np.empty(len(place), dtype=np.int64)
     begin = samples * np.arange(count)
-    bound[first], bound[inner], bound[last] = begin, knots, begin + samples
-    length = np.diff(bound)
-    far, height, linear, square, found = (
-        np.repeat(one, length).reshape(count, samples)
-        for one in (-place[:-1], height[:-1], bent[:-1], square, cubic)
+    bounds = np.empty(len(position), dtype=np.int64)
+    bounds[first] = begin
+    bounds[inner] = knots
+    bounds[last] = begin + samples
+    in_interval = np.diff(bounds)
+
+    def at_samples(of_intervals: Floats) -> Floats:
+        return np.repeat(of_intervals, in_interval).reshape(count, samples)
+
+    distance = at_samples(-position[:-1])
+    distance += np.arange(samples)
+    # Horner's scheme
+    polynomial = at_samples(cubic)
+    for coefficient in (quadratic, slope[:-1], height[:-1]):
+        polynomial *= distance
+        polynomial += at_samples(coefficient)
+    return np.asarray(polynomial)
+
+
+def _monotone_slopes(width: Floats, secant: Floats) -> Floats:
+    """Return the slopes of monotone cubics at knots, from widths and secants of intervals.
+
+    They are weighted harmonic means of the secants to either side, and zero where these have
+    different signs (Fritsch and Butland 1984); at the ends of the row they are zero.
+    """
+    left = secant[:-1]
+    right = secant[1:]
+    left_weight = 2.0 * width[1:] + width[:-1]
+    right_weight = width[1:] + 2.0 * width[:-1]
+    slope = np.zeros(len(width) + 1)
+    np.divide(
+        (left_weight + right_weight) * left * right,
+        left_weight * right + right_weight * left,
+        out=slope[1:-1],
+        where=left * right > 0.0,
     )
-    far += np.arange(samples)
-    for part in (square, linear, height):
-        found *= far
-        found += part
-    return np.asarray(found)
+    return slope

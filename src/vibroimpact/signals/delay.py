@@ -7,11 +7,11 @@ from typing import NamedTuple
 import numpy as np
 from scipy import fft
 
-from vibroimpact.arrays import Floats
+from vibroimpact.arrays import Complex, Floats
 
-_FINE = 8
-"""Places per sample where the correlation is computed before its top is found."""
-_STEPS = 20
+_OVERSAMPLING = 8
+"""Lags per sample at which the correlation is computed before its top is found."""
+_NEWTON_STEPS = 20
 _EDGE = 0.1
 """Width of the edges of a band, relative to their frequencies."""
 
@@ -39,8 +39,9 @@ class Delay(NamedTuple):
 
 
 def band_limited(value: Floats, rate: float, band: tuple[float, float]) -> Floats:
-    """Return signals (..., samples) without what lies outside a band of frequencies [Hz], without
-    delay; zero before and after.
+    """Return signals (..., samples) without what lies outside a band of frequencies [Hz].
+
+    The filter has no delay; the signals are taken as zero before and after.
 
     Examples
     --------
@@ -50,16 +51,17 @@ def band_limited(value: Floats, rate: float, band: tuple[float, float]) -> Float
     >>> bool(np.abs(left[500:3500]).max() < 0.01)
     True
     """
-    length = fft.next_fast_len(2 * value.shape[-1], real=True)
+    samples = value.shape[-1]
+    length = fft.next_fast_len(2 * samples, real=True)
     gain = _gain(fft.rfftfreq(length, 1.0 / rate), band)
-    return np.asarray(fft.irfft(gain * fft.rfft(value, length), length)[..., : value.shape[-1]])
+    filtered = fft.irfft(gain * fft.rfft(value, length), length)
+    return np.asarray(filtered[..., :samples])
 
 
 def delay_between(
     later: Floats, earlier: Floats, rate: float, band: tuple[float, float], most: float
 ) -> Delay:
-    r"""Return the one delay of signals after others at which they correlate best, whatever their
-    signs.
+    r"""Return the one delay of signals after others at which they correlate best, of either sign.
 
     That is where the sum over the pairs of the magnitudes of their normalised cross-correlations is
     largest, each of band-limited signals:
@@ -92,25 +94,51 @@ def delay_between(
     length = fft.next_fast_len(2 * later.shape[1], real=True)
     frequency = fft.rfftfreq(length, 1.0 / rate)
     gain = _gain(frequency, band)
-    one, other = (gain * fft.rfft(value, length) for value in (later, earlier))
-    twice = np.where((frequency == 0.0) | (frequency == 0.5 * rate), 1.0, 2.0) / length
-    sizes = [np.sqrt((twice * np.abs(part) ** 2).sum(axis=1)) for part in (one, other)]
-    cross = one * other.conj() / np.maximum(sizes[0] * sizes[1], 1e-300)[:, None]
-    fine = _FINE * fft.irfft(cross, _FINE * length)
-    reach = min(int(most * rate * _FINE), _FINE * length // 2 - 1)
-    lags = np.arange(-reach, reach + 1)
-    at = int(lags[np.argmax(np.abs(fine[:, lags]).sum(axis=0))])
-    polarity = np.where(fine[:, at] < 0.0, -1.0, 1.0)
-    together, turn, time = twice * (polarity @ cross), 2j * np.pi * frequency, at / (_FINE * rate)
-    for _ in range(_STEPS):
-        wave = together * np.exp(turn * time)
-        slope, bend = float((turn * wave).real.sum()), float((turn**2 * wave).real.sum())
-        step = -slope / bend if bend < 0.0 else 0.0
-        time += float(np.clip(step, -0.5 / (_FINE * rate), 0.5 / (_FINE * rate)))
+    later_spectrum = gain * fft.rfft(later, length)
+    earlier_spectrum = gain * fft.rfft(earlier, length)
+    # the one-sided spectrum holds all frequencies twice, but zero and half the rate
+    weights = np.where((frequency == 0.0) | (frequency == 0.5 * rate), 1.0, 2.0) / length
+    later_norm = np.sqrt((weights * np.abs(later_spectrum) ** 2).sum(axis=1))
+    earlier_norm = np.sqrt((weights * np.abs(earlier_spectrum) ** 2).sum(axis=1))
+    norms = np.maximum(later_norm * earlier_norm, 1e-300)
+    cross_spectrum = later_spectrum * earlier_spectrum.conj() / norms[:, None]
+
+    # the highest of the correlations at a grid of lags, in eighths of a sample
+    correlations = _OVERSAMPLING * fft.irfft(cross_spectrum, _OVERSAMPLING * length)
+    largest_lag = min(int(most * rate * _OVERSAMPLING), _OVERSAMPLING * length // 2 - 1)
+    lags = np.arange(-largest_lag, largest_lag + 1)
+    best_lag = int(lags[np.argmax(np.abs(correlations[:, lags]).sum(axis=0))])
+    polarity = np.where(correlations[:, best_lag] < 0.0, -1.0, 1.0)
+
+    time = _top_near(
+        best_lag / (_OVERSAMPLING * rate), weights * (polarity @ cross_spectrum), frequency, rate
+    )
+    turn = np.exp(2j * np.pi * frequency * time)
+    correlation = (cross_spectrum @ (weights * turn)).real
+    return Delay(
+        time,
+        polarity,
+        polarity * correlation,
+        correlation * later_norm / np.maximum(earlier_norm, 1e-300),
+    )
+
+
+def _top_near(time: float, spectrum: Complex, frequency: Floats, rate: float) -> float:
+    """Return the time [s] near another at which a correlation with a spectrum is largest.
+
+    Newton's method seeks where the derivative of the correlation is zero.
+    """
+    turn_rate = 2j * np.pi * frequency
+    longest_step = 0.5 / (_OVERSAMPLING * rate)
+    for _ in range(_NEWTON_STEPS):
+        terms = spectrum * np.exp(turn_rate * time)
+        slope = float((turn_rate * terms).real.sum())
+        curvature = float((turn_rate**2 * terms).real.sum())
+        step = -slope / curvature if curvature < 0.0 else 0.0
+        time += float(np.clip(step, -longest_step, longest_step))
         if abs(step) * rate < 1e-12:
             break
-    alike = (cross @ (twice * np.exp(turn * time))).real
-    return Delay(time, polarity, polarity * alike, alike * sizes[0] / np.maximum(sizes[1], 1e-300))
+    return time
 
 
 def _gain(frequency: Floats, band: tuple[float, float]) -> Floats:

@@ -1,5 +1,6 @@
-"""What a feature is: a number with a name, a unit, an equation and a source; and a family
-of them, which share their computation.
+"""What a feature is, and a family of features, which share their computation.
+
+A feature is a number with a name, a unit, an equation and a source.
 """
 
 from __future__ import annotations
@@ -61,13 +62,12 @@ class Feature:
         """
         if not self.degree or signal in ("", "1"):
             return self.unit
-        power = (
-            signal
-            if self.degree == 1
-            else f"({signal})^{self.degree}"
-            if set("/ ^") & set(signal)
-            else f"{signal}^{self.degree}"
-        )
+        if self.degree == 1:
+            power = signal
+        elif set("/ ^") & set(signal):
+            power = f"({signal})^{self.degree}"
+        else:
+            power = f"{signal}^{self.degree}"
         return power if self.unit == "1" else f"{power} {self.unit}"
 
 

@@ -1,6 +1,4 @@
-"""The table of features: a row a signal, a column a feature, and a reason wherever there
-is no number.
-"""
+"""The table of features: a row a signal, a column a feature, reasons where there is no number."""
 
 from __future__ import annotations
 
@@ -16,13 +14,13 @@ from vibroimpact.errors import InputError
 from vibroimpact.registry import find_named
 from vibroimpact.signals.baseline import baseline_of, removed_of
 from vibroimpact.signals.block import Block
-from vibroimpact.signals.feature import Feature
+from vibroimpact.signals.feature import Family, Feature
 from vibroimpact.signals.packets import DEAD_TIME, check_settings
 from vibroimpact.signals.reasons import Reason
 from vibroimpact.signals.record import checked_rate, real_numbers
 from vibroimpact.signals.registry import families, features, find_feature
 
-_AT_ONCE = 2**15
+_SAMPLES_AT_ONCE = 2**15
 """Samples of a block of signals: its arrays stay in the cache of a processor."""
 
 
@@ -64,14 +62,11 @@ class FeatureTable:
 
     def __getitem__(self, name: str) -> Floats:
         """Return the values of a feature, (signals,)."""
-        return self.values[
-            :, find_named("feature", name, {one: place for place, one in enumerate(self.names)})
-        ]
+        columns = {feature: column for column, feature in enumerate(self.names)}
+        return self.values[:, find_named("feature", name, columns)]
 
     def lacking(self, signal: int) -> dict[str, str]:
-        """Return why a signal has no value of some features, in words by the name of the
-        feature.
-        """
+        """Return why a signal has no value of some features, by the name of the feature."""
         return {
             name: Reason(code).text
             for name, code in zip(self.names, self.reasons[signal], strict=True)
@@ -128,7 +123,8 @@ def feature_table(
     >>> table["peak_frequency"].tolist(), table.units
     ([50.0, 200.0], ('V', 'Hz'))
     """
-    signals, frequency = real_numbers(values), checked_rate(rate)
+    signals = real_numbers(values)
+    sampling_rate = checked_rate(rate)
     if signals.ndim != 2:
         raise InputError(
             f"the signals are an array of {signals.ndim} dimensions; give a table of shape "
@@ -136,24 +132,25 @@ def feature_table(
         )
     check_settings(threshold, dead_time)
     wanted = {name: find_feature(name) for name in (features() if names is None else names)}
-    found, reasons = (
-        np.empty((len(signals), len(wanted))),
-        np.zeros((len(signals), len(wanted)), dtype=np.int8),
-    )
-    removed = np.zeros((len(signals), 2))
-    step = _step(signals.shape[1])
-    for first in range(0, len(signals), step):
-        part = slice(first, first + step)
-        recorded = signals[part].astype(np.float64)
-        baseline = np.stack([baseline_of(one) for one in recorded])
-        removed[part] = [removed_of(one) for one in baseline]
-        found[part], reasons[part] = features_at_rest(
-            recorded - baseline, recorded, frequency, wanted, threshold, dead_time
+    count, samples = signals.shape
+    numbers, reasons = _empty_table(count, len(wanted))
+    offset = np.zeros(count)
+    drift = np.zeros(count)
+    step = _signals_at_once(samples)
+    for first in range(0, count, step):
+        block = slice(first, first + step)
+        recorded = signals[block].astype(np.float64)
+        baselines = np.stack([baseline_of(signal) for signal in recorded])
+        removed = [removed_of(baseline) for baseline in baselines]
+        offset[block] = [baseline.offset for baseline in removed]
+        drift[block] = [baseline.drift for baseline in removed]
+        numbers[block], reasons[block] = features_at_rest(
+            recorded - baselines, recorded, sampling_rate, wanted, threshold, dead_time
         )
         if progress is not None:
-            progress(min(first + step, len(signals)), len(signals))
-    units = tuple(one.unit_for(unit) for one in wanted.values())
-    return FeatureTable(tuple(wanted), units, found, reasons, removed[:, 0], removed[:, 1])
+            progress(min(first + step, count), count)
+    units = tuple(feature.unit_for(unit) for feature in wanted.values())
+    return FeatureTable(tuple(wanted), units, numbers, reasons, offset, drift)
 
 
 def features_at_rest(
@@ -164,8 +161,9 @@ def features_at_rest(
     threshold: float | None,
     dead_time: float,
 ) -> tuple[Floats, NDArray[np.int8]]:
-    """Return values and reasons, each of the shape (signals, features), of signals that rest at
-    zero; a few at once.
+    """Return values and reasons, each of the shape (signals, features), of signals at rest at zero.
+
+    They are computed a few signals at once.
 
     Parameters
     ----------
@@ -176,22 +174,25 @@ def features_at_rest(
     wanted : mapping of str to Feature
         The features that are wanted, by name.
     """
-    values, reasons = (
-        np.empty((len(signals), len(wanted))),
-        np.zeros((len(signals), len(wanted)), dtype=np.int8),
-    )
-    step = _step(signals.shape[1])
-    for first in range(0, len(signals), step):
-        part = slice(first, first + step)
-        values[part], reasons[part] = _features_of(
-            signals[part], recorded[part], rate, wanted, threshold, dead_time
+    count, samples = signals.shape
+    values, reasons = _empty_table(count, len(wanted))
+    step = _signals_at_once(samples)
+    for first in range(0, count, step):
+        block = slice(first, first + step)
+        values[block], reasons[block] = _features_of(
+            signals[block], recorded[block], rate, wanted, threshold, dead_time
         )
     return values, reasons
 
 
-def _step(samples: int) -> int:
+def _empty_table(signals: int, columns: int) -> tuple[Floats, NDArray[np.int8]]:
+    """Return values, NaN, and reasons, none, of the shape (signals, columns)."""
+    return np.full((signals, columns), np.nan), np.zeros((signals, columns), dtype=np.int8)
+
+
+def _signals_at_once(samples: int) -> int:
     """Return the number of signals of a block."""
-    return max(1, _AT_ONCE // max(1, samples))
+    return max(1, _SAMPLES_AT_ONCE // max(1, samples))
 
 
 def _features_of(
@@ -202,14 +203,9 @@ def _features_of(
     threshold: float | None,
     dead_time: float,
 ) -> tuple[Floats, NDArray[np.int8]]:
-    """Return values and reasons of a block of signals (n, samples), each of the shape (n,
-    features).
-    """
+    """Return values and reasons of a block of signals (n, samples), (n, features) each."""
     count, samples = signals.shape
-    values, reasons = (
-        np.full((count, len(wanted)), np.nan),
-        np.zeros((count, len(wanted)), dtype=np.int8),
-    )
+    values, reasons = _empty_table(count, len(wanted))
     if not samples:
         reasons[:] = Reason.EMPTY
         return values, reasons
@@ -217,71 +213,70 @@ def _features_of(
     reasons[~finite] = Reason.NOT_FINITE
     if not finite.any():
         return values, reasons
+    column_of = {name: column for column, name in enumerate(wanted)}
     # a number without a value is NaN, and no warning
-    chosen = [
-        family
-        for family in families()
-        if any(feature.name in wanted for feature in family.features)
-    ]
     with np.errstate(all="ignore"):
         block, exponent = _scaled(signals[finite], recorded[finite], rate, threshold, dead_time)
         constant = np.ptp(block.value, axis=1) == 0.0
-        place = {name: column for column, name in enumerate(wanted)}
-        for family in chosen:
-            here = [
-                (column, feature)
-                for column, feature in enumerate(family.features)
-                if feature.name in wanted
-            ]
-            long = samples >= min(feature.least for _, feature in here)
-            computed = (
-                family.of(block)
-                if long
-                else np.full((len(block.value), len(family.features)), np.nan)
-            )
-            for column, feature in here:
-                number = (
-                    computed[:, column]
-                    if samples >= feature.least
-                    else np.full(len(block.value), np.nan)
-                )
-                values[finite, place[feature.name]], reasons[finite, place[feature.name]] = _told(
-                    feature, number, exponent, constant, samples
-                )
+        for family in families():
+            if not any(feature.name in wanted for feature in family.features):
+                continue
+            numbers = _family_numbers(family, block, wanted)
+            for feature, number in zip(family.features, numbers.T, strict=True):
+                if feature.name in wanted:
+                    column = column_of[feature.name]
+                    values[finite, column], reasons[finite, column] = _with_reasons(
+                        feature, number, exponent, constant, samples
+                    )
     return values, reasons
+
+
+def _family_numbers(family: Family, block: Block, wanted: Mapping[str, Feature]) -> Floats:
+    """Return the numbers of a family at the scale of a block, (n, features).
+
+    They are NaN where a feature needs more samples.
+    """
+    least = np.array([feature.least for feature in family.features])
+    needed = [feature.least for feature in family.features if feature.name in wanted]
+    if block.samples < min(needed):
+        return np.full((len(block.value), len(family.features)), np.nan)
+    return np.where(block.samples >= least, family.of(block), np.nan)
 
 
 def _scaled(
     signals: Floats, recorded: Floats, rate: float, threshold: float | None, dead_time: float
 ) -> tuple[Block, Integers]:
-    """Return signals with largest magnitudes of 1/2 to 1, and the powers of two that they
-    were divided by; such a division is exact.
+    """Return signals with largest magnitudes of 1/2 to 1, and the powers of two of their scales.
+
+    Such a division is exact.
     """
     exponent = np.frexp(np.abs(signals).max(axis=1))[1].astype(np.int64)
     # in two steps, since the power of two itself may be out of range
     half = exponent // 2
     value = np.ldexp(np.ldexp(signals, -half[:, None]), (half - exponent)[:, None])
-    # a threshold that is nothing beside a signal is still above zero
-    given = (
-        None
-        if threshold is None
-        else np.maximum(np.ldexp(np.ldexp(threshold, -half), half - exponent), np.finfo(float).tiny)
-    )
-    return Block(value, rate, given, dead_time, recorded), exponent
+    if threshold is None:
+        scaled_threshold = None
+    else:
+        scaled_threshold = np.ldexp(np.ldexp(threshold, -half), half - exponent)
+        # a threshold that is nothing beside a signal is still above zero
+        scaled_threshold = np.maximum(scaled_threshold, np.finfo(float).tiny)
+    return Block(value, rate, scaled_threshold, dead_time, recorded), exponent
 
 
-def _told(
+def _with_reasons(
     feature: Feature, number: Floats, exponent: Integers, constant: Bools, samples: int
 ) -> tuple[Floats, NDArray[np.int8]]:
-    """Return the values of a feature at the scale of the signals, and a reason where
-    there is none.
+    """Return the values of a feature at the scale of the signals, with reasons where there is none.
+
+    The numbers are those of signals that were divided by two to the power of the exponents.
     """
     power = feature.degree * exponent
     half = power // 2
     value = np.ldexp(np.ldexp(number, half), power - half)
     reason = np.zeros(len(value), dtype=np.int8)
     beyond = np.isinf(value) | ((value == 0.0) & (number != 0.0))
-    reason[beyond], value[beyond] = Reason.OUT_OF_RANGE, np.nan
+    reason[beyond] = Reason.OUT_OF_RANGE
+    value[beyond] = np.nan
     missing = np.isnan(number)
     if samples < feature.least:
         reason[missing] = Reason.TOO_SHORT

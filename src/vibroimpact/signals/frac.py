@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
+from numpy.typing import NDArray
 
 from vibroimpact.arrays import Floats
 from vibroimpact.errors import InputError
 
 
 def frac(measured: object, simulated: object) -> Floats:
-    r"""Return the frequency response assurance criterion of two frequency responses, or of two
-    spectra.
+    r"""Return the frequency response assurance criterion of frequency responses, or of spectra.
 
     .. math:: \mathrm{FRAC} = \frac{|\sum_k H_m^* H_s|^2}{\sum_k |H_m|^2 \sum_k |H_s|^2}
 
@@ -46,17 +48,22 @@ def frac(measured: object, simulated: object) -> Floats:
     >>> float(frac(response, -3.0 * response)), round(float(frac(response, [1.0, 1.0j, 1.0])), 6)
     (1.0, 0.222222)
     """
-    one, other = np.asarray(measured), np.asarray(simulated)
-    if one.shape != other.shape or one.ndim == 0:
+    first = np.asarray(measured)
+    second = np.asarray(simulated)
+    if first.shape != second.shape or first.ndim == 0:
         raise InputError(
-            f"responses of the shapes {one.shape} and {other.shape} can't be compared; "
+            f"responses of the shapes {first.shape} and {second.shape} can't be compared; "
             "give arrays of one shape, at the same frequencies"
         )
-    # sizes do not count: scaled, so that no square overflows or vanishes
-    sizes = [np.max(np.abs(each), axis=-1, keepdims=True, initial=0.0) for each in (one, other)]
     with np.errstate(invalid="ignore", divide="ignore"):
-        one, other = one / sizes[0], other / sizes[1]
-        common = np.abs(np.sum(one.conj() * other, axis=-1)) ** 2
-        return np.asarray(
-            common / (np.sum(np.abs(one) ** 2, axis=-1) * np.sum(np.abs(other) ** 2, axis=-1))
-        )
+        # sizes do not count: scaled, so that no square overflows or vanishes
+        first = first / _largest(first)
+        second = second / _largest(second)
+        in_common = np.abs(np.sum(first.conj() * second, axis=-1)) ** 2
+        energies = np.sum(np.abs(first) ** 2, axis=-1) * np.sum(np.abs(second) ** 2, axis=-1)
+        return np.asarray(in_common / energies)
+
+
+def _largest(response: NDArray[Any]) -> Floats:
+    """Return the largest magnitude of each response, (..., 1)."""
+    return np.asarray(np.max(np.abs(response), axis=-1, keepdims=True, initial=0.0))

@@ -11,8 +11,9 @@ from vibroimpact.errors import InputError
 from vibroimpact.quoting import quoted
 
 RESPONSE_UNITS = ("m/s2/N", "m/s/N", "m/N", "V/N", "1/N")
-"""Units of frequency responses, in SI: of accelerations, velocities, displacements,
-voltages and strains; "" if it is not known.
+"""Units of frequency responses, in SI; "" if it is not known.
+
+Those of accelerations, velocities, displacements, voltages and strains.
 """
 
 _DIRECTIONS = (-3, -2, -1, 0, 1, 2, 3)
@@ -108,10 +109,8 @@ class FrequencyResponse:
     doubts: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
-        frequency, value = (
-            np.asarray(self.frequency, dtype=float),
-            np.asarray(self.value, dtype=complex),
-        )
+        frequency = np.asarray(self.frequency, dtype=float)
+        value = np.asarray(self.value, dtype=complex)
         name = quoted(self.name)
         if frequency.ndim != 1 or frequency.shape != value.shape or len(frequency) < 2:
             raise InputError(
@@ -119,11 +118,8 @@ class FrequencyResponse:
                 f"{frequency.shape} and values of the shape {value.shape}; "
                 "give two rows of the same length, of two numbers or more"
             )
-        if (
-            not (frequency > 0.0).all()
-            or not (np.diff(frequency) > 0.0).all()
-            or not np.isfinite(frequency).all()
-        ):
+        rises = (frequency > 0.0).all() and (np.diff(frequency) > 0.0).all()
+        if not rises or not np.isfinite(frequency).all():
             raise InputError(
                 f"the frequencies of the response {name} do not rise from above 0; sort "
                 "them, each once, and leave 0 Hz out"
@@ -140,10 +136,8 @@ class FrequencyResponse:
             )
         if self.coherence is not None:
             coherence = np.asarray(self.coherence, dtype=float)
-            if (
-                coherence.shape != frequency.shape
-                or not ((coherence >= 0.0) & (coherence <= 1.0)).all()
-            ):
+            in_range = (coherence >= 0.0) & (coherence <= 1.0)
+            if coherence.shape != frequency.shape or not in_range.all():
                 raise InputError(
                     f"the coherence of the response {name} must have one number from 0 to "
                     "1 for each frequency"

@@ -12,8 +12,8 @@ from vibroimpact.quoting import quoted
 from vibroimpact.signals.read_records import read_records
 from vibroimpact.signals.record import Record
 
-_TOLD = 10
-"""Channels that a message names at most."""
+_MOST_LISTED = 10
+"""Largest number of channels that a message names."""
 
 
 def one_record(
@@ -46,45 +46,49 @@ def one_record(
     ...     vi.one_record(f"{folder}/hammer.csv", "force").value.tolist()
     [1000.0, 2000.0]
     """
-    names, found = [], []
+    names: list[str] = []
+    matching: list[Record] = []
     for record in read_records(path, columns):
         names.append(record.name)
         if channel is None or is_named(record, channel):
-            found.append(record)
-        if len(found) > 1:
+            matching.append(record)
+        if len(matching) > 1:
             break
-    if not found:
-        every = list(dict.fromkeys(names))
-        there = (
-            f"it has {_listed(every)}.{did_you_mean(channel or '', every)}"
-            if every
-            else "it has no record"
-        )
-        raise with_path(
-            path,
-            InputError(
-                f"there is no channel {quoted(channel)}; {there}" if channel is not None else there
-            ),
-        )
-    if len(found) > 1:
-        alike = (
-            record.name
-            for record in islice(read_records(path, columns), _TOLD + 1)
-            if channel is None or is_named(record, channel)
-        )
-        every = list(dict.fromkeys(alike))
-        several = (
-            f"it has several channels, {_listed(every)}; name one by --channel (in "
-            "a case the key channel)"
-        )
-        one = f"several signals have the name {quoted(every[0])}; take a file with one of them"
-        raise with_path(path, InputError(several if len(every) > 1 else one))
-    return found[0]
+    if len(matching) > 1:
+        raise with_path(path, InputError(_several(path, channel, columns)))
+    if not matching:
+        raise with_path(path, InputError(_no_channel(channel, list(dict.fromkeys(names)))))
+    return matching[0]
+
+
+def _no_channel(channel: str | None, names: list[str]) -> str:
+    """Return the message that there is no such channel among some."""
+    has = "it has no record"
+    if names:
+        has = f"it has {_listed(names)}.{did_you_mean(channel or '', names)}"
+    return has if channel is None else f"there is no channel {quoted(channel)}; {has}"
+
+
+def _several(path: str | PathLike[str], channel: str | None, columns: str | None) -> str:
+    """Return the message that there are several such channels."""
+    matching = (
+        record.name
+        for record in islice(read_records(path, columns), _MOST_LISTED + 1)
+        if channel is None or is_named(record, channel)
+    )
+    names = list(dict.fromkeys(matching))
+    if len(names) == 1:
+        return f"several signals have the name {quoted(names[0])}; take a file with one of them"
+    return (
+        f"it has several channels, {_listed(names)}; name one by --channel (in "
+        "a case the key channel)"
+    )
 
 
 def is_named(record: Record, channel: str) -> bool:
-    """Return whether a record has a name, or that of a header's cell: a column "Recording (a.u.)"
-    is the record "recording".
+    """Return whether a record has a name, or that of a header's cell.
+
+    A column "Recording (a.u.)" is the record "recording".
 
     Examples
     --------
@@ -99,6 +103,5 @@ def is_named(record: Record, channel: str) -> bool:
 
 
 def _listed(names: list[str]) -> str:
-    return ", ".join(quoted(name) for name in names[:_TOLD]) + (
-        " and more" if len(names) > _TOLD else ""
-    )
+    listed = ", ".join(quoted(name) for name in names[:_MOST_LISTED])
+    return f"{listed} and more" if len(names) > _MOST_LISTED else listed

@@ -17,11 +17,11 @@ from vibroimpact.signals.record import Record
 def from_onset(
     record: Record, duration: float, before: float = 0.0, threshold: float | None = None
 ) -> Record:
-    """Return a window of a record around its first touch: where its magnitude first reaches a
-    threshold, once its baseline is removed.
+    """Return a window of a record around its first touch.
 
-    Windows of equal duration and rate have equal numbers of samples. Before the record and after
-    it, they are filled with zeros.
+    That is where its magnitude first reaches a threshold, once its baseline is removed. Windows of
+    equal duration and rate have equal numbers of samples. Before the record and after it, they are
+    filled with zeros.
 
     Parameters
     ----------
@@ -69,23 +69,26 @@ def from_onset(
     packets = find_packets(clean, threshold)
     onset = int(packets.onset[0]) if len(packets.onset) else 0
     first = onset - round(before * record.rate)
-
-    def cut(whole: Floats) -> Floats:
-        part, lead = whole[max(first, 0) : max(first + samples, 0)], max(-first, 0)
-        return np.pad(part, (lead, samples - lead - len(part)))
-
-    recorded = None if clean.recorded is None else cut(clean.recorded)
     return replace(
-        clean, value=cut(clean.value), recorded=recorded, start=clean.start + first / clean.rate
+        clean,
+        value=_window(clean.value, first, samples),
+        recorded=None if clean.recorded is None else _window(clean.recorded, first, samples),
+        start=clean.start + first / clean.rate,
     )
 
 
-def onset_time(record: Record, threshold: float | None = None) -> float:
-    """Return the time at which the magnitude of a record, without its baseline, first reaches a
-    threshold [s].
+def _window(value: Floats, first: int, samples: int) -> Floats:
+    """Return so many samples from a first one on, with zeros before the record and after it."""
+    inside = value[max(first, 0) : max(first + samples, 0)]
+    zeros_before = max(-first, 0)
+    return np.pad(inside, (zeros_before, samples - zeros_before - len(inside)))
 
-    That is within the first of its `Packets`: the envelope tells that there is one, the signal when
-    it begins.
+
+def onset_time(record: Record, threshold: float | None = None) -> float:
+    """Return the time at which the magnitude of a record first reaches a threshold [s].
+
+    Its baseline is removed. The time is within the first of its `Packets`: the envelope tells that
+    there is one, the signal when it begins.
 
     Parameters
     ----------
@@ -106,13 +109,12 @@ def onset_time(record: Record, threshold: float | None = None) -> float:
     0.0003
     """
     packets = find_packets(record, threshold)
-    if not len(packets.onset):
-        if threshold is None:
-            what = "is zero throughout" if len(record.value) else "has no samples"
-            raise InputError(f"{quoted(record.name)} {what}; it has no onset")
+    name = quoted(record.name)
+    if len(packets.onset):
+        return record.start + float(packets.onset[0]) / record.rate
+    if threshold is not None:
         unit = "" if record.unit in ("", "1") else f" {record.unit}"
-        raise InputError(
-            f"the envelope of {quoted(record.name)} stays below "
-            f"{threshold:g}{unit}; it has no onset"
-        )
-    return record.start + float(packets.onset[0]) / record.rate
+        raise InputError(f"the envelope of {name} stays below {threshold:g}{unit}; it has no onset")
+    if not len(record.value):
+        raise InputError(f"{name} has no samples; it has no onset")
+    raise InputError(f"{name} is zero throughout; it has no onset")

@@ -1,12 +1,12 @@
-"""Packets: the parts of a record that stand above a threshold, as those who measure bedload with
-plate geophones count them.
+"""Packets: the parts of a record that stand above a threshold.
 
-A packet begins at the first sample at which the envelope reaches the threshold, and ends with the
-last one before the envelope stays below for a dead time. An envelope rises before the signal does,
-by a part of its period; the onset is where the signal itself reaches the threshold, and its
-impulses are the upward crossings of the signal. Rickenmann and McArdell (2007, Earth Surf. Process.
-Landforms 32:1362) count impulses; Wyss and others (2016, Water Resour. Res. 52:7744) and Chen and
-others (2022, Earth Surf. Dynam. 10:279) take packets, by the Hilbert envelope.
+Those who measure bedload with plate geophones count them. A packet begins at the first sample at
+which the envelope reaches the threshold, and ends with the last one before the envelope stays below
+for a dead time. An envelope rises before the signal does, by a part of its period; the onset is
+where the signal itself reaches the threshold, and its impulses are the upward crossings of the
+signal. Rickenmann and McArdell (2007, Earth Surf. Process. Landforms 32:1362) count impulses; Wyss
+and others (2016, Water Resour. Res. 52:7744) and Chen and others (2022, Earth Surf. Dynam. 10:279)
+take packets, by the Hilbert envelope.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from vibroimpact.arrays import Floats, Integers
+from vibroimpact.arrays import Bools, Floats, Integers
 from vibroimpact.errors import InputError
 from vibroimpact.signals.baseline import without_baseline
 from vibroimpact.signals.envelope import hilbert_envelope
@@ -99,9 +99,8 @@ def find_packets(
         raise InputError("a sample is not a finite number; packets are sought among finite ones")
     check_settings(threshold, dead_time)
     if not len(record.value):
-        return packets_in(
-            record.value[None], record.value[None], np.ones(1), record.rate, dead_time
-        )
+        no_samples = record.value[None]
+        return packets_in(no_samples, no_samples, np.ones(1), record.rate, dead_time)
     value = without_baseline(record).value[None]
     envelope = hilbert_envelope(value)
     level = THRESHOLD * float(envelope.max()) if threshold is None else threshold
@@ -111,8 +110,9 @@ def find_packets(
 def packet_records(
     record: Record, threshold: float | None = None, dead_time: float = DEAD_TIME
 ) -> list[Record]:
-    """Return the packets of a record, without its baseline, as records of their own, each from its
-    first sample to its last.
+    """Return the packets of a record, without its baseline, as records of their own.
+
+    Each reaches from the first sample of the packet to its last.
 
     Parameters
     ----------
@@ -129,20 +129,23 @@ def packet_records(
     >>> taps = Record(
     ...     "geophone", [0.0, 9.0, -9.0] + 200 * [0.0] + [0.0, 4.0, -4.0], 10e3, "V", start=1.0
     ... )
-    >>> [round(one.start, 6) for one in packet_records(taps, threshold=2.0)]
+    >>> [round(packet.start, 6) for packet in packet_records(taps, threshold=2.0)]
     [1.0, 1.0203]
     """
     clean = without_baseline(record)
-    found = find_packets(clean, threshold, dead_time)
-    return [
-        replace(
-            clean,
-            value=clean.value[first : last + 1],
-            recorded=None if clean.recorded is None else clean.recorded[first : last + 1],
-            start=clean.start + first / clean.rate,
+    packets = find_packets(clean, threshold, dead_time)
+    records = []
+    for first, last in zip(packets.first.tolist(), packets.last.tolist(), strict=True):
+        samples = slice(first, last + 1)
+        records.append(
+            replace(
+                clean,
+                value=clean.value[samples],
+                recorded=None if clean.recorded is None else clean.recorded[samples],
+                start=clean.start + first / clean.rate,
+            )
         )
-        for first, last in zip(found.first.tolist(), found.last.tolist(), strict=True)
-    ]
+    return records
 
 
 def check_settings(threshold: float | None, dead_time: float) -> None:
@@ -159,27 +162,49 @@ def check_settings(threshold: float | None, dead_time: float) -> None:
 def packets_in(
     value: Floats, envelope: Floats, threshold: Floats, rate: float, dead_time: float
 ) -> Packets:
-    """Return the packets of signals (n, samples) with their envelopes, by a threshold of
-    each (n,).
+    """Return the packets of signals (n, samples) with their envelopes, by a threshold of each (n,).
+
+    Envelopes that stay below the threshold for longer than the dead time [s] end a packet.
     """
-    level, samples, magnitude = threshold[:, None], value.shape[1], np.abs(value)
+    level = threshold[:, None]
     # a threshold of zero, of a signal that is zero throughout, is reached by nothing
-    row, column = np.nonzero((envelope >= level) & (level > 0.0))
-    gap = np.diff(column) > max(1.0, round(min(dead_time * rate, samples)))
-    begins = np.append(True, gap | (np.diff(row) > 0))[: len(row)]
-    starts = np.flatnonzero(begins)
-    ends = np.append(starts[1:], len(row))[: len(starts)] - 1
-    signal, first, last = row[starts], column[starts], column[ends]
-    above = value >= level
-    rising = above.copy()
-    rising[:, 1:] &= ~above[:, :-1]
-    counted = np.append(0, np.cumsum(rising))
-    begin, end = samples * signal + first, samples * signal + last + 1
-    edges = np.stack([begin, end], axis=1).ravel()
+    loud = (envelope >= level) & (level > 0.0)
+    signal, first, last = _loud_spans(loud, rate, dead_time)
+
+    # from here on samples are counted through all signals, one after the other
+    samples = value.shape[1]
+    begin = samples * signal + first
+    end = samples * signal + last + 1
+
+    magnitude = np.abs(value)
     reached = np.flatnonzero(magnitude >= level)
-    after = np.append(reached, value.size)[np.searchsorted(reached, begin)]
-    onset = np.where(after < end, after - begin, 0) + first
-    within = (
-        np.maximum.reduceat(np.append(magnitude, 0.0), edges)[::2] if len(edges) else np.empty(0)
-    )
-    return Packets(signal, first, last, onset, within, counted[end] - counted[begin])
+    first_reached = np.append(reached, value.size)[np.searchsorted(reached, begin)]
+    onset = np.where(first_reached < end, first_reached - begin, 0) + first
+
+    peak = np.empty(0)
+    if len(begin):
+        # the maxima within packets alternate with those between them; the zero behind the last
+        # sample lets a packet end there
+        edges = np.stack([begin, end], axis=1).ravel()
+        peak = np.maximum.reduceat(np.append(magnitude, 0.0), edges)[::2]
+
+    above = value >= level
+    upward = above.copy()
+    upward[:, 1:] &= ~above[:, :-1]
+    crossings_before = np.append(0, np.cumsum(upward))
+    impulses = crossings_before[end] - crossings_before[begin]
+    return Packets(signal, first, last, onset, peak, impulses)
+
+
+def _loud_spans(loud: Bools, rate: float, dead_time: float) -> tuple[Integers, Integers, Integers]:
+    """Return signal, first and last sample of each packet of loud samples (n, samples).
+
+    Loud samples of one signal that are no further apart than the dead time [s] are of one packet.
+    """
+    signal, sample = np.nonzero(loud)
+    most_apart = max(1.0, round(min(dead_time * rate, loud.shape[1])))
+    ends_before = (np.diff(sample) > most_apart) | (np.diff(signal) > 0)
+    begins = np.append(True, ends_before)[: len(signal)]
+    firsts = np.flatnonzero(begins)
+    lasts = np.append(firsts[1:], len(signal))[: len(firsts)] - 1
+    return signal[firsts], sample[firsts], sample[lasts]

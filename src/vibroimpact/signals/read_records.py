@@ -68,24 +68,31 @@ def read_records(path: str | PathLike[str], columns: str | None = None) -> Itera
     >>> with TemporaryDirectory() as folder:
     ...     file = Path(folder, "hammer.csv")
     ...     _ = file.write_text("time [ms],force [kN]\\n0,1\\n1,2\\n")
-    ...     [(one.name, one.value.tolist(), one.rate, one.unit) for one in read_records(file)]
-    [('force', [1000.0, 2000.0], 1000.0, 'N')]
+    ...     [(record.name, record.value.tolist(), record.rate) for record in read_records(file)]
+    [('force', [1000.0, 2000.0], 1000.0)]
     """
     files = record_files(path)
     if columns is not None and not any(_is_table(file) for file in files):
-        words = (
-            "--columns (in a case the key columns) states the columns of tables "
-            f"({', '.join(TABLES)})"
+        tables = "there is none in this folder" if Path(path).is_dir() else "this is none"
+        raise with_path(
+            path,
+            InputError(
+                "--columns (in a case the key columns) states the columns of tables "
+                f"({', '.join(TABLES)}), and {tables}; leave it out"
+            ),
         )
-        what = "there is none in this folder" if Path(path).is_dir() else "this is none"
-        raise with_path(path, InputError(f"{words}, and {what}; leave it out"))
     for file in files:
-        if columns is not None and _is_table(file):
-            found = table_records(file, columns)
-        else:
-            reader = universal_records if is_universal(file) else _READERS[file.suffix.lower()]
-            found = reader(file)
-        yield from (replace(record, source=str(file)) for record in found)
+        for record in _records_of(file, columns):
+            yield replace(record, source=str(file))
+
+
+def _records_of(file: Path, columns: str | None) -> Iterator[Record]:
+    """Return the records of a file, with the columns that are stated if it is a table."""
+    if _is_table(file):
+        return table_records(file, columns)
+    if is_universal(file):
+        return universal_records(file)
+    return _READERS[file.suffix.lower()](file)
 
 
 def _is_table(file: Path) -> bool:
@@ -93,8 +100,7 @@ def _is_table(file: Path) -> bool:
 
 
 def record_files(path: str | PathLike[str]) -> list[Path]:
-    """Return the files that hold the records of a file or a folder: the file itself, or those of
-    the folder.
+    """Return the files with the records of a file, which is itself, or of a folder.
 
     Raises
     ------
@@ -102,30 +108,35 @@ def record_files(path: str | PathLike[str]) -> list[Path]:
         If there is no such file or folder, none of a known format in it, or the format of the file
         is not known.
     """
-    place = Path(path)
-    if place.is_dir():
-        for name in _WHOLE:
-            if (place / name).is_file():
-                return [place / name]
-        found = sorted(
-            one for one in place.iterdir() if one.suffix.lower() in _READERS and one.is_file()
-        )
-        if not found:
-            raise with_path(
-                place,
-                InputError(
-                    f"there is no file of records in this folder; known are {', '.join(_READERS)}"
-                ),
-            )
-        return found
-    if place.suffix.lower() not in _READERS and not is_universal(place):
-        what = (
-            "its format does not follow from its name"
-            if place.exists()
-            else "there is no such file"
-        )
+    file_or_folder = Path(path)
+    known = ", ".join(_READERS)
+    if file_or_folder.is_dir():
+        return _files_of_folder(file_or_folder)
+    if file_or_folder.suffix.lower() in _READERS or is_universal(file_or_folder):
+        return [file_or_folder]
+    if file_or_folder.exists():
+        cause = "its format does not follow from its name"
+    else:
+        cause = "there is no such file"
+    raise with_path(
+        file_or_folder, InputError(f"{cause}; records are read from files ending in {known}")
+    )
+
+
+def _files_of_folder(folder: Path) -> list[Path]:
+    """Return the file with all signals of a folder of this program, or all files of records."""
+    for name in _WHOLE:
+        file = folder / name
+        if file.is_file():
+            return [file]
+    files = sorted(
+        file for file in folder.iterdir() if file.suffix.lower() in _READERS and file.is_file()
+    )
+    if not files:
         raise with_path(
-            place,
-            InputError(f"{what}; records are read from files ending in {', '.join(_READERS)}"),
+            folder,
+            InputError(
+                f"there is no file of records in this folder; known are {', '.join(_READERS)}"
+            ),
         )
-    return [place]
+    return files

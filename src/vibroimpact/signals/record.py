@@ -14,8 +14,9 @@ from vibroimpact.quoting import quoted
 
 
 class Removed(NamedTuple):
-    """The baseline that was removed from a record: its mean, and its span from the least
-    to the largest, in the unit of the record.
+    """The baseline that was removed from a record, in the unit of the record.
+
+    Its mean, and its span from the least to the largest.
     """
 
     offset: float
@@ -105,12 +106,12 @@ def real_numbers(values: object) -> NDArray[Any]:
         If they are not numbers, or not real.
     """
     try:
-        found = np.asarray(values)
+        numbers = np.asarray(values)
     except ValueError:
         raise InputError("the samples are rows of different lengths; give an array") from None
-    if found.dtype.kind not in "fiub":
-        raise InputError(f"the samples are of the type {found.dtype}; they must be real numbers")
-    return found
+    if numbers.dtype.kind not in "fiub":
+        raise InputError(f"the samples are of the type {numbers.dtype}; they must be real numbers")
+    return numbers
 
 
 def checked_rate(rate: float) -> float:

@@ -8,7 +8,6 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from io import StringIO
-from itertools import groupby
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,8 +21,10 @@ from vibroimpact.signals.reasons import Reason
 from vibroimpact.signals.record import Record
 from vibroimpact.signals.registry import features, find_feature
 
-_AT_ONCE = 2**20
+_SAMPLES_AT_ONCE = 2**20
 """Samples that are put together for one table."""
+_ROWS_AT_ONCE = 1000
+"""Rows that are written at once."""
 
 
 @dataclass(frozen=True)
@@ -60,53 +61,54 @@ class RecordTable:
 
     def __getitem__(self, name: str) -> Floats:
         """Return the values of a feature, (records,)."""
-        return self.values[
-            :, find_named("feature", name, {one: place for place, one in enumerate(self.names)})
-        ]
+        columns = {feature: column for column, feature in enumerate(self.names)}
+        return self.values[:, find_named("feature", name, columns)]
 
     @property
     def columns(self) -> tuple[str, ...]:
-        """Names of the features with their units at the end, where these are not those of
-        the signals.
-        """
+        """Names of the features, with their units at the end if these are not of the signals."""
         return tuple(column_name(name) for name in self.names)
 
     def lacking(self, record: int) -> str:
-        """Return why a record has no value of some features, in words: "there are fewer
-        than two packets: peak_ratio".
+        """Return why a record has no value of some features, in words.
+
+        For instance: "there are fewer than two packets: peak_ratio".
         """
         by_reason: dict[int, list[str]] = {}
         for name, code in zip(self.names, self.reasons[record], strict=True):
             if code:
                 by_reason.setdefault(int(code), []).append(name)
-        return "; ".join(
-            f"{Reason(code).text}: {'all' if len(names) == len(self.names) else ' '.join(names)}"
-            for code, names in by_reason.items()
-        )
+        sentences = []
+        for code, names in by_reason.items():
+            which = "all" if len(names) == len(self.names) else " ".join(names)
+            sentences.append(f"{Reason(code).text}: {which}")
+        return "; ".join(sentences)
 
     @property
     def offset(self) -> list[float]:
         """Mean of the baseline that was removed from each record, in its unit."""
-        return [0.0 if one.removed is None else one.removed.offset for one in self.records]
+        return [0.0 if record.removed is None else record.removed.offset for record in self.records]
 
     @property
     def drift(self) -> list[float]:
         """Span of the baseline that was removed from each record, in its unit."""
-        return [0.0 if one.removed is None else one.removed.drift for one in self.records]
+        return [0.0 if record.removed is None else record.removed.drift for record in self.records]
 
     @property
     def numbers(self) -> list[int]:
         """Number of each record among those of its file and channel, from 1."""
         counts: Counter[tuple[str, str]] = Counter()
-        found = []
+        numbers = []
         for record in self.records:
-            counts[record.source, record.name] += 1
-            found.append(counts[record.source, record.name])
-        return found
+            channel = (record.source, record.name)
+            counts[channel] += 1
+            numbers.append(counts[channel])
+        return numbers
 
     def csv_text(self) -> Iterator[bytes]:
-        """Yield the table as CSV, many rows at a time: an empty cell where there is no
-        value, and the reasons in the last one.
+        """Yield the table as CSV, many rows at a time.
+
+        A cell is empty where there is no value, and the last one has the reasons.
         """
         header = (
             "file",
@@ -122,24 +124,24 @@ class RecordTable:
         )
         yield (",".join(header) + "\n").encode()
         numbers = self.numbers
-        for first in range(0, len(self.records), 1000):
+        offset = self.offset
+        drift = self.drift
+        for first in range(0, len(self.records), _ROWS_AT_ONCE):
             text = StringIO()
             writer = csv.writer(text, lineterminator="\n")
-            for row, one in enumerate(self.records[first : first + 1000], first):
-                cells = [
-                    "" if math.isnan(value) else repr(value) for value in self.values[row].tolist()
-                ]
-                removed = [repr(value) for value in (self.offset[row], self.drift[row])]
+            for row, record in enumerate(self.records[first : first + _ROWS_AT_ONCE], first):
+                values = self.values[row].tolist()
                 writer.writerow(
                     (
-                        one.source,
-                        one.name,
+                        record.source,
+                        record.name,
                         numbers[row],
-                        one.start,
-                        one.rate,
-                        one.unit,
-                        *cells,
-                        *removed,
+                        record.start,
+                        record.rate,
+                        record.unit,
+                        *("" if math.isnan(value) else repr(value) for value in values),
+                        repr(offset[row]),
+                        repr(drift[row]),
                         self.lacking(row),
                     )
                 )
@@ -147,8 +149,9 @@ class RecordTable:
 
 
 def column_name(name: str) -> str:
-    """Return the header of a column: the name of the feature with its unit at the end, apart from
-    that of the signal.
+    """Return the header of a column: the name of the feature with its unit at the end.
+
+    The unit of the signal is left out.
 
     Examples
     --------
@@ -161,11 +164,9 @@ def column_name(name: str) -> str:
     ('rise_time_s', 'zero_crossing_rate_1_s', 'peak', 'energy')
     """
     feature = find_feature(name)
-    return (
-        name
-        if feature.degree or feature.unit == "1"
-        else f"{name}_{feature.unit.replace('/', '_')}"
-    )
+    if feature.degree or feature.unit == "1":
+        return name
+    return f"{name}_{feature.unit.replace('/', '_')}"
 
 
 def record_table(
@@ -176,8 +177,9 @@ def record_table(
     dead_time: float = DEAD_TIME,
     progress: Callable[[int], None] | None = None,
 ) -> RecordTable:
-    """Return the features of records without their baselines, a row each; neighbours of one length
-    and rate are computed together.
+    """Return the features of records without their baselines, a row each.
+
+    Neighbours of one length and rate are computed together.
 
     Parameters
     ----------
@@ -205,30 +207,35 @@ def record_table(
     wanted = {name: find_feature(name) for name in (features() if names is None else names)}
     check_settings(threshold, dead_time)
     rows: list[Record] = []
-    values, reasons = [np.empty((0, len(wanted)))], [np.empty((0, len(wanted)), dtype=np.int8)]
-    clean = (without_baseline(one) for one in records)
-    for (length, rate), alike in groupby(clean, key=lambda one: (len(one.value), one.rate)):
-        for some in _parts(alike, max(1, _AT_ONCE // max(1, length))):
-            signals = np.array([one.value for one in some])
-            recorded = np.array(
-                [one.value if one.recorded is None else one.recorded for one in some]
-            )
-            found, why = features_at_rest(signals, recorded, rate, wanted, threshold, dead_time)
-            values.append(found)
-            reasons.append(why)
-            rows += [replace(one, value=np.empty(0), recorded=None) for one in some]
-            if progress is not None:
-                progress(len(rows))
+    values = [np.empty((0, len(wanted)))]
+    reasons = [np.empty((0, len(wanted)), dtype=np.int8)]
+    for block in _blocks(without_baseline(record) for record in records):
+        signals = np.array([record.value for record in block])
+        recorded = np.array(
+            [record.value if record.recorded is None else record.recorded for record in block]
+        )
+        block_values, block_reasons = features_at_rest(
+            signals, recorded, block[0].rate, wanted, threshold, dead_time
+        )
+        values.append(block_values)
+        reasons.append(block_reasons)
+        rows += [replace(record, value=np.empty(0), recorded=None) for record in block]
+        if progress is not None:
+            progress(len(rows))
     return RecordTable(rows, tuple(wanted), np.concatenate(values), np.concatenate(reasons))
 
 
-def _parts(records: Iterator[Record], most: int) -> Iterator[list[Record]]:
-    """Yield records by so many at once."""
-    some: list[Record] = []
+def _blocks(records: Iterable[Record]) -> Iterator[list[Record]]:
+    """Yield neighbours of one length and rate, so many samples at once."""
+    block: list[Record] = []
     for record in records:
-        some.append(record)
-        if len(some) == most:
-            yield some
-            some = []
-    if some:
-        yield some
+        samples = len(record.value)
+        if block and (samples != len(block[0].value) or record.rate != block[0].rate):
+            yield block
+            block = []
+        block.append(record)
+        if len(block) >= max(1, _SAMPLES_AT_ONCE // max(1, samples)):
+            yield block
+            block = []
+    if block:
+        yield block

@@ -1,6 +1,4 @@
-"""The registry of features: those of this package, and those of other packages by their
-entry points.
-"""
+"""The registry of features, of this package and of others by their entry points."""
 
 from __future__ import annotations
 
@@ -12,13 +10,15 @@ from vibroimpact.errors import InputError
 from vibroimpact.registry import find_named, modules_in
 from vibroimpact.signals.feature import Family, Feature
 
-PACKAGE, GROUP = "vibroimpact.signals.features", "vibroimpact.feature_families"
+PACKAGE = "vibroimpact.signals.features"
+GROUP = "vibroimpact.feature_families"
 
 
 @cache
 def families() -> tuple[Family, ...]:
-    """Return all families of features: those of this package and those of the entry points
-    "vibroimpact.feature_families".
+    """Return all families of features.
+
+    They are those of this package and those of the entry points "vibroimpact.feature_families".
 
     Raises
     ------
@@ -31,12 +31,15 @@ def families() -> tuple[Family, ...]:
         for value in vars(module).values()
         if isinstance(value, Family)
     ]
-    found = (*own, *(_loaded(point) for point in entry_points(group=GROUP)))
-    names = [feature.name for family in found for feature in family.features]
-    twice = next((name for name in names if names.count(name) > 1), None)
-    if twice is not None:
-        raise InputError(f'two features are called "{twice}"; rename one, or uninstall its package')
-    return found
+    of_others = [_loaded(point) for point in entry_points(group=GROUP)]
+    all_families = (*own, *of_others)
+    names = [feature.name for family in all_families for feature in family.features]
+    for name in names:
+        if names.count(name) > 1:
+            raise InputError(
+                f'two features are called "{name}"; rename one, or uninstall its package'
+            )
+    return all_families
 
 
 def features() -> Mapping[str, Feature]:

@@ -36,6 +36,8 @@ LAYOUTS = {
     "units in brackets, with tabs": "Time\tForce\n[s]\t[N]\n0\t0\n0,001\t1,5\n0,002\t-2,25\n0,003\t3\n",
     "lines about the measurement": "Recorder 3\nRate: 1000, Hz, x\n\ntime [s],force "
     "[N]\n0,0\n0.001,1.5\n0.002,-2.25\n0.003,3\n",
+    "such lines that state no unit": "Horizontal Units\nVertical Units,V\ntime [s],force "
+    "[N]\n0,0\n0.001,1.5\n0.002,-2.25\n0.003,3\n",
     "such lines and a row of units": "Recorder\nModel;4711;x\nTime;Force\n(s);(N)\n0;0\n0,001;1,5\n0,002;-2,25\n0,003;3\n",
 }
 

@@ -1,3 +1,1 @@
-"""The bounces of a ball in a record: touches, the chain among them whose intervals shrink
-by a restitution, and their times.
-"""
+"""The bounces of a ball in a record: touches, the chain of bounces among them, and their times."""

@@ -2,22 +2,32 @@
 
 from __future__ import annotations
 
+from typing import Any, NamedTuple
+
 import numpy as np
+from numpy.typing import NDArray
 from scipy import fft
 
 from vibroimpact.arrays import Bools, Floats, Indices
 
-_BEFORE, _AFTER, _ASIDE = 0.5e-3, 3e-3, 1e-3
-"""What of a touch is compared, before and after it, and how far its time may move at least [s]."""
+_BEFORE = 0.5e-3
+"""Time before a touch that is compared [s]."""
 
-_FINE = 400e3
+_AFTER = 3e-3
+"""Time after a touch that is compared [s]."""
+
+_LEAST_REACH = 1e-3
+"""How far the time of a touch may move at least [s]."""
+
+_FINE_RATE = 400e3
 """Rate at which correlations are computed [Hz]; between its samples they are parabolas."""
 
 _ROUNDS = 6
 
-_RESOLVED = 1e-4
-"""Standard deviation of what interpolation between samples can tell of sounds below half
-the rate, in samples.
+_RESOLUTION = 1e-4
+"""Standard deviation of interpolation between samples, in samples.
+
+It is that of sounds below half the rate.
 """
 
 _TINY = 1e-300
@@ -29,11 +39,10 @@ def aligned(
     r"""Return the times of touches, and their standard deviations.
 
     The sounds of bounces are alike: each is shifted to where it correlates best with the mean of
-    the others, s (Woody 1967, Med. Biol. Eng.
-    5:539). A shift at which their correlation is c has, in noise of variance v, the likelihood
-    :math:`\exp(c^2 / (2 v \sum s^2))`; its
-    standard deviation includes that it may be a period off. The noise is what is left of a sound
-    when the common one is taken from it: noise, clicks and differences in shape alike.
+    the others, s (Woody 1967, Med. Biol. Eng. 5:539). A shift at which their correlation is c has,
+    in noise of variance v, the likelihood :math:`\exp(c^2 / (2 v \sum s^2))`; its standard
+    deviation includes that it may be a period off. The noise is what is left of a sound when the
+    common one is taken from it: noise, clicks and differences in shape alike.
 
     Parameters
     ----------
@@ -67,113 +76,160 @@ def aligned(
     >>> np.diff(found).round(1).tolist()
     [1440.3, 1919.7]
     """
-    before, after, aside = (
-        max(2, round(span * rate)) for span in (_BEFORE, _AFTER, max(_ASIDE, blur))
-    )
-    length = before + after + 2 * aside
-    padded = np.pad(value, length)
-    parts = np.stack(
-        [padded[at + length - before - aside : at + 2 * length - before - aside] for at in sample]
-    )
-    window = np.zeros(2 * length)
-    window[aside : aside + before] = np.sin(0.5 * np.pi * (np.arange(before) + 0.5) / before) ** 2
-    window[aside + before : length - aside] = (
-        np.cos(0.5 * np.pi * (np.arange(after) + 0.5) / after) ** 2
-    )
-    spectra, omega = fft.rfft(parts, 2 * length), 2.0 * np.pi * fft.rfftfreq(2 * length)
-    more = max(1, round(_FINE / rate))
-    lags = np.arange(-aside * more, aside * more + 1) / more
-
-    def correlation(one: Floats, other: Floats) -> Floats:
-        """Return the sums over one and the other at a lag before, at all lags."""
-        fine = more * fft.irfft(fft.rfft(one) * np.conj(fft.rfft(other)), 2 * length * more)
-        return np.asarray(np.roll(fine, aside * more)[: len(lags)])
-
-    number = len(parts)
-    known = np.ones((number, 2 * length))
+    span = _Span.at_rate(rate, blur)
+    length = span.length
+    padded_length = 2 * length
+    window = span.window()
+    lags = span.lags()
+    omega = 2.0 * np.pi * fft.rfftfreq(padded_length)
+    sounds_as_found = span.cut(value, sample)
+    spectra = fft.rfft(sounds_as_found, padded_length)
+    count = len(sample)
+    known = np.ones((count, padded_length))
     if clipped is not None:
-        whole = np.pad(clipped, length)
-        pieces = [
-            whole[at + length - before - aside : at + 2 * length - before - aside] for at in sample
-        ]
-        known[:, :length] = 1.0 - np.stack(pieces)
-    shift, deviation = np.zeros(number), np.zeros(number)
-    sounds = np.pad(parts, ((0, 0), (0, length)))
+        known[:, :length] = 1.0 - span.cut(clipped, sample)
+
+    shift = np.zeros(count)
+    deviation = np.zeros(count)
+    sounds = np.pad(sounds_as_found, ((0, 0), (0, length)))
     common = sounds[int(np.argmax(sounds**2 @ window))]  # at first the loudest
-    size = np.array([_multiple(sound, common, window) for sound in sounds])
+    gain = np.array([_gain(sound, common, window) for sound in sounds])
     for turn in range(_ROUNDS):
-        for one in range(number):
-            if turn:
-                common = _mean(sounds, np.where(np.arange(number) == one, 0.0, size))
-            energy = np.maximum(correlation(window, common**2), _TINY)
-            match = np.maximum(correlation(window * sounds[one], common), 0.0)
+        for touch in range(count):
+            if turn > 0:  # the mean of the others
+                common = _mean(sounds, np.where(np.arange(count) == touch, 0.0, gain))
+            slope = fft.irfft(1j * omega * fft.rfft(common), padded_length)
             unclipped = window * np.prod(
-                [_moved(own, by) for own, by in zip(known, shift, strict=True)], axis=0
+                [_moved(samples, by) for samples, by in zip(known, shift, strict=True)], axis=0
             )
-            noise = _noise(
-                sounds, size, one, fft.irfft(1j * omega * fft.rfft(common), 2 * length), unclipped
-            )
-            chance = (
-                match**2 / energy / (2.0 * noise) - 0.5 * ((shift[one] + lags) / (0.5 * aside)) ** 2
-            )
-            top = int(np.clip(np.argmax(chance), 1, len(lags) - 2))
-            left, middle, right = chance[top - 1 : top + 2]
-            bend = max(float(2.0 * middle - left - right), _TINY)
-            ahead = lags[top] + float(np.clip(0.5 * (right - left) / bend, -1.0, 1.0)) / more
-            # the width of this peak, or what lies in others
-            weight = np.exp(chance - middle)
-            weight[top - 1 : top + 2] = 0.0
-            spread = float(weight @ (lags - ahead) ** 2 / (1.0 + weight.sum()))
-            deviation[one] = np.sqrt(
-                max(min(1.0 / bend / more**2, float(aside) ** 2), spread) + _RESOLVED**2
-            )
-            shift[one] = np.clip(shift[one] + ahead, -aside, aside)
-            sounds[one] = fft.irfft(spectra[one] * np.exp(1j * omega * shift[one]), 2 * length)
-            size[one] = _multiple(sounds[one], common, window)
+            noise = _noise_variance(sounds, gain, touch, slope, unclipped)
+            energy = np.maximum(span.correlation(window, common**2), _TINY)
+            match = np.maximum(span.correlation(window * sounds[touch], common), 0.0)
+            # the prior of a shift is normal, with half the reach as its deviation
+            prior = 0.5 * ((shift[touch] + lags) / (0.5 * span.reach)) ** 2
+            log_likelihood = match**2 / energy / (2.0 * noise) - prior
+            step, deviation[touch] = _most_likely(log_likelihood, lags, span)
+            shift[touch] = np.clip(shift[touch] + step, -span.reach, span.reach)
+            turned = spectra[touch] * np.exp(1j * omega * shift[touch])
+            sounds[touch] = fft.irfft(turned, padded_length)
+            gain[touch] = _gain(sounds[touch], common, window)
     # what the sounds have in common is where they were found, in the mean
-    return sample + shift - shift @ size**2 / max(float(size @ size), _TINY), deviation
+    return sample + shift - shift @ gain**2 / max(float(gain @ gain), _TINY), deviation
 
 
-def _multiple(sound: Floats, common: Floats, window: Floats) -> float:
-    """Return the multiple of the common sound that a sound is, by least squares; 0 if
-    that is negative.
+class _Span(NamedTuple):
+    """The part of a record around a touch that is compared, in samples.
+
+    Samples before the touch and after it, how far its time may move to either side, and how many
+    lags there are in a sample.
     """
+
+    before: int
+    after: int
+    reach: int
+    lags_per_sample: int
+
+    @classmethod
+    def at_rate(cls, rate: float, blur: float) -> _Span:
+        """Return the span of records with a rate [Hz], which a coder has blurred [s]."""
+        return cls(
+            max(2, round(_BEFORE * rate)),
+            max(2, round(_AFTER * rate)),
+            max(2, round(max(_LEAST_REACH, blur) * rate)),
+            max(1, round(_FINE_RATE / rate)),
+        )
+
+    @property
+    def length(self) -> int:
+        """Samples that are cut out for each touch."""
+        return self.before + self.after + 2 * self.reach
+
+    def cut(self, samples: NDArray[Any], touches: Indices) -> NDArray[Any]:
+        """Return the samples around touches, (n, length), with zeros beyond the record."""
+        padded = np.pad(samples, self.length)
+        firsts = [touch + self.length - self.before - self.reach for touch in touches]
+        return np.stack([padded[first : first + self.length] for first in firsts])
+
+    def window(self) -> Floats:
+        """Return the weights of samples in the comparison, (2 length,): rising, then falling."""
+        window = np.zeros(2 * self.length)
+        touch = self.reach + self.before
+        rising = 0.5 * np.pi * (np.arange(self.before) + 0.5) / self.before
+        falling = 0.5 * np.pi * (np.arange(self.after) + 0.5) / self.after
+        window[self.reach : touch] = np.sin(rising) ** 2
+        window[touch : self.length - self.reach] = np.cos(falling) ** 2
+        return window
+
+    def lags(self) -> Floats:
+        """Return the lags at which correlations are computed, in samples."""
+        last = self.reach * self.lags_per_sample
+        return np.arange(-last, last + 1) / self.lags_per_sample
+
+    def correlation(self, reference: Floats, moved: Floats) -> Floats:
+        """Return the sums over a reference and a moved signal at each of the lags."""
+        spectrum = fft.rfft(reference) * np.conj(fft.rfft(moved))
+        # zeros at higher frequencies interpolate between the samples
+        at_all_lags = self.lags_per_sample * fft.irfft(
+            spectrum, 2 * self.length * self.lags_per_sample
+        )
+        last = self.reach * self.lags_per_sample
+        return np.asarray(np.roll(at_all_lags, last)[: 2 * last + 1])
+
+
+def _most_likely(log_likelihood: Floats, lags: Floats, span: _Span) -> tuple[float, float]:
+    """Return the most likely lag and its standard deviation, in samples."""
+    top = int(np.clip(np.argmax(log_likelihood), 1, len(lags) - 2))
+    # a parabola through the highest value and its neighbours
+    earlier, highest, later = log_likelihood[top - 1 : top + 2]
+    curvature = max(float(2.0 * highest - earlier - later), _TINY)
+    offset = float(np.clip(0.5 * (later - earlier) / curvature, -1.0, 1.0))
+    lag = lags[top] + offset / span.lags_per_sample
+    # the variance is that of this peak, or what lies in others
+    likelihood = np.exp(log_likelihood - highest)
+    likelihood[top - 1 : top + 2] = 0.0
+    others = float(likelihood @ (lags - lag) ** 2 / (1.0 + likelihood.sum()))
+    own = min(1.0 / curvature / span.lags_per_sample**2, float(span.reach) ** 2)
+    return lag, np.sqrt(max(own, others) + _RESOLUTION**2)
+
+
+def _gain(sound: Floats, common: Floats, window: Floats) -> float:
+    """Return the multiple of the common sound nearest to a sound, by least squares; 0 at least."""
     return max(float(sound @ (window * common)), 0.0) / max(float(common**2 @ window), _TINY)
 
 
-def _mean(sounds: Floats, size: Floats) -> Floats:
+def _mean(sounds: Floats, gain: Floats) -> Floats:
     """Return the common sound of least squares, of which each sound is a multiple."""
-    return np.asarray(size @ sounds / max(float(size @ size), _TINY))
+    return np.asarray(gain @ sounds / max(float(gain @ gain), _TINY))
 
 
 def _moved(known: Floats, shift: float) -> Floats:
     """Return which samples of a sound are known once it is shifted between its samples."""
     if known.all():
         return known
-    first = int(np.floor(shift))
-    return np.asarray(np.roll(known, -first) * np.roll(known, -first - 1))
+    whole = int(np.floor(shift))
+    # a sample between two others is known if both are
+    return np.asarray(np.roll(known, -whole) * np.roll(known, -whole - 1))
 
 
-def _noise(sounds: Floats, size: Floats, one: int, slope: Floats, window: Floats) -> float:
-    """Return the variance of samples as it counts for a shift: of what is left of a sound
-    without the common one, where its slope is.
+def _noise_variance(
+    sounds: Floats, gain: Floats, touch: int, slope: Floats, window: Floats
+) -> float:
+    """Return the variance of samples as it counts for the shift of a touch.
+
+    It is that of what is left of its sound without the common one, where the slope of that is.
     """
-    every = _mean(sounds, size)
-    left = window * (sounds[one] - every * _multiple(sounds[one], every, window))
+    common = _mean(sounds, gain)
+    residual = window * (sounds[touch] - common * _gain(sounds[touch], common, window))
+    slope_power = np.abs(fft.rfft(window * slope)) ** 2
+    residual_power = np.abs(fft.rfft(residual)) ** 2
+    # the noise that moves the sound is that in the band of its slope
+    power = 2.0 * float(residual_power @ slope_power) / len(window) / float(window @ window)
+    variance = power / max(float(slope**2 @ window), _TINY)
     # what is common is in part this sound, noise and all
-    share = float(size[one] ** 2) / max(float(size @ size), _TINY)
-    spectrum = np.abs(fft.rfft(window * slope)) ** 2
-    power = (
-        2.0 * float(np.abs(fft.rfft(left)) ** 2 @ spectrum) / len(window) / float(window @ window)
-    )
+    share = float(gain[touch] ** 2) / max(float(gain @ gain), _TINY)
     # of the few numbers that a sound has in its own band, its size and time are fitted
     samples = float((window**2).sum() ** 2 / (window**4).sum())
-    freedom = (
-        2.0
-        * samples
-        / len(window)
-        * float(spectrum.sum()) ** 2
-        / max(float(spectrum @ spectrum), _TINY)
-    )
-    known = max(1.0 - share, 0.1) * max(1.0 - 2.0 / max(freedom, _TINY), 0.25)
-    return max(power / max(float(slope**2 @ window), _TINY) / known, _TINY)
+    freedom = 2.0 * samples / len(window) * float(slope_power.sum()) ** 2
+    freedom /= max(float(slope_power @ slope_power), _TINY)
+    left_by_fit = max(1.0 - 2.0 / max(freedom, _TINY), 0.25)
+    return max(variance / (max(1.0 - share, 0.1) * left_by_fit), _TINY)

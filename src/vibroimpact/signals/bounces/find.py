@@ -21,24 +21,27 @@ _CLEAR = 3.0
 """Rise, in thresholds, from which on a touch is as clear as can be."""
 
 _JITTER = 2e-4
-"""Standard deviation of the times that touches are found at before they are aligned [s]."""
+"""Standard deviation of the times at which touches are found, before they are aligned [s]."""
 
-_DOUBLE = 6e-3
+_SECOND_CONTACT = 6e-3
 """Time after a bounce in which a further touch is a second contact of it [s]."""
 
 _OVERDRIVEN = 0.01
 """Part of clipped samples above which a record is refused."""
 
 _CHANCE = 0.1
-"""Expected number of such chains among as many touches at random times, from which on a
-chain is refused.
+"""Expected number of such chains by chance from which on a chain is refused.
+
+It is that among as many touches at random times.
 """
 
-_BETWEEN = 3
-"""Bounces of which each other touch between them needs so many."""
+_BOUNCES_PER_OTHER = 3
+"""Number of bounces that each other touch between them needs."""
 
-_TIGHT = 0.005
+_LEAST_SCATTER = 0.005
 """Least scatter of the logarithm of the restitution that counts for that."""
+
+_NO_BOUNCE = "its time is not that of a bounce"
 
 
 @dataclass(frozen=True)
@@ -93,15 +96,14 @@ class Bounces:
 
     @property
     def flight(self) -> Floats:
-        """Durations of the flights: times between successive touches, less that of a
-        contact, (n - 1,) [s].
-        """
+        """Durations of the flights, (n - 1,) [s]: times between touches, less that of a contact."""
         return np.diff(self.time) - self.contact
 
     @property
     def restitution(self) -> Floats:
-        r"""Restitution of each impact but the first and the last, :math:`e_n = T_n /
-        T_{n-1}` of the flights, (n - 2,).
+        r"""Restitution of each impact but the first and the last, (n - 2,).
+
+        It is the ratio :math:`e_n = T_n / T_{n-1}` of the flights after and before the impact.
         """
         return self.flight[1:] / self.flight[:-1]
 
@@ -166,57 +168,71 @@ def find_bounces(record: Record, contact: float = 0.0) -> Bounces:
     record = without_baseline(record)
     doubts = _checked(record)
     value = without_hum(replace(record, value=record.value / np.abs(record.value).max()))
-    found = find_touches(value, record.rate, record.blur)
-    heard = np.flatnonzero(~found.click)
-    if len(heard) < 3:
-        said = ("no touch is", "one touch is", "two touches are")[len(heard)]
-        raise InputError(
-            f"{said} detected in it, and a restitution needs three: two times of flight"
-        )
-    time = found.sample / record.rate
-    chain = heard[
-        longest_chain(time[heard], np.minimum(found.rise[heard] / found.threshold, _CLEAR), _JITTER)
-    ]
-    if not len(chain):
-        words = (
-            f"the times between {len(heard)} touches do not decrease as those of bounces do, "
-            f"by factors of {LOWEST:g} to {HIGHEST:g}"
-        )
-        raise InputError(f"it holds no bounces: {words}")
-    others = np.setdiff1d(np.arange(len(time)), chain)
-    reasons = _reasons(found, time, chain, others)
-    strange = time[others[[reason == _ELSE for reason in reasons]]]
-    doubts += _chance_doubts(time[chain], strange, record.duration)
-    at, deviation = aligned(
-        value, record.rate, found.sample[chain], record.blur, clipped_samples(record)
+    touches = find_touches(value, record.rate, record.blur)
+    touch_time = touches.sample / record.rate
+    chain = _chain(touches, touch_time)
+    others = np.setdiff1d(np.arange(len(touch_time)), chain)
+    reasons = _reasons(touches, touch_time, chain, others)
+    unexplained = touch_time[others[[reason == _NO_BOUNCE for reason in reasons]]]
+    doubts += _chance_doubts(touch_time[chain], unexplained, record.duration)
+    bounce_sample, deviation = aligned(
+        value, record.rate, touches.sample[chain], record.blur, clipped_samples(record)
     )
-    if not np.all(np.diff(at) > max(contact * record.rate, 0.0)):
+    if not np.all(np.diff(bounce_sample) > max(contact * record.rate, 0.0)):
         raise InputError(
             "the last bounces follow each other within "
             f"{'the contact' if contact else 'their sounds'}; end the record sooner"
         )
-    window = max(FEWEST, round(WINDOW * record.rate))
-    sounds = [record.value[sample : sample + window] for sample in found.sample[chain]]
-    peak = np.array([sound[np.argmax(np.abs(sound))] for sound in sounds])
-    start, rate = record.start, record.rate
     return Bounces(
-        record,
-        start + at / rate,
-        deviation / rate,
-        peak,
-        start + time[others],
-        reasons,
-        doubts,
-        contact,
+        record=record,
+        time=record.start + bounce_sample / record.rate,
+        deviation=deviation / record.rate,
+        peak=_peaks(record, touches.sample[chain]),
+        others=record.start + touch_time[others],
+        reasons=reasons,
+        doubts=doubts,
+        contact=contact,
     )
 
 
-_ELSE = "its time is not that of a bounce"
+def _chain(touches: Touches, time: Floats) -> Indices:
+    """Return which touches are bounces.
+
+    Raises
+    ------
+    InputError
+        If there are fewer than three, or none of them are in a chain.
+    """
+    heard = np.flatnonzero(~touches.click)
+    if len(heard) < 3:
+        touches_are = ("no touch is", "one touch is", "two touches are")[len(heard)]
+        raise InputError(
+            f"{touches_are} detected in it, and a restitution needs three: two times of flight"
+        )
+    clearness = np.minimum(touches.rise[heard] / touches.threshold, _CLEAR)
+    chain = heard[longest_chain(time[heard], clearness, _JITTER)]
+    if not len(chain):
+        raise InputError(
+            f"it holds no bounces: the times between {len(heard)} touches do not decrease as those "
+            f"of bounces do, by factors of {LOWEST:g} to {HIGHEST:g}"
+        )
+    return chain
+
+
+def _peaks(record: Record, samples: Indices) -> Floats:
+    """Return the value of largest magnitude in the window after each of some samples."""
+    window = max(FEWEST, round(WINDOW * record.rate))
+    sounds = [record.value[sample : sample + window] for sample in samples]
+    return np.array([sound[np.argmax(np.abs(sound))] for sound in sounds])
 
 
 def _checked(record: Record) -> tuple[str, ...]:
-    """Return doubts about a record in which bounces are to be sought; raise InputError if
-    they can't be.
+    """Return doubts about a record in which bounces are to be sought.
+
+    Raises
+    ------
+    InputError
+        If none can be found in it.
     """
     value = record.value
     if not len(value):
@@ -231,55 +247,71 @@ def _checked(record: Record) -> tuple[str, ...]:
             f"it is too short: it has {len(value)} samples, and at {record.rate:g} Hz "
             f"three touches take {shortest} at least"
         )
-    clipped = float(record_table([record], ["clipped_part"])["clipped_part"][0])
-    if clipped > _OVERDRIVEN:
-        part = f"{100.0 * clipped:.2g} % of its samples are at its largest or lowest value"
-        raise InputError(f"it is clipped: {part}; record it at a lower gain")
-    if not clipped:
-        return record.doubts
-    return (
-        *record.doubts,
-        f"{100.0 * clipped:.2g} % of the samples are clipped, at the largest or the lowest value",
-    )
-
-
-def _reasons(found: Touches, time: Floats, chain: Indices, others: Indices) -> tuple[str, ...]:
-    """Return why each of the others is no bounce."""
-    since = (
-        time[others] - time[chain][np.clip(np.searchsorted(time[chain], time[others]) - 1, 0, None)]
-    )
-    return tuple(
-        "it is a click, of a few samples"
-        if found.click[one]
-        else "it is a second contact"
-        if 0.0 < late <= _DOUBLE
-        else _ELSE
-        for one, late in zip(others, since, strict=True)
-    )
-
-
-def _chance_doubts(chain: Floats, strange: Floats, duration: float) -> tuple[str, ...]:
-    """Return doubts whether a chain is one; raise InputError if touches at random times,
-    or those of music, would have such chains too.
-    """
-    heard, why = len(chain) + len(strange), ""
-    if len(chain) == 3:
-        if not len(strange):
-            return ("the series has only three touches: they need not be bounces of one ball",)
-        why = "as any three might; among other touches it takes four"
-    else:
-        interval = np.diff(chain)
-        change = np.diff(np.log(interval[1:] / interval[:-1]))
-        scatter = float(np.hypot(np.sqrt(np.mean(change**2)), _TIGHT))
-        hit = -np.expm1(-heard / duration * 4.0 * scatter * interval[2:])
-        if comb(heard, 3) * float(np.prod(hit)) > _CHANCE:
-            why = "as some of as many touches at random times would"
-        elif _BETWEEN * np.count_nonzero((strange > chain[0]) & (strange < chain[-1])) > len(chain):
-            why = "and too many lie between them"
-    if why:
-        words = (
-            f"of its {heard} touches {len(chain)} at best have intervals that shrink as those "
-            f"of bounces, {why}"
+    clipped_part = float(record_table([record], ["clipped_part"])["clipped_part"][0])
+    if clipped_part > _OVERDRIVEN:
+        raise InputError(
+            f"it is clipped: {100.0 * clipped_part:.2g} % of its samples are at its largest or "
+            "lowest value; record it at a lower gain"
         )
-        raise InputError(f"it holds no series of bounces: {words}")
-    return ()
+    if not clipped_part:
+        return record.doubts
+    doubt = (
+        f"{100.0 * clipped_part:.2g} % of the samples are clipped, at the largest or the lowest "
+        "value"
+    )
+    return (*record.doubts, doubt)
+
+
+def _reasons(touches: Touches, time: Floats, chain: Indices, others: Indices) -> tuple[str, ...]:
+    """Return why each of the other touches is no bounce."""
+    last_bounce = np.clip(np.searchsorted(time[chain], time[others]) - 1, 0, None)
+    since_bounce = time[others] - time[chain][last_bounce]
+    reasons = []
+    for touch, late in zip(others, since_bounce, strict=True):
+        if touches.click[touch]:
+            reasons.append("it is a click, of a few samples")
+        elif 0.0 < late <= _SECOND_CONTACT:
+            reasons.append("it is a second contact")
+        else:
+            reasons.append(_NO_BOUNCE)
+    return tuple(reasons)
+
+
+def _chance_doubts(chain: Floats, unexplained: Floats, duration: float) -> tuple[str, ...]:
+    """Return doubts whether the times of a chain are those of bounces, and not of chance.
+
+    Raises
+    ------
+    InputError
+        If touches at random times, or those of music, would have such chains too.
+    """
+    if len(chain) == 3 and not len(unexplained):
+        return ("the series has only three touches: they need not be bounces of one ball",)
+    heard = len(chain) + len(unexplained)
+    between = np.count_nonzero((unexplained > chain[0]) & (unexplained < chain[-1]))
+    if len(chain) == 3:
+        cause = "as any three might; among other touches it takes four"
+    elif _chains_by_chance(chain, heard, duration) > _CHANCE:
+        cause = "as some of as many touches at random times would"
+    elif _BOUNCES_PER_OTHER * between > len(chain):
+        cause = "and too many lie between them"
+    else:
+        return ()
+    raise InputError(
+        f"it holds no series of bounces: of its {heard} touches {len(chain)} at best have "
+        f"intervals that shrink as those of bounces, {cause}"
+    )
+
+
+def _chains_by_chance(chain: Floats, heard: int, duration: float) -> float:
+    """Return how many chains as regular as one are expected among touches at random times.
+
+    Any three touches begin a chain; each further one must lie where the restitution, with the
+    scatter that its logarithm has in this chain, leads.
+    """
+    interval = np.diff(chain)
+    change = np.diff(np.log(interval[1:] / interval[:-1]))
+    scatter = float(np.hypot(np.sqrt(np.mean(change**2)), _LEAST_SCATTER))
+    # in a span of two standard deviations to either side, by the mean rate of touches
+    hit = -np.expm1(-heard / duration * 4.0 * scatter * interval[2:])
+    return comb(heard, 3) * float(np.prod(hit))

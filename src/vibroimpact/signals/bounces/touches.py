@@ -16,15 +16,20 @@ WINDOW = 2e-3
 FEWEST = 8
 """Least number of samples of that time."""
 
-_LOWEST, _ORDER = 500.0, 4
-"""Cut-off [Hz] and order of the filter that takes away hum: mains and their harmonics lie
-below, the sound of impacts above.
+_HUM_CUT_OFF = 500.0
+"""Cut-off of the filter that takes away hum [Hz].
+
+Mains and their harmonics lie below, the sound of impacts above.
 """
 
-_ABOVE, _LEAST = 5.5, 1.0
-"""Least rise of the logarithm of the power: in standard deviations of its fluctuation,
-and of any signal.
-"""
+_HUM_ORDER = 4
+"""Order of that filter."""
+
+_RISE_FACTOR = 5.5
+"""Least rise of the logarithm of the power, in standard deviations of its fluctuation."""
+
+_LEAST_RISE = 1.0
+"""Least rise of the logarithm of the power, of any signal."""
 
 _FLOOR = 1e-8
 """Power below which nothing is heard, as part of the largest."""
@@ -33,14 +38,16 @@ _FLOOR_OF_CODED = 1e-3
 """The same of sound that is coded with losses, where what is quieter is left out or added."""
 
 _QUIET = 1e-4
-"""Part of the mean power around a touch below which a change of the power is none:
-filters of recorders sound before a touch.
+"""Part of the mean power around a touch below which a change of the power is none.
+
+Filters of recorders sound before a touch.
 """
 
-_CLICK, _PART = 3, 0.7
-"""Samples in a row that hold so much of the energy of a click, above that of the noise;
-the sound of a touch lasts longer.
-"""
+_CLICK_SAMPLES = 3
+"""Samples in a row that hold most of the energy of a click; the sound of a touch lasts longer."""
+
+_CLICK_PART = 0.7
+"""Part of the energy, above that of the noise, that they hold."""
 
 MOST = 80
 """Touches that are kept, the clearest ones."""
@@ -81,7 +88,7 @@ def without_hum(record: Record) -> Floats:
     from scipy.signal import butter, sosfilt, sosfilt_zi
 
     sections = butter(
-        _ORDER, min(_LOWEST, record.rate / 8.0), "highpass", fs=record.rate, output="sos"
+        _HUM_ORDER, min(_HUM_CUT_OFF, record.rate / 8.0), "highpass", fs=record.rate, output="sos"
     )
     return np.asarray(sosfilt(sections, record.value, zi=sosfilt_zi(sections) * record.value[0])[0])
 
@@ -116,45 +123,57 @@ def find_touches(value: Floats, rate: float, blur: float = 0.0) -> Touches:
     from scipy.signal import find_peaks
 
     window = max(FEWEST, round(WINDOW * rate))
-    none = Touches(np.zeros(0, dtype=np.intp), np.zeros(0), np.zeros(0, dtype=bool), _LEAST)
+    no_touches = Touches(
+        np.zeros(0, dtype=np.intp), np.zeros(0), np.zeros(0, dtype=bool), _LEAST_RISE
+    )
     if len(value) < 3 * window:
-        return none
-    summed = np.concatenate([[0.0], np.cumsum(value**2)])
-    power = summed[window:] - summed[:-window]  # over the window that begins at each sample
+        return no_touches
+    energy_before = np.concatenate([[0.0], np.cumsum(value**2)])
+    # over the window that begins at each sample
+    power = energy_before[window:] - energy_before[:-window]
     floor = (_FLOOR_OF_CODED if blur else _FLOOR) * float(power.max())
     if not floor > 0.0:
-        return none
+        return no_touches
     level = np.log(np.maximum(power, floor))
     rise = level[window:] - level[:-window]  # at samples from the end of the first window on
-    spread = 1.4826 * float(np.median(np.abs(rise - np.median(rise))))
-    threshold = max(_LEAST, _ABOVE * max(spread, 2.0 / np.sqrt(window)))
-    found, _ = find_peaks(rise, height=threshold, distance=window, plateau_size=1)
-    found = np.sort(found[np.argsort(-rise[found], kind="stable")[:MOST]])
-    begins = np.array([_begin(value, int(at) + window, window) for at in found], dtype=np.intp)
-    click = np.array([_is_click(value, int(at), window) for at in begins], dtype=bool)
-    return Touches(begins, rise[found], click, threshold)
+    # the median deviation of normal numbers is their standard deviation over 1.4826
+    fluctuation = 1.4826 * float(np.median(np.abs(rise - np.median(rise))))
+    # that of white noise is about 2 / sqrt(window)
+    fluctuation = max(fluctuation, 2.0 / np.sqrt(window))
+    threshold = max(_LEAST_RISE, _RISE_FACTOR * fluctuation)
+    peaks, _ = find_peaks(rise, height=threshold, distance=window, plateau_size=1)
+    clearest = np.argsort(-rise[peaks], kind="stable")[:MOST]
+    peaks = np.sort(peaks[clearest])
+    begins = np.array(
+        [_change_point(value, int(peak) + window, window) for peak in peaks], dtype=np.intp
+    )
+    click = np.array([_is_click(value, int(begin), window) for begin in begins], dtype=bool)
+    return Touches(begins, rise[peaks], click, threshold)
 
 
 def _is_click(value: Floats, begin: int, window: int) -> bool:
-    """Return whether a few samples hold what energy a touch adds."""
-    before, after = (
-        value[max(first, 0) : first + window] ** 2 for first in (begin - window, begin)
-    )
-    return float(np.convolve(after, np.ones(_CLICK)).max()) > _PART * float(
-        after.sum() - before.sum()
-    )
+    """Return whether a few samples hold most of the energy that a touch adds."""
+    before = value[max(begin - window, 0) : begin] ** 2
+    after = value[max(begin, 0) : begin + window] ** 2
+    shortly = float(np.convolve(after, np.ones(_CLICK_SAMPLES)).max())
+    return shortly > _CLICK_PART * float(after.sum() - before.sum())
 
 
-def _begin(value: Floats, near: int, window: int) -> int:
-    """Return the sample near another at which the variance most likely changes (maximum
-    likelihood of Gaussian samples).
+def _change_point(value: Floats, near: int, window: int) -> int:
+    """Return the sample near another at which the variance most likely changes.
+
+    That is the maximum likelihood of Gaussian samples, of one variance before and one after.
     """
     first = near - window
-    power = np.cumsum(value[first : near + 2 * window] ** 2)
-    count = np.arange(1, len(power) + 1)
+    energy = np.cumsum(value[first : near + 2 * window] ** 2)
+    count = len(energy)
     fewest = max(2, window // 8)
-    split = np.arange(fewest, min(2 * window, len(power) - fewest))
-    tiny = _QUIET * power[-1] / len(power)
-    before, after = power[split - 1] / split, (power[-1] - power[split - 1]) / (count[-1] - split)
-    cost = split * np.log(before + tiny) + (count[-1] - split) * np.log(after + tiny)
+    split = np.arange(fewest, min(2 * window, count - fewest))
+    quiet = _QUIET * energy[-1] / count
+    variance_before = energy[split - 1] / split
+    variance_after = (energy[-1] - energy[split - 1]) / (count - split)
+    # minus twice the logarithm of the likelihood, apart from constants
+    cost = split * np.log(variance_before + quiet) + (count - split) * np.log(
+        variance_after + quiet
+    )
     return first + int(split[np.argmin(cost)])

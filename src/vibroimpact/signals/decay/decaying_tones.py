@@ -18,7 +18,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Self
+from typing import NamedTuple, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,15 +28,15 @@ from vibroimpact.arrays import Complex, Floats
 from vibroimpact.signals.inverse.gauss_newton import Fit, gauss_newton
 
 _SMOOTH = 4
-"""Number of coefficients of the polynomial."""
-_MOST = 24
+"""Number of coefficients of the polynomial of what tones outside the band leave in it."""
+_MOST_TONES = 24
 """Largest number of tones in a band."""
 _DECAYS = np.geomspace(0.5, 200.0, 7)
 """Decays over the record, in nepers, at which a further tone is sought."""
-_ROUNDS, _SAME = 6, 0.02
-"""Most fits, each with the noise that the one before left, and relative change of the
-ratios of channels that ends them.
-"""
+_ROUNDS = 6
+"""Most fits, each with the noise that the one before left."""
+_SAME_NOISE = 0.02
+"""Relative change of the ratios of the noise of channels that ends the fits."""
 _LARGEST_STEPS = np.array([0.7, 3.0])
 """Largest change in a step: of the logarithm of the decay, and of the frequency in bins."""
 
@@ -100,43 +100,43 @@ class Spectra(ABC):
     @property
     @abstractmethod
     def unit(self) -> Floats:
-        """Standard deviation of real and imaginary part of each bin under noise of unit
-        variance, (bins,).
-        """
+        """Standard deviation of both parts of each bin under noise of unit variance, (bins,)."""
 
     @abstractmethod
     def transform(self, s: Complex) -> tuple[Complex, Complex]:
         """Return the spectra g of tones of unit amplitude and their derivatives in s, (bins, n)."""
 
     @abstractmethod
-    def strongest(self, left: Complex) -> Floats:
-        """Return where a further tone tells most of what is left, (bins, S): the
-        logarithm of its decay and its frequency in bins.
+    def strongest(self, residual: Complex) -> Floats:
+        """Return where a further tone explains most of a residual, (bins, S).
+
+        That is the logarithm of its decay, and its frequency in bins.
         """
 
     def weighed(self, tones: Tones) -> Self:
-        """Return the spectra with the noise of each bin as a fit of tones leaves it: that
-        of white noise is the same for all.
+        """Return the spectra with the noise of each bin as a fit of tones leaves it.
+
+        That of white noise is the same for all.
         """
         return self
 
-    def telling(self, tones: Floats, left: Complex, penalty: float) -> Floats:
-        """Return the tones, (n, 2), that tell more than a penalty where each channel has
-        noise of its own; all, if all have the same.
+    def telling(self, tones: Floats, residual: Complex, penalty: float) -> Floats:
+        """Return the tones, (n, 2), that tell more than a penalty with noise of each channel.
+
+        These are all, if all channels have the same noise.
         """
         return tones
 
     def covariance(self, fit: Fit, model: Callable[[Floats], tuple[Floats, Floats]]) -> Floats:
-        """Return the covariance of the parameters of a fit: by its curvature, where the
-        noise is as `unit` has it.
+        """Return the covariance of the parameters of a fit.
+
+        It is that by its curvature, where the noise is as `unit` has it.
         """
         return fit.covariance
 
     @property
     def rows(self) -> Floats:
-        """Real and imaginary parts of each channel, (2 bins, S), of unit variance under
-        noise of unit variance.
-        """
+        """Real and imaginary parts of each channel, (2 bins, S), in units of the noise."""
         return _parts(self.value.T / self.unit[:, None])
 
     def without(self, tones: Tones) -> Self:
@@ -146,23 +146,26 @@ class Spectra(ABC):
     def of(self, tones: Tones) -> Complex:
         """Return the spectra of tones, (S, bins)."""
         s = -tones.decay + 1j * tones.frequency
-        upper, lower = (self.transform(one)[0] for one in (s, s.conj()))
+        upper, _ = self.transform(s)
+        lower, _ = self.transform(s.conj())
         return np.asarray((upper @ tones.amplitude + lower @ tones.amplitude.conj()).T)
 
     @property
     def powers(self) -> Floats:
         """Polynomials of what tones outside the band leave, (bins, polynomials)."""
-        place = 2.0 * (self.omega - self.omega[0]) / (self.omega[-1] - self.omega[0]) - 1.0
-        return np.asarray(np.polynomial.legendre.legvander(place, _SMOOTH - 1))
+        position = 2.0 * (self.omega - self.omega[0]) / (self.omega[-1] - self.omega[0]) - 1.0
+        return np.asarray(np.polynomial.legendre.legvander(position, _SMOOTH - 1))
 
     def smooth(self) -> Floats:
-        """Return their columns, (2 bins, columns)."""
+        """Return the columns of these polynomials in a fit, (2 bins, columns)."""
         powers = self.powers / self.unit[:, None]
         return np.block([[powers, np.zeros_like(powers)], [np.zeros_like(powers), powers]])
 
     def columns(self, tones: Floats) -> tuple[Floats, Floats]:
-        """Return the columns of tones, (2 bins, n, 2), and their derivatives in both parameters, (2
-        bins, n, 2, 2).
+        """Return the columns of tones in a fit, and their derivatives in both parameters.
+
+        The columns, (2 bins, n, 2), are those of the real and the imaginary part of c; the
+        derivatives have the shape (2 bins, n, 2, 2).
 
         Parameters
         ----------
@@ -171,24 +174,22 @@ class Spectra(ABC):
         """
         decay = np.exp(tones[:, 0])
         s = -decay + 1j * self.step * tones[:, 1]
-        (upper, upper_slope), (lower, lower_slope) = (self.transform(one) for one in (s, s.conj()))
-        columns = np.stack([upper + lower, 1j * (upper - lower)], axis=-1)
-        rates = ((-decay, -decay), (1j * self.step, -1j * self.step))
-        slopes = [
-            np.stack(
-                [a * upper_slope + b * lower_slope, 1j * (a * upper_slope - b * lower_slope)],
-                axis=-1,
-            )
-            for a, b in rates
-        ]
+        upper, upper_slope = self.transform(s)
+        lower, lower_slope = self.transform(s.conj())
+        columns = _by_amplitude(upper, lower)
+        # derivatives of s and of its conjugate
+        by_log_decay = _by_amplitude(-decay * upper_slope, -decay * lower_slope)
+        by_frequency = _by_amplitude(1j * self.step * upper_slope, -1j * self.step * lower_slope)
+        slopes = np.stack([by_log_decay, by_frequency], axis=-1)
         unit = self.unit[:, None, None]
-        return _parts(columns / unit), _parts(np.stack(slopes, axis=-1) / unit[..., None])
+        return _parts(columns / unit), _parts(slopes / unit[..., None])
 
 
 @dataclass(frozen=True)
 class Bins(Spectra):
-    """Discrete Fourier transforms of records in a band, with angular frequencies in radians per
-    sample.
+    """Discrete Fourier transforms of records in a band.
+
+    Angular frequencies are in radians per sample.
 
     Parameters
     ----------
@@ -210,70 +211,87 @@ class Bins(Spectra):
 
     def transform(self, s: Complex) -> tuple[Complex, Complex]:
         """As `Spectra.transform`."""
-        turn = np.exp(s - 1j * self.omega[:, None])
+        ratio = np.exp(s - 1j * self.omega[:, None])  # of the geometric series
         end = np.exp(s * self.samples)
-        value = (1.0 - end) / (1.0 - turn)
-        return np.asarray(value), np.asarray((value * turn - self.samples * end) / (1.0 - turn))
+        value = (1.0 - end) / (1.0 - ratio)
+        slope = (value * ratio - self.samples * end) / (1.0 - ratio)
+        return np.asarray(value), np.asarray(slope)
 
-    def strongest(self, left: Complex) -> Floats:
+    def strongest(self, residual: Complex) -> Floats:
         """As `Spectra.strongest`."""
-        number = len(self.omega)
-        offset = self.step * np.arange(-number, number + 1)
-        best, found = -1.0, np.zeros(2)
+        count = len(self.omega)
+        offset = self.step * np.arange(-count, count + 1)
+        in_band = slice(count, 2 * count)
+        highest = -1.0
+        best = np.zeros(2)
         for nepers in _DECAYS:
             decay = nepers / self.samples
+            # the spectrum of a tone at one bin, by the distance from it: that of others is shifted
             shape = (1.0 - np.exp(-nepers - 1j * self.samples * offset)) / (
                 1.0 - np.exp(-decay - 1j * offset)
             )
-            energy = np.convolve(np.ones(number), np.abs(shape) ** 2)[number : 2 * number]
+            energy = np.convolve(np.ones(count), np.abs(shape) ** 2)[in_band]
             match = [
-                np.abs(signal.fftconvolve(one, shape[::-1].conj())[number : 2 * number]) ** 2
-                for one in left.T
+                np.abs(signal.fftconvolve(channel, shape[::-1].conj())[in_band]) ** 2
+                for channel in residual.T
             ]
             power = np.sum(match, axis=0) / energy
-            place = int(np.argmax(power))
-            if power[place] > best:
-                best, found = (
-                    float(power[place]),
-                    np.array([np.log(decay), self.omega[place] / self.step]),
-                )
-        return found
+            peak = int(np.argmax(power))
+            if power[peak] > highest:
+                highest = float(power[peak])
+                best = np.array([np.log(decay), self.omega[peak] / self.step])
+        return best
+
+
+def _by_amplitude(upper: Complex, lower: Complex) -> Complex:
+    """Return the derivatives of c upper + conj(c) lower by the parts of c, on a last axis."""
+    return np.stack([upper + lower, 1j * (upper - lower)], axis=-1)
 
 
 def _parts(value: Complex) -> Floats:
+    """Return the real parts, and below them the imaginary ones."""
     return np.concatenate([value.real, value.imag])
 
 
-def tones_in(bins: Spectra) -> Tones:
-    """Return the tones in a band: one after the other is added where the spectra that are left show
-    it most, as long as it tells.
+def _complex(parts: Floats) -> Complex:
+    """Return the complex numbers of such parts."""
+    count = len(parts) // 2
+    return np.asarray(parts[:count] + 1j * parts[count:])
 
-    A tone tells if it lowers the extended Bayesian information criterion, which counts its
-    parameters and the bins where it may lie (Chen and Chen 2008, Biometrika 95:759).
+
+def tones_in(bins: Spectra) -> Tones:
+    """Return the tones in a band.
+
+    One after the other is added where the spectra that are left show it most, as long as it tells:
+    as long as it lowers the extended Bayesian information criterion, which counts its parameters
+    and the bins where it may lie (Chen and Chen 2008, Biometrika 95:759).
     """
-    rows, channels = bins.rows, len(bins.value)
+    rows = bins.rows
+    channels = len(bins.value)
     penalty = (2 + 2 * channels) * np.log(rows.size) + 2.0 * np.log(len(bins.omega))
     best = _fit(bins, rows, np.zeros((0, 2)))
-    while len(best.tones) < min(_MOST, len(bins.omega) // 6):
-        more = _fit(bins, rows, np.concatenate([best.tones, [_next(bins, best)]]))
-        if best.misfit(len(rows)) - more.misfit(len(rows)) < penalty:
+    while len(best.tones) < min(_MOST_TONES, len(bins.omega) // 6):
+        further = _further_tone(bins, best)
+        fit = _fit(bins, rows, np.concatenate([best.tones, [further]]))
+        if best.misfit(len(rows)) - fit.misfit(len(rows)) < penalty:
             break
-        best = more
-    number = len(bins.omega)
-    telling = bins.telling(
-        best.tones, np.asarray(best.left[:number] + 1j * best.left[number:]), penalty
-    )
-    return (best if len(telling) == len(best.tones) else _fit(bins, rows, telling)).found(bins)
+        best = fit
+    telling = bins.telling(best.tones, _complex(best.residual), penalty)
+    if len(telling) < len(best.tones):
+        best = _fit(bins, rows, telling)
+    return best.found(bins)
 
 
 @dataclass(frozen=True)
 class _Fit:
-    """Tones, (n, 2), what they leave, (2 bins, S), the noise, (S,), their c (n, S) and
-    covariance of the parameters (n, 2, 2).
+    """A fit of tones.
+
+    The tones, (n, 2), their residual, (2 bins, S), the noise, (S,), their c, (n, S), and the
+    covariance of their parameters, (n, 2, 2).
     """
 
     tones: Floats
-    left: Floats
+    residual: Floats
     noise: Floats
     amplitude: Complex
     covariance: Floats
@@ -295,61 +313,99 @@ class _Fit:
         )
 
 
-def _fit(bins: Spectra, rows: Floats, start: Floats) -> _Fit:
-    """Return the fit of so many tones, from where they begin; the noise that weighs
-    channels is that of the round before.
+class _Solved(NamedTuple):
+    """Least squares over the amplitudes of given tones.
+
+    The residual, (2 bins, S), the real and imaginary parts of c, (n, 2, S), an orthonormal basis of
+    the columns, and the derivatives of these by the parameters of the tones.
     """
-    number, smooth = len(start), bins.smooth()
 
-    def solved(tones: Floats) -> tuple[Floats, Floats, Floats, Floats]:
-        columns, slopes = bins.columns(tones)
-        design = np.concatenate([columns.reshape(len(rows), -1), smooth], axis=1)
-        scale = np.linalg.norm(design, axis=0)
-        basis, triangle = linalg.qr(design / scale, mode="economic", check_finite=False)
-        share = linalg.solve_triangular(
-            triangle + 1e-14 * np.eye(len(triangle)), basis.T @ rows, check_finite=False
-        )
-        return (
-            rows - basis @ (basis.T @ rows),
-            (share / scale[:, None])[: 2 * number].reshape(number, 2, rows.shape[1]),
-            basis,
-            slopes,
-        )
+    residual: Floats
+    amplitude: Floats
+    basis: Floats
+    slopes: Floats
 
-    freedom = max(
-        1.0 - (2.0 * number + smooth.shape[1] + 2.0 * number / rows.shape[1]) / len(rows), 0.1
-    )
 
-    def noise_of(left: Floats) -> Floats:
-        return np.asarray(np.maximum(np.sqrt(np.mean(left**2, axis=0) / freedom), bins.floor))
+def _fit(bins: Spectra, rows: Floats, start: Floats) -> _Fit:
+    """Return the fit of so many tones, from where they begin.
 
-    tones, covariance = start, np.zeros((2 * number, 2 * number))
-    noise = noise_of(solved(start)[0])
-    for _ in range(_ROUNDS if number else 0):
+    Channels are weighed by the noise that the round before left of them.
+    """
+    tone_count = len(start)
+    channels = rows.shape[1]
+    smooth = bins.smooth()
+    # tones are common to the channels, amplitudes and polynomials are not
+    unknowns = 2.0 * tone_count + smooth.shape[1] + 2.0 * tone_count / channels
+    freedom = max(1.0 - unknowns / len(rows), 0.1)
+
+    def noise_of(tones: Floats) -> Floats:
+        """Return the noise of each channel by what the best amplitudes leave."""
+        residual = _solve_amplitudes(bins, rows, smooth, tones).residual
+        rms = np.sqrt(np.mean(residual**2, axis=0) / freedom)
+        return np.asarray(np.maximum(rms, bins.floor))
+
+    tones = start
+    covariance = np.zeros((2 * tone_count, 2 * tone_count))
+    noise = noise_of(tones)
+    for _ in range(_ROUNDS if tone_count else 0):
 
         def model(parameters: Floats, noise: Floats = noise) -> tuple[Floats, Floats]:
-            left, share, basis, slopes = solved(parameters.reshape(-1, 2))
-            change = np.matmul(slopes.transpose(1, 0, 3, 2), share[:, None])  # (n, 2 bins, 2, S)
-            change = change.transpose(1, 3, 0, 2).reshape(len(rows), -1)
-            change = -(change - basis @ (basis.T @ change)).reshape(len(rows), rows.shape[1], -1)
-            return (left / noise).ravel(), (change / noise[:, None]).reshape(-1, 2 * number)
+            solved = _solve_amplitudes(bins, rows, smooth, parameters.reshape(-1, 2))
+            residual = (solved.residual / noise).ravel()
+            slopes = _residual_slopes(solved) / noise[:, None]
+            return residual, slopes.reshape(-1, 2 * tone_count)
 
-        fit = gauss_newton(model, tones.ravel(), np.tile(_LARGEST_STEPS, number))
+        fit = gauss_newton(model, tones.ravel(), np.tile(_LARGEST_STEPS, tone_count))
         tones = fit.parameters.reshape(-1, 2)
-        before, noise = noise, noise_of(solved(tones)[0])
-        covariance = bins.covariance(fit, model) * float(np.mean(noise**2 / before**2))
-        if np.ptp(noise / before) < _SAME * np.max(noise / before):  # channels weigh as they did
+        weighed_by = noise
+        noise = noise_of(tones)
+        covariance = bins.covariance(fit, model) * float(np.mean(noise**2 / weighed_by**2))
+        change = noise / weighed_by
+        if np.ptp(change) < _SAME_NOISE * np.max(change):  # channels weigh as they did
             break
-    left, share, *_ = solved(tones)
-    own = covariance.reshape(number, 2, number, 2)[np.arange(number), :, np.arange(number)]
-    return _Fit(tones, left, noise, share[:, 0] + 1j * share[:, 1], own)
+    solved = _solve_amplitudes(bins, rows, smooth, tones)
+    of_tones = np.arange(tone_count)
+    own = covariance.reshape(tone_count, 2, tone_count, 2)[of_tones, :, of_tones]
+    amplitude = solved.amplitude[:, 0] + 1j * solved.amplitude[:, 1]
+    return _Fit(tones, solved.residual, noise, amplitude, own)
 
 
-def _next(bins: Spectra, fit: _Fit) -> Floats:
-    """Return where a further tone tells most: the logarithm of its decay and its
-    frequency in bins.
-    """
-    number = len(bins.omega)
-    return bins.strongest(
-        np.asarray((fit.left[:number] + 1j * fit.left[number:]) / fit.noise, dtype=complex)
+def _solve_amplitudes(bins: Spectra, rows: Floats, smooth: Floats, tones: Floats) -> _Solved:
+    """Return the amplitudes of tones that leave least of the rows, beside smooth columns."""
+    columns, slopes = bins.columns(tones)
+    design = np.concatenate([columns.reshape(len(rows), -1), smooth], axis=1)
+    scale = np.linalg.norm(design, axis=0)
+    basis, triangle = linalg.qr(design / scale, mode="economic", check_finite=False)
+    # tones that coincide would make the triangle singular
+    coefficients = linalg.solve_triangular(
+        triangle + 1e-14 * np.eye(len(triangle)), basis.T @ rows, check_finite=False
     )
+    tone_count = len(tones)
+    amplitude = (coefficients / scale[:, None])[: 2 * tone_count]
+    return _Solved(
+        rows - basis @ (basis.T @ rows),
+        amplitude.reshape(tone_count, 2, rows.shape[1]),
+        basis,
+        slopes,
+    )
+
+
+def _residual_slopes(solved: _Solved) -> Floats:
+    """Return the derivatives of the residual by the parameters of tones, (2 bins, S, 2 n).
+
+    After Kaufman (1975) they are those of the columns, less what the basis follows of them.
+    """
+    rows, channels = solved.residual.shape
+    # (n, 2 bins, 2, S): of each tone by each of its two parameters
+    change = np.matmul(solved.slopes.transpose(1, 0, 3, 2), solved.amplitude[:, None])
+    change = change.transpose(1, 3, 0, 2).reshape(rows, -1)
+    change = change - solved.basis @ (solved.basis.T @ change)
+    return np.asarray(-change.reshape(rows, channels, -1))
+
+
+def _further_tone(bins: Spectra, fit: _Fit) -> Floats:
+    """Return where a further tone tells most.
+
+    That is the logarithm of its decay, and its frequency in bins.
+    """
+    return bins.strongest(np.asarray(_complex(fit.residual) / fit.noise, dtype=complex))

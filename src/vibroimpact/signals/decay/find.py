@@ -15,22 +15,22 @@ from vibroimpact.signals.decay.decaying_tones import Bins, Spectra, Tones, tones
 from vibroimpact.signals.estimate import Estimate
 from vibroimpact.signals.record import Record
 
-_WIDTH, _MARGIN = 2.0**0.5, 1.12
-"""Ratio of the ends of a band that is fitted at once, and how far beyond them tones are
-fitted too.
-"""
+_WIDTH = 2.0**0.5
+"""Ratio of the ends of a band that is fitted at once."""
+_MARGIN = 1.12
+"""How far beyond these ends tones are fitted too, as a ratio."""
 _CYCLES = 1000.0
-"""Cycles of the lowest frequency of a band that are used of it."""
+"""Cycles of the lowest frequency of a band over which the records are used."""
 _BINS = 32
 """Least number of bins in a band."""
 _LEAST_NOISE = 1e-4
 """Least noise, relative to the rms value of a record: no plate is linear beyond."""
-_WIDEST = 0.2
+_LARGEST_DAMPING = 0.2
 """Largest damping ratio: what is damped more does not ring."""
 _VAGUE = 0.25
 """Standard deviation of the logarithm of a damping ratio from which on it counts as unknown."""
 _APART = 3.0
-"""Distance of modes that are close to each other: in bins, or in half-power bandwidths."""
+"""Distance below which modes are close to each other, in bins or half-power bandwidths."""
 
 
 @dataclass(frozen=True)
@@ -113,9 +113,11 @@ def modes_in_decay(records: Sequence[Record], band: tuple[float, float]) -> tupl
     (400.0, 0.01)
     """
     value, rate = _checked(records, band)
-    bands = tuple(bands_in(band, value.shape[1] / rate))
-    modes = modes_in_bands(band, bands, [_bins(value, rate, *ends) for ends in bands], rate)
-    return tuple(with_doubts(modes, value.shape[1] / rate))
+    duration = value.shape[1] / rate
+    bands = tuple(bands_in(band, duration))
+    spectra = [_bins(value, rate, low, high) for low, high in bands]
+    modes = modes_in_bands(band, bands, spectra, rate)
+    return tuple(with_doubts(modes, duration))
 
 
 def modes_in_bands(
@@ -139,34 +141,43 @@ def modes_in_bands(
         radians per second.
     """
     turn = 2.0 * np.pi / rate
-    found = [tones_in(one) for one in spectra]
-    # once more, without what the tones of other bands leave in each
-    own = [
-        one.part((one.frequency >= turn * low) & (one.frequency < turn * high))
-        for (low, high), one in zip(bands, found, strict=True)
+    tones_of_bands = [tones_in(bins) for bins in spectra]
+    # each band has its own tones; those in its margins are of its neighbours
+    own_tones = [
+        tones.part((tones.frequency >= turn * low) & (tones.frequency < turn * high))
+        for (low, high), tones in zip(bands, tones_of_bands, strict=True)
     ]
-    alone = [_alone(one, [*own[:number], *own[number + 1 :]]) for number, one in enumerate(spectra)]
-    found = [tones_in(one.weighed(tones)) for one, tones in zip(alone, found, strict=True)]
+    # once more, without what the tones of other bands leave in each
+    refined = []
+    for number, bins in enumerate(spectra):
+        of_others = [*own_tones[:number], *own_tones[number + 1 :]]
+        alone = _alone(bins, of_others)
+        refined.append(tones_in(alone.weighed(tones_of_bands[number])))
+
     modes: list[DecayMode] = []
-    for (low, high), one, tones in zip(bands, spectra, found, strict=True):
-        resolution, last = one.step / turn, modes[-1].frequency.value if modes else 0.0
+    for (low, high), bins, tones in zip(bands, spectra, refined, strict=True):
+        resolution = bins.step / turn
+        highest_below = modes[-1].frequency.value if modes else 0.0
         for mode in _modes(tones, rate):
-            place = mode.frequency.value
-            inside = low - resolution <= place < high + resolution and band[0] <= place <= band[1]
-            # in the band below too
-            twice = place < low + 2.0 * resolution and abs(place - last) < resolution
-            if inside and not twice and mode.damping_ratio.value < _WIDEST:
+            frequency = mode.frequency.value
+            inside = (
+                low - resolution <= frequency < high + resolution
+                and band[0] <= frequency <= band[1]
+            )
+            in_band_below_too = (
+                frequency < low + 2.0 * resolution and abs(frequency - highest_below) < resolution
+            )
+            rings = mode.damping_ratio.value < _LARGEST_DAMPING
+            if inside and not in_band_below_too and rings:
                 modes.append(mode)
     return sorted(modes, key=lambda mode: mode.frequency.value)
 
 
-def _alone(bins: Spectra, others: Sequence[Tones]) -> Spectra:
-    """Return the spectra in a band without the tones of other bands that lie outside of
-    its margins.
-    """
+def _alone(bins: Spectra, of_others: Sequence[Tones]) -> Spectra:
+    """Return the spectra in a band without the tones of other bands outside of its margins."""
     low, high = bins.omega[[0, -1]]
-    for one in others:
-        bins = bins.without(one.part((one.frequency < low) | (one.frequency > high)))
+    for tones in of_others:
+        bins = bins.without(tones.part((tones.frequency < low) | (tones.frequency > high)))
     return bins
 
 
@@ -180,18 +191,20 @@ def _checked(records: Sequence[Record], band: tuple[float, float]) -> tuple[Floa
     """
     if not records:
         raise InputError("there is no record; give at least one")
-    rate, samples = records[0].rate, len(records[0].value)
-    if any((one.rate, len(one.value)) != (rate, samples) for one in records):
+    rate = records[0].rate
+    samples = len(records[0].value)
+    if any(record.rate != rate or len(record.value) != samples for record in records):
         raise InputError(
             "the records have different rates or numbers of samples; give those of one acquisition"
         )
-    for one in records:
-        if not np.isfinite(one.value).all():
-            raise InputError(f"a sample of {quoted(one.name)} is not a finite number")
+    for record in records:
+        name = quoted(record.name)
+        if not np.isfinite(record.value).all():
+            raise InputError(f"a sample of {name} is not a finite number")
         if samples == 0:
-            raise InputError(f"the record {quoted(one.name)} has no samples")
-        if np.ptp(one.value) == 0.0:
-            raise InputError(f"the record {quoted(one.name)} is constant; nothing decays in it")
+            raise InputError(f"the record {name} has no samples")
+        if np.ptp(record.value) == 0.0:
+            raise InputError(f"the record {name} is constant; nothing decays in it")
     low, high = band
     if not 0.0 < low < high <= 0.5 * rate:
         raise InputError(
@@ -199,26 +212,23 @@ def _checked(records: Sequence[Record], band: tuple[float, float]) -> tuple[Floa
             f"above 0 to {0.5 * rate:g} Hz, half the rate"
         )
     if (high - low) * samples < _BINS * rate:
-        values = int((high - low) * samples / rate)
-        words = (
-            f"the spectrum has {values} values in a band of {high - low:g} Hz by a decay of "
-            f"{samples / rate:.3g} s"
-        )
+        bins = int((high - low) * samples / rate)
         raise InputError(
-            f"{words}, and {_BINS} at least are needed; take a longer decay or a wider band"
+            f"the spectrum has {bins} values in a band of {high - low:g} Hz by a decay of "
+            f"{samples / rate:.3g} s, and {_BINS} at least are needed; take a longer decay or a "
+            "wider band"
         )
-    return np.stack([one.value for one in records]), rate
+    return np.stack([record.value for record in records]), rate
 
 
 def bands_in(band: tuple[float, float], duration: float) -> Iterator[tuple[float, float]]:
-    """Yield the bands that are fitted at once: half octaves, or wider ones where the
-    record is short.
-    """
+    """Yield the bands that are fitted at once: half octaves, or wider ones of a short record."""
     low, end = band
     while low < end:
-        least = _BINS / min(duration, _CYCLES / low)
-        high = max(low * _WIDTH, low + least)
-        if end - high < max(0.5 * (high - low), least):
+        least_width = _BINS / min(duration, _CYCLES / low)
+        high = max(low * _WIDTH, low + least_width)
+        # a narrow rest joins the last band
+        if end - high < max(0.5 * (high - low), least_width):
             high = end
         yield low, high
         low = high
@@ -227,46 +237,54 @@ def bands_in(band: tuple[float, float], duration: float) -> Iterator[tuple[float
 def _bins(value: Floats, rate: float, low: float, high: float) -> Bins:
     """Return the spectra in a band and its margins."""
     samples = min(value.shape[1], round(_CYCLES * rate / low))
-    first, last = np.ceil(low / _MARGIN * samples / rate), np.floor(_MARGIN * high * samples / rate)
-    number = np.arange(max(int(first), 1), min(int(last), (samples - 1) // 2) + 1)
-    part = value[:, :samples]
-    floor = _LEAST_NOISE * np.sqrt(np.mean(part**2, axis=1))
-    return Bins(2.0 * np.pi / samples * number, fft.rfft(part)[:, number], floor, samples)
+    first = int(np.ceil(low / _MARGIN * samples / rate))
+    last = int(np.floor(_MARGIN * high * samples / rate))
+    # neither zero nor half the rate, whose spectra are real
+    bins = np.arange(max(first, 1), min(last, (samples - 1) // 2) + 1)
+    used = value[:, :samples]
+    floor = _LEAST_NOISE * np.sqrt(np.mean(used**2, axis=1))
+    return Bins(2.0 * np.pi / samples * bins, fft.rfft(used)[:, bins], floor, samples)
 
 
 def _modes(tones: Tones, rate: float) -> Iterator[DecayMode]:
+    """Yield the modes of tones: poles of the magnitude omega and the damping ratio d / omega."""
+    to_hertz = rate / (2.0 * np.pi)
     for decay, frequency, covariance, amplitude in zip(
         tones.decay, tones.frequency, tones.covariance, tones.amplitude, strict=True
     ):
-        size = float(np.hypot(decay, frequency))
-        ratio = float(decay / size)
-        # by the logarithm of the decay, and by the frequency
-        of_size = np.array([decay * ratio, frequency / size])
-        of_ratio = np.array([1.0, 0.0]) - of_size / size
-        deviations = [
-            float(np.sqrt(max(one @ covariance @ one, 0.0))) for one in (of_size, of_ratio)
-        ]
-        scale = rate / (2.0 * np.pi)
+        magnitude = float(np.hypot(decay, frequency))
+        ratio = float(decay / magnitude)
+        # derivatives by the logarithm of the decay, and by the frequency
+        magnitude_slope = np.array([decay * ratio, frequency / magnitude])
+        log_ratio_slope = np.array([1.0, 0.0]) - magnitude_slope / magnitude
+        magnitude_deviation = _deviation(magnitude_slope, covariance)
         yield DecayMode(
-            Estimate(scale * size, scale * deviations[0]),
-            Estimate(ratio, deviations[1], logarithmic=True),
+            Estimate(to_hertz * magnitude, to_hertz * magnitude_deviation),
+            Estimate(ratio, _deviation(log_ratio_slope, covariance), logarithmic=True),
             tuple((2.0 * np.abs(amplitude)).tolist()),
         )
 
 
+def _deviation(slope: Floats, covariance: Floats) -> float:
+    """Return the standard deviation of a number with a slope by parameters with a covariance."""
+    return float(np.sqrt(max(float(slope @ covariance @ slope), 0.0)))
+
+
 def with_doubts(modes: Sequence[DecayMode], duration: float) -> Iterator[DecayMode]:
     """Yield modes with the doubt about their damping, from so much time of decay [s]."""
-    places = np.array([mode.frequency.value for mode in modes])
+    frequencies = np.array([mode.frequency.value for mode in modes])
     for number, mode in enumerate(modes):
         if mode.damping_ratio.deviation < _VAGUE:
             yield mode
             continue
-        distance = np.abs(places - places[number])
+        frequency = frequencies[number]
+        distance = np.abs(frequencies - frequency)
         distance[number] = np.inf
         nearest = int(np.argmin(distance))
-        used = min(duration, _CYCLES / places[number])
-        width = max(1.0 / used, 2.0 * mode.damping_ratio.value * places[number])
-        close = f"too close to the mode at {places[nearest]:.5g} Hz"
-        yield replace(
-            mode, doubt=close if distance[nearest] < _APART * width else "too noisy, or too weak"
-        )
+        bin_width = 1.0 / min(duration, _CYCLES / frequency)
+        half_power_width = 2.0 * mode.damping_ratio.value * frequency
+        if distance[nearest] < _APART * max(bin_width, half_power_width):
+            doubt = f"too close to the mode at {frequencies[nearest]:.5g} Hz"
+        else:
+            doubt = "too noisy, or too weak"
+        yield replace(mode, doubt=doubt)

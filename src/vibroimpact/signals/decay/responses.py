@@ -25,26 +25,28 @@ _LEAST_NOISE = 1e-4
 """Least noise, relative to the rms value of a response: no plate is linear beyond."""
 _RATIOS = np.geomspace(3e-4, 0.1, 7)
 """Damping ratios at which a further mode is sought."""
-_PLACED = 0.25
-"""Standard deviation of a frequency, in distances of the measured ones, from which on
-what has no damping is no mode.
+_UNRESOLVED = 0.25
+"""Standard deviation of a frequency, in distances of those measured, that is of no mode.
+
+It counts where the damping is in doubt.
 """
 _TRIED = 64
-"""Places where it is sought."""
-_ROUNDS, _OUTSTANDING = 8, 6.0
-"""Fits of the noise over the size of the response, each with the weights of the one
-before, and the multiple of it that is no noise.
-"""
-_FOURTH = np.array([1.0, -4.0, 6.0, -4.0, 1.0]) / 70.0**0.5
-"""Fourth differences, of the variance of noise."""
+"""Frequencies at which a further mode is sought."""
+_ROUNDS = 8
+"""Fits of the noise over the size of the response, each with the weights of the one before."""
+_OUTSTANDING = 6.0
+"""Multiple of the variance of noise that is no noise."""
+_FOURTH_DIFFERENCE = np.array([1.0, -4.0, 6.0, -4.0, 1.0]) / 70.0**0.5
+"""Coefficients of a fourth difference that has the variance of noise."""
 _SAME = 1e-6
 """Relative difference of frequencies that is none."""
 
 
 @dataclass(frozen=True)
 class Lines(Spectra):
-    r"""Frequency responses in a band, with angular frequencies in radians per second: :math:`g(s) =
-    1 / (i \omega - s)`.
+    r"""Frequency responses in a band, in which a tone has :math:`g(s) = 1 / (i \omega - s)`.
+
+    Angular frequencies are in radians per second.
 
     Parameters
     ----------
@@ -69,106 +71,111 @@ class Lines(Spectra):
         value = 1.0 / (1j * self.omega[:, None] - s)
         return np.asarray(value), np.asarray(value**2)
 
-    def strongest(self, left: Complex) -> Floats:
+    def strongest(self, residual: Complex) -> Floats:
         """As `Spectra.strongest`."""
-        best, found = -1.0, np.zeros(2)
-        energy = np.sum(np.abs(left) ** 2, axis=1)
+        highest = -1.0
+        best = np.zeros(2)
+        energy = np.sum(np.abs(residual) ** 2, axis=1)
         for ratio in _RATIOS:
             # in the middle of the half-power bandwidths with most energy: what rings there peaks in
             # one of them
             width = max(1, int(ratio * float(self.omega.mean()) / self.step))
-            most = np.argsort(np.add.reduceat(energy, np.arange(0, len(energy), width)))[-_TRIED:]
-            omega = self.omega[np.minimum(most * width + width // 2, len(energy) - 1)]
-            shape = self.transform((1j - ratio) * omega)[0] / self.unit[:, None]
-            power = np.sum(np.abs(shape.conj().T @ left) ** 2, axis=1) / np.sum(
-                np.abs(shape) ** 2, axis=0
-            )
-            place = int(np.argmax(power))
-            if power[place] > best:
-                best, found = (
-                    float(power[place]),
-                    np.array([np.log(ratio * omega[place]), omega[place] / self.step]),
-                )
-        return found
+            in_widths = np.add.reduceat(energy, np.arange(0, len(energy), width))
+            strongest = np.argsort(in_widths)[-_TRIED:]
+            omega = self.omega[np.minimum(strongest * width + width // 2, len(energy) - 1)]
+            tone, _ = self.transform((1j - ratio) * omega)
+            shape = tone / self.unit[:, None]
+            match = np.sum(np.abs(shape.conj().T @ residual) ** 2, axis=1)
+            power = match / np.sum(np.abs(shape) ** 2, axis=0)
+            peak = int(np.argmax(power))
+            if power[peak] > highest:
+                highest = float(power[peak])
+                best = np.array([np.log(ratio * omega[peak]), omega[peak] / self.step])
+        return best
 
     def weighed(self, tones: Tones) -> Self:
-        """Return the responses with noise of which a part is the same at all frequencies, and a
-        part grows with the response.
+        """Return the responses with noise of two parts: constant, and growing with the response.
 
         The first is that of the sensors, the second that of the force, of averages that differ and
         of leakage. Both are fitted to what the tones leave, of all channels together.
         """
         rest = (self.value - self.of(tones)).T
-        left = rest - self.powers @ np.linalg.lstsq(self.powers, rest, rcond=None)[0]
-        return replace(self, spread=_spread(left, self.value.T - left, self.floor))
+        smooth = self.powers @ np.linalg.lstsq(self.powers, rest, rcond=None)[0]
+        noise = rest - smooth
+        return replace(self, spread=_spread(noise, self.value.T - noise, self.floor))
 
-    def telling(self, tones: Floats, left: Complex, penalty: float) -> Floats:
-        """Return the tones without those that follow the noise of one channel, where it
-        is larger than that of the others.
+    def telling(self, tones: Floats, residual: Complex, penalty: float) -> Floats:
+        """Return the tones without those that follow the noise of one channel.
+
+        They would, where that is larger than the noise of the others.
         """
-        left = left * self.unit[:, None]
-        channels = [
-            replace(
-                self,
-                value=self.value[[one]],
-                spread=_spread(left[:, [one]], (self.value.T - left)[:, [one]], self.floor[[one]]),
-            )
-            for one in range(len(self.value))
-        ]
+        noise = residual * self.unit[:, None]
+        response = self.value.T - noise
+        channels = []
+        for number in range(len(self.value)):
+            channel = [number]
+            spread = _spread(noise[:, channel], response[:, channel], self.floor[channel])
+            channels.append(replace(self, value=self.value[channel], spread=spread))
+
+        def misfit(tones: Floats) -> float:
+            return sum(channel.misfit(tones) for channel in channels)
+
         while len(tones):
-            fewer = [np.delete(tones, one, axis=0) for one in range(len(tones))]
-            misfits = [
-                sum(channel.misfit(part) for channel in channels) for part in (tones, *fewer)
-            ]
-            least = int(np.argmin(misfits[1:]))
-            if misfits[1 + least] - misfits[0] > penalty:
+            misfit_of_all = misfit(tones)
+            without_one = [np.delete(tones, number, axis=0) for number in range(len(tones))]
+            misfits = [misfit(fewer) for fewer in without_one]
+            least = int(np.argmin(misfits))
+            if misfits[least] - misfit_of_all > penalty:
                 break
-            tones = fewer[least]
+            tones = without_one[least]
         return tones
 
     def misfit(self, tones: Floats) -> float:
-        """Return minus twice the logarithm of the likelihood of tones, apart from what is
-        the same for all.
-        """
+        """Return minus twice the logarithm of the likelihood of tones, apart from constants."""
         rows = self.rows
-        design = np.concatenate(
-            [self.columns(tones)[0].reshape(len(rows), -1), self.smooth()], axis=1
-        )
+        columns, _ = self.columns(tones)
+        design = np.concatenate([columns.reshape(len(rows), -1), self.smooth()], axis=1)
         basis, _ = np.linalg.qr(design / np.linalg.norm(design, axis=0))
-        left = rows - basis @ (basis.T @ rows)
-        return float(
-            np.sum(len(rows) * np.log(np.maximum(np.mean(left**2, axis=0), self.floor**2)))
-        )
+        residual = rows - basis @ (basis.T @ rows)
+        variance = np.maximum(np.mean(residual**2, axis=0), self.floor**2)
+        return float(np.sum(len(rows) * np.log(variance)))
 
     def covariance(self, fit: Fit, model: Callable[[Floats], tuple[Floats, Floats]]) -> Floats:
-        """Return the covariance of the parameters of a fit by what it leaves, whatever
-        the noise of each channel is there.
+        """Return the covariance of the parameters of a fit by its residuals.
+
+        It holds whatever the noise of each channel is there.
         """
-        left, slopes = model(fit.parameters)
+        residual, slopes = model(fit.parameters)
         turned = slopes @ fit.covariance
+        # a residual is smaller than the noise by the leverage of its row
         leverage = np.minimum(np.sum(turned * slopes, axis=1), 0.5)
-        scattered = turned * (left / (1.0 - leverage))[:, None]
-        untold = max(0.0, 1.0 - float(np.mean(left**2)))  # of the least noise, where less is left
-        return np.asarray(scattered.T @ scattered + untold * fit.covariance)
+        scattered = turned * (residual / (1.0 - leverage))[:, None]
+        # of the least noise, where less is left
+        missing = max(0.0, 1.0 - float(np.mean(residual**2)))
+        return np.asarray(scattered.T @ scattered + missing * fit.covariance)
 
 
 def _spread(noise: Complex, response: Complex, floor: Floats) -> Floats:
-    """Return the standard deviation of noise at each frequency, of mean square 1, from noise and
-    responses of all channels, (bins, S).
+    """Return the standard deviation of noise at each frequency, (bins,), of mean square 1.
 
-    Its variance is a constant and a multiple of the square of the response, fitted without what
-    stands out.
+    Noise and responses are those of all channels, (bins, S). The variance is a constant and a
+    multiple of the square of the response, fitted without what stands out.
     """
     scale = np.maximum(np.sqrt(np.mean(np.abs(noise) ** 2, axis=0)), floor)
-    square, size = (np.mean(np.abs(one / scale) ** 2, axis=1) for one in (noise, response))
-    columns = np.stack([np.ones_like(size), size], axis=1)
-    variance = float(np.median(square)) + float(np.median(square / size)) * size
+    noise_square = np.mean(np.abs(noise / scale) ** 2, axis=1)
+    response_square = np.mean(np.abs(response / scale) ** 2, axis=1)
+    columns = np.stack([np.ones_like(response_square), response_square], axis=1)
+    constant = float(np.median(noise_square))
+    multiple = float(np.median(noise_square / response_square))
+    variance = constant + multiple * response_square
     for _ in range(_ROUNDS):  # a square varies by as much as its mean
-        usual = square < _OUTSTANDING * variance
-        shares, _ = optimize.nnls((columns / variance[:, None])[usual], (square / variance)[usual])
+        usual = noise_square < _OUTSTANDING * variance
+        weighed_columns = (columns / variance[:, None])[usual]
+        shares, _ = optimize.nnls(weighed_columns, (noise_square / variance)[usual])
         if not shares.any():
             break
-        variance = np.maximum(columns @ shares, _LEAST_NOISE**2 * float((columns @ shares).max()))
+        variance = columns @ shares
+        variance = np.maximum(variance, _LEAST_NOISE**2 * float(variance.max()))
     return np.asarray(np.sqrt(variance / np.mean(variance)))
 
 
@@ -219,22 +226,26 @@ def modes_in_responses(
     (400.0, 0.01)
     """
     frequency, value = common_lines(responses)
-    band = (float(frequency[0]), float(frequency[-1])) if band is None else band
-    number = int(((frequency >= band[0]) & (frequency <= band[1])).sum())
-    if number < _LEAST:
-        words = (
-            f"there are {number} frequencies of the responses from {band[0]:g} to {band[1]:g} "
-            f"Hz, and {_LEAST} at least are needed"
+    if band is None:
+        band = (float(frequency[0]), float(frequency[-1]))
+    in_band = frequency[(frequency >= band[0]) & (frequency <= band[1])]
+    count = len(in_band)
+    if count < _LEAST:
+        raise InputError(
+            f"there are {count} frequencies of the responses from {band[0]:g} to {band[1]:g} "
+            f"Hz, and {_LEAST} at least are needed; take a wider band, or measure with a finer "
+            "resolution"
         )
-        raise InputError(f"{words}; take a wider band, or measure with a finer resolution")
-    duration = (number - 1) / float(
-        np.ptp(frequency[(frequency >= band[0]) & (frequency <= band[1])])
-    )
+    # of records with this distance of frequencies
+    duration = (count - 1) / float(np.ptp(in_band))
     bands = tuple(bands_in(band, duration))
-    spectra = [_lines(frequency, value, *ends) for ends in bands]
+    spectra = [_lines(frequency, value, low, high) for low, high in bands]
+    # the rate is that of radians per second
     modes = with_doubts(modes_in_bands(band, bands, spectra, 1.0), duration)
     return tuple(
-        mode for mode in modes if not mode.doubt or mode.frequency.deviation * duration < _PLACED
+        mode
+        for mode in modes
+        if not mode.doubt or mode.frequency.deviation * duration < _UNRESOLVED
     )
 
 
@@ -249,37 +260,38 @@ def common_lines(responses: Sequence[FrequencyResponse]) -> tuple[Floats, Comple
     if not responses:
         raise InputError("there is no frequency response; give at least one")
     first = responses[0]
-    for one in responses:
-        if (
-            len(one.frequency) != len(first.frequency)
-            or np.abs(one.frequency / first.frequency - 1.0).max() > _SAME
-        ):
-            spans = (
-                f"{len(each.frequency)} from {each.frequency[0]:g} to {each.frequency[-1]:g} Hz"
-                for each in (first, one)
-            )
-            words = (
-                f"{quoted(first.name)} and {quoted(one.name)} have different frequencies, "
-                f"{' and '.join(spans)}"
-            )
-            raise InputError(f"the responses {words}; give those of one measurement")
-        if not one.value.any():
+    for response in responses:
+        if not _same_frequencies(response.frequency, first.frequency):
             raise InputError(
-                f"the frequency response {quoted(one.name)} is zero throughout; leave it out"
+                f"the responses {quoted(first.name)} and {quoted(response.name)} have different "
+                f"frequencies, {_span(first.frequency)} and {_span(response.frequency)}; "
+                "give those of one measurement"
             )
-    return first.frequency, np.stack([one.value for one in responses])
+        if not response.value.any():
+            raise InputError(
+                f"the frequency response {quoted(response.name)} is zero throughout; leave it out"
+            )
+    return first.frequency, np.stack([response.value for response in responses])
+
+
+def _same_frequencies(frequency: Floats, reference: Floats) -> bool:
+    if len(frequency) != len(reference):
+        return False
+    return bool(np.abs(frequency / reference - 1.0).max() <= _SAME)
+
+
+def _span(frequency: Floats) -> str:
+    return f"{len(frequency)} from {frequency[0]:g} to {frequency[-1]:g} Hz"
 
 
 def _lines(frequency: Floats, value: Complex, low: float, high: float) -> Lines:
     """Return the responses in a band and its margins."""
     inside = (frequency >= low / _MARGIN) & (frequency <= _MARGIN * high)
-    part = value[:, inside]
-    floor = _LEAST_NOISE * np.sqrt(np.mean(np.abs(part) ** 2, axis=1))
-    # what is smooth has small fourth differences
-    differences = np.stack([np.convolve(one, _FOURTH, mode="same") for one in part], axis=1)
-    return Lines(
-        2.0 * np.pi * frequency[inside],
-        part,
-        floor,
-        np.pad(_spread(differences[2:-2], part.T[2:-2], floor), 2, mode="edge"),
-    )
+    in_band = value[:, inside]
+    floor = _LEAST_NOISE * np.sqrt(np.mean(np.abs(in_band) ** 2, axis=1))
+    # what is smooth has small fourth differences, so that these are noise; two at each end are not
+    # complete
+    differences = [np.convolve(channel, _FOURTH_DIFFERENCE, mode="same") for channel in in_band]
+    noise = np.stack(differences, axis=1)[2:-2]
+    spread = np.pad(_spread(noise, in_band.T[2:-2], floor), 2, mode="edge")
+    return Lines(2.0 * np.pi * frequency[inside], in_band, floor, spread)

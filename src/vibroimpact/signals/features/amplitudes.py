@@ -12,27 +12,31 @@ _TEXTBOOK = "Brandt 2011, Noise and Vibration Analysis, Wiley, ch. 4"
 _FACTORS = "Lei, He, Zi & Hu 2007, Mech. Syst. Signal Process. 21:2280"
 
 
-def _of(block: Block) -> Floats:
-    value, magnitude, peak = block.value, block.magnitude, block.peak
-    mean_square, mean_magnitude = block.square_sum / block.samples, magnitude.mean(axis=1)
-    root = np.sqrt(magnitude).mean(axis=1) ** 2
+def _amplitudes(block: Block) -> Floats:
+    value = block.value
+    peak = block.peak
+    highest = value.max(axis=1)
+    lowest = value.min(axis=1)
+    mean_square = block.square_sum / block.samples
     rms = np.sqrt(mean_square)
-    largest, least = value.max(axis=1), value.min(axis=1)
+    mean_magnitude = block.magnitude.mean(axis=1)
+    square_mean_root = np.sqrt(block.magnitude).mean(axis=1) ** 2
     # from the first sample, so that a constant has none at all
     centred = value - value[:, :1]
-    deviation = np.sqrt(np.maximum((centred**2).mean(axis=1) - centred.mean(axis=1) ** 2, 0.0))
+    variance = (centred**2).mean(axis=1) - centred.mean(axis=1) ** 2
+    standard_deviation = np.sqrt(np.maximum(variance, 0.0))
     columns = (
         peak,
-        largest - least,
+        highest - lowest,
         value.mean(axis=1),
         mean_magnitude,
         rms,
-        deviation,
+        standard_deviation,
         block.square_sum / block.rate,
         peak / rms,
         rms / mean_magnitude,
         peak / mean_magnitude,
-        peak / root,
+        peak / square_mean_root,
     )
     return np.stack(columns, axis=1)
 
@@ -106,5 +110,5 @@ FAMILY = Family(
             source=_FACTORS,
         ),
     ),
-    _of,
+    _amplitudes,
 )

@@ -1,6 +1,4 @@
-"""Packets and what they tell of bounces: number, impulses, ratio of peaks, time between,
-restitution.
-"""
+"""Packets and what they tell of bounces: their number, impulses, peaks, intervals, restitution."""
 
 from __future__ import annotations
 
@@ -12,28 +10,22 @@ from vibroimpact.signals.feature import Family, Feature
 from vibroimpact.signals.reasons import Reason
 
 
-def _of(block: Block) -> Floats:
-    signal, onset, peak, impulses = (
-        block.packets.signal,
-        block.packets.onset,
-        block.packets.peak,
-        block.packets.impulses,
-    )
-    count = len(block.value)
-    number = np.bincount(signal, minlength=count)
+def _bounce_features(block: Block) -> Floats:
+    packets = block.packets
+    signals = len(block.value)
+    count = np.bincount(packets.signal, minlength=signals)
     # onset and peak of the first three packets of each signal
-    order = np.arange(len(signal)) - np.repeat(np.cumsum(number) - number, number)
-    times, peaks = np.full((2, count, 3), np.nan)
+    order = np.arange(len(packets.signal)) - np.repeat(np.cumsum(count) - count, count)
     early = order < 3
-    times[signal[early], order[early]], peaks[signal[early], order[early]] = (
-        onset[early],
-        peak[early],
-    )
-    interval = np.diff(times, axis=1) / block.rate
+    onset = np.full((signals, 3), np.nan)
+    onset[packets.signal[early], order[early]] = packets.onset[early]
+    peak = np.full((signals, 3), np.nan)
+    peak[packets.signal[early], order[early]] = packets.peak[early]
+    interval = np.diff(onset, axis=1) / block.rate
     columns = (
-        number,
-        np.bincount(signal, impulses, count),
-        peaks[:, 1] / peaks[:, 0],
+        count,
+        np.bincount(packets.signal, packets.impulses, signals),
+        peak[:, 1] / peak[:, 0],
         interval[:, 0],
         interval[:, 1] / interval[:, 0],
     )
@@ -82,5 +74,5 @@ FAMILY = Family(
             lacking=Reason.TWO_PACKETS,
         ),
     ),
-    _of,
+    _bounce_features,
 )

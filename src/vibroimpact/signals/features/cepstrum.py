@@ -1,7 +1,6 @@
-"""Cepstral coefficients: the shape of the logarithmic spectrum, from coarse to fine, in bands of
-equal width.
+"""Cepstral coefficients: the shape of the logarithmic spectrum, from coarse to fine.
 
-Bands of the mel scale follow the ear; a plate has none, so that the bands are linear.
+Its bands are of equal width: those of the mel scale follow the ear, and a plate has none.
 """
 
 from __future__ import annotations
@@ -15,25 +14,28 @@ from vibroimpact.arrays import Floats
 from vibroimpact.signals.block import Block
 from vibroimpact.signals.feature import Family, Feature
 
-_BANDS, _COEFFICIENTS = 20, 8
+_BANDS = 20
+_COEFFICIENTS = 8
 _LEAST = 4 * _BANDS
 _FLOOR = 1e-10
 """Energy of a band that counts as none, as a part of the whole: -100 dB."""
 
 
-def _of(block: Block) -> Floats:
-    energy = block.power @ _triangles(block.power.shape[1])
+def _cepstral_coefficients(block: Block) -> Floats:
+    energy = block.power @ _triangular_windows(block.power.shape[1])
     level = np.log(energy / block.power.sum(axis=1, keepdims=True) + _FLOOR)
+    # the first coefficient is the size of all bands, and no shape
     return np.asarray(fft.dct(level, axis=1, norm="ortho")[:, 1 : _COEFFICIENTS + 1])
 
 
 @lru_cache(maxsize=8)
-def _triangles(frequencies: int) -> Floats:
-    """Return triangular windows that overlap by half and fill the range from zero to half
-    the rate, (frequencies, bands).
+def _triangular_windows(frequencies: int) -> Floats:
+    """Return triangular windows, (frequencies, bands), that overlap by half.
+
+    They fill the range from zero to half the rate.
     """
-    place = np.linspace(0.0, _BANDS + 1.0, frequencies)[:, None]
-    return np.asarray(np.maximum(1.0 - np.abs(place - np.arange(1, _BANDS + 1)), 0.0))
+    position = np.linspace(0.0, _BANDS + 1.0, frequencies)[:, None]
+    return np.asarray(np.maximum(1.0 - np.abs(position - np.arange(1, _BANDS + 1)), 0.0))
 
 
 FAMILY = Family(
@@ -49,5 +51,5 @@ FAMILY = Family(
         )
         for number in range(1, _COEFFICIENTS + 1)
     ),
-    _of,
+    _cepstral_coefficients,
 )

@@ -9,38 +9,49 @@ from vibroimpact.signals.block import Block
 from vibroimpact.signals.feature import Family, Feature
 from vibroimpact.signals.reasons import Reason
 
-_FIRST_DECIBELS, _LAST_DECIBELS = -5.0, -25.0
+_FIRST_DECIBELS = -5.0
+"""Level of the energy still to come at which the decay time begins [dB]."""
+_LAST_DECIBELS = -25.0
+"""Level at which it ends [dB]."""
 
 
-def _of(block: Block) -> Floats:
+def _envelope_times(block: Block) -> Floats:
+    # a signal that is zero throughout has the threshold zero, which it does not reach
     above = (block.envelope >= block.threshold[:, None]) & (block.threshold[:, None] > 0.0)
-    heard = above.any(axis=1)
-    onset = np.where(heard, above.argmax(axis=1), np.nan)
-    last = block.samples - 1 - above[:, ::-1].argmax(axis=1)
-    top = block.envelope.argmax(axis=1)
-    # the energy that is still to come, and where it has fallen to a part of all
-    left = np.cumsum((block.value**2)[:, ::-1], axis=1)[:, ::-1]
-    left = left / left[:, :1]
-    first_fall, last_fall = (
-        _fall(left, 10.0 ** (level / 10.0)) for level in (_FIRST_DECIBELS, _LAST_DECIBELS)
-    )
-    decay = (
-        2.0 * (last_fall - first_fall) / (np.log(10.0) / 10.0 * (_FIRST_DECIBELS - _LAST_DECIBELS))
-    )
-    centroid = (block.value**2) @ np.arange(block.samples) / block.square_sum - onset
-    return np.stack([top - onset, last - onset, decay, centroid], axis=1) / block.rate
+    onset = np.where(above.any(axis=1), above.argmax(axis=1), np.nan)
+    last_above = block.samples - 1 - above[:, ::-1].argmax(axis=1)
+    maximum = block.envelope.argmax(axis=1)
+    square = block.value**2
+    centroid = square @ np.arange(block.samples) / block.square_sum - onset
+    times = [maximum - onset, last_above - onset, _decay_time(square), centroid]
+    return np.stack(times, axis=1) / block.rate
 
 
-def _fall(left: Floats, part: float) -> Floats:
-    """Return the sample, between samples by interpolation, at which what is left falls
-    below a part; it ends at zero.
+def _decay_time(square: Floats) -> Floats:
+    """Return the time constant of the amplitude, in samples, from the squares of the samples.
+
+    The energy still to come (Schroeder 1965) falls by 10 / ln(10) dB in half a time constant.
     """
-    row = np.arange(len(left))
-    after = np.count_nonzero(left >= part, axis=1)
-    begin = left[row, np.maximum(after - 1, 0)]
-    end = np.where(after < left.shape[1], left[row, np.minimum(after, left.shape[1] - 1)], 0.0)
-    found = after - 1 + (begin - part) / (begin - end)
-    return np.asarray(np.where(np.isnan(begin), np.nan, found))
+    to_come = np.cumsum(square[:, ::-1], axis=1)[:, ::-1]
+    to_come = to_come / to_come[:, :1]
+    first_fall = _fall(to_come, 10.0 ** (_FIRST_DECIBELS / 10.0))
+    last_fall = _fall(to_come, 10.0 ** (_LAST_DECIBELS / 10.0))
+    nepers = np.log(10.0) / 10.0 * (_FIRST_DECIBELS - _LAST_DECIBELS)
+    return np.asarray(2.0 * (last_fall - first_fall) / nepers)
+
+
+def _fall(to_come: Floats, level: float) -> Floats:
+    """Return the sample at which the energy still to come falls below a level.
+
+    Between samples it is linear; behind the last one it is zero.
+    """
+    signal = np.arange(len(to_come))
+    samples = to_come.shape[1]
+    following = np.count_nonzero(to_come >= level, axis=1)
+    begin = to_come[signal, np.maximum(following - 1, 0)]
+    end = np.where(following < samples, to_come[signal, np.minimum(following, samples - 1)], 0.0)
+    fall = following - 1 + (begin - level) / (begin - end)
+    return np.asarray(np.where(np.isnan(begin), np.nan, fall))
 
 
 _EMISSION = "ASTM E1316, Terminology for Nondestructive Examinations, section B: acoustic emission"
@@ -80,5 +91,5 @@ FAMILY = Family(
             lacking=Reason.NO_ONSET,
         ),
     ),
-    _of,
+    _envelope_times,
 )

@@ -1,6 +1,4 @@
-"""Energies of intrinsic modes: oscillations of rising period that empirical mode
-decomposition takes off a signal.
-"""
+"""Energies of intrinsic modes: oscillations of rising period, by empirical mode decomposition."""
 
 from __future__ import annotations
 
@@ -11,11 +9,13 @@ from vibroimpact.signals.block import Block
 from vibroimpact.signals.cubic_through import cubic_through
 from vibroimpact.signals.feature import Family, Feature
 
-_MODES, _SIFTINGS = 4, 6
-_LEAST = 16
+_MODES = 4
+_SIFTINGS = 6
+_LEAST_SAMPLES = 16
 _LEVEL = 1e-10
-"""Difference of neighbours, beside the largest magnitude of the signal, that counts as
-none: differences of cubics have rounding errors.
+"""Difference of neighbours, over the largest magnitude of the signal, that counts as none.
+
+Differences of cubics have rounding errors.
 """
 
 
@@ -42,51 +42,57 @@ def intrinsic_modes(value: Floats, modes: int = _MODES, siftings: int = _SIFTING
     array, shape (modes, n, samples)
         The modes; zero where there is none.
     """
-    found, rest, least = (
-        np.zeros((modes, *value.shape)),
-        value.copy(),
-        _LEVEL * np.abs(value).max(axis=1),
-    )
-    left = np.arange(len(value))  # signals whose rest has a mode
+    found = np.zeros((modes, *value.shape))
+    rest = value.copy()
+    least_step = _LEVEL * np.abs(value).max(axis=1)
+    with_mode = np.arange(len(value))  # the signals whose rest has a mode
     for mode in found:
-        going, sifted = left, rest[left]
-        for number in range(siftings):
-            tops, bottoms = _extrema(sifted, least[going])
-            both = np.minimum(_count(tops, sifted), _count(bottoms, sifted)) > 0
-            if not both.all():
-                if number:  # a mode without a maximum or a minimum stays as it is
-                    mode[going] = sifted
-                going, sifted = going[both], sifted[both]
-                left = left if number else going
-                tops, bottoms = _extrema(sifted, least[going])
-            sifted -= 0.5 * (cubic_through(sifted, tops) + cubic_through(sifted, bottoms))
-        mode[going] = sifted
+        signals = with_mode  # those that are still sifted
+        sifted = rest[signals]
+        for sifting in range(siftings):
+            maxima, minima = _extrema(sifted, least_step[signals])
+            has_both = np.minimum(_count(maxima, sifted), _count(minima, sifted)) > 0
+            if not has_both.all():
+                if sifting > 0:  # a mode without a maximum or a minimum stays as it is
+                    mode[signals] = sifted
+                signals = signals[has_both]
+                sifted = sifted[has_both]
+                if sifting == 0:  # there is no further mode in the others
+                    with_mode = signals
+                maxima, minima = _extrema(sifted, least_step[signals])
+            sifted -= 0.5 * (cubic_through(sifted, maxima) + cubic_through(sifted, minima))
+        mode[signals] = sifted
         rest -= mode
     return found
 
 
-def _extrema(value: Floats, least: Floats) -> tuple[Indices, Indices]:
-    """Return places of maxima and minima in flattened signals, by steps above the least
-    (n,); of equal neighbours the first.
+def _extrema(value: Floats, least_step: Floats) -> tuple[Indices, Indices]:
+    """Return maxima and minima of signals, as indices of the flattened array.
+
+    Steps count above the least of each signal, (n,); of equal neighbours it is the first.
     """
+    samples = value.shape[1]
     step = np.zeros_like(value)  # the last one of a signal is none
     np.subtract(value[:, 1:], value[:, :-1], out=step[:, :-1])
-    moving = np.flatnonzero(np.abs(step) > least[:, None])
-    up = step.ravel()[moving] > 0.0
+    moving = np.flatnonzero(np.abs(step) > least_step[:, None])
+    rises = step.ravel()[moving] > 0.0
     turns = np.zeros(len(moving), dtype=bool)
-    turns[:-1] = up[1:] != up[:-1]
-    ends = np.searchsorted(moving, value.shape[1] * np.arange(1, len(value))) - 1
-    turns[ends[ends >= 0]] = False  # from one signal to the next
-    place, top = moving[turns] + 1, up[turns]
-    return place[top], place[~top]
+    turns[:-1] = rises[1:] != rises[:-1]
+    # from one signal to the next there is no turn
+    last_of_signal = np.searchsorted(moving, samples * np.arange(1, len(value))) - 1
+    turns[last_of_signal[last_of_signal >= 0]] = False
+    extrema = moving[turns] + 1
+    is_maximum = rises[turns]
+    return extrema[is_maximum], extrema[~is_maximum]
 
 
-def _count(places: Indices, value: Floats) -> Indices:
-    """Return how many of some places, in rising order, lie in each signal."""
-    return np.asarray(np.diff(np.searchsorted(places, value.shape[1] * np.arange(len(value) + 1))))
+def _count(extrema: Indices, value: Floats) -> Indices:
+    """Return how many extrema, in rising order, lie in each signal."""
+    bounds = value.shape[1] * np.arange(len(value) + 1)
+    return np.asarray(np.diff(np.searchsorted(extrema, bounds)))
 
 
-def _of(block: Block) -> Floats:
+def _intrinsic_mode_energies(block: Block) -> Floats:
     modes = intrinsic_modes(block.value)
     return np.asarray(np.einsum("mij,mij->im", modes, modes) / block.square_sum[:, None])
 
@@ -100,9 +106,9 @@ FAMILY = Family(
             "cubics",
             source="Huang et al. 1998, Proc. R. Soc. A 454:903; Wu & Huang 2009, Adv. Adapt. Data "
             "Anal. 1:1",
-            least=_LEAST,
+            least=_LEAST_SAMPLES,
         )
         for number in range(1, _MODES + 1)
     ),
-    _of,
+    _intrinsic_mode_energies,
 )

@@ -10,18 +10,19 @@ from vibroimpact.signals.feature import Family, Feature
 from vibroimpact.signals.reasons import Reason
 
 
-def _of(block: Block) -> Floats:
+def _moments(block: Block) -> Floats:
     # from the first sample, so that a constant has no deviation at all
     centred = block.value - block.value[:, :1]
     centred -= centred.mean(axis=1, keepdims=True)
-    span = np.abs(centred).max(axis=1, keepdims=True)
-    centred /= span  # small deviations of a large signal would underflow
+    largest = np.abs(centred).max(axis=1, keepdims=True)
+    centred /= largest  # small deviations of a large signal would underflow
     square = centred * centred
     variance = square.mean(axis=1)
-    third, fourth = np.einsum("ij,ij->i", square, centred), np.einsum("ij,ij->i", square, square)
-    return np.stack(
-        [third / block.samples / variance**1.5, fourth / block.samples / variance**2], axis=1
-    )
+    third_power = np.einsum("ij,ij->i", square, centred)
+    fourth_power = np.einsum("ij,ij->i", square, square)
+    skewness = third_power / block.samples / variance**1.5
+    kurtosis = fourth_power / block.samples / variance**2
+    return np.stack([skewness, kurtosis], axis=1)
 
 
 _SOURCE = "Joanes & Gill 1998, J. R. Stat. Soc. D 47:183"
@@ -45,5 +46,5 @@ FAMILY = Family(
             lacking=Reason.CONSTANT,
         ),
     ),
-    _of,
+    _moments,
 )

@@ -14,16 +14,16 @@ _BANDS = 6
 _LEAST = 2 ** (_BANDS + 2)  # two frequencies in the lowest band
 
 
-def _of(block: Block) -> Floats:
+def _octave_band_energies(block: Block) -> Floats:
     total = block.power.sum(axis=1)
-    half = block.rate / 2.0
-    edges = np.searchsorted(
-        block.frequency, half / 2.0 ** np.arange(_BANDS + 1) * (1.0 + 1e-12), side="right"
-    )
-    bands = [
-        block.power[:, low:high].sum(axis=1) / total for high, low in itertools.pairwise(edges)
+    # edges of the bands, from half the rate down; a frequency on an edge is in the band below,
+    # whatever its rounding error
+    edges = block.rate / 2.0 / 2.0 ** np.arange(_BANDS + 1) * (1.0 + 1e-12)
+    ends = np.searchsorted(block.frequency, edges, side="right")
+    shares = [
+        block.power[:, first:end].sum(axis=1) / total for end, first in itertools.pairwise(ends)
     ]
-    return np.stack(bands, axis=1)
+    return np.stack(shares, axis=1)
 
 
 FAMILY = Family(
@@ -38,5 +38,5 @@ FAMILY = Family(
         )
         for number in range(1, _BANDS + 1)
     ),
-    _of,
+    _octave_band_energies,
 )

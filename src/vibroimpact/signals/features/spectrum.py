@@ -14,38 +14,46 @@ _TINY = 1e-30
 """Energy that counts as nothing beside that of the signal, so that its logarithm is finite."""
 
 
-def _of(block: Block) -> Floats:
+def _spectral_features(block: Block) -> Floats:
     frequency = block.frequency / block.rate  # whose squares stay in range
-    part = block.power / block.power.sum(axis=1, keepdims=True)
+    share = block.power / block.power.sum(axis=1, keepdims=True)
     amplitude = np.abs(block.transform)
-    centroid = part @ frequency
-    bandwidth = np.sqrt(np.maximum(part @ frequency**2 - centroid**2, 0.0))
-    reached = np.count_nonzero(np.cumsum(part, axis=1) < _ROLL_OFF, axis=1)
-    roll_off = np.where(
-        np.isnan(centroid), np.nan, frequency[np.minimum(reached, len(frequency) - 1)]
-    )
-    peak = np.where(np.isnan(centroid), np.nan, frequency[amplitude.argmax(axis=1)])
-    logarithm = np.log(part + _TINY)
-    flatness = np.exp(logarithm.mean(axis=1)) * len(frequency)
-    entropy = np.maximum(-np.einsum("ij,ij->i", part, logarithm), 0.0) / np.log(len(frequency))
+    centroid = share @ frequency
+    # of a signal that is zero throughout there is no spectrum
+    silent = np.isnan(centroid)
+
+    bandwidth = np.sqrt(np.maximum(share @ frequency**2 - centroid**2, 0.0))
+    roll_off_bin = np.count_nonzero(np.cumsum(share, axis=1) < _ROLL_OFF, axis=1)
+    roll_off = frequency[np.minimum(roll_off_bin, len(frequency) - 1)]
+    roll_off = np.where(silent, np.nan, roll_off)
+    peak_frequency = np.where(silent, np.nan, frequency[amplitude.argmax(axis=1)])
     amplitude_centroid = amplitude @ frequency / amplitude.sum(axis=1)
-    in_hertz = np.stack(
-        [centroid, amplitude_centroid, bandwidth, roll_off, peak, _cut_off(amplitude, frequency)],
-        axis=1,
+    cut_off = _cut_off(amplitude, frequency)
+
+    log_share = np.log(share + _TINY)
+    flatness = np.exp(log_share.mean(axis=1)) * len(frequency)
+    entropy = np.maximum(-np.einsum("ij,ij->i", share, log_share), 0.0) / np.log(len(frequency))
+
+    frequencies = [centroid, amplitude_centroid, bandwidth, roll_off, peak_frequency, cut_off]
+    shapes = [flatness, entropy]
+    return np.concatenate(
+        [np.stack(frequencies, axis=1) * block.rate, np.stack(shapes, axis=1)], axis=1
     )
-    return np.concatenate([in_hertz * block.rate, np.stack([flatness, entropy], axis=1)], axis=1)
 
 
 def _cut_off(amplitude: Floats, frequency: Floats) -> Floats:
-    """Return the highest frequency at which the amplitude is 10 dB below its maximum,
-    between the frequencies by its logarithm.
+    """Return the highest frequency at which the amplitude is 10 dB below its maximum.
+
+    Between the frequencies of the transform the logarithm of the amplitude is linear.
     """
-    row, level = np.arange(len(amplitude)), amplitude.max(axis=1, keepdims=True) / np.sqrt(10.0)
+    signal = np.arange(len(amplitude))
+    level = amplitude.max(axis=1, keepdims=True) / np.sqrt(10.0)
     last = amplitude.shape[1] - 1 - (amplitude >= level)[:, ::-1].argmax(axis=1)
-    after = np.minimum(last + 1, len(frequency) - 1)
-    above, below = (np.log(amplitude[row, place] / level[:, 0] + _TINY) for place in (last, after))
-    found = frequency[last] + (frequency[after] - frequency[last]) * above / (above - below)
-    return np.asarray(np.where(last < after, found, np.nan))
+    following = np.minimum(last + 1, len(frequency) - 1)
+    above = np.log(amplitude[signal, last] / level[:, 0] + _TINY)
+    below = np.log(amplitude[signal, following] / level[:, 0] + _TINY)
+    cut_off = frequency[last] + (frequency[following] - frequency[last]) * above / (above - below)
+    return np.asarray(np.where(last < following, cut_off, np.nan))
 
 
 _PEETERS = "Peeters 2004, A large set of audio features, IRCAM, section 6.1, by the energy"
@@ -112,5 +120,5 @@ FAMILY = Family(
             least=2,
         ),
     ),
-    _of,
+    _spectral_features,
 )

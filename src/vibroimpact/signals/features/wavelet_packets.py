@@ -1,5 +1,6 @@
-"""Energies of wavelet packets: the signal is halved into low and high frequencies, and
-each half again.
+"""Energies of wavelet packets.
+
+The signal is halved into low and high frequencies, and each half again.
 """
 
 from __future__ import annotations
@@ -27,7 +28,8 @@ _LOW = (
 )
 """Daubechies's filter of four vanishing moments (1988, table 1)."""
 
-_HIGH = tuple((-1) ** place * tap for place, tap in enumerate(reversed(_LOW)))
+_HIGH = tuple((-1) ** order * tap for order, tap in enumerate(reversed(_LOW)))
+"""Its mirror filter."""
 
 
 def wavelet_packet_energies(value: Floats) -> Floats:
@@ -55,23 +57,23 @@ def wavelet_packet_energies(value: Floats) -> Floats:
 
 
 def _filtered(value: Floats, taps: tuple[float, ...]) -> Floats:
-    """Return every second sample of the circular correlation of signals with a filter,
-    from three samples before the first one on.
+    """Return every second sample of the circular correlation of signals with a filter.
+
+    It begins three samples before the first one.
     """
     samples = value.shape[1]
-    turned = value[:, np.arange(-3, samples + len(taps) - 4) % samples]
-    found = taps[0] * turned[:, 0:samples:2]
-    for place, tap in enumerate(taps[1:], 1):
-        found += tap * turned[:, place : place + samples : 2]
-    return np.asarray(found)
+    wrapped = value[:, np.arange(-3, samples + len(taps) - 4) % samples]
+    filtered = taps[0] * wrapped[:, 0:samples:2]
+    for lag, tap in enumerate(taps[1:], 1):
+        filtered += tap * wrapped[:, lag : lag + samples : 2]
+    return np.asarray(filtered)
 
 
-def _of(block: Block) -> Floats:
-    part = wavelet_packet_energies(block.value) / block.square_sum[:, None]
-    entropy = -np.sum(
-        part * np.log(np.maximum(part, np.finfo(float).tiny)), axis=1, keepdims=True
-    ) / np.log(_NODES)
-    return np.concatenate([part, np.maximum(entropy, 0.0)], axis=1)
+def _packet_energies_and_entropy(block: Block) -> Floats:
+    share = wavelet_packet_energies(block.value) / block.square_sum[:, None]
+    log_share = np.log(np.maximum(share, np.finfo(float).tiny))
+    entropy = -np.sum(share * log_share, axis=1, keepdims=True) / np.log(_NODES)
+    return np.concatenate([share, np.maximum(entropy, 0.0)], axis=1)
 
 
 _SOURCE = (
@@ -100,5 +102,5 @@ FAMILY = Family(
             least=_NODES,
         ),
     ),
-    _of,
+    _packet_energies_and_entropy,
 )

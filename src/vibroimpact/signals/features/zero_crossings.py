@@ -9,7 +9,7 @@ from vibroimpact.signals.block import Block
 from vibroimpact.signals.feature import Family, Feature
 
 
-def _of(block: Block) -> Floats:
+def _zero_crossing_rate(block: Block) -> Floats:
     positive = block.value >= 0.0
     crossings = np.count_nonzero(positive[:, 1:] != positive[:, :-1], axis=1)
     return np.asarray(crossings * block.rate / block.samples)[:, None]
@@ -26,5 +26,5 @@ FAMILY = Family(
             unit="1/s",
         ),
     ),
-    _of,
+    _zero_crossing_rate,
 )

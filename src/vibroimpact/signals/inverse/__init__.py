@@ -1,3 +1,4 @@
-"""Inverse problems: from records to the force, its place and the parameters behind it;
-pure mathematics, without bodies or cases.
+"""Inverse problems: from records to the force, its place and the parameters behind it.
+
+This is pure mathematics, without bodies or cases.
 """

@@ -79,19 +79,24 @@ def deconvolve(matrix: Floats, record: Floats, roughness: Floats | None = None) 
     nodes = matrix.shape[1]
     differences = np.diff(np.eye(nodes + 6), 3, axis=0)[:, 3:-3]  # of a force that is zero outside
     rough = differences if roughness is None else differences / roughness[:, None]
-    normal, smooth, told = matrix.T @ matrix, rough.T @ rough, matrix.T @ record
+    normal = matrix.T @ matrix
+    smooth = rough.T @ rough
+    projected = matrix.T @ record
     # both quadratic forms are diagonal in the same coordinates
-    values, vectors = eigh(normal, smooth)
-    values, heard = np.maximum(values, 0.0), vectors.T @ told
-    scale = float(values.max())
+    eigenvalues, vectors = eigh(normal, smooth)
+    eigenvalues = np.maximum(eigenvalues, 0.0)
+    amplitudes = vectors.T @ projected
+    scale = float(eigenvalues.max())
     strengths = scale * _STRENGTHS[:, None]
-    evidence = 0.5 * (heard**2 / (values + strengths) - np.log1p(values / strengths)).sum(axis=1)
+    # of each strength the logarithm of the marginal likelihood: misfit, and volume of the prior
+    explained = amplitudes**2 / (eigenvalues + strengths)
+    evidence = 0.5 * (explained - np.log1p(eigenvalues / strengths)).sum(axis=1)
     best = int(np.argmax(evidence))
     strength = float(strengths[best, 0])
-    covariance = (vectors / (values + strength)) @ vectors.T
+    covariance = (vectors / (eigenvalues + strength)) @ vectors.T
     return Deconvolved(
-        np.asarray(covariance @ told),
-        np.asarray(covariance),
-        strength / scale,
-        float(evidence[best]),
+        force=np.asarray(covariance @ projected),
+        covariance=np.asarray(covariance),
+        strength=strength / scale,
+        evidence=float(evidence[best]),
     )

@@ -62,45 +62,45 @@ def gauss_newton(
     >>> x = np.linspace(0.0, 1.0, 20)
     >>> def decay(p):
     ...     shape = np.exp(-p[1] * x)
-    ...     return p[0] * shape - 3.0 * np.exp(-2.0 * x), np.stack(
-    ...         [shape, -p[0] * x * shape], axis=1
-    ...     )
-    >>> gauss_newton(decay, np.array([1.0, 1.0]), np.array([9.0, 9.0]), 1e-9).parameters.round(
-    ...     6
-    ... ).tolist()
+    ...     residual = p[0] * shape - 3.0 * np.exp(-2.0 * x)
+    ...     return residual, np.stack([shape, -p[0] * x * shape], axis=1)
+    >>> fit = gauss_newton(decay, np.array([1.0, 1.0]), np.array([9.0, 9.0]), 1e-9)
+    >>> fit.parameters.round(6).tolist()
     [3.0, 2.0]
     """
     parameters = np.asarray(start, dtype=float)
     residual, slopes = model(parameters)
     converged = False
     for _ in range(steps):
-        covariance = _covariance(slopes)
-        step = -covariance @ (slopes.T @ residual)
+        step = -_covariance(slopes) @ (slopes.T @ residual)
         step /= max(1.0, float(np.max(np.abs(step) / most)))
+        # in standard deviations of the residuals
         change = slopes @ step
         converged = bool(change @ change < tolerance**2 * len(step))
         # a part of a step that is small enough is not worth another model
         for _ in range(1 if converged else _HALVINGS):
-            tried = model(parameters + step)
-            if tried[0] @ tried[0] < residual @ residual:
+            new_residual, new_slopes = model(parameters + step)
+            if new_residual @ new_residual < residual @ residual:
                 break
             step = 0.5 * step
         else:
             converged = True  # nowhere lower along the step: the least there is, to rounding
             break
-        parameters, (residual, slopes) = parameters + step, tried
+        parameters = parameters + step
+        residual = new_residual
+        slopes = new_slopes
         if converged:
             break
     return Fit(parameters, _covariance(slopes), residual, converged)
 
 
 def _covariance(slopes: Floats) -> Floats:
-    """Return the inverse of the normal matrix, by columns scaled alike; zero for a
-    parameter that the model does not depend on.
+    """Return the inverse of the normal matrix, by columns scaled alike.
+
+    It is zero for a parameter that the model does not depend on.
     """
     scale = np.linalg.norm(slopes, axis=0)
     scale = np.where(scale > 0.0, scale, 1.0)
-    return np.asarray(
-        np.linalg.pinv((slopes / scale).T @ (slopes / scale), rcond=1e-13, hermitian=True)
-        / np.outer(scale, scale)
-    )
+    normal = (slopes / scale).T @ (slopes / scale)
+    inverse = np.linalg.pinv(normal, rcond=1e-13, hermitian=True)
+    return np.asarray(inverse / np.outer(scale, scale))

@@ -26,8 +26,8 @@ def hertz_pulse(time: Floats) -> Floats:
     r"""Return the force of an elastic Hertzian impact of unit impulse and unit duration.
 
     With :math:`x = (\delta/\delta_{max})^{5/2}` the time since first touch is :math:`t/T = \frac12
-    I_x(2/5, 1/2)` up to the deepest point
-    (Johnson, Contact Mechanics, 1985, eq. 11.23), and the force is proportional to :math:`x^{3/5}`.
+    I_x(2/5, 1/2)` up to the deepest point (Johnson, Contact Mechanics, 1985, eq. 11.23), and the
+    force is proportional to :math:`x^{3/5}`.
 
     Parameters
     ----------
@@ -46,13 +46,17 @@ def hertz_pulse(time: Floats) -> Floats:
     from scipy.special import beta, betaincinv
 
     inside = (time > 0.0) & (time < 1.0)
-    depth = betaincinv(0.4, 0.5, np.where(inside, 1.0 - np.abs(2.0 * time - 1.0), 0.0))
-    return np.asarray(np.where(inside, 0.5 * beta(0.4, 0.5) * depth**0.6, 0.0))
+    # the second half is the first one in reverse
+    to_nearest_end = np.where(inside, 1.0 - np.abs(2.0 * time - 1.0), 0.0)
+    x = betaincinv(0.4, 0.5, to_nearest_end)
+    return np.asarray(np.where(inside, 0.5 * beta(0.4, 0.5) * x**0.6, 0.0))
 
 
 def hertz_rise(part: Floats) -> tuple[Floats, Floats]:
-    """Return the time at which an elastic Hertzian force has risen to a part of its largest value,
-    over the duration, and the derivative.
+    """Return the time at which a Hertzian force has risen to a part of its peak, and its slope.
+
+    The contact is elastic, and the time is over its duration. The slope is the derivative of the
+    time by the part.
 
     Parameters
     ----------
@@ -68,14 +72,17 @@ def hertz_rise(part: Floats) -> tuple[Floats, Floats]:
     """
     from scipy.special import beta, betainc
 
-    depth = part ** (5.0 / 3.0)
-    slope = 5.0 / 6.0 / beta(0.4, 0.5) / (np.cbrt(part) * np.sqrt(1.0 - depth))
-    return np.asarray(0.5 * betainc(0.4, 0.5, depth)), np.asarray(slope)
+    # as `hertz_pulse` has it
+    x = part ** (5.0 / 3.0)
+    time = 0.5 * betainc(0.4, 0.5, x)
+    slope = 5.0 / 6.0 / beta(0.4, 0.5) / (np.cbrt(part) * np.sqrt(1.0 - x))
+    return np.asarray(time), np.asarray(slope)
 
 
 def hertz_impulses(duration: float) -> tuple[Floats, Floats]:
-    r"""Return times since first touch [s] and impulses, of sum one, that stand for a Hertzian
-    pulse.
+    r"""Return times since first touch [s] and impulses that stand for a Hertzian pulse.
+
+    The sum of the impulses is one.
 
     Parameters
     ----------
@@ -129,8 +136,11 @@ def sphere_of_pulse(
     ... ]
     [0.02, 3.0]
     """
-    weight = ball_volume(1.0) * density
-    radius = (
-        (duration / _TIME) ** 5 * modulus**2 * impulse / ((1.0 + restitution) * weight**3)
-    ) ** 0.125
-    return radius, impulse / ((1.0 + restitution) * weight * radius**3)
+    # of a sphere of unit radius; J = m v (1 + e) eliminates the speed from the duration
+    unit_mass = ball_volume(1.0) * density
+    eighth_power = (
+        (duration / _TIME) ** 5 * modulus**2 * impulse / ((1.0 + restitution) * unit_mass**3)
+    )
+    radius = eighth_power**0.125
+    speed = impulse / ((1.0 + restitution) * unit_mass * radius**3)
+    return radius, speed

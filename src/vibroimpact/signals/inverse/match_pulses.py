@@ -1,8 +1,7 @@
-r"""The place of a pulse by least squares over a grid: impulse, duration and instant are eliminated
-at each place.
+r"""The place of a pulse by least squares over a grid.
 
-Where the record of a unit pulse at a place is :math:`\sum_i \varphi_i\,h_i`, the least misfit over
-the impulse J of records d is
+Its impulse, duration and instant are eliminated at each place. Where the record of a unit pulse at
+a place is :math:`\sum_i \varphi_i\,h_i`, the least misfit over the impulse J of records d is
 
 .. math::
 
@@ -22,8 +21,9 @@ from vibroimpact.arrays import Floats, Integers
 
 
 class Matched(NamedTuple):
-    """The best pulse at each place: misfit (places,), impulse [N s], duration [s] and
-    number of the first touch.
+    """The best pulse at each place, (places,) each.
+
+    Its misfit, impulse [N s], duration [s] and the number of its first touch.
     """
 
     misfit: Floats
@@ -70,28 +70,33 @@ def match_pulses(
     >>> found.misfit.tolist(), found.impulse.tolist(), float(found.touch[0])
     ([0.0, 6.75], [3.0, 0.75], 2.0)
     """
+    places = len(shapes)
     energy = float(records @ records)
-    best = Matched(np.full(len(shapes), energy), *np.zeros((3, len(shapes))))
+    best = Matched(np.full(places, energy), np.zeros(places), np.zeros(places), np.zeros(places))
     for duration in durations:
         middle = responses(duration, touches[len(touches) // 2])
         # the energy of a pulse hardly depends on when it is
         power = np.einsum("pi,ij,pj->p", shapes, middle @ middle.T, shapes, optimize=True)
         for touch in touches:
             # a force pushes
-            along = np.maximum(shapes @ (responses(duration, touch) @ records), 0.0)
-            impulse = np.divide(along, power, out=np.zeros_like(along), where=power > 0.0)
-            misfit = energy - along * impulse
+            correlation = np.maximum(shapes @ (responses(duration, touch) @ records), 0.0)
+            no_impulse = np.zeros_like(correlation)
+            impulse = np.divide(correlation, power, out=no_impulse, where=power > 0.0)
+            misfit = energy - correlation * impulse
             better = misfit < best.misfit
-            found = (misfit, impulse, np.full(len(shapes), duration), np.full(len(shapes), touch))
             best = Matched(
-                *(np.where(better, new, old) for new, old in zip(found, best, strict=True))
+                np.where(better, misfit, best.misfit),
+                np.where(better, impulse, best.impulse),
+                np.where(better, duration, best.duration),
+                np.where(better, float(touch), best.touch),
             )
     return best
 
 
 def local_minima(values: Floats) -> Integers:
-    """Return the places in a flattened grid (rows, columns) whose values are below those of their
-    eight neighbours, the least first.
+    """Return the local minima of a grid (rows, columns), as indices of the flattened array.
+
+    They are below their eight neighbours, and sorted with the least first.
 
     Examples
     --------
@@ -100,5 +105,6 @@ def local_minima(values: Floats) -> Integers:
     """
     padded = np.pad(values, 1, constant_values=np.inf)
     around = np.lib.stride_tricks.sliding_window_view(padded, (3, 3)).reshape(*values.shape, 9)
-    lowest = np.flatnonzero((around.argmin(axis=-1) == 4).ravel())
-    return np.asarray(lowest[np.argsort(values.ravel()[lowest])])
+    is_lowest = around.argmin(axis=-1) == 4  # the middle of the nine
+    minima = np.flatnonzero(is_lowest.ravel())
+    return np.asarray(minima[np.argsort(values.ravel()[minima])])

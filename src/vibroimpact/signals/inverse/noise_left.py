@@ -8,12 +8,12 @@ from vibroimpact.arrays import Bools, Floats
 
 
 def noise_left(left: Floats, heard: Bools, slopes: Floats, covariance: Floats) -> Floats:
-    """Return the noise of each record from what a fit leaves of it, which tells it better than a
-    short quiet part does.
+    """Return the noise of each record from what a fit leaves of it.
 
-    What is left has less energy than the noise by what the fit follows of it: as many samples as
-    unknowns that the record tells, which is the trace of its part of the projection (D. J. C.
-    MacKay, Bayesian interpolation, Neural Computation 4:415, 1992).
+    That tells it better than a short quiet part does. What is left has less energy than the noise
+    by what the fit follows of it: as many samples as unknowns that the record tells, which is the
+    trace of its part of the projection (D. J. C. MacKay, Bayesian interpolation, Neural Computation
+    4:415, 1992).
 
     Parameters
     ----------
@@ -41,6 +41,5 @@ def noise_left(left: Floats, heard: Bools, slopes: Floats, covariance: Floats) -
     """
     of_records = slopes.reshape(*left.shape, -1)
     followed = np.einsum("snp,pq,snq->s", of_records, covariance, of_records, optimize=True)
-    return np.asarray(
-        np.sqrt((left**2 * heard).sum(axis=1) / np.maximum(heard.sum(axis=1) - followed, 1.0))
-    )
+    degrees_of_freedom = np.maximum(heard.sum(axis=1) - followed, 1.0)
+    return np.asarray(np.sqrt((left**2 * heard).sum(axis=1) / degrees_of_freedom))

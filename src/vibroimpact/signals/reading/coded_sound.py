@@ -36,19 +36,22 @@ SOUND = FileKind(
 """Requirements on a file with coded sound."""
 
 _BLUR = 4e-3
-"""Time over which coders with losses spread what begins suddenly [s]: of a beat, up to 4
-ms were measured (`test_coded_sound.py`).
+"""Time over which coders with losses spread what begins suddenly [s].
+
+Of a beat, up to 4 ms were measured (`test_coded_sound.py`).
 """
 
 _LONGEST = 6 * 3600.0
-"""Longest sound [s]: a block of silence takes a few bytes, so that the size of a file
-does not bound it.
+"""Longest sound [s].
+
+A block of silence takes a few bytes, so that the size of a file does not bound it.
 """
 
 
 def coded_records(path: Path) -> Iterator[Record]:
-    """Yield the channels of a file with coded sound, with full scale as 1; a coding with losses is
-    a doubt.
+    """Yield the channels of a file with coded sound, with full scale as 1.
+
+    A coding with losses is a doubt.
 
     Raises
     ------
@@ -63,20 +66,11 @@ def coded_records(path: Path) -> Iterator[Record]:
 
 
 def _records(file: FileIO, path: Path) -> Iterator[Record]:
-    try:
-        import av
-        from av import logging
-    except ImportError as error:
-        if isinstance(error, ModuleNotFoundError) and error.name == "av":
-            raise InputError(
-                f"sound in {path.suffix} needs PyAV, which is not installed: pip install "
-                '"vibroimpact[audio]"'
-            ) from None
-        fault = (
-            f"which can't be loaded ({shortened(str(error), 200)}); install it anew, or "
-            "convert the file to WAV"
-        )
-        raise InputError(f"sound in {path.suffix} needs PyAV, {fault}") from None
+    """Yield the channels of an opened file."""
+    _check_pyav(path.suffix)
+    import av
+    from av import logging
+
     logging.set_level(None)  # what FFmpeg has to say is an error here, or of no account
     try:
         with av.open(_Opened(file), "r", format=FORMATS[path.suffix.lower()]) as container:
@@ -95,29 +89,46 @@ def _records(file: FileIO, path: Path) -> Iterator[Record]:
         ) from None
     if not value.shape[1]:
         raise InputError("there are no samples in it")
-    coded = (
-        (_loss_doubt(stream),)
-        if stream.codec_context.codec.lossy and not stream.codec_context.codec.lossless
-        else ()
-    )
-    blur = _BLUR if coded else 0.0
+    codec = stream.codec_context.codec
+    doubts = faults
+    blur = 0.0
+    if codec.lossy and not codec.lossless:
+        doubts = (*faults, _loss_doubt(stream))
+        blur = _BLUR
     for number, channel in enumerate(value):
         name = path.stem if len(value) == 1 else f"{path.stem} {number + 1}"
-        yield Record(name, channel, rate, "1", doubts=(*faults, *coded), blur=blur)
+        yield Record(name, channel, rate, "1", doubts=doubts, blur=blur)
+
+
+def _check_pyav(suffix: str) -> None:
+    """Raise InputError unless PyAV can be loaded, for a file whose name ends so."""
+    try:
+        import av.logging  # noqa: F401
+    except ImportError as error:
+        if isinstance(error, ModuleNotFoundError) and error.name == "av":
+            raise InputError(
+                f"sound in {suffix} needs PyAV, which is not installed: pip install "
+                '"vibroimpact[audio]"'
+            ) from None
+        raise InputError(
+            f"sound in {suffix} needs PyAV, which can't be loaded ({shortened(str(error), 200)}); "
+            "install it anew, or convert the file to WAV"
+        ) from None
 
 
 class _Opened:
-    """An opened file for FFmpeg, which seeks before the begin of files that are too
-    short: there this stays at it.
+    """An opened file for FFmpeg.
+
+    FFmpeg seeks before the begin of files that are too short: there this stays at it.
     """
 
     def __init__(self, file: FileIO) -> None:
-        self.read, self.tell, self._file = file.read, file.tell, file
+        self.read = file.read
+        self.tell = file.tell
+        self._file = file
 
     def seek(self, offset: int, whence: int = SEEK_SET) -> int:
-        """Move to an offset [byte] from the begin, from here or from the end, and return
-        where that is.
-        """
+        """Move to an offset [byte] from the begin, from here or the end; return the new one."""
         origin = {
             SEEK_SET: 0,
             SEEK_CUR: self._file.tell(),
@@ -129,8 +140,9 @@ class _Opened:
 def _samples(
     container: InputContainer, stream: AudioStream, rate: float
 ) -> tuple[Floats, tuple[str, ...]]:
-    """Return the samples, (channels, samples), with full scale as 1, and a doubt where
-    the file ends in a fault.
+    """Return the samples, (channels, samples), with full scale as 1.
+
+    With them comes a doubt where the file ends in a fault.
     """
     import av
 
@@ -170,14 +182,13 @@ def _cause(error: Exception) -> str:
 
 
 def _loss_doubt(stream: AudioStream) -> str:
+    """Return the doubt about sound that is coded with losses."""
     bit_rate = stream.codec_context.bit_rate or stream.bit_rate
     size = f" at {bit_rate / 1000.0:.0f} kbit/s" if bit_rate else ""
+    codec = f"{stream.codec_context.codec.canonical_name}{size}"
     return (
-        "its sound is coded with losses "
-        f"({stream.codec_context.codec.canonical_name}{size}): what begins suddenly is "
-        "spread over some "
-        "milliseconds, more at low rates of samples or bits, and what is not heard is left "
-        "out; intervals of times of touches allow for "
-        f"{1e3 * _BLUR:g} ms of it, amplitudes, spectra and other features for none: "
-        "record in WAV or FLAC where these count"
+        f"its sound is coded with losses ({codec}): what begins suddenly is spread over some "
+        "milliseconds, more at low rates of samples or bits, and what is not heard is left out; "
+        f"intervals of times of touches allow for {1e3 * _BLUR:g} ms of it, amplitudes, spectra "
+        "and other features for none: record in WAV or FLAC where these count"
     )

@@ -1,6 +1,4 @@
-"""Sampling rate of a column of times, and samples at equal steps where the times are
-rounded or jitter.
-"""
+"""Sampling rate of a column of times, and equal steps behind times that are rounded or jitter."""
 
 from __future__ import annotations
 
@@ -13,16 +11,21 @@ from vibroimpact.arrays import Bools, Floats
 from vibroimpact.errors import InputError
 
 _LARGEST_SHIFT = 0.1
-"""Largest distance of a time from equal steps, as a part of a step: times are written
-with few digits.
+"""Largest distance of a time from equal steps, as a part of a step.
+
+Times are written with few digits.
 """
-_LONGEST_STEP, _LARGEST_JITTER = 3.0, 0.5
-"""Longest step, and standard deviation of steps, over their median, of times that jitter;
-others are those of a history, or have gaps.
+_LONGEST_STEP = 3.0
+"""Longest step, over their median, of times that jitter.
+
+Others are those of a history, or have gaps.
 """
+_LARGEST_JITTER = 0.5
+"""Standard deviation of steps, over their median, of times that jitter."""
 _ROUNDED = 0.75
-"""Largest distance of rounded times from equal steps, in units of their last digit: a
-half, and what is uncertain of the steps.
+"""Largest distance of rounded times from equal steps, in units of their last digit.
+
+It is a half, and what is uncertain of the steps.
 """
 _WHOLE = 1e-3
 """Distance from a multiple of the last digit, as a part of it, that is none."""
@@ -77,17 +80,19 @@ def rate_of(time: Floats, lines: Sequence[int] | None = None) -> float:
     if len(time) < 2:
         raise InputError("a record needs two samples or more, as the rate follows from their times")
     step = (time[-1] - time[0]) / (len(time) - 1)
-    back = np.flatnonzero(np.diff(time) < 0.0)
-    if back.size:
-        at = int(back[0])
-        above = "the previous one" if lines is None else "the one above"
-        words = (
-            f"{_sample(at + 1, lines)} is {time[at] - time[at + 1]:.3g} s before {above}, at "
-            f"{time[at + 1]:.9g} s"
-        )
-        several = "if the file has several records, one below the other, keep one of them"
+    backwards = np.flatnonzero(np.diff(time) < 0.0)
+    if backwards.size:
+        earlier = int(backwards[0])
+        later = earlier + 1
+        if lines is None:
+            above = "the previous one"
+            remedy = _THEY_MUST
+        else:
+            above = "the one above"
+            remedy = "if the file has several records, one below the other, keep one of them"
         raise InputError(
-            f"the times do not rise: {words}; {_THEY_MUST if lines is None else several}"
+            f"the times do not rise: {_sample(later, lines)} is "
+            f"{time[earlier] - time[later]:.3g} s before {above}, at {time[later]:.9g} s; {remedy}"
         )
     if not (step > 0.0 and np.isfinite(step)):
         remedy = _THEY_MUST if lines is None else "write them with more digits"
@@ -96,14 +101,11 @@ def rate_of(time: Floats, lines: Sequence[int] | None = None) -> float:
     worst = int(np.argmax(shift))
     if not shift[worst] <= _LARGEST_SHIFT:
         longest = int(np.argmax(np.diff(time))) + 1
-        words = f"{_sample(worst, lines)} is {shift[worst]:.2g} steps off its place"
-        gap = (
-            f"the longest step, {time[longest] - time[longest - 1]:.4g} s, leads to "
-            f"{_sample(longest, lines)}"
-        )
         raise InputError(
-            f"the times do not rise by equal steps: {words}, and {gap}; keep the part "
-            "before or after it, or resample the record"
+            f"the times do not rise by equal steps: {_sample(worst, lines)} is "
+            f"{shift[worst]:.2g} steps off its place, and the longest step, "
+            f"{time[longest] - time[longest - 1]:.4g} s, leads to {_sample(longest, lines)}; keep "
+            "the part before or after it, or resample the record"
         )
     return float(f"{1.0 / step:.12g}")  # the digits that times have
 
@@ -126,11 +128,11 @@ def is_regular(time: Floats) -> bool:
 def at_equal_steps(
     time: Floats, values: Sequence[Floats], lines: Sequence[int] | None = None
 ) -> Sampled:
-    """Return channels at equal steps: as they are, if their times are or are only rounded;
-    resampled, if they jitter.
+    """Return channels at equal steps.
 
-    Samples that have the time of the one before and all its values are left out, where others have
-    neither: a logger wrote them twice.
+    They stay as they are, if their times have equal steps or are only rounded; they are resampled,
+    if their times jitter. Samples that have the time of the one before and all its values are left
+    out, where others have neither: a logger wrote them twice.
 
     Parameters
     ----------
@@ -160,66 +162,102 @@ def at_equal_steps(
         step = np.diff(time)
         if not (step >= 0.0).all() or not (step > 0.0).any():
             raise
-        twice, words = written_twice(time, values, lines)
-        if words:
-            kept = at_equal_steps(
-                time[~twice],
-                [one[~twice] for one in values],
-                None if lines is None else np.asarray(lines)[~twice].tolist(),
-            )
-            return kept._replace(
-                doubts=tuple(f"{words}; {doubt}" if doubt else words for doubt in kept.doubts)
-            )
+        twice, left_out = written_twice(time, values, lines)
+        if left_out:
+            return _without_repeated(time, values, lines, twice, left_out)
         if len(time) < _FEWEST:
             raise
-        place = np.arange(len(time))
-        slope, begin = np.polyfit(place, time, 1).tolist()
-        last_digit = float(step[step > _WHOLE * step.max()].min(initial=np.inf))
-        multiple = (time - time[0]) / last_digit
-        off = np.abs(time - begin - slope * place).max()
-        is_rounded = (
-            np.abs(multiple - np.round(multiple)).max() < _WHOLE
-            and off < _ROUNDED * last_digit
-            and last_digit > slope * _LARGEST_SHIFT
-        )
-        # of steps that are no multiple of the last digit, such as 2 and 3 of it, the least is not
-        # that digit
-        if not is_rounded and (behind := behind_decimals(time)) is not None:
-            is_rounded, last_digit = True, behind[1]
-        if is_rounded:
-            words = (
-                f"its times are rounded to {last_digit:.3g} s, {last_digit / slope:.3g} steps; "
-                "the equal steps behind them are taken"
-            )
-            unsure = 100.0 * last_digit / (time[-1] - time[0])
+        rounded = _rounded_times(time)
+        if rounded is not None:
             return Sampled(
-                1.0 / slope,
-                begin,
-                list(values),
-                (f"{words}, which are known to {unsure:.2g} %",) * len(values),
+                1.0 / rounded.step, rounded.start, list(values), (rounded.doubt,) * len(values)
             )
-        if (rounded := _to_significant_digits(time, begin + slope * place)) is not None:
-            digits, last_digit = rounded
-            words = (
-                f"its times are rounded to {digits} significant digits, up to {last_digit:.3g} "
-                f"s, {last_digit / slope:.3g} steps"
-            )
-            unsure = 100.0 * last_digit / (time[-1] - time[0])
-            words += f"; the equal steps behind them are taken, which are known to {unsure:.2g} %"
-            return Sampled(1.0 / slope, begin, list(values), (words,) * len(values))
-        middle = float(np.median(step))
-        if not (
-            (step > 0.0).all()
-            and step.max() <= _LONGEST_STEP * middle
-            and step.std() <= _LARGEST_JITTER * middle
-        ):
+        if not _jitters(step):
             raise
     return _resampled(time, values)
 
 
+def _without_repeated(
+    time: Floats,
+    values: Sequence[Floats],
+    lines: Sequence[int] | None,
+    twice: Bools,
+    left_out: str,
+) -> Sampled:
+    """Return channels at equal steps without samples that were written twice, with that doubt."""
+    once = at_equal_steps(
+        time[~twice],
+        [value[~twice] for value in values],
+        None if lines is None else np.asarray(lines)[~twice].tolist(),
+    )
+    doubts = [f"{left_out}; {doubt}" if doubt else left_out for doubt in once.doubts]
+    return once._replace(doubts=tuple(doubts))
+
+
+def _jitters(step: Floats) -> bool:
+    """Return whether steps differ by no more than jitter."""
+    median = float(np.median(step))
+    return bool(
+        (step > 0.0).all()
+        and step.max() <= _LONGEST_STEP * median
+        and step.std() <= _LARGEST_JITTER * median
+    )
+
+
+class _EqualSteps(NamedTuple):
+    """The equal steps behind rounded times [s], with a doubt."""
+
+    start: float
+    step: float
+    doubt: str
+
+
+def _rounded_times(time: Floats) -> _EqualSteps | None:
+    """Return the equal steps behind times that are rounded; None if they are not."""
+    number = np.arange(len(time))
+    step, start = np.polyfit(number, time, 1).tolist()
+    digits = ""
+    last_digit = _last_digit(time, start, step)
+    if last_digit is None:
+        # of steps that are no multiple of the last digit, such as 2 and 3 of it, the least is not
+        # that digit
+        behind = behind_decimals(time)
+        if behind is not None:
+            _, last_digit = behind
+    if last_digit is None:
+        significant = _to_significant_digits(time, start + step * number)
+        if significant is None:
+            return None
+        count, last_digit = significant
+        digits = f"{count} significant digits, up to "
+    uncertainty = 100.0 * last_digit / (time[-1] - time[0])
+    doubt = (
+        f"its times are rounded to {digits}{last_digit:.3g} s, {last_digit / step:.3g} steps; "
+        f"the equal steps behind them are taken, which are known to {uncertainty:.2g} %"
+    )
+    return _EqualSteps(start, step, doubt)
+
+
+def _last_digit(time: Floats, start: float, step: float) -> float | None:
+    """Return the least step of times, of which all are multiples where they are rounded; or None.
+
+    The equal steps behind them are given.
+    """
+    steps = np.diff(time)
+    least = float(steps[steps > _WHOLE * steps.max()].min(initial=np.inf))
+    multiple = (time - time[0]) / least
+    if not np.abs(multiple - np.round(multiple)).max() < _WHOLE:
+        return None
+    distance = np.abs(time - start - step * np.arange(len(time))).max()
+    if distance < _ROUNDED * least and least > step * _LARGEST_SHIFT:
+        return least
+    return None
+
+
 def behind_decimals(time: Floats) -> tuple[Floats, float] | None:
-    """Return the equal steps behind times that are rounded to some decimals, and the last of these
-    [s]; None if they are not.
+    """Return the equal steps behind times that are rounded to some decimals; None if they are not.
+
+    With them comes the last of these decimals [s].
 
     Examples
     --------
@@ -232,36 +270,42 @@ def behind_decimals(time: Floats) -> tuple[Floats, float] | None:
     """
     if len(time) < _FEWEST:
         return None
-    place = np.arange(len(time))
-    slope, begin = np.polyfit(place, time, 1).tolist()
-    regular = begin + slope * place
-    off = float(np.abs(time - regular).max())
+    number = np.arange(len(time))
+    step, start = np.polyfit(number, time, 1).tolist()
+    regular = start + step * number
+    distance = float(np.abs(time - regular).max())
     for decimals in range(_MOST_DIGITS):
-        last = 10.0**-decimals
-        if np.abs(time / last - np.round(time / last)).max() < _WHOLE:
+        last_digit = 10.0**-decimals
+        multiple = time / last_digit
+        if np.abs(multiple - np.round(multiple)).max() < _WHOLE:
             # what is off by less than that is equal steps already
-            return (regular, last) if _WHOLE * last < off < _ROUNDED * last else None
+            if _WHOLE * last_digit < distance < _ROUNDED * last_digit:
+                return regular, last_digit
+            return None
     return None
 
 
 def _to_significant_digits(time: Floats, regular: Floats) -> tuple[int, float] | None:
-    """Return to how many digits times are rounded, as programs do that write %.6g, and
-    the largest step of this; None if they are not.
+    """Return to how many digits times are rounded, and the largest step of this; or None.
+
+    Programs do that which write %.6g.
     """
-    power = np.floor(np.log10(np.where(time == 0.0, 1.0, np.abs(time))))
+    is_zero = time == 0.0
+    power = np.floor(np.log10(np.where(is_zero, 1.0, np.abs(time))))
     for digits in range(2, _MOST_DIGITS + 1):
-        last = 10.0 ** (power - digits + 1)
-        if np.all(np.abs(time / last - np.round(time / last)) < _WHOLE):
-            is_rounded = np.abs(time - regular) <= np.maximum(
-                _ROUNDED * last, _LARGEST_SHIFT * (regular[1] - regular[0])
-            )
-            return (digits, float(last.max())) if np.all(is_rounded | (time == 0.0)) else None
+        last_digit = 10.0 ** (power - digits + 1)
+        multiple = time / last_digit
+        if np.all(np.abs(multiple - np.round(multiple)) < _WHOLE):
+            shift = _LARGEST_SHIFT * (regular[1] - regular[0])
+            largest = np.maximum(_ROUNDED * last_digit, shift)
+            is_rounded = np.abs(time - regular) <= largest
+            return (digits, float(last_digit.max())) if np.all(is_rounded | is_zero) else None
     return None
 
 
-def _sample(place: int, lines: Sequence[int] | None) -> str:
+def _sample(index: int, lines: Sequence[int] | None) -> str:
     """Return the name of a sample in messages."""
-    return f"sample {place + 1}" if lines is None else f"sample {place + 1} (line {lines[place]})"
+    return f"sample {index + 1}" if lines is None else f"sample {index + 1} (line {lines[index]})"
 
 
 def written_twice(
@@ -273,46 +317,43 @@ def written_twice(
     else their times are rounded.
     """
     same_time = np.append(False, np.diff(time) == 0.0)
-    same = (
-        np.append(False, np.logical_and.reduce([np.diff(one) == 0.0 for one in values])) & same_time
-    )
-    changes = any(np.any(np.diff(one)[~same_time[1:]] != 0.0) for one in values)
+    same_values = np.logical_and.reduce([np.diff(value) == 0.0 for value in values])
+    same = np.append(False, same_values) & same_time
+    changes = any(np.any(np.diff(value)[~same_time[1:]] != 0.0) for value in values)
     if not (same.any() and changes and np.array_equal(same, same_time)):
         return np.zeros(len(time), dtype=bool), ""
     count = int(same.sum())
     have = "samples have" if count > 1 else "sample has"
     are = "they are" if count > 1 else "it is"
     first = _sample(int(np.argmax(same)), lines)
-    return (
-        same,
-        f"{count} {have} time and value of the one before, the first is {first}: {are} left out",
+    sentence = (
+        f"{count} {have} time and value of the one before, the first is {first}: {are} left out"
     )
+    return same, sentence
 
 
 def _resampled(time: Floats, values: Sequence[Floats]) -> Sampled:
-    """Return channels by cubic splines at the mean step, with the difference from
-    straight lines as what that may add.
+    """Return channels by cubic splines at the mean step.
+
+    The difference from straight lines is what that may add, in the doubts.
     """
     from scipy.interpolate import CubicSpline
 
     count = len(time)
-    new = np.linspace(time[0], time[-1], count)
-    found = [np.asarray(CubicSpline(time, one)(new)) for one in values]
+    equal_steps = np.linspace(time[0], time[-1], count)
+    span = time[-1] - time[0]
+    jitter = 100.0 * float(np.std(np.diff(time))) * (count - 1) / span
+    resampled = []
     doubts = []
-    for one, value in zip(values, found, strict=True):
-        size = float(np.std(one))
-        part = (
-            float(np.sqrt(np.mean((value - np.interp(new, time, one)) ** 2))) / size
-            if size
-            else 0.0
-        )
-        jitter = 100.0 * float(np.std(np.diff(time))) * (count - 1) / (time[-1] - time[0])
-        words = (
-            f"its times jitter by {jitter:.2g} % of a step; it is resampled to equal steps, "
-            "which adds an rms error of up to"
-        )
+    for value in values:
+        by_splines = np.asarray(CubicSpline(time, value)(equal_steps))
+        difference = by_splines - np.interp(equal_steps, time, value)
+        deviation = float(np.std(value))
+        error = float(np.sqrt(np.mean(difference**2))) / deviation if deviation else 0.0
+        resampled.append(by_splines)
         doubts.append(
-            f"{words} {100.0 * part:.2g} % of its standard deviation, where its "
-            "frequencies are below a third of the rate"
+            f"its times jitter by {jitter:.2g} % of a step; it is resampled to equal steps, "
+            f"which adds an rms error of up to {100.0 * error:.2g} % of its standard deviation, "
+            "where its frequencies are below a third of the rate"
         )
-    return Sampled((count - 1) / float(time[-1] - time[0]), float(time[0]), found, tuple(doubts))
+    return Sampled((count - 1) / float(span), float(time[0]), resampled, tuple(doubts))

@@ -1,5 +1,6 @@
-"""Records from NetCDF-4 files: the sensors of a result, or every variable whose last
-dimension is time at equal steps.
+"""Records from NetCDF-4 files: the sensors of a result, or all variables over time.
+
+Time is their last dimension, at equal steps.
 """
 
 from __future__ import annotations
@@ -35,8 +36,9 @@ _AT_ONCE = 2**22
 
 
 def netcdf_records(path: Path) -> Iterator[Record]:
-    """Yield the signals of a NetCDF-4 file; of a variable with further dimensions one for each
-    place in them, in their order.
+    """Yield the signals of a NetCDF-4 file.
+
+    Of a variable with further dimensions there is one for each place in them, in their order.
 
     Raises
     ------
@@ -44,10 +46,10 @@ def netcdf_records(path: Path) -> Iterator[Record]:
         If the file can't be read, or has no signal.
     """
     try:
-        mark = beginning(path, NETCDF, 4)
+        first_bytes = beginning(path, NETCDF, 4)
     except InputError as error:
         raise with_path(path, error) from None
-    if mark.startswith(b"CDF"):
+    if first_bytes.startswith(b"CDF"):
         raise InputError(
             f"{path}: this is a NetCDF file of the classic format; convert it to NetCDF-4: "
             f"nccopy -k nc4 {path.name} new.nc"
@@ -55,40 +57,32 @@ def netcdf_records(path: Path) -> Iterator[Record]:
     try:
         check_hdf5(path, recorded_digest(path))
         with h5py.File(path, "r") as file:
-            found = list(_signals(file))
-            if not found:
+            signals = list(_signals(file))
+            if not signals:
                 raise InputError(
                     "there is no variable whose last dimension is a time at equal steps, "
                     "with a unit of time such as s"
                 )
-            for data, rate, start in found:
+            for data, rate, start in signals:
                 yield from _records(data, rate, start)
     except InputError as error:
         raise with_path(path, error) from None
     except DamageError as error:
         raise with_path(path, InputError(str(error))) from None
     except Exception as error:  # of many types, by what is damaged
-        raise InputError(
-            f"{path}: the NetCDF file can't be read "
-            f"({' '.join(str(error).split())[:100] or type(error).__name__})"
-        ) from None
+        cause = " ".join(str(error).split())[:100] or type(error).__name__
+        raise InputError(f"{path}: the NetCDF file can't be read ({cause})") from None
 
 
 def _signals(file: h5py.File) -> Iterator[tuple[h5py.Dataset, float, float]]:
-    """Yield the variables with a time as their last dimension, with rate [Hz] and first
-    time [s].
-    """
+    """Yield the variables over time, their last dimension, with rate [Hz] and first time [s]."""
     group = members(file).get("sensors", file)
     names: list[str] = []
     group.visit(names.append)  # returning None goes on
     for name in names:
         data = group[name]
-        if (
-            not isinstance(data, h5py.Dataset)
-            or data.dtype.kind not in "fiu"
-            or not data.ndim
-            or data.is_scale
-        ):
+        is_array = isinstance(data, h5py.Dataset) and data.dtype.kind in "fiu" and data.ndim
+        if not is_array or data.is_scale:
             continue
         for scale in data.dims[data.ndim - 1].values():
             second = _seconds(_text(scale.attrs.get("units", "")))
@@ -98,9 +92,9 @@ def _signals(file: h5py.File) -> Iterator[tuple[h5py.Dataset, float, float]]:
                 _COPIES * 8.0 * len(scale), f"the times of variable {name} need", NETCDF.smaller
             )
             time = second * read_array(scale).astype(float)
+            stated_rate = data.attrs.get("rate_Hz", data.parent.attrs.get("rate_Hz"))
             try:
-                said = data.attrs.get("rate_Hz", data.parent.attrs.get("rate_Hz"))
-                rate = rate_of(time) if said is None else float(said)
+                rate = rate_of(time) if stated_rate is None else float(stated_rate)
             except InputError:  # a history at unequal steps is no signal
                 continue
             yield data, rate, float(time[0])
@@ -115,31 +109,35 @@ def _seconds(unit: str) -> float | None:
 
 
 def _records(data: h5py.Dataset, rate: float, start: float) -> Iterator[Record]:
+    """Yield the signals of a variable, with rate [Hz] and first time [s]."""
     name = data.name.rpartition("/")[2].removeprefix("signal_")
-    name = _text(data.parent.attrs.get("name", name)) if name == "value" else name
+    if name == "value":
+        name = _text(data.parent.attrs.get("name", name))
     try:
         factor, unit = in_si(_text(data.attrs.get("units", "1")))
     except InputError as error:
         raise InputError(f"variable {name}: {error.message}") from None
     *outer, samples = data.shape
+    # of one place in the first dimension
+    row_samples = samples * prod(outer[1:])
     check_memory(
-        _COPIES * 8.0 * max(samples * prod(outer[1:]), 1),
+        _COPIES * 8.0 * max(row_samples, 1),
         f"the signals of variable {name} need",
         NETCDF.smaller,
     )
     if not outer:
-        yield Record(name, _to_its_end(factor * read_array(data).astype(float)), rate, unit, start)
+        value = factor * read_array(data).astype(float)
+        yield Record(name, _without_fill(value), rate, unit, start)
         return
-    step = max(1, _AT_ONCE // max(1, samples * prod(outer[1:])))
-    for first in range(0, outer[0], step):
-        for value in factor * read_array(data, slice(first, first + step)).astype(float).reshape(
-            -1, samples
-        ):
-            yield Record(name, _to_its_end(value), rate, unit, start)
+    rows_at_once = max(1, _AT_ONCE // max(1, row_samples))
+    for first in range(0, outer[0], rows_at_once):
+        rows = factor * read_array(data, slice(first, first + rows_at_once)).astype(float)
+        for value in rows.reshape(-1, samples):
+            yield Record(name, _without_fill(value), rate, unit, start)
 
 
-def _to_its_end(value: Floats) -> Floats:
-    """Return a signal without what fills the place of a shorter one: NaN at its end."""
+def _without_fill(value: Floats) -> Floats:
+    """Return a signal without NaN at its end, which fills the place of a shorter one."""
     known = np.flatnonzero(~np.isnan(value))
     return value[: known[-1] + 1 if known.size else 0]
 

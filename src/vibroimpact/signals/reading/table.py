@@ -46,20 +46,18 @@ def table_records(path: Path, columns: str | None = None) -> Iterator[Record]:
     doubts: list[str] = []
     for channel in recorded_channels(path, _unit_of, doubts, columns):
         try:
-            sampled, told = _sampled(channel)
+            sampled, filling_doubts = _sampled(channel)
         except InputError as error:
             raise in_table(path, error) from None
-        own = (
-            f"{quoted(channel.name)}: {doubt}"
-            for doubt in (*channel.doubts, *told, *filter(None, sampled.doubts))
-        )
+        channel_doubts = (*channel.doubts, *filling_doubts, *filter(None, sampled.doubts))
+        name = quoted(channel.name)
         yield Record(
             channel.name,
             sampled.values[0],
             sampled.rate,
             channel.unit,
             sampled.start,
-            doubts=(*doubts, *own),
+            doubts=(*doubts, *(f"{name}: {doubt}" for doubt in channel_doubts)),
         )
 
 
@@ -88,19 +86,19 @@ def _sampled(channel: RecordedChannel) -> tuple[Sampled, tuple[str, ...]]:
     """
     if not channel.missing or is_regular(channel.time):
         return _at_equal_steps(channel, channel.time, channel.value, channel.lines), ()
-    twice, words = written_twice(channel.time, [channel.value], channel.lines)
+    twice, left_out = written_twice(channel.time, [channel.value], channel.lines)
     lines = np.asarray(channel.lines)[~twice].tolist()
     channel = channel._replace(time=channel.time[~twice], value=channel.value[~twice], lines=lines)
-    told = (words,) if words else ()
+    doubts = (left_out,) if left_out else ()
     try:
-        time, value, doubt = filled_in(channel)
-    except InputError as many:
+        time, value, filled = filled_in(channel)
+    except InputError as too_many:
         try:
             # of another rate, with times that jitter
-            return _at_equal_steps(channel, channel.time, channel.value), told
+            return _at_equal_steps(channel, channel.time, channel.value), doubts
         except InputError:
-            raise many from None
-    return _at_equal_steps(channel, time, value), (*told, doubt)
+            raise too_many from None
+    return _at_equal_steps(channel, time, value), (*doubts, filled)
 
 
 def _at_equal_steps(

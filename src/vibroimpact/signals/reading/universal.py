@@ -27,35 +27,41 @@ def universal_records(path: Path) -> Iterator[Record]:
     """
     file = read_universal_file(path)
     if not file.functions:
-        number = len(file.of_frequency)
-        its = "function of frequency is" if number == 1 else f"{number} functions of frequency are"
-        others = f"; its {its} for correlate and modes" if number else ""
-        raise InputError(f"{path}: there is no real function of time in it{others}")
-    for one in file.functions:
+        raise InputError(
+            f"{path}: there is no real function of time in it{_others(len(file.of_frequency))}"
+        )
+    for function in file.functions:
         try:
-            factor, unit = _unit(one, file.factors)
-            rate = rate_of(one.time)
+            factor, unit = _unit(function, file.factors)
+            rate = rate_of(function.time)
         except InputError as error:
-            raise InputError(
-                f"{path}, function {one.number} {quoted(one.identification)}: {error.message}"
-            ) from None
-        yield Record(record_name(one), factor * one.values, rate, unit, float(one.time[0]))
+            name = f"function {function.number} {quoted(function.identification)}"
+            raise InputError(f"{path}, {name}: {error.message}") from None
+        value = factor * function.values
+        yield Record(record_name(function), value, rate, unit, float(function.time[0]))
 
 
-def record_name(one: Function) -> str:
+def _others(functions: int) -> str:
+    """Return which commands read the functions of frequency of a file, if it has some."""
+    if not functions:
+        return ""
+    if functions == 1:
+        return "; its function of frequency is for correlate and modes"
+    return f"; its {functions} functions of frequency are for correlate and modes"
+
+
+def record_name(function: Function) -> str:
     """Return the name of a function of time: its first identification line, or its number."""
-    return one.identification or f"function {one.number}"
+    return function.identification or f"function {function.number}"
 
 
-def _unit(one: Function, factors: dict[str, float] | None) -> tuple[float, str]:
-    """Return factor and SI unit: by the label of the unit, else by the data type and
-    dataset 164.
-    """
-    if one.unit:
-        return in_si(one.unit)
-    if one.kind not in _KINDS:
+def _unit(function: Function, factors: dict[str, float] | None) -> tuple[float, str]:
+    """Return factor and SI unit, by the label of the unit, else by data type and dataset 164."""
+    if function.unit:
+        return in_si(function.unit)
+    if function.kind not in _KINDS:
         return 1.0, "1"
     if factors is None:
         raise InputError("it has no unit, and there is no dataset 164 with the units of the file")
-    unit, base = _KINDS[one.kind]
+    unit, base = _KINDS[function.kind]
     return 1.0 / factors[base], unit

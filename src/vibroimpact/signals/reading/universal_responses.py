@@ -1,5 +1,6 @@
-"""Frequency responses from universal files: functions of type 4 in their datasets 58,
-with the coherences of type 6.
+"""Frequency responses from universal files: functions of type 4 in their datasets 58.
+
+Coherences are those of type 6.
 """
 
 from __future__ import annotations
@@ -35,22 +36,21 @@ from vibroimpact.units.reading import to_si
 _MOTIONS = {8: "m", 11: "m/s", 12: "m/s2"}
 _FORCES = (9, 13)
 _AXES = "XYZ"
-_OVER = 1e-3
+_TOLERANCE = 1e-3
 """By how much a coherence exceeds 1 that is rounded."""
 
 
 class Contents(NamedTuple):
-    """What a file of a test has: the names of its records over time, and the number of
-    its frequency responses.
-    """
+    """Names of the records over time of a file, and the number of its frequency responses."""
 
     records: tuple[str, ...]
     responses: int
 
 
 def contents_of(path: str | PathLike[str]) -> Contents:
-    """Return what a file has; of a file that is not universal, which has records alone, its own
-    name.
+    """Return what a file has.
+
+    A file that is not universal has records alone, and its own name.
 
     Raises
     ------
@@ -60,13 +60,15 @@ def contents_of(path: str | PathLike[str]) -> Contents:
     if not Path(path).is_file() or not is_universal(Path(path)):
         return Contents((str(path),), 0)
     file = read_universal_file(Path(path))
-    responses = sum(one.function_type == FREQUENCY_RESPONSE for one in file.of_frequency)
-    return Contents(tuple(record_name(one) for one in file.functions), responses)
+    types = [function.function_type for function in file.of_frequency]
+    names = tuple(record_name(function) for function in file.functions)
+    return Contents(names, types.count(FREQUENCY_RESPONSE))
 
 
 def read_responses(path: str | PathLike[str]) -> tuple[FrequencyResponse, ...]:
-    """Return the frequency responses of a universal file (dataset 58, function type 4), with their
-    coherences (type 6).
+    """Return the frequency responses of a universal file with their coherences.
+
+    They are in datasets 58, of function type 4, and the coherences of type 6.
 
     Values are brought to SI by the labels of their units, else by dataset 164; without either they
     are taken as SI, with a doubt.
@@ -106,35 +108,38 @@ def read_responses(path: str | PathLike[str]) -> tuple[FrequencyResponse, ...]:
     ('12', 3, '4', 'm/s2/N', [(9.807+0j), -19.613j])
     """
     file = read_universal_file(Path(path))
-    coherences = [one for one in file.of_frequency if one.function_type == COHERENCE]
-    found, faults = [], []
-    for one in file.of_frequency:
-        if one.function_type != FREQUENCY_RESPONSE:
+    coherences = [function for function in file.of_frequency if function.function_type == COHERENCE]
+    responses: list[FrequencyResponse] = []
+    faults: list[str] = []
+    for function in file.of_frequency:
+        if function.function_type != FREQUENCY_RESPONSE:
             continue
         try:
-            found.append(_response(one, coherences, file.factors, str(path)))
+            responses.append(_response(function, coherences, file.factors, str(path)))
         except InputError as error:
-            faults.append(f"function {one.number} {quoted(one.identification)}: {error.message}")
-    if faults and not found:
+            name = f"function {function.number} {quoted(function.identification)}"
+            faults.append(f"{name}: {error.message}")
+    if faults and not responses:
         raise InputError.of_several(f"{path}, {fault}" for fault in faults)
-    if not found:
+    if not responses:
         raise InputError(
             f"{path}: there is no frequency response in it, a complex function of type 4 "
             "of the frequency in a dataset 58"
         )
     if faults:
-        number = (
-            "1 of its frequency responses is"
-            if len(faults) == 1
-            else f"{len(faults)} of its frequency responses are"
-        )
-        left_out = f"{number} left out{'' if len(faults) == 1 else ', such as'}: {faults[0]}"
-        found[0] = replace(found[0], doubts=(*found[0].doubts, left_out))
-    return tuple(found)
+        if len(faults) == 1:
+            left_out = f"1 of its frequency responses is left out: {faults[0]}"
+        else:
+            left_out = (
+                f"{len(faults)} of its frequency responses are left out, such as: {faults[0]}"
+            )
+        first = responses[0]
+        responses[0] = replace(first, doubts=(*first.doubts, left_out))
+    return tuple(responses)
 
 
 def _response(
-    one: FunctionOfFrequency,
+    function: FunctionOfFrequency,
     coherences: Iterable[FunctionOfFrequency],
     factors: dict[str, float] | None,
     source: str,
@@ -147,28 +152,35 @@ def _response(
         If it is not of motion, strain or voltage over force, its unit is not known, or its
         frequencies do not rise.
     """
-    factor, unit, doubt = _unit(one, factors)
-    told = (one.frequency > 0.0) & np.isfinite(one.values)
-    places = (_place(one.response, one), _place(one.reference, None))
-    coherence = _coherence(one, coherences)
+    factor, unit, doubt = _unit(function, factors)
+    # many files have no number at 0 Hz
+    known = (function.frequency > 0.0) & np.isfinite(function.values)
+    response = _degree_of_freedom(function.response, function)
+    reference = _degree_of_freedom(function.reference, None)
+    coherence = _coherence(function, coherences)
     return FrequencyResponse(
-        *places,
-        one.frequency[told],
-        np.asarray(factor * one.values[told], dtype=np.complex128),
-        unit,
-        None if coherence is None else coherence[told],
-        source,
-        (doubt,) if doubt else (),
+        response,
+        reference,
+        frequency=function.frequency[known],
+        value=np.asarray(factor * function.values[known], dtype=np.complex128),
+        unit=unit,
+        coherence=None if coherence is None else coherence[known],
+        source=source,
+        doubts=(doubt,) if doubt else (),
     )
 
 
-def _unit(one: FunctionOfFrequency, factors: dict[str, float] | None) -> tuple[float, str, str]:
-    """Return factor, SI unit, and the doubt about it: by the labels of the units, else by
-    the data types and dataset 164.
+def _unit(
+    function: FunctionOfFrequency, factors: dict[str, float] | None
+) -> tuple[float, str, str]:
+    """Return factor, SI unit, and the doubt about it.
+
+    They are by the labels of the units, else by the data types and dataset 164.
     """
-    above, below = one.units
-    motion, force = one.kinds
-    if max(abs(one.response.direction), abs(one.reference.direction)) > len(_AXES):
+    numerator, denominator = function.units
+    motion, force = function.kinds
+    directions = (function.response.direction, function.reference.direction)
+    if max(abs(direction) for direction in directions) > len(_AXES):
         raise InputError(
             "it is of a rotation or a moment; those of displacements and forces are read, "
             "of the directions 1 to 3"
@@ -178,103 +190,114 @@ def _unit(one: FunctionOfFrequency, factors: dict[str, float] | None) -> tuple[f
             f"its data types are {motion} over {force}; it must be a motion, strain or "
             "voltage over a force (9 or 13)"
         )
-    if above:
-        factor, unit = _labelled(above, below)
+    if numerator:
+        factor, unit = _of_labels(numerator, denominator)
         if motion in _MOTIONS and unit != f"{_MOTIONS[motion]}/N":
             raise InputError(
                 f"its data type {motion} is in {_MOTIONS[motion]}, and its unit is "
-                f"{quoted(above)}; correct one of them"
+                f"{quoted(numerator)}; correct one of them"
             )
         return factor, unit, ""
     if motion not in _MOTIONS:
-        return (
-            1.0,
-            "",
+        doubt = (
             "it states neither a unit nor a data type of motion: beside a case, its values "
-            "are taken to be in the unit of the sensor there",
+            "are taken to be in the unit of the sensor there"
         )
+        return 1.0, "", doubt
     unit = f"{_MOTIONS[motion]}/N"
     if factors is None:
-        return (
-            1.0,
-            unit,
+        doubt = (
             "it states no unit of its motion, and there is no dataset 164: its values are "
-            f"taken to be in {unit}",
+            f"taken to be in {unit}"
         )
+        return 1.0, unit, doubt
     return factors["N"] / factors["m"], unit, ""
 
 
-def _labelled(above: str, below: str) -> tuple[float, str]:
-    """Return factor and SI unit by the labels of numerator and denominator; programs put the whole
-    unit into the first as well.
+def _of_labels(numerator: str, denominator: str) -> tuple[float, str]:
+    """Return factor and SI unit by the labels of numerator and denominator.
+
+    Programs put the whole unit into the first as well.
 
     Raises
     ------
     InputError
         If they are no unit of a frequency response.
     """
-    if below:
+    if denominator:
         try:
-            (upper, motion), (lower, force) = in_si(above), in_si(below)
+            motion_factor, motion = in_si(numerator)
+            force_factor, force = in_si(denominator)
             if force == "N" and f"{motion}/N" in RESPONSE_UNITS:
-                return upper / lower, f"{motion}/N"
+                return motion_factor / force_factor, f"{motion}/N"
         except InputError:
             pass  # the first may have the whole
-    for name in RESPONSE_UNITS:
+    for unit in RESPONSE_UNITS:
         try:
-            return to_si(f"1 {above}", name.replace("s2", "s^2")), name
+            return to_si(f"1 {numerator}", unit.replace("s2", "s^2")), unit
         except InputError:
             continue
-    stated = f"{quoted(above)} over {quoted(below)}" if below else quoted(above)
-    words = "write motion and force as labels of numerator and denominator, such as g and N"
+    stated = quoted(numerator)
+    if denominator:
+        stated = f"{stated} over {quoted(denominator)}"
     raise InputError(
-        f"{stated} is no unit of a frequency response, such as {', '.join(RESPONSE_UNITS)}; {words}"
+        f"{stated} is no unit of a frequency response, such as {', '.join(RESPONSE_UNITS)}; write "
+        "motion and force as labels of numerator and denominator, such as g and N"
     )
 
 
-def _place(freedom: Freedom, function: FunctionOfFrequency | None) -> DegreeOfFreedom:
-    """Return a place with its names: entity and node, each with the direction, and of a
-    function its identification and number.
+def _degree_of_freedom(freedom: Freedom, function: FunctionOfFrequency | None) -> DegreeOfFreedom:
+    """Return a degree of freedom with its names.
+
+    They are its entity and node, each with the direction, and of a function its identification and
+    number.
     """
     node = str(freedom.node) if freedom.node else ""
-    whole = [f"{freedom.entity}:{node}" if freedom.entity and node else "", freedom.entity, node]
-    names = list(whole)
-    axis = abs(freedom.direction)
-    if axis:
-        sign, letter = "-" if freedom.direction < 0 else "+", _AXES[axis - 1]
-        names += [
-            f"{name}{text}"
-            for name in filter(None, whole)
-            for text in (f"{sign}{letter}", f":{sign}{letter}", letter)
-        ]
+    entity_and_node = f"{freedom.entity}:{node}" if freedom.entity and node else ""
+    places = [name for name in (entity_and_node, freedom.entity, node) if name]
+    names = list(places)
+    if freedom.direction:
+        sign = "-" if freedom.direction < 0 else "+"
+        letter = _AXES[abs(freedom.direction) - 1]
+        for place in places:
+            names += [f"{place}{sign}{letter}", f"{place}:{sign}{letter}", f"{place}{letter}"]
     if function is not None:
         names += [function.identification, f"function {function.number}"]
-    return DegreeOfFreedom(
-        tuple(dict.fromkeys(filter(None, names))) or ("unnamed",), freedom.direction
-    )
+    distinct = dict.fromkeys(name for name in names if name)
+    return DegreeOfFreedom(tuple(distinct) or ("unnamed",), freedom.direction)
 
 
 def _coherence(
-    one: FunctionOfFrequency, coherences: Iterable[FunctionOfFrequency]
+    function: FunctionOfFrequency, coherences: Iterable[FunctionOfFrequency]
 ) -> Floats | None:
-    """Return the coherence of a frequency response: that of the same places, or the only
-    one of its name where none are stated.
+    """Return the coherence of a frequency response; None if there is none, or several.
+
+    It is that of the same degrees of freedom, or the only one of its name where none are stated.
     """
-    fitting = [other for other in coherences if np.array_equal(other.frequency, one.frequency)]
-    ends = (_without_sign(one.response), _without_sign(one.reference))
-    exact = [
-        other
-        for other in fitting
-        if (_without_sign(other.response), _without_sign(other.reference)) in (ends, ends[::-1])
-    ]
-    if not any(end.node or end.entity for end in ends):
-        exact = [other for other in fitting if other.identification == one.identification]
-    if len(exact) != 1:
+    ends = _ends(function)
+    are_stated = any(end.node or end.entity for end in ends)
+    matching = []
+    for other in coherences:
+        if not np.array_equal(other.frequency, function.frequency):
+            continue
+        if are_stated:
+            matches = _ends(other) in (ends, ends[::-1])
+        else:
+            matches = other.identification == function.identification
+        if matches:
+            matching.append(other)
+    if len(matching) != 1:
         return None
-    found = np.asarray(exact[0].values.real)
-    if not ((found >= -_OVER) & (found <= 1.0 + _OVER) | np.isnan(found)).all():
-        raise InputError(f"its coherence, function {exact[0].number}, is not from 0 to 1")
-    return np.clip(np.nan_to_num(found, nan=0.0), 0.0, 1.0)
+    coherence = np.asarray(matching[0].values.real)
+    in_range = (coherence >= -_TOLERANCE) & (coherence <= 1.0 + _TOLERANCE)
+    if not (in_range | np.isnan(coherence)).all():
+        raise InputError(f"its coherence, function {matching[0].number}, is not from 0 to 1")
+    return np.clip(np.nan_to_num(coherence, nan=0.0), 0.0, 1.0)
+
+
+def _ends(function: FunctionOfFrequency) -> tuple[Freedom, Freedom]:
+    """Return response and reference of a function, without the signs of their directions."""
+    return _without_sign(function.response), _without_sign(function.reference)
 
 
 def _without_sign(freedom: Freedom) -> Freedom:

@@ -1,8 +1,7 @@
-"""Records from WAV files: integers of 8 to 64 bits as parts of full scale, and floating-point
-numbers as they are.
+"""Records from WAV files: integers as parts of full scale, floating-point numbers as they are.
 
-The header is read first; the samples follow in blocks, for as many channels at once as need little
-memory.
+Integers have 8 to 64 bits. The header is read first; the samples follow in blocks, for as many
+channels at once as need little memory.
 """
 
 from __future__ import annotations
@@ -37,8 +36,9 @@ _TOGETHER = 2**28
 
 
 def wave_records(path: Path) -> Iterator[Record]:
-    """Yield the channels of a WAV file: full scale is 1, or the value that the comment of an
-    exported file says.
+    """Yield the channels of a WAV file.
+
+    Full scale is 1, or the value that the comment of an exported file says.
 
     Raises
     ------
@@ -58,11 +58,11 @@ def wave_records(path: Path) -> Iterator[Record]:
             for first in range(0, header.channels, together):
                 channels = range(first, min(first + together, header.channels))
                 for number, value in zip(channels, _samples(file, header, channels), strict=True):
-                    title = name if header.channels == 1 else f"{name} {number + 1}"
+                    channel_name = name if header.channels == 1 else f"{name} {number + 1}"
                     # of floating-point numbers that are no sound
                     with np.errstate(over="ignore", invalid="ignore"):
                         value *= factor
-                    yield Record(title, value, float(header.rate), unit, doubts=doubts)
+                    yield Record(channel_name, value, float(header.rate), unit, doubts=doubts)
     except InputError as error:
         raise with_path(path, error) from None
 
@@ -71,46 +71,46 @@ def _scale(full_scale: FullScale | None, stem: str) -> tuple[float, str, str]:
     """Return the value of full scale in SI, the unit, and the name of the channels."""
     if full_scale is None:
         return 1.0, "1", stem
-    value, unit, name = (part.decode("utf-8", "replace") for part in full_scale)
+    text, unit, name = (field.decode("utf-8", "replace") for field in full_scale)
     factor, si_unit = in_si(unit)
     try:
-        number = float(value)
+        value = float(text)
     except ValueError:
-        number = np.nan
-    if not isfinite(number) or number == 0.0:
+        value = np.nan
+    if not isfinite(value) or value == 0.0:
         raise InputError(
-            f"by its comment 1.0 is {quoted(value)} {unit}; it must be a finite number "
+            f"by its comment 1.0 is {quoted(text)} {unit}; it must be a finite number "
             f"other than 0, such as 2.5 {unit}"
         )
-    return factor * number, si_unit, name
+    return factor * value, si_unit, name
 
 
 def _doubts(header: WaveHeader) -> tuple[str, ...]:
+    """Return the doubt about a file that is shorter than its header states."""
     if header.samples >= header.stated:
         return ()
-    words = (
-        f"it has {header.samples:,} of the {header.stated:,} samples of a "
-        "channel that its header states"
+    doubt = (
+        f"the file is cut off, or its header is wrong: it has {header.samples:,} of the "
+        f"{header.stated:,} samples of a channel that its header states"
     )
-    return (f"the file is cut off, or its header is wrong: {words}",)
+    return (doubt,)
 
 
 def _samples(file: FileIO, header: WaveHeader, channels: range) -> Floats:
     """Return the samples of some channels, (channels, samples), with full scale as 1."""
-    found = np.empty((len(channels), header.samples))
+    samples = np.empty((len(channels), header.samples))
     frame = header.channels * header.width
-    step = max(1, _BLOCK // frame)
-    for first in range(0, header.samples, step):
-        number = min(step, header.samples - first)
+    frames_at_once = max(1, _BLOCK // frame)
+    for first in range(0, header.samples, frames_at_once):
+        frames = min(frames_at_once, header.samples - first)
         file.seek(header.start + first * frame)
-        raw = file.read(number * frame) or b""
-        if len(raw) < number * frame:
+        raw = file.read(frames * frame) or b""
+        if len(raw) < frames * frame:
             raise InputError("the file became shorter while it was read")
-        block = np.frombuffer(raw, dtype=np.uint8).reshape(number, header.channels, header.width)
-        found[:, first : first + number] = _full_scale(
-            block[:, channels.start : channels.stop], header
-        ).T
-    return found
+        block = np.frombuffer(raw, dtype=np.uint8).reshape(frames, header.channels, header.width)
+        chosen = block[:, channels.start : channels.stop]
+        samples[:, first : first + frames] = _full_scale(chosen, header).T
+    return samples
 
 
 def _full_scale(block: NDArray[np.uint8], header: WaveHeader) -> Floats:
@@ -119,7 +119,8 @@ def _full_scale(block: NDArray[np.uint8], header: WaveHeader) -> Floats:
         return _numbers(block, f"{header.order}f{header.width}")
     if header.width == 1:  # unsigned, as no other width is
         return (block[:, :, 0].astype(float) - 128.0) / 128.0
-    size = 2 if header.width == 2 else 4 if header.width <= 4 else 8
+    # the next width that integers have
+    size = next(size for size in (2, 4, 8) if size >= header.width)
     whole = block if header.width == size else _padded(block, size, header.order)
     return _numbers(whole, f"{header.order}i{size}") / 2.0 ** (8 * size - 1)
 
@@ -135,6 +136,7 @@ def _padded(block: NDArray[np.uint8], size: int, order: str) -> NDArray[np.uint8
     return padded
 
 
-def _numbers(block: NDArray[np.uint8], kind: str) -> Floats:
+def _numbers(block: NDArray[np.uint8], number_type: str) -> Floats:
+    """Return the numbers of a type, such as "<i2", that samples are by their bytes."""
     with np.errstate(invalid="ignore"):  # of bytes that are no floating-point number
-        return np.ascontiguousarray(block).view(kind)[:, :, 0].astype(float)
+        return np.ascontiguousarray(block).view(number_type)[:, :, 0].astype(float)
