@@ -52,8 +52,8 @@ class Recognised:
     Examples
     --------
     >>> import vibroimpact as vi
-    >>> found = vi.apply_recogniser("recognised", "falls")
-    >>> found.class_names, found.probabilities.shape, found.accuracy > 0.5
+    >>> recognised = vi.apply_recogniser("recognised", "falls")
+    >>> recognised.class_names, recognised.probabilities.shape, recognised.accuracy > 0.5
     (('coal', 'gangue'), (96, 2), True)
     """
 
@@ -71,8 +71,7 @@ class Recognised:
 def apply_recogniser(
     model: Recogniser | str | PathLike[str], dataset: str | PathLike[str] | LabelledSignals
 ) -> Recognised:
-    """Return the classes of signals predicted by a saved classifier, and the fraction of each
-    class.
+    """Return the classes of signals predicted by a saved classifier, and their fractions.
 
     Parameters
     ----------
@@ -95,17 +94,19 @@ def apply_recogniser(
     Examples
     --------
     >>> import vibroimpact as vi
-    >>> found = vi.apply_recogniser("recognised", "falls")
-    >>> found.class_names, round(sum(one.value for one in found.fractions.values()), 6)
+    >>> recognised = vi.apply_recogniser("recognised", "falls")
+    >>> fractions = recognised.fractions.values()
+    >>> recognised.class_names, round(sum(fraction.value for fraction in fractions), 6)
     (('coal', 'gangue'), 1.0)
     """
     recogniser = model if isinstance(model, Recogniser) else load_recogniser(model)
     signals = dataset if isinstance(dataset, LabelledSignals) else read_labelled_signals(dataset)
     try:
-        found = recogniser.probabilities(signals)
+        probabilities = recogniser.probabilities(signals)
     except InputError as error:
         raise error if isinstance(model, Recogniser) else with_path(model, error) from None
-    guessed, names = found.argmax(axis=1), recogniser.class_names
+    predicted = probabilities.argmax(axis=1)
+    names = recogniser.class_names
     doubts = doubts_of_version(recogniser) + baseline_doubts(signals)
     if signals.check_sum and signals.check_sum == recogniser.card["data"]["sha256"]:
         doubts.append(
@@ -113,31 +114,42 @@ def apply_recogniser(
             "better than others"
         )
     return Recognised(
-        signals.name,
-        recogniser.card["classifier"],
-        names,
-        found,
-        tuple(float((guessed == one).mean()) for one in range(len(names))),
-        recogniser.fractions(guessed),
-        _accuracy(signals, [names[one] for one in guessed], names),
-        tuple(doubts),
-        signals.places,
+        name=signals.name,
+        classifier=recogniser.card["classifier"],
+        class_names=names,
+        probabilities=probabilities,
+        counted=tuple(float((predicted == number).mean()) for number in range(len(names))),
+        fractions=recogniser.fractions(predicted),
+        accuracy=_accuracy(signals, [names[number] for number in predicted], names),
+        doubts=tuple(doubts),
+        places=signals.places,
     )
 
 
-def _accuracy(signals: LabelledSignals, guessed: list[str], names: tuple[str, ...]) -> float | None:
-    """Return the balanced accuracy; None if the classes are not known, or one is not a
-    class of the model.
+def _accuracy(
+    signals: LabelledSignals, predicted: list[str], names: tuple[str, ...]
+) -> float | None:
+    """Return the balanced accuracy.
+
+    It is None if the classes are not known, or one is not a class of the model.
     """
     if signals.classes is None or not set(signals.of_present_classes().class_names) <= set(names):
         return None
-    truth = np.array([signals.class_names[one] for one in signals.classes])
-    right = truth == np.array(guessed)
-    return float(np.mean([right[truth == one].mean() for one in np.unique(truth)]))
+    truth = np.array([signals.class_names[number] for number in signals.classes])
+    right = truth == np.array(predicted)
+    return float(np.mean([right[truth == name].mean() for name in np.unique(truth)]))
 
 
 def recognised_document(found: Recognised) -> dict[str, Any]:
     """Return the content of `summary.json` of recognised signals."""
+    classes = {}
+    for (name, fraction), counted in zip(found.fractions.items(), found.counted, strict=True):
+        classes[name] = {
+            "counted": counted,
+            "fraction": fraction.value,
+            "fraction_low": fraction.low,
+            "fraction_high": fraction.high,
+        }
     return {
         "name": found.name,
         "version": __version__,
@@ -145,15 +157,7 @@ def recognised_document(found: Recognised) -> dict[str, Any]:
             "classifier": found.classifier,
             "signals": len(found.probabilities),
             "balanced_accuracy": found.accuracy,
-            "classes": {
-                name: {
-                    "counted": counted,
-                    "fraction": one.value,
-                    "fraction_low": one.low,
-                    "fraction_high": one.high,
-                }
-                for (name, one), counted in zip(found.fractions.items(), found.counted, strict=True)
-            },
+            "classes": classes,
         },
         "doubts": list(found.doubts),
     }
@@ -162,10 +166,10 @@ def recognised_document(found: Recognised) -> dict[str, Any]:
 def save_recognised(
     found: Recognised, directory: str | PathLike[str], *, force: bool = False
 ) -> Path:
-    """Write `predictions.csv`, a row a signal with the probability of each class, and
-    `summary.json`, atomically.
+    """Write the classes of signals as a folder of `predictions.csv` and `summary.json`, atomically.
 
-    Signals are numbered as they are in the file, from 0.
+    The table has a row for each signal, with the probability of each class. Signals are numbered as
+    they are in the file, from 0.
 
     Parameters
     ----------
@@ -193,13 +197,13 @@ def save_recognised(
     ['predictions.csv', 'summary.json']
     """
     columns = [f"probability_{one_line(name)}" for name in found.class_names]
-    guessed = [found.class_names[one] for one in found.probabilities.argmax(axis=1)]
-    places = range(len(guessed)) if found.places is None else found.places.tolist()
+    predicted = [found.class_names[number] for number in found.probabilities.argmax(axis=1)]
+    numbers = range(len(predicted)) if found.places is None else found.places.tolist()
+    rows = []
+    for number, name, values in zip(numbers, predicted, found.probabilities, strict=True):
+        probabilities = dict(zip(columns, values.tolist(), strict=True))
+        rows.append({"signal": number, "class": name, **probabilities})
     with new_folder(directory, force=force) as folder:
-        rows = (
-            {"signal": number, "class": name, **dict(zip(columns, values.tolist(), strict=True))}
-            for number, name, values in zip(places, guessed, found.probabilities, strict=True)
-        )
         write_csv(rows, ["signal", "class", *columns], folder / "predictions.csv")
         write_summary(recognised_document(found), folder)
     return Path(directory)
