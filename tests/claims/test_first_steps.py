@@ -86,7 +86,7 @@ def test_the_run() -> None:
 def test_a_plate_that_yields() -> None:
     elastic = run(plate={"material": ALUMINIUM})
     result = vi.result_of(elastic)
-    demand = float(numbers_of(Conditions(result.case, result._seen))["plate_strength"])
+    demand = float(numbers_of(Conditions(result.case, result._drop_summary))["plate_strength"])
     assert 1.0 / demand == pytest.approx(0.25, abs=0.01)  # a quarter of the pressure
     case = {**CASE, "plate": {**CASE["plate"], "material": ALUMINIUM}, "contact": {"law": "meyer"}}
     dented = vi.simulate(vi.read_case(case))

@@ -155,7 +155,7 @@ def test_steel_that_yields() -> None:
         PAGE,
         "from {} m, have {} times the pressure of first yield",
         0.5,
-        float(numbers_of(Conditions(result.case, result._seen))["plate_strength"]),
+        float(numbers_of(Conditions(result.case, result._drop_summary))["plate_strength"]),
     )
     says(
         PAGE,

@@ -27,7 +27,7 @@ def limits_of(response: vi.Response) -> dict[str, float]:
     result = vi.result_of(response)
     return {
         name: float(number)
-        for name, number in numbers_of(Conditions(result.case, result._seen)).items()
+        for name, number in numbers_of(Conditions(result.case, result._drop_summary)).items()
     }
 
 

@@ -58,7 +58,7 @@ def test_without_yielding() -> None:
     says(
         PAGE,
         "would be {} times that of first yield",
-        float(numbers_of(Conditions(result.case, result._seen))["plate_strength"]),
+        float(numbers_of(Conditions(result.case, result._drop_summary))["plate_strength"]),
     )
     says(
         PAGE,

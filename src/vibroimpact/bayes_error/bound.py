@@ -1,11 +1,12 @@
-"""The bound of a population: the Bayes error for what may be measured of a fall, and what
-it tells of the rock.
+"""The bound of a population: the Bayes error for what may be measured of a fall.
+
+It is computed beside what the same tells of the rock.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
@@ -19,23 +20,27 @@ from vibroimpact.studies.study import Study
 from vibroimpact.studies.sweep import Sweep
 
 BANDWIDTHS = np.array([1e3, 2e3, 4e3, 8e3, 16e3, 32e3])
+"""Bandwidths over which the error from one impact is mapped [Hz]."""
+
 SIGNAL_TO_NOISE = np.array([0.0, 10.0, 20.0, 30.0, 40.0, 60.0])
-"""Bandwidths [Hz] and ratios of signal to noise [dB] over which the error from one impact
-is mapped.
-"""
+"""Ratios of signal to noise over which it is mapped [dB]."""
 
 PROPERTIES = ("radius", "density", "modulus", "speed")
 """What a bound says of the rock, besides its class."""
 
-_NAMED = {one.name: one for one in OBSERVATIONS}
-_MAPPED = _NAMED["one impact"]
-_TESTED, _TESTED_OF_MAP, _FALLS_OF_MAP = 2000, 500, 8000
+_BY_NAME = {observation.name: observation for observation in OBSERVATIONS}
+_MAPPED = _BY_NAME["one impact"]
+_TESTED = 2000  # falls whose posterior is computed
+_TESTED_OF_MAP = 500
+_FALLS_OF_MAP = 8000
 
 
 @dataclass(frozen=True, eq=False)
 class Bound(Reported, reported_in="vibroimpact.bayes_error.report"):
-    """The Bayes error of a population: the lowest error of a classifier that sees only the measured
-    quantities, with the stated scatter.
+    """The Bayes error of a population.
+
+    It is the lowest error of a classifier that sees only the measured quantities, with the stated
+    scatter.
 
     Parameters
     ----------
@@ -86,14 +91,13 @@ def bound_of(
     seed: int = 0,
     progress: Callable[[float], None] | None = None,
 ) -> Bound:
-    """Return the Bayes error of a population for sets of measured quantities: the lowest error of a
-    classifier that sees only these.
+    """Return the Bayes error of a population for sets of measured quantities.
 
-    A sensor hears the contact force through the plate, a linear system that is the same whatever
-    falls. What it records of an impact therefore tells no more of the rock than the force itself.
-    Of the force impulse and duration are counted. A signal contains more, the shape of the pulse,
-    the position of the impact and further impacts; a classifier that uses it can have a lower
-    error.
+    It is the lowest error of a classifier that sees only these. A sensor hears the contact force
+    through the plate, a linear system that is the same whatever falls. What it records of an impact
+    therefore tells no more of the rock than the force itself. Of the force impulse and duration are
+    counted. A signal contains more, the shape of the pulse, the position of the impact and further
+    impacts; a classifier that uses it can have a lower error.
 
     Parameters
     ----------
@@ -119,41 +123,62 @@ def bound_of(
     >>> bound.errors["contact time"].upper > 5 * bound.errors["one impact"].upper
     True
     """
-    falls = (
-        falls_of_study(population) if isinstance(population, Study) else falls_of_sweep(population)
-    )
+    if isinstance(population, Study):
+        falls = falls_of_study(population)
+    else:
+        falls = falls_of_sweep(population)
     names, counts = np.unique(falls.classes, return_counts=True)
     if len(names) < 2:
         raise InputError(
             "fewer than two classes have falls that were computed and touched the plate, so "
             "that there is nothing to classify"
         )
-    heard, steps = (
-        channel or Channel(),
-        len(OBSERVATIONS) + BANDWIDTHS.size * SIGNAL_TO_NOISE.size + 1,
-    )
+    channel = channel or Channel()
+    steps = len(OBSERVATIONS) + BANDWIDTHS.size * SIGNAL_TO_NOISE.size + 1
+    done = 0
 
-    def tell(done: int) -> None:
+    def count_step() -> None:
+        nonlocal done
+        done += 1
         if progress is not None:
             progress(done / steps)
 
-    errors, remaining = {}, {}
-    for number, one in enumerate(OBSERVATIONS):
-        errors[one.name] = _error(falls, heard, one, _TESTED, seed)
-        remaining[one.name] = _remaining(falls, heard, one)
-        tell(number + 1)
+    errors = {}
+    remaining = {}
+    for observation in OBSERVATIONS:
+        errors[observation.name] = _error(falls, channel, observation, _TESTED, seed)
+        remaining[observation.name] = _remaining(falls, channel, observation)
+        count_step()
     errors = _bounded_by_less(errors)
-    few, found = _some(falls, _FALLS_OF_MAP), np.empty((BANDWIDTHS.size, SIGNAL_TO_NOISE.size))
-    for place, (bandwidth, ratio) in enumerate(
-        (one, other) for one in BANDWIDTHS for other in SIGNAL_TO_NOISE
-    ):
-        there = replace(heard, bandwidth=float(bandwidth), signal_to_noise=float(ratio))
-        found.flat[place] = _error(few, there, _MAPPED, _TESTED_OF_MAP, seed).upper
-        tell(len(OBSERVATIONS) + place + 1)
-    without = _without_scatter(falls, heard, errors, seed)
-    tell(steps)
-    majority, rigid = 1.0 - counts.max() / counts.sum(), not isinstance(population, Study)
-    return Bound(population.name, falls, heard, errors, majority, remaining, found, without, rigid)
+    error_map = _error_map(falls, channel, seed, count_step)
+    without_scatter = _without_scatter(falls, channel, errors, seed)
+    count_step()
+    return Bound(
+        name=population.name,
+        falls=falls,
+        channel=channel,
+        errors=errors,
+        majority=1.0 - counts.max() / counts.sum(),
+        remaining=remaining,
+        map=error_map,
+        without_scatter=without_scatter,
+        on_rigid_plate=not isinstance(population, Study),
+    )
+
+
+def _error_map(falls: Falls, channel: Channel, seed: int, count_step: Callable[[], None]) -> Floats:
+    """Return the upper bounds of the error from one impact, (bandwidths, ratios).
+
+    `count_step` is called after each.
+    """
+    falls = _first_falls(falls, _FALLS_OF_MAP)
+    upper = np.empty((BANDWIDTHS.size, SIGNAL_TO_NOISE.size))
+    for row, bandwidth in enumerate(BANDWIDTHS):
+        for column, ratio in enumerate(SIGNAL_TO_NOISE):
+            mapped = replace(channel, bandwidth=float(bandwidth), signal_to_noise=float(ratio))
+            upper[row, column] = _error(falls, mapped, _MAPPED, _TESTED_OF_MAP, seed).upper
+            count_step()
+    return upper
 
 
 SEEN_AT_BEST = "impulse, contact time and the time to the next impact"
@@ -181,53 +206,49 @@ def least_error(falls: Falls, seed: int = 0) -> float:
     True
     """
     # the scatter of the time to the next impact is the default
-    heard = Channel(bandwidth=50e3, signal_to_noise=80.0, gain=0.001)
-    return _error(falls, heard, _NAMED["with the bounce"], _TESTED, seed).lower
+    channel = Channel(bandwidth=50e3, signal_to_noise=80.0, gain=0.001)
+    return _error(falls, channel, _BY_NAME["with the bounce"], _TESTED, seed).lower
 
 
-def _some(falls: Falls, number: int) -> Falls:
-    """Return the first falls."""
-    parts = (
-        falls.classes,
-        falls.radius,
-        falls.density,
-        falls.modulus,
-        falls.speed,
-        falls.restitution,
-        falls.duration,
-    )
-    return Falls(*(one[:number] for one in parts))
+def _first_falls(falls: Falls, number: int) -> Falls:
+    columns = {field.name: getattr(falls, field.name)[:number] for field in fields(falls)}
+    return Falls(**columns)
 
 
-def _error(falls: Falls, channel: Channel, one: Observation, tested: int, seed: int) -> BayesError:
+def _error(
+    falls: Falls, channel: Channel, observation: Observation, tested: int, seed: int
+) -> BayesError:
+    """Return the Bayes error for what is measured in one observation."""
     values, noise = measurable(falls, channel)
     classes = np.unique(falls.classes, return_inverse=True)[1]
-    measured, deviation = (
-        np.stack([part[name] for name in one.quantities], axis=1) for part in (values, noise)
-    )
+    measured = np.stack([values[name] for name in observation.quantities], axis=1)
+    deviation = np.stack([noise[name] for name in observation.quantities], axis=1)
     return bayes_error(measured, deviation, classes, tested, seed)
 
 
 def _without_scatter(
     falls: Falls, channel: Channel, errors: dict[str, BayesError], seed: int
 ) -> dict[str, BayesError]:
-    """Return the Bayes errors without scatter of the amplitude, which are not larger than
-    those with it.
+    """Return the Bayes errors without scatter of the amplitude.
+
+    They are not larger than those with it.
     """
-    exact, found = replace(channel, gain=0.0, place=0.0), {}
-    for one in OBSERVATIONS:
-        quantities = _exact_quantities(one)
+    exact = replace(channel, gain=0.0, place=0.0)
+    exact_errors: dict[str, BayesError] = {}
+    for observation in OBSERVATIONS:
+        quantities = _exact_quantities(observation)
         # with a known position and with an unknown one
-        alike = [other for other in OBSERVATIONS if _exact_quantities(other) == quantities]
+        equivalent = [other for other in OBSERVATIONS if _exact_quantities(other) == quantities]
         if "impulse" not in quantities:
-            found[one.name] = errors[one.name]
-        elif alike[0].name in found:
-            found[one.name] = found[alike[0].name]
+            error = errors[observation.name]
+        elif equivalent[0].name in exact_errors:
+            error = exact_errors[equivalent[0].name]
         else:
-            error = _error(falls, exact, one, _TESTED, seed)
-            upper = min(error.upper, *(errors[other.name].upper for other in alike))
-            found[one.name] = error._replace(lower=min(error.lower, upper), upper=upper)
-    return _bounded_by_less(found)
+            error = _error(falls, exact, observation, _TESTED, seed)
+            upper = min(error.upper, *(errors[other.name].upper for other in equivalent))
+            error = error._replace(lower=min(error.lower, upper), upper=upper)
+        exact_errors[observation.name] = error
+    return _bounded_by_less(exact_errors)
 
 
 def _bounded_by_less(errors: dict[str, BayesError]) -> dict[str, BayesError]:
@@ -236,53 +257,59 @@ def _bounded_by_less(errors: dict[str, BayesError]) -> dict[str, BayesError]:
     A further quantity can be disregarded. The estimate does not do so: the more is measured, the
     fewer falls are as likely as the one tested.
     """
-    found = {}
-    for one in OBSERVATIONS:
-        least = min(
-            (errors[other.name] for other in OBSERVATIONS if _contains(one, other)),
-            key=lambda error: error.upper,
-        )
-        own = errors[one.name]
-        if least.upper < own.upper:
-            own = own._replace(
-                lower=min(own.lower, least.upper),
+    bounded = {}
+    for observation in OBSERVATIONS:
+        contained = [errors[other.name] for other in OBSERVATIONS if _contains(observation, other)]
+        least = min(contained, key=lambda error: error.upper)
+        error = errors[observation.name]
+        if least.upper < error.upper:
+            error = error._replace(
+                lower=min(error.lower, least.upper),
                 upper=least.upper,
                 standard_error=least.standard_error,
             )
-        found[one.name] = own
-    return found
+        bounded[observation.name] = error
+    return bounded
 
 
-def _contains(one: Observation, other: Observation) -> bool:
-    """Return whether one observation contains what another does; an impulse at a known
-    position contains that at an unknown one.
+def _contains(observation: Observation, other: Observation) -> bool:
+    """Return whether one observation contains what another does.
+
+    An impulse at a known position contains that at an unknown one.
     """
-    seen = {*one.quantities, "far impulse"} if "impulse" in one.quantities else {*one.quantities}
-    return seen >= {*other.quantities}
+    quantities = set(observation.quantities)
+    if "impulse" in quantities:
+        quantities.add("far impulse")
+    return quantities >= set(other.quantities)
 
 
-def _exact_quantities(one: Observation) -> tuple[str, ...]:
-    """Return the quantities of an observation with an exact amplitude, to which the
-    position does not matter.
+def _exact_quantities(observation: Observation) -> tuple[str, ...]:
+    """Return the quantities of an observation with an exact amplitude.
+
+    The position does not matter to it.
     """
-    return tuple("impulse" if name == "far impulse" else name for name in one.quantities)
+    return tuple("impulse" if name == "far impulse" else name for name in observation.quantities)
 
 
-def _remaining(falls: Falls, channel: Channel, one: Observation) -> Floats:
-    r"""Return the remaining standard deviations of the properties, :math:`\sqrt{1 -
-    C_{py} (C_{yy} + N)^{-1} C_{yp} / C_{pp}}`.
+def _remaining(falls: Falls, channel: Channel, observation: Observation) -> Floats:
+    r"""Return the remaining standard deviations of the properties, relative to those before.
+
+    They are :math:`\sqrt{1 - C_{py} (C_{yy} + N)^{-1} C_{yp} / C_{pp}}`, of the properties p and
+    what is measured, y, with noise of the variance N.
     """
     values, noise = measurable(falls, channel)
-    y = np.stack([values[name] for name in one.quantities])
-    p = np.log(np.stack([getattr(falls, name) for name in PROPERTIES]))
-    both = np.cov(np.concatenate([p, y]))
-    number = len(p)
-    inner = both[number:, number:] + np.diag([np.mean(noise[name] ** 2) for name in one.quantities])
-    told = np.einsum(
-        "pk,kp->p", both[:number, number:], np.linalg.solve(inner, both[number:, :number])
+    measured = np.stack([values[name] for name in observation.quantities])
+    properties = np.log(np.stack([getattr(falls, name) for name in PROPERTIES]))
+    covariance = np.cov(np.concatenate([properties, measured]))
+    count = len(properties)
+    noise_variance = [np.mean(noise[name] ** 2) for name in observation.quantities]
+    noisy_covariance = covariance[count:, count:] + np.diag(noise_variance)
+    explained = np.einsum(
+        "pk,kp->p",
+        covariance[:count, count:],
+        np.linalg.solve(noisy_covariance, covariance[count:, :count]),
     )
-    before = np.diagonal(both)[:number]
+    variance = np.diagonal(covariance)[:count]
     with np.errstate(invalid="ignore", divide="ignore"):
-        return np.asarray(
-            np.where(before > 0.0, np.sqrt(np.clip(1.0 - told / before, 0.0, 1.0)), np.nan)
-        )
+        remaining = np.sqrt(np.clip(1.0 - explained / variance, 0.0, 1.0))
+    return np.asarray(np.where(variance > 0.0, remaining, np.nan))

@@ -1,5 +1,7 @@
-"""Bayes error of a population: the share of wrong answers of the best classifier that
-sees only what is measured of each fall.
+"""Bayes error of a population.
+
+It is the share of wrong answers of the best classifier that sees only what is measured of each
+fall.
 """
 
 from __future__ import annotations
@@ -10,7 +12,7 @@ import numpy as np
 
 from vibroimpact.arrays import Floats, Integers
 
-_AT_ONCE = 4_000_000  # pairs of falls in memory
+_PAIRS_IN_MEMORY = 4_000_000  # of a fall that is tested and another one
 
 
 class BayesError(NamedTuple):
@@ -73,34 +75,57 @@ def bayes_error(
     >>> rng = np.random.default_rng(1)
     >>> classes = np.repeat([0, 1], 20_000)
     >>> clean = 2.0 * classes[:, None] + np.sqrt(0.5) * rng.standard_normal((40_000, 1))
-    >>> found = bayes_error(clean, np.full_like(clean, np.sqrt(0.5)), classes)
-    >>> abs(found.lower - 0.1587) < 0.01, abs(found.upper - 0.1587) < 3 * found.standard_error
+    >>> error = bayes_error(clean, np.full_like(clean, np.sqrt(0.5)), classes)
+    >>> abs(error.lower - 0.1587) < 0.01, abs(error.upper - 0.1587) < 3 * error.standard_error
     (True, True)
     """
     rng = np.random.default_rng(seed)
-    number = len(classes)
-    chosen = rng.choice(number, min(tested, number), replace=False)
+    falls = len(classes)
+    chosen = rng.choice(falls, min(tested, falls), replace=False)
     noisy = measured[chosen] + noise[chosen] * rng.standard_normal((len(chosen), measured.shape[1]))
     names, codes = np.unique(classes, return_inverse=True)
-    of_class = np.eye(len(names))[codes]
-    lower, wrong, neighbours = [], [], []
-    step = max(1, _AT_ONCE // number)
-    for begin in range(0, len(chosen), step):
-        part, y = chosen[begin : begin + step], noisy[begin : begin + step]
-        logarithm = np.zeros((len(part), number))
-        for clean, deviation, value in zip(measured.T, noise.T, y.T, strict=True):
-            logarithm -= 0.5 * ((value[:, None] - clean) / deviation) ** 2 + np.log(deviation)
-        logarithm[np.arange(len(part)), part] = -np.inf  # a fall is no neighbour of itself
-        weight = np.exp(logarithm - logarithm.max(axis=1, keepdims=True))
-        posterior = weight @ of_class / weight.sum(axis=1, keepdims=True)
-        lower.append(1.0 - posterior.max(axis=1))
-        wrong.append(posterior.argmax(axis=1) != codes[part])
+    is_of_class = np.eye(len(names))[codes]  # (falls, classes)
+    least_errors = []
+    wrong = []
+    neighbours = []
+    block = max(1, _PAIRS_IN_MEMORY // falls)
+    for first in range(0, len(chosen), block):
+        in_block = chosen[first : first + block]
+        weight = _likelihoods(noisy[first : first + block], measured, noise, in_block)
+        posterior = weight @ is_of_class / weight.sum(axis=1, keepdims=True)
+        least_errors.append(1.0 - posterior.max(axis=1))
+        wrong.append(posterior.argmax(axis=1) != codes[in_block])
+        # number of equal weights of the same variance, after Kish
         neighbours.append(weight.sum(axis=1) ** 2 / (weight**2).sum(axis=1))
     upper = float(np.concatenate(wrong).mean())
-    deviation = float(np.sqrt(max(upper * (1.0 - upper), 0.25 / len(chosen)) / len(chosen)))
+    # of a share, and not zero where none is wrong
+    standard_error = float(np.sqrt(max(upper * (1.0 - upper), 0.25 / len(chosen)) / len(chosen)))
     return BayesError(
-        min(float(np.concatenate(lower).mean()), upper),
-        upper,
-        deviation,
-        float(np.median(np.concatenate(neighbours))),
+        lower=min(float(np.concatenate(least_errors).mean()), upper),
+        upper=upper,
+        standard_error=standard_error,
+        neighbours=float(np.median(np.concatenate(neighbours))),
     )
+
+
+def _likelihoods(noisy: Floats, measured: Floats, noise: Floats, tested: Integers) -> Floats:
+    """Return how likely measurements are for each fall, relative to the likeliest one.
+
+    Parameters
+    ----------
+    noisy : array, shape (tested, quantities)
+        The measurements.
+    measured, noise : array, shape (falls, quantities)
+        What is measured of each fall without noise, and the standard deviation of the noise.
+    tested : array of int, shape (tested,)
+        The falls that were measured: a fall is no neighbour of itself.
+
+    Returns
+    -------
+    array, shape (tested, falls)
+    """
+    logarithm = np.zeros((len(noisy), len(measured)))
+    for clean, deviation, value in zip(measured.T, noise.T, noisy.T, strict=True):
+        logarithm -= 0.5 * ((value[:, None] - clean) / deviation) ** 2 + np.log(deviation)
+    logarithm[np.arange(len(noisy)), tested] = -np.inf
+    return np.asarray(np.exp(logarithm - logarithm.max(axis=1, keepdims=True)))

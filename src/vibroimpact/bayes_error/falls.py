@@ -1,10 +1,8 @@
-"""The falls of a population as a bound needs them: impulse, duration, speed and
-restitution of their first impacts.
-"""
+"""The falls of a population as a bound needs them: what is known of their first impacts."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -24,6 +22,8 @@ from vibroimpact.studies.sweep import Sweep
 from vibroimpact.studies.swept_keys import case_at
 
 _COLUMNS = ("first_approach_speed_m_s", "first_restitution_achieved", "first_duration_s")
+_KEYS_OF_RIGID_PLATE = ("size", "material", "inclination")
+_KEYS_OF_RIGID_SPHERE = ("radius", "material", "mass", "inertia")
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,14 +80,17 @@ def falls_of_study(study: Study) -> Falls:
             f"{study.path.parent}: this study has no classes; a bound needs a population, "
             "as vibroimpact dataset computes it"
         )
-    found = [np.asarray(study.values(name), dtype=float) for name in _COLUMNS]
+    speed, restitution, duration = (
+        np.asarray(study.values(name), dtype=float) for name in _COLUMNS
+    )
     table = {key: value for key, value in study.table.items() if key != "sweep"}
-    return _falls(study.labels[CLASS], table, study.coordinates, *found)
+    return _falls(study.labels[CLASS], table, study.coordinates, speed, restitution, duration)
 
 
 def falls_of_sweep(sweep: Sweep) -> Falls:
-    """Return the falls of a stated population on its plate as a rigid body, of which a hundred
-    thousand take seconds.
+    """Return the falls of a stated population on its plate as a rigid body.
+
+    A hundred thousand of them take seconds.
 
     Raises
     ------
@@ -98,13 +101,12 @@ def falls_of_sweep(sweep: Sweep) -> Falls:
         raise InputError(
             'the study has no classes; a bound needs design = "population"', "sweep.design"
         )
-    plate = {key: value for key, value in sweep.table["plate"].items() if key in _OF_RIGID_PLATES}
-    sphere = {
-        key: value
-        for key, value in sweep.table["sphere"].items()
-        if key in ("radius", "material", "mass", "inertia")
+    table = {
+        **sweep.table,
+        "plate": _only(sweep.table["plate"], _KEYS_OF_RIGID_PLATE),
+        "sphere": _only(sweep.table["sphere"], _KEYS_OF_RIGID_SPHERE),
+        "run": {"impacts": 1},
     }
-    table = {**sweep.table, "plate": plate, "sphere": sphere, "run": {"impacts": 1}}
     table.pop("sensors", None)
     columns = {
         key: values
@@ -113,13 +115,16 @@ def falls_of_sweep(sweep: Sweep) -> Falls:
     }
     result = compute_points(table, (), 0, columns)
     failed = np.array(sorted(result.failures), dtype=int)
-    found = [np.asarray(result.arrays[name], dtype=float).copy() for name in _COLUMNS]
-    for values in found:
+    speed, restitution, duration = (
+        np.asarray(result.arrays[name], dtype=float).copy() for name in _COLUMNS
+    )
+    for values in (speed, restitution, duration):
         values[failed] = np.nan
-    return _falls(sweep.plan.labels[CLASS], table, columns, *found)
+    return _falls(sweep.plan.labels[CLASS], table, columns, speed, restitution, duration)
 
 
-_OF_RIGID_PLATES = ("size", "material", "inclination")
+def _only(table: Mapping[str, Any], keys: Collection[str]) -> dict[str, Any]:
+    return {key: value for key, value in table.items() if key in keys}
 
 
 def _falls(
@@ -132,38 +137,39 @@ def _falls(
 ) -> Falls:
     """Return the falls that touched, with radius and mass from the values of the keys."""
     first = case_at(table, {key: values[0] for key, values in columns.items()})
-    number = len(classes)
-    radius = np.broadcast_to(columns.get("sphere.radius", first.sphere.radius), number).astype(
-        float
-    )
-    density, modulus = (
-        _of_material(name, first, table, columns, number) for name in ("density", "youngs_modulus")
-    )
+    count = len(classes)
+    radius = np.broadcast_to(columns.get("sphere.radius", first.sphere.radius), count).astype(float)
+    density = _material_property("density", first, table, columns, count)
+    modulus = _material_property("youngs_modulus", first, table, columns, count)
     mass = columns.get("sphere.mass", first.sphere.mass)
     if mass is not None:
-        density = np.broadcast_to(mean_density(mass, radius), number).astype(float)
-    there = np.isfinite(speed) & np.isfinite(duration)
+        density = np.broadcast_to(mean_density(mass, radius), count).astype(float)
+    touched = np.isfinite(speed) & np.isfinite(duration)
     return Falls(
-        *(
-            values[there]
-            for values in (classes, radius, density, modulus, speed, restitution, duration)
-        )
+        classes=classes[touched],
+        radius=radius[touched],
+        density=density[touched],
+        modulus=modulus[touched],
+        speed=speed[touched],
+        restitution=restitution[touched],
+        duration=duration[touched],
     )
 
 
-def _of_material(
-    name: str, first: Case, table: Mapping[str, Any], columns: Mapping[str, Values], number: int
+def _material_property(
+    name: str, first: Case, table: Mapping[str, Any], columns: Mapping[str, Values], count: int
 ) -> Floats:
-    """Return a property of the material of the sphere of each fall."""
+    """Return a property of the material of the sphere of each fall.
+
+    It may be swept itself, or with the name of the material, or be that of the first fall.
+    """
     if f"sphere.material.{name}" in columns:
         return np.asarray(columns[f"sphere.material.{name}"], dtype=float)
     if "sphere.material" in columns:
-        names = columns["sphere.material"].tolist()
-        known = {
-            repr(one): float(
-                getattr(case_at(table, {"sphere.material": one}).sphere.material, name)
-            )
-            for one in names
-        }
-        return np.array([known[repr(one)] for one in names])
-    return np.full(number, float(getattr(first.sphere.material, name)))
+        materials = columns["sphere.material"].tolist()
+        by_material = {}
+        for material in materials:
+            case = case_at(table, {"sphere.material": material})
+            by_material[repr(material)] = float(getattr(case.sphere.material, name))
+        return np.array([by_material[repr(material)] for material in materials])
+    return np.full(count, float(getattr(first.sphere.material, name)))

@@ -43,9 +43,9 @@ class Channel:
     Examples
     --------
     >>> import vibroimpact as vi
-    >>> vi.Channel(bandwidth=25e3, signal_to_noise=60.0)
-    Channel(bandwidth=25000.0, signal_to_noise=60.0, gain=0.02, place=0.3, height=0.02, size=0.05,
-    interval=0.002)
+    >>> channel = vi.Channel(bandwidth=25e3, signal_to_noise=60.0)
+    >>> channel.bandwidth, channel.gain, channel.place
+    (25000.0, 0.02, 0.3)
     """
 
     bandwidth: float = 10e3
@@ -114,8 +114,7 @@ OBSERVATIONS = (
 
 
 def measurable(falls: Falls, channel: Channel) -> tuple[dict[str, Floats], dict[str, Floats]]:
-    """Return the logarithms of the quantities of each fall, and the standard deviations with which
-    they are measured.
+    """Return the logarithms of the quantities of each fall, and the deviations of their noise.
 
     Parameters
     ----------
@@ -124,10 +123,13 @@ def measurable(falls: Falls, channel: Channel) -> tuple[dict[str, Floats], dict[
     channel : Channel
         What hears them.
     """
-    peak = float(np.median(falls.impulse / falls.duration)) * float(hertz_pulse(np.array([0.5]))[0])
-    density = (peak / 10.0 ** (channel.signal_to_noise / 20.0)) ** 2 / _REFERENCE_BAND
-    of_pulse = np.minimum(
-        pulse_uncertainty(falls.impulse, falls.duration, channel.bandwidth, density), _LARGEST
+    # a pulse of unit impulse and duration is largest in its middle
+    unit_peak = float(hertz_pulse(np.array([0.5]))[0])
+    median_peak = float(np.median(falls.impulse / falls.duration)) * unit_peak
+    noise_rms = median_peak / 10.0 ** (channel.signal_to_noise / 20.0)
+    noise_density = noise_rms**2 / _REFERENCE_BAND
+    impulse_deviation, duration_deviation = np.minimum(
+        pulse_uncertainty(falls.impulse, falls.duration, channel.bandwidth, noise_density), _LARGEST
     )
     ones = np.ones(len(falls))
     values = {
@@ -139,11 +141,12 @@ def measurable(falls: Falls, channel: Channel) -> tuple[dict[str, Floats], dict[
         "radius": falls.radius,
     }
     noise = {
-        "impulse": np.hypot(of_pulse[0], channel.gain),
-        "far impulse": np.sqrt(of_pulse[0] ** 2 + channel.gain**2 + channel.place**2),
-        "duration": of_pulse[1],
+        "impulse": np.hypot(impulse_deviation, channel.gain),
+        "far impulse": np.sqrt(impulse_deviation**2 + channel.gain**2 + channel.place**2),
+        "duration": duration_deviation,
         "interval": channel.interval * ones,
         "speed": channel.height * ones,
         "radius": channel.size * ones,
     }
-    return {name: np.log(value) for name, value in values.items()}, noise
+    logarithms = {name: np.log(quantity) for name, quantity in values.items()}
+    return logarithms, noise

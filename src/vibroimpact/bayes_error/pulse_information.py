@@ -1,12 +1,10 @@
-r"""Fisher information of a Hertzian force pulse in white noise: how well its impulse and duration
-can be measured.
+r"""Fisher information of a Hertzian force pulse in white noise.
 
-A pulse of impulse J and duration T about an unknown instant has the spectrum
-:math:`J\,\Phi(fT)\,e^{-2\pi i f t_0}` with the spectrum
-:math:`\Phi` of the pulse of unit impulse and duration. In noise of the one-sided power spectral
-density :math:`N_0` and a band from 0 to
-B the information on :math:`(\ln J, \ln T)` is (Kay, Fundamentals of Statistical Signal Processing
-I, 1993, eq. 3.31 and 15.52)
+It tells how well impulse and duration of the pulse can be measured. A pulse of impulse J and
+duration T about an unknown instant has the spectrum :math:`J\,\Phi(fT)\,e^{-2\pi i f t_0}` with the
+spectrum :math:`\Phi` of the pulse of unit impulse and duration. In noise of the one-sided power
+spectral density :math:`N_0` and a band from 0 to B the information on :math:`(\ln J, \ln T)` is
+(Kay, Fundamentals of Statistical Signal Processing I, 1993, eq. 3.31 and 15.52)
 
 .. math::
 
@@ -25,33 +23,40 @@ import numpy as np
 from vibroimpact.arrays import Floats
 from vibroimpact.signals.inverse.hertz_pulse import hertz_pulse
 
-_TIMES, _STEP, _LAST = 2001, 0.005, 40.0  # nodes over the pulse; step and end of u = f T
+# step and end of u = f T
+_STEP = 0.005
+_LAST = 40.0
 
 
 @cache
 def _integrals() -> tuple[Floats, Floats]:
-    """Return the limits BT, and the integrals up to them: of Phi^2, of u Phi Phi' and of
-    (u Phi')^2, (3, limits).
+    """Return the limits BT, and the integrals of the information up to them.
+
+    They are those of Phi^2, of u Phi Phi' and of (u Phi')^2, (3, limits).
     """
     from scipy.integrate import cumulative_simpson
 
     nodes, weights = np.polynomial.legendre.leggauss(400)
     # half of the pulse, which is symmetric, from first touch to the middle
-    time, weights = 0.25 * (1.0 + nodes), 0.25 * weights
+    time = 0.25 * (1.0 + nodes)
+    weights = 0.25 * weights
     force = hertz_pulse(time) * weights * 2.0
     u = np.arange(0.0, _LAST + _STEP, _STEP)
-    away = 2.0 * np.pi * (0.5 - time)
-    spectrum = np.cos(np.outer(u, away)) @ force
-    slope = -np.sin(np.outer(u, away)) @ (force * away)
-    parts = np.stack([spectrum**2, u * spectrum * slope, (u * slope) ** 2])
-    return u, np.asarray(cumulative_simpson(parts, x=u, axis=1, initial=0.0))
+    # the cosine transform about the middle: the spectrum of a symmetric pulse is real
+    phase_per_u = 2.0 * np.pi * (0.5 - time)
+    spectrum = np.cos(np.outer(u, phase_per_u)) @ force
+    slope = -np.sin(np.outer(u, phase_per_u)) @ (force * phase_per_u)
+    integrands = np.stack([spectrum**2, u * spectrum * slope, (u * slope) ** 2])
+    return u, np.asarray(cumulative_simpson(integrands, x=u, axis=1, initial=0.0))
 
 
 def pulse_uncertainty(
     impulse: Floats, duration: Floats, bandwidth: float, noise_density: float
 ) -> Floats:
-    r"""Return the least standard deviations of the logarithms of impulse and duration of a pulse,
-    by Cramér and Rao.
+    r"""Return the least deviations with which impulse and duration of a pulse can be measured.
+
+    They are those of Cramér and Rao: square roots of the diagonal of the inverse of the
+    information.
 
     Parameters
     ----------
@@ -79,8 +84,11 @@ def pulse_uncertainty(
     """
     u, integrals = _integrals()
     limit = np.minimum(np.asarray(duration) * bandwidth, u[-1])
-    first, mixed, second = (np.interp(limit, u, one) for one in integrals)
+    impulse_term, mixed_term, duration_term = (
+        np.interp(limit, u, integral) for integral in integrals
+    )
     scale = 4.0 * np.asarray(impulse) ** 2 / (noise_density * np.asarray(duration))
-    determinant = first * second - mixed**2
+    determinant = impulse_term * duration_term - mixed_term**2
     with np.errstate(divide="ignore"):
-        return np.asarray(np.sqrt(np.stack([second, first]) / (scale * determinant)))
+        variances = np.stack([duration_term, impulse_term]) / (scale * determinant)
+    return np.asarray(np.sqrt(variances))

@@ -15,11 +15,11 @@ _AT_ONCE = 2**17  # points sorted at once, which bounds the memory of the sort
 
 
 def decimated(x: Floats, y: Floats, columns: int = COLUMNS) -> tuple[Floats, Floats]:
-    """Return a line reduced to its visible points: the first, last, lowest and highest in each of a
-    number of columns.
+    """Return a line reduced to its visible points.
 
-    Lines of up to four points a column, and those whose x does not ascend, are returned as they
-    are. NaN in y interrupts a line.
+    They are the first, last, lowest and highest in each of a number of columns. Lines of up to four
+    points a column, and those whose x does not ascend, are returned as they are. NaN in y
+    interrupts a line.
 
     Examples
     --------
@@ -30,17 +30,20 @@ def decimated(x: Floats, y: Floats, columns: int = COLUMNS) -> tuple[Floats, Flo
     """
     if len(x) <= 4 * columns or not bool(np.all(np.diff(x) >= 0.0)):
         return x, y
-    gaps = np.isnan(y)
-    there = np.flatnonzero(~gaps)
-    kept = visible_points(
-        len(there), lambda first, last: (x[there[first:last]], y[there[first:last]]), columns
-    )
-    shown = there if kept is None else there[kept]
+    is_gap = np.isnan(y)
+    points = np.flatnonzero(~is_gap)
+
+    def block(first: int, last: int) -> tuple[Floats, Floats]:
+        return x[points[first:last]], y[points[first:last]]
+
+    visible = visible_points(len(points), block, columns)
+    if visible is not None:
+        points = points[visible]
     # both sides of the ends of each gap: it interrupts the line, and no part between two of them is
     # a single point
-    ends = np.flatnonzero(np.diff(gaps))
-    shown = np.union1d(shown, np.concatenate([ends, ends + 1]))
-    return x[shown], y[shown]
+    ends = np.flatnonzero(np.diff(is_gap))
+    kept = np.union1d(points, np.concatenate([ends, ends + 1]))
+    return x[kept], y[kept]
 
 
 def visible_points(
@@ -62,25 +65,30 @@ def visible_points(
     """
     if count <= 4 * columns:
         return None
-    edges = np.linspace(part(0, 1)[0][0], part(count - 1, count)[0][0], columns + 1)[1:-1]
-    found, xs, ys = [], [], []
+    (first_x,), _ = part(0, 1)
+    (last_x,), _ = part(count - 1, count)
+    edges = np.linspace(first_x, last_x, columns + 1)[1:-1]
+    block_indices = []
+    block_x = []
+    block_y = []
     for first in range(0, count, _AT_ONCE):
         x, y = part(first, min(first + _AT_ONCE, count))
         kept = _extreme(x, y, edges)
-        found.append(kept + first)
-        xs.append(x[kept])
-        ys.append(y[kept])
-    indices = np.concatenate(found)
-    return (
-        indices
-        if len(found) == 1
-        else np.asarray(indices[_extreme(np.concatenate(xs), np.concatenate(ys), edges)])
-    )
+        block_indices.append(kept + first)
+        block_x.append(x[kept])
+        block_y.append(y[kept])
+    indices = np.concatenate(block_indices)
+    if len(block_indices) == 1:
+        return indices
+    # blocks share columns at their ends
+    kept = _extreme(np.concatenate(block_x), np.concatenate(block_y), edges)
+    return np.asarray(indices[kept])
 
 
 def _extreme(x: Floats, y: Floats, edges: Floats) -> Indices:
-    """Return the indices of the first, last, lowest and highest point of a line in each
-    column, given the x of the edges between them.
+    """Return the indices of the first, last, lowest and highest point of a line in each column.
+
+    `edges` are the x between columns.
     """
     column = np.searchsorted(edges, x, side="right")
     starts = np.flatnonzero(np.diff(column, prepend=-1))
@@ -89,16 +97,17 @@ def _extreme(x: Floats, y: Floats, edges: Floats) -> Indices:
     return np.unique(np.concatenate([starts, ends, by_height[starts], by_height[ends]]))
 
 
-_SPREAD, _FLAT = 60, 3e-4
-"""Points that a thinned line has along the whole and along each window at least, and the largest
-distance of a point left out from the line, relative to its range there: a tenth of a pixel."""
+_SPREAD = 60
+"""Points that a thinned line has at least, along the whole and along each window."""
+
+_FLAT = 3e-4
+"""Largest distance of a point left out from the line, relative to its range: a tenth of a pixel."""
 
 
 def thinned(
     x: Floats, y: Floats, windows: Sequence[tuple[float, float]] = ()
 ) -> tuple[Floats, Floats]:
-    """Return a line reduced to the points that are seen in the whole of it and in windows of x that
-    are shown enlarged.
+    """Return a line reduced to the points that are seen in it and in windows shown enlarged.
 
     Points that lie on a straight line between others are left out, but not so many that none is
     found near a pointer; the lowest and the highest stay.
@@ -117,52 +126,62 @@ def thinned(
     >>> len(x) < 100, float(y.max()), x[np.searchsorted(x, 0.5) + 1].round(6).tolist()
     (True, 1.0, 0.50001)
     """
-    kept = [_seen(x, y)]
+    kept = [_needed_points(x, y)]
     for start, end in windows:
-        first, last = int(np.searchsorted(x, start)), int(np.searchsorted(x, end, side="right"))
+        first = int(np.searchsorted(x, start))
+        last = int(np.searchsorted(x, end, side="right"))
         # with the points beyond, so that the line reaches the ends
         beyond = np.clip([first - 1, last], 0, len(x) - 1)
-        kept += [beyond, first + _seen(x[first:last], y[first:last])]
-    chosen = np.unique(np.concatenate(kept))
-    return (x[chosen], y[chosen]) if len(x) else (x, y)
+        kept += [beyond, first + _needed_points(x[first:last], y[first:last])]
+    indices = np.unique(np.concatenate(kept))
+    return (x[indices], y[indices]) if len(x) else (x, y)
 
 
-def _seen(x: Floats, y: Floats) -> Indices:
+def _needed_points(x: Floats, y: Floats) -> Indices:
     """Return the indices of the points of a line that are seen."""
-    if not len(x):
+    count = len(x)
+    if not count:
         return np.empty(0, dtype=np.intp)
-    found = visible_points(len(x), lambda first, last: (x[first:last], y[first:last]))
-    drawn = np.arange(len(x)) if found is None else found
-    spread = np.searchsorted(x, np.linspace(x[0], x[-1], _SPREAD)).clip(max=len(x) - 1)
-    gaps, there = np.flatnonzero(np.isnan(y)), np.flatnonzero(~np.isnan(y))
-    extremes = there[[np.argmin(y[there]), np.argmax(y[there])]] if len(there) else gaps
-    beside = np.concatenate([gaps[gaps > 0] - 1, gaps[gaps < len(x) - 1] + 1])
-    fixed = np.unique(np.concatenate([[0, len(x) - 1], spread, gaps, beside, extremes]))
-    drawn = np.union1d(drawn, fixed)
-    return np.asarray(drawn[_bends(x[drawn], y[drawn], np.searchsorted(drawn, fixed))])
+
+    def block(first: int, last: int) -> tuple[Floats, Floats]:
+        return x[first:last], y[first:last]
+
+    visible = visible_points(count, block)
+    if visible is None:
+        visible = np.arange(count)
+    spread = np.searchsorted(x, np.linspace(x[0], x[-1], _SPREAD)).clip(max=count - 1)
+    is_gap = np.isnan(y)
+    gaps = np.flatnonzero(is_gap)
+    points = np.flatnonzero(~is_gap)
+    extremes = points[[np.argmin(y[points]), np.argmax(y[points])]] if len(points) else gaps
+    beside_gaps = np.concatenate([gaps[gaps > 0] - 1, gaps[gaps < count - 1] + 1])
+    fixed = np.unique(np.concatenate([[0, count - 1], spread, gaps, beside_gaps, extremes]))
+    candidates = np.union1d(visible, fixed)
+    needed = _bends(x[candidates], y[candidates], np.searchsorted(candidates, fixed))
+    return np.asarray(candidates[needed])
 
 
 def _bends(x: Floats, y: Floats, fixed: Indices) -> Indices:
-    """Return the indices of fixed points of a line, and of those between them without
-    which it would be another line.
+    """Return the indices of fixed points of a line, and of bends between them.
+
+    Between two points the farthest from their chord is kept, and so on in both halves (Ramer,
+    Douglas and Peucker), until no point is farther than a tenth of a pixel.
     """
-    away = _FLAT * float(np.ptp(y[np.isfinite(y)])) if np.isfinite(y).any() else 0.0
-    kept, open_parts = (
-        set(fixed.tolist()),
-        list(zip(fixed[:-1].tolist(), fixed[1:].tolist(), strict=True)),
-    )
-    while open_parts:
-        first, last = open_parts.pop()
+    finite = np.isfinite(y)
+    tolerance = _FLAT * float(np.ptp(y[finite])) if finite.any() else 0.0
+    kept = set(fixed.tolist())
+    chords = list(zip(fixed[:-1].tolist(), fixed[1:].tolist(), strict=True))
+    while chords:
+        first, last = chords.pop()
         if last - first < 2:
             continue
+        between = slice(first + 1, last)
         width = x[last] - x[first]
-        chord = y[first] + (y[last] - y[first]) * (
-            (x[first + 1 : last] - x[first]) / width if width > 0.0 else 0.0
-        )
-        off = np.abs(y[first + 1 : last] - chord)
-        farthest = int(np.argmax(off))
-        if off[farthest] > away:
-            middle = first + 1 + farthest
-            kept.add(middle)
-            open_parts += [(first, middle), (middle, last)]
+        part = (x[between] - x[first]) / width if width > 0.0 else 0.0
+        distance = np.abs(y[between] - (y[first] + (y[last] - y[first]) * part))
+        farthest = int(np.argmax(distance))
+        if distance[farthest] > tolerance:
+            bend = first + 1 + farthest
+            kept.add(bend)
+            chords += [(first, bend), (bend, last)]
     return np.array(sorted(kept), dtype=np.intp)

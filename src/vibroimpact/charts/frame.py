@@ -17,8 +17,9 @@ _MARGIN = 0.06
 """Margin above and below what a view shows, relative to its range."""
 
 _NEAR = 0.35
-"""Largest distance from the lines of a view at which a level is shown, relative to their
-range: a farther one would flatten them.
+"""Largest distance from the lines of a view at which a level is shown, relative to their range.
+
+A farther one would flatten them.
 """
 
 
@@ -44,9 +45,9 @@ class Frame:
     @property
     def title(self) -> str:
         """The label with the unit."""
-        return (
-            f"{self.label} [{self.unit}]" if self.unit and self.label else self.label or self.unit
-        )
+        if self.unit and self.label:
+            return f"{self.label} [{self.unit}]"
+        return self.label or self.unit
 
     def shown(self, values: Floats) -> Floats:
         """Return values as shown."""
@@ -64,11 +65,11 @@ def frame_of(axis: Axis, panels: tuple[Panel, ...]) -> Frame:
     ... ).title
     'Force [kN]'
     """
-    given = np.array(axis.range or (np.nan, np.nan))
-    # a range without an upper end reaches as far as what is drawn
-    best = multiple(
-        axis.unit, given if np.isfinite(given[1]) else np.append(given, values_on(axis, panels))
-    )
+    shown = np.array(axis.range or (np.nan, np.nan))
+    if not np.isfinite(shown[1]):
+        # a range without an upper end reaches as far as what is drawn
+        shown = np.append(shown, values_on(axis, panels))
+    best = multiple(axis.unit, shown)
     return Frame(axis.label, best.unit, best.size)
 
 
@@ -76,8 +77,11 @@ def frames_of(chart: Chart) -> dict[Axis, Frame]:
     """Return the frame of every axis of a chart, those of its maps' scales included."""
     axes: dict[Axis, None] = {}
     for panel in chart.panels:
-        scales = (mark.scale for mark in panel.marks if isinstance(mark, Map | Facets))
-        axes |= dict.fromkeys((panel.x, panel.y, *(scale for scale in scales if scale is not None)))
+        axes[panel.x] = None
+        axes[panel.y] = None
+        for mark in panel.marks:
+            if isinstance(mark, Map | Facets) and mark.scale is not None:
+                axes[mark.scale] = None
     frames = {axis: frame_of(axis, chart.panels) for axis in axes}
     for panel in chart.panels:
         # lengths that are drawn alike in both directions
@@ -102,22 +106,24 @@ def ends_on(axis: Axis, chart: Chart) -> tuple[float, float]:
 
 
 def is_log(scale: Axis, chart: Chart) -> bool:
-    """Return whether the scale of maps is drawn as a logarithmic one: if it is, and all
-    values are positive.
+    """Return whether the scale of maps is drawn as a logarithmic one.
+
+    It is if it shall be, and all values are positive.
     """
     return scale.log and ends_on(scale, chart)[0] > 0.0
 
 
 def panels_without_label(chart: Chart, frames: dict[Axis, Frame]) -> set[Panel]:
-    """Return the panels whose vertical axis needs no label, since that of the panel to
-    the left has the same; a view may change it.
+    """Return the panels whose vertical axis needs no label.
+
+    That of the panel to the left has the same; but a view may change it.
     """
-    neighbours = [pair for row in chart.rows for pair in pairwise(row)]
-    return {
-        panel
-        for before, panel in neighbours
-        if not panel.x.views and frames[before.y].title == frames[panel.y].title
-    }
+    unlabelled = set()
+    for row in chart.rows:
+        for left, panel in pairwise(row):
+            if not panel.x.views and frames[left.y].title == frames[panel.y].title:
+                unlabelled.add(panel)
+    return unlabelled
 
 
 def view_frames(
@@ -137,22 +143,21 @@ def view_frames(
         All panels; those with the same vertical axis have the same frame.
     """
     across = multiple(panel.x.unit, [view.start - view.origin, view.end - view.origin])
-    seen = _seen(panel, view, panels) - view.level
-    up = multiple(panel.y.unit, seen) if np.any(seen) and not panel.y.log else None
-    return (
-        Frame(view.label or panel.x.label, across.unit, across.size, view.origin),
-        Frame(
-            view.level_label or base.label,
-            up.unit if up else base.unit,
-            up.size if up else base.size,
-            view.level,
-        ),
-    )
+    horizontal = Frame(view.label or panel.x.label, across.unit, across.size, view.origin)
+    unit = base.unit
+    size = base.size
+    shown = _shown_values(panel, view, panels) - view.level
+    if np.any(shown) and not panel.y.log:
+        up = multiple(panel.y.unit, shown)
+        unit = up.unit
+        size = up.size
+    return horizontal, Frame(view.level_label or base.label, unit, size, view.level)
 
 
 def view_range(panel: Panel, view: View, panels: tuple[Panel, ...]) -> tuple[float, float] | None:
-    """Return the range of the vertical axis of a panel in a view: that of what is drawn there, and
-    of the levels near it.
+    """Return the range of the vertical axis of a panel in a view.
+
+    It is that of what is drawn there, and of the levels near it.
 
     Returns
     -------
@@ -170,27 +175,37 @@ def view_range(panel: Panel, view: View, panels: tuple[Panel, ...]) -> tuple[flo
     >>> view_range(panel, time.views[0], (panel,))
     (-0.72, 12.72)
     """
-    seen = _seen(panel, view, panels)
-    seen = seen[np.isfinite(seen)]
-    if panel.y.range is not None or panel.y.log or not len(seen) or not np.ptp(seen):
+    shown = _shown_values(panel, view, panels)
+    shown = shown[np.isfinite(shown)]
+    if panel.y.range is not None or panel.y.log or not len(shown) or not np.ptp(shown):
         return None
-    low, high = float(seen.min()), float(seen.max())
-    reach = _NEAR * (high - low)
-    levels = [
-        mark.value
-        for one in panels
-        if one.y is panel.y
-        for mark in one.marks
-        if isinstance(mark, Level) and not mark.upright
+    lowest = float(shown.min())
+    highest = float(shown.max())
+    reach = _NEAR * (highest - lowest)
+    near_levels = [
+        level for level in _levels_on(panel.y, panels) if lowest - reach <= level <= highest + reach
     ]
-    near = [level for level in levels if low - reach <= level <= high + reach]
-    low, high = min([low, *near]), max([high, *near])
-    return low - _MARGIN * (high - low), high + _MARGIN * (high - low)
+    low = min([lowest, *near_levels])
+    high = max([highest, *near_levels])
+    margin = _MARGIN * (high - low)
+    return low - margin, high + margin
+
+
+def _levels_on(axis: Axis, panels: tuple[Panel, ...]) -> list[float]:
+    """Return the levels across a vertical axis, of all panels that have it."""
+    levels = []
+    for panel in panels:
+        if panel.y is axis:
+            for mark in panel.marks:
+                if isinstance(mark, Level) and not mark.upright:
+                    levels.append(mark.value)
+    return levels
 
 
 def own_view(mark: Mark, panel: Panel, view: View) -> View:
-    """Return a view of a panel for a mark, shifted to the origin of a line that has one
-    of its own.
+    """Return a view of a panel for a mark.
+
+    It is shifted to the origin of a line that has one of its own.
     """
     if not (isinstance(mark, Line) and mark.origins):
         return view
@@ -203,31 +218,30 @@ def own_view(mark: Mark, panel: Panel, view: View) -> View:
     )
 
 
-def _seen(panel: Panel, view: View, panels: tuple[Panel, ...]) -> Floats:
+def _shown_values(panel: Panel, view: View, panels: tuple[Panel, ...]) -> Floats:
     """Return what a view shows along the vertical axis of a panel, of all panels that have it."""
     number = panel.x.views.index(view)
-    parts = [
-        values_within(mark, own_view(mark, one, one.x.views[number]))
-        for one in panels
-        if one.y is panel.y and number < len(one.x.views)
-        for mark in one.marks
-        if isinstance(mark, Line | Points | Band)
-    ]
+    parts = []
+    for other in panels:
+        if other.y is panel.y and number < len(other.x.views):
+            for mark in other.marks:
+                if isinstance(mark, Line | Points | Band):
+                    shown = own_view(mark, other, other.x.views[number])
+                    parts.append(values_within(mark, shown))
     return np.concatenate(parts) if parts else np.empty(0)
 
 
 def values_within(mark: Line | Points | Band, view: View) -> Floats:
-    """Return the values of a line, of points or of a band inside a view; of what is
-    connected, also those at its ends.
+    """Return the values of a line, of points or of a band inside a view.
+
+    Of what is connected, they include those interpolated at the ends of the view.
     """
     if isinstance(mark, Points):
         return np.asarray(mark.y[(mark.x >= view.start) & (mark.x <= view.end)])
-    inside = slice(
-        int(np.searchsorted(mark.x, view.start)),
-        int(np.searchsorted(mark.x, view.end, side="right")),
-    )
+    first = int(np.searchsorted(mark.x, view.start))
+    last = int(np.searchsorted(mark.x, view.end, side="right"))
     ends = [end for end in (view.start, view.end) if len(mark.x) and mark.x[0] < end < mark.x[-1]]
-    connected = (mark.low, mark.high) if isinstance(mark, Band) else (mark.y,)
-    return np.concatenate(
-        [part for values in connected for part in (values[inside], np.interp(ends, mark.x, values))]
-    )
+    parts = []
+    for values in (mark.low, mark.high) if isinstance(mark, Band) else (mark.y,):
+        parts += [values[first:last], np.interp(ends, mark.x, values)]
+    return np.concatenate(parts)

@@ -1,5 +1,6 @@
-"""A chart drawn by matplotlib, for print: with its views as further panels, where a page
-has buttons.
+"""A chart drawn by matplotlib, for print.
+
+Its views are further panels, where a page has buttons.
 """
 
 from __future__ import annotations
@@ -36,11 +37,23 @@ from vibroimpact.charts.print_style import lettering, print_style
 WIDTH = 8.0
 """Width of every figure [in]."""
 
-_ROW, _SMALL_ROW, _ENLARGED_ROW = 2.9, 1.45, 2.2
-"""Height of a row: the only one, one of several, and one of enlarged views [in]."""
+_ROW = 2.9
+"""Height of the only row [in]."""
 
-_TITLE, _SUBTITLE_LINE = 0.27, 0.155
-"""Height of the title, and of a line below it [in]."""
+_SMALL_ROW = 1.45
+"""Height of one of several rows [in]."""
+
+_ENLARGED_ROW = 2.2
+"""Height of a row of enlarged views [in]."""
+
+_FEW_PICTURES_ROW = 3.4
+"""Height of a row of one or two pictures, if it is not that of their widths [in]."""
+
+_TITLE = 0.27
+"""Height of the title [in]."""
+
+_SUBTITLE_LINE = 0.155
+"""Height of a line below the title [in]."""
 
 _MOST_ENLARGED = 5
 """Views drawn; more panels would be too narrow to read."""
@@ -48,21 +61,32 @@ _MOST_ENLARGED = 5
 _MOST_BESIDE = 3
 """Views drawn beside each of two rows."""
 
-_PICTURE_GAP, _PICTURE_TITLE, _PICTURE_WORDS = 0.15, 0.3, 0.2
-"""Width between pictures, and height of the title of one and of words below it [in]."""
+_PICTURE_GAP = 0.15
+"""Width between pictures [in]."""
 
-_LOW, _HIGH = 0.4, 4.5
-"""The least height of a picture, and the largest of a row of them with their words [in]."""
+_PICTURE_TITLE = 0.3
+"""Height of the title of a picture [in]."""
 
-_LEGEND_LINE, _COLOUR_BAR = 0.17, 0.65
-"""Height of a line of the legend, and of a colour bar below its maps with numbers and
-label [in].
-"""
+_PICTURE_WORDS = 0.2
+"""Height of words below a picture [in]."""
 
-_NUMBERS, _LETTER = 0.52, 0.06
-"""Width that a panel leaves to the numbers at its side, and of a letter of the title of a
-view [in].
-"""
+_LEAST_PICTURE = 0.4
+"""The least height of a picture [in]."""
+
+_LARGEST_PICTURE_ROW = 4.5
+"""The largest height of a row of pictures with their words [in]."""
+
+_LEGEND_LINE = 0.17
+"""Height of a line of the legend [in]."""
+
+_COLOUR_BAR = 0.65
+"""Height of a colour bar below its maps, with numbers and label [in]."""
+
+_NUMBERS = 0.52
+"""Width that a panel leaves to the numbers at its side [in]."""
+
+_LETTER = 0.06
+"""Width of a letter of the title of a view [in]."""
 
 
 def matplotlib_figure(chart: Chart, figure: Figure | None = None) -> Figure:
@@ -101,94 +125,112 @@ class _Print:
     """The figure while it is put together."""
 
     def __init__(self, chart: Chart) -> None:
-        self.chart, self.frames = chart, frames_of(chart)
+        self.chart = chart
+        self.frames = frames_of(chart)
         self.marks = PrintedMarks(chart, self.frames)
         self.drawn: dict[tuple[Axis, str], list[Axes]] = {}
         self.unlabelled = panels_without_label(chart, self.frames)
 
     def figure(self, figure: Figure) -> Figure:
         """Draw into a figure, and return it."""
-        chart, rows = self.chart, self.chart.rows
-        views = [panel.x.views for panel in chart.panels if panel.x.views]
-        below = views[0][:_MOST_ENLARGED] if views and len(rows) == 1 else ()
+        rows = self.chart.rows
+        views_below = self.chart.views[:_MOST_ENLARGED] if len(rows) == 1 else ()
         heights = [self._height(row) for row in rows]
-        figure.set_size_inches(WIDTH, sum(heights) + (_ENLARGED_ROW if below else 0.0) + 0.55)
+        views_height = _ENLARGED_ROW if views_below else 0.0
+        figure.set_size_inches(WIDTH, sum(heights) + views_height + 0.55)
         figure.set_layout_engine("constrained")
-        parts: Any = (
-            figure.subfigures(2, 1, height_ratios=[sum(heights), _ENLARGED_ROW])
-            if below
-            else [figure]
-        )
-        self._rows(
-            parts[0],
-            heights,
-            0 if len(rows) == 1 else _MOST_BESIDE if len(rows) == 2 and self._aligned() else 1,
-        )
-        if below:
-            self._views_below(parts[1], below)
+        rows_part: Any = figure
+        views_part: Any = None
+        if views_below:
+            height_ratios = [sum(heights), _ENLARGED_ROW]
+            rows_part, views_part = figure.subfigures(2, 1, height_ratios=height_ratios)
+        self._rows(rows_part, heights)
+        if views_below:
+            self._views_below(views_part, views_below)
         self._same_ranges()
-        self._colour_bars(figure, parts[0])
+        self._colour_bars(figure, rows_part)
         self._legend(figure)
         self._titles(figure)
         return figure
 
-    def _rows(self, part: Any, heights: list[float], beside: int) -> None:
+    def _rows(self, part: Any, heights: list[float]) -> None:
         """Draw the rows of panels, with some of their views beside them."""
         rows = self.chart.rows
+        most_beside = self._most_views_beside()
         views = [
-            [(panel, view) for panel in row for view in panel.x.views[:beside]] for row in rows
+            [(panel, view) for panel in row for view in panel.x.views[:most_beside]] for row in rows
         ]
-        columns = [len(row) + len(some) for row, some in zip(rows, views, strict=True)]
-        most = max(columns)
+        counts = [len(row) + len(row_views) for row, row_views in zip(rows, views, strict=True)]
+        most = max(counts)
         if self._pictures():  # those of a row that is not full are as large as the others
-            columns = [most] * len(rows)
-        even = all(most % count == 0 for count in columns)
+            counts = [most] * len(rows)
         # a common grid, where there is one, aligns the rows, and lets all maps share one colour bar
-        grid = part.add_gridspec(len(rows), most if even else 1, height_ratios=heights)
-        for number, (row, some, count) in enumerate(zip(rows, views, columns, strict=True)):
-            cells, at, wide = (
-                (grid, number, most // count)
-                if even
-                else (grid[number, 0].subgridspec(1, count), 0, 1)
-            )
-            places = [cells[at, wide * column : wide * (column + 1)] for column in range(count)]
-            last = number == len(rows) - 1 or not self._aligned()
-            for column, (place, panel) in enumerate(zip(places, row, strict=False)):
-                axes = part.add_subplot(place)
-                self._panel(
-                    axes, panel, self.frames[panel.x], self.frames[panel.y], None, lowest=last
-                )
-                # names that the panel before has already
-                if column and panel.y.names and panel.y is row[column - 1].y:
-                    axes.tick_params(labelleft=False)
-            for place, (panel, view) in zip(places[len(row) :], some, strict=False):
-                self._view(
-                    part.add_subplot(place), panel, view, count, self.frames[panel.y], lowest=last
-                )
-        if even and len(rows) > 1:
+        has_common_grid = all(most % count == 0 for count in counts)
+        grid = part.add_gridspec(len(rows), most if has_common_grid else 1, height_ratios=heights)
+        for number, (row, row_views, count) in enumerate(zip(rows, views, counts, strict=True)):
+            if has_common_grid:
+                width = most // count
+                cells = [
+                    grid[number, width * column : width * (column + 1)] for column in range(count)
+                ]
+            else:
+                row_grid = grid[number, 0].subgridspec(1, count)
+                cells = [row_grid[0, column : column + 1] for column in range(count)]
+            lowest = number == len(rows) - 1 or not self._aligned()
+            self._row(part, row, cells[: len(row)], lowest=lowest)
+            for cell, (panel, view) in zip(cells[len(row) :], row_views, strict=False):
+                axes = part.add_subplot(cell)
+                self._view(axes, panel, view, count, self.frames[panel.y], lowest=lowest)
+        if has_common_grid and len(rows) > 1:
             part.align_ylabels()
 
+    def _most_views_beside(self) -> int:
+        """Return how many views of a panel are drawn beside it."""
+        rows = len(self.chart.rows)
+        if rows == 1:
+            return 0
+        return _MOST_BESIDE if rows == 2 and self._aligned() else 1
+
+    def _row(self, part: Any, row: tuple[Panel, ...], cells: list[Any], *, lowest: bool) -> None:
+        """Draw the panels of a row into cells of a grid."""
+        for column, (cell, panel) in enumerate(zip(cells, row, strict=True)):
+            axes = part.add_subplot(cell)
+            self._panel(
+                axes, panel, self.frames[panel.x], self.frames[panel.y], None, lowest=lowest
+            )
+            # names that the panel before has already
+            if column and panel.y.names and panel.y is row[column - 1].y:
+                axes.tick_params(labelleft=False)
+
     def _height(self, row: tuple[Panel, ...]) -> float:
-        """Return the height of a row [in]; that of pictures follows from their width, a
-        single row of them is no higher than usual.
+        """Return the height of a row [in].
+
+        That of pictures follows from their width; a single row of them is no higher than usual.
         """
-        several = len(self.chart.rows) > 1
-        usual = self.chart.height or (
-            3.4 if row[0].picture and len(row) < 3 else _SMALL_ROW if several else _ROW
-        )
+        is_only_row = len(self.chart.rows) == 1
+        if self.chart.height:
+            usual = self.chart.height
+        elif row[0].picture and len(row) < 3:
+            usual = _FEW_PICTURES_ROW
+        else:
+            usual = _ROW if is_only_row else _SMALL_ROW
         if self._pictures():
-            extents = (
-                (np.ptp(ends_on(panel.x, self.chart)), np.ptp(ends_on(panel.y, self.chart)))
-                for panel in row
-            )
-            width = WIDTH / max(map(len, self.chart.rows)) - _PICTURE_GAP
-            highest = max(width * float(up / (across or up or 1.0)) for across, up in extents)
-            below = any(
-                isinstance(mark, Label) and mark.corner for panel in row for mark in panel.marks
-            )
-            words = _PICTURE_TITLE + (_PICTURE_WORDS if below or not several else 0.0)
-            return min(max(highest, _LOW) + words, _HIGH if several else usual)
-        return max(usual, 2.1) if several and not self._aligned() else usual
+            return self._picture_height(row, usual if is_only_row else _LARGEST_PICTURE_ROW)
+        return usual if is_only_row or self._aligned() else max(usual, 2.1)
+
+    def _picture_height(self, row: tuple[Panel, ...], largest: float) -> float:
+        """Return the height of a row of pictures with their words [in]."""
+        width = WIDTH / max(map(len, self.chart.rows)) - _PICTURE_GAP
+        heights = []
+        for panel in row:
+            across = np.ptp(ends_on(panel.x, self.chart))
+            up = np.ptp(ends_on(panel.y, self.chart))
+            heights.append(width * float(up / (across or up or 1.0)))
+        has_words_below = len(self.chart.rows) == 1 or any(
+            isinstance(mark, Label) and mark.corner for panel in row for mark in panel.marks
+        )
+        words = _PICTURE_TITLE + (_PICTURE_WORDS if has_words_below else 0.0)
+        return min(max(*heights, _LEAST_PICTURE) + words, largest)
 
     def _pictures(self) -> bool:
         """Return whether all panels are pictures."""
@@ -386,9 +428,10 @@ def _title(view: View, unit: str, most: int) -> str:
     Examples
     --------
     >>> view = View("Impact 1", 0.0, 1.0, headline="largest force 9.35\u00a0kN")
-    >>> _title(view, "", 32), _title(view, "", 22), _title(view, "[N]", 12)
-    ('Impact 1: largest force 9.35\xa0kN', 'Impact 1\nlargest force 9.35\xa0kN', 'Impact 1
-    [N]\n9.35\xa0kN')
+    >>> _title(view, "", 32), _title(view, "", 22)
+    ('Impact 1: largest force 9.35\xa0kN', 'Impact 1\nlargest force 9.35\xa0kN')
+    >>> _title(view, "[N]", 12)
+    'Impact 1 [N]\n9.35\xa0kN'
     """
     name = f"{view.name} {unit}".strip()
     if not view.headline:

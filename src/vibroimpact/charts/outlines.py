@@ -12,23 +12,24 @@ THIN = 0.012
 """Size of what stands for a point or an edge, relative to the longer side of the plate."""
 
 AT_REST = 0.01
-"""Part of the largest displacement below which a plate on a support is drawn at rest,
-without lines of rest.
+"""Part of the largest displacement below which a plate on a support is drawn at rest.
+
+There are then no lines of rest on the support.
 """
 
-_TURN = np.linspace(0.0, 2.0 * np.pi, 25)
+_ANGLES = np.linspace(0.0, 2.0 * np.pi, 25)
 
 
 def disc(x: float, y: float, radius: float) -> tuple[Floats, Floats]:
     """Return the outline of a disc."""
-    return x + radius * np.cos(_TURN), y + radius * np.sin(_TURN)
+    return x + radius * np.cos(_ANGLES), y + radius * np.sin(_ANGLES)
 
 
 def rectangle(x: float, y: float, length: float, width: float) -> tuple[Floats, Floats]:
     """Return the outline of a rectangle, of a length along x and a width along y."""
-    return x + 0.5 * length * np.array([-1.0, 1.0, 1.0, -1.0]), y + 0.5 * width * np.array(
-        [-1.0, -1.0, 1.0, 1.0]
-    )
+    corners_x = x + 0.5 * length * np.array([-1.0, 1.0, 1.0, -1.0])
+    corners_y = y + 0.5 * width * np.array([-1.0, -1.0, 1.0, 1.0])
+    return corners_x, corners_y
 
 
 def strip(
@@ -51,11 +52,20 @@ def strip(
     >>> x.tolist(), y.tolist()
     ([-0.25, -0.24, -0.24, -0.25], [-0.2, -0.2, 0.2, 0.2])
     """
-    side, end = edge.split("-")
-    (low, high), along = (across, up) if side == "x" else (up, across)
-    at, inner = (low, low + wide) if end == "min" else (high, high - wide)
-    first, second = np.array([at, inner, inner, at]), np.repeat(along, 2)
-    return (first, second) if side == "x" else (second, first)
+    normal, end = edge.split("-")
+    # ends of the plate in the direction of the normal to the edge, and along the edge
+    (low, high), edge_ends = (across, up) if normal == "x" else (up, across)
+    if end == "min":
+        outer = low
+        inner = low + wide
+    else:
+        outer = high
+        inner = high - wide
+    in_normal_direction = np.array([outer, inner, inner, outer])
+    along_edge = np.repeat(edge_ends, 2)
+    if normal == "x":
+        return in_normal_direction, along_edge
+    return along_edge, in_normal_direction
 
 
 def on_supports(outlines: Iterable[tuple[Floats, Floats]], x: Floats, y: Floats) -> Bools:
@@ -69,10 +79,12 @@ def on_supports(outlines: Iterable[tuple[Floats, Floats]], x: Floats, y: Floats)
     [[False, True, True], [False, False, False]]
     """
     points = np.stack(np.meshgrid(x, y), axis=-1)
-    found = np.zeros(points.shape[:2], dtype=bool)
+    inside = np.zeros(points.shape[:2], dtype=bool)
     for outline in outlines:
         corners = np.stack(outline, axis=-1)
-        side, to = np.roll(corners, -1, axis=0) - corners, points[..., None, :] - corners
-        turn = side[:, 0] * to[..., 1] - side[:, 1] * to[..., 0]
-        found |= (turn >= 0.0).all(axis=-1) | (turn <= 0.0).all(axis=-1)
-    return found
+        sides = np.roll(corners, -1, axis=0) - corners
+        offsets = points[..., None, :] - corners
+        # a point lies inside if it is on the same side of all sides
+        cross = sides[:, 0] * offsets[..., 1] - sides[:, 1] * offsets[..., 0]
+        inside |= (cross >= 0.0).all(axis=-1) | (cross <= 0.0).all(axis=-1)
+    return inside

@@ -1,12 +1,12 @@
-"""A document with arrays in one block of bytes, as pages and the live page read it: a header in
-JSON, and the arrays after it.
+"""A document with arrays in one block of bytes, as pages and the live page read it.
 
-The first four bytes are the length of the header (unsigned, little-endian). The header is the
-document, where an array is replaced by `{"$": [type, offset, length]}`: `f4`, `f8` or `i4`, the
-offset in bytes from the end of the header, and the number of values; an array of several dimensions
-has its number of columns as a fourth entry. Evenly spaced values are `{"$": ["even", first, step,
-length]}`. Header and arrays are padded to eight bytes. A long list of texts is `["texts", offset,
-bytes]`, itself in JSON. An array or such a list that occurs several times is stored once.
+It is a header in JSON, and the arrays after it. The first four bytes are the length of the header
+(unsigned, little-endian). The header is the document, where an array is replaced by `{"$": [type,
+offset, length]}`: `f4`, `f8` or `i4`, the offset in bytes from the end of the header, and the
+number of values; an array of several dimensions has its number of columns as a fourth entry. Evenly
+spaced values are `{"$": ["even", first, step, length]}`. Header and arrays are padded to eight
+bytes. A long list of texts is `["texts", offset, bytes]`, itself in JSON. An array or such a list
+that occurs several times is stored once.
 """
 
 from __future__ import annotations
@@ -23,8 +23,9 @@ from vibroimpact.files.json_reading import parse_json
 
 _ALIGNED = 8
 _LONG = 32
-"""Texts from which on a list of them is kept apart, as the points of several charts may
-have the same.
+"""Texts from which on a list of them is kept apart.
+
+The points of several charts may have the same.
 """
 
 _MOST_STEPS = 100_000_000
@@ -47,61 +48,76 @@ def pack(document: Any) -> bytes:
     >>> json.loads(block[4 : 4 + length])
     {'time': {'$': ['even', 0.0, 0.25, 5]}, 'force': {'$': ['f4', 0, 2]}}
     """
-    blocks: list[bytes] = []
-    known: dict[int, dict[str, Any]] = {}
-    lists: dict[tuple[str, ...], dict[str, Any]] = {}
-    kept: list[Any] = []  # an array must live as long as its identity is used
-    end = 0
+    return _Packing().packed(document)
 
-    def added(block: bytes) -> int:
-        """Add a block of bytes, and return where it begins."""
-        nonlocal end
-        first = end
-        blocks.append(block + bytes(-len(block) % _ALIGNED))
-        end += len(blocks[-1])
-        return first
 
-    def stored(array: NDArray[Any]) -> dict[str, Any]:
-        if id(array) not in known:
-            kept.append(array)
-            even = _even(array)
-            if even is None:
-                data = _narrowed(array)
-                shape = [array.size] if array.ndim == 1 else [array.size, array.shape[-1]]
-                known[id(array)] = {"$": [data.dtype.str[1:], added(data.tobytes()), *shape]}
-            else:
-                known[id(array)] = {"$": ["even", *even, array.size]}
-        return known[id(array)]
+class _Packing:
+    """A document while it is packed: the blocks after the header, and what is stored in them."""
 
-    def texts(found: tuple[str, ...]) -> dict[str, Any]:
-        if found not in lists:
-            block = json.dumps(found, ensure_ascii=False, separators=(",", ":")).encode()
-            lists[found] = {"$": ["texts", added(block), len(block)]}
-        return lists[found]
+    def __init__(self) -> None:
+        self.blocks: list[bytes] = []
+        self.end = 0
+        # references by the identity of an array, which must live as long as that is used
+        self.arrays: dict[int, tuple[NDArray[Any], dict[str, Any]]] = {}
+        self.texts: dict[tuple[str, ...], dict[str, Any]] = {}
 
-    def plain(part: Any) -> Any:
+    def packed(self, document: Any) -> bytes:
+        """Return a document as bytes."""
+        header = json.dumps(
+            self._plain(document), ensure_ascii=False, separators=(",", ":"), allow_nan=False
+        ).encode()
+        header += b" " * (-(len(header) + 4) % _ALIGNED)
+        return struct.pack("<I", len(header)) + header + b"".join(self.blocks)
+
+    def _plain(self, part: Any) -> Any:
+        """Return a part of the document with references in place of arrays and long lists."""
         if isinstance(part, np.ndarray):
-            return stored(part)
+            return self._array(part)
         if isinstance(part, dict):
-            return {key: plain(value) for key, value in part.items()}
+            return {key: self._plain(value) for key, value in part.items()}
         if isinstance(part, list | tuple):
-            if len(part) >= _LONG and all(isinstance(one, str) for one in part):
-                return texts(tuple(part))
-            return [plain(one) for one in part]
+            if len(part) >= _LONG and all(isinstance(item, str) for item in part):
+                return self._text_list(tuple(part))
+            return [self._plain(item) for item in part]
         if isinstance(part, np.generic):
             part = part.item()
         return None if isinstance(part, float) and not math.isfinite(part) else part
 
-    header = json.dumps(
-        plain(document), ensure_ascii=False, separators=(",", ":"), allow_nan=False
-    ).encode()
-    header += b" " * (-(len(header) + 4) % _ALIGNED)
-    return struct.pack("<I", len(header)) + header + b"".join(blocks)
+    def _array(self, array: NDArray[Any]) -> dict[str, Any]:
+        """Return the reference to an array, which is stored if it is new."""
+        if id(array) not in self.arrays:
+            even = _even(array)
+            if even is None:
+                data = _narrowed(array)
+                shape = [array.size] if array.ndim == 1 else [array.size, array.shape[-1]]
+                entry = [data.dtype.str[1:], self._add(data.tobytes()), *shape]
+            else:
+                first, step = even
+                entry = ["even", first, step, array.size]
+            self.arrays[id(array)] = (array, {"$": entry})
+        _, reference = self.arrays[id(array)]
+        return reference
+
+    def _text_list(self, texts: tuple[str, ...]) -> dict[str, Any]:
+        """Return the reference to a list of texts, which is stored if it is new."""
+        if texts not in self.texts:
+            block = json.dumps(texts, ensure_ascii=False, separators=(",", ":")).encode()
+            self.texts[texts] = {"$": ["texts", self._add(block), len(block)]}
+        return self.texts[texts]
+
+    def _add(self, block: bytes) -> int:
+        """Add a block of bytes, and return where it begins."""
+        start = self.end
+        padded = block + bytes(-len(block) % _ALIGNED)
+        self.blocks.append(padded)
+        self.end += len(padded)
+        return start
 
 
 def unpack(block: bytes) -> Any:
-    """Return the document that `pack` returned as bytes; an array of more than two dimensions has
-    its last one as columns.
+    """Return the document that `pack` returned as bytes.
+
+    An array of more than two dimensions has its last one as columns.
 
     Raises
     ------
@@ -110,8 +126,8 @@ def unpack(block: bytes) -> Any:
 
     Examples
     --------
-    >>> found = unpack(pack({"time": np.linspace(0.0, 1.0, 5), "force": np.array([0.0, 2.5])}))
-    >>> found["time"].tolist(), found["force"].tolist()
+    >>> document = unpack(pack({"time": np.linspace(0.0, 1.0, 5), "force": np.array([0.0, 2.5])}))
+    >>> document["time"].tolist(), document["force"].tolist()
     ([0.0, 0.25, 0.5, 0.75, 1.0], [0.0, 2.5])
     """
     try:
@@ -121,51 +137,60 @@ def unpack(block: bytes) -> Any:
 
 
 def _unpacked(block: bytes) -> Any:
-    (length,) = struct.unpack_from("<I", block)
-    begin = struct.calcsize("<I") + length
+    (header_length,) = struct.unpack_from("<I", block)
+    header_start = struct.calcsize("<I")
+    data_start = header_start + header_length
     known: dict[str, Any] = {}
 
-    def array(kind: str, first: float, second: float, *more: int) -> Any:
-        if kind == "texts":
-            return parse_json(block[begin + int(first) : begin + int(first) + int(second)])
-        if kind == "even":
-            if more[0] > _MOST_STEPS:
-                raise ValueError("the chart is damaged")
-            return np.asarray(first + second * np.arange(more[0]))
-        values = np.frombuffer(block, f"<{kind}", count=int(second), offset=begin + int(first))
-        return values.reshape(-1, *more) if more and len(values) else values
-
     def filled(part: Any) -> Any:
+        """Return a part of the document with arrays and lists in place of references."""
         if isinstance(part, list):
-            return [filled(one) for one in part]
+            return [filled(item) for item in part]
         if not isinstance(part, dict):
             return part
         if not isinstance(part.get("$"), list):
             return {key: filled(value) for key, value in part.items()}
         key = json.dumps(part["$"])
         if key not in known:
-            known[key] = array(*part["$"])
+            known[key] = _stored(block, data_start, *part["$"])
         return known[key]  # what was stored once is one array again
 
-    return filled(parse_json(block[struct.calcsize("<I") : begin]))
+    return filled(parse_json(block[header_start:data_start]))
+
+
+def _stored(
+    block: bytes, data_start: int, kind: str, first: float, second: float, *more: int
+) -> Any:
+    """Return the array or the list of texts that a reference stands for.
+
+    The numbers of a reference are those of its kind: offset and length, or first value and step.
+    """
+    if kind == "even":
+        if more[0] > _MOST_STEPS:
+            raise ValueError("the chart is damaged")
+        return np.asarray(first + second * np.arange(more[0]))
+    start = data_start + int(first)
+    length = int(second)
+    if kind == "texts":
+        return parse_json(block[start : start + length])
+    values = np.frombuffer(block, f"<{kind}", count=length, offset=start)
+    return values.reshape(-1, *more) if more and len(values) else values
 
 
 def _even(array: NDArray[Any]) -> tuple[float, float] | None:
     """Return the first value and the step of evenly spaced values; None if they are not."""
     if array.ndim != 1 or len(array) < 3 or array.dtype.kind != "f" or not np.isfinite(array).all():
         return None
-    first, step = float(array[0]), float(array[-1] - array[0]) / (len(array) - 1)
-    if (
-        not (math.isfinite(step) and step)
-        or abs(float(array[1] - array[0]) - step) > _EVEN * abs(step) * 1e3
-    ):
+    first = float(array[0])
+    step = float(array[-1] - array[0]) / (len(array) - 1)
+    if not math.isfinite(step) or not step:
         return None
-    off = np.abs(array - (first + step * np.arange(len(array))))
-    return (
-        (first, step)
-        if float(off.max()) <= max(_EVEN * abs(step), 1e-15 * abs(float(array[-1])))
-        else None
-    )
+    # most arrays differ at the first step already
+    if abs(float(array[1] - array[0]) - step) > _EVEN * abs(step) * 1e3:
+        return None
+    deviation = float(np.abs(array - (first + step * np.arange(len(array)))).max())
+    rounding = 1e-15 * abs(float(array[-1]))
+    return (first, step) if deviation <= max(_EVEN * abs(step), rounding) else None
 
 
 def _narrowed(array: NDArray[Any]) -> NDArray[Any]:
@@ -173,12 +198,14 @@ def _narrowed(array: NDArray[Any]) -> NDArray[Any]:
     if array.dtype.kind in "iub":
         return np.ascontiguousarray(array, dtype="<i4")
     single = np.ascontiguousarray(array, dtype="<f4")
-    is_row = array.ndim == 1 and array.dtype == np.float64 and bool(np.isfinite(array).all())
-    steps = np.diff(array) if is_row else np.empty(0)
-    ascends = len(steps) > 0 and bool((steps >= 0.0).all())
-    # ascending values are places, whose differences are looked at: of these a thousandth must be
+    if array.ndim != 1 or array.dtype != np.float64 or not np.isfinite(array).all():
+        return single
+    # ascending values are positions, whose differences are looked at: of these a thousandth must be
     # kept
-    fine = ascends and float(np.abs(single - array).max()) > 1e-3 * float(
-        steps[steps > 0.0].min(initial=np.inf)
-    )
-    return np.ascontiguousarray(array, dtype="<f8") if fine else single
+    steps = np.diff(array)
+    if len(steps) == 0 or not (steps >= 0.0).all():
+        return single
+    smallest_step = float(steps[steps > 0.0].min(initial=np.inf))
+    if float(np.abs(single - array).max()) > 1e-3 * smallest_step:
+        return np.ascontiguousarray(array, dtype="<f8")
+    return single

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -64,9 +65,22 @@ _HALO = [withStroke(linewidth=1.8, foreground="white", alpha=0.8)]
 _STACK_POINTS = 220
 
 _THINNEST = 1e-3
-"""Width of the narrowest span drawn, relative to the axis: a narrower one is less than a
-dot, seen or not as the dots fall.
+"""Width of the narrowest span drawn, relative to the axis.
+
+A narrower one is less than a dot, seen or not as the dots fall.
 """
+
+_MOST_SPANS = 60
+"""Number of spans drawn."""
+
+_LABEL_SIDES: dict[str, tuple[str, str, tuple[int, int]]] = {
+    "left": ("left", "center", (5, 0)),
+    "right": ("right", "center", (-5, 0)),
+    "above": ("center", "bottom", (0, 4)),
+    "below": ("center", "top", (0, -4)),
+    "center": ("center", "center", (0, 0)),
+}
+"""Horizontal and vertical alignment of words, and their offset [pt], by their anchor."""
 
 
 class PrintedMarks:
@@ -81,7 +95,8 @@ class PrintedMarks:
     """
 
     def __init__(self, chart: Chart, frames: dict[Axis, Frame]) -> None:
-        self.chart, self.frames = chart, frames
+        self.chart = chart
+        self.frames = frames
         self.named: dict[tuple[str, str], Any] = {}
         self.scales: dict[Axis, tuple[Any, list[Axes]]] = {}
 
@@ -93,33 +108,18 @@ class PrintedMarks:
         frames: tuple[Frame, Frame],
         inside: tuple[float, float],
     ) -> None:
-        """Draw a mark of a panel in the frames of its axes, as far as it lies inside a
-        range of the horizontal one.
+        """Draw a mark of a panel in the frames of its axes.
+
+        It is drawn as far as it lies inside a range of the horizontal one.
         """
         x, y = frames
         match mark:
             case Line():
-                across, up = within(mark.x, mark.y, inside)
-                if not mark.marked:
-                    across, up = decimated(across, up)
-                style = print_pen(LOOKS[mark.role]) | {
-                    "alpha": LOOKS[mark.role].opacity if mark.role == "under" else 1.0
-                }
-                style |= (
-                    {"marker": _SYMBOLS[LOOKS[mark.role].symbol], "markersize": 3.5}
-                    if mark.marked
-                    else {}
-                )
-                self._name(mark, axes.plot(x.shown(across), y.shown(up), **style)[0])
+                self._line(axes, mark, x, y, inside)
             case Points():
                 self._points(axes, mark, x, y, inside)
             case Band():
-                look = LOOKS[mark.role]
-                low, high = y.shown(mark.low), y.shown(mark.high)
-                area = axes.fill_between(
-                    x.shown(mark.x), low, high, color=look.light, alpha=look.opacity, linewidth=0.0
-                )
-                self._name(mark, area)
+                self._band(axes, mark, x, y)
             case Stack():
                 self._stack(axes, mark, x, y, inside)
             case Bars():
@@ -129,123 +129,156 @@ class PrintedMarks:
             case Facets():
                 self._facets(axes, mark, x, y)
             case Outline():
-                look = LOOKS[mark.role]
-                patch = axes.fill(
-                    x.shown(mark.x),
-                    y.shown(mark.y),
-                    facecolor=look.light,
-                    alpha=look.opacity,
-                    edgecolor="#1b1b1b",
-                    linewidth=look.width,
-                    hatch=_HATCHES[look.hatch],
-                )
-                self._name(mark, patch[0])
+                self._outline(axes, mark, x, y)
             case Level():
-                draw, along = (axes.axvline, x) if mark.upright else (axes.axhline, y)
-                self._name(
-                    mark,
-                    draw(float(along.shown(np.array(mark.value))), **print_pen(LOOKS[mark.role])),
-                )
-                if mark.label and not mark.upright:
-                    at = (1.0, float(y.shown(np.array(mark.value))))
-                    axes.annotate(
-                        lettering(mark.label),
-                        at,
-                        (-2, 1.5),
-                        ("axes fraction", "data"),
-                        "offset points",
-                        ha="right",
-                        va="bottom",
-                        fontsize=7,
-                        path_effects=_HALO,
-                    )
+                self._level(axes, mark, x, y)
             case Spans():
-                self._spans(
-                    axes,
-                    mark,
-                    x,
-                    inside if np.isfinite(inside[0]) else ends_on(panel.x, self.chart),
-                )
+                is_view = np.isfinite(inside[0])
+                shown = inside if is_view else ends_on(panel.x, self.chart)
+                self._spans(axes, mark, x, shown)
             case Rug():
-                places = x.shown(mark.values)
-                line = axes.plot(
-                    places,
-                    np.full(len(places), 0.02),
-                    "|",
-                    markersize=5,
-                    color=LOOKS[mark.role].light,
-                    markeredgewidth=0.6,
-                    transform=axes.get_xaxis_transform(),
-                )
-                self._name(mark, line[0])
+                self._rug(axes, mark, x)
             case Label():
-                place = (
-                    (mark.x, mark.y)
-                    if mark.corner
-                    else (float(x.shown(np.array(mark.x))), float(y.shown(np.array(mark.y))))
-                )
-                sides = {
-                    "left": ("left", "center", (5, 0)),
-                    "right": ("right", "center", (-5, 0)),
-                    "above": ("center", "bottom", (0, 4)),
-                    "below": ("center", "top", (0, -4)),
-                    "center": ("center", "center", (0, 0)),
-                }
-                ha, va, off = sides[mark.anchor]
-                if not mark.corner:
-                    # which matplotlib does not do for words and arrows
-                    axes.update_datalim([place])
-                axes.annotate(
-                    lettering(mark.words, 120),
-                    place,
-                    off,
-                    "axes fraction" if mark.corner else "data",
-                    "offset points",
-                    ha=ha,
-                    va=va,
-                    fontsize=8,
-                    path_effects=_HALO,
-                )
+                self._label(axes, mark, x, y)
             case Arrow():
-                ends = [
-                    (float(x.shown(np.array(end[0]))), float(y.shown(np.array(end[1]))))
-                    for end in (mark.start, mark.end)
-                ]
-                heads = {
-                    "arrowstyle": "<|-|>" if mark.both else "-|>",
-                    "color": LOOKS[mark.role].light,
-                    "linewidth": LOOKS[mark.role].width,
-                    "shrinkA": 0.0,
-                    "shrinkB": 0.0,
-                }
-                axes.update_datalim(ends)
-                axes.annotate("", ends[1], ends[0], arrowprops=heads)
+                self._arrow(axes, mark, x, y)
 
     def _name(self, mark: Any, artist: Any) -> None:
+        """Keep an artist for the legend, which names each look once."""
         if mark.name:
             self.named.setdefault((mark.name, mark.role), artist)
+
+    def _line(
+        self, axes: Axes, mark: Line, x: Frame, y: Frame, inside: tuple[float, float]
+    ) -> None:
+        look = LOOKS[mark.role]
+        across, up = within(mark.x, mark.y, inside)
+        if not mark.marked:
+            across, up = decimated(across, up)
+        style = print_pen(look)
+        style["alpha"] = look.opacity if mark.role == "under" else 1.0
+        if mark.marked:
+            style["marker"] = _SYMBOLS[look.symbol]
+            style["markersize"] = 3.5
+        (artist,) = axes.plot(x.shown(across), y.shown(up), **style)
+        self._name(mark, artist)
+
+    def _band(self, axes: Axes, mark: Band, x: Frame, y: Frame) -> None:
+        look = LOOKS[mark.role]
+        artist = axes.fill_between(
+            x.shown(mark.x),
+            y.shown(mark.low),
+            y.shown(mark.high),
+            color=look.light,
+            alpha=look.opacity,
+            linewidth=0.0,
+        )
+        self._name(mark, artist)
+
+    def _outline(self, axes: Axes, mark: Outline, x: Frame, y: Frame) -> None:
+        look = LOOKS[mark.role]
+        (artist,) = axes.fill(
+            x.shown(mark.x),
+            y.shown(mark.y),
+            facecolor=look.light,
+            alpha=look.opacity,
+            edgecolor="#1b1b1b",
+            linewidth=look.width,
+            hatch=_HATCHES[look.hatch],
+        )
+        self._name(mark, artist)
+
+    def _level(self, axes: Axes, mark: Level, x: Frame, y: Frame) -> None:
+        style = print_pen(LOOKS[mark.role])
+        if mark.upright:
+            artist = axes.axvline(_position(x, mark.value), **style)
+        else:
+            artist = axes.axhline(_position(y, mark.value), **style)
+        self._name(mark, artist)
+        if mark.label and not mark.upright:
+            axes.annotate(
+                lettering(mark.label),
+                (1.0, _position(y, mark.value)),
+                (-2, 1.5),
+                ("axes fraction", "data"),
+                "offset points",
+                ha="right",
+                va="bottom",
+                fontsize=7,
+                path_effects=_HALO,
+            )
+
+    def _rug(self, axes: Axes, mark: Rug, x: Frame) -> None:
+        positions = x.shown(mark.values)
+        (artist,) = axes.plot(
+            positions,
+            np.full(len(positions), 0.02),
+            "|",
+            markersize=5,
+            color=LOOKS[mark.role].light,
+            markeredgewidth=0.6,
+            transform=axes.get_xaxis_transform(),
+        )
+        self._name(mark, artist)
+
+    def _label(self, axes: Axes, mark: Label, x: Frame, y: Frame) -> None:
+        if mark.corner:
+            position = (mark.x, mark.y)
+        else:
+            position = (_position(x, mark.x), _position(y, mark.y))
+            # which matplotlib does not do for words and arrows
+            axes.update_datalim([position])
+        horizontal, vertical, offset = _LABEL_SIDES[mark.anchor]
+        axes.annotate(
+            lettering(mark.words, 120),
+            position,
+            offset,
+            "axes fraction" if mark.corner else "data",
+            "offset points",
+            ha=horizontal,
+            va=vertical,
+            fontsize=8,
+            path_effects=_HALO,
+        )
+
+    def _arrow(self, axes: Axes, mark: Arrow, x: Frame, y: Frame) -> None:
+        look = LOOKS[mark.role]
+        start = (_position(x, mark.start[0]), _position(y, mark.start[1]))
+        end = (_position(x, mark.end[0]), _position(y, mark.end[1]))
+        heads = {
+            "arrowstyle": "<|-|>" if mark.both else "-|>",
+            "color": look.light,
+            "linewidth": look.width,
+            "shrinkA": 0.0,
+            "shrinkB": 0.0,
+        }
+        axes.update_datalim([start, end])
+        axes.annotate("", end, start, arrowprops=heads)
 
     def _points(
         self, axes: Axes, mark: Points, x: Frame, y: Frame, inside: tuple[float, float]
     ) -> None:
-        seen = (mark.x >= inside[0]) & (mark.x <= inside[1])
-        across, up = mark.x[seen], mark.y[seen]
-        look, many = LOOKS[mark.role], len(mark.x) > MANY
-        face = "white" if look.hollow and not many else look.light
+        look = LOOKS[mark.role]
+        shown = (mark.x >= inside[0]) & (mark.x <= inside[1])
         style: dict[str, Any] = {
             "marker": _SYMBOLS[look.symbol],
             "linestyle": "",
-            "markersize": min(2.5, 0.64 * look.size) if many else 0.64 * look.size,
-            "markerfacecolor": face,
+            "markersize": 0.64 * look.size,
+            "markerfacecolor": "white" if look.hollow else look.light,
             "markeredgecolor": look.light,
-        }
-        style |= {
-            "markeredgewidth": 0.0 if many else 1.0,
-            "alpha": 0.5 if many else 1.0,
+            "markeredgewidth": 1.0,
+            "alpha": 1.0,
             "rasterized": len(mark.x) > 300,
             "zorder": 3,
         }
-        self._name(mark, axes.plot(x.shown(across), y.shown(up), **style)[0])
+        if len(mark.x) > MANY:
+            # small and without edges, so that they can be told apart
+            style["markersize"] = min(2.5, 0.64 * look.size)
+            style["markerfacecolor"] = look.light
+            style["markeredgewidth"] = 0.0
+            style["alpha"] = 0.5
+        (artist,) = axes.plot(x.shown(mark.x[shown]), y.shown(mark.y[shown]), **style)
+        self._name(mark, artist)
         if mark.low is not None and mark.high is not None:
             reach = np.maximum([mark.y - mark.low, mark.high - mark.y], 0.0) / y.size
             axes.errorbar(
@@ -261,21 +294,21 @@ class PrintedMarks:
     def _stack(
         self, axes: Axes, mark: Stack, x: Frame, y: Frame, inside: tuple[float, float]
     ) -> None:
-        edges = stack_edges(mark)
+        all_edges = stack_edges(mark)
         if not np.isfinite(inside[0]) and mark.overview is not None:
-            time, shown = mark.x[mark.overview], [edge[mark.overview] for edge in edges]
+            across = mark.x[mark.overview]
+            edges = [edge[mark.overview] for edge in all_edges]
         else:
-            time, shown = (
-                within(mark.x, edges[0], inside)[0],
-                [within(mark.x, edge, inside)[1] for edge in edges],
-            )
-            if len(time) > _STACK_POINTS:
-                even = np.linspace(time[0], time[-1], _STACK_POINTS)
-                time, shown = even, [np.interp(even, time, edge) for edge in shown]
-        for layer, lower, upper in zip(mark.layers, shown, shown[1:], strict=False):
+            across, _ = within(mark.x, all_edges[0], inside)
+            edges = [within(mark.x, edge, inside)[1] for edge in all_edges]
+            if len(across) > _STACK_POINTS:
+                even = np.linspace(across[0], across[-1], _STACK_POINTS)
+                edges = [np.interp(even, across, edge) for edge in edges]
+                across = even
+        for layer, (lower, upper) in zip(mark.layers, pairwise(edges), strict=True):
             look = LOOKS[layer.role]
             area = axes.fill_between(
-                x.shown(time),
+                x.shown(across),
                 y.shown(lower),
                 y.shown(upper),
                 facecolor=look.light,
@@ -286,7 +319,9 @@ class PrintedMarks:
             self.named.setdefault((layer.name, layer.role), area)
 
     def _bars(self, axes: Axes, mark: Bars, x: Frame, y: Frame) -> None:
-        look, (along, across) = LOOKS[mark.role], ((y, x) if mark.lying else (x, y))
+        look = LOOKS[mark.role]
+        # frames of the positions of bars, and of their values
+        along, across = (y, x) if mark.lying else (x, y)
         style: dict[str, Any] = {
             "facecolor": look.light,
             "hatch": _HATCHES[look.hatch],
@@ -303,70 +338,63 @@ class PrintedMarks:
             )
         else:
             base = 0.0 if mark.base is None else across.shown(mark.base)
-            places, lengths, width = (
-                along.shown(mark.places),
-                mark.values / across.size,
-                mark.width / along.size,
-            )
-            artist = (
-                axes.barh(places, lengths, width, left=base, **style)
-                if mark.lying
-                else axes.bar(places, lengths, width, bottom=base, **style)
-            )
+            positions = along.shown(mark.places)
+            lengths = mark.values / across.size
+            width = mark.width / along.size
+            if mark.lying:
+                artist = axes.barh(positions, lengths, width, left=base, **style)
+            else:
+                artist = axes.bar(positions, lengths, width, bottom=base, **style)
         if mark.low is not None and mark.high is not None:
             reach = np.maximum([mark.values - mark.low, mark.high - mark.values], 0.0) / across.size
-            ends, places = across.shown(mark.values), along.shown(mark.places)
-            at: dict[str, Any] = (
-                {"x": ends, "y": places, "xerr": reach}
-                if mark.lying
-                else {"x": places, "y": ends, "yerr": reach}
-            )
-            axes.errorbar(**at, fmt="none", ecolor="#1b1b1b", elinewidth=0.8, capsize=1.5)
+            ends = across.shown(mark.values)
+            positions = along.shown(mark.places)
+            look_of_error: dict[str, Any] = {
+                "fmt": "none",
+                "ecolor": "#1b1b1b",
+                "elinewidth": 0.8,
+                "capsize": 1.5,
+            }
+            if mark.lying:
+                axes.errorbar(ends, positions, xerr=reach, **look_of_error)
+            else:
+                axes.errorbar(positions, ends, yerr=reach, **look_of_error)
         self._name(mark, artist)
 
     def _spans(self, axes: Axes, mark: Spans, x: Frame, inside: tuple[float, float]) -> None:
-        look, (low, high) = LOOKS[mark.role], inside
-        seen = (
-            (mark.ends >= low)
-            & (mark.starts <= high)
-            & (mark.ends - mark.starts >= _THINNEST * (high - low))
-        )
-        for start, end in zip(
-            x.shown(mark.starts[seen][:60]), x.shown(mark.ends[seen][:60]), strict=True
-        ):
-            self._name(
-                mark,
-                axes.axvspan(
-                    float(start),
-                    float(end),
-                    color=look.light,
-                    alpha=look.opacity,
-                    linewidth=0,
-                    zorder=0,
-                ),
+        look = LOOKS[mark.role]
+        low, high = inside
+        is_shown = (mark.ends >= low) & (mark.starts <= high)
+        is_wide = mark.ends - mark.starts >= _THINNEST * (high - low)
+        drawn = np.flatnonzero(is_shown & is_wide)[:_MOST_SPANS]
+        starts = x.shown(mark.starts[drawn]).tolist()
+        ends = x.shown(mark.ends[drawn]).tolist()
+        for start, end in zip(starts, ends, strict=True):
+            artist = axes.axvspan(
+                start, end, color=look.light, alpha=look.opacity, linewidth=0, zorder=0
             )
+            self._name(mark, artist)
 
     def _map(self, axes: Axes, mark: Map, panel: Panel, x: Frame, y: Frame) -> None:
         frame = self.frames[mark.scale]
         values = frame.shown(mark.values)
         low, high = frame.shown(np.array(ends_on(mark.scale, self.chart))).tolist()
-        most = max(abs(low), abs(high)) or 1.0
+        norm: Normalize
+        if mark.diverging:
+            norm = _symmetric_norm(low, high)
+        elif is_log(mark.scale, self.chart):
+            norm = LogNorm(low, high)
+        else:
+            norm = Normalize(low, high)
         stops = DIVERGING if mark.diverging else SEQUENTIAL
-        log_scale = is_log(mark.scale, self.chart)
-        norm = (
-            Normalize(-most, most)
-            if mark.diverging
-            else LogNorm(low, high)
-            if log_scale
-            else Normalize(low, high)
-        )
         colours = LinearSegmentedColormap.from_list("scale", list(stops))
         axes.patch.set(
             facecolor="#f2f2f2",
             edgecolor="#9a9a9a",
             hatch="" if np.isfinite(values).all() or not mark.cells else "xxxx",
         )
-        across, up = x.shown(mark.x), y.shown(mark.y)
+        across = x.shown(mark.x)
+        up = y.shown(mark.y)
         if mark.cells:
             picture: Any = axes.pcolormesh(
                 cell_edges(across, log=panel.x.log),
@@ -378,48 +406,50 @@ class PrintedMarks:
             )
             axes.grid(visible=False)
         else:
-            half = 0.5 * (across[1] - across[0]), 0.5 * (up[1] - up[0])
-            edges = (across[0] - half[0], across[-1] + half[0], up[0] - half[1], up[-1] + half[1])
+            # a pixel lies around its point, and half of it beyond the edge
+            half_x = 0.5 * (across[1] - across[0])
+            half_y = 0.5 * (up[1] - up[0])
             picture = axes.imshow(
                 values,
-                extent=edges,
+                extent=(across[0] - half_x, across[-1] + half_x, up[0] - half_y, up[-1] + half_y),
                 origin="lower",
                 cmap=colours,
                 norm=norm,
                 interpolation="bicubic",
                 aspect="auto",
             )
-            # a pixel lies around its point, and half of it beyond the edge
-            inner = (across[0], up[0]), across[-1] - across[0], up[-1] - up[0]
-            picture.set_clip_path(Rectangle(*inner, transform=axes.transData))
-        for found in contours_of(values) if mark.contours else ():
-            style: dict[str, Any] = {
-                "linewidths": found.width,
-                "linestyles": "--" if found.dashed else "-",
-            }
-            axes.contour(
-                across,
-                up,
-                np.ma.masked_invalid(found.values),
-                levels=found.levels,
-                colors="#1b1b1b",
-                **style,
+            map_area = Rectangle(
+                (across[0], up[0]),
+                across[-1] - across[0],
+                up[-1] - up[0],
+                transform=axes.transData,
             )
+            picture.set_clip_path(map_area)
+        if mark.contours:
+            for contours in contours_of(values):
+                axes.contour(
+                    across,
+                    up,
+                    np.ma.masked_invalid(contours.values),
+                    levels=contours.levels,
+                    colors="#1b1b1b",
+                    linewidths=contours.width,
+                    linestyles="--" if contours.dashed else "-",
+                )
         self.scales.setdefault(mark.scale, (picture, []))[1].append(axes)
 
     def _facets(self, axes: Axes, mark: Facets, x: Frame, y: Frame) -> None:
-        values, low, high = mark.values, float(mark.values.min()), float(mark.values.max())
-        if mark.scale is not None:
+        if mark.scale is None:
+            values = mark.values
+            low = float(values.min())
+            high = float(values.max())
+        else:
             frame = self.frames[mark.scale]
-            values, (low, high) = (
-                frame.shown(values),
-                frame.shown(np.array(ends_on(mark.scale, self.chart))).tolist(),
-            )
-        most = max(abs(low), abs(high)) or 1.0
-        norm = Normalize(-most, most) if mark.diverging else Normalize(low, high)
-        colours = LinearSegmentedColormap.from_list(
-            "facets", list(DIVERGING if mark.diverging else SHADES)
-        )
+            values = frame.shown(mark.values)
+            low, high = frame.shown(np.array(ends_on(mark.scale, self.chart))).tolist()
+        norm = _symmetric_norm(low, high) if mark.diverging else Normalize(low, high)
+        stops = DIVERGING if mark.diverging else SHADES
+        colours = LinearSegmentedColormap.from_list("facets", list(stops))
         corners = np.stack([x.shown(mark.corners[..., 0]), y.shown(mark.corners[..., 1])], axis=-1)
         facets = PolyCollection(
             list(corners),
@@ -436,22 +466,33 @@ class PrintedMarks:
             self.scales.setdefault(mark.scale, (facets, []))[1].append(axes)
 
 
+def _position(frame: Frame, value: float) -> float:
+    """Return a value as shown in a frame."""
+    return float(frame.shown(np.array(value)))
+
+
+def _symmetric_norm(low: float, high: float) -> Normalize:
+    """Return a norm of colours that is symmetric about zero."""
+    largest = max(abs(low), abs(high)) or 1.0
+    return Normalize(-largest, largest)
+
+
 def within(x: Floats, y: Floats, inside: tuple[float, float]) -> tuple[Floats, Floats]:
-    """Return the points of a line inside a range of x, and those interpolated at its
-    ends; a line that does not ascend as it is.
+    """Return the points of a line inside a range of x, and those interpolated at its ends.
+
+    A line that does not ascend is returned as it is.
     """
-    if not np.isfinite(inside[0]) or not bool(np.all(np.diff(x) >= 0.0)):
+    start, end = inside
+    if not np.isfinite(start) or not bool(np.all(np.diff(x) >= 0.0)):
         return x, y
-    first, last = np.searchsorted(x, inside[0]), np.searchsorted(x, inside[1], side="right")
-    ends = [end for end in inside if len(x) and x[0] < end < x[-1]]
-    before, after = (
-        [end for end in ends if end == inside[0]],
-        [end for end in ends if end == inside[1]],
-    )
-    return (
-        np.concatenate([before, x[first:last], after]),
-        np.concatenate([np.interp(before, x, y), y[first:last], np.interp(after, x, y)]),
-    )
+    first = np.searchsorted(x, start)
+    last = np.searchsorted(x, end, side="right")
+    # at the ends of the range, unless the line begins or ends inside it
+    begin_x = [start] if len(x) and x[0] < start < x[-1] else []
+    end_x = [end] if len(x) and x[0] < end < x[-1] else []
+    across = np.concatenate([begin_x, x[first:last], end_x])
+    up = np.concatenate([np.interp(begin_x, x, y), y[first:last], np.interp(end_x, x, y)])
+    return across, up
 
 
 def print_pen(look: Look) -> dict[str, Any]:

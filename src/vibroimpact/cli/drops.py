@@ -135,7 +135,7 @@ def _run(
     from vibroimpact.runs.page import write_report
     from vibroimpact.runs.save import write_data
     from vibroimpact.runs.text import result_summary
-    from vibroimpact.studies.one_drop import load_drop
+    from vibroimpact.studies.read_sweep import load_drop
 
     case = load_case(name, changes) if drop is None else load_drop(name, drop, changes)
     target = (

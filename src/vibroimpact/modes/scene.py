@@ -17,8 +17,9 @@ _HEIGHT = 0.12
 
 
 def mode_scene(body: BodyModes, number: int) -> dict[str, Any] | None:
-    """Return what a page draws of the first modes of a plate in motion; None if all of them are in
-    its plane.
+    """Return what a page draws of the first modes of a plate in motion.
+
+    It is None if all of them are in its plane.
 
     Parameters
     ----------
@@ -34,34 +35,25 @@ def mode_scene(body: BodyModes, number: int) -> dict[str, Any] | None:
         it can be seen [m]; `exaggeration`, which is 1; `supports`: their outlines; `sensors`: their
         names and places.
     """
-    mesh = body.model.mesh
-    grid = surface_grid(mesh)
-    size = _HEIGHT * float(max(np.ptp(grid.x), np.ptp(grid.y)))
+    model = body.model
+    grid = surface_grid(model.mesh)
+    amplitude = _HEIGHT * float(max(np.ptp(grid.x), np.ptp(grid.y)))
     modes = []
     for mode in range(number):
-        moved = body.model.displacements(mode)
-        if not is_in_plane(moved):
-            height = grid.interpolate(moved[:, 2])
-            shape = (size / np.nanmax(np.abs(height)) * height).ravel()
-            modes.append(
-                {
-                    "name": mode_title(body.model, mode),
-                    "period": 1.0 / float(body.model.frequencies[mode]),
-                    "shape": shape,
-                }
-            )
-    return (
-        {
-            "x": grid.x,
-            "y": grid.y,
-            "modes": modes,
-            "exaggeration": 1.0,
-            "supports": [
-                np.column_stack(outline)
-                for outline in support_outlines(body.body.recipe.supports, mesh)
-            ],
-            "sensors": [{"name": name, "x": x, "y": y} for name, x, y in sensor_places(body)],
-        }
-        if modes
-        else None
-    )
+        displacements = model.displacements(mode)
+        if not is_in_plane(displacements):
+            height = grid.interpolate(displacements[:, 2])
+            shape = (amplitude / np.nanmax(np.abs(height)) * height).ravel()
+            period = 1.0 / float(model.frequencies[mode])
+            modes.append({"name": mode_title(model, mode), "period": period, "shape": shape})
+    if not modes:
+        return None
+    outlines = support_outlines(body.body.recipe.supports, model.mesh)
+    return {
+        "x": grid.x,
+        "y": grid.y,
+        "modes": modes,
+        "exaggeration": 1.0,
+        "supports": [np.column_stack(outline) for outline in outlines],
+        "sensors": [{"name": name, "x": x, "y": y} for name, x, y in sensor_places(body)],
+    }

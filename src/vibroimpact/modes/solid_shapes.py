@@ -1,5 +1,6 @@
-"""Mode shapes of a solid body: its deformed surface, seen obliquely from above, coloured
-by the displacement outwards.
+"""Mode shapes of a solid body: its deformed surface, seen obliquely from above.
+
+It is coloured by the displacement outwards.
 """
 
 from __future__ import annotations
@@ -20,22 +21,20 @@ _FACETS = 3000
 
 _MOST_DIVISIONS = 6
 _MOST_DRAWN = 40_000
-"""Facets of all shapes; a body with so many faces that it would have more is shown in
-fewer modes.
-"""
+"""Facets of all shapes; a body that would have more is shown in fewer modes."""
 
-_EXAGGERATED = 0.12
+_DRAWN_DISPLACEMENT = 0.12
 """Largest drawn displacement over the size of the body."""
 
 _TWISTING = 0.05
 """Part of the largest displacement below which the displacement outwards is none."""
 
 _OVERLAP = 0.01
-"""Part by which the facets that are turned to the viewer are larger than the silhouette
-of a body that is not convex.
-"""
+"""Part by which the facets turned to the viewer exceed the silhouette of a body with recesses."""
 
-_AWAY = np.array([np.sin(TURN) * np.cos(TILT), np.cos(TURN) * np.cos(TILT), -np.sin(TILT)])
+_VIEW_DIRECTION = np.array(
+    [np.sin(TURN) * np.cos(TILT), np.cos(TURN) * np.cos(TILT), -np.sin(TILT)]
+)
 """The direction of view."""
 
 
@@ -49,42 +48,62 @@ def solid_panels(model: ModalModel, number: int) -> list[Panel]:
     number : int
         Number of modes, at most.
     """
-    across, up, scale = (
-        Axis("across", "m"),
-        Axis("up", "m"),
-        Axis("Displacement outwards, part of the largest"),
-    )
-    faces = _Surface(model)
-    size = float(np.ptp(faces.corners, axis=(0, 1)).max())
-    middle, rest = faces.corners.mean(axis=(0, 1)), _silhouette(faces.corners)
+    surface = _Surface(model)
+    size = float(np.ptp(surface.corners, axis=(0, 1)).max())
+    outwards = surface.corners - surface.corners.mean(axis=(0, 1))
+    outwards /= np.maximum(np.linalg.norm(outwards, axis=-1, keepdims=True), 1e-300)
+    silhouette = _silhouette(surface.corners)
+    most_modes = max(1, _MOST_DRAWN // len(surface.corners))
+    # one object each, so that all panels share their ranges
+    horizontal = Axis("across", "m")
+    vertical = Axis("up", "m")
+    scale = Axis("Displacement outwards, part of the largest")
     panels = []
-    for mode in range(min(number, max(1, _MOST_DRAWN // len(faces.corners)))):
-        moved = faces.displacements(mode)
-        most = float(np.linalg.norm(moved, axis=-1).max())
-        shown = faces.corners + _EXAGGERATED * size / most * moved
-        outward = faces.corners - middle
-        outward /= np.maximum(np.linalg.norm(outward, axis=-1, keepdims=True), 1e-300)
-        radial = np.einsum("fci,fci->fc", moved, outward).mean(axis=1)
-        seen, order = _seen(shown)
-        corners = _projected(shown[seen][order])
-        marks: tuple[Mark, ...]
-        if np.abs(radial).max() < _TWISTING * most:
-            distance = np.linalg.norm(moved, axis=-1).mean(axis=1)[seen][order]
-            marks = (
-                Facets(corners, distance / most),
-                Label(0.5, 0.0, "twisting", "below", corner=True),
+    for mode in range(min(number, most_modes)):
+        displacements = surface.displacements(mode)
+        largest = float(np.linalg.norm(displacements, axis=-1).max())
+        deformed = surface.corners + _DRAWN_DISPLACEMENT * size / largest * displacements
+        marks = _shape_marks(deformed, displacements, outwards, largest, scale)
+        panels.append(
+            Panel(
+                horizontal, vertical, (*marks, *silhouette), mode_title(model, mode), picture=True
             )
-        else:
-            marks = (
-                Facets(
-                    corners, radial[seen][order] / np.abs(radial).max(), diverging=True, scale=scale
-                ),
-            )
-        panels.append(Panel(across, up, (*marks, *rest), mode_title(model, mode), picture=True))
+        )
     return panels
 
 
+def _shape_marks(
+    deformed: Floats, displacements: Floats, outwards: Floats, largest: float, scale: Axis
+) -> list[Mark]:
+    """Return the facets of a deformed body that are turned to the viewer.
+
+    Parameters
+    ----------
+    deformed : array, shape (facets, 4, 3)
+        Corners of the facets of the deformed body [m].
+    displacements, outwards : array, shape (facets, 4, 3)
+        Displacements at the corners [m], and unit vectors from the middle of the body to them.
+    largest : float
+        Largest displacement [m].
+    scale : Axis
+        Axis of the displacement outwards.
+    """
+    is_visible, order = _visible_facets(deformed)
+    corners = _projected(deformed[is_visible][order])
+    radial = np.einsum("fci,fci->fc", displacements, outwards).mean(axis=1)
+    largest_radial = np.abs(radial).max()
+    if largest_radial < _TWISTING * largest:
+        distance = np.linalg.norm(displacements, axis=-1).mean(axis=1)[is_visible][order]
+        return [
+            Facets(corners, distance / largest),
+            Label(0.5, 0.0, "twisting", "below", corner=True),
+        ]
+    values = radial[is_visible][order] / largest_radial
+    return [Facets(corners, values, diverging=True, scale=scale)]
+
+
 def _projected(corners: Floats) -> Floats:
+    """Return the corners (..., 3) as they are seen, (..., 2)."""
     return np.stack(project(*np.moveaxis(corners, -1, 0)), axis=-1)
 
 
@@ -92,29 +111,32 @@ def _silhouette(corners: Floats) -> tuple[Line, ...]:
     """Return the silhouette of a convex body at rest; none of another one."""
     from scipy.spatial import ConvexHull
 
-    seen, _ = _seen(corners)
-    facets = _projected(corners[seen])
+    is_visible, _ = _visible_facets(corners)
+    facets = _projected(corners[is_visible])
     hull = ConvexHull(facets.reshape(-1, 2))
-    (a, b), (c, d) = (
-        np.moveaxis(facets[:, end] - facets[:, start], -1, 0) for start, end in ((0, 2), (1, 3))
-    )
-    # facets hide others
-    if 0.5 * float(np.abs(a * d - b * c).sum()) > (1.0 + _OVERLAP) * hull.volume:
+    # the area of a quadrilateral is half the cross product of its diagonals
+    first_x, first_y = np.moveaxis(facets[:, 2] - facets[:, 0], -1, 0)
+    second_x, second_y = np.moveaxis(facets[:, 3] - facets[:, 1], -1, 0)
+    visible_area = 0.5 * float(np.abs(first_x * second_y - first_y * second_x).sum())
+    # the "volume" of a hull in the plane is its area; facets of a body with recesses hide others
+    if visible_area > (1.0 + _OVERLAP) * hull.volume:
         return ()
     x, y = facets.reshape(-1, 2)[np.append(hull.vertices, hull.vertices[0])].T
     return (Line(x, y, role="ghost"),)
 
 
-def _seen(corners: Floats) -> tuple[Bools, Indices]:
+def _visible_facets(corners: Floats) -> tuple[Bools, Indices]:
     """Return which facets are turned to the viewer, and the order of these, the farthest first."""
-    diagonals = corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1]
-    seen: Bools = np.cross(*diagonals) @ _AWAY < 0.0
-    return seen, np.argsort(-(corners[seen].mean(axis=1) @ _AWAY))
+    normals = np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1])
+    is_visible: Bools = normals @ _VIEW_DIRECTION < 0.0
+    distance = corners[is_visible].mean(axis=1) @ _VIEW_DIRECTION
+    return is_visible, np.argsort(-distance)
 
 
 class _Surface:
-    """The facets of the surface of a body, (facets, 4, 3), those of triangles with their
-    last corner twice; and their displacements.
+    """The facets of the surface of a body, and their displacements.
+
+    `corners` has the shape (facets, 4, 3); triangles have their last corner twice.
     """
 
     def __init__(self, model: ModalModel) -> None:
@@ -130,14 +152,19 @@ class _Surface:
 
     def _at(self, values: Floats) -> Floats:
         """Return values at the nodes, (nodes, 3), at the corners of the facets."""
-        parts = []
+        at_corners = []
         for group in self.groups:
             cells = _cells(len(group.corners), self.divisions)
             weights = group.shape_functions(cells.reshape(-1, 2))[0]
-            parts.append(
-                np.einsum("qk,eki->eqi", weights, values[group.connectivity]).reshape(-1, 4, 3)
-            )
-        return np.concatenate(parts)
+            interpolated = np.einsum("qk,eki->eqi", weights, values[group.connectivity])
+            at_corners.append(interpolated.reshape(-1, 4, 3))
+        return np.concatenate(at_corners)
+
+
+_SQUARE = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
+_LOWER_TRIANGLE = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [0.0, 1.0]])
+_UPPER_TRIANGLE = np.array([[1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.0, 1.0]])
+"""Corners of the parts of a face, in steps from the lower left one."""
 
 
 def _cells(corners: int, divisions: int) -> Floats:
@@ -150,17 +177,15 @@ def _cells(corners: int, divisions: int) -> Floats:
     >>> len(_cells(3, 2))
     4
     """
-    a, b = (
-        side.ravel()
-        for side in np.meshgrid(np.arange(divisions), np.arange(divisions), indexing="ij")
+    first_index, second_index = np.meshgrid(
+        np.arange(divisions), np.arange(divisions), indexing="ij"
     )
-    begin = np.stack([a, b], axis=1)[:, None]
+    a = first_index.ravel()
+    b = second_index.ravel()
+    origin = np.stack([a, b], axis=1)[:, None]
     if corners == 4:
-        return np.asarray(
-            (begin + np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])) / divisions
-        )
-    lower = begin[a + b < divisions] + np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [0.0, 1.0]])
-    upper = begin[a + b < divisions - 1] + np.array(
-        [[1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.0, 1.0]]
-    )
+        return np.asarray((origin + _SQUARE) / divisions)
+    # a triangular face: lower triangles up to its long side, upper ones between them
+    lower = origin[a + b < divisions] + _LOWER_TRIANGLE
+    upper = origin[a + b < divisions - 1] + _UPPER_TRIANGLE
     return np.asarray(np.concatenate([lower, upper]) / divisions)

@@ -28,13 +28,15 @@ def support_outlines(supports: Sequence[Support], mesh: Mesh) -> list[tuple[Floa
 
 
 def _outline(support: Support, mesh: Mesh) -> tuple[Floats, Floats]:
-    small = THIN * float(mesh.extent[:2].max())
+    """Return x and y of the outline of a support [m]."""
+    thin = THIN * float(mesh.extent[:2].max())
     match support:
         case Edge():
-            low, high = mesh.nodes.min(axis=0), mesh.nodes.max(axis=0)
-            return strip(support.edge, (low[0], high[0]), (low[1], high[1]), small)
+            low = mesh.nodes.min(axis=0)
+            high = mesh.nodes.max(axis=0)
+            return strip(support.edge, (low[0], high[0]), (low[1], high[1]), thin)
         case RectangularPatch():
             return rectangle(support.x, support.y, support.length, support.width)
         case _:  # a disc: a patch, a bar, a spring; or a point
-            x, y = (float(getattr(support, side)) for side in "xy")
-            return disc(x, y, float(getattr(support, "radius", 0.0)) or small)
+            x, y = (float(getattr(support, coordinate)) for coordinate in ("x", "y"))
+            return disc(x, y, float(getattr(support, "radius", 0.0)) or thin)

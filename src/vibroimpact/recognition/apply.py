@@ -47,8 +47,8 @@ class Recognised(Reported, reported_in="vibroimpact.recognition.applied_report")
     Examples
     --------
     >>> import vibroimpact as vi
-    >>> found = vi.apply_recogniser("recognised", "falls")
-    >>> found.class_names, found.probabilities.shape, found.accuracy > 0.5
+    >>> recognised = vi.apply_recogniser("recognised", "falls")
+    >>> recognised.class_names, recognised.probabilities.shape, recognised.accuracy > 0.5
     (('coal', 'gangue'), (96, 2), True)
     """
 
@@ -66,8 +66,7 @@ class Recognised(Reported, reported_in="vibroimpact.recognition.applied_report")
 def apply_recogniser(
     model: Recogniser | str | PathLike[str], dataset: str | PathLike[str] | LabelledSignals
 ) -> Recognised:
-    """Return the classes of signals predicted by a saved classifier, and the fraction of each
-    class.
+    """Return the classes of signals predicted by a saved classifier, and their fractions.
 
     Parameters
     ----------
@@ -90,17 +89,19 @@ def apply_recogniser(
     Examples
     --------
     >>> import vibroimpact as vi
-    >>> found = vi.apply_recogniser("recognised", "falls")
-    >>> found.class_names, round(sum(one.value for one in found.fractions.values()), 6)
+    >>> recognised = vi.apply_recogniser("recognised", "falls")
+    >>> fractions = recognised.fractions.values()
+    >>> recognised.class_names, round(sum(fraction.value for fraction in fractions), 6)
     (('coal', 'gangue'), 1.0)
     """
     recogniser = model if isinstance(model, Recogniser) else load_recogniser(model)
     signals = dataset if isinstance(dataset, LabelledSignals) else read_labelled_signals(dataset)
     try:
-        found = recogniser.probabilities(signals)
+        probabilities = recogniser.probabilities(signals)
     except InputError as error:
         raise error if isinstance(model, Recogniser) else with_path(model, error) from None
-    guessed, names = found.argmax(axis=1), recogniser.class_names
+    predicted = probabilities.argmax(axis=1)
+    names = recogniser.class_names
     doubts = doubts_of_version(recogniser) + baseline_doubts(signals)
     if signals.check_sum and signals.check_sum == recogniser.card["data"]["sha256"]:
         doubts.append(
@@ -108,24 +109,27 @@ def apply_recogniser(
             "better than others"
         )
     return Recognised(
-        signals.name,
-        recogniser.card["classifier"],
-        names,
-        found,
-        tuple(float((guessed == one).mean()) for one in range(len(names))),
-        recogniser.fractions(guessed),
-        _accuracy(signals, [names[one] for one in guessed], names),
-        tuple(doubts),
-        signals.places,
+        name=signals.name,
+        classifier=recogniser.card["classifier"],
+        class_names=names,
+        probabilities=probabilities,
+        counted=tuple(float((predicted == number).mean()) for number in range(len(names))),
+        fractions=recogniser.fractions(predicted),
+        accuracy=_accuracy(signals, [names[number] for number in predicted], names),
+        doubts=tuple(doubts),
+        places=signals.places,
     )
 
 
-def _accuracy(signals: LabelledSignals, guessed: list[str], names: tuple[str, ...]) -> float | None:
-    """Return the balanced accuracy; None if the classes are not known, or one is not a
-    class of the model.
+def _accuracy(
+    signals: LabelledSignals, predicted: list[str], names: tuple[str, ...]
+) -> float | None:
+    """Return the balanced accuracy.
+
+    It is None if the classes are not known, or one is not a class of the model.
     """
     if signals.classes is None or not set(signals.of_present_classes().class_names) <= set(names):
         return None
-    truth = np.array([signals.class_names[one] for one in signals.classes])
-    right = truth == np.array(guessed)
-    return float(np.mean([right[truth == one].mean() for one in np.unique(truth)]))
+    truth = np.array([signals.class_names[number] for number in signals.classes])
+    right = truth == np.array(predicted)
+    return float(np.mean([right[truth == name].mean() for name in np.unique(truth)]))

@@ -1,5 +1,6 @@
-"""Classifiers beside a bound on their error: one that is better has seen more than the
-bound counts, or what it may not, a leak.
+"""Classifiers beside a bound on their error.
+
+One that is better has seen more than the bound counts, or what it may not, a leak.
 """
 
 from __future__ import annotations
@@ -40,8 +41,9 @@ def bound_doubts(
     best: str,
     sees: str | None = None,
 ) -> list[str]:
-    """Return a sentence for each possible leak: what is better than the bound, and a probe that is
-    better than all features.
+    """Return a sentence for each possible leak.
+
+    It is what is better than the bound, or a probe that is better than all features.
 
     Parameters
     ----------
@@ -56,33 +58,35 @@ def bound_doubts(
     sees : str, optional
         The quantities for which the bound was computed; None if the data set states the bound.
     """
-    found = []
+    sentences = []
     if bayes_error is not None:
-        bound, beyond = (
-            (
-                "that the data set states",
+        if sees is None:
+            bound = "that the data set states"
+            explanation = (
                 "if the bound counts all that an impact tells, it has used information that "
-                "does not come from the impact, or this is chance",
+                "does not come from the impact, or this is chance"
             )
-            if sees is None
-            else (
-                f"of classifiers that see only {sees}",
+        else:
+            bound = f"of classifiers that see only {sees}"
+            explanation = (
                 "it has used something else, such as the position of the impact or the "
                 "shape of the pulse, or information that does not "
-                "come from the impact, or this is chance",
+                "come from the impact, or this is chance"
             )
-        )
-        found = [
-            f"possible leak: {name} errs in {one.error.value:.1%}, below the Bayes error "
-            f"of {bayes_error:.1%} {bound}; {beyond}"
-            for name, one in scores.items()
-            if below_bound(one.error, bayes_error)
-        ]
-    apart = scores[probe].balanced_accuracy.draws - scores[best].balanced_accuracy.draws
-    if np.nanpercentile(apart, 100.0 - SURE) > 0.0:
-        found.append(
+        for name, score in scores.items():
+            if below_bound(score.error, bayes_error):
+                sentences.append(
+                    f"possible leak: {name} errs in {score.error.value:.1%}, below the Bayes error "
+                    f"of {bayes_error:.1%} {bound}; {explanation}"
+                )
+    probe_accuracy = scores[probe].balanced_accuracy
+    best_accuracy = scores[best].balanced_accuracy
+    # the draws are of the same groups, so that their differences are those of the scores
+    difference = probe_accuracy.draws - best_accuracy.draws
+    if np.nanpercentile(difference, 100.0 - SURE) > 0.0:
+        sentences.append(
             f"leak: {probe} alone classify better (balanced accuracy "
-            f"{scores[probe].balanced_accuracy.value:.3f}) than all "
-            f"features ({scores[best].balanced_accuracy.value:.3f}); check how the signals were cut"
+            f"{probe_accuracy.value:.3f}) than all "
+            f"features ({best_accuracy.value:.3f}); check how the signals were cut"
         )
-    return found
+    return sentences

@@ -1,8 +1,8 @@
-"""What is compared: baselines of a single quantity, four classifiers of all features, and a probe
-of what should tell little.
+"""The classifiers that are compared.
 
-Each is a scikit-learn pipeline in which gaps are filled and features scaled, so that both are
-learned from the training part alone.
+They are baselines of a single quantity, four classifiers of all features, and a probe of what
+should tell little. Each is a scikit-learn pipeline in which gaps are filled and features scaled, so
+that both are learned from the training part alone.
 """
 
 from __future__ import annotations
@@ -18,10 +18,17 @@ from vibroimpact.recognition.folds import Split, inner_splits
 from vibroimpact.recognition.scores import balanced_accuracy
 from vibroimpact.recognition.signal_features import CONTACT_TIME, EDGES, FEATURES, PEAK, TRUE_TIME
 
-BASELINE, CLASSIFIER, TRUTH, PROBE = "baseline", "classifier", "truth", "probe"
-"""Kinds: of one measured quantity, of all features, of what only the simulation knows, of
-what should tell little.
-"""
+BASELINE = "baseline"
+"""Kind of a classifier of one measured quantity."""
+
+CLASSIFIER = "classifier"
+"""Kind of a classifier of all features."""
+
+TRUTH = "truth"
+"""Kind of a classifier of what only the simulation knows."""
+
+PROBE = "probe"
+"""Kind of a classifier of what should tell little."""
 
 Parameters = Mapping[str, Any]
 _TREES = 60
@@ -91,8 +98,9 @@ def all_classifiers() -> tuple[Classifier, ...]:
 def fit_tuned(
     classifier: Classifier, values: Floats, classes: Indices, groups: Indices | None, seed: int
 ) -> tuple[Any, Parameters]:
-    """Fit a classifier, with the parameters that are best in a cross-validation within the training
-    part.
+    """Fit a classifier, with the parameters that are best within the training part.
+
+    They are chosen by a cross-validation.
 
     Parameters
     ----------
@@ -113,14 +121,20 @@ def fit_tuned(
         The parameters chosen.
     """
     splits = inner_splits(classes, groups, seed)
+
+    def mean_accuracy(parameters: Parameters) -> float:
+        return float(
+            np.mean(
+                [
+                    _accuracy(classifier.make(parameters, seed, ()), values, classes, split)
+                    for split in splits
+                ]
+            )
+        )
+
     chosen = classifier.grid[0]
     if len(classifier.grid) > 1:
-        chosen = max(
-            classifier.grid,
-            key=lambda one: np.mean(
-                [_hits(classifier.make(one, seed, ()), values, classes, part) for part in splits]
-            ),
-        )
+        chosen = max(classifier.grid, key=mean_accuracy)
     return classifier.make(chosen, seed, splits).fit(values, classes), chosen
 
 
@@ -136,18 +150,19 @@ def probabilities(estimator: Any, values: Floats, classes: int) -> Floats:
     classes : int
         Number of classes.
     """
-    found = np.zeros((len(values), classes))
-    found[:, estimator.classes_] = estimator.predict_proba(values)
-    return found
+    probability = np.zeros((len(values), classes))
+    probability[:, estimator.classes_] = estimator.predict_proba(values)
+    return probability
 
 
-def _hits(estimator: Any, values: Floats, classes: Indices, split: Split) -> float:
+def _accuracy(estimator: Any, values: Floats, classes: Indices, split: Split) -> float:
     """Return the balanced accuracy on one part of the inner cross-validation."""
-    guessed = estimator.fit(values[split.train], classes[split.train]).predict(values[split.test])
-    return balanced_accuracy(guessed, classes[split.test])
+    fitted = estimator.fit(values[split.train], classes[split.train])
+    return balanced_accuracy(fitted.predict(values[split.test]), classes[split.test])
 
 
 def _filled(*steps: Any) -> Any:
+    """Return a pipeline of steps that fills gaps by medians before."""
     from sklearn.impute import SimpleImputer
     from sklearn.pipeline import make_pipeline
 
@@ -199,9 +214,8 @@ def _support_vector_machine(parameters: Parameters, seed: int, calibration: Sequ
     if not calibration:
         return _filled(StandardScaler(), machine)
     # on parts with groups kept apart, which those of its own would not be
-    calibrated = CalibratedClassifierCV(
-        machine, cv=[(one.train, one.test) for one in calibration], ensemble=False
-    )
+    parts = [(split.train, split.test) for split in calibration]
+    calibrated = CalibratedClassifierCV(machine, cv=parts, ensemble=False)
     return _filled(StandardScaler(), calibrated)
 
 

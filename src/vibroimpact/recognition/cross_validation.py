@@ -1,5 +1,6 @@
-"""Nested cross-validation: parameters are chosen within each training part, and no model
-sees the group of a signal that it classifies.
+"""Nested cross-validation: parameters are chosen within each training part.
+
+No model sees the group of a signal that it classifies.
 """
 
 from __future__ import annotations
@@ -67,34 +68,35 @@ def cross_validate(
     what, workers, progress
         As `run_jobs` takes them.
     """
-    count = int(classes.max()) + 1
-    splits = [split_signals(classes, groups, folds, seed) for seed in seeds]
+    class_count = int(classes.max()) + 1
+    splits_by_seed = [split_signals(classes, groups, folds, seed) for seed in seeds]
 
-    def one(classifier: Classifier, seed: int, split: Split) -> tuple[Floats, Parameters]:
+    def validate(classifier: Classifier, seed: int, split: Split) -> tuple[Floats, Parameters]:
+        """Return probabilities of the test part, and the parameters chosen in the training part."""
         values = tables[classifier.table]
-        inner = None if groups is None else groups[split.train]
-        fitted, chosen = fit_tuned(
-            classifier, values[split.train], classes[split.train], inner, seed
+        train_groups = None if groups is None else groups[split.train]
+        fitted, parameters = fit_tuned(
+            classifier, values[split.train], classes[split.train], train_groups, seed
         )
-        return probabilities(fitted, values[split.test], count), chosen
+        return probabilities(fitted, values[split.test], class_count), parameters
 
     compared = [classifier for classifier in classifiers if classifier.table in tables]
-    drawn = [(seed, split) for seed, parts in zip(seeds, splits, strict=True) for split in parts]
-    jobs = [
-        partial(one, classifier, seed, split) for classifier in compared for seed, split in drawn
-    ]
-    done = iter(run_jobs(what, jobs, workers, progress))
-    found: dict[str, Validated] = {}
+    jobs = []
     for classifier in compared:
-        held_out = np.zeros((len(seeds), len(classes), count))
-        parameters: list[list[Parameters]] = []
-        for number, parts in enumerate(splits):
-            parameters.append([])
-            for split in parts:
-                held_out[number, split.test], chosen = next(done)
-                parameters[-1].append(chosen)
-        found[classifier.name] = Validated(held_out, splits, parameters)
-    return found
+        for seed, splits in zip(seeds, splits_by_seed, strict=True):
+            jobs += [partial(validate, classifier, seed, split) for split in splits]
+    results = iter(run_jobs(what, jobs, workers, progress))
+    validated: dict[str, Validated] = {}
+    for classifier in compared:
+        held_out = np.zeros((len(seeds), len(classes), class_count))
+        parameters_by_seed: list[list[Parameters]] = []
+        for number, splits in enumerate(splits_by_seed):
+            parameters_by_seed.append([])
+            for split in splits:
+                held_out[number, split.test], parameters = next(results)
+                parameters_by_seed[-1].append(parameters)
+        validated[classifier.name] = Validated(held_out, splits_by_seed, parameters_by_seed)
+    return validated
 
 
 @dataclass(frozen=True, eq=False)
@@ -127,19 +129,15 @@ class Chosen:
     @property
     def guessed(self) -> Indices:
         """The class that each signal was taken for by the model that did not see it."""
-        found: Indices = self.validated.held_out[0].argmax(axis=1)
-        return found
+        return np.asarray(self.validated.held_out[0].argmax(axis=1))
 
     def refit(self, values: Floats, train: Indices, parameters: Parameters) -> Any:
         """Return the classifier fitted to some of the signals, with given parameters."""
         splits = inner_splits(self.classes[train], self.groups[train], self.seed)
-        return self.classifier.make(parameters, self.seed, splits).fit(
-            values[train], self.classes[train]
-        )
+        estimator = self.classifier.make(parameters, self.seed, splits)
+        return estimator.fit(values[train], self.classes[train])
 
     def guess(self, fitted: Any, values: Floats) -> Indices:
         """Return the class that a fitted classifier takes each row of a table for."""
-        found: Indices = probabilities(fitted, values, self.validated.held_out.shape[2]).argmax(
-            axis=1
-        )
-        return found
+        class_count = self.validated.held_out.shape[2]
+        return np.asarray(probabilities(fitted, values, class_count).argmax(axis=1))

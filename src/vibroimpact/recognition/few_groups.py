@@ -1,5 +1,6 @@
-"""What few groups can't tell, and how many could: said in sentences, where figures would
-have false digits.
+"""What few groups can't tell, and how many could.
+
+It is said in sentences where figures would have false digits.
 """
 
 from __future__ import annotations
@@ -12,10 +13,11 @@ from vibroimpact.recognition.bound import SURE
 from vibroimpact.recognition.scores import Score, widening_by_few, widening_by_training
 
 FINE = 0.05
-"""Half the width of an interval from which on a score has no decimals, and the groups for
-it are stated.
+"""Half the width of an interval from which on a score has no decimals.
+
+The number of groups that it takes is then stated.
 """
-_TWO = 1.96
+_NORMAL_QUANTILE = 1.96
 """Half the width of an interval of 95 % in standard deviations."""
 
 
@@ -55,12 +57,13 @@ def groups_for_error(error: Score, groups: int) -> int:
     trials = error.trials * widening_by_few(groups - 1) ** 2
     # of few trials none may err by luck: two more of each kind, after Agresti and Coull
     share = (error.value * error.trials + 2.0) / (error.trials + 4.0)
-    return _some(_TWO**2 * share * (1.0 - share) / FINE**2 * groups / trials)
+    return _rounded_up(_NORMAL_QUANTILE**2 * share * (1.0 - share) / FINE**2 * groups / trials)
 
 
 def largest_error_of_none(groups: int, folds: int) -> float:
-    """Return the largest error rate of a classifier that makes no error in some groups, with the
-    confidence of a possible leak.
+    """Return the largest error rate of a classifier that makes no error in some groups.
+
+    The confidence is that of a possible leak.
 
     Examples
     --------
@@ -82,13 +85,11 @@ def groups_for_bound(bayes_error: float, folds: int) -> int:
     groups = log(1.0 - SURE / 100.0) / log(1.0 - bayes_error) * widening_by_training(folds)
     while largest_error_of_none(ceil(groups), folds) >= bayes_error:
         groups *= 1.05
-    return _some(groups)
+    return _rounded_up(groups)
 
 
-def _some(groups: float) -> int:
-    """Return a number rounded up: of two digits to one that ends in 5 or 0, of more to
-    two digits.
-    """
+def _rounded_up(groups: float) -> int:
+    """Return a number rounded up: of two digits to one that ends in 5 or 0, else to two digits."""
     digits = int(log10(max(groups, 1.0)))
     step = 5 if digits < 2 else int(10 ** (digits - 1))
     return step * ceil(groups / step)

@@ -1,5 +1,6 @@
-"""Splits of signals into parts to train on and to test on: groups kept apart, or at
-random as a naive user would.
+"""Splits of signals into parts to train on and to test on.
+
+Groups are kept apart, or signals are split at random as a naive user would.
 """
 
 from __future__ import annotations
@@ -17,9 +18,7 @@ FEW = 10
 _INNER = 3
 """Parts of the cross-validation within a training part."""
 _UNEVEN = 0.02
-"""Difference of the share of a class in a training part from that of all from which
-groups are dealt by class instead.
-"""
+"""Unevenness of the classes in training parts beyond which groups are dealt by class instead."""
 
 
 class Split(NamedTuple):
@@ -37,15 +36,14 @@ def fewest_groups(classes: Indices, groups: Indices) -> int:
     >>> fewest_groups(np.array([0, 0, 1, 1, 1]), np.array([0, 0, 1, 2, 2]))
     1
     """
-    return min(len(np.unique(groups[classes == one])) for one in np.unique(classes))
+    return min(len(np.unique(groups[classes == number])) for number in np.unique(classes))
 
 
 def default_folds(classes: Indices, groups: Indices) -> int:
-    """Return the number of parts for some groups: five, or of few groups as many as a class has, so
-    that one of each class is left out.
+    """Return the number of parts for some groups: five, or of few groups as many as a class has.
 
-    To leave out a single group would train on more of the other classes, and so guess those more
-    often.
+    One group of each class is then left out. To leave out a single group would train on more of the
+    other classes, and so guess those more often.
 
     Examples
     --------
@@ -76,70 +74,69 @@ def split_signals(classes: Indices, groups: Indices | None, folds: int, seed: in
     Examples
     --------
     >>> groups = np.repeat(np.arange(6), 2)
-    >>> one = split_signals(np.array([0, 1] * 6), groups, 3, 0)[0]
-    >>> len(one.train), len(one.test), set(groups[one.train]) & set(groups[one.test])
+    >>> split = split_signals(np.array([0, 1] * 6), groups, 3, 0)[0]
+    >>> len(split.train), len(split.test), set(groups[split.train]) & set(groups[split.test])
     (8, 4, set())
     """
     from sklearn.model_selection import StratifiedGroupKFold, StratifiedKFold
 
-    blank = np.zeros(len(classes))
+    no_features = np.zeros(len(classes))  # a split does not depend on them
     if groups is None:
-        return [
-            Split(*one)
-            for one in StratifiedKFold(folds, shuffle=True, random_state=seed).split(blank, classes)
-        ]
-    drawn = [
-        Split(*one)
-        for one in StratifiedGroupKFold(folds, shuffle=True, random_state=seed).split(
-            blank, classes, groups
-        )
-    ]
+        random_folds = StratifiedKFold(folds, shuffle=True, random_state=seed)
+        return [Split(train, test) for train, test in random_folds.split(no_features, classes)]
+    group_folds = StratifiedGroupKFold(folds, shuffle=True, random_state=seed)
+    drawn = [Split(train, test) for train, test in group_folds.split(no_features, classes, groups)]
     if _unevenness(drawn, classes) <= _UNEVEN:
         return drawn
-    return min(
-        drawn, _dealt(classes, groups, folds, seed), key=lambda one: _unevenness(one, classes)
-    )
+    dealt = _dealt(classes, groups, folds, seed)
+    return dealt if _unevenness(dealt, classes) < _unevenness(drawn, classes) else drawn
 
 
 def _unevenness(splits: list[Split], classes: Indices) -> float:
-    """Return the largest difference of the share of a class in a training part from that
-    of all; 1 if a part lacks a class.
+    """Return the largest difference of the share of a class in a training part from that of all.
+
+    It is 1 if a part lacks a class.
     """
-    whole = np.bincount(classes) / len(classes)
-    apart = 0.0
+    shares = np.bincount(classes) / len(classes)
+    present = shares > 0.0
+    unevenness = 0.0
     for split in splits:
-        counts = np.bincount(classes[split.train], minlength=len(whole))
-        if (
-            not counts[whole > 0.0].all()
-            or not np.bincount(classes[split.test], minlength=len(whole))[whole > 0.0].all()
-        ):
+        train_counts = np.bincount(classes[split.train], minlength=len(shares))
+        test_counts = np.bincount(classes[split.test], minlength=len(shares))
+        if not train_counts[present].all() or not test_counts[present].all():
             return 1.0
-        apart = max(apart, float(np.abs(counts / counts.sum() - whole).max()))
-    return apart
+        train_shares = train_counts / train_counts.sum()
+        unevenness = max(unevenness, float(np.abs(train_shares - shares).max()))
+    return unevenness
 
 
 def _dealt(classes: Indices, groups: Indices, folds: int, seed: int) -> list[Split]:
-    """Return parts that are dealt whole groups class by class, the largest first: surplus groups of
-    all classes are in the same parts.
+    """Return parts that are dealt whole groups class by class, the largest first.
 
-    A group of several classes is dealt with the first of them.
+    Surplus groups of all classes are thus in the same parts. A group of several classes is dealt
+    with the first of them.
     """
     random = np.random.default_rng(seed)
     part = np.full(len(classes), -1)
-    for one in np.unique(classes):
-        names, sizes = np.unique(groups[(classes == one) & (part < 0)], return_counts=True)
-        drawn = random.permutation(len(names))
-        for number, place in enumerate(drawn[np.argsort(-sizes[drawn], kind="stable")].tolist()):
-            part[groups == names[place]] = number % folds
-    return [Split(np.flatnonzero(part != one), np.flatnonzero(part == one)) for one in range(folds)]
+    for class_number in np.unique(classes):
+        not_dealt = (classes == class_number) & (part < 0)
+        names, sizes = np.unique(groups[not_dealt], return_counts=True)
+        # groups of equal size in random order
+        shuffled = random.permutation(len(names))
+        largest_first = shuffled[np.argsort(-sizes[shuffled], kind="stable")]
+        for number, name in enumerate(names[largest_first]):
+            part[groups == name] = number % folds
+    return [
+        Split(train=np.flatnonzero(part != number), test=np.flatnonzero(part == number))
+        for number in range(folds)
+    ]
 
 
 def inner_splits(classes: Indices, groups: Indices | None, seed: int) -> list[Split]:
-    """Return the parts of a cross-validation within a training part: three, or as many as a class
-    has groups there.
+    """Return the parts of a cross-validation within a training part.
 
-    Where a class has one group only, signals are split at random: that chooses parameters less
-    well, and tests nothing.
+    They are three, or as many as a class has groups there. Where a class has one group only,
+    signals are split at random: that chooses parameters less well, and tests nothing.
 
     Parameters
     ----------

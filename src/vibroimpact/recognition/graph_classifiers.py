@@ -1,5 +1,6 @@
-"""The operators of ONNX that are classifiers: that their lists agree with each other, and
-refer to what there is.
+"""Checks of the operators of ONNX that are classifiers.
+
+Their lists must agree with each other, and refer to what there is.
 """
 
 from __future__ import annotations
@@ -20,7 +21,9 @@ Shapes = list[tuple[int, ...]]
 _DEEPEST = 1000
 """Levels of a tree."""
 
-_LEAF, _BRANCH = b"LEAF", b"BRANCH_LEQ"
+# modes of the nodes of trees
+_LEAF = b"LEAF"
+_BRANCH = b"BRANCH_LEQ"
 _TRANSFORMS = (b"NONE", b"LOGISTIC", b"SOFTMAX")
 
 
@@ -70,6 +73,7 @@ def _check_labels(attributes: Attributes, key: str, classes: int) -> None:
 
 
 def _linear(attributes: Attributes, rows: int, features: int, classes: int) -> Shapes:
+    """Check a linear classifier."""
     _only(
         attributes,
         "classlabels_ints",
@@ -87,8 +91,9 @@ def _linear(attributes: Attributes, rows: int, features: int, classes: int) -> S
 
 
 def _machine(attributes: Attributes, rows: int, features: int, classes: int) -> Shapes:
-    """Check a support vector machine; it gives a number for each pair of classes, and of
-    two classes one for each.
+    """Check a support vector machine.
+
+    It gives a number for each pair of classes, and of two classes one for each.
     """
     keys = (
         "coefficients",
@@ -104,7 +109,8 @@ def _machine(attributes: Attributes, rows: int, features: int, classes: int) -> 
     counts = with_length(attributes, "vectors_per_class", classes)
     if (counts < 1).any() or (counts > 10**9).any():
         raise InputError("has classes without support vectors")
-    vectors, pairs = int(counts.sum()), classes * (classes - 1) // 2
+    vectors = int(counts.sum())
+    pairs = classes * (classes - 1) // 2
     with_length(attributes, "support_vectors", vectors * features)
     with_length(attributes, "coefficients", vectors * (classes - 1))
     with_length(attributes, "rho", pairs)
@@ -114,23 +120,26 @@ def _machine(attributes: Attributes, rows: int, features: int, classes: int) -> 
     return [(rows,), (rows, max(2, pairs))]
 
 
+_NODE_LISTS = (
+    "nodes_falsenodeids",
+    "nodes_featureids",
+    "nodes_hitrates",
+    "nodes_missing_value_tracks_true",
+    "nodes_modes",
+    "nodes_nodeids",
+    "nodes_treeids",
+    "nodes_truenodeids",
+    "nodes_values",
+)
+_LEAF_LISTS = ("class_ids", "class_nodeids", "class_treeids", "class_weights")
+
+
 def _trees(attributes: Attributes, rows: int, features: int, classes: int) -> Shapes:
-    nodes = (
-        "falsenodeids",
-        "featureids",
-        "hitrates",
-        "missing_value_tracks_true",
-        "modes",
-        "nodeids",
-        "treeids",
-        "truenodeids",
-        "values",
-    )
-    leaves = ("class_ids", "class_nodeids", "class_treeids", "class_weights")
+    """Check an ensemble of decision trees: its nodes, their branches, and the weights of leaves."""
     _only(
         attributes,
-        *(f"nodes_{name}" for name in nodes),
-        *leaves,
+        *_NODE_LISTS,
+        *_LEAF_LISTS,
         "classlabels_int64s",
         "base_values",
         "post_transform",
@@ -138,40 +147,56 @@ def _trees(attributes: Attributes, rows: int, features: int, classes: int) -> Sh
     _check_labels(attributes, "classlabels_int64s", classes)
     one_of(attributes, "post_transform", _TRANSFORMS)
     with_length(attributes, "base_values", 1, classes, otherwise=0)
+    is_leaf = _leaves(attributes)
+    _check_node_values(attributes, is_leaf, features)
+    count = len(is_leaf)
+    index = _NodeIndex(
+        with_length(attributes, "nodes_treeids", count),
+        with_length(attributes, "nodes_nodeids", count),
+    )
+    _check_range("nodes_treeids", index.trees, count)
+    _check_range("nodes_nodeids", index.nodes, count)
+    true_ends = with_length(attributes, "nodes_truenodeids", count)[~is_leaf]
+    false_ends = with_length(attributes, "nodes_falsenodeids", count)[~is_leaf]
+    trees = index.trees[~is_leaf]
+    _check_branches(is_leaf, [index.find(trees, ends) for ends in (true_ends, false_ends)])
+    _check_weights(attributes, is_leaf, index, classes)
+    return [(rows,), (rows, classes)]
+
+
+def _leaves(attributes: Attributes) -> NDArray[np.bool_]:
+    """Return which nodes of trees are leaves; the others are branches."""
     modes = np.array(attributes.get("nodes_modes", []), dtype=object)
-    count = len(modes)
     is_leaf = modes == _LEAF
-    if not count or not (is_leaf | (modes == _BRANCH)).all():
+    if not len(modes) or not (is_leaf | (modes == _BRANCH)).all():
         raise InputError("has no nodes of trees, or nodes that are neither leaves nor branches")
+    return np.asarray(is_leaf)
+
+
+def _check_node_values(attributes: Attributes, is_leaf: NDArray[np.bool_], features: int) -> None:
+    """Check the features and thresholds of branches, and where they take missing values."""
+    count = len(is_leaf)
     with_length(attributes, "nodes_values", count)
     for name in ("hitrates", "missing_value_tracks_true"):
         with_length(attributes, f"nodes_{name}", count, otherwise=0)
     tracks = attributes.get("nodes_missing_value_tracks_true")
     if tracks is not None and not np.isin(tracks, (0, 1)).all():
         raise InputError("has branches that take missing values to neither side")
-    _check_range(
-        "nodes_featureids", with_length(attributes, "nodes_featureids", count)[~is_leaf], features
-    )
-    places = _Places(
-        with_length(attributes, "nodes_treeids", count),
-        with_length(attributes, "nodes_nodeids", count),
-    )
-    _check_range("nodes_treeids", places.trees, count)
-    _check_range("nodes_nodeids", places.nodes, count)
-    ends = [
-        with_length(attributes, f"nodes_{side}nodeids", count)[~is_leaf]
-        for side in ("true", "false")
-    ]
-    _check_branches(is_leaf, [places.find(places.trees[~is_leaf], end) for end in ends])
-    weights = len(attributes.get("class_ids", ()))
-    trees, ids = (
-        with_length(attributes, f"class_{name}", weights) for name in ("treeids", "nodeids")
-    )
-    if not weights or not is_leaf[places.find(trees, ids)].all():
+    feature_numbers = with_length(attributes, "nodes_featureids", count)
+    _check_range("nodes_featureids", feature_numbers[~is_leaf], features)
+
+
+def _check_weights(
+    attributes: Attributes, is_leaf: NDArray[np.bool_], index: _NodeIndex, classes: int
+) -> None:
+    """Check that the weights of classes are those of leaves."""
+    count = len(attributes.get("class_ids", ()))
+    trees = with_length(attributes, "class_treeids", count)
+    nodes = with_length(attributes, "class_nodeids", count)
+    if not count or not is_leaf[index.find(trees, nodes)].all():
         raise InputError("has weights of nodes that are no leaves")
-    with_length(attributes, "class_weights", weights)
-    _check_range("class_ids", with_length(attributes, "class_ids", weights), classes)
-    return [(rows,), (rows, classes)]
+    with_length(attributes, "class_weights", count)
+    _check_range("class_ids", with_length(attributes, "class_ids", count), classes)
 
 
 def _check_range(key: str, values: Indices, end: int) -> None:
@@ -179,8 +204,8 @@ def _check_range(key: str, values: Indices, end: int) -> None:
         raise InputError(f"has {key} that are not from 0 to {end - 1}")
 
 
-class _Places:
-    """The places of nodes in their list, by the numbers of tree and node.
+class _NodeIndex:
+    """Indices of nodes in their list, by the numbers of tree and node.
 
     Parameters
     ----------
@@ -189,29 +214,32 @@ class _Places:
     """
 
     def __init__(self, trees: Indices, nodes: Indices) -> None:
-        self.trees, self.nodes = trees, nodes
-        order = np.lexsort((nodes, trees))
-        self._order, self._keys = order, self._key(trees, nodes)[order]
+        self.trees = trees
+        self.nodes = nodes
+        self._order = np.lexsort((nodes, trees))
+        self._keys = self._key(trees, nodes)[self._order]
         if (np.diff(self._keys) == 0).any():
             raise InputError("has two nodes of the same number in a tree")
 
     def _key(self, trees: Indices, nodes: Indices) -> Indices:
+        """Return one number for each pair of a tree and a node."""
         return np.asarray(
             np.clip(trees, -1, 2**31) * 2**31 + np.clip(nodes, -1, 2**31 - 1), dtype=np.int64
         )
 
     def find(self, trees: Indices, nodes: Indices) -> Indices:
-        """Return the place of each of some nodes."""
+        """Return the index of each of some nodes."""
         keys = self._key(trees, nodes)
-        place = np.minimum(np.searchsorted(self._keys, keys), len(self._keys) - 1)
-        if (self._keys[place] != keys).any():
+        position = np.minimum(np.searchsorted(self._keys, keys), len(self._keys) - 1)
+        if (self._keys[position] != keys).any():
             raise InputError("refers to nodes that there are not")
-        return np.asarray(self._order[place])
+        return np.asarray(self._order[position])
 
 
 def _check_branches(is_leaf: NDArray[np.bool_], ends: list[Indices]) -> None:
-    """Check that branches lead to leaves: from the roots on each node is reached once, within some
-    levels.
+    """Check that branches lead to leaves.
+
+    From the roots on, each node must be reached once, within some levels.
 
     Parameters
     ----------
@@ -224,16 +252,19 @@ def _check_branches(is_leaf: NDArray[np.bool_], ends: list[Indices]) -> None:
     reached_by = np.bincount(np.concatenate(ends), minlength=count)
     if (reached_by > 1).any():
         raise InputError("has nodes that two branches lead to")
-    first, second = np.full(count, -1), np.full(count, -1)
-    first[~is_leaf], second[~is_leaf] = ends
-    level, seen = np.flatnonzero(reached_by == 0), 0
+    first_end = np.full(count, -1)
+    second_end = np.full(count, -1)
+    first_end[~is_leaf], second_end[~is_leaf] = ends
+    # level by level from the roots, to which no branch leads; a circle has no root
+    level = np.flatnonzero(reached_by == 0)
+    reached = 0
     for _ in range(_DEEPEST):
-        seen += len(level)
-        level = level[~is_leaf[level]]
-        if not len(level):
+        reached += len(level)
+        branches = level[~is_leaf[level]]
+        if not len(branches):
             break
-        level = np.concatenate([first[level], second[level]])
-    if seen != count:
+        level = np.concatenate([first_end[branches], second_end[branches]])
+    if reached != count:
         raise InputError(f"has trees that do not end, or are deeper than {_DEEPEST} levels")
 
 
@@ -242,6 +273,7 @@ CLASSIFIERS: dict[str, Callable[[Attributes, int, int, int], Shapes]] = {
     "SVMClassifier": _machine,
     "TreeEnsembleClassifier": _trees,
 }
-"""By the name of the operator, what checks it and returns the shapes of the classes and
-of their probabilities or scores.
+"""What checks an operator, by its name.
+
+It returns the shapes of the classes and of their probabilities or scores.
 """

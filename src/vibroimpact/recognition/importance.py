@@ -21,8 +21,14 @@ _REPEATS = 3
 
 @dataclass(frozen=True, eq=False)
 class Importance:
-    """Loss of balanced accuracy when a feature is permuted: its mean over the parts of
-    the cross-validation, and its spread.
+    """Loss of balanced accuracy when a feature is permuted.
+
+    Attributes
+    ----------
+    feature : str
+        Name of the feature.
+    loss, spread : float
+        Mean and standard deviation of the loss over the parts of the cross-validation.
     """
 
     feature: str
@@ -39,25 +45,27 @@ def permutation_importance(
     other is there.
     """
 
-    def one(split: Split, parameters: Parameters) -> Floats:
-        fitted = chosen.refit(values, split.train, parameters)
-        generator = np.random.default_rng(chosen.seed)
-        tested, truth = values[split.test], chosen.classes[split.test]
-        whole = balanced_accuracy(fitted.predict(tested), truth)
-        losses = np.zeros(len(names))
-        for place in range(len(names)):
-            for _ in range(_REPEATS):
-                exchanged = tested.copy()
-                exchanged[:, place] = generator.permutation(tested[:, place])
-                losses[place] += (
-                    whole - balanced_accuracy(fitted.predict(exchanged), truth)
-                ) / _REPEATS
-        return losses
-
-    jobs = [partial(one, *part) for part in chosen.parts]
+    jobs = [partial(_losses, chosen, values, *part) for part in chosen.parts]
     losses = np.array(run_jobs("importance of features", jobs, workers, progress))
-    found = [
-        Importance(name, float(part.mean()), float(part.std(ddof=1)))
-        for name, part in zip(names, losses.T, strict=True)
+    importances = [
+        Importance(name, float(feature_losses.mean()), float(feature_losses.std(ddof=1)))
+        for name, feature_losses in zip(names, losses.T, strict=True)
     ]
-    return sorted(found, key=lambda row: -row.loss)
+    return sorted(importances, key=lambda importance: -importance.loss)
+
+
+def _losses(chosen: Chosen, values: Floats, split: Split, parameters: Parameters) -> Floats:
+    """Return the loss by permuting each feature, in one part of the cross-validation."""
+    fitted = chosen.refit(values, split.train, parameters)
+    generator = np.random.default_rng(chosen.seed)
+    tested = values[split.test]
+    truth = chosen.classes[split.test]
+    accuracy = balanced_accuracy(fitted.predict(tested), truth)
+    losses = np.zeros(values.shape[1])
+    for feature in range(values.shape[1]):
+        for _ in range(_REPEATS):
+            permuted = tested.copy()
+            permuted[:, feature] = generator.permutation(tested[:, feature])
+            loss = accuracy - balanced_accuracy(fitted.predict(permuted), truth)
+            losses[feature] += loss / _REPEATS
+    return losses

@@ -1,8 +1,11 @@
-"""What makes a data set unfit for recognition, or its score too good: each said in one
-sentence before anything is learned.
+"""What makes a data set unfit for recognition, or its score too good.
+
+Each is said in one sentence before anything is learned.
 """
 
 from __future__ import annotations
+
+from itertools import combinations
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -13,18 +16,18 @@ from vibroimpact.recognition.folds import default_folds
 from vibroimpact.recognition.labelled_signals import GROUPS, LabelledSignals, lengths
 from vibroimpact.units.display import digits
 
-DURATION, FORCE = "first_duration_s", "largest_force_N"
-_COPY, _SUMS = 1e-4, 8
-"""Difference of two signals, over their size, below which one is a copy; and number of
-random sums by which copies are sought.
-"""
+DURATION = "first_duration_s"
+FORCE = "largest_force_N"
+_COPY = 1e-4
+"""Difference of two signals, over their size, below which one is a copy."""
+_SUMS = 8
+"""Number of random sums of samples by which copies are sought."""
 _CORNER = 0.67
 """Frequency at which the spectrum of Hertz's force has fallen by 3 dB, times the contact time."""
 
 
 def check_signals(signals: LabelledSignals, group: str, folds: int | None = None) -> list[str]:
-    """Check that classifiers can be trained on signals and tested honestly, and return what is
-    doubtful.
+    """Check that classifiers can be trained on signals and tested honestly; return doubts.
 
     Parameters
     ----------
@@ -72,46 +75,46 @@ def check_signals(signals: LabelledSignals, group: str, folds: int | None = None
 def check_groups(
     signals: LabelledSignals, classes: Indices, group: str, folds: int | None
 ) -> Indices:
-    """Return the group of each signal, after a check that the groups can be split so that
-    every part has every class.
+    """Return the group of each signal.
+
+    Before that it is checked that the groups can be split so that every part has every class.
     """
     if group not in signals.groups:
         known = tuple(signals.groups)
-        words = f"there are {', '.join(known)}" if known else "there are none"
+        choice = f"there are {', '.join(known)}" if known else "there are none"
         raise InputError(
             f'"{group}" is no group of these signals; '
-            f"{words}.{did_you_mean(group, known or GROUPS)}",
+            f"{choice}.{did_you_mean(group, known or GROUPS)}",
             "group",
         )
     groups = signals.groups[group]
-    names = {int(one): np.unique(groups[classes == one]) for one in np.unique(classes)}
     if len(np.unique(groups)) == 1:
-        more = (
-            ", or use more of the signals (--most)"
-            if signals.total is not None and signals.total > len(signals)
-            else ""
-        )
+        remedy = f"give signals of several {group}s"
+        if signals.total is not None and signals.total > len(signals):
+            remedy += ", or use more of the signals (--most)"
         raise InputError(
             f"all {len(groups)} signals are of one {group}, so that no classifier can be "
-            f"tested on another {group}; "
-            f"give signals of several {group}s{more}"
+            f"tested on another {group}; {remedy}"
         )
-    if all(len(one) == 1 for one in names.values()):
+    group_counts = {
+        int(number): len(np.unique(groups[classes == number])) for number in np.unique(classes)
+    }
+    if all(count == 1 for count in group_counts.values()):
         raise InputError(
             f"each class is in one {group} only: differences between {group}s would be "
             "confounded with differences between classes; "
             f"give several {group}s of each class"
         )
-    fewest = min(names, key=lambda one: len(names[one]))
+    rarest_class = min(group_counts, key=lambda number: group_counts[number])
+    count = group_counts[rarest_class]
     folds = default_folds(classes, groups) if folds is None else folds
-    if (count := len(names[fewest])) < folds:
-        remedy = (
-            f"or ask for {count} folds"
-            if count > 1
-            else "since training on one can't be tested on another"
-        )
+    if count < folds:
+        if count > 1:
+            remedy = f"or ask for {count} folds"
+        else:
+            remedy = "since training on one can't be tested on another"
         raise InputError(
-            f"{signals.class_names[fewest]} is in {count} "
+            f"{signals.class_names[rarest_class]} is in {count} "
             f"{group}{'s' if count > 1 else ''}, too few for {folds} folds; "
             f"give signals of it from {folds} {group}s or more, {remedy}"
         )
@@ -119,64 +122,70 @@ def check_groups(
 
 
 def check_lengths(signals: LabelledSignals, classes: Indices) -> None:
-    """Raise InputError if the length of signals tells their class: a simulation that
-    ended, and nothing that a plate could tell.
+    """Raise InputError if the length of signals tells their class.
+
+    It is that of a simulation that ended, and nothing that a plate could tell.
     """
-    for sensor, one in signals.sensors.items():
-        found = lengths(one.values)
-        for name in np.unique(classes):
-            own, others = found[classes == name], found[classes != name]
-            low, high = int(own.min()), int(own.max())
-            if not ((others >= low) & (others <= high)).any():
-                words = f"{low}" if low == high else f"{low} to {high}"
+    for sensor, sensor_signals in signals.sensors.items():
+        signal_lengths = lengths(sensor_signals.values)
+        for number in np.unique(classes):
+            own_lengths = signal_lengths[classes == number]
+            other_lengths = signal_lengths[classes != number]
+            shortest = int(own_lengths.min())
+            longest = int(own_lengths.max())
+            if not ((other_lengths >= shortest) & (other_lengths <= longest)).any():
+                extent = f"{shortest}" if shortest == longest else f"{shortest} to {longest}"
                 raise InputError(
                     "the length of a signal reveals its class: those of "
-                    f"{signals.class_names[name]} have {words} samples at {sensor}, and "
+                    f"{signals.class_names[number]} have {extent} samples at {sensor}, and "
                     "no signal of another class has; cut or record all to one length"
                 )
 
 
 def check_duplicates(signals: LabelledSignals, groups: Indices, group: str) -> None:
-    """Raise InputError if two groups hold the same signal, which would then be trained on and
-    tested on; silent signals do not count.
+    """Raise InputError if two groups hold the same signal, as one could be trained and tested on.
 
     Signals that differ by less than a ten-thousandth are the same: scaled, rounded or resampled
-    anew.
+    anew. Silent signals do not count.
     """
-    parts = [np.nan_to_num(one.values.astype(float)) for one in signals.sensors.values()]
-    silent = np.all([np.ptp(part, axis=1) == 0.0 for part in parts], axis=0)
-    loud = np.flatnonzero(~silent)
-    sizes = np.sqrt(sum(np.sum(part[loud] ** 2, axis=1) for part in parts))
-    # neighbours among a few random sums of samples are looked at whole
-    random = np.random.default_rng(0)
-    sums = (
-        sum(part[loud] @ random.standard_normal((part.shape[1], _SUMS)) for part in parts)
-        / sizes[:, None]
-    )
-    pairs = cKDTree(sums).query_pairs(_COPY * _SUMS, output_type="ndarray")
-    for one, other in np.sort(loud[pairs], axis=1)[np.lexsort(pairs.T[::-1])].tolist():
-        if groups[one] == groups[other]:
+    samples_by_sensor = [
+        np.nan_to_num(sensor.values.astype(float)) for sensor in signals.sensors.values()
+    ]
+    for first, second in _likely_copies(samples_by_sensor):
+        if groups[first] == groups[second]:
             continue
-        apart, size = (
-            sum(float(np.sum(row**2)) for row in rows) for rows in _rows(parts, one, other)
+        difference = sum(
+            float(np.sum((samples[first] - samples[second]) ** 2)) for samples in samples_by_sensor
         )
-        if apart <= _COPY**2 * size:
-            exact = (
-                "are the same"
-                if not apart
-                else f"differ by only {np.sqrt(apart / size):.1g} of their size"
-            )
+        size = sum(float(np.sum(samples[first] ** 2)) for samples in samples_by_sensor)
+        if difference <= _COPY**2 * size:
+            likeness = "are the same"
+            if difference:
+                likeness = f"differ by only {np.sqrt(difference / size):.1g} of their size"
             raise InputError(
-                f"signals {signals.places[one]} and {signals.places[other]}, counted from "
-                f"0, {exact} and lie in two {group}s "
-                f"({groups[one]} and {groups[other]}): one could be trained on and the "
+                f"signals {signals.places[first]} and {signals.places[second]}, counted from "
+                f"0, {likeness} and lie in two {group}s "
+                f"({groups[first]} and {groups[second]}): one could be trained on and the "
                 "other tested on; remove one"
             )
 
 
-def _rows(parts: list[Floats], one: int, other: int) -> tuple[list[Floats], list[Floats]]:
-    """Return the differences of two signals, a row a sensor, and the first of them."""
-    return [part[one] - part[other] for part in parts], [part[one] for part in parts]
+def _likely_copies(samples_by_sensor: list[Floats]) -> list[list[int]]:
+    """Return pairs of signals that are worth comparing whole, in ascending order.
+
+    They are neighbours in a few random sums of their samples, relative to their sizes.
+    """
+    silent = np.all([np.ptp(samples, axis=1) == 0.0 for samples in samples_by_sensor], axis=0)
+    loud = np.flatnonzero(~silent)
+    sizes = np.sqrt(sum(np.sum(samples[loud] ** 2, axis=1) for samples in samples_by_sensor))
+    random = np.random.default_rng(0)
+    sums = sum(
+        samples[loud] @ random.standard_normal((samples.shape[1], _SUMS))
+        for samples in samples_by_sensor
+    )
+    pairs = cKDTree(sums / sizes[:, None]).query_pairs(_COPY * _SUMS, output_type="ndarray")
+    ordered: list[list[int]] = np.sort(loud[pairs], axis=1)[np.lexsort(pairs.T[::-1])].tolist()
+    return ordered
 
 
 def check_rates(signals: LabelledSignals, classes: Indices) -> list[str]:
@@ -191,46 +200,52 @@ def check_rates(signals: LabelledSignals, classes: Indices) -> list[str]:
     if DURATION not in signals.truth:
         return []
     duration = signals.truth[DURATION]
-    median = max(float(np.nanmedian(duration[classes == one])) for one in np.unique(classes))
+    longest_median = max(
+        float(np.nanmedian(duration[classes == number])) for number in np.unique(classes)
+    )
     fastest = max(signals.sensors, key=lambda name: signals.sensors[name].rate)
     rate = signals.sensors[fastest].rate
-    needed = 2.0 * _CORNER / median
-    if not rate < needed:  # or no impact has a duration
+    corner_frequency = _CORNER / longest_median
+    needed_rate = 2.0 * _CORNER / longest_median
+    if not rate < needed_rate:  # or no impact has a duration
         return []
-    words = (
+    reason = (
         f"{fastest} samples at {digits(rate)} Hz and resolves up to {digits(0.5 * rate)} "
-        f"Hz; contacts of {digits(median * 1e6, 3)} us, the "
+        f"Hz; contacts of {digits(longest_median * 1e6, 3)} us, the "
         "longest median of a class, affect the spectrum from "
-        f"{digits(_CORNER / median, 3)} Hz on, so contact times need {digits(needed)} Hz or more"
+        f"{digits(corner_frequency, 3)} Hz on, so contact times need {digits(needed_rate)} Hz or "
+        "more"
     )
-    if FORCE in signals.truth and separation(signals.truth[FORCE], classes) < 0.5 * separation(
-        duration, classes
-    ):
-        raise InputError(
-            "the sampling rate is too low: the classes differ far more in contact time "
-            f"than in force; {words}"
-        )
-    return [f"contact times can't be resolved: {words}"]
+    if FORCE in signals.truth:
+        by_force = separation(signals.truth[FORCE], classes)
+        if by_force < 0.5 * separation(duration, classes):
+            raise InputError(
+                "the sampling rate is too low: the classes differ far more in contact time "
+                f"than in force; {reason}"
+            )
+    return [f"contact times can't be resolved: {reason}"]
 
 
 def separation(values: Floats, classes: Indices) -> float:
-    """Return how well one quantity tells classes apart: the largest, over pairs, of |2 A - 1|, A
-    being the area under the ROC curve.
+    """Return how well one quantity tells classes apart: the largest |2 A - 1| over pairs of them.
+
+    A is the area under the ROC curve.
 
     Examples
     --------
     >>> separation(np.array([1.0, 2.0, 3.0, 4.0]), np.array([0, 0, 1, 1]))
     1.0
     """
-    there = np.isfinite(values)
-    values, classes = values[there], classes[there]
-    found = [0.0]
-    names = np.unique(classes)
-    for place, one in enumerate(names):
-        for other in names[place + 1 :]:
-            low, high = np.sort(values[classes == one]), values[classes == other]
-            below = np.searchsorted(low, high, side="left") + np.searchsorted(
-                low, high, side="right"
-            )
-            found.append(abs(float(below.mean()) / len(low) - 1.0))
-    return max(found)
+    finite = np.isfinite(values)
+    values = values[finite]
+    classes = classes[finite]
+    separations = [0.0]
+    for first, second in combinations(np.unique(classes), 2):
+        ordered = np.sort(values[classes == first])
+        others = values[classes == second]
+        # twice the number of values of the first class below each of the second; equal values
+        # count a half
+        below = np.searchsorted(ordered, others, side="left")
+        not_above = np.searchsorted(ordered, others, side="right")
+        separations.append(abs(float((below + not_above).mean()) / len(ordered) - 1.0))
+    return max(separations)

@@ -40,10 +40,10 @@ def run_jobs(
     """
     with needs_extra():
         from joblib import Parallel, delayed
-    found: list[Done] = []
+    results: list[Done] = []
     progress(what, 0, len(jobs))
     with threadpool_limits(1):
-        for one in Parallel(workers, return_as="generator")(delayed(job)() for job in jobs):
-            found.append(one)
-            progress(what, len(found), len(jobs))
-    return found
+        for result in Parallel(workers, return_as="generator")(delayed(job)() for job in jobs):
+            results.append(result)
+            progress(what, len(results), len(jobs))
+    return results

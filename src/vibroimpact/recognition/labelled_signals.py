@@ -1,6 +1,4 @@
-"""The noun of recognition: signals with their classes, and which of them share a rock, a
-plate or a fall.
-"""
+"""Signals with their classes, and which of them share a rock, a plate or a fall."""
 
 from __future__ import annotations
 
@@ -115,12 +113,13 @@ class LabelledSignals:
         return replace(
             self,
             sensors={
-                name: replace(one, values=one.values[kept]) for name, one in self.sensors.items()
+                name: replace(sensor, values=sensor.values[kept])
+                for name, sensor in self.sensors.items()
             },
             classes=None if self.classes is None else self.classes[kept],
-            groups={name: one[kept] for name, one in self.groups.items()},
-            drawn={name: one[kept] for name, one in self.drawn.items()},
-            truth={name: one[kept] for name, one in self.truth.items()},
+            groups={name: numbers[kept] for name, numbers in self.groups.items()},
+            drawn={key: values[kept] for key, values in self.drawn.items()},
+            truth={name: values[kept] for name, values in self.truth.items()},
             rows=self.places[kept],
         )
 
@@ -129,9 +128,8 @@ class LabelledSignals:
         if self.classes is None:
             return self
         present, classes = np.unique(self.classes, return_inverse=True)
-        return replace(
-            self, classes=classes, class_names=tuple(self.class_names[one] for one in present)
-        )
+        names = tuple(self.class_names[number] for number in present)
+        return replace(self, classes=classes, class_names=names)
 
 
 def lengths(values: NDArray[np.float32]) -> Indices:
@@ -142,5 +140,6 @@ def lengths(values: NDArray[np.float32]) -> Indices:
     >>> lengths(np.array([[1, 2, 0, 0], [0, 3, 4, np.nan], [0, 0, 0, 0]], np.float32)).tolist()
     [2, 3, 0]
     """
-    there = np.isfinite(values) & (values != 0.0)
-    return np.where(there.any(axis=1), values.shape[1] - np.argmax(there[:, ::-1], axis=1), 0)
+    is_sample = np.isfinite(values) & (values != 0.0)
+    samples_after_end = np.argmax(is_sample[:, ::-1], axis=1)
+    return np.where(is_sample.any(axis=1), values.shape[1] - samples_after_end, 0)

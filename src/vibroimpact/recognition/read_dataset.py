@@ -1,5 +1,6 @@
-"""Reads the signals of a data set with their classes and groups; of a large one, whole
-groups drawn at random.
+"""Reads the signals of a data set with their classes and groups.
+
+Of a large one, whole groups are drawn at random.
 """
 
 from __future__ import annotations
@@ -31,12 +32,14 @@ from vibroimpact.studies.study import read_study
 from vibroimpact.studies.study_folder import DATASET as STUDY
 from vibroimpact.studies.study_folder import is_study
 
-DATASET, FORMAT = "dataset.nc", "vibroimpact dataset 1"
-"""File and format of data sets that are no studies; a study is read as `dataset` and
-`sweep` write it.
-"""
+DATASET = "dataset.nc"
+"""File of data sets that are no studies; a study is read as `dataset` and `sweep` write it."""
 
-_SIGNAL, _CLASS = "signal_", "class"
+FORMAT = "vibroimpact dataset 1"
+"""Format of that file."""
+
+_SIGNAL = "signal_"
+_CLASS = "class"
 _BLOCK = 4096  # signals read at once
 _MOST_CLASSES = 100
 
@@ -105,102 +108,133 @@ def _faults_of(path: Path) -> Iterator[None]:
 
 
 def _read(file: h5py.File, path: Path, most: int | None, group: str, seed: int) -> LabelledSignals:
-    if path.name != STUDY and (form := attribute(file, "format", "")) != FORMAT:
-        raise InputError(f'the attribute "format" is {quoted(form)}; this version reads "{FORMAT}"')
+    """Return the signals in an open file."""
+    if path.name != STUDY:
+        file_format = attribute(file, "format", "")
+        if file_format != FORMAT:
+            raise InputError(
+                f'the attribute "format" is {quoted(file_format)}; this version reads "{FORMAT}"'
+            )
     variables = members(file)
-    signals = _signals(variables)
-    count = len(next(iter(signals.values())))
+    signal_variables = _signals(variables)
+    count = len(next(iter(signal_variables.values())))
     columns = {
-        name: read_array(data) for name, data in variables.items() if _is_column(name, data, count)
+        name: read_array(variable)
+        for name, variable in variables.items()
+        if _is_column(name, variable, count)
     }
     groups = {name: _whole_numbers(name, columns[name]) for name in GROUPS if name in columns}
     groups.setdefault("fall", np.arange(count))
-    classes, names = _classes(file, columns)
+    classes, class_names = _classes(file, columns)
     kept = np.arange(count)
     if most is not None and count > most and group in groups:
         kept = _drawn_groups(groups[group], most, seed)
-    numbers = {
-        name: values.astype(float)
-        for name, values in columns.items()
-        if values.dtype.kind in "fiu" and name not in (*GROUPS, _CLASS)
-    }
-    texts = {name: _texts(values) for name, values in columns.items() if values.dtype.kind in "OS"}
-    values = {sensor: _rows(data, kept) for sensor, data in signals.items()}
-    found = LabelledSignals(
-        one_line(str(attribute(file, "title", path.parent.name))),
-        {
-            sensor: SensorSignals(values[sensor], *_rate_and_unit(data, sensor))
-            for sensor, data in signals.items()
-        },
-        None if classes is None else classes[kept],
-        names,
-        {name: one[kept] for name, one in groups.items()},
-        {name: one[kept] for name, one in {**numbers, **texts}.items() if "." in name},
-        {name: one[kept] for name, one in numbers.items() if "." not in name},
-        _bayes_error(path),
-        count,
-        file_digest(path),
-        SEEN_AT_BEST if _is_computed(path) else None,
-        kept,
+    drawn, truth = _drawn_and_truth(columns, kept)
+    sample_values = {sensor: _rows(variable, kept) for sensor, variable in signal_variables.items()}
+    sensors = {}
+    for sensor, variable in signal_variables.items():
+        rate, unit = _rate_and_unit(variable, sensor)
+        sensors[sensor] = SensorSignals(sample_values[sensor], rate, unit)
+    signals = LabelledSignals(
+        name=one_line(str(attribute(file, "title", path.parent.name))),
+        sensors=sensors,
+        classes=None if classes is None else classes[kept],
+        class_names=class_names,
+        groups={name: numbers[kept] for name, numbers in groups.items()},
+        drawn=drawn,
+        truth=truth,
+        bayes_error=_bayes_error(path),
+        total=count,
+        check_sum=file_digest(path),
+        bayes_error_sees=SEEN_AT_BEST if _is_computed(path) else None,
+        rows=kept,
     )
     # of a drop that failed there is no sample
-    there = np.any([np.isfinite(one).any(axis=1) for one in values.values()], axis=0)
-    if not there.any():
+    has_samples = np.any(
+        [np.isfinite(values).any(axis=1) for values in sample_values.values()], axis=0
+    )
+    if not has_samples.any():
         raise InputError("no signal has a sample that is a finite number")
-    return found if there.all() else found.only(np.flatnonzero(there))
+    return signals if has_samples.all() else signals.only(np.flatnonzero(has_samples))
+
+
+def _drawn_and_truth(
+    columns: Mapping[str, NDArray[Any]], kept: Indices
+) -> tuple[dict[str, NDArray[Any]], dict[str, Floats]]:
+    """Return the drawn keys, and what the simulation knows, of the signals that are kept.
+
+    Drawn keys have a point in their names, such as "drop.height".
+    """
+    drawn: dict[str, NDArray[Any]] = {}
+    truth: dict[str, Floats] = {}
+    for name, values in columns.items():
+        if values.dtype.kind in "fiu" and name not in (*GROUPS, _CLASS):
+            numbers = values.astype(float)[kept]
+            if "." in name:
+                drawn[name] = numbers
+            else:
+                truth[name] = numbers
+    for name, values in columns.items():
+        if values.dtype.kind in "OS" and "." in name:
+            drawn[name] = _texts(values)[kept]
+    return drawn, truth
 
 
 def _signals(variables: Mapping[str, h5py.Dataset | h5py.Group]) -> dict[str, h5py.Dataset]:
     """Return the variable with the signals of each sensor, all of as many rows."""
-    found, others_told = {}, ""
-    for name, data in variables.items():
+    signals = {}
+    misshapen = ""  # what is wrong with a variable that was passed over
+    for name, variable in variables.items():
         if not name.startswith(_SIGNAL):
             continue
-        if not isinstance(data, h5py.Dataset):
+        if not isinstance(variable, h5py.Dataset):
             raise InputError(
                 f"{name} is a group; it must be a variable of two dimensions (signal, time)"
             )
-        if data.ndim != 2:
-            others_told = f"; {name} is of the shape {data.shape}"
+        if variable.ndim != 2:
+            misshapen = f"; {name} is of the shape {variable.shape}"
             continue
-        if data.dtype.kind not in "fiu":
+        if variable.dtype.kind not in "fiu":
             raise InputError(
-                f"{name} is of the type {data.dtype}; the samples of signals must be real numbers"
+                f"{name} is of the type {variable.dtype}; the samples of signals must be real "
+                "numbers"
             )
-        if not data.size:
-            raise InputError(f"{name} has no samples; its shape is {data.shape}")
-        found[name.removeprefix(_SIGNAL)] = data
-    if not found:
+        if not variable.size:
+            raise InputError(f"{name} has no samples; its shape is {variable.shape}")
+        signals[name.removeprefix(_SIGNAL)] = variable
+    if not signals:
         raise InputError(
             "there are no signals; a variable signal_SENSOR (signal, time_SENSOR) holds "
-            f"those of a sensor{others_told}"
+            f"those of a sensor{misshapen}"
         )
-    first, *others = found
+    first, *others = signals
+    count = len(signals[first])
     for sensor in others:
-        if len(found[sensor]) != len(found[first]):
-            words = f"{len(found[first])} signals, and signal_{sensor} has {len(found[sensor])}"
+        if len(signals[sensor]) != count:
             raise InputError(
-                f"signal_{first} has {words}; a row of each must be of the same impact"
+                f"signal_{first} has {count} signals, and signal_{sensor} has "
+                f"{len(signals[sensor])}; a row of each must be of the same impact"
             )
-    return found
+    return signals
 
 
-def _is_column(name: str, data: h5py.Dataset | h5py.Group, count: int) -> bool:
+def _is_column(name: str, variable: h5py.Dataset | h5py.Group, count: int) -> bool:
     """Return whether a variable has a value for each signal."""
-    if not isinstance(data, h5py.Dataset):
-        if name in (*GROUPS, _CLASS):
+    is_label = name in (*GROUPS, _CLASS)
+    if not isinstance(variable, h5py.Dataset):
+        if is_label:
             raise InputError(
                 f"{name} is a group; it must be a variable with a value for each signal"
             )
         return False
-    is_label = name in (*GROUPS, _CLASS)
-    if is_label and data.shape != (count,):
+    if is_label and variable.shape != (count,):
         raise InputError(
-            f"{name} is of the shape {data.shape}; it must have a value for each of {count} signals"
+            f"{name} is of the shape {variable.shape}; it must have a value for each of {count} "
+            "signals"
         )
-    return data.shape == (count,) and (
-        is_label or attribute(data, "CLASS", "") != "DIMENSION_SCALE"
-    )
+    if variable.shape != (count,):
+        return False
+    return is_label or attribute(variable, "CLASS", "") != "DIMENSION_SCALE"
 
 
 def _whole_numbers(name: str, values: NDArray[Any]) -> Indices:
@@ -209,45 +243,44 @@ def _whole_numbers(name: str, values: NDArray[Any]) -> Indices:
         raise InputError(
             f"{name} is of the type {values.dtype}; number each {name} with whole numbers"
         )
-    wrong = np.flatnonzero(
+    not_whole = np.flatnonzero(
         ~np.isfinite(values)
         | (values != np.floor(values))
         | (np.abs(values.astype(float)) > 2.0**53)
     )
-    if len(wrong):
+    if len(not_whole):
+        signal = not_whole[0]
         raise InputError(
-            f"{name} of signal {wrong[0]} is {quoted(values[wrong[0]].item())}; "
+            f"{name} of signal {signal} is {quoted(values[signal].item())}; "
             "it must be a whole number"
         )
     return values.astype(np.intp)
 
 
 def _texts(values: NDArray[Any]) -> NDArray[Any]:
-    return np.array(
-        [
-            value.decode("utf-8", "replace") if isinstance(value, bytes) else str(value)
-            for value in values.tolist()
-        ]
-    )
+    texts = []
+    for value in values.tolist():
+        texts.append(value.decode("utf-8", "replace") if isinstance(value, bytes) else str(value))
+    return np.array(texts)
 
 
 def _classes(
     file: h5py.File, columns: Mapping[str, NDArray[Any]]
 ) -> tuple[Indices | None, tuple[str, ...]]:
-    """Return the index of each signal's class, None if there are no classes, and the
-    names of the classes.
+    """Return the index of each signal's class and the names of the classes.
+
+    Without classes the index is None.
     """
     if _CLASS not in columns:
         return None, ()
-    flags, meanings = (attribute(file[_CLASS], name) for name in ("flag_values", "flag_meanings"))
+    flags = attribute(file[_CLASS], "flag_values")
+    meanings = attribute(file[_CLASS], "flag_meanings")
     if flags is None or meanings is None:
         raise InputError(
             "the variable class lacks flag_values or flag_meanings, which name the classes"
         )
     flags = flags if isinstance(flags, list) else [flags]
-    if not all(
-        type(flag) in (int, float) and isfinite(flag) and flag == int(flag) for flag in flags
-    ) or len(set(flags)) < len(flags):
+    if not all(map(_is_whole_number, flags)) or len(set(flags)) < len(flags):
         raise InputError(
             f"flag_values of the variable class is {quoted(flags)}; it must be a list of "
             "different whole numbers"
@@ -265,17 +298,23 @@ def _classes(
     if len(names) > _MOST_CLASSES:
         raise InputError(f"there are {len(names)} classes; {_MOST_CLASSES} are the most")
     numbers = _whole_numbers(_CLASS, columns[_CLASS]).tolist()
-    place = {int(flag): number for number, flag in enumerate(flags)}
-    unknown = sorted(set(numbers) - place.keys())
+    index_of_flag = {int(flag): index for index, flag in enumerate(flags)}
+    unknown = sorted(set(numbers) - index_of_flag.keys())
     if unknown:
         raise InputError(f"{unknown[0]} is in the variable class and not in its flag_values")
-    return np.array([place[number] for number in numbers], dtype=np.intp), names
+    return np.array([index_of_flag[number] for number in numbers], dtype=np.intp), names
 
 
-def _rate_and_unit(data: h5py.Dataset, sensor: str) -> tuple[float, str]:
-    rate, unit = attribute(data, "rate_Hz"), attribute(data, "units", "1")
+def _is_whole_number(flag: Any) -> bool:
+    return type(flag) in (int, float) and isfinite(flag) and flag == int(flag)
+
+
+def _rate_and_unit(variable: h5py.Dataset, sensor: str) -> tuple[float, str]:
+    """Return the sampling rate [Hz] and the unit of the signals of a sensor."""
+    rate = attribute(variable, "rate_Hz")
+    unit = attribute(variable, "units", "1")
     if rate is None:
-        rate = _rate_of_scale(data)
+        rate = _rate_of_scale(variable)
     elif isinstance(rate, list) and len(rate) == 1:
         (rate,) = rate
     if rate is None:
@@ -292,14 +331,15 @@ def _rate_and_unit(data: h5py.Dataset, sensor: str) -> tuple[float, str]:
     return float(rate), one_line(unit)
 
 
-def _rate_of_scale(data: h5py.Dataset) -> float | None:
-    """Return the sampling rate by the times that signals are over; None if there are
-    none, or they do not go on.
+def _rate_of_scale(variable: h5py.Dataset) -> float | None:
+    """Return the sampling rate by the times of the samples [Hz].
+
+    It is None if there are none, or they do not increase.
     """
-    if not len(data.dims[1]) or data.shape[1] < 2:
+    if not len(variable.dims[1]) or variable.shape[1] < 2:
         return None
-    time: Floats = read_array(data.dims[1][0])
-    if time.dtype.kind not in "fiu" or len(time) != data.shape[1]:
+    time: Floats = read_array(variable.dims[1][0])
+    if time.dtype.kind not in "fiu" or len(time) != variable.shape[1]:
         return None
     span = float(time[-1]) - float(time[0])
     if not 0.0 < span < np.inf:
@@ -309,8 +349,9 @@ def _rate_of_scale(data: h5py.Dataset) -> float | None:
 
 
 def _drawn_groups(groups: Indices, most: int, seed: int) -> Indices:
-    """Return the signals of groups drawn at random: as many whole groups as have at most
-    `most` signals, and one at least.
+    """Return the signals of groups drawn at random.
+
+    They are as many whole groups as have at most `most` signals, and one at least.
     """
     names, sizes = np.unique(groups, return_counts=True)
     order = np.random.default_rng(seed).permutation(len(names))
@@ -318,21 +359,21 @@ def _drawn_groups(groups: Indices, most: int, seed: int) -> Indices:
     return np.flatnonzero(np.isin(groups, names[order[:count]]))
 
 
-def _rows(data: h5py.Dataset, kept: Indices) -> NDArray[np.float32]:
+def _rows(variable: h5py.Dataset, kept: Indices) -> NDArray[np.float32]:
     """Return some rows of signals; blocks are read whole, since HDF5 reads single rows slowly."""
     # which refuses a shape that the file does not hold, before memory is taken for it
-    read_array(data, slice(0, 0))
-    found = np.empty((len(kept), data.shape[1]), dtype=np.float32)
-    for first in range(0, len(data), _BLOCK):
+    read_array(variable, slice(0, 0))
+    rows = np.empty((len(kept), variable.shape[1]), dtype=np.float32)
+    for first in range(0, len(variable), _BLOCK):
+        # the part of the kept rows, which ascend, that lies in this block
         start, end = np.searchsorted(kept, (first, first + _BLOCK))
         if end > start:
+            block = read_array(variable, slice(first, first + _BLOCK))
             # beyond single precision a sample is infinite, which is a feature's reason to have no
             # value
             with np.errstate(over="ignore"):
-                found[start:end] = read_array(data, slice(first, first + _BLOCK))[
-                    kept[start:end] - first
-                ]
-    return found
+                rows[start:end] = block[kept[start:end] - first]
+    return rows
 
 
 def _is_computed(path: Path) -> bool:
@@ -341,8 +382,9 @@ def _is_computed(path: Path) -> bool:
 
 
 def _bayes_error(path: Path) -> float | None:
-    """Return a lower bound on the error: as the summary states it, or of a computed
-    population; None if it is not known.
+    """Return a lower bound on the error, None if it is not known.
+
+    It is that of a computed population, or as the summary states it.
     """
     summary = path.parent / SUMMARY
     if not summary.is_file():

@@ -1,5 +1,6 @@
-"""Recognition of what fell on a plate: trained, validated so that it can't fool itself,
-and set beside its bound.
+"""Recognition of what fell on a plate: trained, validated, and set beside its bound.
+
+The validation keeps groups of signals apart, so that it can't fool itself.
 """
 
 from __future__ import annotations
@@ -48,8 +49,11 @@ from vibroimpact.recognition.signal_features import (
 from vibroimpact.recognition.unseen_bins import Unseen, score_unseen
 from vibroimpact.report.reported import Reported
 
-MOST_SIGNALS, SEEDS = 4000, 5
-"""By default: largest number of signals used, and seeds."""
+MOST_SIGNALS = 4000
+"""Largest number of signals used, by default."""
+
+SEEDS = 5
+"""Number of seeds, by default."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -142,8 +146,7 @@ def recognise(
     workers: int = 2,
     progress: Progress = silent,
 ) -> Recognition:
-    """Return scores of classifiers of a data set, each trained and tested on separate groups of
-    signals.
+    """Return scores of classifiers of a data set, trained and tested on separate groups of signals.
 
     Baselines (majority, peak alone, contact time alone), logistic regression, random forest,
     gradient boosting and a support vector machine are compared by nested cross-validation in which
@@ -202,15 +205,15 @@ def recognise(
     # before hours of training, and before the worker processes, which inherit that it is silent
     silent_onnxruntime()
     check_settings(folds, seeds, most)
-    signals = (
-        dataset
-        if isinstance(dataset, LabelledSignals)
-        else read_labelled_signals(dataset, most=most, group=group, seed=seed)
-    )
-    signals = signals.of_present_classes()
+    if isinstance(dataset, LabelledSignals):
+        signals = dataset.of_present_classes()
+    else:
+        read = read_labelled_signals(dataset, most=most, group=group, seed=seed)
+        signals = read.of_present_classes()
     doubts = check_signals(signals, group, folds) + baseline_doubts(signals)
     assert signals.classes is not None  # checked
-    classes, groups = signals.classes, signals.groups[group]
+    classes = signals.classes
+    groups = signals.groups[group]
     folds = default_folds(classes, groups) if folds is None else folds
     if signals.bayes_error_sees is None:  # of what this program computed there is no recorder
         doubts += recorder_leaks(signals, classes, groups, group, seed)
@@ -218,83 +221,117 @@ def recognise(
     features = features_of(signals)
     progress("features", 1, 1)
     tables = tables_of(signals, features)
-    numbers, compared = tuple(range(seed, seed + seeds)), all_classifiers()
+    used_seeds = tuple(range(seed, seed + seeds))
+    compared = all_classifiers()
     validate = partial(
         cross_validate,
         compared,
         tables,
         classes,
         folds=folds,
-        seeds=numbers,
+        seeds=used_seeds,
         workers=workers,
         progress=progress,
     )
-    apart = validate(groups, what=f"cross-validation by {group}")
+    grouped = validate(groups, what=f"cross-validation by {group}")
     at_random = validate(None, what="cross-validation at random")
     bootstrap = Bootstrap(groups, classes, seed, folds)
-    scores = {name: score(one.held_out, classes, bootstrap) for name, one in apart.items()}
-    random = {name: score(one.held_out, classes, bootstrap) for name, one in at_random.items()}
-    optimism = {
-        name: _difference(random[name].balanced_accuracy, scores[name].balanced_accuracy)
-        for name in scores
-    }
-    best = max(
-        (one for one in compared if one.kind == CLASSIFIER),
-        key=lambda one: scores[one.name].balanced_accuracy.value,
-    )
-    (probe,) = (one.name for one in compared if one.kind == PROBE)
-    count, chosen = len(np.unique(groups)), Chosen(best, classes, groups, apart[best.name], seed)
+    scores = _scores(grouped, classes, bootstrap)
+    random_scores = _scores(at_random, classes, bootstrap)
+    best = _best_classifier(compared, scores)
+    (probe,) = (classifier.name for classifier in compared if classifier.kind == PROBE)
     doubts += bound_doubts(scores, signals.bayes_error, probe, best.name, signals.bayes_error_sees)
+    chosen = Chosen(best, classes, groups, grouped[best.name], seed)
     held_out = chosen.validated.held_out.mean(axis=0)
     curve = reliability(held_out, classes, signals.class_names, bootstrap)
+    class_count = len(signals.class_names)
     return Recognition(
-        signals.name,
-        group,
-        count,
-        folds,
-        numbers,
-        signals.class_names,
-        tuple(int((classes == one).sum()) for one in range(len(signals.class_names))),
-        tuple(one for one in compared if one.name in scores),
-        scores,
-        random,
-        optimism,
-        best.name,
-        {name: _confusion(one, classes, len(signals.class_names)) for name, one in apart.items()},
-        curve,
-        score_unseen(chosen, features.values, signals, bootstrap, workers, progress),
-        score_in_noise(chosen, features.values, signals, bootstrap, workers, progress),
-        permutation_importance(chosen, features.values, features.names, workers, progress),
-        try_streams(chosen.guessed, classes, signals.class_names, groups, seed),
-        float(
-            np.average(
-                [abs(one.probability - one.part) for one in curve],
-                weights=[one.signals for one in curve],
-            )
+        name=signals.name,
+        group=group,
+        groups=len(np.unique(groups)),
+        folds=folds,
+        seeds=used_seeds,
+        class_names=signals.class_names,
+        counts=tuple(int((classes == number).sum()) for number in range(class_count)),
+        compared=tuple(classifier for classifier in compared if classifier.name in scores),
+        scores=scores,
+        random=random_scores,
+        optimism={
+            name: _difference(random_scores[name].balanced_accuracy, scores[name].balanced_accuracy)
+            for name in scores
+        },
+        best=best.name,
+        confusion={
+            name: _confusion(validated, classes, class_count) for name, validated in grouped.items()
+        },
+        reliability=curve,
+        unseen=score_unseen(chosen, features.values, signals, bootstrap, workers, progress),
+        noise=score_in_noise(chosen, features.values, signals, bootstrap, workers, progress),
+        importance=permutation_importance(
+            chosen, features.values, features.names, workers, progress
         ),
-        signals.bayes_error,
-        tuple(doubts),
-        _trained(chosen, signals, features.names, features.units, tables[FEATURES], group),
-        signals.bayes_error_sees,
+        streams=try_streams(chosen.guessed, classes, signals.class_names, groups, seed),
+        calibration_error=_calibration_error(curve),
+        bayes_error=signals.bayes_error,
+        doubts=tuple(doubts),
+        recogniser=_trained(
+            chosen, signals, features.names, features.units, tables[FEATURES], group
+        ),
+        bayes_error_sees=signals.bayes_error_sees,
     )
 
 
 def check_settings(folds: int | None, seeds: int, most: int) -> None:
     """Raise InputError if the numbers of folds, seeds or signals are not allowed."""
-    for name, value, least in (("folds", folds, 2), ("seeds", seeds, 1), ("most", most, 10)):
-        if value is not None and value < least:
-            raise InputError(f"{value} is not allowed; it must be {least} or more", name)
+    _check_least("folds", folds, 2)
+    _check_least("seeds", seeds, 1)
+    _check_least("most", most, 10)
 
 
-def _difference(one: Score, other: Score) -> Score:
-    return Score(one.value - other.value, one.draws - other.draws, one.seeds - other.seeds)
+def _check_least(name: str, number: int | None, least: int) -> None:
+    if number is not None and number < least:
+        raise InputError(f"{number} is not allowed; it must be {least} or more", name)
+
+
+def _scores(
+    validated: Mapping[str, Validated], classes: Indices, bootstrap: Bootstrap
+) -> dict[str, Scores]:
+    """Return the scores of classifiers by their cross-validations."""
+    return {
+        name: score(validation.held_out, classes, bootstrap)
+        for name, validation in validated.items()
+    }
+
+
+def _best_classifier(compared: Sequence[Classifier], scores: Mapping[str, Scores]) -> Classifier:
+    """Return the classifier of all features with the largest balanced accuracy."""
+    of_all_features = [classifier for classifier in compared if classifier.kind == CLASSIFIER]
+    return max(
+        of_all_features, key=lambda classifier: scores[classifier.name].balanced_accuracy.value
+    )
+
+
+def _calibration_error(curve: Sequence[Reliable]) -> float:
+    """Return the mean difference of probability and part, weighted by the signals."""
+    differences = [abs(point.probability - point.part) for point in curve]
+    return float(np.average(differences, weights=[point.signals for point in curve]))
+
+
+def _difference(score: Score, subtracted: Score) -> Score:
+    """Return the difference of two scores, whose draws are of the same groups."""
+    return Score(
+        score.value - subtracted.value,
+        score.draws - subtracted.draws,
+        score.seeds - subtracted.seeds,
+    )
 
 
 def _confusion(validated: Validated, classes: Indices, count: int) -> Floats:
-    found = np.zeros((count, count))
+    """Return how many signals of each class (row) are taken for each class, mean over the seeds."""
+    confusion = np.zeros((count, count))
     for guessed in validated.held_out.argmax(axis=2):
-        np.add.at(found, (classes, guessed), 1.0 / len(validated.held_out))
-    return found
+        np.add.at(confusion, (classes, guessed), 1.0 / len(validated.held_out))
+    return confusion
 
 
 def _trained(
@@ -306,14 +343,14 @@ def _trained(
     group: str,
 ) -> Recogniser:
     """Return the chosen classifier trained on all signals, with its card."""
-    classes, groups, seed = chosen.classes, chosen.groups, chosen.seed
+    classes = chosen.classes
+    groups = chosen.groups
+    seed = chosen.seed
     fitted, parameters = fit_tuned(chosen.classifier, values, classes, groups, seed)
     confusion = {}
     for number, name in enumerate(signals.class_names):
-        # the same draws for all
-        rates = draw_rates(
-            chosen.guessed == number, classes == number, groups, np.random.default_rng(seed)
-        )
+        generator = np.random.default_rng(seed)  # the same draws for all classes
+        rates = draw_rates(chosen.guessed == number, classes == number, groups, generator)
         confusion[name] = {
             "true_rate": rates.true.round(6).tolist(),
             "false_rate": rates.false.round(6).tolist(),
@@ -328,8 +365,12 @@ def _trained(
         "features": list(names),
         "units": list(units),
         "sensors": {
-            name: {"rate_Hz": one.rate, "unit": one.unit, "samples": one.values.shape[1]}
-            for name, one in signals.sensors.items()
+            name: {
+                "rate_Hz": sensor.rate,
+                "unit": sensor.unit,
+                "samples": sensor.values.shape[1],
+            }
+            for name, sensor in signals.sensors.items()
         },
         "group": group,
         "data": {

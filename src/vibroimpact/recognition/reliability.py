@@ -1,6 +1,4 @@
-"""Calibration of probabilities: how often signals that are given a probability of a class
-are of it.
-"""
+"""Calibration of probabilities: how often signals given a probability of a class are of it."""
 
 from __future__ import annotations
 
@@ -16,8 +14,18 @@ _BINS = 10
 
 @dataclass(frozen=True, eq=False)
 class Reliable:
-    """Signals given similar probabilities of a class: their number, the mean probability,
-    and the part of the class with its interval.
+    """Signals given similar probabilities of a class.
+
+    Parameters
+    ----------
+    class_name : str
+        The class.
+    signals : int
+        Number of the signals.
+    probability : float
+        Their mean probability.
+    part, low, high : float
+        The part of them that is of the class, with its interval of 95 %.
     """
 
     class_name: str
@@ -31,8 +39,9 @@ class Reliable:
 def reliability(
     held_out: Floats, classes: Indices, class_names: tuple[str, ...], bootstrap: Bootstrap
 ) -> list[Reliable]:
-    """Return the calibration curve of each class, or of two classes that of the second, whose curve
-    is the first's turned about.
+    """Return the calibration curve of each class.
+
+    Of two classes it is that of the second, whose curve is the first's turned about.
 
     Parameters
     ----------
@@ -45,23 +54,25 @@ def reliability(
     bootstrap : Bootstrap
         Draws of groups, for the intervals.
     """
-    found = []
-    names = list(enumerate(class_names))
-    for number, name in names if len(names) > 2 else names[1:]:
-        place = np.minimum((held_out[:, number] * _BINS).astype(int), _BINS - 1)
-        for one in np.unique(place):
-            inside = place == one
-            part = bootstrap.within(inside).mean(
-                (classes == number).astype(float)[np.newaxis, inside]
-            )
-            found.append(
+    points = []
+    classes_drawn = list(enumerate(class_names))
+    if len(classes_drawn) <= 2:
+        classes_drawn = classes_drawn[1:]
+    for number, name in classes_drawn:
+        probability = held_out[:, number]
+        bin_number = np.minimum((probability * _BINS).astype(int), _BINS - 1)
+        for occupied in np.unique(bin_number):
+            inside = bin_number == occupied
+            is_class = (classes == number).astype(float)[np.newaxis, inside]
+            share = bootstrap.within(inside).mean(is_class)
+            points.append(
                 Reliable(
-                    name,
-                    int(inside.sum()),
-                    float(held_out[inside, number].mean()),
-                    part.value,
-                    part.low,
-                    part.high,
+                    class_name=name,
+                    signals=int(inside.sum()),
+                    probability=float(probability[inside].mean()),
+                    part=share.value,
+                    low=share.low,
+                    high=share.high,
                 )
             )
-    return found
+    return points

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
 
@@ -45,31 +46,63 @@ def score_in_noise(
     workers: int,
     progress: Progress,
 ) -> list[Noisy]:
-    """Return the scores of a classifier in noise, which is added to the signals before
-    their features are taken.
+    """Return the scores of a classifier in noise.
+
+    The noise is added to the signals before their features are taken.
+
+    Parameters
+    ----------
+    chosen : Chosen
+        The classifier with its cross-validation.
+    values : array, shape (signals, features)
+        Features of the signals without noise.
+    signals : LabelledSignals
+        The signals.
+    bootstrap : Bootstrap
+        Draws of groups.
+    workers, progress
+        As `run_jobs` takes them.
     """
+    levels = [partial(_features_in_noise, chosen, signals, level) for level in LEVELS]
+    noisy_features = run_jobs("features in noise", levels, 1, progress)
+    # without noise in training there is one classifier for all levels, with it one for each
+    training = [(values, noisy_features)]
+    training += [(features, [features]) for features in noisy_features]
+    jobs = [
+        partial(_guess_tests, chosen, train, tests, split, parameters)
+        for train, tests in training
+        for split, parameters in chosen.parts
+    ]
+    guesses = iter(run_jobs("recognition in noise", jobs, workers, progress))
 
-    def features_in(level: float) -> Floats:
-        noisy = with_noise(signals, level, chosen.seed)
-        return tables_of(noisy, features_of(noisy))[chosen.classifier.table]
-
-    def one(
-        train: Floats, tests: tuple[Floats, ...], split: Split, parameters: Parameters
-    ) -> list[Indices]:
-        fitted = chosen.refit(train, split.train, parameters)
-        return [chosen.guess(fitted, test[split.test]) for test in tests]
-
-    tables = run_jobs(
-        "features in noise", [partial(features_in, level) for level in LEVELS], 1, progress
-    )
-    trained_on = [(values, tuple(tables)), *((table, (table,)) for table in tables)]
-    jobs = [partial(one, *both, *part) for both in trained_on for part in chosen.parts]
-    done = iter(run_jobs("recognition in noise", jobs, workers, progress))
-    right = np.zeros((2, len(LEVELS), len(chosen.classes)))
-    for number in range(len(trained_on)):
+    shape = (len(LEVELS), len(chosen.classes))
+    right_without = np.zeros(shape)
+    for split, _ in chosen.parts:
+        for number, guessed in enumerate(next(guesses)):
+            right_without[number, split.test] = guessed == chosen.classes[split.test]
+    right_with = np.zeros(shape)
+    for number in range(len(LEVELS)):
         for split, _ in chosen.parts:
-            for place, guessed in enumerate(next(done)):
-                where = (0, place) if number == 0 else (1, number - 1)
-                right[(*where, split.test)] = guessed == chosen.classes[split.test]
-    without, trained = ([bootstrap.balanced(row[np.newaxis]) for row in rows] for rows in right)
-    return [Noisy(*row) for row in zip(LEVELS, without, trained, strict=True)]
+            (guessed,) = next(guesses)
+            right_with[number, split.test] = guessed == chosen.classes[split.test]
+
+    noisy = []
+    for number, level in enumerate(LEVELS):
+        trained_without = bootstrap.balanced(right_without[number][np.newaxis])
+        trained_with = bootstrap.balanced(right_with[number][np.newaxis])
+        noisy.append(Noisy(level, trained_without, trained_with))
+    return noisy
+
+
+def _features_in_noise(chosen: Chosen, signals: LabelledSignals, level: float) -> Floats:
+    """Return the table that a classifier reads, of signals in noise of a level [dB]."""
+    noisy = with_noise(signals, level, chosen.seed)
+    return tables_of(noisy, features_of(noisy))[chosen.classifier.table]
+
+
+def _guess_tests(
+    chosen: Chosen, train: Floats, tests: Sequence[Floats], split: Split, parameters: Parameters
+) -> list[Indices]:
+    """Return the classes that a classifier takes test signals for in each of several tables."""
+    fitted = chosen.refit(train, split.train, parameters)
+    return [chosen.guess(fitted, test[split.test]) for test in tests]

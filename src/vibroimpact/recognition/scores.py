@@ -24,14 +24,15 @@ DRAWS = 1000
 """Number of bootstrap draws."""
 
 _INTERVAL = 0.95
-_LEAST = 1e-12  # of a probability whose logarithm is taken
-_SAME = 1e-12  # rounding of a difference of shares
+_LEAST_PROBABILITY = 1e-12  # whose logarithm is taken
+_ROUNDING = 1e-12  # of a difference of shares
 
 
 @dataclass(frozen=True, eq=False)
 class Score:
-    """A score with its interval of 95 %, for classifiers trained on other such groups, and tested
-    on other such groups.
+    """A score with its interval of 95 %.
+
+    The interval is for classifiers that are trained and tested on other such groups.
 
     Parameters
     ----------
@@ -68,8 +69,10 @@ class Score:
         return self.end(0.5 + 0.5 * _INTERVAL)
 
     def end(self, part: float) -> float:
-        """Return an end of the interval: the upper of `2 part - 1` if `part` is more than
-        a half, else the lower of `1 - 2 part`.
+        """Return an end of an interval, at a probability `part`.
+
+        If `part` is more than a half, it is the upper end of the interval of `2 part - 1`, else the
+        lower end of that of `1 - 2 part`.
         """
         if self.trials is None:
             return float(np.nanquantile(self.draws, part))
@@ -77,6 +80,7 @@ class Score:
             return self.value
         if self.trials < 1.0:
             return float(part > 0.5)  # less than one trial tells nothing
+        # Clopper and Pearson: quantiles of beta distributions
         hits = self.value * self.trials
         misses = self.trials - hits
         if part > 0.5:
@@ -85,8 +89,9 @@ class Score:
 
 
 class Bootstrap:
-    """The groups as what is independent: their number and spread, and draws of them, the same for
-    all scores, for intervals of differences.
+    """Groups, which alone are independent, and draws of them.
+
+    The draws are the same for all scores, so that differences of scores have intervals, too.
 
     Parameters
     ----------
@@ -104,104 +109,133 @@ class Bootstrap:
     def __init__(
         self, groups: Indices, classes: Indices, seed: int = 0, folds: int | None = None
     ) -> None:
-        names, self.place = np.unique(groups, return_inverse=True)
-        self.classes = classes
-        self.of_training = widening_by_training(folds)
-        self.weights = (
-            np.random.default_rng(seed)
-            .multinomial(len(names), np.full(len(names), 1.0 / len(names)), DRAWS)
-            .astype(float)
-        )
-        self.present = np.unique(classes)
+        names, self._group_number = np.unique(groups, return_inverse=True)
+        self._classes = classes
+        self._widening_by_training = widening_by_training(folds)
+        # how often each group is drawn, (draws, groups)
+        random = np.random.default_rng(seed)
+        equal_probabilities = np.full(len(names), 1.0 / len(names))
+        self._counts = random.multinomial(len(names), equal_probabilities, DRAWS).astype(float)
 
     def mean(self, values: Floats, *, share: bool = True) -> Score:
-        """Return the mean of one value a signal, given for each seed: shape (seeds,
-        signals); it is a share if the values are 0 and 1.
+        """Return the mean of one value a signal.
+
+        Parameters
+        ----------
+        values : array, shape (seeds, signals)
+            The values under each seed.
+        share : bool, default True
+            Whether the values are 0 and 1, so that the mean is a share.
         """
-        with np.errstate(invalid="ignore"):  # a draw may have none of the signals
-            draws = (self._sums(values.mean(axis=0)) @ self.weights.T) / (
-                self._sums(np.ones(values.shape[1])) @ self.weights.T
-            )
-        held = self._trials(values.mean(axis=0), [np.ones(values.shape[1], dtype=bool)])
-        return self._scored(
-            float(values.mean()), draws, values.mean(axis=1), held if share else None
-        )
+        seed_mean = values.mean(axis=0)
+        all_signals = np.ones(values.shape[1], dtype=bool)
+        draws = self._drawn_means(seed_mean, all_signals)
+        trials = self._trials(seed_mean, [all_signals]) if share else None
+        return self._scored(float(values.mean()), draws, values.mean(axis=1), trials)
 
     def balanced(self, values: Floats) -> Score:
-        """Return the mean over the classes of the mean of one value a signal in each class."""
-        by_seed, by_draw = [], []
-        for one in self.present:
-            own = self.classes == one
-            by_seed.append(values[:, own].mean(axis=1))
-            with np.errstate(invalid="ignore"):  # a draw may have no group of a class
-                by_draw.append(
-                    (self._sums(values.mean(axis=0) * own) @ self.weights.T)
-                    / (self._sums(own.astype(float)) @ self.weights.T)
-                )
-        seeds = np.mean(by_seed, axis=0)
-        held = self._trials(values.mean(axis=0), [self.classes == one for one in self.present])
-        return self._scored(float(seeds.mean()), np.mean(by_draw, axis=0), seeds, held)
+        """Return the mean over the classes of the mean of one value a signal in each class.
+
+        Parameters
+        ----------
+        values : array, shape (seeds, signals)
+            The values under each seed.
+        """
+        seed_mean = values.mean(axis=0)
+        by_class = [self._classes == number for number in np.unique(self._classes)]
+        seeds = np.mean([values[:, in_class].mean(axis=1) for in_class in by_class], axis=0)
+        draws = np.mean([self._drawn_means(seed_mean, in_class) for in_class in by_class], axis=0)
+        trials = self._trials(seed_mean, by_class)
+        return self._scored(float(seeds.mean()), draws, seeds, trials)
 
     def within(self, inside: Bools) -> Bootstrap:
         """Return the same draws for some of the signals."""
-        found = copy(self)
-        found.place, found.classes = self.place[inside], self.classes[inside]
-        found.present = np.unique(found.classes)
-        return found
+        subset = copy(self)
+        subset._group_number = self._group_number[inside]
+        subset._classes = self._classes[inside]
+        return subset
+
+    def _drawn_means(self, values: Floats, counted: Bools) -> Floats:
+        """Return the mean over the signals that are counted, of each draw of groups, (draws,)."""
+        sums = self._group_sums(values * counted) @ self._counts.T
+        numbers = self._group_sums(counted.astype(float)) @ self._counts.T
+        with np.errstate(invalid="ignore"):  # a draw may have none of the signals
+            return np.asarray(sums / numbers)
 
     def _scored(self, value: float, draws: Floats, seeds: Floats, trials: float | None) -> Score:
-        """Return a score whose draws are widened as its interval is: draws of few groups
-        are too narrow, and know one training set.
+        """Return a score whose draws are widened as its interval is.
+
+        Draws of few groups are too narrow, and know one training set.
         """
-        groups = len(np.unique(self.place))
+        groups = len(np.unique(self._group_number))
         if groups < 2:
             return Score(value, draws, seeds, trials)
-        wider = np.sqrt(self.of_training * groups / (groups - 1.0)) * widening_by_few(groups - 1)
-        return Score(value, value + wider * (draws - value), seeds, trials)
+        widening = np.sqrt(self._widening_by_training * groups / (groups - 1.0)) * widening_by_few(
+            groups - 1
+        )
+        return Score(value, value + widening * (draws - value), seeds, trials)
 
     def _trials(self, values: Floats, parts: list[Bools]) -> float:
-        """Return the number of independent trials with the variance of the mean over some parts of
-        the mean in each.
+        """Return the number of independent trials with the variance of a mean.
 
-        It is none where a part has one group, whose spread isn't known. It has no limit where each
-        part is all right or all wrong, but not all parts alike: everything is taken for one class,
-        and the mean is that for any groups.
+        It is the mean over some parts, such as classes, of the mean in each.
+
+        There are none where a part has one group, whose spread isn't known. There is no limit where
+        each part is all right or all wrong, but not all parts alike: everything is taken for one
+        class, and the mean is that for any groups.
+
+        Parameters
+        ----------
+        values : array, shape (signals,)
+            One value a signal, from 0 to 1.
+        parts : list of array of bool
+            Which signals are in each part.
         """
-        means, freedom, least = [], 0, 0.0
-        apart = np.zeros(self.weights.shape[1])
-        there = np.zeros(len(apart), dtype=bool)
-        for own in parts:
-            sizes = self._sums(own.astype(float))
+        means = []
+        freedom = 0
+        least_variance = 0.0  # relative to that of one trial
+        deviations = np.zeros(self._counts.shape[1])  # what each group adds to the error
+        has_signals = np.zeros(len(deviations), dtype=bool)
+        for in_part in parts:
+            sizes = self._group_sums(in_part.astype(float))
             groups = int((sizes > 0.0).sum())
             if groups < 2:
                 return 0.0
-            means.append(float(values[own].mean()))
-            own_apart = (self._sums(values * own) - means[-1] * sizes) / (sizes.sum() * len(parts))
-            own_apart[np.abs(own_apart) < _SAME] = 0.0
-            apart += np.sqrt(groups / (groups - 1.0)) * own_apart
-            there |= sizes > 0.0
+            means.append(float(values[in_part].mean()))
+            # linearised: the deviations of the sums of the groups from those of the mean
+            part_deviations = (self._group_sums(values * in_part) - means[-1] * sizes) / (
+                sizes.sum() * len(parts)
+            )
+            part_deviations[np.abs(part_deviations) < _ROUNDING] = 0.0
+            deviations += np.sqrt(groups / (groups - 1.0)) * part_deviations
+            has_signals |= sizes > 0.0
             freedom += groups - 1
             # the signals of a group tell no more than independent ones; and no more than the group
             # where the groups do not differ
-            least += 1.0 / (len(parts) ** 2 * (sizes.sum() if own_apart.any() else groups))
+            independent = sizes.sum() if part_deviations.any() else groups
+            least_variance += 1.0 / (len(parts) ** 2 * independent)
         mean = float(np.mean(means))
-        variance = float(apart @ apart)
+        variance = float(deviations @ deviations)
         if not variance and 0.0 < mean < 1.0 and set(means) == {0.0, 1.0}:
             return np.inf
+        # one trial has the variance of a share, mean (1 - mean)
+        relative_variance = variance / (mean * (1.0 - mean)) if variance else 0.0
         # of groups that have signals in several parts, as plates that all classes fall on, each
         # counts once
-        wider = self.of_training * widening_by_few(min(freedom, int(there.sum()) - 1)) ** 2
-        return 1.0 / (max(least, variance / (mean * (1.0 - mean)) if variance else 0.0) * wider)
+        freedom = min(freedom, int(has_signals.sum()) - 1)
+        widening = self._widening_by_training * widening_by_few(freedom) ** 2
+        return 1.0 / (max(least_variance, relative_variance) * widening)
 
-    def _sums(self, values: Floats) -> Floats:
-        return np.asarray(
-            np.bincount(self.place, values, minlength=self.weights.shape[1]), dtype=float
-        )
+    def _group_sums(self, values: Floats) -> Floats:
+        """Return the sum of one value a signal over each group, (groups,)."""
+        sums = np.bincount(self._group_number, values, minlength=self._counts.shape[1])
+        return np.asarray(sums, dtype=float)
 
 
 def widening_by_training(folds: int | None) -> float:
-    """Return the variance of a score of a cross-validation over that of one classifier tested on as
-    many groups.
+    """Return by how much the variance of a score is larger in a cross-validation.
+
+    It is relative to that of one classifier tested on as many groups.
 
     Examples
     --------
@@ -212,8 +246,9 @@ def widening_by_training(folds: int | None) -> float:
 
 
 def widening_by_few(freedom: int) -> float:
-    """Return by how much wider an interval is whose variance is known with some degrees of freedom
-    only, after Student.
+    """Return by how much wider an interval is, after Student.
+
+    Its variance is known with some degrees of freedom only.
 
     Examples
     --------
@@ -232,7 +267,8 @@ def balanced_accuracy(guessed: Indices, truth: Indices) -> float:
     >>> balanced_accuracy(np.array([0, 1, 1, 1]), np.array([0, 0, 0, 1])).__round__(3)
     0.667
     """
-    return float(np.mean([(guessed[truth == one] == one).mean() for one in np.unique(truth)]))
+    recalls = [(guessed[truth == number] == number).mean() for number in np.unique(truth)]
+    return float(np.mean(recalls))
 
 
 @dataclass(frozen=True, eq=False)
@@ -269,11 +305,13 @@ def score(held_out: Floats, classes: Indices, bootstrap: Bootstrap) -> Scores:
         Draws of groups.
     """
     right = (held_out.argmax(axis=2) == classes).astype(float)
-    of_true = held_out[:, np.arange(len(classes)), classes]
-    brier = 0.5 * (np.square(held_out).sum(axis=2) - 2.0 * of_true + 1.0)
+    true_probability = held_out[:, np.arange(len(classes)), classes]
+    # 0.5 sum (p - y)^2, where y is 1 for the true class and 0 for the others
+    brier = 0.5 * (np.square(held_out).sum(axis=2) - 2.0 * true_probability + 1.0)
+    log_loss = -np.log(np.maximum(true_probability, _LEAST_PROBABILITY))
     return Scores(
-        bootstrap.mean(1.0 - right),
-        bootstrap.balanced(right),
-        bootstrap.mean(brier, share=False),
-        bootstrap.mean(-np.log(np.maximum(of_true, _LEAST)), share=False),
+        error=bootstrap.mean(1.0 - right),
+        balanced_accuracy=bootstrap.balanced(right),
+        brier=bootstrap.mean(brier, share=False),
+        log_loss=bootstrap.mean(log_loss, share=False),
     )

@@ -1,6 +1,4 @@
-"""Features of labelled signals as the tables that classifiers read, and noise added to
-signals before.
-"""
+"""Features of labelled signals as the tables that classifiers read, and noise for them."""
 
 from __future__ import annotations
 
@@ -17,16 +15,16 @@ from vibroimpact.recognition.labelled_signals import LabelledSignals, SensorSign
 from vibroimpact.signals.baseline import is_large
 from vibroimpact.signals.feature_table import feature_table
 
-FEATURES, PEAK, CONTACT_TIME, TRUE_TIME, EDGES = (
-    "features",
-    "peak",
-    "contact time",
-    "true contact time",
-    "edges",
-)
-"""Names of the tables."""
+# names of the tables
+FEATURES = "features"
+PEAK = "peak"
+CONTACT_TIME = "contact time"
+TRUE_TIME = "true contact time"
+EDGES = "edges"
 
-_PEAK, _CUT_OFF = "peak", "cut_off_10_dB"
+# names of features
+_PEAK = "peak"
+_CUT_OFF = "cut_off_10_dB"
 _TIMES_CUT_OFF = 1.16
 """Contact time times the frequency at which the spectrum of Hertz's force has fallen by 10 dB."""
 
@@ -49,15 +47,16 @@ class Features:
 
     def columns(self, feature: str) -> Floats:
         """Return the columns of one feature, one a sensor."""
-        return self.values[
-            :,
-            [place for place, name in enumerate(self.names) if name.rpartition(".")[2] == feature],
+        indices = [
+            index for index, name in enumerate(self.names) if name.rpartition(".")[2] == feature
         ]
+        return self.values[:, indices]
 
 
 def features_of(signals: LabelledSignals) -> Features:
-    """Return the features of all sensors; after the end of a signal that is shorter than others
-    stand zeros.
+    """Return the features of all sensors.
+
+    After the end of a signal that is shorter than others stand zeros.
 
     Raises
     ------
@@ -66,14 +65,16 @@ def features_of(signals: LabelledSignals) -> Features:
     """
     names: list[str] = []
     units: list[str] = []
-    parts: list[Floats] = []
-    for sensor, one in signals.sensors.items():
-        found = feature_table(_continued(one), one.rate, unit=one.unit)
-        names += [f"{sensor}.{name}" for name in found.names]
-        units += found.units
-        parts.append(found.values)
+    tables: list[Floats] = []
+    for sensor, sensor_signals in signals.sensors.items():
+        table = feature_table(
+            _continued(sensor_signals), sensor_signals.rate, unit=sensor_signals.unit
+        )
+        names += [f"{sensor}.{name}" for name in table.names]
+        units += table.units
+        tables.append(table.values)
     with np.errstate(over="ignore"):
-        values = np.hstack(parts).astype(np.float32).astype(float)
+        values = np.hstack(tables).astype(np.float32).astype(float)
     values[~np.isfinite(values)] = np.nan
     if np.isnan(values).all():
         raise InputError(
@@ -83,36 +84,32 @@ def features_of(signals: LabelledSignals) -> Features:
 
 
 def baseline_doubts(signals: LabelledSignals) -> list[str]:
-    """Return doubts about sensors whose signals have large baselines: `features_of`
-    removes them.
-    """
+    """Return doubts about sensors whose signals have large baselines, which are removed."""
     doubts = []
-    for sensor, one in signals.sensors.items():
-        found = feature_table(_continued(one), one.rate, [_PEAK])
-        baselines = np.abs(found.offset) + found.drift
-        large = is_large(baselines, found[_PEAK])
+    for sensor, sensor_signals in signals.sensors.items():
+        table = feature_table(_continued(sensor_signals), sensor_signals.rate, [_PEAK])
+        large = is_large(np.abs(table.offset) + table.drift, table[_PEAK])
         if large.any():
-            unit = "" if one.unit in ("", "1") else f" {one.unit}"
-            offset, drift = (
-                float(np.abs(found.offset[large]).max()),
-                float(found.drift[large].max()),
+            unit = "" if sensor_signals.unit in ("", "1") else f" {sensor_signals.unit}"
+            offset = float(np.abs(table.offset[large]).max())
+            drift = float(table.drift[large].max())
+            baselines = f"baselines with offsets of up to {offset:.4g}{unit}"
+            if is_large(drift, offset):
+                baselines += f" and drifts of up to {drift:.4g}{unit}"
+            doubts.append(
+                f"from {large.sum():,} of {len(large):,} signals of {quoted(sensor)} {baselines} "
+                "were removed, more than a tenth of their peaks: check that it rests at zero, and "
+                "alike in all classes"
             )
-            drifting = f" and drifts of up to {drift:.4g}{unit}" if is_large(drift, offset) else ""
-            words = (
-                f"from {large.sum():,} of {len(large):,} signals of {quoted(sensor)} baselines "
-                f"with offsets of up to {offset:.4g}{unit}"
-            )
-            words += f"{drifting} were removed, more than a tenth of their peaks"
-            doubts.append(f"{words}: check that it rests at zero, and alike in all classes")
     return doubts
 
 
 def tables_of(signals: LabelledSignals, features: Features) -> dict[str, Floats]:
-    """Return what the classifiers read, by name: all features, single ones for baselines, and what
-    should tell little.
+    """Return what the classifiers read, by name.
 
-    The table `EDGES` has the length, the first and the last sample of each signal; `TRUE_TIME`, the
-    contact time of the simulation, is there only if the data set has it.
+    There are all features, single ones for baselines, and what should tell little. The table
+    `EDGES` has the length, the first and the last sample of each signal; `TRUE_TIME`, the contact
+    time of the simulation, is there only if the data set has it.
     """
     tables = {FEATURES: features.values, EDGES: _edges(signals)}
     tables[PEAK] = features.columns(_PEAK)
@@ -124,8 +121,9 @@ def tables_of(signals: LabelledSignals, features: Features) -> dict[str, Floats]
 
 
 def with_noise(signals: LabelledSignals, level: float, seed: int) -> LabelledSignals:
-    """Return signals with white noise added, of one strength at each sensor, as that of an
-    amplifier is.
+    """Return signals with white noise added.
+
+    It is of one strength at each sensor, as that of an amplifier is.
 
     Parameters
     ----------
@@ -137,26 +135,28 @@ def with_noise(signals: LabelledSignals, level: float, seed: int) -> LabelledSig
         Seed of the noise.
     """
     generator = np.random.default_rng(seed)
-    return replace(
-        signals,
-        sensors={name: _noisy(one, level, generator) for name, one in signals.sensors.items()},
-    )
+    sensors = {
+        name: _noisy(sensor_signals, level, generator)
+        for name, sensor_signals in signals.sensors.items()
+    }
+    return replace(signals, sensors=sensors)
 
 
-def _noisy(one: SensorSignals, level: float, generator: np.random.Generator) -> SensorSignals:
-    power = float(np.median(np.nanmean(np.square(one.values, dtype=float), axis=1)))
-    noise = generator.standard_normal(one.values.shape, dtype=np.float32)
-    return replace(
-        one, values=one.values + np.float32(np.sqrt(power * 10.0 ** (-0.1 * level))) * noise
-    )
+def _noisy(signals: SensorSignals, level: float, generator: np.random.Generator) -> SensorSignals:
+    mean_squares = np.nanmean(np.square(signals.values, dtype=float), axis=1)
+    power = float(np.median(mean_squares))
+    noise = generator.standard_normal(signals.values.shape, dtype=np.float32)
+    amplitude = np.float32(np.sqrt(power * 10.0 ** (-0.1 * level)))
+    return replace(signals, values=signals.values + amplitude * noise)
 
 
-def _continued(one: SensorSignals) -> Floats:
-    """Return signals with zeros in place of the NaN after their ends; other NaN stay, and
-    are a feature's reason to have no value.
+def _continued(signals: SensorSignals) -> Floats:
+    """Return signals with zeros in place of the NaN after their ends.
+
+    Other NaN stay, and are a feature's reason to have no value.
     """
-    values = one.values.astype(float)
-    ended = np.arange(values.shape[1]) >= lengths(one.values)[:, np.newaxis]
+    values = signals.values.astype(float)
+    ended = np.arange(values.shape[1]) >= lengths(signals.values)[:, np.newaxis]
     values[ended & np.isnan(values)] = 0.0
     return values
 
@@ -164,14 +164,11 @@ def _continued(one: SensorSignals) -> Floats:
 def _edges(signals: LabelledSignals) -> Floats:
     """Return the length, the first and the last sample of each signal."""
     columns: list[Floats] = []
-    for one in signals.sensors.values():
-        found = lengths(one.values)
-        rows = np.arange(len(found))
-        columns += [
-            found.astype(float),
-            one.values[:, 0].astype(float),
-            one.values[rows, np.maximum(found - 1, 0)].astype(float),
-        ]
+    for sensor_signals in signals.sensors.values():
+        values = sensor_signals.values
+        length = lengths(values)
+        last_samples = values[np.arange(len(length)), np.maximum(length - 1, 0)]
+        columns += [length.astype(float), values[:, 0].astype(float), last_samples.astype(float)]
     return np.stack(columns, axis=1)
 
 
@@ -183,11 +180,11 @@ def by_name(features: Features, names: tuple[str, ...]) -> Floats:
     InputError
         If one is not there.
     """
-    place: Mapping[str, int] = {name: number for number, name in enumerate(features.names)}
-    missing = [name for name in names if name not in place]
+    column: Mapping[str, int] = {name: number for number, name in enumerate(features.names)}
+    missing = [name for name in names if name not in column]
     if missing:
         raise InputError(
             f"the model needs the feature {missing[0]}, which this version does not "
             "compute or the signals do not have"
         )
-    return features.values[:, [place[name] for name in names]]
+    return features.values[:, [column[name] for name in names]]

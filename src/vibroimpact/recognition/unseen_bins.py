@@ -1,6 +1,4 @@
-"""Trained on and tested on: what is recognised of a size, height, plate, place or noise
-that was never trained on.
-"""
+"""Recognition of a range of a drawn key, such as a size or a height, that was never trained on."""
 
 from __future__ import annotations
 
@@ -19,7 +17,8 @@ from vibroimpact.recognition.jobs import Progress, run_jobs
 from vibroimpact.recognition.labelled_signals import LabelledSignals
 from vibroimpact.recognition.scores import Bootstrap, Score
 
-_BINS, _MOST_KEYS = 3, 8
+_BINS = 3
+_MOST_KEYS = 8
 _OF_THE_CLASS = ("sphere.material", "contact.")
 """Keys by which classes are made: a range of them left out would leave a class out."""
 
@@ -53,37 +52,38 @@ def bins_of(signals: LabelledSignals) -> list[tuple[str, str, Bools]]:
 
     Numbers have three ranges of equally many signals, and few values or names one for each.
     """
-    keys: dict[str, NDArray[Any]] = (
-        {"plate": signals.groups["plate"]} if "plate" in signals.groups else {}
-    )
-    keys |= {key: one for key, one in signals.drawn.items() if not key.startswith(_OF_THE_CLASS)}
-    found: list[tuple[str, str, Bools]] = []
-    for key in [key for key, values in keys.items() if len(np.unique(values)) > 1][:_MOST_KEYS]:
-        values = keys[key]
-        names = np.unique(values)
-        if values.dtype.kind not in "f" or len(names) <= _BINS:
-            parts = np.array_split(names, min(len(names), _BINS))
-            found += [(key, _names(part), np.isin(values, part)) for part in parts]
+    columns: dict[str, NDArray[Any]] = {}
+    if "plate" in signals.groups:
+        columns["plate"] = signals.groups["plate"]
+    for key, column in signals.drawn.items():
+        if not key.startswith(_OF_THE_CLASS):
+            columns[key] = column
+    varying = [key for key, values in columns.items() if len(np.unique(values)) > 1]
+    bins: list[tuple[str, str, Bools]] = []
+    for key in varying[:_MOST_KEYS]:
+        values = columns[key]
+        levels = np.unique(values)
+        if values.dtype.kind not in "f" or len(levels) <= _BINS:
+            for bin_levels in np.array_split(levels, min(len(levels), _BINS)):
+                bins.append((key, _levels_text(bin_levels), np.isin(values, bin_levels)))
             continue
         edges = np.quantile(values, np.linspace(0.0, 1.0, _BINS + 1))
-        place = np.clip(np.searchsorted(edges, values, side="right") - 1, 0, _BINS - 1)
-        found += [
-            (key, f"{edges[one]:.3g} to {edges[one + 1]:.3g}", place == one)
-            for one in range(_BINS)
-            if (place == one).any()
-        ]
-    return found
+        bin_number = np.clip(np.searchsorted(edges, values, side="right") - 1, 0, _BINS - 1)
+        for number in range(_BINS):
+            inside = bin_number == number
+            if inside.any():
+                bins.append((key, f"{edges[number]:.3g} to {edges[number + 1]:.3g}", inside))
+    return bins
 
 
-def _names(part: NDArray[Any]) -> str:
-    shown = [f"{one:.3g}" if isinstance(one, float) else str(one) for one in part.tolist()]
-    return (
-        shown[0]
-        if len(shown) == 1
-        else f"{shown[0]} to {shown[-1]}"
-        if len(shown) > 3
-        else ", ".join(shown)
-    )
+def _levels_text(levels: NDArray[Any]) -> str:
+    """Return the values or names of a range in words."""
+    texts = [
+        f"{level:.3g}" if isinstance(level, float) else str(level) for level in levels.tolist()
+    ]
+    if len(texts) > 3:
+        return f"{texts[0]} to {texts[-1]}"
+    return ", ".join(texts)
 
 
 def score_unseen(
@@ -98,49 +98,74 @@ def score_unseen(
 
     A range without signals of every class is left out, as is one without which a class could not be
     trained.
+
+    Parameters
+    ----------
+    chosen : Chosen
+        The classifier with its cross-validation.
+    values : array, shape (signals, features)
+        Features of the signals.
+    signals : LabelledSignals
+        The signals.
+    bootstrap : Bootstrap
+        Draws of groups.
+    workers, progress
+        As `run_jobs` takes them.
     """
-    right = (chosen.guessed == chosen.classes).astype(float)[np.newaxis]
-    bins = [one for one in bins_of(signals) if _usable(one[2], chosen)]
-
-    def one(inside: Bools, split: Split, parameters: Parameters) -> Indices:
-        test = split.test[inside[split.test]]
-        if not len(test):
-            return test
-        return chosen.guess(
-            chosen.refit(values, split.train[~inside[split.train]], parameters), values[test]
-        )
-
-    jobs = [partial(one, inside, *part) for _, _, inside in bins for part in chosen.parts]
-    done = iter(run_jobs("ranges left out in training", jobs, workers, progress))
-    found = []
+    bins = []
+    for key, words, inside in bins_of(signals):
+        if _usable(inside, chosen):
+            bins.append((key, words, inside))
+    jobs = [
+        partial(_guess_left_out, chosen, values, inside, split, parameters)
+        for _, _, inside in bins
+        for split, parameters in chosen.parts
+    ]
+    guesses = iter(run_jobs("ranges left out in training", jobs, workers, progress))
+    right_seen = (chosen.guessed == chosen.classes).astype(float)[np.newaxis]
+    scores = []
     for key, words, inside in bins:
         guessed = np.full(len(chosen.classes), -1)
         for split, _ in chosen.parts:
-            guessed[split.test[inside[split.test]]] = next(done)
+            guessed[split.test[inside[split.test]]] = next(guesses)
+        right_unseen = (guessed == chosen.classes).astype(float)[np.newaxis]
         within = bootstrap.within(inside)
-        unseen = (guessed == chosen.classes).astype(float)[np.newaxis]
-        found.append(
+        scores.append(
             Unseen(
                 key,
                 words,
-                int(inside.sum()),
-                within.balanced(right[:, inside]),
-                within.balanced(unseen[:, inside]),
+                signals=int(inside.sum()),
+                seen=within.balanced(right_seen[:, inside]),
+                unseen=within.balanced(right_unseen[:, inside]),
             )
         )
-    return found
+    return scores
+
+
+def _guess_left_out(
+    chosen: Chosen, values: Floats, inside: Bools, split: Split, parameters: Parameters
+) -> Indices:
+    """Return the classes of tested signals in a range, predicted without training on it."""
+    test = split.test[inside[split.test]]
+    if not len(test):
+        return test
+    fitted = chosen.refit(values, split.train[~inside[split.train]], parameters)
+    return chosen.guess(fitted, values[test])
 
 
 def _usable(inside: Bools, chosen: Chosen) -> bool:
-    """Return whether a range has all classes, and each training part without it has
-    several groups of every class.
+    """Return whether classifiers can be trained without a range, and tested on it.
+
+    The range must have all classes, and each training part without it several groups of every
+    class.
     """
-    classes, names = chosen.classes, np.unique(chosen.classes)
-    if len(np.unique(classes[inside])) < len(names):
+    classes = chosen.classes
+    class_numbers = np.unique(classes)
+    if len(np.unique(classes[inside])) < len(class_numbers):
         return False
-    outside = [split.train[~inside[split.train]] for split, _ in chosen.parts]
-    return all(
-        len(np.unique(chosen.groups[part][classes[part] == one])) >= 2
-        for part in outside
-        for one in names
-    )
+    for split, _ in chosen.parts:
+        train = split.train[~inside[split.train]]
+        for number in class_numbers:
+            if len(np.unique(chosen.groups[train][classes[train] == number])) < 2:
+                return False
+    return True

@@ -17,9 +17,7 @@ from vibroimpact.dynamics.sensors.recording import Signal
 from vibroimpact.files.plain_names import one_line, plain_names
 
 MOST_CSV_SAMPLES = 250_000
-"""Largest number of samples of a signal written as CSV; a longer signal is stored in
-`result.nc` only.
-"""
+"""Largest number of samples written as CSV; a longer signal is stored in `result.nc` only."""
 
 
 def impact_rows(impacts: dict[str, Any]) -> list[dict[str, float | int | None]]:
@@ -44,13 +42,14 @@ def _rows(impacts: dict[str, Any]) -> Iterator[dict[str, float | int | None]]:
     columns = impact_columns(impacts)
     for index in range(len(impacts["impact"])):
         row: dict[str, float | int | None] = {}
-        for name in columns:
-            value = float(impacts[name][index])
-            row[name] = (
-                (int(value) if columns[name].values == "count" else value)
-                if math.isfinite(value)
-                else None
-            )
+        for name, column in columns.items():
+            number = float(impacts[name][index])
+            if not math.isfinite(number):
+                row[name] = None
+            elif column.values == "count":
+                row[name] = int(number)
+            else:
+                row[name] = number
         yield row
 
 
@@ -59,16 +58,15 @@ def write_csv(rows: Iterable[dict[str, Any]], columns: list[str], path: Path) ->
     with path.open("w", newline="", encoding="utf-8") as file:
         writer = csv.DictWriter(file, columns, lineterminator="\n")
         writer.writeheader()
-        writer.writerows(
-            {name: "" if value is None else value for name, value in row.items()} for row in rows
-        )
+        for row in rows:
+            writer.writerow({name: "" if cell is None else cell for name, cell in row.items()})
 
 
 def write_columns(columns: Mapping[str, Floats], path: Path) -> None:
     """Write columns of equal lengths, by their names, as a CSV file."""
     names = list(columns)
-    rows = np.stack(list(columns.values()), axis=1).tolist()
-    write_csv((dict(zip(names, row, strict=True)) for row in rows), names, path)
+    table = np.stack(list(columns.values()), axis=1).tolist()
+    write_csv((dict(zip(names, row, strict=True)) for row in table), names, path)
 
 
 class TableColumn(NamedTuple):
@@ -91,8 +89,9 @@ def signal_columns(signal: Signal) -> dict[str, TableColumn]:
 
 
 def signal_csv(signal: Signal) -> str:
-    """Return a signal as the text of a CSV file: times with 12 significant digits, values
-    in full precision.
+    """Return a signal as the text of a CSV file.
+
+    Times have 12 significant digits, values full precision.
     """
     (time_name, time), (name, column) = signal_columns(signal).items()
     rows = np.stack([time.values, column.values], axis=1)
@@ -101,8 +100,9 @@ def signal_csv(signal: Signal) -> str:
 
 
 def write_signal_files(signals: Mapping[str, Signal], directory: Path) -> None:
-    """Write `NAME.csv` for each signal of at most 250,000 samples, its unit in the
-    header; create the folder only if needed.
+    """Write `NAME.csv` for each signal of at most 250,000 samples, its unit in the header.
+
+    The folder is made only if there is such a signal.
     """
     for name, plain in plain_names(list(signals)).items():
         signal = signals[name]

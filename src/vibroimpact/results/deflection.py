@@ -57,74 +57,76 @@ class Deflection:
 
 
 def frame_times_of(response: Response, frames: int = _FRAMES) -> Floats:
-    """Return the frame times of a run [s], from just before the first touch on; empty without an
-    impact or without modes.
+    """Return the frame times of a run [s], from just before the first touch on.
 
-    The period that spaces the last frames is that of the lowest mode of the plate, or of the sphere
-    if the plate has no modes.
+    There are none without an impact or without modes. The period that spaces the last frames is
+    that of the lowest mode of the plate, or of the sphere if the plate has no modes.
     """
-    problem, impacts = response.problem, response.impacts
+    problem = response.problem
+    impacts = response.impacts
     modes = problem.plate.modes or problem.sphere.modes
     if modes is None or not len(impacts["impact"]):
         return np.zeros(0)
-    touch, duration = (float(impacts[name][0]) for name in ("time_s", "duration_s"))
-    return frame_times(
-        touch, duration, 1.0 / float(modes.frequencies[0]), float(response.end_time[0]), frames
-    )
+    touch = float(impacts["time_s"][0])
+    duration = float(impacts["duration_s"][0])
+    period = 1.0 / float(modes.frequencies[0])
+    return frame_times(touch, duration, period, float(response.end_time[0]), frames)
 
 
 def deflection_of(response: Response, frames: int = _FRAMES) -> Deflection | None:
-    """Return the plate's deflection at the frame times of a run; None if the plate has no
-    modal model with a mesh, or no impact occurs.
+    """Return the plate's deflection at the frame times of a run.
+
+    It is None if the plate has no modal model with a mesh, or no impact occurs.
     """
-    model, time = response.problem.models.get("plate"), frame_times_of(response, frames)
+    model = response.problem.models.get("plate")
+    time = frame_times_of(response, frames)
     if model is None or not len(time):
         return None
 
     def shapes_on_grid() -> tuple[SurfaceGrid, Floats]:
-        """Interpolate once per mode: the deflection at any time is then a product with
-        the modal coordinates.
-        """
+        # once per mode: the deflection at any time is then a product with the modal coordinates
         grid = surface_grid(model.mesh)
         vertical = model.shapes.reshape(len(model.shapes), len(model.mesh.nodes), -1)[:, :, 2]
         return grid, grid.interpolate(vertical).reshape(len(vertical), -1)
 
     grid, shapes = model.cached("vertical displacement on a grid", shapes_on_grid, POINTS)
-    height, motion = response.modal(time)["plate"] @ shapes, response.problem.motion
+    height = response.modal(time)["plate"] @ shapes
+    motion = response.problem.motion  # of the supports, which carry the plate along
     if motion is not None:
         height += motion.direction[2] * motion.at(time)[0][:, None]
     history = response.at(time, ("position_m", "plate_deflection_m"))
     return Deflection(
-        time,
-        grid.x,
-        grid.y,
-        height.reshape(len(time), *grid.on_body.shape).astype(np.float32),
-        history["position_m"],
-        history["plate_deflection_m"],
-        contact_point_of(response, model),
+        time=time,
+        x=grid.x,
+        y=grid.y,
+        height=height.reshape(len(time), *grid.on_body.shape).astype(np.float32),
+        sphere_position=history["position_m"],
+        contact_deflection=history["plate_deflection_m"],
+        contact=contact_point_of(response, model),
     )
 
 
 def contact_point_of(response: Response, model: ModalModel) -> tuple[float, float]:
-    """Return x and y of the contact point in the coordinates of the plate's mesh [m]; the
-    middle of the plate if the case gives none.
+    """Return x and y of the contact point in the coordinates of the plate's mesh [m].
+
+    It is the middle of the plate if the case gives none.
     """
     from vibroimpact.structures.surface import place_of  # here, as it imports scipy.sparse
 
     source = response.problem.source or {}
     mesh = source.get("plate", {}).get("mesh")
-    spot = (
-        (mesh.get("contact") if isinstance(mesh, dict) else None)
-        or source.get("drop", {}).get("position")
-        or (0.0, 0.0)
-    )
-    x, y = place_of(model.mesh, spot if isinstance(spot, str) else (spot[0], spot[1]), "upper")
+    contact = mesh.get("contact") if isinstance(mesh, dict) else None
+    position = contact or source.get("drop", {}).get("position") or (0.0, 0.0)
+    # text names a group of nodes of the mesh
+    point = position if isinstance(position, str) else (position[0], position[1])
+    x, y = place_of(model.mesh, point, "upper")
     return x, y
 
 
 def frame_times(touch: float, duration: float, period: float, end: float, count: int) -> Floats:
-    """Return frame times [s]: equally spaced through the first visit, then with steps that grow
-    geometrically up to a limit.
+    """Return frame times [s]: equally spaced through the first visit, then ever sparser.
+
+    After the visit the steps grow geometrically up to a limit.
 
     Parameters
     ----------
@@ -145,8 +147,7 @@ def frame_times(touch: float, duration: float, period: float, end: float, count:
     # a sphere that stays has no release to bound the duration
     step = min(duration, 3.0 * period) / _IN_VISIT
     in_visit = touch + step * np.arange(-2, _IN_VISIT + 3)
-    steps = np.minimum(
-        step * _GROWTH ** np.arange(count - len(in_visit)), max(step, period / _PER_PERIOD)
-    )
+    largest_step = max(step, period / _PER_PERIOD)
+    steps = np.minimum(step * _GROWTH ** np.arange(count - len(in_visit)), largest_step)
     times = np.concatenate([in_visit, in_visit[-1] + np.cumsum(steps)])
     return np.asarray(times[(times >= 0.0) & (times <= end)])

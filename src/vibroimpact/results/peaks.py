@@ -44,49 +44,36 @@ def peaks_of(response: Response, history: Mapping[str, Floats]) -> Mapping[str, 
         Its history, as returned by `fine_history`.
     """
     problem = response.problem
-    found: dict[str, dict[str, Any]] = {}
+    peaks: dict[str, dict[str, Any]] = {}
     if problem.sphere.modes is not None:
-        rise = history["position_m"] - history["position_m"][0]
-        impact = float(np.max(response.impacts["max_acceleration_m_s2"], initial=0.0))
-        acceleration = max(impact, _largest(history["acceleration_m_s2"]))
-        kinetic = history["kinetic_J"] + history["sphere_vibration_J"]
-        motion = rise, history["velocity_m_s"], acceleration
-        found["sphere"] = _maxima(*motion, kinetic, history["sphere_strain_J"]) | frequencies_of(
-            problem.sphere.modes
-        )
-    if problem.plate.modes is not None:
-        found["plate"] = _maxima(
-            history["plate_displacement_m"],
-            history["plate_velocity_m_s"],
-            _largest(history["plate_acceleration_m_s2"]),
-            history["plate_kinetic_J"],
-            history["plate_strain_J"],
-        ) | frequencies_of(problem.plate.modes)
-        if np.isfinite(bending := largest_bending(response)):
-            found["plate"]["max_bending_m"] = bending
-    return found
-
-
-def _maxima(
-    displacement: Floats, velocity: Floats, acceleration: float, kinetic: Floats, strain: Floats
-) -> dict[str, Any]:
-    return dict(
-        zip(
-            MAXIMA,
-            (
-                *map(_largest, (displacement, velocity)),
-                acceleration,
-                *map(_largest, (kinetic, strain)),
+        impact_acceleration = float(np.max(response.impacts["max_acceleration_m_s2"], initial=0.0))
+        peaks["sphere"] = {
+            "max_displacement_m": _largest(history["position_m"] - history["position_m"][0]),
+            "max_velocity_m_s": _largest(history["velocity_m_s"]),
+            "max_acceleration_m_s2": max(
+                impact_acceleration, _largest(history["acceleration_m_s2"])
             ),
-            strict=False,
-        )
-    )
+            "max_kinetic_energy_J": _largest(history["kinetic_J"] + history["sphere_vibration_J"]),
+            "max_strain_energy_J": _largest(history["sphere_strain_J"]),
+            **frequencies_of(problem.sphere.modes),
+        }
+    if problem.plate.modes is not None:
+        peaks["plate"] = {
+            "max_displacement_m": _largest(history["plate_displacement_m"]),
+            "max_velocity_m_s": _largest(history["plate_velocity_m_s"]),
+            "max_acceleration_m_s2": _largest(history["plate_acceleration_m_s2"]),
+            "max_kinetic_energy_J": _largest(history["plate_kinetic_J"]),
+            "max_strain_energy_J": _largest(history["plate_strain_J"]),
+            **frequencies_of(problem.plate.modes),
+        }
+        bending = largest_bending(response)
+        if np.isfinite(bending):
+            peaks["plate"]["max_bending_m"] = bending
+    return peaks
 
 
 def frequencies_of(modes: ModalBasis) -> dict[str, Any]:
-    """Return the frequencies of a body's modes [Hz] and their errors, as stored in
-    `summary.json`.
-    """
+    """Return the frequencies of a body's modes [Hz] and their errors, as in `summary.json`."""
     errors = known_errors(modes.frequency_errors, len(modes.frequencies))
     return dict(zip(FREQUENCIES, (modes.frequencies.tolist(), errors), strict=True))
 
@@ -106,12 +93,10 @@ def known_errors(errors: Floats | None, number: int) -> list[float | None]:
     >>> known_errors(np.array([0.001, np.nan]), 2)
     [0.001, None]
     """
-    return (
-        [None] * number
-        if errors is None
-        else [float(error) if np.isfinite(error) else None for error in errors]
-    )
+    if errors is None:
+        return [None] * number
+    return [float(error) if np.isfinite(error) else None for error in errors]
 
 
-def _largest(values: Floats) -> float:
-    return float(np.abs(values).max())
+def _largest(column: Floats) -> float:
+    return float(np.abs(column).max())

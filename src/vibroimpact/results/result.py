@@ -1,6 +1,4 @@
-"""The result of one drop as plain data: the content of a result folder and the input of
-its report.
-"""
+"""The result of one drop as plain data: content of a result folder and input of its report."""
 
 from __future__ import annotations
 
@@ -88,32 +86,32 @@ class Result:
 
     @property
     def vibrates(self) -> bool:
-        """Whether anything but the contact deforms, or anything but the sphere moves: the
-        history then has further columns.
+        """Whether anything but the contact deforms, or anything but the sphere moves.
+
+        The history then has further columns.
         """
         return "plate_deflection_m" in self.history
 
     def frequencies(self, body: str) -> list[float]:
-        """Return the modal frequencies of "sphere" or "plate" [Hz], ascending; an empty
-        list for a rigid body.
+        """Return the modal frequencies of "sphere" or "plate" [Hz], ascending.
+
+        The list of a rigid body is empty.
         """
-        found = self.peaks.get(body, {}).get("frequencies_Hz", [])
-        return found if isinstance(found, list) else []
+        frequencies = self.peaks.get(body, {}).get("frequencies_Hz", [])
+        return frequencies if isinstance(frequencies, list) else []
 
     @property
     def change_by_impact(self) -> Floats:
-        """Relative change of each impact [-] for a relative perturbation of the drop of
-        1e-9, or of the tolerance if larger.
+        """Relative change of each impact [-] for a relative perturbation of the drop.
+
+        The perturbation is 1e-9, or the tolerance if that is larger.
         """
-        return change_by_impact(
-            self.impacts, float(self.provenance.get("tolerance", RELATIVE_CHANGE))
-        )
+        tolerance = float(self.provenance.get("tolerance", RELATIVE_CHANGE))
+        return change_by_impact(self.impacts, tolerance)
 
     @property
     def doubts(self) -> list[str]:
-        """Doubts about the result: sentences naming assumptions and ranges of validity
-        that the run exceeds.
-        """
+        """Sentences that name the assumptions and ranges of validity that the run exceeds."""
         return self.doubts_but()
 
     def doubts_but(self, aside: Container[str] = ()) -> list[str]:
@@ -124,54 +122,50 @@ class Result:
         aside : container of str
             Dotted keys whose values are not checked for slips.
         """
-        found = doubts(self.case, self._seen, aside)
-        found += str(self.deformation.get("doubts", "")).splitlines()  # about the meshes
-        highest = max(self.frequencies("plate"), default=math.nan)
-        return found + sensor_doubts(
-            self.case, self.signals, highest, float(self._seen.duration), self._first_contact()
+        summary = self._drop_summary
+        sentences = doubts(self.case, summary, aside)
+        sentences += str(self.deformation.get("doubts", "")).splitlines()  # about the meshes
+        highest_frequency = max(self.frequencies("plate"), default=math.nan)
+        return sentences + sensor_doubts(
+            self.case,
+            self.signals,
+            highest_frequency,
+            float(summary.duration),
+            self._first_contact(),
         )
 
     def _first_contact(self) -> tuple[float, float] | None:
         """Return x and y of the first contact on the plate [m], of a sphere that moves along it."""
-        for columns in (
+        columns = (
             ("place_on_plate_x_m", "place_on_plate_y_m"),
             ("position_x_m", "position_y_m"),
-        ):
-            if columns[0] in self.impacts and len(self.impacts[columns[0]]):
-                x, y = (float(self.impacts[column][0]) for column in columns)
-                return x, y
+        )
+        for column_x, column_y in columns:
+            if column_x in self.impacts and len(self.impacts[column_x]):
+                return float(self.impacts[column_x][0]), float(self.impacts[column_y][0])
         return None
 
     @property
-    def _seen(self) -> DropSummary:
+    def _drop_summary(self) -> DropSummary:
         """The outcomes of the drop that the limits of the theory are checked against."""
-        if not len(self.impacts["impact"]):
+        impacts = self.impacts
+        if not len(impacts["impact"]):
             return DropSummary()
-        force, depth = (
-            float(self.impacts[name].max()) for name in ("max_force_N", "max_indentation_m")
-        )
-        duration, speed = (
-            time_of_contact(self.impacts),
-            float(self.impacts["approach_speed_m_s"][0]),
-        )
-        deflection = float(self.peaks.get("plate", {}).get("max_bending_m") or math.nan)
-        modes = {body: (part, self.frequencies(body)[-1]) for body, part in self.truncation.items()}
-        theory, mesh = (
-            error(self.deformation, self.impacts)
-            for error in (plate_theory_error, plate_mesh_error)
-        )
-        slowest = float(self.impacts["approach_speed_m_s"].min())
+        # the largest error by truncation and the highest retained frequency of each elastic body
+        modes = {
+            body: (error, self.frequencies(body)[-1]) for body, error in self.truncation.items()
+        }
         return DropSummary(
-            force,
-            depth,
-            duration,
-            speed,
-            deflection,
-            modes,
-            self.change_by_impact,
-            theory,
-            mesh,
-            slowest,
+            force=float(impacts["max_force_N"].max()),
+            depth=float(impacts["max_indentation_m"].max()),
+            duration=time_of_contact(impacts),
+            speed=float(impacts["approach_speed_m_s"][0]),
+            deflection=float(self.peaks.get("plate", {}).get("max_bending_m") or math.nan),
+            modes=modes,
+            changes=self.change_by_impact,
+            plate_theory=plate_theory_error(self.deformation, impacts),
+            plate_mesh=plate_mesh_error(self.deformation, impacts),
+            slowest=float(impacts["approach_speed_m_s"].min()),
         )
 
     @property
@@ -192,8 +186,9 @@ class Result:
 
 
 def result_of(response: Response) -> Result:
-    """Return the result of a response to one drop: its tables, refined history, peaks, signals and
-    deflection.
+    """Return the result of a response to one drop.
+
+    It holds its tables, the refined history, peaks, signals and deflection.
 
     Parameters
     ----------
@@ -212,22 +207,23 @@ def result_of(response: Response) -> Result:
     >>> len(result.impacts["time_s"]), round(float(result.history["force_N"].max()), 1)
     (5, 10239.2)
     """
+    problem = response.problem
     history = fine_history(response)
-    signals = response.signals() if response.problem.sensors else {}
-    return replace(
-        bare_result(
-            response, history, peaks_of(response, history), signals, deflection_of(response)
-        ),
-        provenance={
-            "version": __version__,
-            "created": datetime.now(UTC).isoformat(timespec="seconds"),
-            "python": platform.python_version(),
-            "numpy": np.__version__,
-            "platform": platform.platform(),
-            "tolerance": f"{response.problem.tolerance:g}",
-            **({} if response.problem.source else {"problem": repr(response.problem)}),
-        },
-    )
+    peaks = peaks_of(response, history)
+    signals = response.signals() if problem.sensors else {}
+    result = bare_result(response, history, peaks, signals, deflection_of(response))
+    provenance = {
+        "version": __version__,
+        "created": datetime.now(UTC).isoformat(timespec="seconds"),
+        "python": platform.python_version(),
+        "numpy": np.__version__,
+        "platform": platform.platform(),
+        "tolerance": f"{problem.tolerance:g}",
+    }
+    if not problem.source:
+        # there is no case to repeat the drop from: the problem is described in words
+        provenance["problem"] = repr(problem)
+    return replace(result, provenance=provenance)
 
 
 def bare_result(
@@ -237,8 +233,9 @@ def bare_result(
     signals: Mapping[str, Signal],
     deflection: Deflection | None,
 ) -> Result:
-    """Return the result of a response to one drop without provenance, from what may be as
-    fine as one likes.
+    """Return the result of a response to one drop, without provenance.
+
+    History, peaks, signals and deflection may be coarser than those of `result_of`.
     """
     return Result(
         case=response.problem.source or {},

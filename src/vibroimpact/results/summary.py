@@ -8,14 +8,17 @@ from typing import Any
 
 from vibroimpact.cases.validity.plate_mesh import PLATE_MESH_COMPLIANCE
 from vibroimpact.cases.validity.plate_waves import PLATE_THEORY_INERTIA
+from vibroimpact.dynamics.sensors.recording import Signal
 from vibroimpact.results.csv_files import impact_rows
 from vibroimpact.results.peaks import FREQUENCIES
 from vibroimpact.results.result import Result
 
 
 def summary_of(result: Result) -> dict[str, Any]:
-    """Return the summary of a result: impact table, final energy ledger, doubts,
-    provenance, and peaks of elastic bodies.
+    """Return the summary of a result, as it is stored in `summary.json`.
+
+    It holds the impact table, the final energy ledger, doubts, provenance, and peaks of elastic
+    bodies.
     """
     return {
         "name": result.name,
@@ -30,38 +33,36 @@ def summary_of(result: Result) -> dict[str, Any]:
 
 
 def _of_vibration(result: Result) -> dict[str, Any]:
-    """Return the entries of a summary that exist only where bodies vibrate; None stands
-    for a number that is not finite.
-    """
+    """Return the entries of a summary that exist only where bodies vibrate."""
     if not result.vibrates:
         return {}
-    truncation = {
-        name: value if math.isfinite(value) else None for name, value in result.truncation.items()
-    }
-    sensors = {
-        name: {
-            "quantity": signal.sensor.quantity,
-            "unit": signal.sensor.unit,
-            "rate_Hz": signal.sensor.rate,
-            "samples": len(signal.value),
-            "max_magnitude": signal.largest,
-            "filter": signal.sensor.filter,
-            "relative_uncertainty": signal.uncertainty
-            if math.isfinite(signal.uncertainty)
-            else None,
-            "peak_before_range": signal.peak if math.isfinite(signal.peak) else None,
-            "overload_time_s": signal.overload_time,
-        }
-        for name, signal in result.signals.items()
-    }
-    change = [float(value) if math.isfinite(value) else None for value in result.change_by_impact]
     return {
         **result.peaks,
         "deformation": dict(result.deformation),
-        "truncation": truncation,
-        "change_by_impact": change,
-        "sensors": sensors,
+        "truncation": {body: _finite(error) for body, error in result.truncation.items()},
+        "change_by_impact": [_finite(float(change)) for change in result.change_by_impact],
+        "sensors": {name: _signal_summary(signal) for name, signal in result.signals.items()},
     }
+
+
+def _signal_summary(signal: Signal) -> dict[str, Any]:
+    """Return what a summary states of the signal of a sensor."""
+    return {
+        "quantity": signal.sensor.quantity,
+        "unit": signal.sensor.unit,
+        "rate_Hz": signal.sensor.rate,
+        "samples": len(signal.value),
+        "max_magnitude": signal.largest,
+        "filter": signal.sensor.filter,
+        "relative_uncertainty": _finite(signal.uncertainty),
+        "peak_before_range": _finite(signal.peak),
+        "overload_time_s": signal.overload_time,
+    }
+
+
+def _finite(number: float) -> float | None:
+    """Return a number for JSON, which has no NaN and no infinity: None stands for them."""
+    return number if math.isfinite(number) else None
 
 
 def check_types(summary: Mapping[str, Any]) -> None:
@@ -75,31 +76,22 @@ def check_types(summary: Mapping[str, Any]) -> None:
         If the status is missing.
     """
     _check("status", isinstance(summary["status"], str))
-    for key, kinds in (
-        ("provenance", (str,)),
-        ("deformation", (str, int, float)),
-        ("truncation", (int, float, type(None))),
-    ):
-        table = summary.get(key, {})
-        _check(
-            key,
-            isinstance(table, dict) and all(isinstance(value, kinds) for value in table.values()),
-        )
-    for fact in (PLATE_THEORY_INERTIA, PLATE_MESH_COMPLIANCE):
-        _check(fact, isinstance(summary.get("deformation", {}).get(fact, 0.0), (int, float)))
+    _check_table(summary, "provenance", (str,))
+    _check_table(summary, "deformation", (str, int, float))
+    _check_table(summary, "truncation", (int, float, type(None)))
+    for key in (PLATE_THEORY_INERTIA, PLATE_MESH_COMPLIANCE):
+        _check(key, isinstance(summary.get("deformation", {}).get(key, 0.0), (int, float)))
     for body in ("sphere", "plate"):
         peaks = summary.get(body, {})
-        _check(body, isinstance(peaks, dict) and all(_is_peak(value) for value in peaks.values()))
+        _check(body, isinstance(peaks, dict) and all(_is_peak(peak) for peak in peaks.values()))
         frequencies = peaks.get(FREQUENCIES[0], [])
         _check(
             FREQUENCIES[0],
-            isinstance(frequencies, list) and all(_is_positive(value) for value in frequencies),
+            isinstance(frequencies, list) and all(_is_positive(number) for number in frequencies),
         )
         # peaks and truncation are those of a body that has modes
-        _check(
-            FREQUENCIES[0],
-            bool(frequencies) or not (peaks or body in summary.get("truncation", {})),
-        )
+        needs_frequencies = bool(peaks) or body in summary.get("truncation", {})
+        _check(FREQUENCIES[0], bool(frequencies) or not needs_frequencies)
 
 
 def check_case(case: Mapping[str, Any]) -> None:
@@ -121,17 +113,24 @@ def check_case(case: Mapping[str, Any]) -> None:
     _check("name", isinstance(case.get("name", ""), str))
 
 
-def _is_peak(value: Any) -> bool:
-    return all(
-        one is None or isinstance(one, (int, float))
-        for one in (value if isinstance(value, list) else [value])
+def _check_table(summary: Mapping[str, Any], key: str, types: tuple[type, ...]) -> None:
+    """Check that an entry, if it is there, is a table whose values have given types."""
+    table = summary.get(key, {})
+    _check(
+        key, isinstance(table, dict) and all(isinstance(value, types) for value in table.values())
     )
 
 
-def _is_positive(value: Any) -> bool:
-    return isinstance(value, (int, float)) and value > 0.0
+def _is_peak(peak: Any) -> bool:
+    """Return whether a peak is a number or None, or a list of such."""
+    entries = peak if isinstance(peak, list) else [peak]
+    return all(entry is None or isinstance(entry, (int, float)) for entry in entries)
 
 
-def _check(key: str, right: bool) -> None:
-    if not right:
+def _is_positive(number: Any) -> bool:
+    return isinstance(number, (int, float)) and number > 0.0
+
+
+def _check(key: str, is_right: bool) -> None:
+    if not is_right:
         raise ValueError(f"{key} has the wrong type")

@@ -72,15 +72,17 @@ class Listed:
 
     def quantiles(self, parts: Floats) -> Values:
         """Return the quantiles, in the order of the list."""
-        below = np.cumsum(np.ones(len(self.values)) if self.weights is None else self.weights)
-        places = np.searchsorted(below / below[-1], parts, side="right")
-        return np.asarray(self.levels()[np.minimum(places, len(self.values) - 1)])
+        weights = np.ones(len(self.values)) if self.weights is None else self.weights
+        cumulative = np.cumsum(weights)
+        index = np.searchsorted(cumulative / cumulative[-1], parts, side="right")
+        return np.asarray(self.levels()[np.minimum(index, len(self.values) - 1)])
 
 
 @dataclass(frozen=True)
 class Spaced:
-    """Values from `start` to `end`, equally spaced on a linear or logarithmic scale; in sampling
-    designs uniform on that scale.
+    """Values from `start` to `end`, equally spaced on a linear or logarithmic scale.
+
+    In sampling designs they are uniform on that scale.
 
     Parameters
     ----------
@@ -105,11 +107,8 @@ class Spaced:
 
     def levels(self) -> Values:
         """Return the levels, including both limits."""
-        return np.asarray(
-            (np.linspace if self.scale == "linear" else np.geomspace)(
-                self.start, self.end, self.number
-            )
-        )
+        spaced = np.linspace if self.scale == "linear" else np.geomspace
+        return np.asarray(spaced(self.start, self.end, self.number))
 
     def quantiles(self, parts: Floats) -> Values:
         """Return the quantiles of the uniform or log-uniform distribution."""
@@ -165,16 +164,17 @@ class Normal:
             )
         low, high = self._bounds()
         if not high - low > 1e-9:
-            ends = Range(at_least=self.at_least, at_most=self.at_most).words
-            words = f"{100 * max(high - low, 0.0):.2g} % of the distribution is {ends}"
+            limits = Range(at_least=self.at_least, at_most=self.at_most).words
+            percentage = 100 * max(high - low, 0.0)
             raise InputError(
-                f"{words}; it must be truncated less",
+                f"{percentage:.2g} % of the distribution is {limits}; it must be truncated less",
                 "at_least" if math.isfinite(self.at_least) else "at_most",
             )
 
     def _normal_parameters(self) -> tuple[float, float]:
-        """Return mean and standard deviation of the normal variable: the quantity or its
-        logarithm.
+        """Return mean and standard deviation of the normal variable.
+
+        It is the quantity, or its logarithm.
         """
         if not self.lognormal:
             return self.mean, self.standard_deviation
@@ -185,11 +185,11 @@ class Normal:
         """Return the cumulative probabilities at the truncation limits."""
         from scipy.special import ndtr
 
-        middle, spread = self._normal_parameters()
-        ends = [self.at_least, self.at_most]
+        mean, deviation = self._normal_parameters()
+        limits = [self.at_least, self.at_most]
         if self.lognormal:
-            ends = [math.log(end) if end > 0.0 else -math.inf for end in ends]
-        low, high = (float(ndtr((end - middle) / spread)) for end in ends)
+            limits = [math.log(limit) if limit > 0.0 else -math.inf for limit in limits]
+        low, high = (float(ndtr((limit - mean) / deviation)) for limit in limits)
         return low, high
 
     def __len__(self) -> int:
@@ -203,10 +203,11 @@ class Normal:
         """Return the quantiles of the truncated distribution."""
         from scipy.special import ndtri
 
-        (low, high), (middle, spread) = self._bounds(), self._normal_parameters()
+        low, high = self._bounds()
+        mean, deviation = self._normal_parameters()
         # avoid the infinite quantiles at 0 and 1
-        inside = np.clip(low + parts * (high - low), 1e-300, 1.0 - 2.0**-53)
-        values = middle + spread * ndtri(inside)
-        return np.asarray(
-            np.clip(np.exp(values) if self.lognormal else values, self.at_least, self.at_most)
-        )
+        probabilities = np.clip(low + parts * (high - low), 1e-300, 1.0 - 2.0**-53)
+        values = mean + deviation * ndtri(probabilities)
+        if self.lognormal:
+            values = np.exp(values)
+        return np.asarray(np.clip(values, self.at_least, self.at_most))

@@ -1,5 +1,6 @@
-"""The results of one chunk of drops, and the HDF5 file that stores them until the study
-is complete.
+"""The results of one chunk of drops, and the HDF5 file that stores them.
+
+The file is kept until the study is complete.
 """
 
 from __future__ import annotations
@@ -19,8 +20,11 @@ from vibroimpact.errors import ComputationError
 from vibroimpact.files.atomic_write import write_file
 from vibroimpact.studies.ledger import Span
 
-FOLDER, CHUNK = "chunks", ".h5"
-"""Subfolder of the chunk files in the folder of a study, and their suffix."""
+FOLDER = "chunks"
+"""Subfolder of the chunk files in the folder of a study."""
+
+CHUNK = ".h5"
+"""Suffix of chunk files."""
 
 
 @dataclass(frozen=True)
@@ -66,34 +70,38 @@ def write_chunk(folder: Path, chunk: Span, result: ChunkResult, study: str) -> s
     memory = BytesIO()
     # a format with checksums in its headers
     with h5py.File(memory, "w", libver=("v110", "v110")) as file:
-        file.attrs["study"], file.attrs["first"], file.attrs["size"] = (
-            study,
-            chunk.first,
-            chunk.size,
-        )
+        file.attrs["study"] = study
+        file.attrs["first"] = chunk.first
+        file.attrs["size"] = chunk.size
         file.create_group("arrays")  # present even if all drops failed
         for name, values in result.arrays.items():
-            # reveals damage on reading, even without a ledger
-            checked = {"fletcher32": True} if values.size else {}
-            file.create_dataset(f"arrays/{name}", data=values, **checked)
+            _write_array(file, f"arrays/{name}", values)
+        indices = np.array(list(result.failures), dtype=np.int64)
         reasons = [reason.encode() for reason in result.failures.values()]
-        for name, given in (
-            ("place", np.array(list(result.failures), dtype=np.int64)),
-            ("reason", np.array(reasons, dtype=bytes)),
-        ):
-            file.create_dataset(
-                f"failures/{name}", data=given, **({"fletcher32": True} if reasons else {})
-            )
-    data, target = memory.getvalue(), chunk_path(folder, chunk.number)
+        _write_array(file, "failures/place", indices)
+        _write_array(file, "failures/reason", np.array(reasons, dtype=bytes))
+    data = memory.getvalue()
+    target = chunk_path(folder, chunk.number)
     try:
         target.parent.mkdir(exist_ok=True)
         write_file(target, data, durable=True)
     except OSError as error:
-        words = "see to the disk, then go on with --resume; the chunks that are done stay"
+        remedy = "see to the disk, then go on with --resume; the chunks that are done stay"
         raise ComputationError(
-            f"{target}: the chunk can't be written: {error.strerror}; {words}"
+            f"{target}: the chunk can't be written: {error.strerror}; {remedy}"
         ) from None
     return sha256(data).hexdigest()
+
+
+def _write_array(file: h5py.File, name: str, values: NDArray[Any]) -> None:
+    """Write an array with checksums, which reveal damage on reading even without a ledger.
+
+    HDF5 allows none for an empty array.
+    """
+    if values.size:
+        file.create_dataset(name, data=values, fletcher32=True)
+    else:
+        file.create_dataset(name, data=values)
 
 
 def checksum(folder: Path, number: int) -> str | None:
@@ -132,14 +140,15 @@ def read_chunk(
         If the file is damaged, or belongs to another study or other drops.
     """
     with h5py.File(chunk_path(folder, chunk.number), "r") as file:
-        told = (file.attrs["study"], file.attrs["first"], file.attrs["size"])
-        if told != (study, chunk.first, chunk.size):
+        stored = (file.attrs["study"], file.attrs["first"], file.attrs["size"])
+        if stored != (study, chunk.first, chunk.size):
             raise ValueError("it is of another study, or has other drops")
-        wanted = [name for name in file["arrays"] if names is None or name in names]
-        # by name and with [()], which raise errors for damage: items() would return None, and
-        # np.asarray an object array
-        arrays = {name: np.asarray(file["arrays"][name][()]) for name in wanted}
+        arrays = {}
+        for name in file["arrays"]:
+            if names is None or name in names:
+                # by name and with [()], which raise errors for damage: items() would return None,
+                # and np.asarray an object array
+                arrays[name] = np.asarray(file["arrays"][name][()])
         reasons = [reason.decode() for reason in file["failures/reason"][()]]
-        return ChunkResult(
-            arrays, dict(zip(file["failures/place"][()].tolist(), reasons, strict=True))
-        )
+        indices = file["failures/place"][()].tolist()
+        return ChunkResult(arrays, dict(zip(indices, reasons, strict=True)))

@@ -1,6 +1,4 @@
-"""Compute a study in its folder, chunk by chunk, up to the dataset; resume one that was
-interrupted.
-"""
+"""Compute a study in its folder, chunk by chunk, up to the dataset, or resume one."""
 
 from __future__ import annotations
 
@@ -51,15 +49,16 @@ _ELASTIC_CHUNK = 32  # drops with elastic bodies per chunk: a second
 # of a population at least, before all falls on a plate are one chunk, so that one process computes
 # its modes
 _PLATE_CHUNKS = 16
-# memory of a drop during computation [bytes], and copies of its results until they are written
-_PER_DROP, _COPIES = 4000.0, 4.0
+_DROP_MEMORY = 4000.0  # of a drop during computation, without its results [bytes]
+_COPIES = 4.0  # of the results of a drop, until they are written
 
 _FEW_CHUNKS = 40  # the overhead of so many chunks is two seconds, whatever their size
 # impacts with rigid bodies, or drops with elastic ones, in a chunk that limit its overhead to a
 # third
-_USEFUL, _USEFUL_ELASTIC = 15_000, 3
+_USEFUL_IMPACTS = 15_000
+_USEFUL_ELASTIC_DROPS = 3
 
-_MANY = 50_000  # drops above which assembling the dataset takes seconds
+_MANY_DROPS = 50_000  # above which assembling the dataset takes seconds
 
 Progress = Callable[[int, int], None]
 Tell = Callable[[str], None]
@@ -78,7 +77,8 @@ def compute_study(
     modes_progress: Callable[[float], None] | None = None,
     tell: Tell | None = None,
 ) -> Path:
-    """Compute a study in a folder: `study.nc`, `drops.csv`, and the ledger of its chunks;
+    """Compute a study in a folder: `study.nc`, `drops.csv`, and the ledger of its chunks.
+
     `run_sweep` also writes the report.
 
     Parameters
@@ -96,15 +96,7 @@ def compute_study(
     InputError, ComputationError
         As for `run_sweep`.
     """
-    if not isinstance(sweep, Sweep):
-        raise InputError(f"a study is wanted, as vi.load_sweep(...) reads it, not {sweep!r}")
-    if not isinstance(workers, int) or workers < 1:
-        raise InputError(f"{workers!r} is not allowed; it must be a whole number from 1", "workers")
-    if isinstance(memory, str) or not memory >= LEAST_MEMORY:
-        raise InputError(
-            f"{memory!r} is not allowed; it must be a number of bytes, {LEAST_MEMORY:g} or more",
-            "memory",
-        )
+    _check_settings(sweep, workers, memory)
     if not resume:
         _check_memory(sweep, memory)
     folder = Path(directory)
@@ -122,18 +114,26 @@ def compute_study(
         if not (folder / DATASET).is_file():
             _invalidate_damaged(ledger, folder, tell)
             number = min(workers, len(ledger.chunks("waiting")))
-            _run(
-                ledger,
-                folder,
-                sweep,
-                _workers(folder, sweep, number, scheduler, modes_progress, tell),
-                progress,
-            )
-            if tell is not None and sweep.size >= _MANY:
+            start_workers = _workers(folder, sweep, number, scheduler, modes_progress, tell)
+            _run(ledger, folder, sweep, start_workers, progress)
+            if tell is not None and sweep.size >= _MANY_DROPS:
                 tell("all drops are done; assembling the results")
             _assemble(folder, ledger, sweep)
         shutil.rmtree(folder / FOLDER, ignore_errors=True)
     return folder
+
+
+def _check_settings(sweep: Any, workers: Any, memory: Any) -> None:
+    """Check the arguments of `run_sweep`, which may come from a script."""
+    if not isinstance(sweep, Sweep):
+        raise InputError(f"a study is wanted, as vi.load_sweep(...) reads it, not {sweep!r}")
+    if not isinstance(workers, int) or workers < 1:
+        raise InputError(f"{workers!r} is not allowed; it must be a whole number from 1", "workers")
+    if isinstance(memory, str) or not memory >= LEAST_MEMORY:
+        raise InputError(
+            f"{memory!r} is not allowed; it must be a number of bytes, {LEAST_MEMORY:g} or more",
+            "memory",
+        )
 
 
 def _create(folder: Path, sweep: Sweep, memory: float, *, force: bool) -> None:
@@ -154,9 +154,7 @@ def _create(folder: Path, sweep: Sweep, memory: float, *, force: bool) -> None:
 
 
 def _summary(sweep: Sweep) -> dict[str, Any]:
-    """Return the content of `summary.json`, to which the checksum of the dataset is added
-    when that is written.
-    """
+    """Return the content of `summary.json`, which gets the checksum of the dataset later."""
     return {
         "name": sweep.name,
         "version": __version__,
@@ -172,29 +170,27 @@ def _restore_ledger(folder: Path, sweep: Sweep, memory: float) -> None:
     with open_ledger(folder) as ledger:
         for chunk in ledger.chunks("waiting"):
             try:
-                found = read_chunk(folder, chunk, sweep.digest)
+                result = read_chunk(folder, chunk, sweep.digest)
             except (OSError, KeyError, ValueError):
                 continue
-            ledger.done(chunk, checksum(folder, chunk.number) or "", len(found.failures))
+            ledger.done(chunk, checksum(folder, chunk.number) or "", len(result.failures))
 
 
 def _check_same(ledger: Ledger, folder: Path, sweep: Sweep) -> None:
     """Check that a ledger belongs to this study and was created with the present versions."""
-    facts, now = ledger.facts, _facts(sweep)
-    for key, name in (("version", "vibroimpact"), ("numpy", "NumPy")):
-        if facts.get(key) != now[key]:
-            words = f"this study was begun with {name} {facts.get(key)}, and this is {now[key]}"
+    facts = ledger.facts
+    present_facts = _facts(sweep)
+    for key, package in (("version", "vibroimpact"), ("numpy", "NumPy")):
+        if facts.get(key) != present_facts[key]:
             raise InputError(
-                f"{folder}: {words}; go on with that version, or begin anew with --force "
+                f"{folder}: this study was begun with {package} {facts.get(key)}, and this is "
+                f"{present_facts[key]}; go on with that version, or begin anew with --force "
                 "in place of --resume"
             )
-    if facts.get("digest") != now["digest"]:
-        words = (
-            "the study has changed since it was begun here: its case, its points, "
-            "its files or what is kept"
-        )
+    if facts.get("digest") != present_facts["digest"]:
         raise InputError(
-            f"{folder}: {words}; {STUDY} in it is what was begun; begin anew with --force "
+            f"{folder}: the study has changed since it was begun here: its case, its points, "
+            f"its files or what is kept; {STUDY} in it is what was begun; begin anew with --force "
             "in place of --resume, or in another folder"
         )
 
@@ -237,13 +233,15 @@ def _run(
 
 
 def _assemble(folder: Path, ledger: Ledger, sweep: Sweep) -> None:
-    """Write table and dataset from the chunks; the dataset comes last, as its presence
-    marks a complete study.
+    """Write table and dataset from the chunks.
+
+    The dataset comes last, as its presence marks a complete study.
     """
-    chunks, left = ledger.chunks("done"), ledger.chunks("waiting")
-    if left:
+    chunks = ledger.chunks("done")
+    waiting = ledger.chunks("waiting")
+    if waiting:
         raise ComputationError(
-            f"{folder}: {len(left)} of the chunks {'is' if len(left) == 1 else 'are'} not "
+            f"{folder}: {len(waiting)} of the chunks {'is' if len(waiting) == 1 else 'are'} not "
             "done; go on with --resume"
         )
     rates = {sensor.name: sensor.rate for sensor in sweep.case.sensors}
@@ -262,11 +260,11 @@ def _assemble(folder: Path, ledger: Ledger, sweep: Sweep) -> None:
             _summary(sweep),
         )
     except OSError as error:
-        why = os.strerror(error.errno) if error.errno else str(error)
-        words = (
-            f"the results can't be put together: {why}; see to the disk, then go on with --resume"
-        )
-        raise ComputationError(f"{folder}: {words}") from None
+        reason = os.strerror(error.errno) if error.errno else str(error)
+        raise ComputationError(
+            f"{folder}: the results can't be put together: {reason}; see to the disk, then go on "
+            "with --resume"
+        ) from None
 
 
 def _workers(
@@ -277,8 +275,9 @@ def _workers(
     modes_progress: Callable[[float], None] | None,
     tell: Tell | None,
 ) -> Workers:
-    """Return a function that starts workers; each receives the modes of the first point
-    once, wherever it runs.
+    """Return a function that starts workers.
+
+    Each receives the modes of the first point once, wherever it runs.
     """
     from threadpoolctl import threadpool_limits  # imported late: it inspects all loaded libraries
 
@@ -286,13 +285,12 @@ def _workers(
     if sweep.deforms and number:
         with threadpool_limits(1):  # as the workers compute them
             entries = carried_modes(sweep.case, modes_progress, tell)
+    setup = partial(receive, entries)
     if scheduler is not None:
-        return partial(dask_workers, scheduler, number, partial(receive, entries))
-    return (
-        this_process
-        if number <= 1
-        else partial(processes, number, partial(receive, entries), folder / FOLDER)
-    )
+        return partial(dask_workers, scheduler, number, setup)
+    if number <= 1:
+        return this_process
+    return partial(processes, number, setup, folder / FOLDER)
 
 
 def _facts(sweep: Sweep) -> dict[str, str]:
@@ -300,20 +298,21 @@ def _facts(sweep: Sweep) -> dict[str, str]:
 
 
 def least_memory(sweep: Sweep) -> float:
-    """Return the memory per chunk [bytes] below which the overhead of chunks lengthens a study by
-    more than a third.
+    """Return the least useful memory per chunk [bytes].
+
+    With less, the overhead of chunks lengthens the study by more than a third.
 
     Parameters
     ----------
     sweep : Sweep
         The study.
     """
-    useful = (
-        _USEFUL_ELASTIC
-        if sweep.deforms
-        else math.ceil(_USEFUL / (impact_limit(sweep.case) or LONG))
-    )
-    return max(LEAST_MEMORY, min(useful, math.ceil(sweep.size / _FEW_CHUNKS)) * _bytes_each(sweep))
+    if sweep.deforms:
+        useful_drops = _USEFUL_ELASTIC_DROPS
+    else:
+        useful_drops = math.ceil(_USEFUL_IMPACTS / (impact_limit(sweep.case) or LONG))
+    drops = min(useful_drops, math.ceil(sweep.size / _FEW_CHUNKS))
+    return max(LEAST_MEMORY, drops * _drop_memory(sweep))
 
 
 def _check_memory(sweep: Sweep, memory: float) -> None:
@@ -329,14 +328,15 @@ def _check_memory(sweep: Sweep, memory: float) -> None:
         )
 
 
-def _bytes_each(sweep: Sweep) -> float:
+def _drop_memory(sweep: Sweep) -> float:
     """Return the memory of one drop of a chunk [bytes]."""
-    return _PER_DROP + _COPIES * sweep.bytes / sweep.size
+    return _DROP_MEMORY + _COPIES * sweep.bytes / sweep.size
 
 
 def chunk_size(sweep: Sweep, memory: float) -> int:
-    """Return the number of drops per chunk: fewer if memory is short, independent of the number of
-    workers.
+    """Return the number of drops per chunk, which does not depend on the number of workers.
+
+    It is smaller if memory is short.
 
     Parameters
     ----------
@@ -347,6 +347,6 @@ def chunk_size(sweep: Sweep, memory: float) -> int:
     """
     most = _CHUNK
     if sweep.deforms:
-        on_a_plate = 1 if sweep.population is None else sweep.population.falls_per_plate
-        most = max(_ELASTIC_CHUNK, min(on_a_plate, sweep.size // _PLATE_CHUNKS))
-    return max(1, min(most, int(memory / _bytes_each(sweep))))
+        falls_per_plate = 1 if sweep.population is None else sweep.population.falls_per_plate
+        most = max(_ELASTIC_CHUNK, min(falls_per_plate, sweep.size // _PLATE_CHUNKS))
+    return max(1, min(most, int(memory / _drop_memory(sweep))))

@@ -64,11 +64,10 @@ def dask_workers(address: str, number: int, setup: Setup) -> Iterator[WorkerPool
 
     # the scheduler serves its health page even without a dashboard; choose a free port, as 8787 may
     # be in use
-    questions = {"dashboard": False, "dashboard_address": "localhost:0"}
     options = {
         "n_workers": number,
         "threads_per_worker": 1,
-        "scheduler_kwargs": questions,
+        "scheduler_kwargs": {"dashboard": False, "dashboard_address": "localhost:0"},
         "silence_logs": logging.CRITICAL,
     }
     with (
@@ -76,9 +75,12 @@ def dask_workers(address: str, number: int, setup: Setup) -> Iterator[WorkerPool
         Client(cluster) as client,
     ):
         client.register_plugin(Setting())
-        yield WorkerPool(
-            client.get_executor(pure=False), lambda: 2 * max(1, sum(client.nthreads().values()))
-        )
+
+        def in_flight() -> int:
+            threads: int = sum(client.nthreads().values())
+            return 2 * max(1, threads)
+
+        yield WorkerPool(client.get_executor(pure=False), in_flight)
 
 
 def _client(address: str) -> Any:
@@ -88,22 +90,20 @@ def _client(address: str) -> Any:
     try:
         client = Client(address, timeout=_PATIENCE)
     except (OSError, ValueError, TimeoutError) as error:
-        words = (
-            'the address of a scheduler is such as tcp://10.0.0.5:8786, or "local" for one of '
-            "this machine"
-        )
-        why = next(iter(str(error).splitlines()), type(error).__name__)
+        reason = next(iter(str(error).splitlines()), type(error).__name__)
         raise InputError(
-            f"{address}: no Dask scheduler answers there ({why}); {words}", "--scheduler"
+            f"{address}: no Dask scheduler answers there ({reason}); the address of a scheduler "
+            'is such as tcp://10.0.0.5:8786, or "local" for one of this machine',
+            "--scheduler",
         ) from None
-    found = client.run(_version)
-    if not found:
+    versions = client.run(_version)
+    if not versions:
         client.close()
         raise InputError(
             f"{address}: this scheduler has no workers; start some, such as: dask worker {address}",
             "--scheduler",
         )
-    for worker, version in found.items():
+    for worker, version in versions.items():
         if version != __version__:
             client.close()
             raise InputError(

@@ -76,13 +76,12 @@ def designs() -> Mapping[str, Design]:
     >>> list(designs())
     ['grid', 'latin-hypercube', 'population', 'saltelli', 'sobol', 'zip']
     """
-    found = [
-        value
-        for module in modules_in("vibroimpact.studies.designs")
-        for value in vars(module).values()
-        if isinstance(value, Design)
-    ]
-    return {one.name: one for one in sorted(found, key=lambda one: one.name)}
+    by_name = {}
+    for module in modules_in("vibroimpact.studies.designs"):
+        for value in vars(module).values():
+            if isinstance(value, Design):
+                by_name[value.name] = value
+    return dict(sorted(by_name.items()))
 
 
 def find_design(name: str) -> Design:
@@ -96,13 +95,11 @@ def find_design(name: str) -> Design:
     return find_named("design", name, designs())
 
 
-def drawn_plan(name: str, axes: Mapping[str, Axis], parts: Floats) -> Plan:
-    """Return the plan whose points are the quantiles of the axes at probabilities
-    (points, axes).
-    """
-    columns = {
-        key: axis.quantiles(parts[:, place]) for place, (key, axis) in enumerate(axes.items())
-    }
+def drawn_plan(name: str, axes: Mapping[str, Axis], probabilities: Floats) -> Plan:
+    """Return the plan of the quantiles of the axes at probabilities, (points, axes)."""
+    columns = {}
+    for key, axis_probabilities in zip(axes, probabilities.T, strict=True):
+        columns[key] = axes[key].quantiles(axis_probabilities)
     return Plan(name, scaled_columns(axes, columns), False)
 
 

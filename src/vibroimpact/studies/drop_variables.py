@@ -37,8 +37,9 @@ class PeakVariable(NamedTuple):
 def _first(
     column: str, meaning: str, title: str = "", short: str = "", *, is_drawn: bool = True
 ) -> PeakVariable:
-    """Return the value of a column at the first impact; unit and label are those of the
-    column unless given.
+    """Return the value of a column at the first impact.
+
+    Unit and label are those of the column unless given.
     """
     source = ALL_IMPACT_COLUMNS[column]
     return PeakVariable(
@@ -136,8 +137,9 @@ PEAK_TABLE: dict[str, PeakVariable] = {
         is_drawn=False,
     ),
 }
-"""The peaks by name, the most important first. Those of a column that the drops have not,
-as of oblique impacts, are left out.
+"""The peaks by name, the most important first.
+
+Those of a column that the drops have not, as of oblique impacts, are left out.
 """
 
 PEAKS: dict[str, tuple[str, str]] = {
@@ -164,14 +166,16 @@ SIGNAL = "signal_"
 """Prefix of the signal of a sensor; the name of the sensor follows."""
 
 SIGNAL_START = "_start_s"
-"""Suffix of the time of the first sample that is kept of the signal of a sensor [s]; the
-name of the sensor precedes it.
+"""Suffix of the time of the first sample that is kept of the signal of a sensor [s].
+
+The name of the sensor precedes it.
 """
 
 DOUBTS = "doubts"
 """The limits of the theory that a drop exceeds, as a bit mask."""
 
 LIMIT = "limit_"
-"""Prefix of the number that is compared with the threshold of a limit; the name of the
-limit follows.
+"""Prefix of the number that is compared with the threshold of a limit.
+
+The name of the limit follows.
 """

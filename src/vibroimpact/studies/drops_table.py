@@ -27,8 +27,10 @@ MOST_ROWS = 1_000_000
 def write_drops(
     folder: Path, chunks: Sequence[Span], study: str, plan: Plan, meanings: Meanings
 ) -> None:
-    """Write one row per drop: number, values of the swept keys, peaks, outcome, exceeded limits and
-    reason of failure.
+    """Write one row per drop.
+
+    It holds the number, the values of the swept keys, the peaks, the outcome, the exceeded limits
+    and the reason of failure.
 
     Parameters
     ----------
@@ -44,15 +46,16 @@ def write_drops(
     peaks = [
         name for name in meanings if name in kept and (name in PEAKS or name.endswith(SENSOR_PEAK))
     ]
-    keys = [
-        key if meanings[key][0] == "1" else f"{key} [{meanings[key][0]}]" for key in plan.columns
-    ]
+    headers = []
+    for key in plan.columns:
+        unit, _ = meanings[key]
+        headers.append(key if unit == "1" else f"{key} [{unit}]")
     with (
         atomic_file(folder / TABLE) as working,
         working.open("w", newline="", encoding="utf-8") as file,
     ):
         writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(["drop", *keys, *peaks, OUTCOME, DOUBTS, "reason"])
+        writer.writerow(["drop", *headers, *peaks, OUTCOME, DOUBTS, "reason"])
         for chunk in chunks:
             result = read_chunk(folder, chunk, study, {*peaks, OUTCOME, DOUBTS})
             writer.writerows(_rows(chunk, plan, result, peaks))
@@ -61,30 +64,29 @@ def write_drops(
 def _rows(
     chunk: Span, plan: Plan, result: ChunkResult, peaks: Sequence[str]
 ) -> Iterator[tuple[Any, ...]]:
-    ended = result.arrays.get(OUTCOME, np.full(chunk.size, Outcome.FAILED.code))
-    columns = [_cells(result.arrays.get(name, np.full(chunk.size, np.nan))) for name in peaks]
+    """Yield the rows of the drops of a chunk."""
+    numbers = range(chunk.first, chunk.first + chunk.size)
     points = [
         [as_text(value) for value in values.tolist()]
         for values in plan.points(chunk.first, chunk.size).values()
     ]
-    numbers = range(chunk.first, chunk.first + chunk.size)
-    reasons = [result.failures.get(place, "") for place in range(chunk.size)]
-    beyond = result.arrays.get(DOUBTS, np.zeros(chunk.size, dtype=np.int32)).tolist()
-    doubts = {
-        mask: " ".join(name for bit, name in enumerate(limits()) if mask >> bit & 1)
-        for mask in set(beyond)
-    }
-    outcomes = [OUTCOMES[code].value for code in ended]
-    yield from zip(
-        numbers,
-        *points,
-        *columns,
-        outcomes,
-        [doubts[mask] for mask in beyond],
-        reasons,
-        strict=True,
-    )
+    # a peak is not there where all drops of the chunk failed
+    no_values = np.full(chunk.size, np.nan)
+    columns = [_cells(result.arrays.get(name, no_values)) for name in peaks]
+    codes = result.arrays.get(OUTCOME, np.full(chunk.size, Outcome.FAILED.code))
+    outcomes = [OUTCOMES[code].value for code in codes]
+    exceeded = result.arrays.get(DOUBTS, np.zeros(chunk.size, dtype=np.int32)).tolist()
+    names_of_mask = {mask: _exceeded_limits(mask) for mask in set(exceeded)}
+    doubts = [names_of_mask[mask] for mask in exceeded]
+    reasons = [result.failures.get(drop, "") for drop in range(chunk.size)]
+    yield from zip(numbers, *points, *columns, outcomes, doubts, reasons, strict=True)
+
+
+def _exceeded_limits(mask: int) -> str:
+    """Return the names of the limits whose bits are set."""
+    return " ".join(name for bit, name in enumerate(limits()) if mask >> bit & 1)
 
 
 def _cells(values: NDArray[Any]) -> list[Any]:
+    """Return values as cells of the table; NaN, which differs from itself, is an empty cell."""
     return ["" if value != value else value for value in values.tolist()]

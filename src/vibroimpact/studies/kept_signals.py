@@ -6,6 +6,7 @@ from collections.abc import Collection, Mapping
 from typing import Any
 
 from vibroimpact.cases.case import Case
+from vibroimpact.cases.schema import SensorSection
 from vibroimpact.cases.sensor_keys import sensors_of
 from vibroimpact.errors import InputError
 from vibroimpact.studies.drop_variables import SENSOR_PEAK, SIGNAL, SIGNAL_START
@@ -35,8 +36,9 @@ def check_need_of_signals(section: SweepSection, keys: Collection[str]) -> None:
 
 
 def check_signals(case: Case, taken: Collection[str]) -> None:
-    """Check that the signals of a case can be kept, and that their names are not those of other
-    variables.
+    """Check that the signals of a case can be kept, and that the names of sensors suit.
+
+    The variables of their signals may not have the names of other variables.
 
     Raises
     ------
@@ -45,23 +47,22 @@ def check_signals(case: Case, taken: Collection[str]) -> None:
     """
     # names of sensors become names of variables of the dataset
     sensors = [sensor.name for sensor in case.sensors]
-    variables = [
-        name
-        for sensor in sensors
-        for name in (
+    variables = []
+    for sensor in sensors:
+        variables += [
             f"{SIGNAL}{sensor}",
             f"{sensor}{SENSOR_PEAK}",
             f"{sensor}{SIGNAL_START}",
             f"time_{sensor}",
-        )
-    ]
-    for name in variables:
-        if not name.isprintable() or "/" in name or variables.count(name) > 1 or name in taken:
-            words = (
-                f'"{name}" can\'t be the name of a variable of the dataset, or is that of '
+        ]
+    for variable in variables:
+        is_name = variable.isprintable() and "/" not in variable
+        if not is_name or variables.count(variable) > 1 or variable in taken:
+            message = (
+                f'"{variable}" can\'t be the name of a variable of the dataset, or is that of '
                 "another; call the sensor otherwise"
             )
-            raise InputError(words, "sensors")
+            raise InputError(message, "sensors")
     if not sensors:
         raise InputError(
             '"signals" needs [[sensors]], on a plate that is elastic or shaken', "sweep.keep"
@@ -74,8 +75,9 @@ def check_signals(case: Case, taken: Collection[str]) -> None:
 
 
 def check_swept_sensors(table: Mapping[str, Any], keys: Collection[str], case: Case) -> None:
-    """Check that sensors, where they are swept, put out signals as those of the case by itself do,
-    so that all fit into one array.
+    """Check that swept sensors put out signals as those of the case by itself do.
+
+    The signals of all drops are to fit into one array.
 
     Parameters
     ----------
@@ -93,14 +95,18 @@ def check_swept_sensors(table: Mapping[str, Any], keys: Collection[str], case: C
     """
     if not any(key.startswith("sensors.") for key in keys):
         return
-    for own, swept in zip(sensors_of(table).values(), case.sensors, strict=True):
-        wanted, found = (
-            f"{sensor.sensor().quantity} [{sensor.sensor().unit}] at {sensor.rate:.10g} Hz"
-            for sensor in (own, swept)
-        )
-        if wanted != found:
-            words = (
-                f"it would give {found}, and {wanted} by the case; signals of a study have one "
-                "quantity, unit and rate"
+    for sensor, swept_sensor in zip(sensors_of(table).values(), case.sensors, strict=True):
+        signal = _signal_description(sensor)
+        swept_signal = _signal_description(swept_sensor)
+        if swept_signal != signal:
+            message = (
+                f"it would give {swept_signal}, and {signal} by the case; signals of a study have "
+                "one quantity, unit and rate"
             )
-            raise InputError(words, f"sensors.{own.name}")
+            raise InputError(message, f"sensors.{sensor.name}")
+
+
+def _signal_description(section: SensorSection) -> str:
+    """Return quantity, unit and rate of the signal of a sensor in words."""
+    sensor = section.sensor()
+    return f"{sensor.quantity} [{sensor.unit}] at {section.rate:.10g} Hz"

@@ -80,8 +80,9 @@ class Ledger:
 
 
 def make_ledger(folder: Path, facts: Mapping[str, str], size: int, chunk: int) -> None:
-    """Create atomically the ledger of a study of `size` points in chunks of `chunk`
-    points, all waiting.
+    """Create the ledger of a study of `size` points, in chunks of `chunk` points, all waiting.
+
+    It appears atomically.
     """
     with (
         _translated_faults(folder / LEDGER),
@@ -95,13 +96,11 @@ def make_ledger(folder: Path, facts: Mapping[str, str], size: int, chunk: int) -
             connection.executemany(
                 "INSERT INTO study VALUES (?, ?)", {**facts, "size": str(size)}.items()
             )
-            spans = (
-                (number, first, min(chunk, size - first))
-                for number, first in enumerate(range(0, size, chunk))
-            )
-            connection.executemany(
-                "INSERT INTO chunk (number, first, count) VALUES (?, ?, ?)", spans
-            )
+            for number, first in enumerate(range(0, size, chunk)):
+                connection.execute(
+                    "INSERT INTO chunk (number, first, count) VALUES (?, ?, ?)",
+                    (number, first, min(chunk, size - first)),
+                )
 
 
 def busy(folder: Path) -> str:
@@ -151,9 +150,9 @@ def open_ledger(folder: Path) -> Iterator[Ledger]:
             connection.execute("BEGIN EXCLUSIVE")
             connection.execute("COMMIT")
             _check_schema(connection)
-            found = connection.execute("PRAGMA quick_check").fetchone()[0]
-            if found != "ok":
-                raise sqlite3.DatabaseError(found)
+            damage = connection.execute("PRAGMA quick_check").fetchone()[0]
+            if damage != "ok":
+                raise sqlite3.DatabaseError(damage)
             _check_chunks(connection)
         yield Ledger(connection, path)
     finally:
@@ -161,8 +160,9 @@ def open_ledger(folder: Path) -> Iterator[Ledger]:
 
 
 def _check_schema(connection: sqlite3.Connection) -> None:
-    """Check that the database has the tables of a ledger, and no views and triggers,
-    which would run.
+    """Check that the database has the tables of a ledger.
+
+    It may have no views and triggers, which would run.
     """
     expected = {
         " ".join(statement.split()) for statement in _SCHEMA.split(";") if statement.strip()
@@ -175,26 +175,26 @@ def _check_schema(connection: sqlite3.Connection) -> None:
 
 
 def _check_chunks(connection: sqlite3.Connection) -> None:
-    """Check that the chunks are contiguous and their states valid, as the database has no
-    checksums of its own.
+    """Check that the chunks are contiguous and their states valid.
+
+    The database has no checksums of its own.
     """
     rows = connection.execute(
         "SELECT number, first, count, state FROM chunk ORDER BY number"
     ).fetchall()
-    begin = 0
-    for place, (number, first, count, state) in enumerate(rows):
+    size = 0
+    for expected_number, (number, first, count, state) in enumerate(rows):
         if (
-            number != place
-            or first != begin
+            number != expected_number
+            or first != size
             or not isinstance(count, int)
             or count < 1
             or state not in ("waiting", "done")
         ):
-            raise sqlite3.DatabaseError(f"chunk {place} is not what it was")
-        begin += count
-    if [str(begin)] != [
-        value for (value,) in connection.execute("SELECT value FROM study WHERE key = 'size'")
-    ]:
+            raise sqlite3.DatabaseError(f"chunk {expected_number} is not what it was")
+        size += count
+    sizes = connection.execute("SELECT value FROM study WHERE key = 'size'").fetchall()
+    if sizes != [(str(size),)]:
         raise sqlite3.DatabaseError("chunks are missing")
 
 
@@ -222,9 +222,8 @@ def _write_failure(path: Path, why: str) -> str:
 
 def _damage(path: Path, why: str) -> str:
     """Return the error message for a damaged ledger."""
-    shown = "".join(letter if letter.isprintable() else " " for letter in why)[:100]
-    words = (
-        "delete this file and go on with --resume: it is made anew from the chunks that are "
-        "there and whole"
+    reason = "".join(letter if letter.isprintable() else " " for letter in why)[:100]
+    return (
+        f"{path}: the ledger is damaged ({reason}); delete this file and go on with --resume: it "
+        "is made anew from the chunks that are there and whole"
     )
-    return f"{path}: the ledger is damaged ({shown}); {words}"

@@ -1,5 +1,6 @@
-"""The limits of the theory for the drops of a study: the number compared with each limit,
-and the limits exceeded.
+"""The limits of the theory for the drops of a study.
+
+For each limit the number that is compared with it, and which limits are exceeded.
 """
 
 from __future__ import annotations
@@ -38,8 +39,7 @@ def limit_meanings() -> dict[str, tuple[str, str]]:
 
 
 def limit_columns(drops: Conditions, count: int) -> dict[str, NDArray[Any]]:
-    """Return the numbers of the applicable limits, and a bit mask of the limits that each drop
-    exceeds.
+    """Return the numbers of the applicable limits, and which limits each drop exceeds, as bits.
 
     Parameters
     ----------
@@ -48,25 +48,22 @@ def limit_columns(drops: Conditions, count: int) -> dict[str, NDArray[Any]]:
     count : int
         Number of drops.
     """
-    numbers, beyond = numbers_of(drops), np.zeros(count, dtype=np.int32)
+    numbers = numbers_of(drops)
+    doubts = np.zeros(count, dtype=np.int32)
     for bit, (name, limit) in enumerate(limits().items()):
         if name in numbers:
-            beyond |= np.left_shift(np.greater(numbers[name], limit.threshold), bit, dtype=np.int32)
-    return {
-        DOUBTS: beyond,
-        **{f"{LIMIT}{name}": _one_each(number, count) for name, number in numbers.items()},
-    }
-
-
-def _one_each(number: Any, count: int) -> NDArray[np.float32]:
-    return np.array(np.broadcast_to(number, count), dtype=np.float32)
+            exceeds = np.greater(numbers[name], limit.threshold)
+            doubts |= np.left_shift(exceeds, bit, dtype=np.int32)
+    columns: dict[str, NDArray[Any]] = {DOUBTS: doubts}
+    for name, number in numbers.items():
+        columns[f"{LIMIT}{name}"] = np.array(np.broadcast_to(number, count), dtype=np.float32)
+    return columns
 
 
 def batch_conditions(
     case: Case, arrays: Mapping[str, Values], law: ContactLaw, peaks: Mapping[str, NDArray[Any]]
 ) -> Conditions:
-    """Return the conditions of a batch of drops with rigid bodies, for the evaluation of the
-    limits.
+    """Return the conditions of a batch of drops with rigid bodies, to compare with the limits.
 
     Parameters
     ----------
@@ -79,42 +76,43 @@ def batch_conditions(
     peaks : mapping of str to array
         Their peaks.
     """
-    of_law = (
-        key
-        for key in arrays
-        if key.startswith("contact.") and not key.startswith("contact.liquid.")
-    )
-    given_elsewhere = {key: arrays[key] for key in arrays.keys() - set(of_law)}
-    table = cast("ResolvedCase", with_values(resolved_case(case), given_elsewhere))
-    given = {
-        item.name: getattr(law, item.name)
-        for item in fields(law)
-        if item.name not in by_speed_of(case)
+    other_arrays = {
+        key: values
+        for key, values in arrays.items()
+        if not key.startswith("contact.") or key.startswith("contact.liquid.")
     }
-    table["contact"] |= {name: value for name, value in given.items() if value is not None}
-    return Conditions(table, _seen(peaks))
+    table = cast("ResolvedCase", with_values(resolved_case(case), other_arrays))
+    # the parameters that the law has at the first impact; those that depend on the speed stay
+    by_speed = by_speed_of(case)
+    for item in fields(law):
+        parameter = getattr(law, item.name)
+        if item.name not in by_speed and parameter is not None:
+            table["contact"][item.name] = parameter
+    return Conditions(table, _peak_summary(peaks))
 
 
 def drop_conditions(response: Response, peaks: Mapping[str, NDArray[Any]]) -> Conditions:
-    """Return the conditions of one drop, whose bodies may vibrate, for the evaluation of
-    the limits.
-    """
-    problem, modes = response.problem, {}
-    for body, part in response.truncation.items():
-        modes[body] = part, float(getattr(problem, body).modes.frequencies[-1])
-    seen = replace(
-        _seen(peaks),
-        duration=time_of_contact(response.impacts) if len(response.impacts["impact"]) else np.nan,
+    """Return the conditions of one drop, whose bodies may vibrate, to compare with the limits."""
+    problem = response.problem
+    impacts = response.impacts
+    modes = {}
+    for body, truncation_error in response.truncation.items():
+        highest_frequency = float(getattr(problem, body).modes.frequencies[-1])
+        modes[body] = (truncation_error, highest_frequency)
+    summary = replace(
+        _peak_summary(peaks),
+        duration=time_of_contact(impacts) if len(impacts["impact"]) else np.nan,
         deflection=largest_bending(response),
         modes=modes,
-        changes=change_by_impact(response.impacts, problem.tolerance),
-        plate_theory=plate_theory_error(problem.facts, response.impacts),
-        plate_mesh=plate_mesh_error(problem.facts, response.impacts),
+        changes=change_by_impact(impacts, problem.tolerance),
+        plate_theory=plate_theory_error(problem.facts, impacts),
+        plate_mesh=plate_mesh_error(problem.facts, impacts),
     )
-    return Conditions(problem.source or {}, seen)
+    return Conditions(problem.source or {}, summary)
 
 
-def _seen(peaks: Mapping[str, NDArray[Any]]) -> DropSummary:
+def _peak_summary(peaks: Mapping[str, NDArray[Any]]) -> DropSummary:
+    """Return the outcomes that are among the peaks of a drop."""
     return DropSummary(
         force=peaks["largest_force_N"],
         depth=peaks["largest_indentation_m"],

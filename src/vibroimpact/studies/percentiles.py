@@ -59,11 +59,11 @@ def spread_of(values: Floats) -> Spread:
     """
     # a copy, to be sorted and shifted in place
     finite = np.asarray(values, dtype=float)[np.isfinite(values)]
-    number = len(finite)
-    if not number:
+    drops = len(finite)
+    if not drops:
         return Spread(0, math.nan, math.nan, (math.nan,) * len(PERCENTILES))
     mean = float(finite.mean())
-    found = tuple(float(one) for one in np.percentile(finite, PERCENTILES, overwrite_input=True))
+    percentiles = tuple(np.percentile(finite, PERCENTILES, overwrite_input=True).tolist())
     finite -= mean
-    deviation = math.sqrt(float(finite @ finite) / (number - 1)) if number > 1 else math.nan
-    return Spread(number, mean, deviation, found)
+    deviation = math.sqrt(float(finite @ finite) / (drops - 1)) if drops > 1 else math.nan
+    return Spread(drops, mean, deviation, percentiles)

@@ -62,23 +62,21 @@ class Plan:
         """Return the values of `count` points from `first` on by swept key, (count,) each."""
         if not self.is_grid:
             return {key: values[first : first + count] for key, values in self.columns.items()}
-        places = np.unravel_index(np.arange(first, first + count), tuple(self.dimensions.values()))
-        return {
-            key: levels[place]
-            for (key, levels), place in zip(self.columns.items(), places, strict=True)
-        }
+        shape = tuple(self.dimensions.values())
+        # for each key the index of its level at each point
+        indices = np.unravel_index(np.arange(first, first + count), shape)
+        points = {}
+        for (key, levels), index in zip(self.columns.items(), indices, strict=True):
+            points[key] = levels[index]
+        return points
 
     def digest(self) -> str:
         """Return a fingerprint (SHA-256) of all points."""
-        found = sha256(f"{self.design} {self.is_grid}".encode())
+        fingerprint = sha256(f"{self.design} {self.is_grid}".encode())
         for key, values in {**self.columns, **self.labels}.items():
-            objects = values.dtype == object
-            found.update(
-                key.encode()
-                + (
-                    json.dumps(values.tolist()).encode()
-                    if objects
-                    else np.ascontiguousarray(values).tobytes()
-                )
-            )
-        return found.hexdigest()
+            fingerprint.update(key.encode())
+            if values.dtype == object:
+                fingerprint.update(json.dumps(values.tolist()).encode())
+            else:
+                fingerprint.update(np.ascontiguousarray(values).tobytes())
+        return fingerprint.hexdigest()

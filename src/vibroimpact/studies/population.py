@@ -1,5 +1,6 @@
-"""Populations of rocks: classes with distributions of their own, and groups of falls that
-share a rock and a plate.
+"""Populations of rocks: classes with distributions of their own, and falls in groups.
+
+The falls of a group share a rock and a plate.
 """
 
 from __future__ import annotations
@@ -15,7 +16,9 @@ from vibroimpact.errors import InputError
 from vibroimpact.studies.axes import Axis, Listed, Values
 from vibroimpact.studies.scaled import Each, Scaled, drawn_for, scaled_columns
 
-CLASS, ROCK, PLATE = "class", "rock", "plate"
+CLASS = "class"
+ROCK = "rock"
+PLATE = "plate"
 """Labels of a fall: the name of its class, and the numbers of its rock and its plate, from 0."""
 
 LABELS = {
@@ -91,49 +94,65 @@ class Population:
         """
         rock = np.arange(falls) // self.falls_per_rock
         plate = rock // self.rocks_per_plate
-        of_rock = _drawn(
-            Listed(tuple(range(len(self.shares))), tuple(self.shares.values())), CLASS, rock, seed
-        ).astype(int)
-        names = list(self.shares)
-        none = [name for number, name in enumerate(names) if not (of_rock == number).any()]
-        if none:
-            words = (
-                f'"{none[0]}" gets none of the {rock[-1] + 1} rocks; ask for more samples, '
-                "fewer falls per rock, or a larger share"
-            )
-            raise InputError(words, "samples")
+        classes = list(self.shares)
+        class_number = self._draw_classes(rock, seed)
         groups: dict[Each, Indices] = {"plate": plate, "rock": rock, "fall": np.arange(falls)}
         columns = {
             key: _drawn(axis, key, groups[_each(key, axis)], seed) for key, axis in common.items()
         }
         for key in next(iter(self.own.values())):
-            each = [
-                _drawn(self.own[name][key], key, groups[_each(key, self.own[name][key])], seed)
-                for name in names
-            ]
-            mixed = np.empty(falls, dtype=np.result_type(*each))
-            for number, values in enumerate(each):
-                mixed[of_rock == number] = values[of_rock == number]
+            # each class draws for all falls: what a fall gets does not depend on the others
+            drawn = []
+            for name in classes:
+                axis = self.own[name][key]
+                drawn.append(_drawn(axis, key, groups[_each(key, axis)], seed))
+            mixed = np.empty(falls, dtype=np.result_type(*drawn))
+            for number, values in enumerate(drawn):
+                mixed[class_number == number] = values[class_number == number]
             columns[key] = mixed
+
+        # last, as a key may follow another one, which has its values by now
         columns = scaled_columns(common, columns)
-        for number, name in enumerate(names):
-            there = of_rock == number
-            rows = scaled_columns(
-                self.own[name], {key: values[there] for key, values in columns.items()}
-            )
+        for number, name in enumerate(classes):
+            in_class = class_number == number
+            class_columns = {key: values[in_class] for key, values in columns.items()}
+            scaled = scaled_columns(self.own[name], class_columns)
             for key in self.own[name]:
-                columns[key][there] = rows[key]
-        return columns, {CLASS: np.array(names, dtype=object)[of_rock], ROCK: rock, PLATE: plate}
+                columns[key][in_class] = scaled[key]
+        labels = {CLASS: np.array(classes, dtype=object)[class_number], ROCK: rock, PLATE: plate}
+        return columns, labels
+
+    def _draw_classes(self, rock: Indices, seed: int) -> Indices:
+        """Return the number of the class of each fall, from 0, given the number of its rock.
+
+        Raises
+        ------
+        InputError
+            If a class gets no rock.
+        """
+        numbers = Listed(tuple(range(len(self.shares))), tuple(self.shares.values()))
+        class_number = _drawn(numbers, CLASS, rock, seed).astype(int)
+        for number, name in enumerate(self.shares):
+            if not (class_number == number).any():
+                message = (
+                    f'"{name}" gets none of the {rock[-1] + 1} rocks; ask for more samples, '
+                    "fewer falls per rock, or a larger share"
+                )
+                raise InputError(message, "samples")
+        return class_number
 
 
 def _each(key: str, axis: Axis) -> Each:
-    """Return for what of the population a key is drawn."""
-    return (axis.each if isinstance(axis, Scaled) else None) or drawn_for(key)
+    """Return whether a key is drawn for each plate, rock or fall."""
+    stated = axis.each if isinstance(axis, Scaled) else None
+    return stated or drawn_for(key)
 
 
 def _drawn(axis: Axis, key: str, number: Indices, seed: int) -> Values:
-    """Return a value for each number, which may occur several times, from the random
-    stream of a key.
+    """Return a value for each number from the random stream of a key.
+
+    Numbers ascend, and equal ones, such as those of falls of one rock, get the same value.
     """
-    parts: Floats = np.random.default_rng([seed, crc32(key.encode())]).random(int(number[-1]) + 1)
-    return np.asarray(axis.quantiles(parts)[number])
+    random = np.random.default_rng([seed, crc32(key.encode())])
+    probabilities: Floats = random.random(int(number[-1]) + 1)
+    return np.asarray(axis.quantiles(probabilities)[number])

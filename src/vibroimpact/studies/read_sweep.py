@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Set
 from os import PathLike
 from typing import Any
 
 import numpy as np
 
+from vibroimpact.cases.case import Case
 from vibroimpact.cases.fields.known_keys import keys_of
 from vibroimpact.cases.fields.quantities import Quantity
 from vibroimpact.cases.fields.section import read_table
@@ -30,15 +31,16 @@ from vibroimpact.studies.kept_signals import (
 from vibroimpact.studies.limit_columns import limit_meanings
 from vibroimpact.studies.population import CLASS, LABELS, Population
 from vibroimpact.studies.scaled import Scaled, check_scaled
-from vibroimpact.studies.section import SweepSection, read_axis, read_scaled
+from vibroimpact.studies.section import ClassTable, SweepSection, read_axis, read_scaled
 from vibroimpact.studies.sweep import Sweep, different
 
 MOST_KEYS = 100
 """Maximum number of swept keys."""
 
 MOST_POINT_VALUES = 40_000_000
-"""Maximum number of values (points times keys) of a study that is not a grid; they are
-held in memory.
+"""Maximum number of values (points times keys) of a study that is not a grid.
+
+They are held in memory.
 """
 
 _SHARED = {"plate": "the plate is", "sensors": "the sensors are"}
@@ -69,6 +71,34 @@ def load_sweep(source: str | PathLike[str], samples: int | None = None) -> Sweep
     """
     changes = {} if samples is None else {"sweep.samples": samples}
     return prefix_errors(source, lambda: read_sweep(with_values(load_table(source), changes)))
+
+
+def load_drop(
+    source: str | PathLike[str], drop: int, changes: Mapping[str, Any] | None = None
+) -> Case:
+    """Return the case of one drop of a study.
+
+    Parameters
+    ----------
+    source : path or str
+        A TOML file with a [sweep] section, or a shipped study such as "paper:sweep".
+    drop : int
+        Number of the drop, from 0.
+    changes : mapping, optional
+        Other values by dotted key, swept or not.
+
+    Raises
+    ------
+    InputError
+        If it is not a valid study, or has no such drop.
+
+    Examples
+    --------
+    >>> case = load_drop("paper:sweep", 13)
+    >>> case.sphere.radius, case.contact.parameters["restitution"]
+    (0.005, 0.95)
+    """
+    return prefix_errors(source, lambda: read_sweep(load_table(source)).case_of(drop, changes))
 
 
 def read_sweep(table: Mapping[str, Any]) -> Sweep:
@@ -102,7 +132,7 @@ def read_sweep(table: Mapping[str, Any]) -> Sweep:
     if not isinstance(table, Mapping):
         raise InputError(f"a study is a table, as a TOML file holds it, not {quoted(table)}")
     check_bounds(table)
-    base = {key: value for key, value in table.items() if key != "sweep"}
+    case = {key: value for key, value in table.items() if key != "sweep"}
     if "sweep" not in table:
         raise InputError(
             "it is missing; it specifies the swept keys and their values, such as "
@@ -114,80 +144,111 @@ def read_sweep(table: Mapping[str, Any]) -> Sweep:
             f"{quoted(table['sweep'])} is not a table; it takes {listed(keys_of(SweepSection))}",
             "sweep",
         )
-    check_laws(base)
+    check_laws(case)
     try:
-        section = read_table(SweepSection, table["sweep"])
-        design = find_design(section.design)
-        if design.is_drawn and section.samples is None:
-            raise InputError(
-                f"it is missing; {design.name} needs the number of points to draw", "samples"
-            )
-        if not design.is_drawn and section.samples is not None:
-            raise InputError(
-                f"{design.name} has as many points as its values give; leave this out", "samples"
-            )
-        over, quantities, axes = _read_over(base, section.over)
-        section = section.model_copy(update={"over": over})
-        population = None
-        if section.classes is not None:
-            section, of_classes, population = _read_population(base, section)
-            quantities |= of_classes
-        elif not over:
-            raise InputError("it is empty; it takes dotted keys of the case", "over")
-        check_count(len(quantities), MOST_KEYS, "swept keys")
-        own = (
-            {}
-            if population is None
-            else {f'classes."{name}".over': of_class for name, of_class in population.own.items()}
-        )
-        check_scaled(section.design, {"over": axes, **own}, quantities)
-        check_need_of_signals(section, quantities)
-        sweep = Sweep(base, section, axes, quantities, population)
-        if sweep.size > MOST_DROPS:
-            raise InputError(
-                f"there would be {sweep.size} drops, and {MOST_DROPS} are the most; sweep in parts",
-                "over",
-            )
-        if sweep.size * len(quantities) > MOST_POINT_VALUES and section.design != "grid":
-            words = (
-                f"there would be {sweep.size} drops of {len(quantities)} values each, and "
-                f"{MOST_POINT_VALUES} values are the most"
-            )
-            raise InputError(f"{words}; sweep in parts", "over")
-        plan = sweep.plan  # of a population without a rock of some class there is none
-        for key, axis in axes.items() if plan.is_grid else ():
-            again = _twice(axis)
-            if again is not None:
-                raise InputError(
-                    f"{again} stands there twice, and a grid has each value once", f'over."{key}"'
-                )
+        sweep = _read_settings(case, table["sweep"])
     except InputError as error:
         raise InputError(error.message, f"sweep.{error.key}".rstrip(".")) from None
     _check_points(sweep)
-    if "signals" in section.keep:
-        check_signals(
-            sweep.case,
-            {*sweep.quantities, *LABELS, OUTCOME, *PEAKS, *limit_meanings(), *ALL_IMPACT_COLUMNS},
-        )
+    if "signals" in sweep.section.keep:
+        taken_names = {
+            *sweep.quantities,
+            *LABELS,
+            OUTCOME,
+            *PEAKS,
+            *limit_meanings(),
+            *ALL_IMPACT_COLUMNS,
+        }
+        check_signals(sweep.case, taken_names)
     return sweep
 
 
+def _read_settings(case: dict[str, Any], settings: Mapping[str, Any]) -> Sweep:
+    """Return a study from its case and its [sweep] section, whose points are not checked yet.
+
+    Keys in error messages are relative to the section.
+    """
+    section = read_table(SweepSection, settings)
+    _check_samples(section)
+    over, quantities, axes = _read_over(case, section.over)
+    section = section.model_copy(update={"over": over})
+    population = None
+    axes_by_table: dict[str, Mapping[str, Axis]] = {"over": axes}
+    if section.classes is not None:
+        section, class_quantities, population = _read_population(case, section)
+        quantities |= class_quantities
+        for name, class_axes in population.own.items():
+            axes_by_table[f'classes."{name}".over'] = class_axes
+    elif not over:
+        raise InputError("it is empty; it takes dotted keys of the case", "over")
+    check_count(len(quantities), MOST_KEYS, "swept keys")
+    check_scaled(section.design, axes_by_table, quantities)
+    check_need_of_signals(section, quantities)
+    sweep = Sweep(case, section, axes, quantities, population)
+    _check_size(sweep)
+    plan = sweep.plan  # of a population without a rock of some class there is none
+    if plan.is_grid:
+        _check_repeated_levels(axes)
+    return sweep
+
+
+def _check_samples(section: SweepSection) -> None:
+    """Check that a number of samples is given where, and only where, points are drawn."""
+    design = find_design(section.design)
+    if design.is_drawn and section.samples is None:
+        raise InputError(
+            f"it is missing; {design.name} needs the number of points to draw", "samples"
+        )
+    if not design.is_drawn and section.samples is not None:
+        raise InputError(
+            f"{design.name} has as many points as its values give; leave this out", "samples"
+        )
+
+
+def _check_size(sweep: Sweep) -> None:
+    """Check that a study has not too many drops, and not too many values to hold them in memory."""
+    if sweep.size > MOST_DROPS:
+        raise InputError(
+            f"there would be {sweep.size} drops, and {MOST_DROPS} are the most; sweep in parts",
+            "over",
+        )
+    keys = len(sweep.quantities)
+    if sweep.size * keys > MOST_POINT_VALUES and sweep.section.design != "grid":
+        raise InputError(
+            f"there would be {sweep.size} drops of {keys} values each, and "
+            f"{MOST_POINT_VALUES} values are the most; sweep in parts",
+            "over",
+        )
+
+
+def _check_repeated_levels(axes: Mapping[str, Axis]) -> None:
+    """Check that no axis of a grid has a level twice."""
+    for key, axis in axes.items():
+        level = _repeated_level(axis)
+        if level is not None:
+            raise InputError(
+                f"{level} stands there twice, and a grid has each value once", f'over."{key}"'
+            )
+
+
 def _read_over(
-    base: Mapping[str, Any], table: Mapping[str, Any]
+    case: Mapping[str, Any], table: Mapping[str, Any]
 ) -> tuple[dict[str, Any], dict[str, Quantity | None], dict[str, Axis]]:
     """Return the entries of swept keys in dotted form, their quantities and their axes."""
-    keys = list(_flat(table))
-    over = dict(keys)
-    twice = next((key for number, (key, _) in enumerate(keys) if key in dict(keys[:number])), None)
-    if twice is not None:
-        raise InputError("this key stands there twice, in quotes and in a table", f'over."{twice}"')
+    over: dict[str, Any] = {}
+    for key, value in _flat(table):
+        if key in over:
+            raise InputError(
+                "this key stands there twice, in quotes and in a table", f'over."{key}"'
+            )
+        over[key] = value
     quantities: dict[str, Quantity | None] = {}
     axes: dict[str, Axis] = {}
     for key, value in over.items():
         try:
-            quantities[key] = find_quantity(base, key)
+            quantities[key] = find_quantity(case, key)
             if isinstance(value, Mapping) and "of" in value:
-                axes[key] = read_scaled(value, quantities[key], _followed(base, value["of"]))
+                axes[key] = read_scaled(value, quantities[key], _followed(case, value["of"]))
             else:
                 axes[key] = read_axis(value, quantities[key])
             _check_names(axes[key])
@@ -196,7 +257,7 @@ def _read_over(
     return over, quantities, axes
 
 
-def _followed(base: Mapping[str, Any], key: Any) -> Quantity | None:
+def _followed(case: Mapping[str, Any], key: Any) -> Quantity | None:
     """Return the quantity of the key that another one follows."""
     if not isinstance(key, str):
         raise InputError(
@@ -204,16 +265,24 @@ def _followed(base: Mapping[str, Any], key: Any) -> Quantity | None:
             "of",
         )
     try:
-        return find_quantity(base, key)
+        return find_quantity(case, key)
     except InputError as error:
         raise InputError(error.message, "of") from None
 
 
 def _read_population(
-    base: Mapping[str, Any], section: SweepSection
+    case: Mapping[str, Any], section: SweepSection
 ) -> tuple[SweepSection, dict[str, Quantity | None], Population]:
-    """Return the section with the keys of its classes in dotted form, the quantities of
-    these, and the population.
+    """Return the classes of a population.
+
+    Returns
+    -------
+    section : SweepSection
+        The section with the keys of its classes in dotted form.
+    quantities : dict
+        Quantities of these keys.
+    population : Population
+        The population.
     """
     assert section.classes is not None
     if section.design != "population":
@@ -224,76 +293,92 @@ def _read_population(
             "classes",
         )
     quantities: dict[str, Quantity | None] = {}
-    tables, own = {}, {}
+    tables: dict[str, ClassTable] = {}
+    axes: dict[str, dict[str, Axis]] = {}
     for name, table in section.classes.items():
-        where = f'classes."{name}"'
+        position = f'classes."{name}"'
         try:
-            over, quantities, own[name] = _read_over(base, table.over)
+            over, quantities, axes[name] = _read_over(case, table.over)
         except InputError as error:
-            raise InputError(error.message, f"{where}.{error.key}") from None
-        first = next(iter(own.values()))
-        wrong = sorted(first.keys() ^ over.keys())
-        if wrong or not over:
-            words = "it is empty; give one key or more, the same for all classes"
-            if wrong:
-                words = (
-                    f'"{wrong[0]}" is not there for all classes; give the same keys for all, '
-                    "or leave it to [sweep.over]"
-                )
-            raise InputError(words, f"{where}.over")
-        for key in over:
-            shared = _SHARED.get(key.partition(".")[0])
-            if key in section.over or shared:
-                words = (
-                    "it stands in [sweep.over] too"
-                    if key in section.over
-                    else f"{shared} not of a class"
-                )
-                raise InputError(f"{words}; leave it out here", f'{where}.over."{key}"')
+            raise InputError(error.message, f"{position}.{error.key}") from None
+        first_class = next(iter(axes.values()))
+        _check_class_keys(over.keys(), first_class.keys(), section.over.keys(), position)
         tables[name] = table.model_copy(update={"over": over})
-    for key in section.over:
-        if key == "plate":
-            raise InputError(
-                "a population draws single keys of [plate], one value a plate", 'over."plate"'
-            )
-    falls = section.falls_per_rock
-    shares = {name: table.share for name, table in tables.items()}
+    if "plate" in section.over:
+        raise InputError(
+            "a population draws single keys of [plate], one value a plate", 'over."plate"'
+        )
+    all_rocks = math.ceil((section.samples or 1) / section.falls_per_rock)
     population = Population(
-        shares,
-        own,
-        falls,
-        section.rocks_per_plate or max(1, math.ceil((section.samples or 1) / falls)),
+        shares={name: table.share for name, table in tables.items()},
+        own=axes,
+        falls_per_rock=section.falls_per_rock,
+        rocks_per_plate=section.rocks_per_plate or max(1, all_rocks),
     )
     return section.model_copy(update={"classes": tables}), quantities, population
 
 
-def _check_names(axis: Axis) -> None:
-    """Check the number of distinct names and tables, each of which requires the
-    validation of a case.
+def _check_class_keys(
+    keys: Set[str], first_class_keys: Set[str], common_keys: Set[str], position: str
+) -> None:
+    """Check the swept keys of a class of a population.
+
+    They must be those of the first class, and none of those that all classes have in common.
+
+    Raises
+    ------
+    InputError
+        If they are not.
     """
+    not_in_both = sorted(first_class_keys ^ keys)
+    if not_in_both:
+        message = (
+            f'"{not_in_both[0]}" is not there for all classes; give the same keys for all, '
+            "or leave it to [sweep.over]"
+        )
+        raise InputError(message, f"{position}.over")
+    if not keys:
+        raise InputError(
+            "it is empty; give one key or more, the same for all classes", f"{position}.over"
+        )
+    for key in keys:
+        shared = _SHARED.get(key.partition(".")[0])
+        reason = ""
+        if key in common_keys:
+            reason = "it stands in [sweep.over] too"
+        elif shared:
+            reason = f"{shared} not of a class"
+        if reason:
+            raise InputError(f"{reason}; leave it out here", f'{position}.over."{key}"')
+
+
+def _check_names(axis: Axis) -> None:
+    """Check the number of distinct names and tables, for each of which a case is validated."""
     if isinstance(axis, Listed) and len(axis.values) > MOST_ITEMS and axis.levels().dtype == object:
         check_count(len(different(axis.levels())), MOST_ITEMS, "different names and tables")
 
 
-def _twice(axis: Axis) -> str | None:
-    """Return a level that an axis has twice: in a list, or in a range narrower than the
-    precision of numbers.
+def _repeated_level(axis: Axis) -> str | None:
+    """Return a level that an axis has twice, None if it has none.
+
+    It may be in a list, or in a range narrower than the precision of numbers.
     """
     levels = axis.levels()
     if levels.dtype == object:
-        again, often = Counter(map(repr, levels.tolist())).most_common(1)[0]
-        return shortened(again, 80) if often > 1 else None
+        level, count = Counter(map(repr, levels.tolist())).most_common(1)[0]
+        return shortened(level, 80) if count > 1 else None
     ordered = np.sort(levels)
-    same = np.flatnonzero(ordered[1:] == ordered[:-1])
-    return repr(ordered[same[0]].item()) if same.size else None
+    repeated = np.flatnonzero(ordered[1:] == ordered[:-1])
+    return repr(ordered[repeated[0]].item()) if repeated.size else None
 
 
-def _flat(over: Mapping[str, Any], above: str = "") -> Iterator[tuple[str, Any]]:
-    """Yield the swept keys in dotted form with their entries, also where unquoted keys
-    became nested TOML tables.
+def _flat(over: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
+    """Yield the swept keys in dotted form with their entries.
+
+    Keys that are not quoted are nested tables in TOML.
     """
     for key, value in over.items():
-        dotted = f"{above}{key}"
+        dotted = f"{prefix}{key}"
         if isinstance(value, dict) and holds_keys(dotted):
             yield from _flat(value, f"{dotted}.")
         else:
@@ -301,26 +386,30 @@ def _flat(over: Mapping[str, Any], above: str = "") -> Iterator[tuple[str, Any]]
 
 
 def _check_points(sweep: Sweep) -> None:
-    """Check that all values are in range, and that the case is valid at the first point
-    and with each axis at its ends.
+    """Check that all values are in range, and that the case is valid.
+
+    The case is validated at the first point, and there with each axis at its ends.
     """
     columns = sweep.plan.columns
     for key, values in columns.items():
         quantity = sweep.quantities[key]
         if quantity is None or values.dtype == object:
             continue
-        for where, axis, own in _stated(sweep, key, values):
+        for position, axis, axis_values in _axes_of(sweep, key, values):
             try:
-                quantity.allowed.check(own, quantity.unit)
+                quantity.allowed.check(axis_values, quantity.unit)
             except InputError as error:
                 raise InputError(
-                    f"{error.message}{_remedy(axis)}", f'sweep.{where}."{key}"'
+                    f"{error.message}{_remedy(axis)}", f'sweep.{position}."{key}"'
                 ) from None
     first = sweep.values_of(0)
     check_swept_sensors(sweep.table, columns, sweep.case_at(first))
     for key, values in columns.items():
-        several = different(values) if values.dtype == object else [values.min(), values.max()]
-        for value in several:
+        if values.dtype == object:
+            tested_values = different(values)
+        else:
+            tested_values = [values.min(), values.max()]
+        for value in tested_values:
             try:
                 check_swept_sensors(sweep.table, columns, sweep.case_at({**first, key: value}))
             except InputError as error:
@@ -329,29 +418,26 @@ def _check_points(sweep: Sweep) -> None:
                 ) from None
 
 
-def _stated(sweep: Sweep, key: str, values: Values) -> Iterator[tuple[str, Axis, Values]]:
-    """Yield where a key stands, in [sweep.over] or in each class, with its axis and its
-    values there.
-    """
+def _axes_of(sweep: Sweep, key: str, values: Values) -> Iterator[tuple[str, Axis, Values]]:
+    """Yield the position of a key, its axis and its values, in [sweep.over] or in each class."""
     if sweep.population is None or key in sweep.axes:
         yield "over", sweep.axes[key], values
         return
-    for name, own in sweep.population.own.items():
-        yield f'classes."{name}".over', own[key], values[sweep.plan.labels[CLASS] == name]
+    for name, class_axes in sweep.population.own.items():
+        in_class = sweep.plan.labels[CLASS] == name
+        yield f'classes."{name}".over', class_axes[key], values[in_class]
 
 
 def _remedy(axis: Axis) -> str:
-    """Return what keeps the values of a key in their range, where they are drawn or
-    follow another key.
-    """
+    """Return what keeps the values of a key in range where they are drawn or follow another key."""
     if isinstance(axis, Scaled):
         return (
             "; it follows another key: choose value, exponent and factor so that "
             "it stays in this range"
         )
-    return (
-        "; truncate the distribution with at_least and at_most" if isinstance(axis, Normal) else ""
-    )
+    if isinstance(axis, Normal):
+        return "; truncate the distribution with at_least and at_most"
+    return ""
 
 
 def _level(value: Any) -> str:

@@ -57,32 +57,35 @@ def run_chunks(
     ComputationError
         If the workers can't be started, or the scheduler is gone.
     """
-    waiting, suspects, deaths = deque(chunks), deque[Span](), Counter[int]()
+    waiting = deque(chunks)
+    suspects = deque[Span]()  # chunks that were in flight when a worker died
+    deaths = Counter[int]()  # by the number of the chunk that a worker computed alone
     while waiting or suspects:
         running: dict[Future[ChunkResult], Span] = {}
         try:
             with start() as (executor, in_flight):
                 _check_alive(executor)
                 while waiting or suspects or running:
-                    source, most = (suspects, 1) if suspects else (waiting, in_flight())
+                    # suspects one at a time, to see which of them kills its worker
+                    source = suspects or waiting
+                    most = 1 if suspects else in_flight()
                     while source and len(running) < most:
-                        running[executor.submit(work, source[0].first, points(source[0]))] = source[
-                            0
-                        ]
+                        chunk = source[0]
+                        running[executor.submit(work, chunk.first, points(chunk))] = chunk
                         # only now: submit raises if a worker died while the last result was stored
                         source.popleft()
                     for future in wait(running, return_when=FIRST_COMPLETED).done:
                         keep(running[future], _result(future, running[future]))
                         del running[future]
         except BrokenExecutor:
-            lost = sorted(running.values())
-            if len(lost) == 1:
-                alone = lost[0]
-                deaths[alone.number] += 1
-                if deaths[alone.number] >= _DEATHS:
-                    keep(alone, _abandoned(alone))
+            lost_chunks = sorted(running.values())
+            if len(lost_chunks) == 1:
+                chunk = lost_chunks[0]
+                deaths[chunk.number] += 1
+                if deaths[chunk.number] >= _DEATHS:
+                    keep(chunk, _abandoned(chunk))
                     continue
-            suspects.extend(lost)
+            suspects.extend(lost_chunks)
         except CancelledError:
             raise ComputationError(
                 "the scheduler and its workers are gone; what is done stays: go on with --resume"
@@ -94,16 +97,17 @@ def _check_alive(executor: Executor) -> None:
     try:
         executor.submit(int).result()
     except BrokenExecutor:
-        words = 'a script that starts them does not do its work under: if __name__ == "__main__":'
         raise ComputationError(
-            "the processes die before they have computed anything; memory may be too "
-            f"short for them, or {words}"
+            "the processes die before they have computed anything; memory may be too short for "
+            "them, or a script that starts them does not do its work under: "
+            'if __name__ == "__main__":'
         ) from None
 
 
 def _result(future: Future[ChunkResult], chunk: Span) -> ChunkResult:
-    """Return the results of a chunk; Dask reports one that killed several workers by an
-    exception of its own.
+    """Return the results of a chunk.
+
+    Dask reports one that killed several workers by an exception of its own.
     """
     try:
         return future.result()
@@ -116,5 +120,6 @@ def _result(future: Future[ChunkResult], chunk: Span) -> ChunkResult:
 
 
 def _abandoned(chunk: Span) -> ChunkResult:
+    """Return the results of a chunk whose drops all count as failed."""
     reason = "the process that computed it died, again and again; it may have run out of memory"
     return ChunkResult({}, dict.fromkeys(range(chunk.size), reason))

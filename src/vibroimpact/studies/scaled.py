@@ -1,5 +1,6 @@
-"""Values that follow those of another swept key by a power, times a factor that is drawn:
-speeds that grow with the size.
+"""Values that follow those of another swept key by a power, times a factor that is drawn.
+
+An example are speeds that grow with the size.
 """
 
 from __future__ import annotations
@@ -76,27 +77,29 @@ class Scaled:
 
 
 def scaled_columns(axes: Mapping[str, Axis], columns: Mapping[str, Values]) -> dict[str, Values]:
-    """Return values by key, in which those that follow another key are scaled by its values.
+    """Return values by key, with those that follow another key scaled by its values.
 
     Raises
     ------
     InputError
         If one of its values has no such power.
     """
-    found = dict(columns)
+    scaled = dict(columns)
     for key, values in columns.items():
-        if isinstance(axis := axes.get(key), Scaled):
+        axis = axes.get(key)
+        if isinstance(axis, Scaled):
             with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
                 ratio = axis.ratio(columns[axis.of])
-            if (wrong := np.flatnonzero(~np.isfinite(ratio))).size:
-                one = columns[axis.of][wrong[0]] / axis.at
+            not_finite = np.flatnonzero(~np.isfinite(ratio))
+            if not_finite.size:
+                base = columns[axis.of][not_finite[0]] / axis.at
                 raise InputError(
-                    f"{one:.6g} to the power of {axis.exponent:g} is no finite number; it "
+                    f"{base:.6g} to the power of {axis.exponent:g} is no finite number; it "
                     f"is {axis.of} over at",
                     f'over."{key}"',
                 )
-            found[key] = values * ratio
-    return found
+            scaled[key] = values * ratio
+    return scaled
 
 
 def drawn_for(key: str) -> Each:
@@ -107,8 +110,8 @@ def drawn_for(key: str) -> Each:
     >>> drawn_for("sensors.a1.position.x"), drawn_for("drop.height"), drawn_for("sphere.radius")
     ('plate', 'fall', 'rock')
     """
-    shared: dict[str, Each] = {"plate": "plate", "sensors": "plate", "drop": "fall"}
-    return shared.get(key.partition(".")[0], "rock")
+    drawn_by_section: dict[str, Each] = {"plate": "plate", "sensors": "plate", "drop": "fall"}
+    return drawn_by_section.get(key.partition(".")[0], "rock")
 
 
 def check_scaled(
@@ -131,19 +134,20 @@ def check_scaled(
         If the design or the key to be followed does not suit.
     """
     following = {key for _, key, _ in _scaled(groups)}
-    for where, key, axis in _scaled(groups):
+    for group, key, axis in _scaled(groups):
         try:
             _check(design, key, axis, following, quantities)
             _check_numbers(axis.of, [axes[axis.of] for axes in groups.values() if axis.of in axes])
         except InputError as error:
-            raise InputError(
-                error.message, f'{where}."{key}"{"." if error.key else ""}{error.key}'
-            ) from None
+            separator = "." if error.key else ""
+            position = f'{group}."{key}"{separator}{error.key}'
+            raise InputError(error.message, position) from None
 
 
 def _check_numbers(key: str, axes: Iterable[Axis]) -> None:
-    """Check that a key that another one follows has numbers as values, from which the
-    other's are computed.
+    """Check that a key that another one follows has numbers as values.
+
+    The values of the other key are computed from them.
     """
     if any(isinstance(axis, Listed) and axis.levels().dtype == object for axis in axes):
         raise InputError(
@@ -152,8 +156,11 @@ def _check_numbers(key: str, axes: Iterable[Axis]) -> None:
 
 
 def _scaled(groups: Mapping[str, Mapping[str, Any]]) -> Iterator[tuple[str, str, Scaled]]:
-    for where, axes in groups.items():
-        yield from ((where, key, axis) for key, axis in axes.items() if isinstance(axis, Scaled))
+    """Yield group, key and axis of the values that follow another key."""
+    for group, axes in groups.items():
+        for key, axis in axes.items():
+            if isinstance(axis, Scaled):
+                yield group, key, axis
 
 
 def _check(
@@ -163,6 +170,7 @@ def _check(
     following: set[str],
     quantities: Mapping[str, Quantity | None],
 ) -> None:
+    """Check that an axis suits the design, and that the key that it follows can be followed."""
     if design not in _DESIGNS:
         raise InputError(f"in a {design} no key follows another; take one of {', '.join(_DESIGNS)}")
     if axis.of not in quantities:

@@ -59,7 +59,7 @@ class SweepSection(Section):
     ] = Field(
         "grid",
         description="design, the choice of the points: "
-        + "; ".join(f"{one.name}: {one.meaning}" for one in designs().values()),
+        + "; ".join(f"{design.name}: {design.meaning}" for design in designs().values()),
     )
     over: dict[str, Any] = Field(
         description='the values of dotted keys of the case, such as "sphere.radius": a list, a '
@@ -185,33 +185,35 @@ def read_axis(value: Any, quantity: Quantity | None, otherwise: str = _DEPENDENC
     if isinstance(value, list):
         if not value:
             raise InputError("the list is empty; it must have one value or more")
-        return Listed(
-            tuple(value if quantity is None else [_read_item(item, quantity) for item in value])
-        )
+        if quantity is None:
+            return Listed(tuple(value))
+        return Listed(tuple(_read_item(item, quantity) for item in value))
     if quantity is None:
         raise InputError("this key holds no quantity, so that it takes a list of values alone")
     if not isinstance(value, Mapping):
         raise InputError(f"{quoted(value)} is not allowed; it must be {_ASKED}{otherwise}")
     if "file" in value:
-        return _columns(read_table(ColumnTable, value), quantity)
+        return _read_column(read_table(ColumnTable, value), quantity)
     if "distribution" in value:
-        kind = value["distribution"]
-        if not isinstance(kind, str) or kind not in _DISTRIBUTIONS:
-            hint = did_you_mean(str(kind), _DISTRIBUTIONS)
-            raise InputError(
-                f"{quoted(kind)} is not allowed; it must be one of "
-                f"{', '.join(_DISTRIBUTIONS)}.{hint}",
-                "distribution",
-            )
-        table = read_table(_DISTRIBUTIONS[kind], value)
-        return (
-            _normal(table, quantity)
-            if isinstance(table, NormalTable)
-            else _spaced(table, quantity, is_random=True)
-        )
+        return _read_distribution(value, quantity)
     if "from" not in value and "to" not in value:
         raise InputError(f"{quoted(value)} has no values; it must be {_ASKED}{otherwise}")
     return _spaced(read_table(RangeTable, value), quantity, is_random=False)
+
+
+def _read_distribution(value: Mapping[str, Any], quantity: Quantity) -> Axis:
+    """Return the axis of a key with a distribution."""
+    name = value["distribution"]
+    if not isinstance(name, str) or name not in _DISTRIBUTIONS:
+        hint = did_you_mean(str(name), _DISTRIBUTIONS)
+        raise InputError(
+            f"{quoted(name)} is not allowed; it must be one of {', '.join(_DISTRIBUTIONS)}.{hint}",
+            "distribution",
+        )
+    table = read_table(_DISTRIBUTIONS[name], value)
+    if isinstance(table, NormalTable):
+        return _normal(table, quantity)
+    return _spaced(table, quantity, is_random=True)
 
 
 def read_scaled(
@@ -237,15 +239,13 @@ def read_scaled(
             "a key can follow another only if both are quantities; take a list of values"
         )
     table = read_table(ScaledTable, value)
-    one, at = (
-        _number(table.value, quantity, quantity.allowed, "value"),
-        _number(table.at, followed, Range(above=0), "at"),
-    )
+    reference_value = _number(table.value, quantity, quantity.allowed, "value")
+    at = _number(table.at, followed, Range(above=0), "at")
     try:
         factor = _factor(table.factor)
     except InputError as error:
         raise InputError(error.message, f"factor.{error.key}".rstrip(".")) from None
-    return Scaled(one, at, table.of, table.exponent, factor, table.each)
+    return Scaled(reference_value, at, table.of, table.exponent, factor, table.each)
 
 
 def _factor(value: Any) -> Axis:
@@ -257,8 +257,9 @@ def _factor(value: Any) -> Axis:
 
 
 def _read_item(item: Any, quantity: Quantity) -> Any:
-    """Return one value of a list; keys with plain numbers may also take names and tables,
-    such as the damping.
+    """Return one value of a list.
+
+    Keys with plain numbers, such as the damping, may also take names and tables.
     """
     if isinstance(item, (list, dict)) or (isinstance(item, str) and not quantity.unit):
         return item
@@ -274,10 +275,8 @@ def _number(value: Any, quantity: Quantity, allowed: Range, key: str = "") -> fl
 
 def _spaced(table: Section, quantity: Quantity, *, is_random: bool) -> Spaced:
     assert isinstance(table, RangeTable)
-    start, end = (
-        _number(value, quantity, quantity.allowed, key)
-        for key, value in (("from", table.start), ("to", table.end))
-    )
+    start = _number(table.start, quantity, quantity.allowed, "from")
+    end = _number(table.end, quantity, quantity.allowed, "to")
     if not end > start:
         raise InputError(f"{end:.16g} is not greater than from, {start:.16g}", "to")
     if table.scale == "log" and start <= 0.0:
@@ -286,58 +285,60 @@ def _spaced(table: Section, quantity: Quantity, *, is_random: bool) -> Spaced:
 
 
 def _normal(table: NormalTable, quantity: Quantity) -> Normal:
-    anything, positive = Range(), Range(above=0)
-    mean = _number(table.mean, quantity, anything, "mean")
-    deviation = _number(table.standard_deviation, quantity, positive, "standard_deviation")
-    ends = {
-        key: _number(value, quantity, anything, key)
-        for key in ("at_least", "at_most")
-        if (value := getattr(table, key)) is not None
-    }
-    if len(ends) == 2 and not ends["at_most"] > ends["at_least"]:
-        raise InputError(
-            f"{ends['at_most']:.16g} is not more than at_least, {ends['at_least']:.16g}", "at_most"
-        )
-    bounds = (ends.get("at_least", -math.inf), ends.get("at_most", math.inf))
+    # the mean itself need not be allowed: the distribution may be truncated
+    mean = _number(table.mean, quantity, Range(), "mean")
+    deviation = _number(table.standard_deviation, quantity, Range(above=0), "standard_deviation")
+    at_least = -math.inf
+    if table.at_least is not None:
+        at_least = _number(table.at_least, quantity, Range(), "at_least")
+    at_most = math.inf
+    if table.at_most is not None:
+        at_most = _number(table.at_most, quantity, Range(), "at_most")
+    if table.at_least is not None and table.at_most is not None and not at_most > at_least:
+        raise InputError(f"{at_most:.16g} is not more than at_least, {at_least:.16g}", "at_most")
     return Normal(
-        mean, deviation, table.number, *bounds, lognormal=table.distribution == "lognormal"
+        mean,
+        deviation,
+        table.number,
+        at_least=at_least,
+        at_most=at_most,
+        lognormal=table.distribution == "lognormal",
     )
 
 
-def _columns(table: ColumnTable, quantity: Quantity) -> Listed:
-    """Return the values, and optionally weights, from columns of a CSV file whose header
-    gives the units.
+def _read_column(table: ColumnTable, quantity: Quantity) -> Listed:
+    """Return the values, and optionally weights, in columns of a CSV file.
+
+    Its header gives the units.
     """
-    name, weights = (
-        None if column is None else name_and_unit(column)[0]
-        for column in (table.column, table.weights)
-    )
-    assert name is not None
+    name = name_and_unit(table.column)[0]
+    weights = None if table.weights is None else name_and_unit(table.weights)[0]
+    units = {name: quantity.unit}
+    if weights:
+        units[weights] = ""
     try:
-        read = read_table_file(
-            table.file,
-            {name: quantity.unit, **({weights: ""} if weights else {})},
-            columns=table.columns,
-        )
+        file = read_table_file(table.file, units, columns=table.columns)
     except InputError as error:
         raise InputError(error.message, "file") from None
-    for key, column in (("column", name), ("weights", weights)):
-        if column is not None and column not in read.columns:
-            raise InputError(f'there is no column "{column}" in {table.file}', key)
-    _check_column(table, read, name, quantity.allowed, quantity.unit)
-    values = tuple(float(value) for value in read.columns[name])
+    if name not in file.columns:
+        raise InputError(f'there is no column "{name}" in {table.file}', "column")
+    if weights is not None and weights not in file.columns:
+        raise InputError(f'there is no column "{weights}" in {table.file}', "weights")
+    _check_column(table, file, name, quantity.allowed, quantity.unit)
+    values = tuple(float(value) for value in file.columns[name])
     if weights is None:
         return Listed(values)
-    _check_column(table, read, weights, Range(at_least=0), "")
-    if not read.columns[weights].any():
+    _check_column(table, file, weights, Range(at_least=0), "")
+    if not file.columns[weights].any():
         raise InputError("all weights are zero", "weights")
-    return Listed(values, tuple(read.columns[weights].tolist()))
+    return Listed(values, tuple(file.columns[weights].tolist()))
 
 
 def _check_column(
-    table: ColumnTable, read: TableFile, name: str, allowed: Range, unit: str
+    table: ColumnTable, file: TableFile, name: str, allowed: Range, unit: str
 ) -> None:
-    for value, line in zip(read.columns[name].tolist(), read.lines, strict=True):
+    """Check that the values of a column are in their range; a message names the line."""
+    for value, line in zip(file.columns[name].tolist(), file.lines, strict=True):
         try:
             allowed.check(value, unit)
         except InputError as error:

@@ -1,5 +1,6 @@
-"""Sensitivity of a result to the swept keys: Sobol indices, rank correlations, and
-one-at-a-time ranges on a grid.
+"""Sensitivity of a result to the swept keys.
+
+Sobol indices, rank correlations, and one-at-a-time ranges on a grid.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ RESAMPLES = 200
 
 # points of a block used for the bootstrap; for larger blocks the error is scaled by the root of
 # their number
-_RESAMPLED = 8192
+_MOST_RESAMPLED = 8192
 _QUANTILE = 1.959964  # of the normal distribution, for 95 %
 
 
@@ -88,30 +89,33 @@ def sobol_indices(values: Floats, axes: int, seed: int = 0) -> SobolIndices | No
     >>> from vibroimpact.studies.design import Asked
     >>> from vibroimpact.studies.designs.saltelli import plan
     >>> points = plan(Asked({"a": Spaced(0.0, 1.0, 2), "b": Spaced(0.0, 1.0, 2)}, 1024, 0)).columns
-    >>> found = sobol_indices(points["a"] + 2.0 * points["b"], 2)  # variances 1/12 and 4/12
-    >>> found.first.round(2).tolist(), found.total.round(2).tolist()
+    >>> indices = sobol_indices(points["a"] + 2.0 * points["b"], 2)  # variances 1/12 and 4/12
+    >>> indices.first.round(2).tolist(), indices.total.round(2).tolist()
     ([0.2, 0.8], [0.2, 0.8])
     """
     blocks = np.asarray(values, dtype=float).reshape(2 + axes, -1)
     complete = np.isfinite(blocks).all(axis=0)
-    points, left_out = int(complete.sum()), int((~complete).sum())
+    points = int(complete.sum())
+    left_out = int((~complete).sum())
     if points < 2 or left_out > MOST_LEFT_OUT * len(complete):
         return None
-    used = blocks[:2, complete]
-    if not float(np.std(used)) > 1e-9 * float(np.abs(used).max()):
+    # the variance is that over the blocks A and B, at the points that have a value in all blocks
+    sampled = blocks[:2, complete]
+    if not float(np.std(sampled)) > 1e-9 * float(np.abs(sampled).max()):
         return None
     # SciPy requires a power of two: omitted points are set to the mean, which contributes nothing
     # to the sums
-    blocks = np.where(complete, blocks, used.mean())
+    blocks = np.where(complete, blocks, sampled.mean())
     first, total = _estimates(blocks)
-    drawn = min(len(complete), _RESAMPLED)
-    random = generator(seed, drawn)
-    resampled = [
-        _estimates(blocks[:, random.integers(drawn, size=drawn)]) for _ in range(RESAMPLES)
-    ]
-    first_error, total_error = (
-        _QUANTILE * math.sqrt(drawn / len(complete)) * np.std(resampled, axis=0, ddof=1)
-    )
+    resampled_points = min(len(complete), _MOST_RESAMPLED)
+    random = generator(seed, resampled_points)
+    resampled = []
+    for _ in range(RESAMPLES):
+        indices = random.integers(resampled_points, size=resampled_points)
+        resampled.append(_estimates(blocks[:, indices]))
+    # the standard error falls with the root of the number of points
+    scale = _QUANTILE * math.sqrt(resampled_points / len(complete))
+    first_error, total_error = scale * np.std(resampled, axis=0, ddof=1)
     return SobolIndices(first, total, first_error, total_error, points, left_out)
 
 
@@ -119,15 +123,15 @@ def _estimates(blocks: Floats) -> Floats:
     """Return first and total indices, (2, axes), of blocks (2 + axes, points)."""
     from scipy.stats import sobol_indices as estimate
 
-    found = estimate(
-        func={"f_A": blocks[:1], "f_B": blocks[1:2], "f_AB": blocks[2:, None]}, n=blocks.shape[1]
-    )
-    return np.array([found.first_order, found.total_order])
+    evaluations = {"f_A": blocks[:1], "f_B": blocks[1:2], "f_AB": blocks[2:, None]}
+    indices = estimate(func=evaluations, n=blocks.shape[1])
+    return np.array([indices.first_order, indices.total_order])
 
 
 def rank_correlations(inputs: Floats, output: Floats) -> Floats:
-    """Return Spearman's rank correlation of a result with each input: 1 if it increases
-    monotonically with it, -1 if it decreases.
+    """Return Spearman's rank correlation of a result with each input.
+
+    It is 1 if the result increases monotonically with the input, -1 if it decreases.
 
     Parameters
     ----------
@@ -155,20 +159,19 @@ def rank_correlations(inputs: Floats, output: Floats) -> Floats:
     """
     from scipy.stats import spearmanr
 
+    correlations = np.full(len(inputs), math.nan)
     finite = np.isfinite(output)
-    here = output[finite]
-    if len(here) < 3 or not np.ptp(here) > 0.0:
-        return np.full(len(inputs), math.nan)
-    varying = [place for place, values in enumerate(inputs) if np.ptp(values[finite]) > 0.0]
-    found = np.full(len(inputs), math.nan)
-    for place in varying:
-        found[place] = float(spearmanr(inputs[place][finite], here).statistic)
-    return found
+    finite_output = output[finite]
+    if len(finite_output) < 3 or not np.ptp(finite_output) > 0.0:
+        return correlations
+    for axis, values in enumerate(inputs):
+        if np.ptp(values[finite]) > 0.0:
+            correlations[axis] = float(spearmanr(values[finite], finite_output).statistic)
+    return correlations
 
 
 class OneAtATime(NamedTuple):
-    """Range of a result along each axis of a grid with all others at their middle level, one value
-    per axis.
+    """Range of a result along each axis of a grid, with all others at their middle level.
 
     Attributes
     ----------
@@ -185,11 +188,9 @@ class OneAtATime(NamedTuple):
     @property
     def relative(self) -> Floats:
         """The range relative to the result in the middle; NaN if that is zero."""
-        return (
-            (self.highest - self.lowest) / abs(self.middle)
-            if self.middle
-            else np.full(len(self.lowest), math.nan)
-        )
+        if not self.middle:
+            return np.full(len(self.lowest), math.nan)
+        return (self.highest - self.lowest) / abs(self.middle)
 
 
 def one_at_a_time(values: NDArray[Any], orders: list[Indices]) -> OneAtATime:
@@ -209,10 +210,12 @@ def one_at_a_time(values: NDArray[Any], orders: list[Indices]) -> OneAtATime:
     OneAtATime(middle=4.0, lowest=array([2., 2.]), highest=array([8., 4.]))
     """
     middle = tuple(int(order[len(order) // 2]) for order in orders)
-    lowest, highest = np.full((2, len(orders)), math.nan)
+    lowest = np.full(len(orders), math.nan)
+    highest = np.full(len(orders), math.nan)
     for axis in range(len(orders)):
-        line: tuple[Any, ...] = (*middle[:axis], slice(None), *middle[axis + 1 :])
-        along = np.asarray(values[line], dtype=np.float64)
-        if np.isfinite(along).any():
-            lowest[axis], highest[axis] = np.nanmin(along), np.nanmax(along)
+        through_middle: tuple[Any, ...] = (*middle[:axis], slice(None), *middle[axis + 1 :])
+        along_axis = np.asarray(values[through_middle], dtype=np.float64)
+        if np.isfinite(along_axis).any():
+            lowest[axis] = np.nanmin(along_axis)
+            highest[axis] = np.nanmax(along_axis)
     return OneAtATime(float(values[middle]), lowest, highest)

@@ -29,8 +29,11 @@ from vibroimpact.studies.study_folder import DATASET, STUDY, recover_study, swep
 if TYPE_CHECKING:
     import plotly.graph_objects as go
 
-FAILED_POINT, FAILED_REASON = "failed_point", "failed_reason"
-"""The variables with the numbers of failed drops, and the reasons."""
+FAILED_POINT = "failed_point"
+"""The variable with the numbers of failed drops."""
+
+FAILED_REASON = "failed_reason"
+"""The variable with the reasons of failed drops."""
 
 
 class StudyDoubt(NamedTuple):
@@ -123,9 +126,7 @@ class Study:
 
     @property
     def doubts(self) -> list[StudyDoubt]:
-        """The limits of the theory that drops exceed, with the number of drops and the
-        worst of them.
-        """
+        """The limits of the theory that drops exceed, with their number and the worst of them."""
         with _reported_damage(self.path):
             return study_doubts(self.path)
 
@@ -149,8 +150,8 @@ class Study:
             return read_array(file[name], place or ())
 
     def __repr__(self) -> str:
-        over = ", ".join(f"{name} {length}" for name, length in self.dimensions.items())
-        return f"<Study of {self.size} drop{'' if self.size == 1 else 's'}: {over}>"
+        lengths = ", ".join(f"{name} {length}" for name, length in self.dimensions.items())
+        return f"<Study of {self.size} drop{'' if self.size == 1 else 's'}: {lengths}>"
 
     def _repr_html_(self) -> str:
         # an import upwards, as in Response.save: tables and charts lie above the study
@@ -159,8 +160,9 @@ class Study:
         return vibroimpact.study_html(self)
 
     def plot(self, name: str = "") -> go.Figure:
-        """Return a chart as a figure of plotly, by its name, by default the first; see
-        `vibroimpact.plot_study`.
+        """Return a chart as a figure of plotly, by its name; see `vibroimpact.plot_study`.
+
+        By default it is the first chart.
         """
         import vibroimpact
 
@@ -201,18 +203,18 @@ def study_doubts(dataset: Path) -> list[StudyDoubt]:
     with h5py.File(dataset, "r") as file:
         if DOUBTS not in file:
             return []
-        beyond, found = read_array(file[DOUBTS]).ravel(), []
-        for mask, limit in zip(
-            file[DOUBTS].attrs["flag_masks"],
-            str(file[DOUBTS].attrs["flag_meanings"]).split(),
-            strict=True,
-        ):
-            doubted = (beyond & mask) != 0
-            if doubted.any():
-                numbers = np.where(doubted, read_array(file[f"{LIMIT}{limit}"]).ravel(), -np.inf)
+        # each bit of the flags of a drop stands for a limit
+        flags = read_array(file[DOUBTS]).ravel()
+        masks = file[DOUBTS].attrs["flag_masks"]
+        limits = str(file[DOUBTS].attrs["flag_meanings"]).split()
+        doubts = []
+        for mask, limit in zip(masks, limits, strict=True):
+            exceeds = (flags & mask) != 0
+            if exceeds.any():
+                numbers = np.where(exceeds, read_array(file[f"{LIMIT}{limit}"]).ravel(), -np.inf)
                 worst = int(np.argmax(numbers))
-                found.append(StudyDoubt(limit, int(doubted.sum()), worst, float(numbers[worst])))
-    return sorted(found, key=lambda one: -one.drops)
+                doubts.append(StudyDoubt(limit, int(exceeds.sum()), worst, float(numbers[worst])))
+    return sorted(doubts, key=lambda doubt: -doubt.drops)
 
 
 def read_study(directory: str | PathLike[str]) -> Study:
@@ -239,68 +241,82 @@ def read_study(directory: str | PathLike[str]) -> Study:
     ...     study.size, study.coordinates["contact.restitution"].tolist()
     (2, [0.5, 0.7])
     """
-    path = Path(directory) / DATASET
+    folder = Path(directory)
+    path = folder / DATASET
     recover_study(path.parent)
     if not path.is_file():
-        folder = Path(directory)
-        if not (folder / STUDY).is_file():
-            raise InputError(f"{folder}: this is not the folder of a study; it has no {DATASET}")
-        command = (
-            f"vibroimpact sweep {shlex.quote(str(folder / STUDY))} -o "
-            f"{shlex.quote(str(folder))} --resume"
-        )
-        raise InputError(
-            f"{folder}: the study is not done; if nothing is at work on it, go on with: {command}"
-        )
+        raise InputError(_why_no_dataset(folder))
     with _reported_damage(path):
         check_hdf5(path, recorded_digest(path))
     with _reported_damage(path), h5py.File(path, "r") as file:
-        variables = members(file)
-        table = parse_toml(str(file.attrs["study"]))
-        over = swept_keys(table)
-        is_grid = _design(table) == "grid"
-        coordinates = {key: _coordinate(file[key]) for key in over}
-        dimensions = (
-            {key: len(coordinates[key]) for key in over} if is_grid else {SAMPLE: len(file[SAMPLE])}
-        )
-        labels = {
-            one: _label(file[one])
-            for one in LABELS
-            if one in file and table["sweep"].get("classes")
-        }
-        names = [
-            one
-            for one in variables
-            if not variables[one].is_scale and one not in (*over, *labels, FAILED_REASON)
-        ]
-        _check_variables({one: variables[one] for one in names}, tuple(dimensions.values()))
-        meanings = {
-            one: (str(file[one].attrs["units"]), str(file[one].attrs["long_name"]))
-            for one in [*over, *labels, *names]
-        }
-        reasons = [reason.decode() for reason in read_array(file[FAILED_REASON])]
-        failures = dict(zip(read_array(file[FAILED_POINT]).tolist(), reasons, strict=True))
-        shapes = {one: tuple(file[one].shape) for one in names}
-        name, version = str(file.attrs["title"]), str(file.attrs["version"])
-        return Study(
-            path, name, table, version, dimensions, coordinates, meanings, shapes, failures, labels
-        )
+        return _study_in(file, path)
+
+
+def _why_no_dataset(folder: Path) -> str:
+    """Return why a folder holds no completed study, and what to do."""
+    if not (folder / STUDY).is_file():
+        return f"{folder}: this is not the folder of a study; it has no {DATASET}"
+    command = (
+        f"vibroimpact sweep {shlex.quote(str(folder / STUDY))} -o "
+        f"{shlex.quote(str(folder))} --resume"
+    )
+    return f"{folder}: the study is not done; if nothing is at work on it, go on with: {command}"
+
+
+def _study_in(file: h5py.File, path: Path) -> Study:
+    """Return the study in an open dataset, after checking its variables."""
+    variables = members(file)
+    table = parse_toml(str(file.attrs["study"]))
+    keys = swept_keys(table)
+    coordinates = {key: _coordinate(file[key]) for key in keys}
+    if _design(table) == "grid":
+        dimensions = {key: len(coordinates[key]) for key in keys}
+    else:
+        dimensions = {SAMPLE: len(file[SAMPLE])}
+    labels = {}
+    if table["sweep"].get("classes"):
+        labels = {label: _label(file[label]) for label in LABELS if label in file}
+
+    not_results = {*keys, *labels, FAILED_REASON}
+    results = {
+        name: variable
+        for name, variable in variables.items()
+        if not variable.is_scale and name not in not_results
+    }
+    _check_variables(results, tuple(dimensions.values()))
+    meanings = {}
+    for name in (*keys, *labels, *results):
+        attributes = file[name].attrs
+        meanings[name] = (str(attributes["units"]), str(attributes["long_name"]))
+    reasons = [reason.decode() for reason in read_array(file[FAILED_REASON])]
+    return Study(
+        path=path,
+        name=str(file.attrs["title"]),
+        table=table,
+        version=str(file.attrs["version"]),
+        dimensions=dimensions,
+        coordinates=coordinates,
+        meanings=meanings,
+        shapes={name: tuple(variable.shape) for name, variable in results.items()},
+        failures=dict(zip(read_array(file[FAILED_POINT]).tolist(), reasons, strict=True)),
+        labels=labels,
+    )
 
 
 def _check_variables(variables: dict[str, h5py.Dataset], points: tuple[int, ...]) -> None:
-    """Check that the results of a study are numbers, each with a place for every drop.
+    """Check that the results of a study are numbers, with one entry for every drop.
 
     Raises
     ------
     DamageError
         If one is not.
     """
-    for name, data in variables.items():
-        if data.dtype.kind not in "fiub":
+    for name, variable in variables.items():
+        if variable.dtype.kind not in "fiub":
             raise DamageError(f"{name} is no variable of real numbers")
-        if name != FAILED_POINT and data.shape[: len(points)] != points:
+        if name != FAILED_POINT and variable.shape[: len(points)] != points:
             raise DamageError(
-                f"{name} is of the shape {data.shape}, which does not begin with {points}"
+                f"{name} is of the shape {variable.shape}, which does not begin with {points}"
             )
 
 
@@ -312,36 +328,33 @@ def _reported_damage(path: Path) -> Iterator[None]:
     except InputError:
         raise
     except Exception as error:  # damage raises errors of many types
-        words = (
-            str(error)
-            if isinstance(error, DamageError)
-            else f"the file is damaged: {short_reason(error)}"
-        )
+        if isinstance(error, DamageError):
+            damage = str(error)
+        else:
+            damage = f"the file is damaged: {short_reason(error)}"
         folder = shlex.quote(str(path.parent))
         command = f"vibroimpact sweep {shlex.quote(str(path.parent / STUDY))} -o {folder} --force"
-        raise InputError(f"{path}: {words}; make it anew with: {command}") from None
+        raise InputError(f"{path}: {damage}; make it anew with: {command}") from None
 
 
 def _design(table: dict[str, Any]) -> str:
     return str(table["sweep"].get("design", "grid"))
 
 
-def _label(data: h5py.Dataset) -> NDArray[Any]:
+def _label(variable: h5py.Dataset) -> NDArray[Any]:
     """Return a label of each fall: a name, or a number."""
-    values = read_array(data)
-    names = str(data.attrs.get("flag_meanings", "")).split()
-    return np.array(names, dtype=object)[values] if names else np.asarray(values)
+    codes = read_array(variable)
+    names = str(variable.attrs.get("flag_meanings", "")).split()
+    return np.array(names, dtype=object)[codes] if names else np.asarray(codes)
 
 
-def _coordinate(data: h5py.Dataset) -> NDArray[Any]:
+def _coordinate(variable: h5py.Dataset) -> NDArray[Any]:
     """Return the values of a coordinate, numbers or strings."""
-    values = read_array(data)
+    values = read_array(variable)
     if values.ndim != 1 or not len(values) or values.dtype.kind not in "fiubO":
-        raise DamageError(f"{data.name.lstrip('/')} is no row of numbers or texts")
-    if values.dtype != object and not np.isfinite(values).all():
-        raise DamageError(f"{data.name.lstrip('/')} has values that are not finite")
-    return (
-        np.array([text.decode() for text in values], dtype=object)
-        if values.dtype == object
-        else np.asarray(values)
-    )
+        raise DamageError(f"{variable.name.lstrip('/')} is no row of numbers or texts")
+    if values.dtype == object:
+        return np.array([text.decode() for text in values], dtype=object)
+    if not np.isfinite(values).all():
+        raise DamageError(f"{variable.name.lstrip('/')} has values that are not finite")
+    return np.asarray(values)

@@ -15,7 +15,8 @@ from vibroimpact.studies.chunk_file import CHUNK
 from vibroimpact.studies.chunk_file import FOLDER as CHUNKS
 from vibroimpact.studies.ledger import LEDGER, is_held
 
-DATASET, STUDY = "study.nc", "study.toml"
+DATASET = "study.nc"
+STUDY = "study.toml"
 
 
 def is_study(folder: Path) -> bool:
@@ -30,8 +31,9 @@ def has_study(folder: Path) -> bool:
 
 
 def recover_study(folder: Path) -> None:
-    """Clean up after processes that died while computing a study, unless another process
-    is computing it.
+    """Clean up after processes that died while computing a study.
+
+    Nothing is done while another process is computing it.
     """
     recover(folder)
     if (folder / LEDGER).is_file() and not is_held(folder):
@@ -41,8 +43,9 @@ def recover_study(folder: Path) -> None:
 
 
 def clear_study(folder: Path) -> None:
-    """Remove partly written files of a study that no process is computing, and all but
-    complete chunks from the chunk folder.
+    """Remove partly written files of a study that no process is computing.
+
+    In the folder of the chunks only complete chunks are kept.
     """
     clear(folder)
     for path in (folder / CHUNKS).glob("*"):
@@ -58,19 +61,18 @@ def study_toml(table: Mapping[str, Any]) -> str:
     table : mapping
         The case with its [sweep] section.
     """
-    rest = {
-        **table,
-        "sweep": {key: value for key, value in table["sweep"].items() if key != "over"},
-    }
+    settings = {key: value for key, value in table["sweep"].items() if key != "over"}
+    without_over = tomli_w.dumps({**table, "sweep": settings}).rstrip()
     lines = [
         f"{json.dumps(key)} = {_inline(value)}" for key, value in table["sweep"]["over"].items()
     ]
-    return "\n".join([tomli_w.dumps(rest).rstrip(), "", "[sweep.over]", *lines, ""])
+    return "\n".join([without_over, "", "[sweep.over]", *lines, ""])
 
 
 def swept_keys(table: Mapping[str, Any]) -> list[str]:
-    """Return the swept keys of a study in the order of its dimensions; of a population those of its
-    classes come last.
+    """Return the swept keys of a study in the order of its dimensions.
+
+    Of a population, those of its classes come last.
 
     Examples
     --------
@@ -84,20 +86,23 @@ def swept_keys(table: Mapping[str, Any]) -> list[str]:
     ... )
     ['drop.height', 'sphere.radius']
     """
-    classes = table["sweep"].get("classes") or {}
-    return [*table["sweep"]["over"], *next(iter(classes.values()), {"over": {}})["over"]]
+    keys = list(table["sweep"]["over"])
+    classes = table["sweep"].get("classes")
+    if classes:
+        # all classes have the same keys
+        first_class = next(iter(classes.values()))
+        keys += first_class["over"]
+    return keys
 
 
 def _inline(value: Any) -> str:
-    """Return a value as inline TOML; the library would move tables behind the other keys
-    and so change their order.
+    """Return a value as inline TOML.
+
+    The library would move tables behind the other keys and so change their order.
     """
     if isinstance(value, dict):
-        return (
-            "{ "
-            + ", ".join(f"{json.dumps(key)} = {_inline(one)}" for key, one in value.items())
-            + " }"
-        )
+        entries = [f"{json.dumps(key)} = {_inline(entry)}" for key, entry in value.items()]
+        return "{ " + ", ".join(entries) + " }"
     if isinstance(value, list):
         return "[" + ", ".join(map(_inline, value)) + "]"
     return tomli_w.dumps({"x": value}).removeprefix("x = ").rstrip()

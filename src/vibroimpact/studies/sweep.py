@@ -73,7 +73,7 @@ class Sweep:
 
     @property
     def _asked(self) -> Asked:
-        """What it asks of its design."""
+        """The settings of the study that its design takes."""
         return Asked(self.axes, self.section.samples or 0, self.section.seed, self.population)
 
     @cached_property
@@ -98,14 +98,16 @@ class Sweep:
     @cached_property
     def deforms(self) -> bool:
         """Whether anything but the contact deforms, at any level of the swept keys."""
+        if deforms(self.case):
+            return True
         first = self.values_of(0)
-        names = {key: values for key, values in self.plan.columns.items() if values.dtype == object}
-        cases = (
-            self.case_at({**first, key: level})
-            for key, values in names.items()
-            for level in different(values)
-        )
-        return deforms(self.case) or any(map(deforms, cases))
+        for key, values in self.plan.columns.items():
+            # numbers make no body elastic, names and tables may
+            if values.dtype == object:
+                for level in different(values):
+                    if deforms(self.case_at({**first, key: level})):
+                        return True
+        return False
 
     def case_of(self, drop: int, changes: Mapping[str, Any] | None = None) -> Case:
         """Return the case of a drop by its number from 0, such as to run it separately.
@@ -131,25 +133,22 @@ class Sweep:
     @property
     def window(self) -> Window | None:
         """The part of the signals that is kept; None for all."""
-        return (
-            None
-            if self.section.window is None
-            else Window(self.section.window.before, self.section.window.length)
-        )
+        window = self.section.window
+        return None if window is None else Window(window.before, window.length)
 
     @property
     def bytes(self) -> float:
         """Approximate size of the results [bytes]."""
-        impacts = (impact_limit(self.case) or LONG) if "impacts" in self.section.keep else 0
-        kept = self.case.sensors if "signals" in self.section.keep else ()
-        samples = sum(
-            sensor.rate * (self.window.length if self.window else self.case.run.duration or 0.0)
-            for sensor in kept
-        )
-        double, single = (
-            len(self.quantities) + len(PEAKS) + impacts * len(IMPACT_COLUMNS),
-            len(limit_meanings()) + samples,
-        )
+        impacts = 0
+        if "impacts" in self.section.keep:
+            impacts = impact_limit(self.case) or LONG
+        samples: float = 0
+        if "signals" in self.section.keep:
+            kept_time = self.window.length if self.window else self.case.run.duration or 0.0
+            samples = sum(sensor.rate * kept_time for sensor in self.case.sensors)
+        # numbers of a drop in double precision, and in single precision
+        double = len(self.quantities) + len(PEAKS) + impacts * len(IMPACT_COLUMNS)
+        single = len(limit_meanings()) + samples
         return self.size * (8.0 * double + 4.0 * single)
 
     @property
@@ -164,40 +163,31 @@ class Sweep:
 
     @property
     def meanings(self) -> dict[str, tuple[str, str]]:
-        """Unit and meaning of every swept key and of all variables that may be kept, in
-        the order of the files.
+        """Unit and meaning of every swept key and of all variables that may be kept.
+
+        They are in the order of the files.
         """
-        sensors = (
-            {sensor.name: sensor.sensor() for sensor in self.case.sensors}
-            if "signals" in self.section.keep
-            else {}
-        )
         keys = {
             key: (quantity.unit or "1", quantity.meaning) if quantity else ("1", key)
             for key, quantity in self.quantities.items()
         }
-        largest = {
-            f"{name}{SENSOR_PEAK}": (one.unit, f"largest magnitude of the signal of {name}")
-            for name, one in sensors.items()
-        }
-        signals = {
-            f"{SIGNAL}{name}": (one.unit, f"{one.quantity} measured by {name}")
-            for name, one in sensors.items()
-        }
-        starts = (
-            {
-                f"{name}{SIGNAL_START}": ("s", f"time of the first sample of {name}")
-                for name in sensors
-            }
-            if self.window
-            else {}
-        )
+        sensors = {}
+        if "signals" in self.section.keep:
+            sensors = {sensor.name: sensor.sensor() for sensor in self.case.sensors}
+        largest = {}
+        starts = {}
+        signals = {}
+        for name, sensor in sensors.items():
+            meaning = f"largest magnitude of the signal of {name}"
+            largest[f"{name}{SENSOR_PEAK}"] = (sensor.unit, meaning)
+            if self.window:
+                starts[f"{name}{SIGNAL_START}"] = ("s", f"time of the first sample of {name}")
+            signals[f"{SIGNAL}{name}"] = (sensor.unit, f"{sensor.quantity} measured by {name}")
         impacts = meanings(ALL_IMPACT_COLUMNS)
         del impacts["impact"]  # a dimension, not a variable
-        ended = {OUTCOME: ("1", "reason for the end of the run of the drop")}
         return {
             **keys,
-            **ended,
+            OUTCOME: ("1", "reason for the end of the run of the drop"),
             **PEAKS,
             **largest,
             **limit_meanings(),
@@ -210,10 +200,11 @@ class Sweep:
     def digest(self) -> str:
         """Fingerprint (SHA-256) of the case, its meshes, the points and the kept results."""
         meshes = [mesh_digest(file) for file in _meshes(self.table)]
-        rest = json.dumps([self.table, meshes, self.section.keep], sort_keys=True, default=str)
-        return sha256(
-            f"{self.plan.digest()} {rest}{f' {self.window}' if self.window else ''}".encode()
-        ).hexdigest()
+        content = json.dumps([self.table, meshes, self.section.keep], sort_keys=True, default=str)
+        text = f"{self.plan.digest()} {content}"
+        if self.window:
+            text += f" {self.window}"
+        return sha256(text.encode()).hexdigest()
 
 
 def different(values: Values) -> list[Any]:

@@ -1,6 +1,4 @@
-"""The cases of the drops of a study: values at dotted keys, one by one, or as arrays over
-many drops.
-"""
+"""The cases of the drops of a study: values at dotted keys, of one drop or of many as arrays."""
 
 from __future__ import annotations
 
@@ -13,6 +11,7 @@ import numpy as np
 
 from vibroimpact.cases.case import Case
 from vibroimpact.cases.fields.air import AirTable
+from vibroimpact.cases.fields.contact import ContactSection
 from vibroimpact.cases.fields.liquid import LiquidTable
 from vibroimpact.cases.fields.section import read_table
 from vibroimpact.cases.keys import with_values
@@ -45,8 +44,9 @@ def is_array_key(key: str, values: Values) -> bool:
 
 
 def with_arrays(case: Case, arrays: Mapping[str, Values]) -> Case:
-    """Return a case whose numbers at dotted keys are arrays, one value per drop, without
-    validation.
+    """Return a case whose numbers at dotted keys are arrays, one value per drop.
+
+    The arrays are not validated.
 
     Examples
     --------
@@ -59,59 +59,65 @@ def with_arrays(case: Case, arrays: Mapping[str, Values]) -> Case:
     >>> rigid_problem(case).shape
     (3,)
     """
-    fields: dict[str, dict[str, Any]] = defaultdict(dict)
-    materials: dict[str, dict[str, Any]] = defaultdict(dict)
+    arrays_by_section: dict[str, dict[str, Values]] = defaultdict(dict)
     for key, values in arrays.items():
-        section, _, field = key.partition(".")
-        if field.startswith("material."):
-            materials[section][field.removeprefix("material.")] = values
-        elif field.startswith("air."):
-            air = fields[section].get("air", case.drop.air or read_table(AirTable, {}))
-            fields[section]["air"] = air.model_copy(update={field.removeprefix("air."): values})
-        elif section == "drop" and "." in field:
-            whole, _, part = field.partition(".")
-            now = list(fields[section].get(whole, getattr(case.drop, whole) or (0.0, 0.0, 0.0)))
-            now["xyz".index(part)] = values
-            fields[section][whole] = tuple(now)
-        elif not key.startswith(_WITHOUT_EFFECT):
-            fields[section][field] = values
-    for section, numbers in materials.items():
-        fields[section]["material"] = replace(getattr(case, section).material, **numbers)
-    changed: dict[str, Any] = {
-        name: getattr(case, name).model_copy(update=given)
-        for name, given in fields.items()
-        if name != "contact"
-    }
-    if "contact" in fields:
-        wet = {
-            key: fields["contact"].pop(key)
-            for key in list(fields["contact"])
-            if key.startswith("liquid.")
-        }
-        if wet:
-            numbers = {key.removeprefix("liquid."): values for key, values in wet.items()}
-            liquid = (case.contact.local.liquid or read_table(LiquidTable, {})).model_copy(
-                update=numbers
-            )
-            case = case.model_copy(
-                update={
-                    "contact": replace(
-                        case.contact, local=case.contact.local.model_copy(update={"liquid": liquid})
-                    )
-                }
-            )
-        friction = {
-            key: fields["contact"].pop(key)
-            for key in list(fields["contact"])
-            if key.startswith("friction.")
-        }
-        changed["contact"] = replace(
-            case.contact, parameters={**case.contact.parameters, **fields["contact"]}
-        )
-        if friction and case.contact.friction is not None:
-            inner = {key.removeprefix("friction."): values for key, values in friction.items()}
-            table = replace(
-                case.contact.friction, parameters={**case.contact.friction.parameters, **inner}
-            )
-            changed["contact"] = replace(changed["contact"], friction=table)
+        if not key.startswith(_WITHOUT_EFFECT):
+            section, _, field = key.partition(".")
+            arrays_by_section[section][field] = values
+    changed: dict[str, Any] = {}
+    for section, numbers in arrays_by_section.items():
+        if section == "contact":
+            changed[section] = _contact_with(case.contact, numbers)
+        else:
+            changed[section] = _section_with(section, getattr(case, section), numbers)
     return case.model_copy(update=changed)
+
+
+def _section_with(name: str, section: Any, numbers: Mapping[str, Values]) -> Any:
+    """Return a section of a case, such as "drop", with arrays at its fields.
+
+    A field may be that of a table inside the section, such as `material.density`, or the component
+    of a vector, such as `velocity.x`.
+    """
+    fields: dict[str, Any] = {}
+    material: dict[str, Values] = {}
+    for field, values in numbers.items():
+        outer, _, inner = field.partition(".")
+        if inner and outer == "material":
+            material[inner] = values
+        elif inner and outer == "air":
+            air = fields.get("air", section.air or read_table(AirTable, {}))
+            fields["air"] = air.model_copy(update={inner: values})
+        elif inner and name == "drop":
+            vector = list(fields.get(outer, getattr(section, outer) or (0.0, 0.0, 0.0)))
+            vector["xyz".index(inner)] = values
+            fields[outer] = tuple(vector)
+        else:
+            fields[field] = values
+    if material:
+        fields["material"] = replace(section.material, **material)
+    return section.model_copy(update=fields)
+
+
+def _contact_with(contact: ContactSection, numbers: Mapping[str, Values]) -> ContactSection:
+    """Return the contact of a case with arrays as parameters of its law, liquid and friction."""
+    parameters: dict[str, Any] = {}
+    liquid: dict[str, Any] = {}
+    friction: dict[str, Any] = {}
+    for field, values in numbers.items():
+        if field.startswith("liquid."):
+            liquid[field.removeprefix("liquid.")] = values
+        elif field.startswith("friction."):
+            friction[field.removeprefix("friction.")] = values
+        else:
+            parameters[field] = values
+    if liquid:
+        film = contact.local.liquid or read_table(LiquidTable, {})
+        local = contact.local.model_copy(update={"liquid": film.model_copy(update=liquid)})
+        contact = replace(contact, local=local)
+    contact = replace(contact, parameters={**contact.parameters, **parameters})
+    law = contact.friction
+    if friction and law is not None:
+        law = replace(law, parameters={**law.parameters, **friction})
+        contact = replace(contact, friction=law)
+    return contact

@@ -22,10 +22,11 @@ def axis_slips(sweep: Sweep) -> list[str]:
 
 
 def sweep_slips(sweep: Sweep) -> list[str]:
-    """Return a sentence for each number of a study, swept or not, that suggests a slip of
-    a unit, without repetition.
+    """Return a sentence for each number of a study that suggests a slip of a unit.
+
+    It may be swept or not; no sentence is repeated.
     """
-    return _once(resolved_case(sweep.case), sweep.plan.columns)
+    return _all_slips(resolved_case(sweep.case), sweep.plan.columns)
 
 
 def study_slips(table: Mapping[str, Any], values: Mapping[str, NDArray[Any]]) -> list[str]:
@@ -40,13 +41,14 @@ def study_slips(table: Mapping[str, Any], values: Mapping[str, NDArray[Any]]) ->
     """
     try:
         case: Case = case_at(
-            {key: one for key, one in table.items() if key != "sweep"},
-            {key: one[0] for key, one in values.items()},
+            {key: section for key, section in table.items() if key != "sweep"},
+            {key: column[0] for key, column in values.items()},
         )
     except InputError:  # mesh files may be missing when results are read
         return []
-    return _once(resolved_case(case), values)
+    return _all_slips(resolved_case(case), values)
 
 
-def _once(case: ResolvedCase, values: Mapping[str, NDArray[Any]]) -> list[str]:
+def _all_slips(case: ResolvedCase, values: Mapping[str, NDArray[Any]]) -> list[str]:
+    """Return the sentences on the numbers of a case that are not swept, and on swept values."""
     return [*slips(case, values), *swept_slips(case, values)]

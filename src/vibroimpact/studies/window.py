@@ -58,28 +58,25 @@ class Window:
             raise ComputationError(
                 "there was no impact, so that its signal can't be cut around the first touch"
             )
-        begin, length = (
-            math.floor((float(touches[0]) - self.before) * rate + 1e-6),
-            round(self.length * rate),
-        )
+        first_touch = float(touches[0])
+        # the tolerance is for windows that start at a sample, but for rounding
+        begin = math.floor((first_touch - self.before) * rate + 1e-6)
+        end = begin + round(self.length * rate)
         if begin < 0:
-            early = f"the sphere touches {float(touches[0]):.3g} s after the start"
-            words = (
-                f"{early}, less than the {self.before:g} s before the touch that sweep.window keeps"
-            )
             raise ComputationError(
-                f"{words}; let it fall from higher up, by drop.height in place of "
-                "drop.speed, or keep less before the touch"
+                f"the sphere touches {first_touch:.3g} s after the start, less than the "
+                f"{self.before:g} s before the touch that sweep.window keeps; let it fall from "
+                "higher up, by drop.height in place of drop.speed, or keep less before the touch"
             )
-        if begin + length > count:
-            words = (
+        if end > count:
+            shortness = (
                 f"the signal ends at {count / rate:.4g} s, before the window does, at "
-                f"{(begin + length) / rate:.4g} s"
+                f"{end / rate:.4g} s"
             )
             if ended:
                 raise ComputationError(
-                    f"{words}, as the run ended before run.duration; where run.impacts "
+                    f"{shortness}, as the run ended before run.duration; where run.impacts "
                     "ended it, allow more; else keep a shorter part"
                 )
-            raise ComputationError(f"{words}; give a longer run.duration")
-        return begin, begin + length
+            raise ComputationError(f"{shortness}; give a longer run.duration")
+        return begin, end

@@ -1,5 +1,6 @@
-"""Workers that compute chunks: this process, or processes of this machine (for a Dask
-scheduler see `dask_workers`).
+"""Workers that compute chunks: this process, or processes of this machine.
+
+For those of a Dask scheduler see `dask_workers`.
 """
 
 from __future__ import annotations
@@ -26,8 +27,14 @@ Setup = Callable[[], object]
 
 
 class WorkerPool(NamedTuple):
-    """Running workers: their executor, and a function that returns the number of chunks
-    to keep in flight so that none is idle.
+    """Running workers.
+
+    Attributes
+    ----------
+    executor : Executor
+        Their executor.
+    in_flight : callable
+        Returns the number of chunks to keep in flight so that no worker is idle.
     """
 
     executor: Executor
@@ -57,18 +64,19 @@ def this_process() -> Iterator[WorkerPool]:
 
 
 class _FileExecutor(Executor):
-    """An executor that transfers results by files: a worker killed while sending through
-    a pipe would block the parent process.
+    """An executor that transfers results by files.
+
+    A worker killed while sending through a pipe would block the parent process.
     """
 
     def __init__(self, pool: Executor, folder: Path) -> None:
-        self.pool, self.folder = pool, folder
+        self.pool = pool
+        self.folder = folder
 
     def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
         result: Future[Any] = Future()
-        self.pool.submit(_to_file, self.folder, fn, args, kwargs).add_done_callback(
-            partial(_from_file, result)
-        )
+        written = self.pool.submit(_to_file, self.folder, fn, args, kwargs)
+        written.add_done_callback(partial(_from_file, result))
         return result
 
 
@@ -83,9 +91,9 @@ def _to_file(folder: Path, fn: Callable[..., Any], args: Any, kwargs: Any) -> Pa
     except OSError as error:
         if path is not folder:
             path.unlink(missing_ok=True)
-        words = "see to the disk, then go on with --resume; the chunks that are done stay"
+        remedy = "see to the disk, then go on with --resume; the chunks that are done stay"
         raise ComputationError(
-            f"{folder}: what was computed can't be written: {error.strerror}; {words}"
+            f"{folder}: what was computed can't be written: {error.strerror}; {remedy}"
         ) from None
     return path
 
@@ -101,28 +109,28 @@ def _from_file(result: Future[Any], written: Future[Path]) -> None:
 
 
 class _InterruptImmuneProcess(SpawnProcess):
-    """A process that ignores Ctrl-C from its first instruction on; the parent process
-    handles it.
-    """
+    """A process that ignores Ctrl-C from its first instruction on; its parent handles it."""
 
     def start(self) -> None:
-        """Start the process with SIGINT blocked in this thread, which the child inherits;
-        a pending signal is delivered afterwards.
+        """Start the process with SIGINT blocked in this thread, which the child inherits.
+
+        A pending signal is delivered afterwards.
         """
         if not hasattr(signal, "pthread_sigmask"):  # Windows
             super().start()
             return
         resource_tracker.ensure_running()  # it unblocks signals when it starts, so start it before
-        before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+        previous_mask = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
         try:
             super().start()
         finally:
-            signal.pthread_sigmask(signal.SIG_SETMASK, before)
+            signal.pthread_sigmask(signal.SIG_SETMASK, previous_mask)
 
 
 class _InterruptImmuneContext(SpawnContext):
-    """Context of processes that ignore Ctrl-C, whenever an executor starts them; spawned,
-    as a fork would copy held locks of threads.
+    """Context of processes that ignore Ctrl-C, whenever an executor starts them.
+
+    They are spawned, as a fork would copy held locks of threads.
     """
 
     Process = _InterruptImmuneProcess
@@ -130,9 +138,7 @@ class _InterruptImmuneContext(SpawnContext):
 
 @contextmanager
 def processes(number: int, setup: Setup, folder: Path) -> Iterator[WorkerPool]:
-    """Provide `number` processes of this machine, which pass their results through files
-    in a folder.
-    """
+    """Provide processes of this machine, which pass their results through files in a folder."""
     pool = ProcessPoolExecutor(
         number, _InterruptImmuneContext(), initializer=_begin, initargs=(setup,)
     )

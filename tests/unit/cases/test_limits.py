@@ -471,7 +471,7 @@ def test_a_study_holds_each_drop_to_each_limit_as_a_run_does(tmp_path: Path) -> 
             for name in limits()
             if any(doubt == sentence(result, name) for doubt in result.doubts)
         }
-        for name, value in numbers_of(Conditions(result.case, result._seen)).items():
+        for name, value in numbers_of(Conditions(result.case, result._drop_summary)).items():
             assert kept(study, name)[place] == pytest.approx(float(value), rel=1e-5)
 
 
@@ -482,7 +482,7 @@ def told_flags(study: vi.Study) -> tuple[list[str], list[int]]:
 
 
 def sentence(result: Any, name: str) -> str:
-    conditions = Conditions(result.case, result._seen)
+    conditions = Conditions(result.case, result._drop_summary)
     number = numbers_of(conditions).get(name, math.nan)
     return (
         limits()[name].sentence(conditions, float(number))

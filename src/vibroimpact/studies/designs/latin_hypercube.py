@@ -13,20 +13,17 @@ def size(asked: Asked) -> int:
 
 
 def plan(asked: Asked) -> Plan:
-    """Return the points: on each axis one in each of `samples` equally likely intervals, paired at
-    random.
+    """Return the points: on each axis one in each of `samples` equally likely intervals.
 
-    Each axis is sampled separately from its own random stream, which avoids a second copy of all
-    samples in memory.
+    The values of the axes are paired at random. Each axis is sampled separately from its own random
+    stream, which avoids a second copy of all samples in memory.
     """
     from scipy.stats import qmc
 
-    columns = {
-        key: axis.quantiles(
-            qmc.LatinHypercube(1, rng=generator(asked.seed, place)).random(asked.samples)[:, 0]
-        )
-        for place, (key, axis) in enumerate(asked.axes.items())
-    }
+    columns = {}
+    for number, (key, axis) in enumerate(asked.axes.items()):
+        sampler = qmc.LatinHypercube(1, rng=generator(asked.seed, number))
+        columns[key] = axis.quantiles(sampler.random(asked.samples)[:, 0])
     return Plan("latin-hypercube", scaled_columns(asked.axes, columns), False)
 
 

@@ -27,8 +27,9 @@ def size(asked: Asked) -> int:
 
 
 def plan(asked: Asked) -> Plan:
-    """Return the points: block A, block B, and for each axis block A with the values of B on that
-    axis.
+    """Return the points: block A, block B, and one block for each axis.
+
+    The block of an axis is block A with the values of B on that axis.
 
     References
     ----------
@@ -37,15 +38,17 @@ def plan(asked: Asked) -> Plan:
     """
     from scipy.stats import qmc
 
-    axes = asked.axes
-    both = qmc.Sobol(2 * len(axes), rng=generator(asked.seed)).random(asked.samples)
-    a, b = both[:, : len(axes)], both[:, len(axes) :]
-    blocks = [a, b]
-    for place in range(len(axes)):
-        mixed = a.copy()
-        mixed[:, place] = b[:, place]
+    count = len(asked.axes)
+    # both blocks from one sequence, so that they are even together
+    sequence = qmc.Sobol(2 * count, rng=generator(asked.seed)).random(asked.samples)
+    block_a = sequence[:, :count]
+    block_b = sequence[:, count:]
+    blocks = [block_a, block_b]
+    for axis in range(count):
+        mixed = block_a.copy()
+        mixed[:, axis] = block_b[:, axis]
         blocks.append(mixed)
-    return drawn_plan("saltelli", axes, np.concatenate(blocks))
+    return drawn_plan("saltelli", asked.axes, np.concatenate(blocks))
 
 
 DESIGN = Design(

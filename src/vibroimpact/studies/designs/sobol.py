@@ -22,12 +22,14 @@ def size(asked: Asked) -> int:
 def check_power_of_two(samples: int, blocks: int = 1) -> None:
     """Check that a number of samples in each of some blocks is a power of two."""
     if samples & (samples - 1):
-        allowed = 1 << ((MOST_DROPS // blocks).bit_length() - 1)
+        largest = 1 << ((MOST_DROPS // blocks).bit_length() - 1)
         below = 1 << (samples.bit_length() - 1)
-        take = f"{below} or {2 * below}" if 2 * below <= allowed else f"{min(below, allowed)}"
+        if 2 * below <= largest:
+            remedy = f"take {below} or {2 * below}"
+        else:
+            remedy = f"take {min(below, largest)}"
         raise InputError(
-            f"{samples} is not a power of two, which the sequence needs "
-            f"to be balanced; take {take}",
+            f"{samples} is not a power of two, which the sequence needs to be balanced; {remedy}",
             "samples",
         )
 
@@ -36,11 +38,8 @@ def plan(asked: Asked) -> Plan:
     """Return the points of the sequence."""
     from scipy.stats import qmc
 
-    return drawn_plan(
-        "sobol",
-        asked.axes,
-        qmc.Sobol(len(asked.axes), rng=generator(asked.seed)).random(asked.samples),
-    )
+    sequence = qmc.Sobol(len(asked.axes), rng=generator(asked.seed))
+    return drawn_plan("sobol", asked.axes, sequence.random(asked.samples))
 
 
 DESIGN = Design("sobol", "a Sobol sequence, evenly spread in all axes together", True, size, plan)

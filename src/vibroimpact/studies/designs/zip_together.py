@@ -24,8 +24,10 @@ def size(asked: Asked) -> int:
             )
     counts = {key: len(axis) for key, axis in asked.axes.items()}
     if len(set(counts.values())) > 1:
-        told = ", ".join(f"{key} has {count}" for key, count in counts.items())
-        raise InputError(f"all keys of a zip need as many values as each other, and {told}", "over")
+        sizes = ", ".join(f"{key} has {count}" for key, count in counts.items())
+        raise InputError(
+            f"all keys of a zip need as many values as each other, and {sizes}", "over"
+        )
     return next(iter(counts.values()))
 
 
