@@ -9,11 +9,11 @@ from vibroimpact.contact.friction.law import CompliantFriction
 
 @dataclass(frozen=True, kw_only=True)
 class Mdr(CompliantFriction):
-    r"""The contact of elastic spheres that sticks in its middle and slips at its rim, under any
-    history of both forces.
+    r"""Contact of elastic spheres that sticks in its middle and slips at its rim.
+
+    Both forces may have any history.
 
     .. math::
-
         Q = G^* \int_{-a}^{a} u\, dx,\qquad
         |u(x)| \le \mu \frac{E^*}{G^*} \left(D - \frac{x^2}{R}\right)
 
