@@ -1,5 +1,6 @@
-"""Adhesive contact of Johnson, Kendall and Roberts (JKR), in closed form as a function of
-the indentation.
+"""Adhesive contact of Johnson, Kendall and Roberts (JKR), in closed form.
+
+Force and energy are functions of the indentation.
 """
 
 from __future__ import annotations
@@ -28,11 +29,13 @@ _PULL_OFF_INDENTATION = _PULL_OFF_Z**4 - _PULL_OFF_Z
 def _stable_root(s: Array) -> Array:
     """Return the largest root z of z^4 - z = s, by Ferrari's formula and one Newton step."""
     s = np.maximum(s, _PULL_OFF_INDENTATION)
+    # the real root y of the resolvent y^3 + s y = 1/8, by Cardano's formula
     third = s / 3.0
     u = np.cbrt(0.0625 + np.sqrt(np.maximum(0.00390625 + third * third * third, 0.0)))
     v = -third / u
-    # the same root of y^3 + s y = 1/8, without cancellation
+    # u + v cancel for s > 0: there the same root as a quotient
     y = where(s > 0.0, 0.125 / (u * u + third + v * v), u + v)
+    # the larger root of the quadratic factor with real roots
     z = 0.5 * (np.sqrt(2.0 * y) + np.sqrt(np.maximum(np.sqrt(2.0 / y) - 2.0 * y, 0.0)))
     cube = z * z * z
     # the slope vanishes at pull-off, where z is accurate without the step
@@ -44,20 +47,23 @@ def _stable_root(s: Array) -> Array:
 def _forces(
     delta: Array, delta_dot: Array, approach_speed: Array, coefficients: Any
 ) -> tuple[Array, Array]:
-    unit_indentation, unit_force, unit_dashpot = coefficients[0], coefficients[1], coefficients[2]
+    unit_indentation = coefficients[0]
+    unit_force = coefficients[1]
+    unit_dashpot = coefficients[2]
     z = _stable_root(delta / unit_indentation)
     cube = z * z * z
-    return (4.0 / 3.0 * cube - 2.0) * cube * unit_force, unit_dashpot * (z * z) * delta_dot
+    adhesive_force = (4.0 / 3.0 * cube - 2.0) * cube * unit_force
+    return adhesive_force, unit_dashpot * (z * z) * delta_dot
 
 
 @scalar
 def _energies(delta: Array, coefficients: Any) -> tuple[Array, Array]:
-    unit_indentation, unit_energy = coefficients[0], coefficients[3]
+    unit_indentation = coefficients[0]
+    unit_energy = coefficients[3]
     z = _stable_root(delta / unit_indentation)
     cube = z * z * z
-    return (
-        ((8.0 / 15.0 * cube - 4.0 / 3.0) * cube + 0.5) * cube * z + 0.3
-    ) * unit_energy, 0.0 * delta
+    elastic_energy = (((8.0 / 15.0 * cube - 4.0 / 3.0) * cube + 0.5) * cube * z + 0.3) * unit_energy
+    return elastic_energy, 0.0 * delta
 
 
 @scalar
@@ -75,8 +81,8 @@ class AdhesiveLaw(ElasticPairLaw, CompliantLaw):
         \delta = \frac{a^2}{R} - \sqrt{\frac{2 \pi w a}{E^*}}
 
     on the branch of the larger contact radius a, from first touch at :math:`\delta = 0` to pull-off
-    at the smallest indentation. The
-    elastic energy is counted from zero indentation; at pull-off it is the energy lost.
+    at the smallest indentation. The elastic energy is counted from zero indentation; at pull-off it
+    is the energy lost.
     """
 
     contact_end = "pull-off"
@@ -96,15 +102,17 @@ class AdhesiveLaw(ElasticPairLaw, CompliantLaw):
 
     @property
     def dashpot_per_radius(self) -> Array:
-        """The dashpot constant over the contact radius [N s/m^2]; zero unless a law has
-        it otherwise.
+        """The dashpot constant over the contact radius [N s/m^2]; zero here.
+
+        A law with damping defines its own.
         """
         return 0.0
 
     @cached_property
     def coefficients(self) -> tuple[Array, ...]:
-        """The units of indentation, force, dashpot constant and energy by which the
-        contact is made dimensionless.
+        """The units of indentation, force, dashpot constant and energy.
+
+        By these the contact is made dimensionless.
         """
         unit_force = self.effective_modulus * self._radius_at_zero**3 / self.effective_radius
         unit_energy = self.effective_modulus * self._radius_at_zero**5 / self.effective_radius**2
@@ -124,4 +132,5 @@ class AdhesiveLaw(ElasticPairLaw, CompliantLaw):
 
     @property
     def _unit_indentation(self) -> Array:
+        """Indentation of Hertz's contact of the radius at zero indentation, a0^2/R [m]."""
         return self._radius_at_zero**2 / self.effective_radius

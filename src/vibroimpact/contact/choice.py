@@ -1,5 +1,6 @@
-"""A choice between two values that compiled code makes as well, since numba's `np.where`
-of floats is an array.
+"""A choice between two values that compiled code makes as well.
+
+Numba's `np.where` of floats is an array, which scalar code can't use.
 """
 
 from __future__ import annotations

@@ -1,5 +1,6 @@
-"""Docstrings of contact laws: their numpydoc sections, of which Parameters is made from
-the declared fields.
+"""Docstrings of contact laws: their numpydoc sections.
+
+The section Parameters is made from the declared fields.
 """
 
 from __future__ import annotations
@@ -11,8 +12,9 @@ from typing import Any
 
 
 def docstring_sections(docstring: str) -> dict[str, str]:
-    """Return the numpydoc sections of a docstring by heading; the text before the first heading has
-    the key "".
+    """Return the numpydoc sections of a docstring by heading.
+
+    The text before the first heading has the key "".
 
     Examples
     --------
@@ -30,27 +32,28 @@ def docstring_sections(docstring: str) -> dict[str, str]:
 
 
 def with_parameters(docstring: str, items: Mapping[str, dataclasses.Field[Any]]) -> str:
-    """Return a docstring with a Parameters section made from the fields of the law; as it
-    is if it has one, or there are no fields.
+    """Return a docstring with a Parameters section made from the fields of the law.
+
+    It is returned as it is if it has one, or if there are no fields.
     """
     sections = docstring_sections(docstring)
     if "Parameters" in sections or not items:
         return docstring
-    entries = [
-        _entry(name, item)
-        for name, item in sorted(items.items(), key=lambda pair: bool(pair[1].metadata["memory"]))
-    ]
+    parameters = [_entry(name, item) for name, item in items.items() if not _is_state(item)]
+    states = [_entry(name, item) for name, item in items.items() if _is_state(item)]
     summary = sections.pop("")
-    parts = {"Parameters": "\n".join(entries), **sections}
-    return (
-        "\n\n".join(
-            [
-                summary,
-                *(f"{heading}\n{'-' * len(heading)}\n{text}" for heading, text in parts.items()),
-            ]
-        )
-        + "\n"
-    )
+    blocks = [summary, _section("Parameters", "\n".join([*parameters, *states]))]
+    blocks += [_section(heading, text) for heading, text in sections.items()]
+    return "\n\n".join(blocks) + "\n"
+
+
+def _section(heading: str, text: str) -> str:
+    """Return a numpydoc section with its underlined heading."""
+    return f"{heading}\n{'-' * len(heading)}\n{text}"
+
+
+def _is_state(item: dataclasses.Field[Any]) -> bool:
+    return bool(item.metadata["memory"])
 
 
 def _is_underline(line: str) -> bool:
@@ -60,19 +63,19 @@ def _is_underline(line: str) -> bool:
 def _entry(name: str, item: dataclasses.Field[Any]) -> str:
     """Return the numpydoc entry of a parameter or a state: its detail, unit, range and default."""
     metadata = item.metadata
-    default = (
-        ""
-        if item.default is dataclasses.MISSING
-        else ", optional"
-        if item.default is None
-        else f", default {item.default:g}"
+    if item.default is dataclasses.MISSING:
+        default = ""
+    elif item.default is None:
+        default = ", optional"
+    else:
+        default = f", default {item.default:g}"
+    label = "State: " if metadata["memory"] else ""
+    unit = f"In {metadata['unit']}" if metadata["unit"] else "Dimensionless"
+    allowed = metadata["range"].words
+    return "\n".join(
+        [
+            f"{name} : float or array{default}",
+            f"    {label}{metadata['detail']}",
+            f"    {unit}, {allowed}." if allowed else f"    {unit}.",
+        ]
     )
-    facts = [
-        f"In {metadata['unit']}" if metadata["unit"] else "Dimensionless",
-        metadata["range"].words,
-    ]
-    lines = [
-        f"{'State: ' if metadata['memory'] else ''}{metadata['detail']}",
-        ", ".join(filter(None, facts)) + ".",
-    ]
-    return "\n".join([f"{name} : float or array{default}", *(f"    {line}" for line in lines)])

@@ -31,12 +31,16 @@ LoadingState = Callable[[Array, Any], tuple[Array, Array, Array]]
 
 
 class LoadingCurve(NamedTuple):
-    """The curve of loading: functions of an indentation on it [m], and of the coefficients of the
-    law.
+    """The curve of loading: functions of an indentation on it [m] and the law's coefficients.
 
-    force: loading force [N]. state: this force, its integral from zero indentation [J], and the
-    elastic recovery on unloading from there [m], which are computed together since compiling takes
-    a twentieth of a second for each function.
+    Attributes
+    ----------
+    force : callable
+        Loading force [N].
+    state : callable
+        This force, its integral from zero indentation [J], and the elastic recovery on unloading
+        from there [m]. They are computed together since compiling takes a twentieth of a second
+        for each function.
     """
 
     force: OfIndentation
@@ -53,7 +57,8 @@ class LawFunctions(NamedTuple):
 
 @scalar
 def _levels(coefficients: Any) -> Levels:
-    loaded_to, touch_level = coefficients[0], coefficients[1]
+    loaded_to = coefficients[0]
+    touch_level = coefficients[1]
     return touch_level, touch_level, loaded_to, loaded_to, np.inf
 
 
@@ -70,8 +75,11 @@ def law_functions(curve: LoadingCurve) -> LawFunctions:
     def forces(
         delta: Array, delta_dot: Array, approach_speed: Array, coefficients: Any
     ) -> tuple[Array, Array]:
-        loaded_to, touch_level = coefficients[0], coefficients[1]
-        recovery, largest_force, exponent = coefficients[2], coefficients[3], coefficients[4]
+        loaded_to = coefficients[0]
+        touch_level = coefficients[1]
+        recovery = coefficients[2]
+        largest_force = coefficients[3]
+        exponent = coefficients[4]
         loading = loading_force(np.maximum(delta, loaded_to), coefficients)
         unloading = largest_force * power(np.maximum(delta - touch_level, 0.0) / recovery, exponent)
         force = where(delta < loaded_to, unloading, loading)
@@ -79,15 +87,21 @@ def law_functions(curve: LoadingCurve) -> LawFunctions:
 
     @scalar
     def energies(delta: Array, coefficients: Any) -> tuple[Array, Array]:
-        loaded_to, exponent, plastic_loss = coefficients[0], coefficients[4], coefficients[5]
+        loaded_to = coefficients[0]
+        exponent = coefficients[4]
+        plastic_loss = coefficients[5]
         deepest = np.maximum(delta, loaded_to)
         force, work, recovery = loading_state(deepest, coefficients)
-        recovered = force * recovery / (exponent + 1.0)
-        recovery_left = np.maximum(delta - (deepest - recovery), 0.0) / where(
+        # the integral of the unloading curve, a power of the exponent q: F_m times the recovery
+        # over q + 1 in full, and of its fraction (delta - delta_r)/recovery that power
+        full_elastic_energy = force * recovery / (exponent + 1.0)
+        fraction = np.maximum(delta - (deepest - recovery), 0.0) / where(
             recovery > 0.0, recovery, 1.0
         )
-        lost = work - recovered - plastic_loss
-        return recovered * power(recovery_left, exponent + 1.0), where(delta > loaded_to, lost, 0.0)
+        elastic_energy = full_elastic_energy * power(fraction, exponent + 1.0)
+        # below the largest indentation nothing yields
+        plastic_work = work - full_elastic_energy - plastic_loss
+        return elastic_energy, where(delta > loaded_to, plastic_work, 0.0)
 
     @scalar
     def compressed(deepest: Array, coefficients: Any, changed: Any) -> Array:
@@ -105,15 +119,15 @@ def law_functions(curve: LoadingCurve) -> LawFunctions:
 
 @dataclass(frozen=True, kw_only=True)
 class ElasticPlasticLaw(CompliantLaw):
-    r"""Base of the laws with a loading curve and, from each of its points, the elastic unloading
-    curve
+    r"""Base of the laws with a loading curve and elastic unloading from each of its points.
+
+    The unloading curve is
 
     .. math:: F = F_m \left(\frac{\delta - \delta_r}{\delta_m - \delta_r}\right)^q
 
     from the largest indentation :math:`(\delta_m, F_m)` to the residual indentation
-    :math:`\delta_r`; reloading follows the same
-    curve. A law defines its `loading_curve`, from which its functions of floats follow, and the
-    `loading_coefficients` of this.
+    :math:`\delta_r`. Reloading follows the same curve. A law defines its `loading_curve`, from
+    which its functions of floats follow, and the `loading_coefficients` of this.
     """
 
     contact_end = "zero-force"
@@ -146,9 +160,7 @@ class ElasticPlasticLaw(CompliantLaw):
 
     @cached_property
     def coefficients(self) -> tuple[Array, ...]:
-        """Those of a dented contact, which `law_functions` lists, and those of the
-        loading curve.
-        """
+        """Those of a dented contact, which `law_functions` lists, and of the loading curve."""
         coefficients = list(self._undented)
         self._functions.compressed(self.loaded_to, self._undented, coefficients)
         return tuple(coefficients)
@@ -170,25 +182,26 @@ class ElasticPlasticLaw(CompliantLaw):
         return self.changed({"loaded_to": np.maximum(self.loaded_to, deepest)})
 
     def closed_form_restitution(self, mass: Array, speed: Array) -> Array:
-        """Return the square root of the energy recovered over the kinetic energy, from
-        the energy balance.
-        """
-        energy = np.asarray(0.5 * mass * speed * speed, dtype=float)
-        wanted = energy + self.loading_work(self.loaded_to) - self._unloading_work(self.loaded_to)
-        deepest = np.full(np.shape(wanted), 1e-6)
+        """Return the square root of the energy recovered over the kinetic energy."""
+        kinetic_energy = np.asarray(0.5 * mass * speed * speed, dtype=float)
+        # the loading work at the turn: kinetic energy, and the plastic loss of the dent so far
+        work_at_turn = (
+            kinetic_energy
+            + self.loading_work(self.loaded_to)
+            - self._unloading_work(self.loaded_to)
+        )
+        deepest = np.full(np.shape(work_at_turn), 1e-6)
         # Newton's method in logarithms, since the loading work is nearly a power of the indentation
         for _ in range(60):
             work = self.loading_work(deepest)
-            step = np.log(wanted / work) * work / (deepest * self.loading_force(deepest))
+            step = np.log(work_at_turn / work) * work / (deepest * self.loading_force(deepest))
             deepest = deepest * np.exp(step)
             # convergence is quadratic: the next step would be below rounding
             if np.all(np.abs(step) < 1e-9):
                 break
-        return np.where(
-            deepest > self.loaded_to,
-            np.sqrt(np.minimum(self._unloading_work(deepest) / energy, 1.0)),
-            1.0,
-        )[()]
+        recovered_share = np.minimum(self._unloading_work(deepest) / kinetic_energy, 1.0)
+        # an impact that does not deepen the dent is elastic
+        return np.where(deepest > self.loaded_to, np.sqrt(recovered_share), 1.0)[()]
 
     @cached_property
     def _undented(self) -> tuple[Array, ...]:
@@ -196,5 +209,6 @@ class ElasticPlasticLaw(CompliantLaw):
         return 0.0, 0.0, 1.0, 0.0, self.unloading_exponent, 0.0, *self.loading_coefficients
 
     def _unloading_work(self, deepest: Array) -> Array:
+        """Return the energy recovered on unloading from an indentation on the loading curve [J]."""
         force, _, recovery = self.loading_curve.state(deepest, self._undented)
         return force * recovery / (self.unloading_exponent + 1.0)

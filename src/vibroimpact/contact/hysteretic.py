@@ -1,6 +1,4 @@
-"""Hysteretic damping, proportional to the elastic force and the indentation rate, and its
-restitution.
-"""
+"""Hysteretic damping, proportional to elastic force and indentation rate, and its restitution."""
 
 from __future__ import annotations
 
@@ -36,20 +34,19 @@ _SMALL = 0.02
 def _forces(
     delta: Array, delta_dot: Array, approach_speed: Array, coefficients: Any
 ) -> tuple[Array, Array]:
-    stiffness, exponent, damping_factor, dissipation = (
-        coefficients[0],
-        coefficients[1],
-        coefficients[2],
-        coefficients[3],
-    )
+    stiffness = coefficients[0]
+    exponent = coefficients[1]
+    damping_factor = coefficients[2]
+    dissipation = coefficients[3]
     elastic = stiffness * power(delta, exponent)
     return elastic, elastic * ((damping_factor / approach_speed + dissipation) * delta_dot)
 
 
 @dataclass(frozen=True, kw_only=True)
 class HystereticLaw(PowerLaw):
-    r"""Base of the laws :math:`F = K \delta^n (1 + D\, \dot\delta/\dot\delta_0)`, each
-    with its own :math:`D`.
+    r"""Base of the laws :math:`F = K \delta^n (1 + D\, \dot\delta/\dot\delta_0)`.
+
+    Each law has its own damping factor :math:`D`.
     """
 
     contact_end = "zero-indentation"
@@ -70,15 +67,15 @@ class HystereticLaw(PowerLaw):
         raise NotImplementedError
 
     def damping_factor_at(self, approach_speed: Array) -> Array:
-        """Return the damping factor of an impact at an approach speed [m/s]; here the
-        same at all speeds.
-        """
+        """Return the damping factor [-] at an approach speed [m/s]; here the same at all speeds."""
         return self.damping_factor
 
     @cached_property
     def coefficients(self) -> tuple[Array, ...]:
-        """Stiffness, exponent, damping factor, and the dissipation that does not depend
-        on the approach speed [s/m].
+        """Stiffness, exponent, damping factor and dissipation.
+
+        The last is the damping factor over the approach speed, of laws in which this ratio, rather
+        than the factor, is a constant [s/m].
         """
         return self.stiffness, self.exponent, self.damping_factor, 0.0
 
@@ -88,8 +85,9 @@ class HystereticLaw(PowerLaw):
 
 
 def hysteretic_restitution(damping_factor: Array) -> Array:
-    r"""Return the restitution of :math:`F = K \delta^n (1 + D\, \dot\delta/\dot\delta_0)` without
-    gravity.
+    r"""Return the restitution of hysteretic damping without gravity [-].
+
+    The law is :math:`F = K \delta^n (1 + D\, \dot\delta/\dot\delta_0)`.
 
     It is independent of K, n, mass and speed, and solves
 
@@ -111,16 +109,16 @@ def hysteretic_restitution(damping_factor: Array) -> Array:
     [1.0, 0.7, 0.3069]
     """
     factor = np.asarray(damping_factor, dtype=float)
-    small = factor < _SMALL
-    series = np.polynomial.polynomial.polyval(np.where(small, factor, 0.0), _SERIES)
+    is_small = factor < _SMALL
+    series = np.polynomial.polynomial.polyval(np.where(is_small, factor, 0.0), _SERIES)
     # with e D = 1 - exp(-w) the equation is w + exp(-w) - 1 = D - ln(1 + D): convex in w, so that
     # Newton's method converges monotonically from an upper bound of the root
-    large = np.where(small, 1.0, factor)
-    wanted = large - np.log1p(large)
-    w = np.minimum(wanted + 1.0, wanted + np.sqrt(2.0 * wanted))
+    large_factor = np.where(is_small, 1.0, factor)  # one where the series is taken
+    right_side = large_factor - np.log1p(large_factor)
+    w = np.minimum(right_side + 1.0, right_side + np.sqrt(2.0 * right_side))
     for _ in range(60):
-        step = (w + np.expm1(-w) - wanted) / -np.expm1(-w)
+        step = (w + np.expm1(-w) - right_side) / -np.expm1(-w)
         w = w - step
         if np.all(np.abs(step) <= 1e-15 * w):
             break
-    return np.where(small, series, -np.expm1(-w) / large)[()]
+    return np.where(is_small, series, -np.expm1(-w) / large_factor)[()]

@@ -1,5 +1,6 @@
-"""The Kelvin-Voigt model (linear spring and dashpot in parallel), and the restitution of
-its damping ratio.
+"""The Kelvin-Voigt model, and the restitution of its damping ratio.
+
+A linear spring and a dashpot act in parallel.
 """
 
 from __future__ import annotations
@@ -21,14 +22,16 @@ from vibroimpact.contact.power_law import spring_energies
 def _forces(
     delta: Array, delta_dot: Array, approach_speed: Array, coefficients: Any
 ) -> tuple[Array, Array]:
-    stiffness, dashpot = coefficients[0], coefficients[1]
+    stiffness = coefficients[0]
+    dashpot = coefficients[1]
     return stiffness * delta, dashpot * delta_dot
 
 
 @dataclass(frozen=True, kw_only=True)
 class KelvinVoigtLaw(CompliantLaw):
-    r"""Base of the laws :math:`F = k \delta + c \dot\delta`, whose contact ends at zero
-    indentation.
+    r"""Base of the laws :math:`F = k \delta + c \dot\delta`.
+
+    Their contact ends at zero indentation.
     """
 
     contact_end = "zero-indentation"
@@ -51,8 +54,9 @@ class KelvinVoigtLaw(CompliantLaw):
         return self.stiffness, self.dashpot
 
     def closed_form_restitution(self, mass: Array, speed: Array) -> Array:
-        r"""Return :math:`\exp(-\pi\beta/\sqrt{1 - \beta^2})` with :math:`\beta =
-        c/(2\sqrt{k m})`, independent of the speed.
+        r"""Return :math:`\exp(-\pi\beta/\sqrt{1 - \beta^2})`, independent of the speed.
+
+        The damping ratio is :math:`\beta = c/(2\sqrt{k m})`.
         """
         return restitution_from_damping_ratio(
             self.dashpot / (2.0 * np.sqrt(self.stiffness * mass)) + 0.0 * speed
@@ -60,8 +64,9 @@ class KelvinVoigtLaw(CompliantLaw):
 
 
 def dashpot_for_restitution(restitution: Array, stiffness: Array, mass: Array) -> Array:
-    r"""Return the dashpot constant :math:`c = 2 \beta(e) \sqrt{k m}` [N s/m] that gives a mass [kg]
-    a restitution.
+    r"""Return the dashpot constant that gives a mass [kg] a restitution [N s/m].
+
+    It is :math:`c = 2 \beta(e) \sqrt{k m}`.
 
     Examples
     --------
@@ -86,8 +91,9 @@ def damping_ratio_from_restitution(restitution: Array) -> Array:
 
 
 def restitution_from_damping_ratio(damping_ratio: Array) -> Array:
-    r"""Return the restitution :math:`e = \exp(-\pi\beta/\sqrt{1 - \beta^2})` [-] of a damping
-    ratio; zero at and above critical damping.
+    r"""Return the restitution of a damping ratio [-].
+
+    It is :math:`e = \exp(-\pi\beta/\sqrt{1 - \beta^2})`; zero at and above critical damping.
 
     Examples
     --------

@@ -48,9 +48,7 @@ class ElasticPairLaw(ContactLaw):
 
 @dataclass(frozen=True, kw_only=True)
 class RestitutionForMassLaw(CompliantLaw):
-    """Mixin of the laws whose dashpot is computed from the restitution asked for and the
-    effective mass.
-    """
+    """Mixin of the laws whose dashpot follows from a restitution and the effective mass."""
 
     restitution: Array = parameter(
         "restitution asked for, e",
@@ -70,8 +68,9 @@ class RestitutionForMassLaw(CompliantLaw):
 
 @dataclass(frozen=True, kw_only=True)
 class ViscoelasticLaw(CompliantLaw):
-    """Mixin of the laws of viscoelastic spheres, whose energy loss is set by the
-    dissipative constant A.
+    """Mixin of the laws of viscoelastic spheres.
+
+    Their energy loss is set by the dissipative constant A.
     """
 
     dissipation_time: Array = parameter(
@@ -87,8 +86,9 @@ class ViscoelasticLaw(CompliantLaw):
 
 @dataclass(frozen=True, kw_only=True)
 class TwoPhaseLaw(CompliantLaw):
-    """Mixin of the laws whose dissipative force differs in compression and restitution;
-    the state tells the phase.
+    """Mixin of the laws whose dissipative force differs in compression and restitution.
+
+    The state tells the phase.
     """
 
     scalar_levels: ClassVar[ScalarLevels | None] = staticmethod(_two_phase_levels)
@@ -102,8 +102,10 @@ class TwoPhaseLaw(CompliantLaw):
     def coefficients_by_phase(
         self, stiffness: Array, compression: Array, restitution: Array
     ) -> tuple[Array, ...]:
-        """Return the coefficients: stiffness, the constant of the dissipative force in this phase,
-        `turned`, and that in restitution.
+        """Return the coefficients of a law with two phases.
+
+        They are stiffness, the constant of the dissipative force in the present phase, `turned`,
+        and that constant in restitution.
 
         Parameters
         ----------
@@ -120,7 +122,5 @@ class TwoPhaseLaw(CompliantLaw):
         )
 
     def after_compression(self, deepest: Array) -> Self:
-        """Return the law for the restitution phase, of the drops whose indentation has
-        been positive.
-        """
+        """Return the law for the restitution phase, of the drops that have been compressed."""
         return self.changed({"turned": np.where(deepest > 0.0, 1.0, self.turned)})

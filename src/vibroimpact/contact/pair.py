@@ -1,5 +1,6 @@
-"""Properties of a pair of elastic bodies in contact: effective modulus, radius and mass,
-Hertz's stiffness, yield pressure.
+"""Properties of a pair of elastic bodies in contact.
+
+They are effective modulus, radius and mass, Hertz's stiffness, and yield pressure.
 """
 
 from __future__ import annotations
@@ -54,12 +55,16 @@ def effective_shear_modulus(first: Material, second: Material) -> Array:
     >>> f"{effective_shear_modulus(alumina, glass):.4e}"
     '5.4084e+10'
     """
-    shares = [
-        0.5 * (2.0 - one.poissons_ratio) * (1.0 + one.poissons_ratio) / one.youngs_modulus
-        for one in (first, second)
+    # (2 - nu)/(4 G), with G = E/(2 (1 + nu))
+    compliances = [
+        0.5
+        * (2.0 - material.poissons_ratio)
+        * (1.0 + material.poissons_ratio)
+        / material.youngs_modulus
+        for material in (first, second)
     ]
     with np.errstate(divide="ignore"):
-        return np.divide(1.0, shares[0] + shares[1])
+        return np.divide(1.0, compliances[0] + compliances[1])
 
 
 def hertz_stiffness(modulus: Array, radius: Array) -> Array:
@@ -119,7 +124,8 @@ class ContactPair:
 
     @property
     def yield_pressure(self) -> Array | None:
-        """Largest contact pressure before yield [Pa]: 1.6 times the yield strength
-        (Johnson 1985, eq. 6.9).
+        """Largest contact pressure before yield [Pa].
+
+        It is 1.6 times the yield strength (Johnson 1985, eq. 6.9).
         """
         return None if self.yield_strength is None else 1.6 * self.yield_strength

@@ -1,5 +1,6 @@
-"""The parameters of a law: declared as the fields of a dataclass, checked, and taken from
-the bodies where a case leaves them out.
+"""The parameters of a law: declared, checked, and taken from the bodies.
+
+They are the fields of a dataclass. Where a case leaves them out, they follow from the bodies.
 """
 
 from __future__ import annotations
@@ -55,8 +56,9 @@ def parameter(
 
 
 def memory(meaning: str, unit: str = "", *, detail: str = "") -> Any:
-    """Declare a state variable that a law carries through a contact; at least zero, and zero in a
-    fresh contact.
+    """Declare a state variable that a law carries through a contact.
+
+    It is at least zero, and zero in a fresh contact.
 
     Parameters
     ----------
@@ -72,8 +74,9 @@ def memory(meaning: str, unit: str = "", *, detail: str = "") -> Any:
 def inherited_parameter(
     base: type[Parameters], name: str, *, detail: str = "", **bounds: float
 ) -> Any:
-    """Declare a parameter or state of a base class again, with another detail or range; the rest is
-    kept.
+    """Declare a parameter or state of a base class again.
+
+    Its detail or range is another one; the rest is kept.
 
     Parameters
     ----------
@@ -115,8 +118,9 @@ def _metadata(
 
 @dataclass(frozen=True, kw_only=True)
 class Parameters:
-    """Base of contact and friction laws: their parameters are floats, or arrays with one
-    value per drop.
+    """Base of contact and friction laws.
+
+    Their parameters are floats, or arrays with one value per drop.
     """
 
     name: ClassVar[str]
@@ -129,11 +133,11 @@ class Parameters:
         for base in reversed(cls.__mro__[1:]):
             items |= getattr(base, "__dataclass_fields__", {})
         # `dataclass` decorates the class after this: its own fields are still class attributes
-        items |= {
-            key: value for key, value in vars(cls).items() if isinstance(value, dataclasses.Field)
-        }
-        # class variables are fields as well
-        declared = {key: item for key, item in items.items() if "meaning" in item.metadata}
+        for name, attribute in vars(cls).items():
+            if isinstance(attribute, dataclasses.Field):
+                items[name] = attribute
+        # class variables are fields as well, without a meaning
+        declared = {name: item for name, item in items.items() if "meaning" in item.metadata}
         if cls.__doc__:  # None under python -OO
             cls.__doc__ = with_parameters(cls.__doc__, declared)
 
@@ -156,75 +160,76 @@ class Parameters:
 
     @classmethod
     def example(cls, pair: ContactPair) -> Self:
-        """Return the law of a pair, with typical values of the parameters that the pair
-        does not give, for figures and tests.
+        """Return the law of a pair, for figures and tests.
+
+        Parameters that the pair does not give have typical values.
         """
-        given = {
-            item.name
-            for item in fields(cls)
-            if item.metadata["from_pair"] and getattr(pair, item.metadata["from_pair"]) is not None
-        }
-        typical = {
-            item.name: item.metadata["example"]
-            for item in fields(cls)
-            if item.metadata["example"] is not None
-        }
-        return cls.for_pair(
-            pair, **{name: value for name, value in typical.items() if name not in given}
-        )
+        typical_values = {}
+        for item in fields(cls):
+            source = item.metadata["from_pair"]
+            is_of_pair = source and getattr(pair, source) is not None
+            if item.metadata["example"] is not None and not is_of_pair:
+                typical_values[item.name] = item.metadata["example"]
+        return cls.for_pair(pair, **typical_values)
 
     @classmethod
     def for_pair(cls, pair: ContactPair, **parameters: Any) -> Self:
-        """Return the law of two bodies; parameters that are not given come from the pair or from
-        their defaults.
+        """Return the law of two bodies.
+
+        Parameters that are not given come from the pair or from their defaults.
 
         Raises
         ------
         InputError
             If a parameter is unknown, missing, outside its range, or can't be taken from the pair.
         """
-        known = {item.name: item for item in fields(cls)}
+        items = {item.name: item for item in fields(cls)}
         for key in parameters:
-            if key not in known:
+            if key not in items:
                 raise InputError(
-                    f'unknown key "{key}"; {cls.name} takes {choices(known, key)}', key
+                    f'unknown key "{key}"; {cls.name} takes {choices(items, key)}', key
                 )
-        given = dict(parameters)
-        for key, item in known.items():
-            if key not in given and item.metadata["from_pair"]:
-                given[key] = getattr(pair, item.metadata["from_pair"])
-                if given[key] is None:
-                    words = f"{cls.name} needs {_with_unit(item)}, and"
-                    if item.metadata["from_pair"] not in ("yield_strength", "yield_pressure"):
-                        raise InputError(f"{words} the pair of bodies has none; give it here", key)
-                    raise InputError(
-                        f"{words} neither material has a yield_strength to take it from; "
-                        f"give it here, or give one of the materials a yield_strength",
-                        key,
-                    )
-                if np.any(np.isinf(given[key])):
-                    of_materials = item.metadata["from_pair"] not in (
-                        "effective_radius",
-                        "effective_mass",
-                    )
-                    why = (
-                        "two rigid materials have no contact stiffness of their own"
-                        if of_materials
-                        else "that of the pair is infinite"
-                    )
-                    raise InputError(f"it must be given, since {why}", key)
-            if key not in given and item.default is dataclasses.MISSING:
+        values = dict(parameters)
+        for key, item in items.items():
+            if key not in values and item.metadata["from_pair"]:
+                values[key] = cls._value_of_pair(pair, item)
+            if key not in values and item.default is dataclasses.MISSING:
                 raise InputError(f"this key is missing; {cls.name} needs {_with_unit(item)}", key)
-        return cls(**given)
+        return cls(**values)
+
+    @classmethod
+    def _value_of_pair(cls, pair: ContactPair, item: dataclasses.Field[Any]) -> Any:
+        """Return the value that a parameter takes from the bodies.
+
+        Raises
+        ------
+        InputError
+            If the pair has none, or an infinite one, as two rigid materials do.
+        """
+        source = item.metadata["from_pair"]
+        value = getattr(pair, source)
+        if value is None:
+            need = f"{cls.name} needs {_with_unit(item)}, and"
+            if source not in ("yield_strength", "yield_pressure"):
+                raise InputError(f"{need} the pair of bodies has none; give it here", item.name)
+            raise InputError(
+                f"{need} neither material has a yield_strength to take it from; "
+                f"give it here, or give one of the materials a yield_strength",
+                item.name,
+            )
+        if np.any(np.isinf(value)):
+            if source in ("effective_radius", "effective_mass"):
+                reason = "that of the pair is infinite"
+            else:
+                reason = "two rigid materials have no contact stiffness of their own"
+            raise InputError(f"it must be given, since {reason}", item.name)
+        return value
 
     def take(self, drops: Any) -> Self:
         """Return the law of selected drops of a batch: array parameters are indexed by `drops`."""
+        values = {item.name: getattr(self, item.name) for item in fields(self)}
         return self.changed(
-            {
-                item.name: value[drops]
-                for item in fields(self)
-                if np.ndim(value := getattr(self, item.name))
-            }
+            {name: value[drops] for name, value in values.items() if np.ndim(value)}
         )
 
     def changed(self, changes: Mapping[str, Any]) -> Self:
@@ -239,8 +244,6 @@ class Parameters:
 
 def _with_unit(item: dataclasses.Field[Any]) -> str:
     """Return the meaning of a parameter with its unit, for messages."""
-    return (
-        f"{item.metadata['meaning']} [{item.metadata['unit']}]"
-        if item.metadata["unit"]
-        else str(item.metadata["meaning"])
-    )
+    meaning = str(item.metadata["meaning"])
+    unit = item.metadata["unit"]
+    return f"{meaning} [{unit}]" if unit else meaning

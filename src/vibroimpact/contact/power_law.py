@@ -1,5 +1,6 @@
-"""Power-law elastic forces, with exponent 3/2 for a Hertzian contact, and the duration of
-an elastic Hertzian impact.
+"""Power-law elastic forces, and the duration of an elastic Hertzian impact.
+
+The exponent is 3/2 for a Hertzian contact.
 """
 
 from __future__ import annotations
@@ -36,8 +37,9 @@ def _power_of_float(delta: float, exponent: float) -> float:
 
 @scalar_as(_power_of_float)
 def power(delta: Array, exponent: Array) -> Array:
-    """Return delta^exponent for delta >= 0; 3/2 is computed with a square root, which is many times
-    faster.
+    """Return delta^exponent for delta >= 0.
+
+    3/2 is computed with a square root, which is many times faster.
 
     Examples
     --------
@@ -56,43 +58,50 @@ def power(delta: Array, exponent: Array) -> Array:
 def fourth_root_forces(
     delta: Array, delta_dot: Array, approach_speed: Array, coefficients: Any
 ) -> tuple[Array, Array]:
-    r"""Return the forces of :math:`K \delta^{3/2} + c\, \delta^{1/4}\, \dot\delta` [N]
-    from the coefficients K and c.
+    r"""Return the forces of :math:`K \delta^{3/2} + c\, \delta^{1/4}\, \dot\delta` [N].
+
+    The coefficients are K and c.
     """
-    stiffness, dashpot = coefficients[0], coefficients[1]
+    stiffness = coefficients[0]
+    dashpot = coefficients[1]
     root = np.sqrt(delta)
     return stiffness * (delta * root), dashpot * np.sqrt(root) * delta_dot
 
 
 @scalar
 def spring_energies(delta: Array, coefficients: Any) -> tuple[Array, Array]:
-    r"""Return the energies of a linear spring, :math:`k \delta^2/2` [J], from the first
-    coefficient, k.
+    r"""Return the energies of a linear spring, :math:`k \delta^2/2` [J].
+
+    The first coefficient is k.
     """
     return 0.5 * coefficients[0] * delta * delta, 0.0 * delta
 
 
 @scalar
 def sphere_energies(delta: Array, coefficients: Any) -> tuple[Array, Array]:
-    r"""Return the energies of an elastic sphere, :math:`\tfrac25 K \delta^{5/2}` [J],
-    from the first coefficient, K.
+    r"""Return the energies of an elastic sphere, :math:`\tfrac25 K \delta^{5/2}` [J].
+
+    The first coefficient is K.
     """
     return 0.4 * delta * (coefficients[0] * power(delta, 1.5)), 0.0 * delta
 
 
 @scalar
 def power_law_energies(delta: Array, coefficients: Any) -> tuple[Array, Array]:
-    r"""Return the energies of a power law, :math:`K \delta^{n+1}/(n+1)` [J], from the
-    first coefficients, K and n.
+    r"""Return the energies of a power law, :math:`K \delta^{n+1}/(n+1)` [J].
+
+    The first coefficients are K and n.
     """
-    stiffness, exponent = coefficients[0], coefficients[1]
+    stiffness = coefficients[0]
+    exponent = coefficients[1]
     return stiffness * power(delta, exponent) * delta / (exponent + 1.0), 0.0 * delta
 
 
 @dataclass(frozen=True, kw_only=True)
 class PowerLaw(CompliantLaw):
-    r"""Base of the laws with the elastic force :math:`K \delta^n`, whose first
-    coefficients are K and n.
+    r"""Base of the laws with the elastic force :math:`K \delta^n`.
+
+    Their first coefficients are K and n.
     """
 
     scalar_energies: ClassVar[ScalarEnergies | None] = staticmethod(power_law_energies)
@@ -118,8 +127,9 @@ class PowerLaw(CompliantLaw):
 
 @dataclass(frozen=True, kw_only=True)
 class SphereLaw(CompliantLaw):
-    r"""Base of the laws with Hertz's elastic force of a sphere, :math:`K \delta^{3/2}`,
-    whose first coefficient is K.
+    r"""Base of the laws with Hertz's force of a sphere, :math:`K \delta^{3/2}`.
+
+    Their first coefficient is K.
     """
 
     scalar_energies: ClassVar[ScalarEnergies | None] = staticmethod(sphere_energies)

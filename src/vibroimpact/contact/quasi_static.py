@@ -57,37 +57,37 @@ class QuasiStatic:
 
     def indentation(self, force: Array) -> Array:
         """Return s [m] at a force [N]."""
-        x, logs = self._relative_radius(force)
-        return force * (self.linear + self.unit * self._factor(x, logs))
+        x, log_x = self._relative_radius(force)
+        return force * (self.linear + self.unit * self._factor(x, log_x))
 
     def linearised(self, force: Array) -> tuple[Array, Array]:
         """Return s [m] and ds/dF [m/N] at a force [N]."""
-        x, logs = self._relative_radius(force)
-        yielded = force * (self.linear + self.unit * self._factor(x, logs))
-        return yielded, self.linear + self.unit * self._factor(
-            x, logs + 1.0 / 3.0, (4.0 / 3.0, 5.0 / 3.0)
-        )
+        x, log_x = self._relative_radius(force)
+        indentation = force * (self.linear + self.unit * self._factor(x, log_x))
+        # x grows as F^(1/3): d(F ln x)/dF = ln x + 1/3, and d(F x^k)/dF = (1 + k/3) x^k
+        slope = self._factor(x, log_x + 1.0 / 3.0, (4.0 / 3.0, 5.0 / 3.0))
+        return indentation, self.linear + self.unit * slope
 
     def energy(self, force: Array) -> Array:
-        """Return the integral of F ds from zero to a force [J]; negative for a negative
-        compliance.
+        """Return the integral of F ds from zero to a force [J].
+
+        It is negative for a negative compliance.
         """
-        x, logs = self._relative_radius(force)
-        return (
-            0.5
-            * force
-            * force
-            * (self.linear + self.unit * self._factor(x, logs + 1.0 / 6.0, (8.0 / 7.0, 1.25)))
-        )
+        x, log_x = self._relative_radius(force)
+        # the integral of F d(F c)/dF, over F^2/2: of ln x it is ln x + 1/6, of x^k it is
+        # x^k (1 + k/3)/(1 + k/6)
+        factor = self._factor(x, log_x + 1.0 / 6.0, (8.0 / 7.0, 1.25))
+        return 0.5 * force * force * (self.linear + self.unit * factor)
 
     def _relative_radius(self, force: Array) -> tuple[Array, Array]:
         """Return x, at least 1e-9, and its logarithm."""
         x = np.maximum(np.cbrt(np.abs(force) / self.force), 1e-9)
         return x, np.log(x)
 
-    def _factor(self, x: Array, logs: Array, weights: tuple[float, float] = (1.0, 1.0)) -> Array:
-        """Return c(x) with weighted terms of c2 and c3 and, as its derivative and its
-        integral need them, with a shifted logarithm.
+    def _factor(self, x: Array, log_x: Array, weights: tuple[float, float] = (1.0, 1.0)) -> Array:
+        """Return c(x) with weighted terms of c2 and c3, and a logarithm that may be shifted.
+
+        Weights and shift make it the derivative or the integral.
         """
-        constant, logarithm, linear, square = self.factors
-        return constant + logarithm * logs + x * (weights[0] * linear + weights[1] * square * x)
+        c0, c1, c2, c3 = self.factors
+        return c0 + c1 * log_x + x * (weights[0] * c2 + weights[1] * c3 * x)

@@ -1,5 +1,6 @@
-"""The registries of contact and friction laws: those of this package, and those of other
-packages by their entry points.
+"""The registries of contact and friction laws.
+
+They hold the laws of this package, and those of other packages by their entry points.
 """
 
 from __future__ import annotations
@@ -20,8 +21,9 @@ Law = TypeVar("Law", bound=Parameters)
 
 @cache
 def contact_laws() -> Mapping[str, type[ContactLaw]]:
-    """Return all contact laws by name: those of this package and those of the entry points
-    "vibroimpact.contact_laws".
+    """Return all contact laws by name.
+
+    They are those of this package and of the entry points "vibroimpact.contact_laws".
 
     Raises
     ------
@@ -38,8 +40,9 @@ def contact_laws() -> Mapping[str, type[ContactLaw]]:
 
 @cache
 def friction_laws() -> Mapping[str, type[FrictionLaw]]:
-    """Return all friction laws by name: those of this package and those of the entry points
-    "vibroimpact.friction_laws".
+    """Return all friction laws by name.
+
+    They are those of this package and of the entry points "vibroimpact.friction_laws".
 
     Raises
     ------
@@ -60,28 +63,32 @@ def friction_laws() -> Mapping[str, type[FrictionLaw]]:
 
 
 def _laws(kind: str, base: type[Law], package: str, group: str) -> dict[str, type[Law]]:
-    """Return the laws of a kind by name: those of the modules of a package, and those of
-    a group of entry points.
+    """Return the laws of a kind by name.
+
+    They are those of the modules of a package, and of a group of entry points.
     """
-    laws = [
-        law
-        for module in modules_in(package)
-        for law in vars(module).values()
-        if _is(law, base) and law.__module__ == module.__name__
-    ]
-    found: dict[str, type[Law]] = {}
-    for law in laws + [_loaded(point, kind, base) for point in entry_points(group=group)]:
-        if law.name in found:
+    laws: list[type[Law]] = []
+    for module in modules_in(package):
+        # a module also holds the base classes that it imports
+        laws += [
+            law
+            for law in vars(module).values()
+            if _is_law(law, base) and law.__module__ == module.__name__
+        ]
+    laws += [_loaded(point, kind, base) for point in entry_points(group=group)]
+    by_name: dict[str, type[Law]] = {}
+    for law in laws:
+        if law.name in by_name:
             raise InputError(
-                f'two {kind}s are called "{law.name}": {found[law.name].__module__} and '
+                f'two {kind}s are called "{law.name}": {by_name[law.name].__module__} and '
                 f"{law.__module__}; "
                 "rename one, or uninstall its package"
             )
-        found[law.name] = law
-    return found
+        by_name[law.name] = law
+    return by_name
 
 
-def _is(candidate: object, base: type[Law]) -> bool:
+def _is_law(candidate: object, base: type[Law]) -> bool:
     return isinstance(candidate, type) and issubclass(candidate, base)
 
 
@@ -96,12 +103,12 @@ def _loaded(point: EntryPoint, kind: str, base: type[Law]) -> type[Law]:
             f"{error}; mend or uninstall its package"
         ) from error
     missing = [
-        key
-        for key in ("name", "equation", "source")
-        if not isinstance(getattr(law, key, None), str)
+        attribute
+        for attribute in ("name", "equation", "source")
+        if not isinstance(getattr(law, attribute, None), str)
     ]
-    if not _is(law, base) or missing:
-        lacks = f"; it has no {', '.join(missing)}" if _is(law, base) else ""
+    if not _is_law(law, base) or missing:
+        lacks = f"; it has no {', '.join(missing)}" if _is_law(law, base) else ""
         raise InputError(
             f'the entry point "{point.name}", {point.value}, is not a {kind} with name, '
             f"equation and source{lacks}"

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import itertools
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
 import numpy as np
@@ -11,6 +10,7 @@ import numpy as np
 from vibroimpact.arrays import Array
 from vibroimpact.ranges import Range
 
+_MAX_ITERATIONS = 200  # of the refinement of a bracket
 _MAX_STEPS = 20  # of the search for a bracket: factors of four from the start
 _RESIDUAL = 1e-11  # a smaller residual counts as zero
 _JUMP = 1e-8  # a larger residual at the root found is a discontinuity
@@ -24,10 +24,10 @@ def find_root(
     tolerance: float = 1e-13,
     close: float = 0.0,
 ) -> Array:
-    """Return the roots of a function, elementwise, between brackets `low` (not positive) and `high`
-    (positive).
+    """Return the roots of a function, elementwise, between the ends of brackets.
 
-    Inverse quadratic interpolation or bisection, by the criterion of Chandrupatla (1997).
+    The function is positive at `high` and not positive at `low`. Each step is an inverse quadratic
+    interpolation or a bisection, by the criterion of Chandrupatla (1997).
 
     Parameters
     ----------
@@ -43,8 +43,8 @@ def find_root(
     Returns
     -------
     array
-        The end of the bracket at which the function is positive, or the place at which it counts as
-        zero.
+        The end of the bracket at which the function is positive, or the argument at which it counts
+        as zero.
 
     References
     ----------
@@ -58,55 +58,84 @@ def find_root(
     ... ).tolist()
     [1.414213562373, 3.0]
     """
-    # `new` and `far` bracket the root; `old` is the previous point, the third of the interpolation
-    new, far = (np.asarray(end, dtype=float) for end in (low, high))
-    new_value, far_value = function(new), function(far)
+    # `latest` and `opposite` bracket the root
+    latest = np.asarray(low, dtype=float)
+    opposite = np.asarray(high, dtype=float)
+    latest_value = function(latest)
+    opposite_value = function(opposite)
+    # the next trial is at this fraction of the bracket, from `latest`: first that of the secant
     with np.errstate(all="ignore"):
-        part = new_value / (new_value - far_value)
-    part = np.where(np.isfinite(part), np.clip(part, 0.05, 0.95), 0.5)
-    old: Array
-    old_value: Array
-    for _ in range(200):
-        place = new + part * (far - new)
-        value = function(place)
-        same = np.equal(value > 0.0, new_value > 0.0)
-        old, old_value = np.where(same, new, far), np.where(same, new_value, far_value)
-        far, far_value = np.where(same, far, new), np.where(same, far_value, new_value)
-        new, new_value = place, value
-        width = np.abs(far - new)
-        least = tolerance * np.maximum(np.abs(new), np.abs(far))
-        zero = np.minimum(np.abs(new_value), np.abs(far_value)) < close
-        close_by = ~(width > least)
-        if not np.any(~close_by & ~zero):
+        fraction = latest_value / (latest_value - opposite_value)
+    fraction = np.where(np.isfinite(fraction), np.clip(fraction, 0.05, 0.95), 0.5)
+    for _ in range(_MAX_ITERATIONS):
+        trial = latest + fraction * (opposite - latest)
+        trial_value = function(trial)
+        same_sign = np.equal(trial_value > 0.0, latest_value > 0.0)
+        # `previous` has just left the bracket
+        previous = np.where(same_sign, latest, opposite)
+        previous_value = np.where(same_sign, latest_value, opposite_value)
+        opposite = np.where(same_sign, opposite, latest)
+        opposite_value = np.where(same_sign, opposite_value, latest_value)
+        latest = trial
+        latest_value = trial_value
+        width = np.abs(opposite - latest)
+        final_width = tolerance * np.maximum(np.abs(latest), np.abs(opposite))
+        is_narrow = ~(width > final_width)
+        is_zero = np.minimum(np.abs(latest_value), np.abs(opposite_value)) < close
+        if not np.any(~is_narrow & ~is_zero):
             break
+        points = (latest, opposite, previous)
+        values = (latest_value, opposite_value, previous_value)
         with np.errstate(all="ignore"):
-            across, up = (
-                (new - far) / (old - far),
-                (new_value - far_value) / (old_value - far_value),
-            )
-            curved = (up * up < across) & ((1.0 - up) ** 2 < 1.0 - across)
-            part = new_value / (far_value - new_value) * old_value / (far_value - old_value)
-            part += (
-                (old - new)
-                / (far - new)
-                * new_value
-                / (old_value - new_value)
-                * far_value
-                / (old_value - far_value)
-            )
-            edge = np.minimum(least / width, 0.5)
-        part = np.where(curved & np.isfinite(part), np.clip(part, edge, 1.0 - edge), 0.5)
-        part = np.where(close_by, 0.0, part)  # whatever the others still need
-        # a root found stays
-        part = np.where(zero, np.where(np.abs(new_value) <= np.abs(far_value), 0.0, 1.0), part)
-    nearer = np.abs(new_value) <= np.abs(far_value)
-    zero = np.minimum(np.abs(new_value), np.abs(far_value)) < close
-    return np.where(np.where(zero, nearer, new_value > 0.0), new, far)
+            fraction = _interpolated_fraction(points, values, final_width / width)
+        # elements that have converged stay where they are, whatever the others still need
+        fraction = np.where(is_narrow, 0.0, fraction)
+        latest_is_nearer = np.abs(latest_value) <= np.abs(opposite_value)
+        fraction = np.where(is_zero, np.where(latest_is_nearer, 0.0, 1.0), fraction)
+    latest_is_nearer = np.abs(latest_value) <= np.abs(opposite_value)
+    is_zero = np.minimum(np.abs(latest_value), np.abs(opposite_value)) < close
+    return np.where(np.where(is_zero, latest_is_nearer, latest_value > 0.0), latest, opposite)
+
+
+def _interpolated_fraction(
+    points: tuple[Array, Array, Array], values: tuple[Array, Array, Array], final_width: Array
+) -> Array:
+    """Return where to look next, as a fraction of the bracket from its latest end.
+
+    It is that of inverse quadratic interpolation where Chandrupatla's criterion allows it, and one
+    half, a bisection, elsewhere.
+
+    Parameters
+    ----------
+    points, values : tuple of three arrays
+        The latest end of the bracket, the opposite one and the previous point, and the values of
+        the function there.
+    final_width : array
+        The final width of the bracket relative to its present one, by which trials stay away from
+        its ends.
+    """
+    a, b, c = points
+    f_a, f_b, f_c = values
+    xi = (a - b) / (c - b)
+    phi = (f_a - f_b) / (f_c - f_b)
+    # the inverse quadratic through the three points is monotonic between the ends
+    is_monotonic = (phi * phi < xi) & ((1.0 - phi) ** 2 < 1.0 - xi)
+    fraction = f_a / (f_b - f_a) * f_c / (f_b - f_c)
+    fraction += (c - a) / (b - a) * f_a / (f_c - f_a) * f_b / (f_c - f_b)
+    edge = np.minimum(final_width, 0.5)
+    interpolated = np.clip(fraction, edge, 1.0 - edge)
+    return np.where(is_monotonic & np.isfinite(fraction), interpolated, 0.5)
 
 
 class MonotonicRoots(NamedTuple):
-    """Arguments at which a function has the wanted values, NaN where none was found, and
-    the extreme values evaluated.
+    """Arguments at which a function has wanted values.
+
+    Attributes
+    ----------
+    place : array
+        The arguments; NaN where none was found.
+    least, most : array
+        The extreme values of the function among those evaluated in the search for brackets.
     """
 
     place: Array
@@ -153,33 +182,42 @@ def solve_monotonic(
     ... ).place.round(6).tolist()
     [0.693147, nan]
     """
-    low, high = np.full_like(start, np.nan), np.full_like(start, np.nan)
-    least, most = np.full_like(start, np.inf), np.full_like(start, -np.inf)
+    low = np.full_like(start, np.nan)
+    high = np.full_like(start, np.nan)
+    least = np.full_like(start, np.inf)
+    most = np.full_like(start, -np.inf)
     unreachable = np.zeros(start.shape, dtype=bool)
-    ends = [end + 0.0 * start for end in (allowed.at_least, allowed.at_most) if np.isfinite(end)]
-    steps = (
-        start * 4.0**power
-        for count in range(max_steps)
-        for power in ((-count, count) if count else (0,))
-    )
-    for number, value in enumerate(itertools.chain(ends, steps)):
-        trial = allowed.clip(value)
-        found = function(trial)
-        least, most = np.fmin(least, found), np.fmax(most, found)
+    for number, trial in enumerate(_trials(start, allowed, max_steps)):
+        value = function(trial)
+        least = np.fmin(least, value)
+        most = np.fmax(most, value)
         # the first arguments found on either side of the wanted value bracket it
-        low = np.where(np.isnan(low) & (found <= wanted), trial, low)
-        high = np.where(np.isnan(high) & (found > wanted), trial, high)
-        exact = np.abs(found - wanted) <= _RESIDUAL
-        low, high = np.where(exact, trial, low), np.where(exact, trial, high)
+        low = np.where(np.isnan(low) & (value <= wanted), trial, low)
+        high = np.where(np.isnan(high) & (value > wanted), trial, high)
+        is_exact = np.abs(value - wanted) <= _RESIDUAL
+        low = np.where(is_exact, trial, low)
+        high = np.where(is_exact, trial, high)
+        # the first trial is the lower end of the range, if there is one
         if falls and number == 0 and np.isfinite(allowed.at_least):
-            unreachable = found < wanted - _RESIDUAL
+            unreachable = value < wanted - _RESIDUAL
         if not (np.isnan(low) | np.isnan(high))[~unreachable].any():
             break
-    missed = np.isnan(low) | np.isnan(high)
-    if missed.all():
+    has_no_bracket = np.isnan(low) | np.isnan(high)
+    if has_no_bracket.all():
         return MonotonicRoots(np.full_like(start, np.nan), least, most)
     # those without a bracket are discarded at the end
-    low, high = (np.where(missed, start, bound) for bound in (low, high))
-    place = find_root(lambda value: function(value) - wanted, low, high, close=_RESIDUAL)
-    discontinuous = ~(np.abs(function(place) - wanted) <= _JUMP)
-    return MonotonicRoots(np.where(missed | discontinuous, np.nan, place), least, most)
+    low = np.where(has_no_bracket, start, low)
+    high = np.where(has_no_bracket, start, high)
+    root = find_root(lambda argument: function(argument) - wanted, low, high, close=_RESIDUAL)
+    is_discontinuous = ~(np.abs(function(root) - wanted) <= _JUMP)
+    return MonotonicRoots(np.where(has_no_bracket | is_discontinuous, np.nan, root), least, most)
+
+
+def _trials(start: Array, allowed: Range, max_steps: int) -> Iterator[Array]:
+    """Yield the finite ends of a range, then the start times powers of four to either side."""
+    for end in (allowed.at_least, allowed.at_most):
+        if np.isfinite(end):
+            yield allowed.clip(end + 0.0 * start)
+    for count in range(max_steps):
+        for power in (-count, count) if count else (0,):
+            yield allowed.clip(start * 4.0**power)

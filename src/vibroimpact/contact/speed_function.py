@@ -54,13 +54,12 @@ class SpeedFunction:
     @property
     def extremes(self) -> tuple[float, float]:
         """The smallest and the largest value within the range of the fit."""
-        turns = (
-            polynomial.polyroots(polynomial.polyder(self.coefficients))
-            if self.degree > 1
-            else np.zeros(0)
-        )
-        inside = np.clip(turns[np.abs(np.imag(turns)) < 1e-9].real, self.slowest, self.fastest)
-        values = self(np.array([self.slowest, self.fastest, *inside]))
+        turning_speeds = np.zeros(0)
+        if self.degree > 1:
+            turning_speeds = polynomial.polyroots(polynomial.polyder(self.coefficients))
+        is_real = np.abs(np.imag(turning_speeds)) < 1e-9
+        inner_speeds = np.clip(turning_speeds[is_real].real, self.slowest, self.fastest)
+        values = self(np.array([self.slowest, self.fastest, *inner_speeds]))
         return float(values.min()), float(values.max())
 
     @property
@@ -79,8 +78,9 @@ class SpeedFunction:
 
 @dataclass(frozen=True)
 class SpeedTable:
-    """Values at several approach speeds, linear between them; beyond the ends the nearest value
-    holds.
+    """Values at several approach speeds, linear between them.
+
+    Beyond the ends the nearest value holds.
 
     Parameters
     ----------
@@ -115,12 +115,11 @@ class SpeedTable:
     @property
     def words(self) -> str:
         """The function in words."""
-        first, last = (f"{self.values[at]:.6g} at {self.speeds[at]:.6g} m/s" for at in (0, -1))
-        return (
-            first
-            if len(self.speeds) == 1
-            else f"{first} to {last}, linear between {len(self.speeds)} speeds"
-        )
+        first = f"{self.values[0]:.6g} at {self.speeds[0]:.6g} m/s"
+        if len(self.speeds) == 1:
+            return first
+        last = f"{self.values[-1]:.6g} at {self.speeds[-1]:.6g} m/s"
+        return f"{first} to {last}, linear between {len(self.speeds)} speeds"
 
     def table(self) -> dict[str, Any]:
         """Return the table of a case file."""
@@ -146,8 +145,9 @@ BySpeed: TypeAlias = SpeedFunction | SpeedTable
 
 
 def held(function: BySpeed, speed: Any) -> Any:
-    """Return the value of a function at an approach speed [m/s]; beyond its range that at the
-    nearest end.
+    """Return the value of a function at an approach speed [m/s].
+
+    Beyond its range it is that at the nearest end.
 
     Examples
     --------

@@ -10,6 +10,10 @@ from vibroimpact.arrays import Array
 from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.contact.roots import find_root
 
+_TOLERANCE = 1e-14  # relative, of the indentation
+_MOST_STEPS = 30
+_MOST_EXTENSIONS = 60  # of a bracket, by factors of four from one nanometre
+
 
 def static_indentation(law: CompliantLaw, weight: Array) -> Array:
     """Return the indentation [m] at which the static force equals a weight [N].
@@ -24,72 +28,74 @@ def static_indentation(law: CompliantLaw, weight: Array) -> Array:
     """
     weight = np.asarray(weight, dtype=float)
 
-    def force_and_power(delta: Array) -> tuple[Array, Array]:
-        force = _force(law, delta)
-        return force, delta * force / static_work(law, delta) - 1.0
+    def excess(delta: Array) -> Array:
+        return _static_force(law, delta) - weight
 
-    return _solve(force_and_power, lambda _: weight, law.release_level, 1e-14)
+    release_level = law.release_level + np.zeros_like(weight)
+    delta = release_level + 1e-6
+    is_unloaded = weight <= 0.0
+    with np.errstate(all="ignore"):
+        # fixed-point iteration with the local exponent: exact after one step for a power law
+        has_converged = np.zeros(np.shape(delta), dtype=bool)
+        for _ in range(_MOST_STEPS):
+            force = _static_force(law, delta)
+            step = (weight / force) ** (1.0 / _local_exponent(law, delta, force))
+            # elements that have converged stay, whatever the others still need
+            delta = delta * np.where(is_unloaded | has_converged, 1.0, step)
+            has_converged |= np.abs(step - 1.0) < _TOLERANCE
+            if np.all(has_converged | is_unloaded | ~np.isfinite(delta)):
+                break
+        has_failed = ~(has_converged & (delta > release_level))
+        if np.any(has_failed):
+            # a weight of zero or less is reached at release, or beyond if the law pulls there
+            has_failed &= ~is_unloaded | (excess(release_level) < 0.0)
+        if np.any(has_failed):
+            low, high = _bracket(excess, release_level, has_failed)
+            root = find_root(excess, low, high, tolerance=_TOLERANCE)
+            delta = np.where(has_failed, root, delta)
+    return np.asarray(np.where(has_failed | ~is_unloaded, delta, release_level))
 
 
-def _force(law: CompliantLaw, delta: Array) -> Array:
+def _static_force(law: CompliantLaw, delta: Array) -> Array:
+    """Return the force at rest [N]."""
     return law.forces(delta, np.zeros_like(delta), np.ones_like(delta))[0]
 
 
+def _local_exponent(law: CompliantLaw, delta: Array, force: Array) -> Array:
+    """Return an estimate of d ln F / d ln delta: the n of a power law with this force and work."""
+    return delta * force / static_work(law, delta) - 1.0
+
+
+def _bracket(
+    excess: Callable[[Array], Array], low: Array, has_failed: Array
+) -> tuple[Array, Array]:
+    """Return brackets of the roots of an increasing function, extended by factors of four.
+
+    Parameters
+    ----------
+    excess : callable
+        The function, of an indentation [m].
+    low : array
+        Indentations below the roots [m], from which the brackets are extended.
+    has_failed : bool array
+        The elements that need a bracket.
+    """
+    start = low
+    high = start + 1e-9
+    for _ in range(_MOST_EXTENSIONS):
+        is_short = ~(excess(high) > 0.0)
+        if not np.any(is_short & has_failed):
+            break
+        low = np.where(is_short, high, low)
+        high = np.where(is_short, start + 4.0 * (high - start), high)
+    return low, high
+
+
 def static_work(law: CompliantLaw, delta: Array) -> Array:
-    """Return the integral of the static force from `touch_level` [J], the sum of elastic
-    energy and plastic work.
+    """Return the integral of the static force from `touch_level` [J].
+
+    It is the sum of elastic energy and plastic work.
     """
-    return (
-        law.elastic_energy(delta) + law.plastic_work(delta)
-        if law.yields
-        else law.elastic_energy(delta)
-    )
-
-
-def _solve(
-    function: Callable[[Array], tuple[Array, Array]],
-    wanted: Callable[[Array], Array],
-    least: Array,
-    within: float,
-) -> Array:
-    """Return the indentation, at least `least`, at which an increasing function of it has the value
-    `wanted`.
-
-    `function` returns the value and an estimate of the local exponent d ln(value) / d ln(delta):
-    the iteration is exact after one step for a power law. Where it does not converge, the root is
-    bracketed.
-    """
-
-    def excess(delta: Array) -> Array:
-        return function(delta)[0] - wanted(delta)
-
-    least = least + np.zeros_like(wanted(np.zeros(1)))
-    delta, unloaded = least + 1e-6, wanted(least) <= 0.0
-    with np.errstate(all="ignore"):
-        # fixed-point iteration with the local exponent
-        converged = np.zeros(np.shape(delta), dtype=bool)
-        for _ in range(30):
-            value, power = function(delta)
-            step = (wanted(delta) / value) ** (1.0 / power)
-            # whatever the others still need
-            delta = delta * np.where(unloaded | converged, 1.0, step)
-            converged |= np.abs(step - 1.0) < within
-            if np.all(converged | unloaded | ~np.isfinite(delta)):
-                break
-        # where it failed, the bracket is extended by factors of four from `least` until it holds
-        # the root
-        failed = ~(converged & (delta > least))
-        if np.any(failed):
-            failed &= ~unloaded | (excess(least) < 0.0)
-        if np.any(failed):
-            low, high = least, least + 1e-9
-            for _ in range(60):
-                short = ~(excess(high) > 0.0)
-                if not np.any(short & failed):
-                    break
-                low, high = (
-                    np.where(short, high, low),
-                    np.where(short, least + 4.0 * (high - least), high),
-                )
-            delta = np.where(failed, find_root(excess, low, high, tolerance=within), delta)
-    return np.asarray(np.where(failed | ~unloaded, delta, least))
+    if law.yields:
+        return law.elastic_energy(delta) + law.plastic_work(delta)
+    return law.elastic_energy(delta)

@@ -1,6 +1,4 @@
-"""Elastic-plastic contact of a sphere: Hertzian up to yield, with Hertzian unloading of a
-flattened sphere.
-"""
+"""Elastic-plastic contact of a sphere: Hertzian up to yield, and in its flatter unloading."""
 
 from __future__ import annotations
 
@@ -25,7 +23,9 @@ from vibroimpact.contact.pair import hertz_stiffness
 
 @scalar
 def _levels(coefficients: Any) -> Levels:
-    loaded_to, touch_level, yield_indentation = coefficients[0], coefficients[1], coefficients[6]
+    loaded_to = coefficients[0]
+    touch_level = coefficients[1]
+    yield_indentation = coefficients[6]
     return touch_level, touch_level, loaded_to, np.maximum(yield_indentation, loaded_to), np.inf
 
 
@@ -45,27 +45,32 @@ def yielding_sphere(plastic_force: OfIndentation, plastic_state: LoadingState) -
 
     @scalar
     def force(delta: Array, coefficients: Any) -> Array:
-        yield_indentation, stiffness = coefficients[6], coefficients[7]
-        elastic = np.minimum(delta, yield_indentation)
-        plastic = plastic_force(np.maximum(delta, yield_indentation), coefficients)
-        return where(delta > yield_indentation, plastic, stiffness * elastic * np.sqrt(elastic))
+        yield_indentation = coefficients[6]
+        stiffness = coefficients[7]
+        # both branches are computed, each within its range
+        elastic_delta = np.minimum(delta, yield_indentation)
+        beyond_yield = plastic_force(np.maximum(delta, yield_indentation), coefficients)
+        hertzian = stiffness * elastic_delta * np.sqrt(elastic_delta)
+        return where(delta > yield_indentation, beyond_yield, hertzian)
 
     @scalar
     def state(delta: Array, coefficients: Any) -> tuple[Array, Array, Array]:
-        yield_indentation, stiffness, effective_modulus = (
-            coefficients[6],
-            coefficients[7],
-            coefficients[8],
-        )
+        yield_indentation = coefficients[6]
+        stiffness = coefficients[7]
+        effective_modulus = coefficients[8]
         yields = delta > yield_indentation
-        elastic = np.minimum(delta, yield_indentation)
-        plastic, work, radius = plastic_state(np.maximum(delta, yield_indentation), coefficients)
-        force = where(yields, plastic, stiffness * elastic * np.sqrt(elastic))
-        # exactly no plastic work up to yield, despite rounding
-        loading_work = 0.4 * stiffness * (elastic * elastic) * np.sqrt(elastic) + where(
-            yields, work, 0.0
+        elastic_delta = np.minimum(delta, yield_indentation)
+        beyond_yield, work_beyond_yield, contact_radius = plastic_state(
+            np.maximum(delta, yield_indentation), coefficients
         )
-        recovery = where(yields, 0.75 * plastic / (effective_modulus * radius), delta)
+        hertzian = stiffness * elastic_delta * np.sqrt(elastic_delta)
+        force = where(yields, beyond_yield, hertzian)
+        hertzian_work = 0.4 * stiffness * (elastic_delta * elastic_delta) * np.sqrt(elastic_delta)
+        # exactly no plastic work up to yield, despite rounding
+        loading_work = hertzian_work + where(yields, work_beyond_yield, 0.0)
+        # 3 F/(4 E* a); up to yield all of the indentation recovers
+        plastic_recovery = 0.75 * beyond_yield / (effective_modulus * contact_radius)
+        recovery = where(yields, plastic_recovery, delta)
         return force, loading_work, recovery
 
     return LoadingCurve(force, state)
@@ -76,10 +81,8 @@ class YieldingSphereLaw(ElasticPairLaw, ElasticPlasticLaw):
     r"""Base of the elastic-plastic laws of a sphere.
 
     Up to `yield_indentation` the contact is Hertzian. Beyond, it unloads as the Hertzian contact of
-    a sphere of larger radius
-    with the same contact radius :math:`a_m`, which is :math:`\sqrt{R \delta_m}` unless a law has it
-    otherwise, and force
-    :math:`F_m`, so that
+    a sphere of larger radius with the same contact radius :math:`a_m`, which is
+    :math:`\sqrt{R \delta_m}` unless a law has it otherwise, and force :math:`F_m`, so that
 
     .. math:: \delta_m - \delta_r = \frac{3 F_m}{4 E^* a_m}
 
@@ -106,16 +109,14 @@ class YieldingSphereLaw(ElasticPairLaw, ElasticPlasticLaw):
 
     @property
     def loading_coefficients(self) -> tuple[Array, ...]:
-        """Yield indentation, Hertz's stiffness, effective modulus and radius, and those
-        of loading beyond yield.
-        """
-        sphere = (
+        """Yield indentation, Hertz's stiffness, effective modulus and radius, and plastic ones."""
+        return (
             self.yield_indentation,
             self.stiffness,
             self.effective_modulus,
             self.effective_radius,
+            *self.plastic_coefficients,
         )
-        return *sphere, *self.plastic_coefficients
 
     def contact_radius(self, delta: Array) -> Array:
         """Return the contact radius beyond `yield_indentation` [m]."""

@@ -32,10 +32,11 @@ class _Instance:
 
     name: str
     offset: int
-    turn: Floats
+    rotation: Floats
     shift: Floats
 
     def renamed(self, text: str, line: TextLine) -> str:
+        """Return the number or name in the flat mesh."""
         return self.number(text, line) if text.isdigit() else f"{self.name}.{text}"
 
     def number(self, text: str, line: TextLine) -> str:
@@ -49,12 +50,13 @@ class _Instance:
         return str(self.offset + number)
 
 
-def is_assembly(found: Sequence[Block]) -> bool:
-    """Whether blocks are those of an assembly of several parts or instances, of one that
-    is moved, or with links of its own nodes.
+def is_assembly(file_blocks: Sequence[Block]) -> bool:
+    """Whether blocks are those of an assembly that must be written out.
+
+    It has several parts or instances, one that is moved, or links of its own nodes.
     """
-    instances = [block for block in found if block.keyword == "INSTANCE"]
-    moves = (
+    instances = [block for block in file_blocks if block.keyword == "INSTANCE"]
+    coordinates = (
         parse_real(text, line)
         for block in instances
         for line in block.data
@@ -63,35 +65,34 @@ def is_assembly(found: Sequence[Block]) -> bool:
     )
     return (
         len(instances) > 1
-        or sum(block.keyword == "PART" for block in found) > 1
-        or _has_links(found)
-        or any(moves)
+        or sum(block.keyword == "PART" for block in file_blocks) > 1
+        or _has_links(file_blocks)
+        or any(coordinates)
     )
 
 
-def _has_links(found: Sequence[Block]) -> bool:
+def _has_links(file_blocks: Sequence[Block]) -> bool:
     """Whether an assembly links nodes: outside of instances, it has numbers of its own."""
-    outside = False
-    for block in found:
+    is_outside = False
+    for block in file_blocks:
         if block.keyword in ("ASSEMBLY", "END INSTANCE"):
-            outside = True
+            is_outside = True
         elif block.keyword in ("INSTANCE", "END ASSEMBLY"):
-            outside = False
-        elif outside and block.keyword in _LINKS:
+            is_outside = False
+        elif is_outside and block.keyword in _LINKS:
             return True
     return False
 
 
-def flattened(found: Iterable[Block]) -> Iterator[Block]:
-    """Yield the blocks of an assembly as those of one mesh in which every instance has its own
-    numbers.
+def flattened(file_blocks: Iterable[Block]) -> Iterator[Block]:
+    """Yield the blocks of an assembly as those of one mesh.
 
-    Sets and surfaces of an instance get its name and a point before theirs, and all its elements
-    are the set of its name.
+    Every instance has its own numbers. Sets and surfaces of an instance get its name and a point
+    before theirs, and all its elements are the set of its name.
 
     Parameters
     ----------
-    found : iterable of Block
+    file_blocks : iterable of Block
         The blocks of the file.
 
     Raises
@@ -102,19 +103,14 @@ def flattened(found: Iterable[Block]) -> Iterator[Block]:
     parts: dict[str, list[Block]] = {}
     instances: dict[str, _Instance] = {}
     # the assembly itself: its nodes are reference points
-    own = _Instance("", 0, np.eye(3), np.zeros(3))
-    part: list[Block] | None = None
-    placed: _Instance | None = None
+    assembly = _Instance("", 0, np.eye(3), np.zeros(3))
+    part: list[Block] | None = None  # that is being read
+    instance: _Instance | None = None
     opened: dict[str, TextLine] = {}
     last_part: TextLine | None = None
-    for block in found:
+    for block in file_blocks:
         keyword = block.keyword
-        if keyword in ("PART", "ASSEMBLY", "INSTANCE"):
-            if keyword in opened:
-                raise opened[keyword].wrong(f"*{keyword} has no *END {keyword} before the next one")
-            opened[keyword] = block.line
-        elif keyword in ("END PART", "END ASSEMBLY", "END INSTANCE"):
-            opened.pop(keyword.removeprefix("END "), None)
+        _follow_nesting(block, opened)
         if keyword == "PART":
             last_part = block.line
             if _key(block, "NAME") in parts:
@@ -128,15 +124,16 @@ def flattened(found: Iterable[Block]) -> Iterator[Block]:
         elif part is not None:
             part.append(block)
         elif keyword == "INSTANCE":
-            placed = _placed(block, instances)
-            yield from (_moved(one, placed) for one in _blocks_of(block, parts))
-            yield _all_elements(block.line, placed)
+            instance = _new_instance(block, instances)
+            for block_of_part in _blocks_of_part(block, parts):
+                yield _moved(block_of_part, instance)
+            yield _all_elements(block.line, instance)
         elif keyword == "END INSTANCE":
-            placed = None
-        elif placed is not None:
-            yield _moved(block, placed)
+            instance = None
+        elif instance is not None:
+            yield _moved(block, instance)
         elif keyword not in ("ASSEMBLY", "END ASSEMBLY"):
-            yield _of_assembly(block, instances, own) if "ASSEMBLY" in opened else block
+            yield _of_assembly(block, instances, assembly) if "ASSEMBLY" in opened else block
     if opened:
         keyword, line = opened.popitem()
         raise line.wrong(
@@ -148,11 +145,28 @@ def flattened(found: Iterable[Block]) -> Iterator[Block]:
         )
 
 
+def _follow_nesting(block: Block, opened: dict[str, TextLine]) -> None:
+    """Note that a part, an assembly or an instance begins or ends.
+
+    Raises
+    ------
+    InputError
+        If one begins before the one before it has ended.
+    """
+    keyword = block.keyword
+    if keyword in ("PART", "ASSEMBLY", "INSTANCE"):
+        if keyword in opened:
+            raise opened[keyword].wrong(f"*{keyword} has no *END {keyword} before the next one")
+        opened[keyword] = block.line
+    elif keyword in ("END PART", "END ASSEMBLY", "END INSTANCE"):
+        opened.pop(keyword.removeprefix("END "), None)
+
+
 def _key(block: Block, parameter: str) -> str:
     return block.parameters.get(parameter, "").upper()
 
 
-def _blocks_of(block: Block, parts: dict[str, list[Block]]) -> list[Block]:
+def _blocks_of_part(block: Block, parts: dict[str, list[Block]]) -> list[Block]:
     """Return the blocks of the part of an instance."""
     name = _key(block, "PART")
     if name not in parts:
@@ -163,9 +177,13 @@ def _blocks_of(block: Block, parts: dict[str, list[Block]]) -> list[Block]:
     return parts[name]
 
 
-def _placed(block: Block, instances: dict[str, _Instance]) -> _Instance:
-    """Return an instance: shifted by its first line, then turned about the axis between
-    two points by the angle of its second line.
+def _new_instance(block: Block, instances: dict[str, _Instance]) -> _Instance:
+    """Return an instance, and keep it with the others.
+
+    Raises
+    ------
+    InputError
+        If it has no name of its own, there are too many, or its motion can't be read.
     """
     name = block.parameters.get("NAME", "")
     if not name or name.upper() in instances:
@@ -177,86 +195,93 @@ def _placed(block: Block, instances: dict[str, _Instance]) -> _Instance:
             f"the assembly has more than {_MOST_INSTANCES:,} instances; leave out those "
             "that are not needed"
         )
-    shift, turn = np.zeros(3), np.eye(3)
-    numbers = [
-        [
-            parse_real(text, line) if text.strip() else 0.0
-            for text in line.text.rstrip(" ,").split(",")
-        ]
-        for line in block.data
-    ]
-    for line, values in zip(block.data, numbers, strict=True):
-        if not all(math.isfinite(value) for value in values):
+    rotation, shift = _motion(block)
+    instance = _Instance(name, SPAN * (len(instances) + 1), rotation, shift)
+    instances[name.upper()] = instance
+    return instance
+
+
+def _motion(block: Block) -> tuple[Floats, Floats]:
+    """Return the rotation matrix and the shift of an instance.
+
+    Its first line is a shift; its second one two points of an axis, and the angle [degrees] about
+    it by which the shifted part is turned.
+    """
+    numbers = [_numbers(line) for line in block.data]
+    for line, numbers_of_line in zip(block.data, numbers, strict=True):
+        if not all(math.isfinite(number) for number in numbers_of_line):
             raise line.wrong("the place of the instance is not finite; it must be")
+    shift = np.zeros(3)
     if numbers:
         shift[: min(3, len(numbers[0]))] = numbers[0][:3]
-    if len(numbers) > 1:
-        if len(numbers[1]) != 7:
-            raise block.data[1].wrong(
-                f"the turn of the instance has {len(numbers[1])} numbers; it must have two "
-                "points and an angle, 7 in all"
-            )
-        first, second, angle = (
-            np.array(numbers[1][:3]),
-            np.array(numbers[1][3:6]),
-            math.radians(numbers[1][6]),
+    if len(numbers) < 2:
+        return np.eye(3), shift
+    if len(numbers[1]) != 7:
+        raise block.data[1].wrong(
+            f"the turn of the instance has {len(numbers[1])} numbers; it must have two "
+            "points and an angle, 7 in all"
         )
-        size = float(np.linalg.norm(second - first))
-        if not size > 0.0:
-            raise block.data[1].wrong(
-                "the two points of the axis of the turn are the same; they must lie apart"
-            )
-        x, y, z = (second - first) / size
-        across = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-        turn = np.eye(3) + math.sin(angle) * across + (1.0 - math.cos(angle)) * across @ across
-        shift = turn @ (shift - first) + first
-    instances[name.upper()] = found = _Instance(name, SPAN * (len(instances) + 1), turn, shift)
-    return found
+    first = np.array(numbers[1][:3])
+    second = np.array(numbers[1][3:6])
+    angle = math.radians(numbers[1][6])
+    length = float(np.linalg.norm(second - first))
+    if not length > 0.0:
+        raise block.data[1].wrong(
+            "the two points of the axis of the turn are the same; they must lie apart"
+        )
+    # Rodrigues' formula, with the matrix of the cross product by the unit vector of the axis
+    x, y, z = (second - first) / length
+    cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    rotation = np.eye(3) + math.sin(angle) * cross + (1.0 - math.cos(angle)) * cross @ cross
+    return rotation, rotation @ (shift - first) + first
+
+
+def _numbers(line: TextLine) -> list[float]:
+    """Return the numbers of a data line; zero where an entry is blank."""
+    texts = line.text.rstrip(" ,").split(",")
+    return [parse_real(text, line) if text.strip() else 0.0 for text in texts]
 
 
 def _moved(block: Block, instance: _Instance) -> Block:
     """Return a block of a part as that of an instance of it."""
-    at_nodes = block.keyword == "NODE"
-    lines = (
-        [_moved_node(line, instance) for line in block.data]
-        if at_nodes
-        else _renamed_lines(block, instance.renamed)
-    )
-    return Block(
-        block.line,
-        block.keyword,
-        _renamed_parameters(block, lambda name: instance.renamed(name, block.line)),
-        lines,
-    )
+    if block.keyword == "NODE":
+        lines = [_moved_node(line, instance) for line in block.data]
+    else:
+        lines = _renamed_lines(block, instance.renamed)
+    parameters = _renamed_parameters(block, lambda name: instance.renamed(name, block.line))
+    return Block(block.line, block.keyword, parameters, lines)
 
 
 def _moved_node(line: TextLine, instance: _Instance) -> TextLine:
+    """Return the line of a node of a part as that of an instance of it."""
     texts = line.text.split(",")
-    at = np.array(
-        [parse_real(text, line) if text.strip() else 0.0 for text in [*texts[1:4], "", "", ""][:3]]
-    )
+    coordinates = [*texts[1:4], "", "", ""][:3]
+    position = np.array([parse_real(text, line) if text.strip() else 0.0 for text in coordinates])
     # what is not finite is refused where the node is read
     with np.errstate(invalid="ignore", over="ignore"):
-        x, y, z = (instance.turn @ at + instance.shift).tolist()
+        x, y, z = (instance.rotation @ position + instance.shift).tolist()
     return line._replace(text=f"{instance.number(texts[0].strip(), line)}, {x!r}, {y!r}, {z!r}")
 
 
-def _of_assembly(block: Block, instances: dict[str, _Instance], own: _Instance) -> Block:
-    """Return a block of the assembly, in which members of instances have the name of
-    theirs before them, or in a parameter.
+def _of_assembly(block: Block, instances: dict[str, _Instance], assembly: _Instance) -> Block:
+    """Return a block of the assembly as that of the flat mesh.
+
+    Members of instances have the name of theirs before them, or in a parameter.
     """
-    of = block.parameters.get("INSTANCE")
-    if of is not None and of.upper() not in instances:
+    name = block.parameters.get("INSTANCE")
+    if name is not None and name.upper() not in instances:
         raise block.line.wrong(
-            f"there is no instance {quoted(of)} before this line; it must be one of the assembly"
+            f"there is no instance {quoted(name)} before this line; it must be one of the assembly"
         )
-    home = own if of is None else instances[of.upper()]
+    stated = assembly if name is None else instances[name.upper()]
 
     def renamed(text: str, line: TextLine) -> str:
-        instance, _, rest = text.partition(".")
-        if rest and instance.upper() in instances:
-            return instances[instance.upper()].renamed(rest, line)
-        return text if home is own and not text.isdigit() else home.renamed(text, line)
+        first, _, rest = text.partition(".")
+        if rest and first.upper() in instances:
+            return instances[first.upper()].renamed(rest, line)
+        if stated is assembly and not text.isdigit():
+            return text
+        return stated.renamed(text, line)
 
     parameters = {key: value for key, value in block.parameters.items() if key != "INSTANCE"}
     if "REF NODE" in parameters:
@@ -265,6 +290,7 @@ def _of_assembly(block: Block, instances: dict[str, _Instance], own: _Instance) 
 
 
 def _renamed_parameters(block: Block, renamed: Callable[[str], str]) -> dict[str, str]:
+    """Return the parameters of a block with other names of sets."""
     keys = (*_SET_NAMES, "NAME") if block.keyword == "SURFACE" else _SET_NAMES
     return {
         key: renamed(value) if key in keys and value else value
@@ -274,49 +300,43 @@ def _renamed_parameters(block: Block, renamed: Callable[[str], str]) -> dict[str
 
 def _renamed_lines(block: Block, renamed: Renamed) -> list[TextLine]:
     """Return the data of a block with other numbers and names of nodes, elements and sets."""
-    if block.keyword not in _NUMBERED:
-        return (
-            [_renamed_line(line, renamed, 0, None) for line in block.data]
-            if block.keyword == "TIE"
-            else block.data
-        )
-    if block.keyword == "EQUATION":
+    keyword = block.keyword
+    if keyword == "TIE":
+        return [_renamed_line(line, renamed, 0, 1) for line in block.data]
+    if keyword not in _NUMBERED:
+        return block.data
+    if keyword == "EQUATION":
+        # a line of one entry is the number of terms; the first entry of a term is a node
         return [
-            line if "," not in line.text.rstrip(" ,") else _renamed_line(line, renamed, 0, _TERMS)
+            _renamed_line(line, renamed, 0, _TERMS) if "," in line.text.rstrip(" ,") else line
             for line in block.data
         ]
-    if block.keyword in ("SURFACE", "KINEMATIC COUPLING"):
+    if keyword in ("SURFACE", "KINEMATIC COUPLING"):  # the first entry alone
         return [_renamed_line(line, renamed, 0, len(line.text)) for line in block.data]
     if "GENERATE" in block.parameters:
         return [line._replace(text=",".join(_generated(line, renamed))) for line in block.data]
-    return [
-        _renamed_line(line, renamed, 1 if block.keyword == "MPC" else 0, None)
-        for line in block.data
-    ]
+    first = 1 if keyword == "MPC" else 0  # after the kind of the constraint
+    return [_renamed_line(line, renamed, first, 1) for line in block.data]
 
 
-def _renamed_line(line: TextLine, renamed: Renamed, first: int, step: int | None) -> TextLine:
-    """Return a line with every entry from `first` on renamed, or every one at a distance
-    of `step`.
-    """
+def _renamed_line(line: TextLine, renamed: Renamed, first: int, step: int) -> TextLine:
+    """Return a line with every entry from `first` on renamed, or every one in `step`."""
     texts = [text.strip() for text in line.text.split(",")]
-    chosen = set(range(first, len(texts), step or 1))
-    return line._replace(
-        text=", ".join(
-            renamed(text.strip('"'), line) if text and at in chosen else text
-            for at, text in enumerate(texts)
-        )
-    )
+    for index in range(first, len(texts), step or 1):
+        if texts[index]:
+            texts[index] = renamed(texts[index].strip('"'), line)
+    return line._replace(text=", ".join(texts))
 
 
 def _generated(line: TextLine, renamed: Renamed) -> Iterator[str]:
-    """Yield the entries of a range: first, last, step; a last one beyond the numbers of
-    an instance is its last.
+    """Yield the entries of a range: first, last, step.
+
+    A last one beyond the numbers of an instance is its last.
     """
-    for at, text in enumerate(part.strip() for part in line.text.split(",")):
-        if at == 1 and text.isdigit() and len(text) <= 18:
+    for index, text in enumerate(part.strip() for part in line.text.split(",")):
+        if index == 1 and text.isdigit() and len(text) <= 18:
             text = str(min(int(text), SPAN - 1))
-        yield renamed(text, line) if at < 2 and text.isdigit() else text
+        yield renamed(text, line) if index < 2 and text.isdigit() else text
 
 
 def _all_elements(line: TextLine, instance: _Instance) -> Block:

@@ -17,8 +17,9 @@ _INCLUDED = re.compile(
 
 @dataclass
 class Block:
-    """A keyword in capitals, without its asterisk; its parameters, by name in capitals;
-    its data lines.
+    """A keyword in capitals, without its asterisk, with its parameters and data lines.
+
+    The parameters are by name in capitals.
     """
 
     line: TextLine
@@ -35,8 +36,8 @@ def abaqus_include(text: str) -> str | None:
     >>> abaqus_include("*Include, input=mesh/plate.inp")
     'mesh/plate.inp'
     """
-    found = _INCLUDED.match(text.strip()) if text.lstrip().startswith("*") else None
-    return (found[1] or found[2]).strip() if found else None
+    statement = _INCLUDED.match(text.strip()) if text.lstrip().startswith("*") else None
+    return (statement[1] or statement[2]).strip() if statement else None
 
 
 def blocks(lines: Iterable[TextLine]) -> Iterator[Block]:
@@ -47,7 +48,8 @@ def blocks(lines: Iterable[TextLine]) -> Iterator[Block]:
     InputError
         If data lines precede the first keyword.
     """
-    block, goes_on = None, False
+    block: Block | None = None
+    goes_on = False  # whether parameters follow on the next line
     for line in lines:
         text = line.text.strip()
         if not text or text.startswith("**"):
@@ -81,7 +83,9 @@ def _parameters(text: str) -> dict[str, str]:
     >>> _parameters(' TYPE=C3D8 , elset = "upper, left", GENERATE')
     {'TYPE': 'C3D8', 'ELSET': 'upper, left', 'GENERATE': ''}
     """
-    found = (
-        parameter.partition("=") for parameter in _PARAMETER.findall(text) if parameter.strip()
-    )
-    return {key.strip().upper(): value.strip().strip('"') for key, _, value in found}
+    parameters = {}
+    for parameter in _PARAMETER.findall(text):
+        if parameter.strip():
+            key, _, value = parameter.partition("=")
+            parameters[key.strip().upper()] = value.strip().strip('"')
+    return parameters

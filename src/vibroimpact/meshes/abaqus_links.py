@@ -44,14 +44,15 @@ Known = Callable[[str, str], Selection | None]
 
 
 class AbaqusLinks:
-    """Collected blocks that link nodes; they are read at the end, as the sets that they
-    name may come later.
+    """Collected blocks that link nodes.
+
+    They are read at the end, as the sets that they name may come later.
     """
 
     def __init__(self) -> None:
         self._blocks: list[Block] = []
         self._surfaces: dict[str, Block] = {}
-        self._turned: list[Block] = []
+        self._transforms: list[Block] = []
 
     def take(self, block: Block) -> bool:
         """Keep a block if it is one of these; return whether it is."""
@@ -60,7 +61,7 @@ class AbaqusLinks:
         if block.keyword == "SURFACE":
             self._surfaces[_upper(block.parameters.get("NAME", ""))] = block
         elif block.keyword == "TRANSFORM":
-            self._turned.append(block)
+            self._transforms.append(block)
         else:
             self._blocks.append(block)
         return True
@@ -73,46 +74,47 @@ class AbaqusLinks:
         InputError
             If a number can't be read.
         """
-        reader = _Reader(parts, known, self._surfaces, self._turned)
+        reader = _Reader(parts, known, self._surfaces, self._transforms)
         coupling: Block | None = None
-        for block, after in itertools.zip_longest(self._blocks, self._blocks[1:]):
+        for block, following in itertools.zip_longest(self._blocks, self._blocks[1:]):
             if block.keyword == "COUPLING":
                 coupling = block
-                if after is None or after.keyword not in ("KINEMATIC", "DISTRIBUTING"):
+                # its kind is that of the block after it
+                if following is None or following.keyword not in ("KINEMATIC", "DISTRIBUTING"):
                     parts.skipped["*COUPLING"] += 1
                 continue
-            used = reader.use(block, coupling)
-            for name in used:
-                parts.skipped[f"*{name}"] += 1
-        if self._turned:
-            parts.skipped["*TRANSFORM"] += len(self._turned)
+            for keyword in reader.add(block, coupling):
+                parts.skipped[f"*{keyword}"] += 1
+        if self._transforms:
+            parts.skipped["*TRANSFORM"] += len(self._transforms)
 
 
 class _Reader:
     """Reader of the blocks, which knows the sets and surfaces."""
 
     def __init__(
-        self, parts: Parts, known: Known, surfaces: dict[str, Block], turned: Sequence[Block]
+        self, parts: Parts, known: Known, surfaces: dict[str, Block], transforms: Sequence[Block]
     ) -> None:
-        self.parts, self.known, self.surfaces = parts, known, surfaces
+        self.parts = parts
+        self.known = known
+        self.surfaces = surfaces
+        # nodes whose components of motion are along axes of their own
         self.turned = Selection()
-        for block in turned:
+        for block in transforms:
             name = block.parameters.get("NSET", "")
             self.turned.update(known("NSET", name) or Selection())
 
-    def use(self, block: Block, coupling: Block | None) -> list[str]:
+    def add(self, block: Block, coupling: Block | None) -> list[str]:
         """Add the links of a block; return the names of those that can't be used."""
-        keyword = block.keyword
-        if keyword == "EQUATION":
-            return self._equations(block)
-        if keyword == "MPC":
-            return self._mpc(block)
-        if keyword == "TIE":
-            return self._tie(block)
-        if keyword == "RIGID BODY":
-            return self._rigid_body(block)
-        if keyword == "KINEMATIC COUPLING":
-            return self._kinematic_coupling(block)
+        readers = {
+            "EQUATION": self._equations,
+            "MPC": self._mpc,
+            "TIE": self._tie,
+            "RIGID BODY": self._rigid_body,
+            "KINEMATIC COUPLING": self._kinematic_coupling,
+        }
+        if block.keyword in readers:
+            return readers[block.keyword](block)
         return self._coupling(block, coupling)
 
     def _equations(self, block: Block) -> list[str]:
@@ -121,22 +123,23 @@ class _Reader:
             return ["EQUATION"]
         left_out = []
         lines = [(line, [text.strip() for text in line.text.split(",")]) for line in block.data]
-        at = 0
-        while at < len(lines):
-            first, head = lines[at]
-            count = parse_integer(head[0], first, "the number of terms")
-            at += 1
+        index = 0
+        while index < len(lines):
+            line, texts = lines[index]
+            count = parse_integer(texts[0], line, "the number of terms")
+            index += 1
             entries: list[str] = []
-            while at < len(lines) and len(entries) < _TERMS * count:
-                texts = lines[at][1]
+            while index < len(lines) and len(entries) < _TERMS * count:
+                texts = lines[index][1]
+                # what follows the last whole term of a line, as after a comma, is no entry
                 entries += texts[: len(texts) - len(texts) % _TERMS] if len(texts) > 1 else texts
-                at += 1
+                index += 1
             if len(entries) < _TERMS * count:
-                raise first.wrong(
+                raise line.wrong(
                     f"the equation has {len(entries) // _TERMS} of the {count} terms that "
                     "it states; all must follow it"
                 )
-            equations = self._equation(first, entries[: _TERMS * count])
+            equations = self._equation(line, entries[: _TERMS * count])
             if equations is None:
                 left_out.append("EQUATION")
             for equation in equations or ():
@@ -144,64 +147,67 @@ class _Reader:
         return left_out
 
     def _equation(self, line: TextLine, entries: Sequence[str]) -> list[Equation] | None:
-        """Return the equations of terms: several if the terms are of sets; None if one
-        can't be used.
+        """Return the equations of terms: several if the terms are of sets.
+
+        None if one can't be used.
         """
         terms = []
         for start in range(0, len(entries), _TERMS):
             nodes = self._in_order(entries[start], line)
             component = parse_integer(entries[start + 1], line, "a component of motion") - 1
-            value = parse_real(entries[start + 2], line, "a coefficient")
+            coefficient = parse_real(entries[start + 2], line, "a coefficient")
             if (
                 not nodes
                 or component not in _ALL
-                or not abs(value) < float("inf")
+                or not abs(coefficient) < float("inf")
                 or any(self._is_turned(node) for node in nodes)
             ):
                 return None
-            terms.append((nodes, component, value))
+            terms.append((nodes, component, coefficient))
+        # sets of one size are paired; a single node occurs in each equation
         counts = {len(nodes) for nodes, _, _ in terms} - {1}
         if len(terms) < 2 or len(counts) > 1:
             return None  # of one term it is a support
-        found = [
-            equation_of(
+        equations = []
+        for index in range(max(counts, default=1)):
+            equation = equation_of(
                 line,
                 [
-                    ((nodes[min(index, len(nodes) - 1)], component), value)
-                    for nodes, component, value in terms
+                    ((nodes[min(index, len(nodes) - 1)], component), coefficient)
+                    for nodes, component, coefficient in terms
                 ],
             )
-            for index in range(max(counts, default=1))
-        ]
-        usable = [one for one in found if one is not None]
-        return usable if len(usable) == len(found) else None
+            if equation is None:
+                return None
+            equations.append(equation)
+        return equations
 
     def _mpc(self, block: Block) -> list[str]:
+        """Read multipoint constraints between two nodes, or two sets of paired nodes.
+
+        TIE is of the same motion, PIN of the same displacements, and LINK of a constant distance.
+        """
         left_out = []
         for line in block.data:
             kind, *texts = [text.strip() for text in line.text.split(",") if text.strip()] or [""]
+            kind = kind.upper()
             sets = [self._in_order(text, line) for text in texts]
-            if (
-                kind.upper() not in ("TIE", "PIN", "LINK")
-                or len(sets) != 2
-                or len(sets[0]) != len(sets[1])
-                or not sets[0]
-            ):
+            is_pair = len(sets) == 2 and len(sets[0]) == len(sets[1]) > 0
+            if kind not in ("TIE", "PIN", "LINK") or not is_pair:
                 left_out.append("MPC")
                 continue
             for first, second in zip(*sets, strict=True):
-                if kind.upper() == "LINK":
+                if kind == "LINK":
                     self.parts.links.add("*MPC", Distance(line, (first, second)))
                     continue
-                for component in _DISPLACEMENTS if kind.upper() == "PIN" else _ALL:
-                    self.parts.links.add(
-                        "*MPC",
-                        Equation(line, [((first, component), 1.0), ((second, component), -1.0)]),
-                    )
+                for component in _DISPLACEMENTS if kind == "PIN" else _ALL:
+                    terms = [((first, component), 1.0), ((second, component), -1.0)]
+                    self.parts.links.add("*MPC", Equation(line, terms))
         return left_out
 
     def _tie(self, block: Block) -> list[str]:
-        if any(word in block.parameters for word in _CYCLIC):
+        """Read pairs of surfaces of which the first follows the second."""
+        if any(parameter in block.parameters for parameter in _CYCLIC):
             return ["TIE of cyclic symmetry"]
         if not block.data:
             return ["TIE"]
@@ -212,8 +218,8 @@ class _Reader:
             if len(surfaces) < 2 or surfaces[0] is None or surfaces[1] is None:
                 left_out.append("TIE")
                 continue
-            given = block.parameters.get("POSITION TOLERANCE")
-            reach = parse_real(given, block.line, "a position tolerance") if given else None
+            text = block.parameters.get("POSITION TOLERANCE")
+            reach = parse_real(text, block.line, "a position tolerance") if text else None
             if reach is not None and not 0.0 <= reach < float("inf"):
                 raise block.line.wrong(
                     f"the position tolerance is {reach:g}; it must be 0 or greater, and finite"
@@ -222,71 +228,56 @@ class _Reader:
         return left_out
 
     def _rigid_body(self, block: Block) -> list[str]:
+        """Read a rigid body: nodes, and those of elements, that follow a reference node."""
         reference = self._reference(block)
-        nodes = sorted(
-            {
-                node
-                for key in ("NSET", "TIE NSET", "PIN NSET")
-                for node in self._nodes(block.parameters.get(key, ""), block.line)
-            }
-        )
-        elements = (
-            self.known("ELSET", block.parameters["ELSET"])
-            if block.parameters.get("ELSET")
-            else None
-        )
-        nodes = sorted({*nodes, *(self.parts.nodes_of_elements(elements) if elements else ())})
-        return self._add_rigid("*RIGID BODY", block.line, reference, nodes, _DISPLACEMENTS)
+        nodes: set[int] = set()
+        for key in ("NSET", "TIE NSET", "PIN NSET"):
+            nodes.update(self._nodes(block.parameters.get(key, ""), block.line))
+        name = block.parameters.get("ELSET")
+        elements = self.known("ELSET", name) if name else None
+        if elements:
+            nodes |= self.parts.nodes_of_elements(elements)
+        return self._add_rigid("*RIGID BODY", block.line, reference, sorted(nodes), _DISPLACEMENTS)
 
     def _kinematic_coupling(self, block: Block) -> list[str]:
+        """Read sets of nodes, of which some components follow a reference node."""
         reference = self._reference(block)
         left_out = []
         for line in block.data:
             texts = [text.strip() for text in line.text.split(",")]
-            components = _range([texts[1:]], line)
-            if not components or (
-                "ORIENTATION" in block.parameters and not set(_DISPLACEMENTS) <= set(components)
-            ):
+            components = _components([texts[1:]], line)
+            if not components or _depends_on_axes(block, components):
                 left_out.append("KINEMATIC COUPLING")
             else:
+                nodes = self._nodes(texts[0], line)
                 left_out += self._add_rigid(
-                    "*KINEMATIC COUPLING", line, reference, self._nodes(texts[0], line), components
+                    "*KINEMATIC COUPLING", line, reference, nodes, components
                 )
         return left_out
 
     def _coupling(self, block: Block, coupling: Block | None) -> list[str]:
         """Read *KINEMATIC or *DISTRIBUTING, which belongs to the *COUPLING before it."""
-        surface = (
-            None
-            if coupling is None
-            else self._surface(_upper(coupling.parameters.get("SURFACE", "")))
-        )
-        if coupling is None or surface is None or "CYCLIC SYMMETRY" in block.parameters:
+        if coupling is None:
+            return [block.keyword]
+        surface = self._surface(_upper(coupling.parameters.get("SURFACE", "")))
+        if surface is None or "CYCLIC SYMMETRY" in block.parameters:
             return [block.keyword]
         reference = self._reference(coupling)
         nodes = sorted(self.parts.nodes_of_surface(surface))
         lines = [[text.strip() for text in line.text.split(",")] for line in block.data]
-        components = _range(lines, block.line)
-        turned = "ORIENTATION" in coupling.parameters
+        components = _components(lines, block.line)
         if block.keyword == "DISTRIBUTING":  # only rotations can be released
             components = tuple(sorted({*components, *_DISPLACEMENTS}))
-        if (
-            reference is None
-            or not nodes
-            or not components
-            or (turned and not set(_DISPLACEMENTS) <= set(components))
-        ):
+        if reference is None or not nodes or not components:
+            return [block.keyword]
+        if _depends_on_axes(coupling, components):
             return [block.keyword]
         if block.keyword == "KINEMATIC":
             return self._add_rigid("*KINEMATIC", block.line, reference, nodes, components)
         if block.parameters.get("WEIGHTING METHOD", "UNIFORM").upper() != "UNIFORM":
             return [block.keyword]
-        self.parts.links.add(
-            "*DISTRIBUTING",
-            Mean(
-                block.line, reference, components, [(node, 1.0, _DISPLACEMENTS) for node in nodes]
-            ),
-        )
+        members = [(node, 1.0, _DISPLACEMENTS) for node in nodes]
+        self.parts.links.add("*DISTRIBUTING", Mean(block.line, reference, components, members))
         return []
 
     def _add_rigid(
@@ -297,12 +288,11 @@ class _Reader:
         nodes: Sequence[int],
         components: Sequence[int],
     ) -> list[str]:
-        partly = set(components) & set(_DISPLACEMENTS) != set(_DISPLACEMENTS)
-        if (
-            reference is None
-            or not nodes
-            or (partly and any(self._is_turned(node) for node in nodes))
-        ):
+        """Add the motion of nodes with a reference node; return the name if it can't be used."""
+        if reference is None or not nodes:
+            return [name[1:]]
+        is_partial = not set(_DISPLACEMENTS) <= set(components)
+        if is_partial and any(self._is_turned(node) for node in nodes):
             return [name[1:]]
         followers = [(node, components) for node in nodes if node != reference]
         self.parts.links.add(name, Rigid(line, [(reference, _ALL), *followers]))
@@ -319,18 +309,22 @@ class _Reader:
         text = text.strip().strip('"')
         if text.isdigit():
             return [parse_integer(text, line, "the number of a node")]
-        found = self.known("NSET", text) if text else None
-        return [] if found is None else self.parts.node_numbers(found)
+        selection = self.known("NSET", text) if text else None
+        return [] if selection is None else self.parts.node_numbers(selection)
 
     def _in_order(self, text: str, line: TextLine) -> list[int]:
-        """Return the nodes of a set in the order in which they are paired with those of
-        another; none if it is not theirs.
+        """Return the nodes of a set in the order in which they are paired with others.
+
+        None are returned if that order is not kept.
         """
-        found = self.known("NSET", text.strip().strip('"'))
+        selection = self.known("NSET", text.strip().strip('"'))
         nodes = self._nodes(text, line)
-        return [] if found is not None and found.unsorted and len(nodes) > 1 else nodes
+        if selection is not None and selection.unsorted and len(nodes) > 1:
+            return []
+        return nodes
 
     def _is_turned(self, node: int) -> bool:
+        """Whether the components of motion of a node are along axes of its own."""
         return node in self.turned.numbers or any(
             first <= node <= last and (node - first) % step == 0
             for first, last, step in self.turned.ranges
@@ -341,40 +335,46 @@ class _Reader:
         block = self.surfaces.get(name) or self.surfaces.get(name.rpartition(".")[2])
         if block is None or "COMBINE" in block.parameters or "CROP" in block.parameters:
             return None
-        found = MeshSurface()
+        surface = MeshSurface()
         for line in block.data:
             texts = [text.strip() for text in line.text.split(",")]
             if block.parameters.get("TYPE", "ELEMENT").upper() == "NODE":
                 nodes = self._nodes(texts[0], line)
                 if not nodes:
                     return None
-                found.nodes.numbers.update(nodes)
+                surface.nodes.numbers.update(nodes)
                 continue
             label = texts[1].upper() if len(texts) > 1 else ""
-            if texts[0].isdigit():
-                chosen: Selection | None = Selection(
-                    {parse_integer(texts[0], line, "the number of an element")}
-                )
-            else:
-                chosen = self.known("ELSET", texts[0].strip('"'))
-            if chosen is None or (label and label not in _FACES):
+            elements = self._elements(texts[0], line)
+            if elements is None or (label and label not in _FACES):
                 return None
-            found.faces.append((chosen, _FACES[label] if label else {}))
-        return found
+            surface.faces.append((elements, _FACES[label] if label else {}))
+        return surface
+
+    def _elements(self, text: str, line: TextLine) -> Selection | None:
+        """Return the elements of a set, or the one of a number; None if there is no such set."""
+        if text.isdigit():
+            return Selection({parse_integer(text, line, "the number of an element")})
+        return self.known("ELSET", text.strip('"'))
 
 
-def _range(lines: Sequence[Sequence[str]], line: TextLine) -> tuple[int, ...]:
-    """Return the components of lines "first, last", from 0; all of none."""
-    found: set[int] = set()
-    stated = False
+def _components(lines: Sequence[Sequence[str]], line: TextLine) -> tuple[int, ...]:
+    """Return the components of lines "first, last", from 0; all of them without such a line."""
+    components: set[int] = set()
+    is_stated = False
     for texts in lines:
         numbers = [parse_integer(text, line, "a component of motion") for text in texts[:2] if text]
         if numbers:
-            stated = True
-            found.update(
-                component for component in _ALL if numbers[0] <= component + 1 <= numbers[-1]
-            )
-    return tuple(sorted(found)) if stated else _ALL
+            is_stated = True
+            first = numbers[0]
+            last = numbers[-1]
+            components.update(component for component in _ALL if first <= component + 1 <= last)
+    return tuple(sorted(components)) if is_stated else _ALL
+
+
+def _depends_on_axes(block: Block, components: Sequence[int]) -> bool:
+    """Whether components are some displacements along axes that the block turns."""
+    return "ORIENTATION" in block.parameters and not set(_DISPLACEMENTS) <= set(components)
 
 
 def _upper(name: str) -> str:

@@ -1,5 +1,6 @@
-"""Materials of the solid elements of an Abaqus file: *MATERIAL with its options, and
-*SOLID SECTION.
+"""Materials of the solid elements of an Abaqus file.
+
+They are those of *MATERIAL with its options, and *SOLID SECTION.
 """
 
 from __future__ import annotations
@@ -25,14 +26,13 @@ _KINDS = {
     "ENGINEERING": "orthotropic",
     "LAMINA": "orthotropic",
 }
-"""What a material is by the beginning of the type of its elasticity, where that is not
-isotropic.
-"""
+"""What a material is by the beginning of the type of its elasticity, unless it is isotropic."""
 
 
 class AbaqusMaterials:
-    """Collected *MATERIAL, *DENSITY, *ELASTIC and *SOLID SECTION, and keywords that make
-    a material another than isotropic.
+    """Collected *MATERIAL, *DENSITY, *ELASTIC and *SOLID SECTION.
+
+    Other keywords make a material another than isotropic.
     """
 
     def __init__(self) -> None:
@@ -48,19 +48,15 @@ class AbaqusMaterials:
         InputError
             If a number of it can't be read.
         """
-        keyword, parameters = block.keyword, block.parameters
+        keyword = block.keyword
+        parameters = block.parameters
         if keyword == "MATERIAL":
             name = parameters.get("NAME", "")
             self._open = name.upper()
             self._materials.setdefault(self._open, StatedMaterial(name))
         elif keyword == _SOLID and parameters.get("ELSET"):
-            self._sections.append(
-                (
-                    block.line,
-                    parameters["ELSET"],
-                    "" if "COMPOSITE" in parameters else parameters.get("MATERIAL", ""),
-                )
-            )
+            material = "" if "COMPOSITE" in parameters else parameters.get("MATERIAL", "")
+            self._sections.append((block.line, parameters["ELSET"], material))
         elif self._open not in self._materials:
             return False
         elif keyword == "DENSITY":
@@ -75,23 +71,23 @@ class AbaqusMaterials:
 
     def sections(self) -> list[tuple[TextLine, str, StatedMaterial]]:
         """Return the lines, element sets and materials of the sections."""
-        unknown = (StatedMaterial(name) for _, _, name in self._sections if name)
-        known = {one.name.upper(): one for one in unknown} | self._materials
+        # a material that the file does not define has no numbers
+        materials = {
+            name.upper(): StatedMaterial(name) for _, _, name in self._sections if name
+        } | self._materials
         composite = StatedMaterial("*SOLID SECTION", other="a layered composite")
         return [
-            (line, elements, known[name.upper()] if name else composite)
+            (line, elements, materials[name.upper()] if name else composite)
             for line, elements, name in self._sections
         ]
 
     def _elastic(self, block: Block) -> None:
+        """Read the elastic constants of the open material."""
         kind = block.parameters.get("TYPE", "ISO").upper()
         if not kind.startswith("ISO"):
-            self._change(
-                other=next(
-                    (word for start, word in _KINDS.items() if kind.startswith(start)),
-                    f"of the elasticity {kind}",
-                )
-            )
+            unnamed = f"of the elasticity {kind}"
+            names = (name for start, name in _KINDS.items() if kind.startswith(start))
+            self._change(other=next(names, unnamed))
             return
         rows = [
             _numbers(replace(block, data=[line]), 2, "an elastic constant") for line in block.data
@@ -102,14 +98,14 @@ class AbaqusMaterials:
             self._change(youngs_modulus=rows[0][0], poissons_ratio=rows[0][1])
 
     def _change(self, **values: float | str) -> None:
+        """Change fields of the open material."""
         self._materials[self._open] = replace(self._materials[self._open], **values)  # type: ignore[arg-type]
 
 
 def _numbers(block: Block, count: int, what: str) -> list[float]:
     """Return the first numbers of the first data line of a block; NaN where there are none."""
-    texts = [text.strip() for text in block.data[0].text.split(",")] if block.data else []
-    texts = [*texts, *count * [""]][:count]
-    return [
-        nastran_real(text, block.data[0], what, blank=math.nan) if text else math.nan
-        for text in texts
-    ]
+    if not block.data:
+        return [math.nan] * count
+    line = block.data[0]
+    texts = [*(text.strip() for text in line.text.split(",")), *count * [""]]
+    return [nastran_real(text, line, what, blank=math.nan) for text in texts[:count]]

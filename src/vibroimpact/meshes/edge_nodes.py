@@ -42,8 +42,9 @@ class EdgeNodes(NamedTuple):
 def with_edge_nodes(
     elements: Mapping[str, Integers], numbers: Integers, points: Floats
 ) -> EdgeNodes:
-    """Return elements whose omitted nodes are those of their neighbours, or new ones halfway
-    between the corners of their edges.
+    """Return elements with the nodes that were left out of their edges.
+
+    They are those of neighbours, or new ones halfway between the corners.
 
     Parameters
     ----------
@@ -56,32 +57,32 @@ def with_edge_nodes(
     complete = {kind: nodes.copy() for kind, nodes in elements.items()}
     if not any((nodes == OMITTED).any() for nodes in complete.values()):
         return EdgeNodes(complete, numbers, points, 0, [])
-    kinds = list(complete)
-    ends = [
-        np.sort(complete[kind][:, np.array(ELEMENT_KINDS[kind].edges)], axis=2).reshape(-1, 2)
-        for kind in kinds
-    ]
-    edges, of = np.unique(np.concatenate(ends), axis=0, return_inverse=True)
-    of_kinds = np.split(of.ravel(), np.cumsum([len(part) for part in ends])[:-1])
-    middle, straight = np.full(len(edges), OMITTED), np.zeros(len(edges), dtype=bool)
-    wanted = np.zeros(len(edges), dtype=bool)
-    for kind, edge in zip(kinds, of_kinds, strict=True):
-        given = _middle_nodes(kind, complete[kind])
-        if given is None:
-            straight[edge] = True
+    edges, edges_of_kinds = _edges(complete)
+    middle = np.full(len(edges), OMITTED)
+    is_straight = np.zeros(len(edges), dtype=bool)  # the edge of an element of first order
+    is_needed = np.zeros(len(edges), dtype=bool)  # an element leaves its node out
+    for kind, of_elements in edges_of_kinds.items():
+        stated = _middle_nodes(kind, complete[kind])
+        if stated is None:
+            is_straight[of_elements] = True
         else:
-            np.maximum.at(middle, edge, given.ravel())
-            wanted[edge[given.ravel() == OMITTED]] = True
-    new = np.flatnonzero(wanted & (middle == OMITTED))
+            np.maximum.at(middle, of_elements, stated.ravel())
+            is_needed[of_elements[stated.ravel() == OMITTED]] = True
+    # what no neighbour has either is a new node
+    new = np.flatnonzero(is_needed & (middle == OMITTED))
     middle[new] = numbers.max(initial=0) + 1 + np.arange(len(new))
-    for kind, edge in zip(kinds, of_kinds, strict=True):
-        given = _middle_nodes(kind, complete[kind])
-        if given is not None:
-            given[...] = np.where(given == OMITTED, middle[edge].reshape(given.shape), given)
-    at = np.minimum(np.searchsorted(numbers, edges[new]), max(len(numbers) - 1, 0))
-    halfway = points[at].mean(axis=1) if len(numbers) else np.zeros((len(new), 3))
+    for kind, of_elements in edges_of_kinds.items():
+        stated = _middle_nodes(kind, complete[kind])
+        if stated is not None:
+            known = middle[of_elements].reshape(stated.shape)
+            stated[...] = np.where(stated == OMITTED, known, stated)
+    halfway = np.zeros((len(new), 3))
+    if len(numbers):
+        ends = np.minimum(np.searchsorted(numbers, edges[new]), max(len(numbers) - 1, 0))
+        halfway = points[ends].mean(axis=1)
     linear = [
-        (int(middle[edge]), int(edges[edge, 0]), int(edges[edge, 1])) for edge in new[straight[new]]
+        (int(middle[edge]), int(edges[edge, 0]), int(edges[edge, 1]))
+        for edge in new[is_straight[new]]
     ]
     return EdgeNodes(
         complete,
@@ -92,13 +93,27 @@ def with_edge_nodes(
     )
 
 
+def _edges(elements: Mapping[str, Integers]) -> tuple[Integers, dict[str, Integers]]:
+    """Return the edges of elements, each once, and those of the elements of each kind.
+
+    An edge is the numbers of its two corners, ascending. The edges of a kind are indices, (elements
+    times edges,).
+    """
+    ends = [
+        np.sort(nodes[:, np.array(ELEMENT_KINDS[kind].edges)], axis=2).reshape(-1, 2)
+        for kind, nodes in elements.items()
+    ]
+    edges, indices = np.unique(np.concatenate(ends), axis=0, return_inverse=True)
+    bounds = np.cumsum([len(of_kind) for of_kind in ends])[:-1]
+    return edges, dict(zip(elements, np.split(indices.ravel(), bounds), strict=True))
+
+
 def _middle_nodes(kind: str, nodes: Integers) -> Integers | None:
-    """Return a view of the nodes in the middle of edges, (elements, edges); None for a
-    kind of first order.
+    """Return a view of the nodes in the middle of edges, (elements, edges).
+
+    None for a kind of first order.
     """
     element = ELEMENT_KINDS[kind]
-    return (
-        nodes[:, element.corners : element.corners + len(element.edges)]
-        if element.order > 1
-        else None
-    )
+    if element.order == 1:
+        return None
+    return nodes[:, element.corners : element.corners + len(element.edges)]

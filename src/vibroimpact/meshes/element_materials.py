@@ -1,5 +1,6 @@
-"""Materials of the elements of a mesh file: those that the file states, in SI, or others
-in place of them.
+"""Materials of the elements of a mesh file.
+
+They are those that the file states, in SI, or others in place of them.
 """
 
 from __future__ import annotations
@@ -22,12 +23,19 @@ REMEDY = (
     "of the file"
 )
 
-_TERMS = {"youngs_modulus": "Young's modulus", "poissons_ratio": "Poisson's ratio"}
-"""What the keys of a material are called in the field."""
+_NAMES = {
+    "density": "density",
+    "youngs_modulus": "Young's modulus",
+    "poissons_ratio": "Poisson's ratio",
+}
+"""The numbers of a material, by key."""
 
-# kg/m^3, of solids: less than a factor of 1000, so that systems of units differ
-_DENSITIES = (25.0, 24_999.0)
-_MODULI = (1e4, 1.3e12)  # Pa, from soft rubber to diamond
+# of solids [kg/m^3]: less than a factor of 1000, so that systems of units differ
+_LEAST_DENSITY = 25.0
+_LARGEST_DENSITY = 24_999.0
+# from soft rubber to diamond [Pa]
+_LEAST_MODULUS = 1e4
+_LARGEST_MODULUS = 1.3e12
 
 
 class _Units(NamedTuple):
@@ -105,38 +113,42 @@ def with_element_materials(
         return _with_named(mesh, named)
     if stated is None:
         return mesh
-    if len({_numbers(one) for one in stated.materials}) == 1:
+    if len({_properties(material) for material in stated.materials}) == 1:
         return _with_one(mesh, stated, unit)
-    return _with_stated(mesh, stated, unit)
+    return _with_several(mesh, stated, unit)
 
 
-def _numbers(one: StatedMaterial) -> tuple[str, ...]:
-    """Return what a stated material is, without its name; as text, in which NaN is equal
-    to itself.
+def _properties(material: StatedMaterial) -> tuple[str, ...]:
+    """Return what a stated material is, without its name.
+
+    It is text, in which NaN is equal to itself.
     """
-    return repr(one.density), repr(one.youngs_modulus), repr(one.poissons_ratio), one.other
+    return (
+        repr(material.density),
+        repr(material.youngs_modulus),
+        repr(material.poissons_ratio),
+        material.other,
+    )
 
 
 def _with_one(mesh: Mesh, stated: StatedMaterials, unit: float) -> Mesh:
-    """Return a mesh whose file states one material, in SI; with a remark if its units are
-    not known.
+    """Return a mesh whose file states one material, in SI.
+
+    It has a remark if the units of the material are not known.
     """
-    one = stated.materials[0]
-    fitting = [_in_si(one, units) for units in _fitting([one], unit)]
-    # its units are not known, but nothing depends on them
-    if one.other or math.isnan(one.density + one.youngs_modulus):
-        fitting = (
-            fitting[:1]
-            if len(fitting) == 1
-            else [replace(one, density=math.nan, youngs_modulus=math.nan)]
-        )
-    if len(fitting) == 1:
+    material = stated.materials[0]
+    candidates = [_in_si(material, units) for units in _fitting([material], unit)]
+    # without all numbers its units may not be known, but nothing depends on them
+    is_incomplete = material.other or math.isnan(material.density + material.youngs_modulus)
+    if is_incomplete and len(candidates) != 1:
+        candidates = [replace(material, density=math.nan, youngs_modulus=math.nan)]
+    if len(candidates) == 1:
         return replace(
-            mesh, stated=StatedMaterials((fitting[0],), np.zeros_like(stated.of_elements))
+            mesh, stated=StatedMaterials((candidates[0],), np.zeros_like(stated.of_elements))
         )
     remark = (
-        f"the density of {one.density:.4g} and the modulus of {one.youngs_modulus:.4g} of "
-        f"the material {one.name} of the mesh file are "
+        f"the density of {material.density:.4g} and the modulus of "
+        f"{material.youngs_modulus:.4g} of the material {material.name} of the mesh file are "
         f"those of no solid in the units that go with coordinates in {_unit_name(unit)}, "
         "and are not compared with those of the case; "
         "if the coordinates are in another unit, give mesh.unit"
@@ -144,7 +156,7 @@ def _with_one(mesh: Mesh, stated: StatedMaterials, unit: float) -> Mesh:
     return replace(mesh, stated=None, remarks=(*mesh.remarks, remark))
 
 
-def _with_stated(mesh: Mesh, stated: StatedMaterials, unit: float) -> Mesh:
+def _with_several(mesh: Mesh, stated: StatedMaterials, unit: float) -> Mesh:
     """Return a mesh with the several materials that its file states.
 
     Raises
@@ -153,20 +165,11 @@ def _with_stated(mesh: Mesh, stated: StatedMaterials, unit: float) -> Mesh:
         If one can't be used.
     """
     count = len(stated.materials)
-    for one in stated.materials:
-        missing = [
-            what
-            for what, value in (
-                ("density", one.density),
-                ("Young's modulus", one.youngs_modulus),
-                ("Poisson's ratio", one.poissons_ratio),
-            )
-            if math.isnan(value)
-        ]
-        fault = f"is {one.other}" if one.other else f"has no {listed(missing)}" if missing else ""
+    for material in stated.materials:
+        fault = _fault(material)
         if fault:
             raise InputError(
-                f"the file gives its elements {count} materials, of which {one.name} "
+                f"the file gives its elements {count} materials, of which {material.name} "
                 f"{fault}; {REMEDY}",
                 "materials",
             )
@@ -177,17 +180,17 @@ def _with_stated(mesh: Mesh, stated: StatedMaterials, unit: float) -> Mesh:
             f"materials; {REMEDY}",
             "materials",
         )
-    fitting = _fitting(stated.materials, unit)
-    if len(fitting) != 1:
-        one = max(stated.materials, key=lambda other: other.density)
+    systems = _fitting(stated.materials, unit)
+    if len(systems) != 1:
+        densest = max(stated.materials, key=lambda material: material.density)
         raise InputError(
             f"the file gives its elements {count} materials in units that are not known: "
-            f"{one.name} has the density {one.density:.4g} and "
-            f"the modulus {one.youngs_modulus:.4g}, with coordinates in "
+            f"{densest.name} has the density {densest.density:.4g} and "
+            f"the modulus {densest.youngs_modulus:.4g}, with coordinates in "
             f"{_unit_name(unit)}. If these are in another unit, give mesh.unit; or {REMEDY}",
             "materials",
         )
-    in_si = [_in_si(one, fitting[0]) for one in stated.materials]
+    in_si = [_in_si(material, systems[0]) for material in stated.materials]
     return replace(
         mesh,
         materials=tuple(map(_material, in_si)),
@@ -196,12 +199,23 @@ def _with_stated(mesh: Mesh, stated: StatedMaterials, unit: float) -> Mesh:
     )
 
 
-def _material(one: StatedMaterial) -> Material:
+def _fault(material: StatedMaterial) -> str:
+    """Return why the elements can't have a stated material; "" if they can."""
+    if material.other:
+        return f"is {material.other}"
+    missing = [name for key, name in _NAMES.items() if math.isnan(getattr(material, key))]
+    return f"has no {listed(missing)}" if missing else ""
+
+
+def _material(stated: StatedMaterial) -> Material:
+    """Return a material with the numbers of the file, in SI."""
     try:
-        return Material(one.density, one.youngs_modulus, one.poissons_ratio, name=one.name)
+        return Material(
+            stated.density, stated.youngs_modulus, stated.poissons_ratio, name=stated.name
+        )
     except InputError as error:
         raise InputError(
-            f"the material {one.name} of the file: {_TERMS.get(error.key, error.key)} "
+            f"the material {stated.name} of the file: {_NAMES.get(error.key, error.key)} "
             f"{error.message}; {REMEDY}",
             "materials",
         ) from None
@@ -209,22 +223,32 @@ def _material(one: StatedMaterial) -> Material:
 
 def _fitting(materials: Sequence[StatedMaterial], unit: float) -> list[_Units]:
     """Return the usual systems of units in which all stated numbers are those of solids."""
-    systems = next(
-        (found for known, found in _SYSTEMS.items() if math.isclose(known, unit, rel_tol=1e-6)),
-        (_SI,),
-    )
-
-    def fits(units: _Units) -> bool:
-        pairs = [(units.density * one.density, _DENSITIES) for one in materials]
-        pairs += [(units.modulus * one.youngs_modulus, _MODULI) for one in materials]
-        return all(math.isnan(value) or low <= value <= high for value, (low, high) in pairs)
-
-    return [units for units in systems if fits(units)]
+    systems: Sequence[_Units] = (_SI,)
+    for length, systems_of_length in _SYSTEMS.items():
+        if math.isclose(length, unit, rel_tol=1e-6):
+            systems = systems_of_length
+    return [
+        units
+        for units in systems
+        if all(_is_of_solid(_in_si(material, units)) for material in materials)
+    ]
 
 
-def _in_si(one: StatedMaterial, units: _Units) -> StatedMaterial:
+def _is_of_solid(material: StatedMaterial) -> bool:
+    """Whether the numbers of a material in SI are those of a solid, as far as they are stated."""
+    density = material.density
+    modulus = material.youngs_modulus
+    has_density = math.isnan(density) or _LEAST_DENSITY <= density <= _LARGEST_DENSITY
+    has_modulus = math.isnan(modulus) or _LEAST_MODULUS <= modulus <= _LARGEST_MODULUS
+    return has_density and has_modulus
+
+
+def _in_si(material: StatedMaterial, units: _Units) -> StatedMaterial:
+    """Return a material in SI, from other units."""
     return replace(
-        one, density=units.density * one.density, youngs_modulus=units.modulus * one.youngs_modulus
+        material,
+        density=units.density * material.density,
+        youngs_modulus=units.modulus * material.youngs_modulus,
     )
 
 
@@ -241,61 +265,77 @@ def _with_named(mesh: Mesh, named: Mapping[str, Material]) -> Mesh:
         If a name is unknown, or names contradict one another or leave out a material of the file.
     """
     stated = mesh.stated.materials if mesh.stated else ()
-    sets = (
-        {
-            one.name: np.flatnonzero(mesh.stated.of_elements == index)
-            for index, one in enumerate(stated)
-        }
-        if mesh.stated
-        else {}
-    )
-    sets = {**mesh.element_sets, **sets}
+    sets = dict(mesh.element_sets)
+    if mesh.stated:
+        for index, material in enumerate(stated):
+            sets[material.name] = np.flatnonzero(mesh.stated.of_elements == index)
     numbers = np.full(mesh.number_of_elements, -1)
     for number, name in enumerate(named):
         members = _members(sets, name)
-        taken = numbers[members]
-        clash = taken[(taken >= 0) & (taken != number)]
-        if len(clash):
-            other = list(named)[int(clash[0])]
-            shared = int((clash == clash[0]).sum())
-            elements = (
-                "an element, which can" if shared == 1 else f"{shared} elements, each of which can"
-            )
-            raise InputError(
-                f'"{name}" and "{other}" share {elements} have one material only; name '
-                "sets that share none",
-                "materials",
-            )
+        earlier = numbers[members]
+        clashes = earlier[(earlier >= 0) & (earlier != number)]
+        if len(clashes):
+            shared = int((clashes == clashes[0]).sum())
+            raise _clash(name, list(named)[int(clashes[0])], shared)
         numbers[members] = number
-    if len({_numbers(one) for one in stated}) > 1:
-        for one in stated:
-            left = int((numbers[sets[one.name]] < 0).sum())
-            if left:
-                too = (
-                    "it"
-                    if left == len(sets[one.name])
-                    else f"a set that contains {'it' if left == 1 else 'them'}"
-                )
-                elements = "an element" if left == 1 else f"{left} elements"
-                words = (
-                    f'the names leave out {elements} of the material "{one.name}" of the file; '
-                    f"name {too} too"
-                )
-                raise InputError(words, "materials")
+    # a single material of the file remains that of the elements that no name takes
+    if len({_properties(material) for material in stated}) > 1:
+        for material in stated:
+            members = sets[material.name]
+            _check_all_named(material, len(members), int((numbers[members] < 0).sum()))
     return replace(mesh, materials=tuple(named.values()), element_materials=numbers, stated=None)
 
 
-def _members(sets: Mapping[str, Integers], name: str) -> Integers:
-    exact = (
-        name
-        if name in sets
-        else next((other for other in sets if other.lower() == name.lower()), None)
+def _clash(name: str, other: str, shared: int) -> InputError:
+    """Return an error that names two sets which share elements."""
+    elements = "an element, which" if shared == 1 else f"{shared} elements, each of which"
+    return InputError(
+        f'"{name}" and "{other}" share {elements} can have one material only; name '
+        "sets that share none",
+        "materials",
     )
-    if exact is None:
-        have = f"it has {listed(sets)}" if sets else "it has neither"
-        raise InputError(
-            f'the file has no material or element set "{name}"; '
-            f"{have}.{did_you_mean(name, list(sets))}",
-            "materials",
-        )
-    return sets[exact]
+
+
+def _check_all_named(material: StatedMaterial, count: int, unnamed: int) -> None:
+    """Raise InputError if the names leave out elements of a material of the file.
+
+    Parameters
+    ----------
+    material : StatedMaterial
+        The material.
+    count, unnamed : int
+        Number of its elements, and of those that the names leave out.
+    """
+    if not unnamed:
+        return
+    elements = "an element" if unnamed == 1 else f"{unnamed} elements"
+    if unnamed == count:
+        missing = "it"
+    else:
+        missing = f"a set that contains {'it' if unnamed == 1 else 'them'}"
+    raise InputError(
+        f'the names leave out {elements} of the material "{material.name}" of the file; '
+        f"name {missing} too",
+        "materials",
+    )
+
+
+def _members(sets: Mapping[str, Integers], name: str) -> Integers:
+    """Return the elements of a material or set by its name, if need be ignoring case.
+
+    Raises
+    ------
+    InputError
+        If there is none.
+    """
+    if name in sets:
+        return sets[name]
+    for other, members in sets.items():
+        if other.lower() == name.lower():
+            return members
+    names = f"it has {listed(sets)}" if sets else "it has neither"
+    raise InputError(
+        f'the file has no material or element set "{name}"; '
+        f"{names}.{did_you_mean(name, list(sets))}",
+        "materials",
+    )

@@ -18,7 +18,8 @@ from vibroimpact.meshes.read_gmsh import read_gmsh
 from vibroimpact.quoting import shortened
 from vibroimpact.structures.mesh import Mesh
 
-STEP, BREP = (".step", ".stp"), (".brep",)
+STEP = (".step", ".stp")
+BREP = (".brep",)
 
 GEOMETRY = FileKind(
     "a geometry is a STEP or BREP file with one solid",
@@ -28,8 +29,9 @@ GEOMETRY = FileKind(
 """Requirements on a geometry file."""
 
 MOST_SECONDS = 1200.0
-"""Time limit of Gmsh: more than three million elements take; on some damaged geometries
-it never ends.
+"""Time limit of Gmsh: more than three million elements take.
+
+On some damaged geometries it never ends.
 """
 
 
@@ -42,8 +44,8 @@ def mesh_geometry(
     """Mesh the solid in a STEP or BREP file with tetrahedra; requires Gmsh.
 
     Mid-edge nodes of second-order elements lie on the geometry. Its faces become node sets, named
-    as in the file or `face1`, `face2`,
-    ... Gmsh runs in a separate process, which isolates its messages, settings and crashes.
+    as in the file or `face1`, `face2`, and so on. Gmsh runs in a separate process, which isolates
+    its messages, settings and crashes.
 
     Parameters
     ----------
@@ -90,19 +92,13 @@ def mesh_geometry(
             raise InputError(f"the file is empty; {GEOMETRY.what}")
     except InputError as error:
         raise with_path(path, error) from None
+    size_in_unit = 0.0 if size is None else size / unit
     with TemporaryDirectory() as folder:
-        made = Path(folder, "mesh.msh")
+        mesh_file = Path(folder, "mesh.msh")
         # an absolute path, since a file name that starts with a dash would be taken for an option
-        _run_gmsh(
-            path,
-            [
-                str(path.resolve()),
-                str(made),
-                repr(0.0 if size is None else size / unit),
-                str(order),
-            ],
-        )
-        mesh = read_gmsh(made)
+        arguments = [str(path.resolve()), str(mesh_file), repr(size_in_unit), str(order)]
+        _run_gmsh(path, arguments)
+        mesh = read_gmsh(mesh_file)
     return replace(mesh, nodes=mesh.nodes * unit)
 
 
@@ -111,7 +107,7 @@ def _run_gmsh(path: Path, arguments: list[str]) -> None:
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
     command = [sys.executable, "-m", "vibroimpact.meshes.geometry_process", *arguments]
     try:
-        done = subprocess.run(
+        process = subprocess.run(
             command,
             env=environment,
             stdin=subprocess.DEVNULL,
@@ -124,23 +120,38 @@ def _run_gmsh(path: Path, arguments: list[str]) -> None:
             f"{path}: Gmsh did not end within {MOST_SECONDS / 60:g} minutes and was stopped; "
             "give a larger element size, or mesh the geometry in another program"
         ) from None
-    if done.returncode == 0:
-        return
-    _, mark, reason = done.stderr.decode("utf-8", errors="replace").rpartition(MARK)
-    reason = " ".join(reason.split())
-    kind, _, what = reason.partition(": ")
+    if process.returncode:
+        raise _failure(path, process.returncode, process.stderr.decode("utf-8", errors="replace"))
+
+
+def _failure(path: Path, status: int, output: str) -> InputError:
+    """Return an error for a process of Gmsh that failed.
+
+    Parameters
+    ----------
+    path : Path
+        The geometry.
+    status : int
+        Exit status of the process.
+    output : str
+        Its standard error, in which the exception stands behind `MARK`.
+    """
+    _, mark, exception = output.rpartition(MARK)
     if not mark:
-        raise InputError(
-            f"{path}: Gmsh stopped with status {done.returncode} while it meshed the "
+        return InputError(
+            f"{path}: Gmsh stopped with status {status} while it meshed the "
             "geometry; check the file in another program"
         )
-    lacking = (
-        f"{path}: meshing a geometry needs Gmsh, which can't be loaded ({shortened(what, 200)})"
-    )
-    if kind in ("ImportError", "ModuleNotFoundError"):
-        raise InputError(f'{lacking}: pip install "vibroimpact[mesh]"')
-    if kind == "OSError":
-        raise InputError(
-            f"{lacking}; install the library that it lacks, or mesh the geometry in another program"
+    name, _, message = " ".join(exception.split()).partition(": ")
+    if name in ("ImportError", "ModuleNotFoundError", "OSError"):
+        fault = (
+            f"{path}: meshing a geometry needs Gmsh, which can't be loaded "
+            f"({shortened(message, 200)})"
         )
-    raise InputError(f"{path}: the geometry can't be meshed: {shortened(what, 300)}")
+        if name == "OSError":
+            return InputError(
+                f"{fault}; install the library that it lacks, or mesh the geometry in another "
+                "program"
+            )
+        return InputError(f'{fault}: pip install "vibroimpact[mesh]"')
+    return InputError(f"{path}: the geometry can't be meshed: {shortened(message, 300)}")

@@ -1,5 +1,6 @@
-"""The separate Gmsh process: `python -m vibroimpact.meshes.geometry_process geometry mesh size
-order`.
+"""The separate Gmsh process, with the arguments geometry, mesh, size and order.
+
+It is run as `python -m vibroimpact.meshes.geometry_process`.
 
 It writes the mesh to a file, and an error message to standard error, after a mark that separates it
 from other output.
@@ -41,12 +42,7 @@ def make_mesh(geometry: str, mesh: str, size: float, order: int) -> None:
     gmsh.option.setString("Geometry.OCCTargetUnit", "MM")
     gmsh.model.occ.importShapes(geometry)
     gmsh.model.occ.synchronize()
-    solids = gmsh.model.getEntities(3)
-    if len(solids) != 1:
-        remedy = "join them" if solids else "make a solid of its surfaces"
-        raise RuntimeError(
-            f"it holds {len(solids)} solids; it must hold one: {remedy} in the program that made it"
-        )
+    _check_single_solid(gmsh)
     box = gmsh.model.getBoundingBox(-1, -1)
     size = size or max(box[axis + 3] - box[axis] for axis in range(3)) / DEFAULT_FRACTION
     expected = _expected_elements(gmsh, size)
@@ -56,38 +52,55 @@ def make_mesh(geometry: str, mesh: str, size: float, order: int) -> None:
             f"{MOST_ELEMENTS / 1e6:g} million are made: choose a larger size"
         )
     gmsh.option.setNumber("Mesh.MeshSizeMax", size)
-    for dimension, word in ((2, "face"), (3, "volume")):
-        for _, tag in gmsh.model.getEntities(dimension):
-            label = gmsh.model.getEntityName(dimension, tag).rpartition("/")[2]
-            gmsh.model.addPhysicalGroup(dimension, [tag], name=label or f"{word}{tag}")
+    _name_groups(gmsh)
     gmsh.model.mesh.generate(3)
-    _check(gmsh)
+    _check_elements(gmsh)
     gmsh.write(mesh)
 
 
+def _check_single_solid(gmsh: object) -> None:
+    """Raise RuntimeError unless a geometry has exactly one solid."""
+    solids = gmsh.model.getEntities(3)  # type: ignore[attr-defined]
+    if len(solids) != 1:
+        remedy = "join them" if solids else "make a solid of its surfaces"
+        raise RuntimeError(
+            f"it holds {len(solids)} solids; it must hold one: {remedy} in the program that made it"
+        )
+
+
+def _name_groups(gmsh: object) -> None:
+    """Make a physical group of each face and of the volume, named as in the file or by number."""
+    model = gmsh.model  # type: ignore[attr-defined]
+    for dimension, kind in ((2, "face"), (3, "volume")):
+        for _, tag in model.getEntities(dimension):
+            name = model.getEntityName(dimension, tag).rpartition("/")[2]
+            model.addPhysicalGroup(dimension, [tag], name=name or f"{kind}{tag}")
+
+
 def _expected_elements(gmsh: object, size: float) -> float:
-    """Estimate the number of elements from the volume (regular tetrahedra), the surface
-    (triangles) and the edges (thin parts).
+    """Estimate the number of elements from the volume, the surface and the edges.
+
+    In the volume they are regular tetrahedra, at the surface triangles; edges count in thin parts.
     """
     occ = gmsh.model.occ  # type: ignore[attr-defined]
-    measure = [
+    length, area, volume = (
         sum(occ.getMass(dimension, tag) for _, tag in occ.getEntities(dimension))
         for dimension in (1, 2, 3)
-    ]
-    return float(max(measure[0] / size, 2.3 * measure[1] / size**2, 8.5 * measure[2] / size**3))
+    )
+    return float(max(length / size, 2.3 * area / size**2, 8.5 * volume / size**3))
 
 
-def _check(gmsh: object) -> None:
+def _check_elements(gmsh: object) -> None:
+    """Raise RuntimeError if there are no elements, or some have a negative Jacobian."""
     mesh = gmsh.model.mesh  # type: ignore[attr-defined]
     elements = [tag for tags in mesh.getElements(3)[1] for tag in tags]
     inverted = int((mesh.getElementQualities(elements, "minDetJac") <= 0).sum())
-    if not elements or inverted:
-        what = (
-            f"{inverted} of {len(elements)} elements are inside out"
-            if elements
-            else "there are no elements"
-        )
-        raise RuntimeError(f"{what}; choose a smaller size, or mesh it in another program")
+    if elements and not inverted:
+        return
+    fault = "there are no elements"
+    if elements:
+        fault = f"{inverted} of {len(elements)} elements are inside out"
+    raise RuntimeError(f"{fault}; choose a smaller size, or mesh it in another program")
 
 
 if __name__ == "__main__":

@@ -15,12 +15,12 @@ class GmshSection:
     def __init__(self, line: TextLine) -> None:
         self.line = line
         self.body: list[TextLine] = []
-        self._at = 0
+        self._next = 0
 
     @property
     def has_more(self) -> bool:
         """Whether lines remain to be read."""
-        return self._at < len(self.body)
+        return self._next < len(self.body)
 
     def words(self, least: int) -> tuple[TextLine, list[str]]:
         """Return the next line and its words.
@@ -35,12 +35,14 @@ class GmshSection:
                 f"{self.line.text.strip()} ends too soon; the file is cut short or its "
                 "counts are wrong"
             )
-        line = self.body[self._at]
-        self._at += 1
-        words = line.text.split()
-        if len(words) < least:
-            raise line.wrong(f"the line has {len(words)} of the {least} entries that it must have")
-        return line, words
+        line = self.body[self._next]
+        self._next += 1
+        entries = line.text.split()
+        if len(entries) < least:
+            raise line.wrong(
+                f"the line has {len(entries)} of the {least} entries that it must have"
+            )
+        return line, entries
 
     def take(self, count: int, least: int) -> Iterator[tuple[TextLine, list[str]]]:
         """Yield the next `count` lines and their words.
@@ -50,11 +52,13 @@ class GmshSection:
         InputError
             If there are fewer lines, or one has fewer words than `least`.
         """
-        left = len(self.body) - self._at
-        if count > left:
-            are = "is" if left == 1 else "are"
-            words = f"{self.line.text.strip()} states {count} lines where {left} {are} left"
-            raise self.line.wrong(f"{words}; the file is truncated or its counts are wrong")
+        remaining = len(self.body) - self._next
+        if count > remaining:
+            are = "is" if remaining == 1 else "are"
+            raise self.line.wrong(
+                f"{self.line.text.strip()} states {count} lines where {remaining} {are} left; "
+                "the file is truncated or its counts are wrong"
+            )
         for _ in range(count):
             yield self.words(least)
 
@@ -67,7 +71,7 @@ class GmshSection:
             If lines remain.
         """
         if self.has_more:
-            raise self.body[self._at].wrong(
+            raise self.body[self._next].wrong(
                 f"{self.line.text.strip()} has more lines than it states; the two must agree"
             )
 
@@ -82,8 +86,9 @@ def sections(
     InputError
         If a section has no end or occurs twice, or there is text outside sections.
     """
-    found: dict[str, GmshSection] = {}
-    name, section = "", None
+    by_name: dict[str, GmshSection] = {}
+    name = ""
+    section: GmshSection | None = None  # that is being read
     for line in lines:
         text = line.text.strip()
         if not text:
@@ -94,18 +99,21 @@ def sections(
                     f"{quoted(text)} stands outside a section; a mesh file of Gmsh has "
                     "sections from $Name to $EndName"
                 )
-            name, section = text[1:], GmshSection(line)
+            name = text[1:]
+            section = GmshSection(line)
         elif text == f"$End{name}":
             if name not in known:
                 skipped[f"${name}"] += 1
-            elif name in found:
+            elif name in by_name:
                 raise section.line.wrong(f"this is a second ${name}; a file may have only one")
             else:
-                found[name] = section
+                by_name[name] = section
             section = None
         else:
             section.body.append(line)
     if section is not None:
-        cause = "the file is cut short, or its format is none of 2, 4.0 and 4.1"
-        raise section.line.wrong(f"{quoted('$' + name)} has no {quoted('$End' + name)}; {cause}")
-    return found
+        raise section.line.wrong(
+            f"{quoted('$' + name)} has no {quoted('$End' + name)}; the file is cut short, or its "
+            "format is none of 2, 4.0 and 4.1"
+        )
+    return by_name

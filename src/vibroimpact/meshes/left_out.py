@@ -68,8 +68,9 @@ _EFFECTS = (
 
 
 def remarks_of(counts: Mapping[str, int]) -> tuple[str, ...]:
-    """Return what is left out of a mesh and what that does to the body, one sentence per effect,
-    without full stops.
+    """Return what is left out of a mesh and what that does to the body.
+
+    There is one sentence per effect, without a full stop.
 
     Parameters
     ----------
@@ -82,18 +83,16 @@ def remarks_of(counts: Mapping[str, int]) -> tuple[str, ...]:
     ('left out of the mesh file: CONM2 (3); masses are not part of the body, which is lighter
     without them and has higher frequencies',)
     """
-    found = []
+    remarks = []
     for names, effect in _EFFECTS:
-        present = [
+        items = [
             f"{quoted(name)[1:-1]} ({count})"
             for name, count in counts.items()
             if names.fullmatch(name)
         ]
-        if present:
-            listed = ", ".join(present[:_MOST_NAMES]) + (
-                f" and {len(present) - _MOST_NAMES} more kinds"
-                if len(present) > _MOST_NAMES
-                else ""
-            )
-            found.append(f"left out of the mesh file: {listed}; {effect}")
-    return tuple(found)
+        if items:
+            listed = ", ".join(items[:_MOST_NAMES])
+            if len(items) > _MOST_NAMES:
+                listed += f" and {len(items) - _MOST_NAMES} more kinds"
+            remarks.append(f"left out of the mesh file: {listed}; {effect}")
+    return tuple(remarks)

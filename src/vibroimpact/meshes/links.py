@@ -1,6 +1,4 @@
-"""Links between nodes that a mesh file states, as linear equations between their
-displacements and rotations.
-"""
+"""Links between nodes that a mesh file states, as linear equations of their motions."""
 
 from __future__ import annotations
 
@@ -11,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from vibroimpact.arrays import Floats, Integers
+from vibroimpact.arrays import Bools, Floats, Integers
 from vibroimpact.meshes.text_files import TextLine
 from vibroimpact.structures.joints import AXES, Joints, Terms, solved_joints
 from vibroimpact.structures.structure import rotation_columns
@@ -19,21 +17,23 @@ from vibroimpact.structures.structure import rotation_columns
 COMPONENTS = 6
 """Of the motion of a node: three displacements, and three rotations."""
 
-_TOGETHER = 5e-7
-"""Of the extent of the mesh: nodes within this distance are at one place, as files round
-coordinates to seven digits.
+_COINCIDENT = 5e-7
+"""Distance over the extent of the mesh below which nodes coincide.
+
+Files round coordinates to seven digits.
 """
 
 _ROUNDING = 1e-12
-"""Of the extent of the mesh, or of the largest coefficient: smaller components of an arm,
-or coefficients, are rounding.
+"""Size below which a component of an arm, over the extent of the mesh, is rounding.
+
+So is a coefficient, over the largest one of its equation.
 """
 
-_LOOSE = 1e-6
-"""Of the largest singular value: rigid motions that nodes show less do not follow from theirs."""
+_INDETERMINATE = 1e-6
+"""Singular value, over the largest, below which a rigid motion does not follow from the nodes."""
 
-_NONE = 1e-9
-"""Of the largest coefficient: smaller ones are rounding."""
+_NO_COEFFICIENT = 1e-9
+"""Coefficient of such a motion, over the largest, below which it is rounding."""
 
 Free = tuple[int, int]
 """A node and a component of its motion, from 0."""
@@ -47,8 +47,9 @@ class Equation(NamedTuple):
 
 
 class Rigid(NamedTuple):
-    """Components of the motion of nodes that follow one rigid motion; of all six of one
-    node, it is the motion of this.
+    """Components of the motion of nodes that follow one rigid motion.
+
+    If all six components of a node are among them, it is the motion of this node.
     """
 
     line: TextLine
@@ -56,10 +57,10 @@ class Rigid(NamedTuple):
 
 
 class Mean(NamedTuple):
-    """Components of the motion of a node that are the mean motion of others: the rigid one that
-    fits their displacements best.
+    """Components of the motion of a node that are the mean motion of others.
 
-    Each member is a node, its weight, and those of its displacements that count.
+    This is the rigid motion that fits their displacements best. Each member is a node, its weight,
+    and those of its displacements that count.
     """
 
     line: TextLine
@@ -89,12 +90,15 @@ class Links:
         self.stated.append((name, link))
 
     def names(self, nodes: Integers) -> dict[str, int]:
-        """Return the names of the links that concern given nodes, by their numbers in the
-        file, and how many there are of each.
+        """Return the names of the links of some nodes, and how many there are of each.
+
+        The nodes are given by their numbers in the file.
         """
-        mine = set(nodes.tolist()) if self.stated else set()
+        if not self.stated:
+            return {}
+        chosen = set(nodes.tolist())
         return dict(
-            Counter(name for name, link in self.stated if not mine.isdisjoint(_nodes_of(link)))
+            Counter(name for name, link in self.stated if not chosen.isdisjoint(_nodes_of(link)))
         )
 
     def joints(
@@ -127,38 +131,41 @@ class Links:
         if not links:
             return None
         unknowns = _Unknowns(numbers, points, used, written)
-        equations = [row for link in links for row in unknowns.equations(link)]
-        return solved_joints([row for row in equations if row], AXES * len(used))
+        equations = [equation for link in links for equation in unknowns.equations(link)]
+        return solved_joints([equation for equation in equations if equation], AXES * len(used))
 
 
 class _Unknowns:
-    """Numbers of unknowns: 3 times a node of the mesh plus an axis, and above these all
-    others as they come.
+    """Numbers of the unknowns of the equations.
+
+    A displacement of a node of the mesh is 3 times the node plus the axis. Above these are all
+    others as they come: rotations, the motion of other nodes, and of nothing but a link.
     """
 
     def __init__(
         self, numbers: Integers, points: Floats, used: Integers, written: Callable[[int], int]
     ) -> None:
-        self._numbers, self._points = numbers, points
+        self._numbers = numbers
+        self._points = points
         self._written = written
-        self._used: dict[object, int] = {
+        self._mesh_nodes: dict[object, int] = {
             int(number): index for index, number in enumerate(numbers[used].tolist())
         }
         self._others: dict[object, int] = {}
-        self._made = 0
+        self._owners = 0
         self._extent = float(np.ptp(points[used], axis=0).max(initial=0.0))
 
-    def number(self, node: object, component: int) -> int:
-        """Return the number of the unknown of a component of the motion of a node."""
-        index = self._used.get(node)
+    def number(self, owner: object, component: int) -> int:
+        """Return the number of the unknown of a component of the motion of a node or a link."""
+        index = self._mesh_nodes.get(owner)
         if component < AXES and index is not None:
             return AXES * index + component
         return self._others.setdefault(
-            (node, component), AXES * len(self._used) + len(self._others)
+            (owner, component), AXES * len(self._mesh_nodes) + len(self._others)
         )
 
-    def at(self, line: TextLine, node: int) -> Floats:
-        """Return the place of a node.
+    def position(self, line: TextLine, node: int) -> Floats:
+        """Return the position of a node.
 
         Raises
         ------
@@ -174,121 +181,168 @@ class _Unknowns:
         return np.asarray(self._points[index])
 
     def _arm(self, line: TextLine, node: int, centre: Floats) -> Floats:
-        """Return where a node is from a centre; zero if it is there but for rounding,
-        which would be a hinge in any direction.
+        """Return the vector from a centre to a node; zero if they coincide but for rounding.
+
+        An arm of rounding alone would be a hinge in any direction.
         """
-        arm = self.at(line, node) - centre
-        if np.linalg.norm(arm) < _TOGETHER * self._extent:
+        arm = self.position(line, node) - centre
+        if np.linalg.norm(arm) < _COINCIDENT * self._extent:
             return np.zeros_like(arm)
         return np.where(np.abs(arm) < _ROUNDING * self._extent, 0.0, arm)
 
-    def _owner(self) -> object:
+    def _new_owner(self) -> object:
         """Return a new owner of unknowns that is no node."""
-        self._made += 1
-        return ("made", self._made)
+        self._owners += 1
+        return ("made", self._owners)
 
     def equations(self, link: Link) -> list[Terms]:
-        """Return the equations of a link; terms that meet are added."""
+        """Return the equations of a link; coefficients of the same unknown are added."""
         if isinstance(link, Equation):
-            for (node, _), _ in link.terms:
-                if node not in self._used:
-                    self.at(link.line, node)  # raises if the file does not have it
-            return [_sum((self.number(*free), value) for free, value in link.terms)]
+            return self._equation(link)
         if isinstance(link, Rigid):
             return self._rigid(link)
-        return self._mean(link) if isinstance(link, Mean) else self._distance(link)
+        if isinstance(link, Mean):
+            return self._mean(link)
+        return self._distance(link)
+
+    def _equation(self, link: Equation) -> list[Terms]:
+        for (node, _), _ in link.terms:
+            if node not in self._mesh_nodes:
+                self.position(link.line, node)  # raises if the file does not have it
+        return [_sum((self.number(*free), coefficient) for free, coefficient in link.terms)]
 
     def _rigid(self, link: Rigid) -> list[Terms]:
-        leads = next(
+        """Return the equations of nodes that follow one rigid motion.
+
+        It is u + theta x arm, with the motion u and theta of a node that leads with all its
+        components, or else of unknowns of the link itself, at its first node.
+        """
+        leader = next(
             (node for node, components in link.members if len(set(components)) == COMPONENTS), None
         )
-        owner = self._owner() if leads is None else leads
-        centre = self.at(link.line, link.members[0][0] if leads is None else leads)
-        rows = []
+        owner = self._new_owner() if leader is None else leader
+        centre = self.position(link.line, link.members[0][0] if leader is None else leader)
+        equations = []
         for node, components in link.members:
-            if node == leads:
+            if node == leader:
                 continue
-            turned = rotation_columns(*self._arm(link.line, node, centre)[:, None])[0]
+            # displacements by unit rotations, a column for each axis
+            by_rotation = rotation_columns(*self._arm(link.line, node, centre)[:, None])[0]
             for component in components:
-                moved = [(self.number(owner, component), -1.0)]
+                followed = [(self.number(owner, component), -1.0)]
                 if component < AXES:
-                    moved += [
-                        (self.number(owner, AXES + axis), -float(turned[component, axis]))
+                    followed += [
+                        (self.number(owner, AXES + axis), -float(by_rotation[component, axis]))
                         for axis in range(AXES)
                     ]
-                rows.append(_sum([(self.number(node, component), 1.0), *moved]))
-        return rows
+                equations.append(_sum([(self.number(node, component), 1.0), *followed]))
+        return equations
 
     def _mean(self, link: Mean) -> list[Terms]:
-        """The rigid motion that fits the displacements of the others best, with weights (of RBE3
-        and of couplings), at the node.
+        """Return the equations of a node that follows the mean motion of others.
 
-        What the others do not show, as the rotation about the line on which they lie, may take any
-        value.
+        Of this kind are RBE3 of Nastran and the distributing coupling of Abaqus.
         """
-        centre = self.at(link.line, link.node)
+        centre = self.position(link.line, link.node)
         arms = np.array([self._arm(link.line, node, centre) for node, _, _ in link.members])
         weights = np.array([weight for _, weight, _ in link.members])
-        weights /= weights.max()
-        middle = weights @ arms / weights.sum()
-        beside = arms - middle
-        length = float(np.abs(beside).max(initial=0.0))
-        length = length if length > _TOGETHER * self._extent else 1.0
-        rigid = np.concatenate(
-            [np.broadcast_to(np.eye(3), (len(arms), 3, 3)), rotation_columns(*(beside / length).T)],
-            axis=2,
-        )
         counted = np.array([[axis in axes for axis in range(AXES)] for _, _, axes in link.members])
-        root = (np.sqrt(weights)[:, None] * counted).ravel()
-        rows = np.zeros((max(len(root), COMPONENTS), COMPONENTS))
-        rows[: len(root)] = root[:, None] * rigid.reshape(-1, COMPONENTS)
-        left, sizes, right = np.linalg.svd(rows, full_matrices=False)
-        shown = sizes > _LOOSE * sizes[0]
-        at_node = np.eye(COMPONENTS)
-        at_node[:AXES, AXES:] = rotation_columns(*(-middle / length)[:, None])[0]
-        fit = at_node @ (right[shown].T / sizes[shown]) @ left[: len(root), shown].T * root
-        loose = at_node @ right[~shown].T
-        loose[np.abs(loose) < _NONE * np.abs(at_node).max()] = 0.0
-        fit[AXES:] /= length
-        loose[AXES:] /= length
-        owner = self._owner()
+        fit, indeterminate = _mean_motion(arms, weights, counted, _COINCIDENT * self._extent)
+        owner = self._new_owner()
         unknowns = [self.number(node, axis) for node, _, _ in link.members for axis in range(AXES)]
-        unknowns += [self.number(owner, index) for index in range(loose.shape[1])]
-        shares = -np.concatenate([fit, loose], axis=1)
-        return [
-            _sum(
-                [
-                    (self.number(link.node, component), 1.0),
-                    *zip(unknowns, shares[component].tolist(), strict=True),
-                ]
-            )
-            for component in link.components
-        ]
+        unknowns += [self.number(owner, index) for index in range(indeterminate.shape[1])]
+        coefficients = -np.concatenate([fit, indeterminate], axis=1)
+        equations = []
+        for component in link.components:
+            followed = zip(unknowns, coefficients[component].tolist(), strict=True)
+            equations.append(_sum([(self.number(link.node, component), 1.0), *followed]))
+        return equations
 
     def _distance(self, link: Distance) -> list[Terms]:
+        """Return the equation of two nodes with the same displacement along their line."""
         first, second = link.nodes
-        apart = self.at(link.line, second) - self.at(link.line, first)
-        size = float(np.linalg.norm(apart))
-        if not size > _TOGETHER * self._extent:
+        arm = self.position(link.line, second) - self.position(link.line, first)
+        length = float(np.linalg.norm(arm))
+        if not length > _COINCIDENT * self._extent:
             raise link.line.wrong(
                 "the two nodes whose distance is kept are at the same place; they must lie apart"
             )
-        along = (apart / size).tolist()
-        ends = [(self.number(second, axis), value) for axis, value in enumerate(along)]
-        return [
-            _sum([*ends, *((self.number(first, axis), -value) for axis, value in enumerate(along))])
-        ]
+        direction = (arm / length).tolist()
+        terms = [(self.number(second, axis), cosine) for axis, cosine in enumerate(direction)]
+        terms += [(self.number(first, axis), -cosine) for axis, cosine in enumerate(direction)]
+        return [_sum(terms)]
+
+
+def _mean_motion(
+    arms: Floats, weights: Floats, counted: Bools, coincident: float
+) -> tuple[Floats, Floats]:
+    """Return the rigid motion at a node that fits the displacements of others best.
+
+    The fit is that of least squares with weights.
+
+    Parameters
+    ----------
+    arms : array, shape (members, 3)
+        Vectors from the node to the others.
+    weights : array, shape (members,)
+        Their weights.
+    counted : bool array, shape (members, 3)
+        Which of their displacements count.
+    coincident : float
+        Distance below which they are all at one point.
+
+    Returns
+    -------
+    fit : array, shape (6, 3 members)
+        The motion for unit displacements of the others.
+    indeterminate : array, shape (6, n)
+        The motions that these do not show, as the rotation about the line on which all of them lie,
+        and which may take any value.
+    """
+    weights = weights / weights.max()
+    mean_arm = weights @ arms / weights.sum()
+    from_mean = arms - mean_arm
+    # lengths are counted in a unit of the size of the group, so that rotations and displacements
+    # are of the same order
+    unit = float(np.abs(from_mean).max(initial=0.0))
+    if not unit > coincident:
+        unit = 1.0
+    # displacements of the members by the six rigid motions about the weighted mean
+    translations = np.broadcast_to(np.eye(3), (len(arms), 3, 3))
+    rigid = np.concatenate([translations, rotation_columns(*(from_mean / unit).T)], axis=2)
+    root_weights = (np.sqrt(weights)[:, None] * counted).ravel()
+    # at least six rows, so that there are six singular values
+    rows = np.zeros((max(len(root_weights), COMPONENTS), COMPONENTS))
+    rows[: len(root_weights)] = root_weights[:, None] * rigid.reshape(-1, COMPONENTS)
+    left, singular_values, right = np.linalg.svd(rows, full_matrices=False)
+    shown = singular_values > _INDETERMINATE * singular_values[0]
+    # the motion at the node of a rigid motion about the mean
+    at_node = np.eye(COMPONENTS)
+    at_node[:AXES, AXES:] = rotation_columns(*(-mean_arm / unit)[:, None])[0]
+    fit = (
+        at_node
+        @ (right[shown].T / singular_values[shown])
+        @ left[: len(root_weights), shown].T
+        * root_weights
+    )
+    indeterminate = at_node @ right[~shown].T
+    indeterminate[np.abs(indeterminate) < _NO_COEFFICIENT * np.abs(at_node).max()] = 0.0
+    # rotations are per unit of length again
+    fit[AXES:] /= unit
+    indeterminate[AXES:] /= unit
+    return fit, indeterminate
 
 
 def equation_of(line: TextLine, terms: Sequence[tuple[Free, float]]) -> Equation | None:
-    """Return the equation of terms, of which some may be zero or of one component; None
-    if one alone is left, which is a support.
+    """Return the equation of terms, of which some may be zero or of the same component.
+
+    None if a single term is left, which is a support.
     """
-    found: dict[Free, float] = {}
-    for free, value in terms:
-        found[free] = found.get(free, 0.0) + value
-    left = [(free, value) for free, value in found.items() if value != 0.0]
-    return None if len(left) == 1 or not terms else Equation(line, left)
+    coefficients: dict[Free, float] = {}
+    for free, coefficient in terms:
+        coefficients[free] = coefficients.get(free, 0.0) + coefficient
+    nonzero = [(free, coefficient) for free, coefficient in coefficients.items() if coefficient]
+    return None if len(nonzero) == 1 or not terms else Equation(line, nonzero)
 
 
 def _nodes_of(link: Link) -> list[int]:
@@ -298,16 +352,23 @@ def _nodes_of(link: Link) -> list[int]:
     if isinstance(link, Distance):
         return list(link.nodes)
     members = [member[0] for member in link.members]
-    return [link.node, *members] if isinstance(link, Mean) else members
+    if isinstance(link, Mean):
+        return [link.node, *members]
+    return members
 
 
 def _sum(terms: Iterable[tuple[int, float]]) -> Terms:
-    """Return an equation without terms that are zero but for rounding, as where a node is
-    one of those whose mean it is.
+    """Return an equation without coefficients that are zero but for rounding.
+
+    Such terms arise where a node is one of those whose mean it is.
     """
-    found: Terms = {}
+    coefficients: Terms = {}
     largest = 0.0
-    for unknown, value in terms:
-        found[unknown] = found.get(unknown, 0.0) + value
-        largest = max(largest, abs(value))
-    return {unknown: value for unknown, value in found.items() if abs(value) > _ROUNDING * largest}
+    for unknown, coefficient in terms:
+        coefficients[unknown] = coefficients.get(unknown, 0.0) + coefficient
+        largest = max(largest, abs(coefficient))
+    return {
+        unknown: coefficient
+        for unknown, coefficient in coefficients.items()
+        if abs(coefficient) > _ROUNDING * largest
+    }

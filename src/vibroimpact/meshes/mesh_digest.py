@@ -28,11 +28,12 @@ def mesh_digest(path: str | PathLike[str]) -> str:
         If a file can't be read.
     """
     path = Path(path)
-    digest, included = input_file_digest(path, MESH), _INCLUDES.get(path.suffix.lower())
+    digest = input_file_digest(path, MESH)
+    included = _INCLUDES.get(path.suffix.lower())
     if included is None or not _MENTIONED.search(read_bytes(path, MESH)):
         return digest
-    found = sha256(digest.encode())
+    with_includes = sha256(digest.encode())
     for line in read_lines_with_includes(path, included):
         if line.path != path:
-            found.update(line.text.encode() + b"\n")
-    return found.hexdigest()
+            with_includes.update(line.text.encode() + b"\n")
+    return with_includes.hexdigest()

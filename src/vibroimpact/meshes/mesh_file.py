@@ -78,8 +78,9 @@ def read_mesh(
 def mesh_of_file(
     path: str | PathLike[str], unit_in_metres: float = 1.0, size: float | None = None
 ) -> Mesh:
-    """Return all parts of a mesh file, or of a meshed geometry, without materials;
-    parameters and errors are those of `read_mesh`.
+    """Return all parts of a mesh file, or of a meshed geometry, without materials.
+
+    Parameters and errors are those of `read_mesh`.
     """
     path = Path(path)
     suffix = path.suffix.lower()

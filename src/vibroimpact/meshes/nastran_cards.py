@@ -27,16 +27,18 @@ class Card(NamedTuple):
 
 
 def nastran_include(text: str) -> str | None:
-    """Return the name of the file that an INCLUDE line of a Nastran file includes; None for other
-    lines.
+    """Return the name of the file that an INCLUDE line includes; None for other lines.
 
     Examples
     --------
     >>> nastran_include("include 'mesh/plate.bdf'  $ the plate")
     'mesh/plate.bdf'
     """
-    found = _INCLUDE.fullmatch(text) if "NCLUDE" in text[:40].upper() else None
-    return next(name for name in found.groups() if name) if found else None
+    # most lines are sorted out without the slower pattern
+    statement = _INCLUDE.fullmatch(text) if "NCLUDE" in text[:40].upper() else None
+    if statement is None:
+        return None
+    return next(name for name in statement.groups() if name)
 
 
 def nastran_real(
@@ -51,13 +53,16 @@ def nastran_real(
     """
     if not text:
         return blank
-    found = _EXPONENT.fullmatch(text)
-    return float(f"{found[1]}e{found[2] or found[3]}") if found else parse_real(text, line, what)
+    number = _EXPONENT.fullmatch(text)
+    if number is None:
+        return parse_real(text, line, what)
+    return float(f"{number[1]}e{number[2] or number[3]}")
 
 
 def cards(lines: Iterable[TextLine]) -> Iterator[Card]:
-    """Yield the cards of bulk data, up to and including ENDDATA; those that repeat the one before
-    them are written out.
+    """Yield the cards of bulk data, up to and including ENDDATA.
+
+    Those that repeat the one before them are written out.
 
     Raises
     ------
@@ -65,7 +70,8 @@ def cards(lines: Iterable[TextLine]) -> Iterator[Card]:
         If a continuation line has no card before it, its label does not match, or a repetition
         can't be read.
     """
-    card, goes_on = None, ""
+    card: Card | None = None
+    label = ""  # that the next line must have if it goes on with the card
     repeated = _Repeated()
     for line in lines:
         text = line.text.split("$", 1)[0].rstrip()
@@ -78,10 +84,11 @@ def cards(lines: Iterable[TextLine]) -> Iterator[Card]:
                     "a line goes on without a card before it; a card starts "
                     "with its name, such as GRID"
                 )
-            if (name := head.lstrip("+*").strip()) and goes_on and name.upper() != goes_on.upper():
+            own_label = head.lstrip("+*").strip()
+            if own_label and label and own_label.upper() != label.upper():
                 raise line.wrong(
-                    f"{quoted(name)} does not go on with the card before it, which asks for "
-                    f"{quoted(goes_on)}; it must follow its card"
+                    f"{quoted(own_label)} does not go on with the card before it, which asks for "
+                    f"{quoted(label)}; it must follow its card"
                 )
             card.fields.extend(fields)
         elif head[0] == "=":
@@ -91,9 +98,8 @@ def cards(lines: Iterable[TextLine]) -> Iterator[Card]:
                     "with its name, such as GRID"
                 )
             yield card
-            made = list(repeated.cards(line, head, text, card))
-            yield from made[:-1]
-            card = made[-1]
+            *copies, card = repeated.cards(line, head, text, card)
+            yield from copies
         else:
             if card is not None:
                 yield card
@@ -101,14 +107,15 @@ def cards(lines: Iterable[TextLine]) -> Iterator[Card]:
             card = Card(line, head.rstrip("*").strip().upper(), fields)
             if card.name == "ENDDATA":
                 break
-        goes_on = end.lstrip("+*").strip()
+        label = end.lstrip("+*").strip()
     if card is not None:
         yield card
 
 
 class _Repeated:
-    """Cards that repeat the one before them: "=" for an equal field, "==" for all that
-    follow, "*(x)" for one that is x larger.
+    """Cards that repeat the one before them.
+
+    A field is "=" for an equal one, "==" for all that follow, and "*(x)" for one that is x larger.
     """
 
     def __init__(self) -> None:
@@ -135,12 +142,8 @@ class _Repeated:
                 'of "=" and "*(x)"'
             )
         if count is None:
-            fields = self._fields(
-                line,
-                [field.strip() for field in text.split(",")][1:] if "," in text else [],
-                before,
-            )
-            yield Card(line, before.name, fields)
+            _, *texts = (field.strip() for field in text.split(","))
+            yield Card(line, before.name, self._fields(line, texts, before))
             return
         if not self._steps:
             raise line.wrong(
@@ -149,26 +152,27 @@ class _Repeated:
             )
         fields = before.fields
         for _ in range(parse_integer(count[1], line, "the number of repetitions")):
-            fields = [
-                _sum(field, self._steps[at], line) if at in self._steps else field
-                for at, field in enumerate(fields)
-            ]
+            fields = list(fields)
+            for index, step in self._steps.items():
+                fields[index] = _sum(fields[index], step, line)
             yield Card(line, before.name, fields)
 
-    def _fields(self, line: TextLine, given: list[str], before: Card) -> list[str]:
+    def _fields(self, line: TextLine, texts: list[str], before: Card) -> list[str]:
         """Return the fields of a card from those of the one before it, and keep the steps."""
         self._steps = {}
         fields: list[str] = []
-        for at, old in enumerate(before.fields):
-            text = given[at] if at < len(given) else ""
+        for index, field_before in enumerate(before.fields):
+            text = texts[index] if index < len(texts) else ""
             if text == "==":
-                return fields + before.fields[at:]
-            step = _INCREMENT.fullmatch(text)
-            if step:
-                self._steps[at] = step[1] or step[2]
-            fields.append(
-                _sum(old, self._steps[at], line) if step else old if text == "=" else text
-            )
+                return fields + before.fields[index:]
+            increment = _INCREMENT.fullmatch(text)
+            if increment:
+                self._steps[index] = increment[1] or increment[2]
+                fields.append(_sum(field_before, self._steps[index], line))
+            elif text == "=":
+                fields.append(field_before)
+            else:
+                fields.append(text)
         return fields
 
 
@@ -183,8 +187,9 @@ def _sum(text: str, step: str, line: TextLine) -> str:
 
 
 def _split(text: str) -> tuple[str, list[str], str]:
-    """Return the first field, the data fields, padded to 8 (4 in large-field format), and
-    the continuation field.
+    """Return the first field, the data fields, and the continuation field of a line.
+
+    The data fields of the free format are padded to 8, or 4 in the large-field format.
     """
     if "," in text:
         head, *fields = (field.strip() for field in text.split(","))
@@ -194,8 +199,5 @@ def _split(text: str) -> tuple[str, list[str], str]:
         return head, fields + [""] * (width - len(fields)), ""
     head = text[:8].strip()
     size = 16 if "*" in head else 8
-    return (
-        head,
-        [text[start : start + size].strip() for start in range(8, 72, size)],
-        text[72:80].strip(),
-    )
+    fields = [text[start : start + size].strip() for start in range(8, 72, size)]
+    return head, fields, text[72:80].strip()

@@ -1,5 +1,6 @@
-"""Coordinate systems of a Nastran file (CORD1R, CORD1C, CORD1S, CORD2R, CORD2C, CORD2S),
-and the grid points that stand in them.
+"""Coordinate systems of a Nastran file, and the grid points that stand in them.
+
+The systems are those of CORD1R, CORD1C, CORD1S, CORD2R, CORD2C and CORD2S.
 """
 
 from __future__ import annotations
@@ -17,8 +18,9 @@ from vibroimpact.meshes.text_files import TextLine, parse_integer
 
 _DEEPEST = 100  # systems that refer to one another
 # sine of the angle between the axis and the third point, below which the plane is not defined
-_LEAST = 1e-9
-_OF_POINTS, _OF_NUMBERS = ("CORD1R", "CORD1C", "CORD1S"), ("CORD2R", "CORD2C", "CORD2S")
+_LEAST_SINE = 1e-9
+_BY_NODES = ("CORD1R", "CORD1C", "CORD1S")
+_BY_POINTS = ("CORD2R", "CORD2C", "CORD2S")
 
 
 class _Grid(NamedTuple):
@@ -31,9 +33,10 @@ class _Grid(NamedTuple):
 
 
 @dataclass(frozen=True)
-class _Given:
-    """A system by three points, or three nodes: its origin, one on its axis z, and one in
-    its half plane of x and z.
+class _Definition:
+    """A system by three points of a reference system, or by three nodes.
+
+    They are its origin, one on its axis z, and one in its half plane of x and z.
     """
 
     line: TextLine
@@ -51,16 +54,19 @@ class _System(NamedTuple):
     axes: Floats
 
     def basic(self, point: tuple[float, float, float]) -> Floats:
-        a, b, c = point
+        """Return a point in the basic system."""
         if self.kind == "C":
-            angle = math.radians(b)
-            local = (a * math.cos(angle), a * math.sin(angle), c)
+            radius, angle, height = point
+            angle = math.radians(angle)
+            local = (radius * math.cos(angle), radius * math.sin(angle), height)
         elif self.kind == "S":
-            polar, azimuth = math.radians(b), math.radians(c)
+            radius, polar, azimuth = point
+            polar = math.radians(polar)
+            azimuth = math.radians(azimuth)
             local = (
-                a * math.sin(polar) * math.cos(azimuth),
-                a * math.sin(polar) * math.sin(azimuth),
-                a * math.cos(polar),
+                radius * math.sin(polar) * math.cos(azimuth),
+                radius * math.sin(polar) * math.sin(azimuth),
+                radius * math.cos(polar),
             )
         else:
             local = point
@@ -75,11 +81,12 @@ class NastranGrids:
 
     def __init__(self) -> None:
         self._grids: list[_Grid] = []
-        self._given: dict[int, _Given] = {}
-        self._made: dict[int, _System] = {0: _BASIC}
-        self._default = 0
-        self._default_of_motion = ""
-        self._of_motion: dict[int, str] = {}
+        self._definitions: dict[int, _Definition] = {}
+        self._systems: dict[int, _System] = {0: _BASIC}
+        # of GRDSET, where a point has no system of its own
+        self._default_system = 0
+        self._default_system_of_motion = ""
+        self._systems_of_motion: dict[int, str] = {}
 
     def take(self, card: Card) -> bool:
         """Read a card if it is one of these; return whether it was.
@@ -89,33 +96,35 @@ class NastranGrids:
         InputError
             If it can't be read.
         """
-        line, name, fields = card.line, card.name, [*card.fields, *12 * [""]]
-        if name == "GRID":
+        line = card.line
+        fields = [*card.fields, *12 * [""]]
+        if card.name == "GRID":
             self._grid(line, fields, len(card.fields))
-        elif name == "GRDSET":
-            self._default = _number(fields[1], line)
-            self._default_of_motion = fields[5]
-        elif name in _OF_NUMBERS:
+        elif card.name == "GRDSET":
+            self._default_system = _number(fields[1], line)
+            self._default_system_of_motion = fields[5]
+        elif card.name in _BY_POINTS:
             values = [nastran_real(field, line) for field in fields[2:11]]
             points = tuple((values[at], values[at + 1], values[at + 2]) for at in (0, 3, 6))
-            self._given[_number(fields[0], line)] = _Given(
-                line, name[-1], _number(fields[1], line), points
+            self._definitions[_number(fields[0], line)] = _Definition(
+                line, card.name[-1], _number(fields[1], line), points
             )
-        elif name in _OF_POINTS:
+        elif card.name in _BY_NODES:
             for start in (0, 4):  # two systems on a card
                 if fields[start]:
-                    numbers = tuple(
+                    nodes = tuple(
                         parse_integer(field, line, "the number of a node")
                         for field in fields[start + 1 : start + 4]
                     )
-                    self._given[_number(fields[start], line)] = _Given(
-                        line, name[-1], 0, (), numbers
+                    self._definitions[_number(fields[start], line)] = _Definition(
+                        line, card.name[-1], 0, (), nodes
                     )
         else:
             return False
         return True
 
     def _grid(self, line: TextLine, fields: list[str], count: int) -> None:
+        """Read a GRID card, which has `count` fields."""
         number = parse_integer(fields[0], line, "the number of a node")
         if count < 5:
             raise line.wrong(
@@ -126,21 +135,17 @@ class NastranGrids:
         system = _number(fields[1], line) if fields[1] else None
         self._grids.append(_Grid(line, number, system, (x, y, z)))
         if fields[5]:
-            self._of_motion[number] = fields[5]
+            self._systems_of_motion[number] = fields[5]
 
     @property
     def turned(self) -> set[int]:
-        """The points whose components of motion are along axes other than those of the
-        basic system.
-        """
-        default = (
-            [grid.number for grid in self._grids if grid.number not in self._of_motion]
-            if self._default_of_motion not in ("", "0")
-            else []
-        )
-        return {number for number, system in self._of_motion.items() if system != "0"} | set(
-            default
-        )
+        """The points whose components of motion are along axes other than the basic ones."""
+        points = {number for number, system in self._systems_of_motion.items() if system != "0"}
+        if self._default_system_of_motion not in ("", "0"):
+            points |= {
+                grid.number for grid in self._grids if grid.number not in self._systems_of_motion
+            }
+        return points
 
     def add_to(self, parts: Parts) -> None:
         """Add the grid points in the basic system.
@@ -154,46 +159,56 @@ class NastranGrids:
             parts.add_node(grid.line, grid.number, self._basic(grid, 0))
 
     def _basic(self, grid: _Grid, depth: int) -> tuple[float, float, float]:
-        system = self._default if grid.system is None else grid.system
+        """Return the coordinates of a grid point in the basic system."""
+        system = self._default_system if grid.system is None else grid.system
         if system == 0:
             return grid.point
         x, y, z = self._system(system, grid.line, depth).basic(grid.point).tolist()
         return x, y, z
 
     def _system(self, number: int, line: TextLine, depth: int) -> _System:
-        """Return a system, which a line refers to."""
-        if number in self._made:
-            return self._made[number]
-        given = self._given.get(number)
-        if given is None:
-            cards = f"{', '.join((*_OF_POINTS, *_OF_NUMBERS[:-1]))} or {_OF_NUMBERS[-1]}"
+        """Return a system to which a line refers.
+
+        `depth` counts the systems that refer to it in a chain.
+        """
+        if number in self._systems:
+            return self._systems[number]
+        definition = self._definitions.get(number)
+        if definition is None:
+            cards = f"{', '.join((*_BY_NODES, *_BY_POINTS[:-1]))} or {_BY_POINTS[-1]}"
             raise line.wrong(
                 f"the coordinate system {number} is not in the file; its {cards} must be"
             )
         if depth > _DEEPEST:
-            raise given.line.wrong(
+            raise definition.line.wrong(
                 f"the coordinate system {number} refers to itself, or to more than "
                 f"{_DEEPEST} others in a chain"
             )
-        if given.nodes:
-            at = np.array([self._place(node, given.line, depth + 1) for node in given.nodes])
+        if definition.nodes:
+            points = np.array(
+                [self._position(node, definition.line, depth + 1) for node in definition.nodes]
+            )
         else:
-            reference = self._system(given.reference, given.line, depth + 1)
-            at = np.array([reference.basic(point) for point in given.points])
-        axis, third = at[1] - at[0], at[2] - at[0]
-        normal = np.cross(axis, third)
-        if not np.linalg.norm(normal) > _LEAST * np.linalg.norm(axis) * np.linalg.norm(third):
-            raise given.line.wrong(
+            reference = self._system(definition.reference, definition.line, depth + 1)
+            points = np.array([reference.basic(point) for point in definition.points])
+        origin = points[0]
+        axis = points[1] - origin
+        in_plane = points[2] - origin
+        normal = np.cross(axis, in_plane)
+        least = _LEAST_SINE * np.linalg.norm(axis) * np.linalg.norm(in_plane)
+        if not np.linalg.norm(normal) > least:
+            raise definition.line.wrong(
                 f"the three points of the coordinate system {number} lie on one line; the "
                 "third must lie beside its axis z"
             )
-        z, y = axis / np.linalg.norm(axis), normal / np.linalg.norm(normal)
-        self._made[number] = _System(given.kind, at[0], np.stack([np.cross(y, z), y, z]))
-        return self._made[number]
+        z = axis / np.linalg.norm(axis)
+        y = normal / np.linalg.norm(normal)
+        self._systems[number] = _System(definition.kind, origin, np.stack([np.cross(y, z), y, z]))
+        return self._systems[number]
 
-    def _place(self, number: int, line: TextLine, depth: int) -> tuple[float, float, float]:
-        """Return the place of a grid point that defines a system."""
-        grid = next((one for one in self._grids if one.number == number), None)
+    def _position(self, number: int, line: TextLine, depth: int) -> tuple[float, float, float]:
+        """Return the position of a grid point that defines a system."""
+        grid = next((grid for grid in self._grids if grid.number == number), None)
         if grid is None:
             raise line.wrong(
                 f"the GRID {number} that defines the coordinate system is not in the file"

@@ -1,5 +1,6 @@
-"""Rigid elements and multipoint constraints of a Nastran file (RBE1, RBE2, RBE3, RBAR,
-RROD, RTRPLT, MPC).
+"""Rigid elements and multipoint constraints of a Nastran file.
+
+They are RBE1, RBE2, RBE3, RBAR, RROD, RTRPLT and MPC.
 """
 
 from __future__ import annotations
@@ -14,11 +15,13 @@ from vibroimpact.meshes.text_files import TextLine, parse_integer
 from vibroimpact.structures.joints import AXES
 
 _ALL = tuple(range(COMPONENTS))
-_NAMES = ("RBE1", "RBE2", "RBE3", "RBAR", "RROD", "RTRPLT")
-_ASKED = re.compile(r"\s*MPC\s*=\s*(\d{1,18})\s*$", re.IGNORECASE)
+_RIGID_ELEMENTS = ("RBE1", "RBE2", "RBE3", "RBAR", "RROD", "RTRPLT")
+_MPC_REQUEST = re.compile(r"\s*MPC\s*=\s*(\d{1,18})\s*$", re.IGNORECASE)
 _FIELDS = 8
 _MOST_OF_A_RANGE = 1_000_000  # nodes
+# what a number that can't be read should be, for messages
 _NODE = "the number of a node"
+_SET = "the number of a set"
 
 Members = Sequence[tuple[int, Sequence[int]]]
 
@@ -28,22 +31,22 @@ class NastranLinks:
 
     def __init__(self) -> None:
         self._cards: list[Card] = []
-        self._asked: set[int] = set()
-        self._has_control = False
+        self._requested_sets: set[int] = set()
+        self._has_case_control = False
 
     def control(self, lines: Iterable[TextLine]) -> None:
         """Read what the case control asks for."""
-        self._has_control = True
+        self._has_case_control = True
         for line in lines:
-            if found := _ASKED.match(line.text.split("$", 1)[0]):
-                self._asked.add(int(found[1]))
+            if request := _MPC_REQUEST.match(line.text.split("$", 1)[0]):
+                self._requested_sets.add(int(request[1]))
 
     def take(self, card: Card) -> bool:
         """Keep a card if it is one of these; return whether it is."""
-        mine = card.name in (*_NAMES, "MPC", "MPCADD")
-        if mine:
+        is_link = card.name in (*_RIGID_ELEMENTS, "MPC", "MPCADD")
+        if is_link:
             self._cards.append(card)
-        return mine
+        return is_link
 
     def add_to(self, parts: Parts, turned: Collection[int]) -> None:
         """Add the links to the parts, and count those that can't be used as skipped.
@@ -64,7 +67,7 @@ class NastranLinks:
         for card in self._cards:
             if card.name == "MPCADD":
                 continue
-            if card.name == "MPC" and _integer(card, 0, "the number of a set") not in sets:
+            if card.name == "MPC" and _integer(card, 0, _SET) not in sets:
                 parts.skipped["MPC"] += 1
                 continue
             link = _link(card, turned)
@@ -74,28 +77,25 @@ class NastranLinks:
                 parts.links.add(card.name, link)
 
     def _sets_in_use(self) -> set[int]:
-        """Return the sets of MPC cards that apply: those of the case control; in a file
-        without one, its only set.
+        """Return the sets of MPC cards that apply.
+
+        They are those of the case control; in a file without one, its only set.
         """
-        added: dict[int, set[int]] = {}
+        members_of_sums: dict[int, set[int]] = {}  # of MPCADD
         stated = set()
         for card in self._cards:
             if card.name == "MPCADD":
-                numbers = [
-                    parse_integer(field, card.line, "the number of a set")
-                    for field in card.fields
-                    if field
-                ]
-                added[numbers[0] if numbers else 0] = set(numbers[1:])
+                numbers = [parse_integer(field, card.line, _SET) for field in card.fields if field]
+                members_of_sums[numbers[0] if numbers else 0] = set(numbers[1:])
             elif card.name == "MPC":
-                stated.add(_integer(card, 0, "the number of a set"))
-        asked = self._asked
-        if not self._has_control:
-            asked = set(added) if len(added) == 1 else stated
-        if len(asked) != 1:  # subcases that differ, or a file that leaves it open
+                stated.add(_integer(card, 0, _SET))
+        requested = self._requested_sets
+        if not self._has_case_control:
+            requested = set(members_of_sums) if len(members_of_sums) == 1 else stated
+        if len(requested) != 1:  # subcases that differ, or a file that leaves it open
             return set()
-        (one,) = asked
-        return added.get(one, {one})
+        (number,) = requested
+        return members_of_sums.get(number, {number})
 
 
 def _link(card: Card, turned: Collection[int]) -> Link | None:
@@ -110,88 +110,100 @@ def _link(card: Card, turned: Collection[int]) -> Link | None:
         "MPC": _mpc,
     }[card.name]
     link = make(card)
+    if link is None:
+        return None
+    # components of nodes with axes of their own must mean the same in the basic system
+    if all(_is_whole(components) for node, components in _motions(link) if node in turned):
+        return link
+    return None
+
+
+def _motions(link: Link) -> list[tuple[int, Sequence[int]]]:
+    """Return the nodes of a link with those components of their motion that it uses.
+
+    A distance uses none: it does not depend on axes.
+    """
     if isinstance(link, Rigid):
-        along = [(node, components) for node, components in link.members if node in turned]
-    elif isinstance(link, Mean):
-        along = [
-            (node, axes)
-            for node, axes in (
-                (link.node, link.components),
-                *((node, axes) for node, _, axes in link.members),
-            )
-        ]
-        along = [(node, axes) for node, axes in along if node in turned]
-    elif isinstance(link, Equation):
-        along = [(node, (component,)) for (node, component), _ in link.terms if node in turned]
-    else:
-        along = []
-    return link if all(_is_whole(components) for _, components in along) else None
+        return list(link.members)
+    if isinstance(link, Mean):
+        members = [(node, axes) for node, _, axes in link.members]
+        return [(link.node, link.components), *members]
+    if isinstance(link, Equation):
+        return [(node, (component,)) for (node, component), _ in link.terms]
+    return []
 
 
 def _is_whole(components: Sequence[int]) -> bool:
-    """Whether components of motion are the same in every system: none or all of the
-    displacements, and of the rotations.
+    """Whether components of motion mean the same in every system.
+
+    They are none or all of the displacements, and none or all of the rotations.
     """
-    return all(
-        len(set(components) & set(part)) in (0, AXES)
-        for part in (range(AXES), range(AXES, COMPONENTS))
-    )
+    displacements = set(components) & set(range(AXES))
+    rotations = set(components) & set(range(AXES, COMPONENTS))
+    return len(displacements) in (0, AXES) and len(rotations) in (0, AXES)
 
 
 def _rbe2(card: Card) -> Rigid:
-    leads = _integer(card, 1, _NODE)
+    """Return an RBE2: components of nodes that follow all of another node."""
+    leader = _integer(card, 1, _NODE)
     components = _components(card, card.fields[2])
     # a real number is a thermal expansion
-    words = [field.upper() for field in card.fields[3:] if field and "." not in field]
+    entries = [field.upper() for field in card.fields[3:] if field and "." not in field]
     nodes: list[int] = []
-    at = 0
-    while at < len(words):
-        if words[at] == "THRU" and nodes and at + 1 < len(words):
-            last = parse_integer(words[at + 1], card.line, _NODE)
+    index = 0
+    while index < len(entries):
+        if entries[index] == "THRU" and nodes and index + 1 < len(entries):
+            last = parse_integer(entries[index + 1], card.line, _NODE)
             if last - nodes[-1] > _MOST_OF_A_RANGE:
                 raise card.line.wrong(
                     f"the range up to {last} is of more than {_MOST_OF_A_RANGE:,} nodes; "
                     "write the nodes out"
                 )
             nodes += range(nodes[-1] + 1, last + 1)
-            at += 2
+            index += 2
         else:
-            nodes.append(parse_integer(words[at], card.line, _NODE))
-            at += 1
-    return Rigid(card.line, [(leads, _ALL), *((node, components) for node in nodes)])
+            nodes.append(parse_integer(entries[index], card.line, _NODE))
+            index += 1
+    return Rigid(card.line, [(leader, _ALL), *((node, components) for node in nodes)])
 
 
 def _rbe1(card: Card) -> Rigid | None:
-    words = [field.upper() for field in card.fields[1:] if field and "." not in field]
-    pairs = [word for word in words if word != "UM"]
-    if "UM" not in words or len(pairs) % 2:
+    """Return an RBE1: pairs of node and components, those that follow after "UM"."""
+    entries = [field.upper() for field in card.fields[1:] if field and "." not in field]
+    pairs = [entry for entry in entries if entry != "UM"]
+    if "UM" not in entries or len(pairs) % 2:
         return None
-    count = words.index("UM") // 2
     members = [
-        (parse_integer(node, card.line, _NODE), _components(card, part))
-        for node, part in zip(pairs[::2], pairs[1::2], strict=True)
+        (parse_integer(node, card.line, _NODE), _components(card, digits))
+        for node, digits in zip(pairs[::2], pairs[1::2], strict=True)
     ]
-    return _rigid(card, members[:count], members[count:])
+    leading = entries.index("UM") // 2
+    return _rigid(card, members[:leading], members[leading:])
 
 
 def _rbar(card: Card) -> Rigid | None:
+    """Return an RBAR, a rigid bar between two nodes."""
     return _of_ends(card, 2)
 
 
 def _rtrplt(card: Card) -> Rigid | None:
+    """Return an RTRPLT, a rigid triangle of three nodes."""
     return _of_ends(card, 3)
 
 
 def _of_ends(card: Card, count: int) -> Rigid | None:
-    """Return the rigid motion of a few nodes: their numbers, the components that lead,
-    and those that follow, blank for all others.
+    """Return the rigid motion of two or three nodes.
+
+    The card has their numbers, the components of each that lead, and those that follow; if the
+    latter are blank, all others follow.
     """
     fields = [*card.fields, *[""] * (2 * _FIELDS)]
     nodes = [_integer(card, 1 + index, _NODE) for index in range(count)]
+    first_leading = 1 + count
     # of a plate the components that follow are in a line of their own
-    first = 1 + 2 * count if count == 2 else _FIELDS
-    leading = [_components(card, fields[1 + count + index]) for index in range(count)]
-    following = [_components(card, fields[first + index]) for index in range(count)]
+    first_following = 1 + 2 * count if count == 2 else _FIELDS
+    leading = [_components(card, text) for text in fields[first_leading:][:count]]
+    following = [_components(card, text) for text in fields[first_following:][:count]]
     if not any(leading):
         leading[0] = _ALL
     if not any(following):
@@ -202,8 +214,9 @@ def _of_ends(card: Card, count: int) -> Rigid | None:
 
 
 def _rigid(card: Card, leading: Members, following: Members) -> Rigid | None:
-    """Return the rigid motion of six components that lead, which others follow; None if
-    there are not six.
+    """Return the rigid motion of six components that lead, which others follow.
+
+    None if there are not six.
     """
     if sum(len(components) for _, components in leading) != COMPONENTS:
         return None
@@ -217,50 +230,60 @@ def _rigid(card: Card, leading: Members, following: Members) -> Rigid | None:
 
 
 def _rrod(card: Card) -> Distance:
+    """Return an RROD, a rod between two nodes that does not stretch."""
     return Distance(card.line, (_integer(card, 1, _NODE), _integer(card, 2, _NODE)))
 
 
 def _rbe3(card: Card) -> Mean | None:
-    node, components = _integer(card, 2, _NODE), _components(card, card.fields[3])
+    """Return an RBE3: a node, its components, and groups of a weight, components and nodes."""
+    node = _integer(card, 2, _NODE)
+    components = _components(card, card.fields[3])
     members: list[tuple[int, float, Sequence[int]]] = []
-    weight, axes = 0.0, None
+    weight = 0.0
+    axes: tuple[int, ...] | None = None
     for field in card.fields[4:]:
         # which components follow makes no difference to the motions that are possible
         if field.upper() in ("ALPHA", "UM"):
             break
         if "." in field:
-            weight, axes = nastran_real(field, card.line, "a weight"), None
+            weight = nastran_real(field, card.line, "a weight")
+            axes = None
         elif field and axes is None:
             axes = _components(card, field)
         elif field and axes is not None:
             members.append((parse_integer(field, card.line, _NODE), weight, axes))
-    usable = all(
-        0.0 < weight < float("inf") and set(axes) <= set(range(AXES)) for _, weight, axes in members
-    )
-    return Mean(card.line, node, components, members) if usable and members else None
+    if not members:
+        return None
+    for _, member_weight, member_axes in members:
+        if not 0.0 < member_weight < float("inf") or not set(member_axes) <= set(range(AXES)):
+            return None
+    return Mean(card.line, node, components, members)
 
 
 def _mpc(card: Card) -> Equation | None:
-    fields = [
-        field
-        for start in range(0, len(card.fields), _FIELDS)
-        for field in card.fields[start : start + _FIELDS][1:7]
-    ]
-    terms = []
+    """Return an MPC: a sum of components of motion, each of node, component and coefficient.
+
+    None of scalar points, of which there is no body.
+    """
+    # each line has two terms, after the number of the set or a blank, and before another blank
+    fields = []
+    for start in range(0, len(card.fields), _FIELDS):
+        fields += card.fields[start : start + _FIELDS][1:7]
+    entries = []
     for start in range(0, len(fields), 3):
-        node, component, value = [*fields[start : start + 3], "", ""][:3]
+        node, digits, text = [*fields[start : start + 3], "", ""][:3]
         if node:
-            terms.append((node, component, nastran_real(value, card.line, "a coefficient")))
-    parsed = [
-        ((parse_integer(node, card.line, _NODE), _components(card, part)), value)
-        for node, part, value in terms
+            entries.append((node, digits, nastran_real(text, card.line, "a coefficient")))
+    terms = [
+        ((parse_integer(node, card.line, _NODE), _components(card, digits)), coefficient)
+        for node, digits, coefficient in entries
     ]
-    if any(
-        len(components) != 1 or not abs(value) < float("inf") for (_, components), value in parsed
-    ):
-        return None  # of scalar points there is no body
+    for (_, components), coefficient in terms:
+        if len(components) != 1 or not abs(coefficient) < float("inf"):
+            return None
     return equation_of(
-        card.line, [((node, components[0]), value) for (node, components), value in parsed]
+        card.line,
+        [((node, components[0]), coefficient) for (node, components), coefficient in terms],
     )
 
 
@@ -277,4 +300,6 @@ def _components(card: Card, text: str) -> tuple[int, ...]:
 
 
 def _integer(card: Card, index: int, what: str) -> int:
-    return parse_integer(card.fields[index] if index < len(card.fields) else "", card.line, what)
+    """Return the whole number in a field of a card."""
+    text = card.fields[index] if index < len(card.fields) else ""
+    return parse_integer(text, card.line, what)

@@ -1,5 +1,6 @@
-"""Materials of the solid elements of a Nastran file: MAT cards, and the properties that
-refer to them.
+"""Materials of the solid elements of a Nastran file.
+
+They are those of MAT cards, and the properties that refer to them.
 """
 
 from __future__ import annotations
@@ -24,6 +25,10 @@ _OTHERS = {
 _FLUID_FUNCTIONS = ("PFLUID", "FFLUID")
 _COMPOSITES = ("PCOMPS", "PCOMPLS")
 
+# what a number that can't be read should be, for messages
+_MATERIAL = "the number of a material"
+_PROPERTY = "the number of a property"
+
 
 class NastranMaterials:
     """Collected MAT, PSOLID, PLSOLID, PCOMPS and PARAM WTMASS cards."""
@@ -42,28 +47,22 @@ class NastranMaterials:
         InputError
             If a number of it can't be read.
         """
-        line, name, fields = card.line, card.name, [*card.fields, *8 * [""]]
-        if name == "MAT1":
-            number = parse_integer(fields[0], line, "the number of a material")
+        line = card.line
+        fields = [*card.fields, *8 * [""]]
+        if card.name == "MAT1":
+            number = parse_integer(fields[0], line, _MATERIAL)
             self._isotropic[number] = _isotropic(f"MID{number}", fields, line)
-        elif name in _OTHERS:
-            number = parse_integer(fields[0], line, "the number of a material")
-            self._others[number] = StatedMaterial(f"MID{number}", other=_OTHERS[name])
-        elif name in ("PSOLID", "PLSOLID"):
-            material = (
-                parse_integer(fields[1], line, "the number of a material") if fields[1] else None
-            )
+        elif card.name in _OTHERS:
+            number = parse_integer(fields[0], line, _MATERIAL)
+            self._others[number] = StatedMaterial(f"MID{number}", other=_OTHERS[card.name])
+        elif card.name in ("PSOLID", "PLSOLID"):
+            material = parse_integer(fields[1], line, _MATERIAL) if fields[1] else None
             fluid = FLUID if fields[6].upper() in _FLUID_FUNCTIONS else ""
-            self._properties[parse_integer(fields[0], line, "the number of a property")] = (
-                material,
-                fluid,
-            )
-        elif name in _COMPOSITES:
-            self._properties[parse_integer(fields[0], line, "the number of a property")] = (
-                None,
-                "a layered composite",
-            )
-        elif name == "PARAM" and fields[0].upper() == "WTMASS":
+            self._properties[parse_integer(fields[0], line, _PROPERTY)] = (material, fluid)
+        elif card.name in _COMPOSITES:
+            number = parse_integer(fields[0], line, _PROPERTY)
+            self._properties[number] = (None, "a layered composite")
+        elif card.name == "PARAM" and fields[0].upper() == "WTMASS":
             self._mass_per_weight = nastran_real(fields[1], line, "the value of WTMASS", blank=1.0)
         else:
             return False
@@ -73,33 +72,36 @@ class NastranMaterials:
         self, element_sets: Mapping[str, Selection]
     ) -> list[tuple[Selection, StatedMaterial]]:
         """Return the elements of each property, which are the sets `PIDn`, with its material."""
-        known = {
-            number: replace(one, density=one.density * self._mass_per_weight)
-            for number, one in self._isotropic.items()
-        }
-        known = {**self._others, **known}
-        found = []
-        for number, (material, other) in self._properties.items():
-            chosen = element_sets.get(f"PID{number}")
-            if chosen is None:
+        materials = dict(self._others)
+        for number, material in self._isotropic.items():
+            materials[number] = replace(material, density=material.density * self._mass_per_weight)
+        sections = []
+        for number, (material_number, other) in self._properties.items():
+            elements = element_sets.get(f"PID{number}")
+            if elements is None:
                 continue
-            if material is None or other:
-                found.append((chosen, StatedMaterial(f"PID{number}", other=other)))
+            if material_number is None or other:
+                material = StatedMaterial(f"PID{number}", other=other)
             else:
-                found.append((chosen, known.setdefault(material, StatedMaterial(f"MID{material}"))))
-        return found
+                unknown = StatedMaterial(f"MID{material_number}")
+                material = materials.setdefault(material_number, unknown)
+            sections.append((elements, material))
+        return sections
 
 
 def _isotropic(name: str, fields: list[str], line: TextLine) -> StatedMaterial:
-    """Return the material of a MAT1 card; of the two moduli and Poisson's ratio one
-    follows from the others.
+    """Return the material of a MAT1 card.
+
+    Of the two moduli and Poisson's ratio one follows from the others.
     """
     modulus, shear, ratio = (
         nastran_real(field, line, "an elastic constant", blank=math.nan) for field in fields[1:4]
     )
     density = nastran_real(fields[4], line, "a density", blank=math.nan)
+    # E = 2 (1 + nu) G
     if math.isnan(ratio) and shear:
         ratio = 0.5 * modulus / shear - 1.0
     if math.isnan(modulus):
         modulus = 2.0 * (1.0 + ratio) * shear
+    # zero is a number that is not given
     return StatedMaterial(name, density or math.nan, modulus or math.nan, ratio)

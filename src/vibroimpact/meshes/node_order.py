@@ -1,5 +1,6 @@
-"""Node numbering of elements in other programs, each node given by the corners whose
-midpoint it is.
+"""Node numbering of elements in other programs.
+
+Each node is given by the corners whose midpoint it is.
 """
 
 from __future__ import annotations
@@ -9,7 +10,9 @@ import numpy as np
 from vibroimpact.arrays import Integers
 from vibroimpact.structures.element_kinds import ELEMENT_KINDS
 
-_HEX_BOTTOM, _HEX_TOP, _HEX_UP = "01 12 23 30", "45 56 67 74", "04 15 26 37"
+_HEX_BOTTOM = "01 12 23 30"
+_HEX_TOP = "45 56 67 74"
+_HEX_UP = "04 15 26 37"
 _HEX20_GMSH = "0 1 2 3 4 5 6 7 01 03 04 12 15 23 26 37 45 47 56 67"
 _PYRAMID13_GMSH = "0 1 2 3 4 01 03 04 12 14 23 24 34"
 
@@ -33,8 +36,9 @@ ABAQUS = {
 
 
 def from_ours(kind: str, foreign: str) -> Integers:
-    """Return the permutation from our node order to another one: `theirs =
-    ours[from_ours(...)]`.
+    """Return the permutation from our node order to another one.
+
+    It is that of `theirs = ours[from_ours(...)]`.
     """
     return np.argsort(to_ours(kind, foreign)).astype(np.int64)
 

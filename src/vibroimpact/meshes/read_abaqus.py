@@ -54,8 +54,9 @@ _QUIET = {
 
 
 def read_abaqus(path: str | PathLike[str]) -> Mesh:
-    """Read the solid elements of an Abaqus input file, flat or with an assembly of instances of
-    parts.
+    """Read the solid elements of an Abaqus input file.
+
+    It may be flat, or have an assembly of instances of parts.
 
     The mesh consists of C3D4, C3D5, C3D6, C3D8, C3D10, C3D13, C3D15, C3D20 and C3D27 elements of
     every formulation, and the sets of *NSET, *ELSET, *NODE and *ELEMENT. The materials of *SOLID
@@ -85,11 +86,14 @@ def read_abaqus(path: str | PathLike[str]) -> Mesh:
     ('tet4', ['all'])
     """
     reader = _Reader(Path(path))
-    found = list(blocks(read_lines_with_includes(Path(path), abaqus_include)))
-    flat = is_assembly(found)
-    reader.parts.span = SPAN if flat else None
-    for block in flattened(found) if flat else found:
-        reader.take(block)
+    file_blocks = list(blocks(read_lines_with_includes(Path(path), abaqus_include)))
+    if is_assembly(file_blocks):
+        reader.parts.span = SPAN
+        for block in flattened(file_blocks):
+            reader.take(block)
+    else:
+        for block in file_blocks:
+            reader.take(block)
     return reader.mesh()
 
 
@@ -105,36 +109,25 @@ class _Reader:
         self.in_assembly = False
 
     def take(self, block: Block) -> None:
+        """Read a block.
+
+        Raises
+        ------
+        InputError
+            If it can't be read, or changes the mesh in a way that is not read.
+        """
         keyword = block.keyword
-        # an included file that is not recognized must not be ignored silently
-        if (
-            (keyword == "INCLUDE" or "INPUT" in block.parameters)
-            and abaqus_include(block.line.text) is None
-            and keyword in _INPUTS
-        ):
-            raise block.line.wrong(
-                f"the file to include is not given; *{keyword} must have "
-                "INPUT=file on its first line"
-            )
-        if keyword in _MAKES_MESH:
-            raise block.line.wrong(
-                f"*{keyword} makes nodes or elements by a rule, which is "
-                "not read; write each one out"
-            )
-        if keyword == "SYSTEM" and block.data:
-            raise block.line.wrong(
-                "*SYSTEM moves the nodes that follow, which is not read; "
-                "write their global coordinates"
-            )
+        _check_readable(block)
         if f"END {keyword}" in _QUIET:
             self.open[keyword] = block.line
         elif keyword.startswith("END "):
             self.open.pop(keyword.removeprefix("END "), None)
         # reference points of an assembly are numbered separately: their numbers may coincide with
         # those of nodes of the part
-        self.in_assembly = keyword in ("ASSEMBLY", "END INSTANCE") or (
-            self.in_assembly and keyword not in ("END ASSEMBLY", "INSTANCE", "PART")
-        )
+        if keyword in ("ASSEMBLY", "END INSTANCE"):
+            self.in_assembly = True
+        elif keyword in ("END ASSEMBLY", "INSTANCE", "PART"):
+            self.in_assembly = False
         if keyword == "NODE" and not self.in_assembly:
             self._nodes(block)
         elif keyword == "ELEMENT":
@@ -149,15 +142,16 @@ class _Reader:
             self.parts.skipped[f"*{keyword}"] += 1
 
     def mesh(self) -> Mesh:
+        """Return the mesh of the blocks that were read."""
         if self.open:
             keyword, line = self.open.popitem()
             raise line.wrong(
                 f"*{keyword} has no *END {keyword}; the file is cut short, "
                 "or that line was left out"
             )
-        sections = self.materials.sections()
         self.parts.sections = [
-            (self._of_section(name, line), material) for line, name, material in sections
+            (self._of_section(name, line), material)
+            for line, name, material in self.materials.sections()
         ]
         self.links.add_to(self.parts, self._set_of)
         mesh = self.parts.mesh()
@@ -169,87 +163,99 @@ class _Reader:
         return sets[self.names.setdefault((kind, name.upper()), name)]
 
     def _nodes(self, block: Block) -> None:
+        """Read nodes, and the set that they form, if it has a name."""
         if block.parameters.get("SYSTEM", "R").upper() != "R":
             raise block.line.wrong(
                 "the nodes are in cylindrical or spherical coordinates; only SYSTEM=R is read"
             )
-        chosen = (
-            self._selection("NSET", block.parameters["NSET"])
-            if block.parameters.get("NSET")
-            else Selection()
-        )
+        name = block.parameters.get("NSET")
+        chosen = self._selection("NSET", name) if name else Selection()
         for line in block.data:
-            fields = line.text.split(",")
-            if len(fields) < 2:
+            texts = line.text.split(",")
+            if len(texts) < 2:
                 raise line.wrong(
                     "a node must have a number and up to three "
                     "coordinates, with commas between them"
                 )
-            number = parse_integer(fields[0], line, "the number of a node")
+            number = parse_integer(texts[0], line, "the number of a node")
             x, y, z = (
                 parse_real(text, line) if text.strip() else 0.0
-                for text in [*fields[1:4], "", ""][:3]
+                for text in [*texts[1:4], "", ""][:3]
             )
             self.parts.add_node(line, number, (x, y, z))
             chosen.numbers.add(number)
 
     def _elements(self, block: Block) -> None:
-        given = block.parameters.get("TYPE", "").upper()
-        solid = _SOLID.fullmatch(given)
+        """Read elements, and the set that they form, if it has a name."""
+        element_type = block.parameters.get("TYPE", "").upper()
+        solid = _SOLID.fullmatch(element_type)
         if solid is None or solid[1] not in _KINDS or self.in_assembly:
-            if _OTHER_SOLID.match(given):
-                if solid is not None and solid[1] in _KINDS:
-                    raise block.line.wrong(
-                        f"{quoted(given)} in the assembly is a solid element that is not "
-                        "read; it must be in a part or an instance"
-                    )
-                raise block.line.wrong(
-                    f"{quoted(given)} is an element that is not read; solid elements must be "
-                    "C3D4, C3D5, C3D6, C3D8, C3D10, C3D13, C3D15, C3D20 or C3D27, also with "
-                    "letters behind, as C3D8R"
-                )
-            if not given:
-                raise block.line.wrong("*ELEMENT has no TYPE; it must have one, such as TYPE=C3D10")
-            if block.parameters.get("ELSET"):  # which other sets may refer to
-                self._selection("ELSET", block.parameters["ELSET"])
-            # an element continues on the next line after a trailing comma, so that the other lines
-            # count the elements
-            ends = sum(not line.text.rstrip().endswith(",") for line in block.data)
-            self.parts.skipped[given] += max(ends, 1)
+            self._skip_elements(block, element_type)
             return
         kind = _KINDS[solid[1]]
         name = block.parameters.get("ELSET")
         chosen = self._selection("ELSET", name) if name else Selection()
-        wanted = 1 + len(ELEMENT_KINDS[kind].reference)
+        entries = 1 + len(ELEMENT_KINDS[kind].reference)  # number and nodes
         # the entries of an element are collected over its continuation lines
         numbers: list[int] = []
         for line in block.data:
             if not numbers:
-                first = line
+                first_line = line
             texts = line.text.split(",")
             goes_on = not texts[-1].strip()
+            if goes_on:
+                texts.pop()
             numbers += [
-                parse_integer(text, line, "the number of an element or node")
-                for text in (texts[:-1] if goes_on else texts)
+                parse_integer(text, line, "the number of an element or node") for text in texts
             ]
-            if len(numbers) == wanted:
-                self.parts.add_element(first, kind, numbers[0], numbers[1:])
+            if len(numbers) == entries:
+                self.parts.add_element(first_line, kind, numbers[0], numbers[1:])
                 chosen.numbers.add(numbers[0])
                 numbers = []
-            elif not goes_on or len(numbers) > wanted:
+            elif not goes_on or len(numbers) > entries:
                 element = self.parts.written(numbers[0])
-                raise first.wrong(
-                    f"element {element} has {len(numbers) - 1} nodes; {given} must have "
-                    f"{wanted - 1}"
+                raise first_line.wrong(
+                    f"element {element} has {len(numbers) - 1} nodes; {element_type} must have "
+                    f"{entries - 1}"
                 )
         if numbers:
             element = self.parts.written(numbers[0])
-            raise first.wrong(
+            raise first_line.wrong(
                 f"element {element} has {len(numbers) - 1} nodes and its lines end there; "
-                f"{given} must have {wanted - 1}"
+                f"{element_type} must have {entries - 1}"
             )
 
+    def _skip_elements(self, block: Block, element_type: str) -> None:
+        """Count elements that are not solid as skipped.
+
+        Raises
+        ------
+        InputError
+            If they are solid elements that are not read, or have no type.
+        """
+        if _OTHER_SOLID.match(element_type):
+            solid = _SOLID.fullmatch(element_type)
+            if solid is not None and solid[1] in _KINDS:
+                raise block.line.wrong(
+                    f"{quoted(element_type)} in the assembly is a solid element that is not "
+                    "read; it must be in a part or an instance"
+                )
+            raise block.line.wrong(
+                f"{quoted(element_type)} is an element that is not read; solid elements must be "
+                "C3D4, C3D5, C3D6, C3D8, C3D10, C3D13, C3D15, C3D20 or C3D27, also with "
+                "letters behind, as C3D8R"
+            )
+        if not element_type:
+            raise block.line.wrong("*ELEMENT has no TYPE; it must have one, such as TYPE=C3D10")
+        if block.parameters.get("ELSET"):  # which other sets may refer to
+            self._selection("ELSET", block.parameters["ELSET"])
+        # an element continues on the next line after a trailing comma, so that the other lines
+        # count the elements
+        ends = sum(not line.text.rstrip().endswith(",") for line in block.data)
+        self.parts.skipped[element_type] += max(ends, 1)
+
     def _set(self, block: Block) -> None:
+        """Read a set of nodes or elements: numbers, ranges, or names of other sets."""
         kind = block.keyword
         name = block.parameters.get(kind)
         if not name:
@@ -275,46 +281,62 @@ class _Reader:
                     self.parts.add_members(line, chosen, self._known(kind, text.strip('"'), line))
 
     def _set_of(self, kind: str, name: str) -> Selection | None:
-        """Return the set of a name, with or without the instance before it; None if there
-        is none.
+        """Return the set of a name, with or without the instance before it.
+
+        None if there is no such set.
         """
-        exact = next(
-            (
-                key
-                for key in (name.upper(), name.rpartition(".")[2].upper())
-                if (kind, key) in self.names
-            ),
-            None,
-        )
-        return None if exact is None else self._selection(kind, exact)
+        for key in (name.upper(), name.rpartition(".")[2].upper()):
+            if (kind, key) in self.names:
+                return self._selection(kind, key)
+        return None
 
     def _known(self, kind: str, name: str, line: TextLine) -> Selection:
-        found = self._set_of(kind, name)
-        if found is None:
-            suggestion = self._suggestion(kind, name)
+        """Return the set to which a line refers."""
+        selection = self._set_of(kind, name)
+        if selection is None:
             raise line.wrong(
                 f"{quoted(name)} is neither a number nor a *{kind} before this line; it "
-                f"must be one of them.{suggestion}"
+                f"must be one of them.{self._suggestion(kind, name)}"
             )
-        return found
+        return selection
 
     def _of_section(self, name: str, line: TextLine) -> Selection:
         """Return the elements of a section, whose set may come after it."""
-        found = self._set_of("ELSET", name)
-        if found is None:
+        selection = self._set_of("ELSET", name)
+        if selection is None:
             raise line.wrong(
                 f"the file has no element set {quoted(name)}, of which the section "
                 f"is.{self._suggestion('ELSET', name)}"
             )
-        return found
+        return selection
 
     def _suggestion(self, kind: str, name: str) -> str:
-        return did_you_mean(
-            name.upper(), [key for of, key in self.names if of == kind and len(key) < 100][:1000]
+        """Return a sentence with a set of a similar name; "" if there is none."""
+        keys = [key for kind_of_key, key in self.names if kind_of_key == kind and len(key) < 100]
+        return did_you_mean(name.upper(), keys[:1000])
+
+
+def _check_readable(block: Block) -> None:
+    """Raise InputError if a block changes the mesh in a way that is not read."""
+    keyword = block.keyword
+    # an included file that is not recognized must not be ignored silently
+    includes = keyword == "INCLUDE" or "INPUT" in block.parameters
+    if includes and keyword in _INPUTS and abaqus_include(block.line.text) is None:
+        raise block.line.wrong(
+            f"the file to include is not given; *{keyword} must have INPUT=file on its first line"
+        )
+    if keyword in _MAKES_MESH:
+        raise block.line.wrong(
+            f"*{keyword} makes nodes or elements by a rule, which is not read; write each one out"
+        )
+    if keyword == "SYSTEM" and block.data:
+        raise block.line.wrong(
+            "*SYSTEM moves the nodes that follow, which is not read; write their global coordinates"
         )
 
 
 def _range(texts: list[str], line: TextLine) -> tuple[int, int, int]:
+    """Return the first, the last and the step of a range."""
     numbers = [parse_integer(text, line, "the bound of a range") for text in texts]
     first, last, step = [*numbers, 1][:3] if len(numbers) in (2, 3) else (1, 0, 1)
     if last < first or step < 1:

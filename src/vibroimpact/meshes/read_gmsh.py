@@ -76,12 +76,8 @@ def read_gmsh(path: str | PathLike[str]) -> Mesh:
             "Mesh.Binary = 0)"
         )
     reader = _Reader(path)
-    found = sections(
-        read_lines(path),
-        ("MeshFormat", "PhysicalNames", "Entities", "Nodes", "Elements"),
-        reader.parts.skipped,
-    )
-    reader.read(found)
+    names = ("MeshFormat", "PhysicalNames", "Entities", "Nodes", "Elements")
+    reader.read(sections(read_lines(path), names, reader.parts.skipped))
     return reader.parts.mesh()
 
 
@@ -95,25 +91,33 @@ class _Reader:
         self.groups: dict[tuple[int, int], list[int]] = {}
         self.known: dict[tuple[int, ...], int] = {}
 
-    def read(self, found: dict[str, GmshSection]) -> None:
-        for wanted in ("MeshFormat", "Nodes", "Elements"):
-            if wanted not in found:
+    def read(self, file_sections: dict[str, GmshSection]) -> None:
+        """Read the sections of a file, by name.
+
+        Raises
+        ------
+        InputError
+            If one is missing or can't be read.
+        """
+        for name in ("MeshFormat", "Nodes", "Elements"):
+            if name not in file_sections:
                 raise InputError(
-                    f"{self.parts.path}: the file has no ${wanted}; a mesh file of Gmsh "
+                    f"{self.parts.path}: the file has no ${name}; a mesh file of Gmsh "
                     "must have $MeshFormat, $Nodes and $Elements"
                 )
-        line, words = found["MeshFormat"].words(1)
+        line, words = file_sections["MeshFormat"].words(1)
         self.version = words[0]
         if not _VERSIONS.fullmatch(self.version):
             raise line.wrong(
                 f"the version {quoted(self.version)} is not read; it must be 2, 4.0 or 4.1 "
                 "(in Gmsh the option Mesh.MshFileVersion)"
             )
-        if "PhysicalNames" in found:
-            self._names(found["PhysicalNames"])
-        if "Entities" in found and self.version.startswith("4"):
-            self._entities(found["Entities"])
-        nodes, elements = found["Nodes"], found["Elements"]
+        if "PhysicalNames" in file_sections:
+            self._names(file_sections["PhysicalNames"])
+        if "Entities" in file_sections and self.version.startswith("4"):
+            self._entities(file_sections["Entities"])
+        nodes = file_sections["Nodes"]
+        elements = file_sections["Elements"]
         if self.version.startswith("2"):
             self._nodes_2(nodes)
             self._elements_2(elements)
@@ -125,9 +129,11 @@ class _Reader:
 
     @property
     def is_40(self) -> bool:
+        """Whether the file is of version 4.0, in which some entries have another order."""
         return self.version.startswith("4") and not self.version.startswith("4.1")
 
     def _names(self, section: GmshSection) -> None:
+        """Read the names of physical groups, each of a dimension and a number."""
         section.words(1)
         while section.has_more:
             line, words = section.words(3)
@@ -141,50 +147,57 @@ class _Reader:
     def _entities(self, section: GmshSection) -> None:
         """Record the physical groups of each point, line, surface and volume."""
         first, counts = section.words(4)
-        for dimension, word in enumerate(counts[:4]):
-            box = 3 if dimension == 0 and not self.is_40 else 6
-            for line, entity in section.take(
-                parse_integer(word, first, "the number of entities"), 2 + box
-            ):
-                count = parse_integer(entity[1 + box], line, "the number of groups")
+        for dimension, text in enumerate(counts[:4]):
+            # an entity has its number, the corners of its box, and its groups; of a point, since
+            # version 4.1, there is one corner
+            corners = 3 if dimension == 0 and not self.is_40 else 6
+            entities = parse_integer(text, first, "the number of entities")
+            for line, entries in section.take(entities, 2 + corners):
+                count = parse_integer(entries[1 + corners], line, "the number of groups")
                 if count > _MOST_GROUPS:
                     raise line.wrong(
                         f"the entity belongs to {count} groups; it may belong "
                         f"to at most {_MOST_GROUPS}"
                     )
-                tags = [
+                groups = [
                     parse_integer(tag.lstrip("-"), line, "the number of a group")
-                    for tag in entity[2 + box : 2 + box + count]
+                    for tag in entries[2 + corners : 2 + corners + count]
                 ]
-                self.groups[
-                    dimension, parse_integer(entity[0], line, "the number of an entity")
-                ] = tags
+                number = parse_integer(entries[0], line, "the number of an entity")
+                self.groups[dimension, number] = groups
 
     def _nodes_2(self, section: GmshSection) -> None:
+        """Read the nodes of version 2: a number and coordinates on each line."""
         first, counts = section.words(1)
-        for line, words in section.take(parse_integer(counts[0], first, "the number of nodes"), 4):
-            self._node(line, words[0], words[1:])
+        count = parse_integer(counts[0], first, "the number of nodes")
+        for line, entries in section.take(count, 4):
+            self._node(line, entries[0], entries[1:])
 
     def _nodes_4(self, section: GmshSection) -> None:
-        line, words = section.words(2)
-        left = parse_integer(words[1], line, "the number of nodes")
+        """Read the nodes of version 4: a block for each entity.
+
+        In version 4.1 the numbers of a block come before the coordinates.
+        """
+        line, entries = section.words(2)
+        remaining = parse_integer(entries[1], line, "the number of nodes")
         while section.has_more:
-            line, words = section.words(4)
-            count = parse_integer(words[3], line, "the number of nodes")
-            left -= count
+            line, entries = section.words(4)
+            count = parse_integer(entries[3], line, "the number of nodes")
+            remaining -= count
             if self.is_40:
-                for line, words in section.take(count, 4):
-                    self._node(line, words[0], words[1:])
+                for line, entries in section.take(count, 4):
+                    self._node(line, entries[0], entries[1:])
             else:
-                tags = list(section.take(count, 1))
-                for (_, tag), (line, words) in zip(tags, section.take(count, 3), strict=True):
-                    self._node(line, tag[0], words)
-        if left:
+                numbers = [entries[0] for _, entries in section.take(count, 1)]
+                for number, (line, entries) in zip(numbers, section.take(count, 3), strict=True):
+                    self._node(line, number, entries)
+        if remaining:
             raise section.line.wrong(
                 "$Nodes holds another number of nodes than it states; the two must agree"
             )
 
     def _node(self, line: TextLine, number: str, point: list[str]) -> None:
+        """Read a node."""
         x, y, z = point[:3]
         self.parts.add_node(
             line,
@@ -193,72 +206,86 @@ class _Reader:
         )
 
     def _elements_2(self, section: GmshSection) -> None:
+        """Read the elements of version 2: number, type, tags and nodes on each line.
+
+        The first tag is the physical group.
+        """
         first, counts = section.words(1)
-        for line, words in section.take(
-            parse_integer(counts[0], first, "the number of elements"), 4
-        ):
-            count = parse_integer(words[2], line, "the number of tags")
-            tags = [parse_integer(word.lstrip("-"), line, "a tag") for word in words[3 : 3 + count]]
-            self._element(
-                line,
-                parse_integer(words[1], line, "a type of element"),
-                words[0],
-                words[3 + count :],
-                tags[:1],
-            )
+        elements = parse_integer(counts[0], first, "the number of elements")
+        for line, entries in section.take(elements, 4):
+            count = parse_integer(entries[2], line, "the number of tags")
+            tags = [parse_integer(tag.lstrip("-"), line, "a tag") for tag in entries[3 : 3 + count]]
+            gmsh_type = parse_integer(entries[1], line, "a type of element")
+            self._element(line, gmsh_type, entries[0], entries[3 + count :], tags[:1])
 
     def _elements_4(self, section: GmshSection) -> None:
-        line, words = section.words(2)
-        left = parse_integer(words[1], line, "the number of elements")
+        """Read the elements of version 4: a block of one type for each entity."""
+        line, entries = section.words(2)
+        remaining = parse_integer(entries[1], line, "the number of elements")
         while section.has_more:
-            line, words = section.words(4)
-            dimension, entity, kind, count = (
-                parse_integer(word, line, "the dimension, entity, type or number of elements")
-                for word in words[:4]
+            line, entries = section.words(4)
+            dimension, entity, gmsh_type, count = (
+                parse_integer(entry, line, "the dimension, entity, type or number of elements")
+                for entry in entries[:4]
             )
-            left -= count
-            tags = self.groups.get((entity, dimension) if self.is_40 else (dimension, entity), [])
-            for line, words in section.take(count, 2):
-                self._element(line, kind, words[0], words[1:], tags)
-        if left:
+            if self.is_40:
+                dimension, entity = entity, dimension
+            remaining -= count
+            groups = self.groups.get((dimension, entity), [])
+            for line, entries in section.take(count, 2):
+                self._element(line, gmsh_type, entries[0], entries[1:], groups)
+        if remaining:
             raise section.line.wrong(
                 "$Elements holds another number of elements than it states; the two must agree"
             )
 
     def _element(
-        self, line: TextLine, gmsh_type: int, number: str, words: list[str], tags: list[int]
+        self, line: TextLine, gmsh_type: int, number: str, texts: list[str], groups: list[int]
     ) -> None:
+        """Read an element: a solid one, or a point, line or surface of a group of nodes.
+
+        Parameters
+        ----------
+        line : TextLine
+            The line.
+        gmsh_type : int
+            The type of the element.
+        number : str
+            Its number.
+        texts : list of str
+            The numbers of its nodes.
+        groups : list of int
+            The physical groups to which it belongs.
+        """
+        if gmsh_type == _PRISM18:
+            raise line.wrong(
+                "the element is a prism of 18 nodes, which is not read; prisms must "
+                "have 6 or 15 nodes"
+            )
         if gmsh_type not in _SOLIDS and gmsh_type not in _SKINS:
-            if gmsh_type == _PRISM18:
-                raise line.wrong(
-                    "the element is a prism of 18 nodes, which is not read; prisms must "
-                    "have 6 or 15 nodes"
-                )
-            allowed = (
+            raise line.wrong(
+                f"the element is of type {gmsh_type}, which is not read; "
                 "all must be of first or second order, and solids "
                 "tetrahedra, prisms, pyramids or bricks"
             )
-            raise line.wrong(f"the element is of type {gmsh_type}, which is not read; {allowed}")
         solid = _SOLIDS.get(gmsh_type)
         dimension, count = (3, len(ELEMENT_KINDS[solid].reference)) if solid else _SKINS[gmsh_type]
-        if len(words) != count:
+        if len(texts) != count:
             raise line.wrong(
-                f"the element has {len(words)} nodes; its type {gmsh_type} must have {count}"
+                f"the element has {len(texts)} nodes; its type {gmsh_type} must have {count}"
             )
-        nodes = [parse_integer(word, line, "the number of a node") for word in words]
-        names = [self.names.get((dimension, tag), f"group{tag}") for tag in tags if tag]
+        nodes = [parse_integer(text, line, "the number of a node") for text in texts]
+        names = [self.names.get((dimension, tag), f"group{tag}") for tag in groups if tag]
         if not solid:
             for name in names:
                 self.parts.node_sets[name].numbers.update(nodes)
             return
         element = parse_integer(number, line, "the number of an element")
         # version 2 repeats an element of several groups under several numbers
-        again = (
-            self.known.setdefault(tuple(nodes), element)
-            if self.version.startswith("2")
-            else element
-        )
+        first_number = element
+        if self.version.startswith("2"):
+            first_number = self.known.setdefault(tuple(nodes), element)
         for name in names:
-            self.parts.element_sets[name].numbers.add(again)
-        if again == element:
+            self.parts.element_sets[name].numbers.add(first_number)
+        if first_number == element:
             self.parts.add_element(line, solid, element, nodes)

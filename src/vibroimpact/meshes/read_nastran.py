@@ -37,8 +37,9 @@ _SET_NAME = re.compile(r"\$ node set (\d{1,18}): (\S.*)")
 
 
 def read_nastran(path: str | PathLike[str]) -> Mesh:
-    """Read the solid elements of a Nastran file (bulk data, with or without executive and case
-    control).
+    """Read the solid elements of a Nastran file.
+
+    The file is bulk data, with or without executive and case control.
 
     The mesh consists of CTETRA, CPYRAM, CPENTA, CHEXA and GRID cards, also in coordinate systems of
     CORD1 and CORD2 cards. The elements of property n form the set `PIDn`, the nodes of SPC1 cards
@@ -79,12 +80,15 @@ def read_nastran(path: str | PathLike[str]) -> Mesh:
         _read_sets(lines[:begin], parts)
         links.control(lines[:begin])
         lines = lines[begin + 1 :]
-    ended, grids, materials, held = False, NastranGrids(), NastranMaterials(), Counter[str]()
+    grids = NastranGrids()
+    materials = NastranMaterials()
+    supports = Counter[str]()
+    has_ended = False
     for card in cards(lines):
-        ended = card.name == "ENDDATA"
-        if not ended and not materials.take(card) and not links.take(card):
-            _read_card(card, parts, grids, held)
-    if begin is not None and not ended:
+        has_ended = card.name == "ENDDATA"
+        if not has_ended and not materials.take(card) and not links.take(card):
+            _read_card(card, parts, grids, supports)
+    if begin is not None and not has_ended:
         raise InputError(
             f"{path}: there is a BEGIN BULK but no ENDDATA; the file is cut short, or that "
             "line was left out"
@@ -93,22 +97,24 @@ def read_nastran(path: str | PathLike[str]) -> Mesh:
     links.add_to(parts, grids.turned)
     parts.sections = materials.sections(parts.element_sets)
     mesh = parts.mesh()
-    return replace(mesh, remarks=(*mesh.remarks, *remarks_of({**mesh.skipped, **held})))
+    return replace(mesh, remarks=(*mesh.remarks, *remarks_of({**mesh.skipped, **supports})))
 
 
 def _check_begin(line: TextLine) -> None:
+    """Raise InputError if a line begins another section than that of bulk data."""
     section = _BEGIN.match(line.text)
     if section and section[1].upper() not in ("", "BULK"):
         raise line.wrong(f'"BEGIN {section[1]}" is not read; the mesh must stand after BEGIN BULK')
 
 
-def _read_card(card: Card, parts: Parts, grids: NastranGrids, held: Counter[str]) -> None:
-    """Read a card; `held` counts the cards that hold nodes, of which the mesh has sets or
-    nothing.
+def _read_card(card: Card, parts: Parts, grids: NastranGrids, supports: Counter[str]) -> None:
+    """Read a card.
+
+    `supports` counts the cards that hold nodes, of which the mesh has sets or nothing.
     """
     line, name, fields = card
     if name == "GRID" and any(fields[6:7]):
-        held["PS of GRID"] += 1
+        supports["PS of GRID"] += 1
     if grids.take(card):
         return
     if name in _KINDS:
@@ -130,15 +136,15 @@ def _read_card(card: Card, parts: Parts, grids: NastranGrids, held: Counter[str]
                 "the nodes of SPC1 can't be read; they must be numbers, or "
                 "a number, THRU and a number"
             )
-        parts.node_sets[f"SPC{parse_integer(fields[0], line, 'the number of a set')}"].update(
-            chosen
-        )
-        held["SPC1"] += 1
+        number = parse_integer(fields[0], line, "the number of a set")
+        parts.node_sets[f"SPC{number}"].update(chosen)
+        supports["SPC1"] += 1
     else:
         parts.skipped[name] += 1
 
 
 def _read_solid(card: Card, parts: Parts) -> None:
+    """Read a solid element, of which nodes in the middle of edges may be blank."""
     line, name, fields = card
     number = parse_integer(fields[0], line, "the number of an element")
     nodes = [
@@ -147,38 +153,42 @@ def _read_solid(card: Card, parts: Parts) -> None:
     while nodes and nodes[-1] == 0:
         nodes.pop()
     kinds = _KINDS[name]
-    corners, most = kinds
-    if not corners <= len(nodes) <= most or 0 in nodes[:corners]:
-        given = len(nodes) - nodes.count(0)
+    corners, with_edges = kinds  # numbers of nodes of first and second order
+    if not corners <= len(nodes) <= with_edges or 0 in nodes[:corners]:
+        stated = len(nodes) - nodes.count(0)
         raise line.wrong(
-            f"{name} {number} has {given} nodes; it must have {corners} or {most}, and "
+            f"{name} {number} has {stated} nodes; it must have {corners} or {with_edges}, and "
             "only nodes on edges may be left blank"
         )
-    count = corners if len(nodes) == corners else most
-    nodes = [node or OMITTED for node in [*nodes, *[0] * (count - len(nodes))]]
-    parts.add_element(line, kinds[count], number, nodes)
+    count = corners if len(nodes) == corners else with_edges
+    nodes += [0] * (count - len(nodes))
+    parts.add_element(line, kinds[count], number, [node or OMITTED for node in nodes])
     pid = parse_integer(fields[1], line, "the number of a property") if fields[1] else number
     parts.element_sets[f"PID{pid}"].numbers.add(number)
 
 
 def _read_sets(lines: Iterable[TextLine], parts: Parts) -> None:
-    """Read the sets of case control; sets that are not lists of numbers and ranges are
-    counted as skipped.
+    """Read the sets of case control.
+
+    Sets that are not lists of numbers and ranges are counted as skipped.
     """
     names: dict[str, str] = {}
-    listed: dict[str, list[str]] = {}
-    open_set = ""
+    texts_of_sets: dict[str, list[str]] = {}
+    open_set = ""  # whose list goes on
     for line in lines:
-        if found := _SET_NAME.match(line.text):
-            names[found[1]] = found[2].strip()
+        comment = _SET_NAME.match(line.text)
+        if comment:
+            names[comment[1]] = comment[2].strip()
         text = line.text.split("$", 1)[0].strip()
-        if found := _SET.match(text):
-            open_set, listed[found[1]] = found[1], [found[2]]
+        statement = _SET.match(text)
+        if statement:
+            open_set = statement[1]
+            texts_of_sets[open_set] = [statement[2]]
         elif open_set and text:
-            listed[open_set].append(text)
+            texts_of_sets[open_set].append(text)
         if text and not text.endswith(","):
             open_set = ""
-    for number, texts in listed.items():
+    for number, texts in texts_of_sets.items():
         chosen = _selection(" ".join(texts).replace(",", " ").split())
         if chosen is None:
             parts.skipped["SET"] += 1
@@ -186,23 +196,25 @@ def _read_sets(lines: Iterable[TextLine], parts: Parts) -> None:
             parts.node_sets[names.get(number, f"SET{number}")].update(chosen)
 
 
-def _selection(words: Sequence[str]) -> Selection | None:
-    """Return the selection of a list such as "1 5 THRU 10"; None if the list has other entries."""
-    found = Selection()
-    words = [word.upper() for word in words]
+def _selection(entries: Sequence[str]) -> Selection | None:
+    """Return the selection of a list such as "1 5 THRU 10"; None if it has other entries."""
+    selection = Selection()
+    entries = [entry.upper() for entry in entries]
     numbers = [
-        int(word) if word.isascii() and word.isdigit() and len(word) <= 18 else -1 for word in words
+        int(entry) if entry.isascii() and entry.isdigit() and len(entry) <= 18 else -1
+        for entry in entries
     ]
-    at = 0
-    while at < len(words):
-        if numbers[at] < 0:
+    index = 0
+    while index < len(entries):
+        number = numbers[index]
+        if number < 0:
             return None
-        if words[at + 1 : at + 2] == ["THRU"]:
-            if at + 2 >= len(words) or numbers[at + 2] < numbers[at]:
+        if entries[index + 1 : index + 2] == ["THRU"]:
+            if index + 2 >= len(entries) or numbers[index + 2] < number:
                 return None
-            found.ranges.add((numbers[at], numbers[at + 2], 1))
-            at += 3
+            selection.ranges.add((number, numbers[index + 2], 1))
+            index += 3
         else:
-            found.numbers.add(numbers[at])
-            at += 1
-    return found
+            selection.numbers.add(number)
+            index += 1
+    return selection

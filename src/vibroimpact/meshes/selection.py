@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from vibroimpact.arrays import Integers
+from vibroimpact.arrays import Bools, Integers
 
 
 @dataclass
@@ -41,23 +41,26 @@ class Selection:
         places = np.sort(places[known[places] == numbers])
         if not self.ranges:  # avoid arrays of the size of `known`: there may be many small sets
             return places
+        is_selected = self._in_ranges(known)
+        is_selected[places] = True
+        return np.flatnonzero(is_selected)
+
+    def _in_ranges(self, known: Integers) -> Bools:
+        """Return which of some numbers, sorted, the ranges select."""
         ranges = np.array(list(self.ranges), dtype=np.int64)
-        starts, stops = (
-            np.searchsorted(known, ranges[:, 0]),
-            np.searchsorted(known, ranges[:, 1], side="right"),
-        )
-        unit_step = ranges[:, 2] == 1
+        starts = np.searchsorted(known, ranges[:, 0])
+        stops = np.searchsorted(known, ranges[:, 1], side="right")
         # ranges of step 1 by the cumulative sum of their starts and ends: thousands cost as much as
         # one
-        ends = np.bincount(starts[unit_step], minlength=len(known) + 1) - np.bincount(
-            stops[unit_step], minlength=len(known) + 1
-        )
-        chosen = np.cumsum(ends[:-1]) > 0
-        chosen[places] = True
-        others = (part[~unit_step].tolist() for part in (ranges, starts, stops))
-        for (first, _, step), start, stop in zip(*others, strict=True):
-            chosen[start:stop] |= (known[start:stop] - first) % step == 0
-        return np.flatnonzero(chosen)
+        has_unit_step = ranges[:, 2] == 1
+        begun = np.bincount(starts[has_unit_step], minlength=len(known) + 1)
+        ended = np.bincount(stops[has_unit_step], minlength=len(known) + 1)
+        is_selected = np.cumsum((begun - ended)[:-1]) > 0
+        for index in np.flatnonzero(~has_unit_step).tolist():
+            first, _, step = ranges[index].tolist()
+            within = slice(starts[index], stops[index])
+            is_selected[within] |= (known[within] - first) % step == 0
+        return is_selected
 
     def update(self, other: Selection) -> None:
         """Add another selection."""

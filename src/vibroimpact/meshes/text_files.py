@@ -31,8 +31,7 @@ class TextLine(NamedTuple):
 
 
 def read_lines(path: Path) -> list[TextLine]:
-    """Return the lines of a text file in UTF-8, or if it is not UTF-8, in Latin-1, which older
-    programs write.
+    """Return the lines of a text file in UTF-8, or else in Latin-1, which older programs write.
 
     Raises
     ------
@@ -56,8 +55,7 @@ def read_lines(path: Path) -> list[TextLine]:
 def read_lines_with_includes(
     path: Path, included: Callable[[str], str | None]
 ) -> Iterator[TextLine]:
-    """Yield the lines of a file, with the lines of an included file after the line that includes
-    it.
+    """Yield the lines of a file, and those of an included file after the line that includes it.
 
     A file may be included once, which rules out cycles and exponential growth.
 
@@ -88,24 +86,24 @@ def read_lines_with_includes(
 
 
 def _included_lines(line: TextLine, name: str, root: Path, seen: set[Path]) -> list[TextLine]:
-    """Return the lines of an included file, found relative to the including file or to
-    the main file.
+    """Return the lines of an included file.
+
+    It is found relative to the including file or to the main file.
     """
     name = name.replace("\\", "/")
     try:
-        inner = next(
-            (folder / name for folder in (line.path.parent, root) if (folder / name).is_file()),
-            root / name,
-        )
-        place = inner.resolve()
-        lines = read_lines(inner)
+        path = line.path.parent / name
+        if not path.is_file():
+            path = root / name
+        resolved = path.resolve()
+        lines = read_lines(path)
     except (InputError, OSError, ValueError, RuntimeError) as error:
         raise line.wrong(
             f"the file to include can't be read: {getattr(error, 'strerror', None) or error}"
         ) from None
-    if place in seen:
+    if resolved in seen:
         raise line.wrong(f"{quoted(name)} is included a second time; a file may be included once")
-    seen.add(place)
+    seen.add(resolved)
     return lines
 
 

@@ -1,10 +1,11 @@
-"""Surfaces that a mesh file ties to one another: nodes of the one follow the faces of the
-other on which they lie.
+"""Surfaces that a mesh file ties to one another.
+
+Nodes of the one follow the faces of the other on which they lie.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -15,15 +16,15 @@ from vibroimpact.meshes.selection import Selection
 from vibroimpact.meshes.text_files import TextLine
 from vibroimpact.quoting import quoted
 from vibroimpact.structures.joints import AXES
-from vibroimpact.structures.mesh import Mesh
-from vibroimpact.structures.nearest_face import nearest_places
+from vibroimpact.structures.mesh import ElementBlock, Mesh
+from vibroimpact.structures.nearest_face import NearestPlace, nearest_places
 from vibroimpact.structures.surface import Faces, outer_faces
 
-# of the mean length of edges of the faces: where a file gives no distance, as in Abaqus
+# reach over the mean length of the edges of the faces, where a file gives none, as in Abaqus
 _REACH = 0.05
 _COARSER = 1.2  # ratio of mean lengths of edges
 _LEAST = 1e-12  # weight of a node below which it is rounding
-# of the extent of the mesh: smaller moves of nodes onto a face are rounding of the file
+# over the extent of the mesh: smaller moves of nodes onto a face are rounding of the file
 _MOVED = 1e-6
 
 
@@ -69,8 +70,10 @@ class Tie:
 
 @dataclass
 class TiedNodes:
-    """What the ties of a file do: equations between the nodes of the mesh, nodes that are
-    moved onto a face, and remarks.
+    """What the ties of a file do.
+
+    There are equations between the nodes of the mesh, nodes that are moved onto a face, and
+    remarks.
     """
 
     equations: list[Equation]
@@ -94,124 +97,137 @@ def tied_nodes(
     elements : tuple of two int arrays
         Numbers of the elements in the file, ascending, and their places in the mesh.
     """
-    found = TiedNodes([], mesh.nodes.copy(), [])
-    tied = np.zeros(len(mesh.nodes), dtype=bool)
+    result = TiedNodes([], mesh.nodes.copy(), [])
+    is_tied = np.zeros(len(mesh.nodes), dtype=bool)
+    rounding = _MOVED * float(mesh.extent.max()) if ties else 0.0
     for tie in ties:
         names = " to ".join(quoted(name)[1:-1] for name in tie.names)
         leader = _faces(mesh, tie.leader, elements)
-        followers = np.union1d(
-            _nodes_of(_faces(mesh, tie.follower, elements)), tie.follower.nodes.places(numbers)
-        ).astype(np.int64)
-        followers = np.setdiff1d(followers[~tied[followers]], _nodes_of(leader))
+        follower = _faces(mesh, tie.follower, elements)
+        followers = np.union1d(_nodes_of(follower), tie.follower.nodes.places(numbers)).astype(
+            np.int64
+        )
+        followers = np.setdiff1d(followers[~is_tied[followers]], _nodes_of(leader))
         if not leader or not len(followers):
-            found.remarks.append(
+            result.remarks.append(
                 f"the tie {names} of the mesh file joins nothing: the second surface has "
                 "no faces of solid elements, or the first has no "
                 "nodes of them but those of the second and those that are tied already"
             )
             continue
-        rounding = _MOVED * float(mesh.extent.max())
-        reach = _REACH * _mean_edge(mesh, leader) if tie.reach is None else max(tie.reach, rounding)
-        own = _faces(mesh, tie.follower, elements)
-        if own and _mean_edge(mesh, own) > _COARSER * _mean_edge(mesh, leader):
-            found.remarks.append(
+        edge = _mean_edge(mesh, leader)
+        reach = _REACH * edge if tie.reach is None else max(tie.reach, rounding)
+        if follower and _mean_edge(mesh, follower) > _COARSER * edge:
+            result.remarks.append(
                 f"of the surfaces that the mesh file ties, {names}, the first is the "
                 "coarser: nodes of the second between its nodes move "
                 "freely, and the joint is too soft; name the finer one first"
             )
-        places = nearest_places(mesh.nodes, leader, mesh.nodes[followers], reach)
-        furthest = 0.0
-        for node, place in zip(followers.tolist(), places, strict=True):
-            if place is None:
-                continue
-            tied[node] = True
-            furthest = max(furthest, place.distance)
-            found.nodes[node] = place.position
-            shares = [
-                (int(other), -float(weight))
-                for other, weight in zip(place.nodes, place.weights, strict=True)
-                if abs(weight) > _LEAST
-            ]
-            for axis in range(AXES):
-                terms = [
-                    ((int(numbers[node]), axis), 1.0),
-                    *(((int(numbers[other]), axis), weight) for other, weight in shares),
-                ]
-                found.equations.append(Equation(tie.line, terms))
-        away = sum(place is None for place in places)
-        if away:
-            are = "is" if away == 1 else "are"
-            found.remarks.append(
-                f"of the {len(places)} nodes that the mesh file ties by {names}, {away} "
-                f"{are} further than {reach:.4g} (in the unit of the "
-                f"file) from the faces of the second, and {are} not tied; give the tie a "
-                "larger POSITION TOLERANCE"
-            )
-        if furthest > rounding:
-            found.remarks.append(
-                f"nodes that the mesh file ties by {names} are moved onto the faces of the "
-                "second, by up to "
-                f"{furthest:.4g} (in the unit of the file)"
-            )
-    return found
+        nearest = nearest_places(mesh.nodes, leader, mesh.nodes[followers], reach)
+        for node, place in zip(followers.tolist(), nearest, strict=True):
+            if place is not None:
+                is_tied[node] = True
+                result.nodes[node] = place.position
+                result.equations += _equations(tie.line, node, place, numbers)
+        result.remarks += _distance_remarks(names, nearest, reach, rounding)
+    return result
+
+
+def _equations(line: TextLine, node: int, place: NearestPlace, numbers: Integers) -> list[Equation]:
+    """Return the equations by which a node follows a place on a face, one for each axis."""
+    weights = [
+        (int(numbers[int(face_node)]), -float(weight))
+        for face_node, weight in zip(place.nodes, place.weights, strict=True)
+        if abs(weight) > _LEAST
+    ]
+    equations = []
+    for axis in range(AXES):
+        followed = [((face_node, axis), weight) for face_node, weight in weights]
+        equations.append(Equation(line, [((int(numbers[node]), axis), 1.0), *followed]))
+    return equations
+
+
+def _distance_remarks(
+    names: str, nearest: Sequence[NearestPlace | None], reach: float, rounding: float
+) -> list[str]:
+    """Return remarks on nodes that are out of reach, and on those that are moved onto a face."""
+    remarks = []
+    out_of_reach = sum(place is None for place in nearest)
+    if out_of_reach:
+        are = "is" if out_of_reach == 1 else "are"
+        remarks.append(
+            f"of the {len(nearest)} nodes that the mesh file ties by {names}, {out_of_reach} "
+            f"{are} further than {reach:.4g} (in the unit of the "
+            f"file) from the faces of the second, and {are} not tied; give the tie a "
+            "larger POSITION TOLERANCE"
+        )
+    furthest = max((place.distance for place in nearest if place is not None), default=0.0)
+    if furthest > rounding:
+        remarks.append(
+            f"nodes that the mesh file ties by {names} are moved onto the faces of the "
+            "second, by up to "
+            f"{furthest:.4g} (in the unit of the file)"
+        )
+    return remarks
 
 
 def _faces(mesh: Mesh, surface: MeshSurface, elements: tuple[Integers, Integers]) -> list[Faces]:
     """Return the faces of a surface, in groups."""
     numbers, places = elements
     outer = None
-    found = []
-    for chosen, by_corners in surface.faces:
-        here = np.sort(places[chosen.places(numbers)])
-        first = 0
+    groups = []
+    for selection, by_corners in surface.faces:
+        chosen = np.sort(places[selection.places(numbers)])
         if not by_corners:
             outer = outer or outer_faces(mesh)
-            found += _of_elements(mesh, outer, here)
-        for block in mesh.blocks:
-            rows = here[(here >= first) & (here < first + len(block.connectivity))] - first
-            first += len(block.connectivity)
+            groups += _of_elements(mesh, outer, chosen)
+        for block, rows in _rows_of_blocks(mesh, chosen):
             corners = by_corners.get(block.element.corners)
             face = next(
-                (one for one in block.element.faces if corners and set(one) == set(corners)), None
+                (face for face in block.element.faces if corners and set(face) == set(corners)),
+                None,
             )
             if face is not None and len(rows):
-                found.append(Faces(block.element, face, block.connectivity[rows]))
-    return found
+                groups.append(Faces(block.element, face, block.connectivity[rows]))
+    return groups
+
+
+def _rows_of_blocks(mesh: Mesh, chosen: Integers) -> Iterator[tuple[ElementBlock, Integers]]:
+    """Yield the blocks of a mesh, with the rows of those elements in them that are chosen."""
+    first = 0
+    for block in mesh.blocks:
+        end = first + len(block.connectivity)
+        yield block, chosen[(chosen >= first) & (chosen < end)] - first
+        first = end
 
 
 def _of_elements(mesh: Mesh, outer: Sequence[Faces], chosen: Integers) -> list[Faces]:
     """Return those outer faces that belong to chosen elements."""
-    found, first = [], 0
-    for block in mesh.blocks:
-        rows = chosen[(chosen >= first) & (chosen < first + len(block.connectivity))] - first
-        first += len(block.connectivity)
-        mine = {tuple(row) for row in block.connectivity[rows].tolist()}
+    groups = []
+    for block, rows in _rows_of_blocks(mesh, chosen):
+        elements = {tuple(nodes) for nodes in block.connectivity[rows].tolist()}
         for faces in outer:
-            if faces.kind is block.element:
-                inside = np.array(
-                    [tuple(row) in mine for row in faces.connectivity.tolist()], dtype=bool
-                )
-                if inside.any():
-                    found.append(Faces(faces.kind, faces.corners, faces.connectivity[inside]))
-    return found
+            if faces.kind is not block.element:
+                continue
+            is_chosen = np.array(
+                [tuple(nodes) in elements for nodes in faces.connectivity.tolist()], dtype=bool
+            )
+            if is_chosen.any():
+                groups.append(Faces(faces.kind, faces.corners, faces.connectivity[is_chosen]))
+    return groups
 
 
 def _nodes_of(groups: Sequence[Faces]) -> Integers:
     """Return the nodes of faces."""
-    return np.unique(
-        np.concatenate(
-            [
-                np.zeros(0, dtype=np.int64),
-                *(faces.connectivity[:, faces.has_node].ravel() for faces in groups),
-            ]
-        )
-    )
+    nodes = [faces.connectivity[:, faces.has_node].ravel() for faces in groups]
+    return np.unique(np.concatenate([np.zeros(0, dtype=np.int64), *nodes]))
 
 
 def _mean_edge(mesh: Mesh, groups: Sequence[Faces]) -> float:
     """Return the mean length of the edges of faces."""
     lengths = []
     for faces in groups:
-        at = mesh.nodes[faces.connectivity[:, list(faces.corners)]]
-        lengths.append(np.linalg.norm(at - np.roll(at, 1, axis=1), axis=2).ravel())
+        corners = mesh.nodes[faces.connectivity[:, list(faces.corners)]]
+        edges = corners - np.roll(corners, 1, axis=1)
+        lengths.append(np.linalg.norm(edges, axis=2).ravel())
     return float(np.concatenate(lengths).mean())

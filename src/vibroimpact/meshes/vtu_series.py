@@ -1,5 +1,6 @@
-"""Time series of a mesh for ParaView: a .vtu file for each time, and a .pvd file that
-lists them.
+"""Time series of a mesh for ParaView.
+
+It has a .vtu file for each time, and a .pvd file that lists them.
 """
 
 from __future__ import annotations
@@ -23,8 +24,9 @@ def write_vtu_series(
     times: ArrayLike,
     point_data: Iterable[Mapping[str, ArrayLike]],
 ) -> list[Path]:
-    """Write nodal values of a mesh over time, in single precision, into a folder that is being
-    made: the files appear one by one.
+    """Write nodal values of a mesh over time, in single precision.
+
+    They are written into a folder that is being made: the files appear one by one.
 
     Parameters
     ----------
@@ -64,32 +66,32 @@ def write_vtu_series(
     ...     [file.name for file in files]
     ['tet_000.vtu', 'tet_001.vtu']
     """
-    target, instants, data = Path(path), np.asarray(times, dtype=float), iter(point_data)
+    target = Path(path)
+    instants = np.asarray(times, dtype=float)
+    remaining_data = iter(point_data)
     nodes, ends, types = cells_of(mesh)
     # the same at all times
     grid = grid_text(
         mesh.nodes.astype(np.float32), nodes.astype(np.int32), ends.astype(np.int32), types
     )
-    folder, files = target.parent / target.stem, []
+    folder = target.parent / target.stem
+    files: list[Path] = []
     try:
         folder.mkdir(exist_ok=True)
-        for number, values in zip(range(len(instants)), data, strict=False):
+        for number, data in zip(range(len(instants)), remaining_data, strict=False):
             single = {
-                name: checked_values(name, given, len(mesh.nodes)).astype(np.float32)
-                for name, given in values.items()
+                name: checked_values(name, values, len(mesh.nodes)).astype(np.float32)
+                for name, values in data.items()
             }
             files.append(folder / f"{target.stem}_{number:03d}.vtu")
             files[-1].write_bytes(vtu_text(grid, single).encode())
-        if len(files) < len(instants) or next(data, None) is not None:
+        if len(files) < len(instants) or next(remaining_data, None) is not None:
             raise InputError(
                 f"there must be values for each of the {len(instants)} times, and no more",
                 "point_data",
             )
-        target.write_bytes(
-            collection_text(
-                instants.tolist(), [f"{target.stem}/{file.name}" for file in files]
-            ).encode()
-        )
+        names = [f"{target.stem}/{file.name}" for file in files]
+        target.write_bytes(collection_text(instants.tolist(), names).encode())
     except OSError as error:
         raise InputError(
             f"{error.filename or target}: it can't be written: {error.strerror}"
@@ -111,10 +113,8 @@ def collection_text(times: Iterable[float], files: Iterable[str]) -> str:
 
 
 def series_size(mesh: Mesh, vectors: int) -> int:
-    """Return the approximate size of the file of one time [bytes], with a given number of
-    nodal vectors.
-    """
+    """Return the approximate size of the file of one time, with some nodal vectors [bytes]."""
     nodes, ends, _ = cells_of(mesh)
-    return (
-        int((4 * len(nodes) + 5 * len(ends) + 12 * (1 + vectors) * len(mesh.nodes)) * 4 / 3) + 2000
-    )
+    # connectivity, offsets and types, then coordinates and vectors, all in base64
+    binary = 4 * len(nodes) + 5 * len(ends) + 12 * (1 + vectors) * len(mesh.nodes)
+    return int(binary * 4 / 3) + 2000

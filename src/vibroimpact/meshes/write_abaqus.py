@@ -10,7 +10,7 @@ import numpy as np
 from vibroimpact.files.atomic_write import write_text_file
 from vibroimpact.files.plain_names import one_line
 from vibroimpact.materials import Material
-from vibroimpact.meshes.deck_mesh import check_shell_thickness, deck_mesh
+from vibroimpact.meshes.deck_mesh import DeckMesh, check_shell_thickness, deck_mesh
 from vibroimpact.structures.mesh import Mesh
 
 _TYPES = {
@@ -24,8 +24,7 @@ _TYPES = {
     "hex20": "C3D20",
     "quad8": "S8R",
 }
-_A_LINE = 16
-"""Largest number of entries on a line."""
+_ENTRIES_OF_LINE = 16  # at most
 
 
 def write_abaqus(
@@ -68,72 +67,90 @@ def write_abaqus(
     ...     print(Path(folder, "tet.inp").read_text().splitlines()[-1])
     1, 4, 1, 2, 3
     """
-    export = deck_mesh(mesh, material)
+    deck = deck_mesh(mesh, material)
     check_shell_thickness(thickness)
-    rows = ["*NODE"]
-    rows += [
-        f"{number}, {x!r}, {y!r}, {z!r}"
-        for number, (x, y, z) in enumerate(export.points.tolist(), 1)
-    ]
-    number = 0
-    sections: dict[tuple[str, int], list[int]] = {}  # elements by kind of section and material
-    for shape, nodes in export.blocks:
-        rows.append(f"*ELEMENT, TYPE={_TYPES[shape]}")
-        part = "SHELLS" if shape == "quad8" else "SOLIDS"
-        for members in nodes.tolist():
-            sections.setdefault((part, int(export.element_materials[number])), []).append(
-                number + 1
-            )
-            number += 1
-            rows += _rows([number, *members])
-    for keyword, sets in (("NSET", export.node_sets), ("ELSET", export.element_sets)):
+    lines = ["*NODE"]
+    for number, (x, y, z) in enumerate(deck.points.tolist(), 1):
+        lines.append(f"{number}, {x!r}, {y!r}, {z!r}")
+    lines += _element_lines(deck)
+    for keyword, sets in (("NSET", deck.node_sets), ("ELSET", deck.element_sets)):
         for name, members in sets.items():
-            rows += [f"*{keyword}, {keyword}={_quoted(name)}", *_rows(members.tolist())]
-    for equation in export.equations:
-        rows += ["*EQUATION", str(len(equation))]
-        rows += [f"{node}, {axis}, {value!r}" for node, axis, value in equation]
+            lines += [f"*{keyword}, {keyword}={_quoted(name)}", *_data_lines(members.tolist())]
+    for equation in deck.equations:
+        lines += ["*EQUATION", str(len(equation))]
+        lines += [f"{node}, {axis}, {coefficient!r}" for node, axis, coefficient in equation]
+    names = _material_names(deck)
+    lines += _material_lines(deck, names)
+    lines += _section_lines(deck, names, thickness)
+    write_text_file(path, "\n".join([*lines, ""]))
+
+
+def _element_lines(deck: DeckMesh) -> Iterator[str]:
+    number = 0
+    for shape, connectivity in deck.blocks:
+        yield f"*ELEMENT, TYPE={_TYPES[shape]}"
+        for nodes in connectivity.tolist():
+            number += 1
+            yield from _data_lines([number, *nodes])
+
+
+def _material_names(deck: DeckMesh) -> dict[int, str]:
+    """Return the label of each material by its number, each once."""
     names: dict[int, str] = {}
-    for of, one in export.materials.items():
-        names[of] = (
-            _quoted(one.name or "material")
-            if _quoted(one.name or "material") not in names.values()
-            else f"material-{of + 1}"
-        )
-        rows += [
-            f"*MATERIAL, NAME={names[of]}",
-            "*DENSITY",
-            repr(float(one.density)),
-            "*ELASTIC",
-            f"{float(one.youngs_modulus)!r}, {float(one.poissons_ratio)!r}",
-        ]
-    for (part, of), elements in sections.items():
-        data = "" if part == "SOLIDS" else None if thickness is None else repr(float(thickness))
-        if of in names and data is not None:
-            elset = part if of < 0 else f"{part}-{of + 1}"
-            runs = np.split(elements, np.flatnonzero(np.diff(elements) != 1) + 1)
-            rows += [
-                f"*ELSET, ELSET={elset}, GENERATE",
-                *(f"{run[0]}, {run[-1]}, 1" for run in runs),
-            ]
-            rows += [
-                f"*{part[:-1]} SECTION, ELSET={elset}, MATERIAL={names[of]}",
-                *([data] if data else []),
-            ]
-    write_text_file(path, "\n".join([*rows, ""]))
+    for number, material in deck.materials.items():
+        name = _quoted(material.name or "material")
+        names[number] = f"material-{number + 1}" if name in names.values() else name
+    return names
 
 
-def _rows(numbers: Sequence[int]) -> Iterator[str]:
-    for start in range(0, len(numbers), _A_LINE):
-        goes_on = "," if start + _A_LINE < len(numbers) else ""
-        yield ", ".join(map(str, numbers[start : start + _A_LINE])) + goes_on
+def _material_lines(deck: DeckMesh, names: dict[int, str]) -> Iterator[str]:
+    for number, material in deck.materials.items():
+        yield f"*MATERIAL, NAME={names[number]}"
+        yield "*DENSITY"
+        yield repr(float(material.density))
+        yield "*ELASTIC"
+        yield f"{float(material.youngs_modulus)!r}, {float(material.poissons_ratio)!r}"
+
+
+def _section_lines(deck: DeckMesh, names: dict[int, str], thickness: float | None) -> Iterator[str]:
+    """Yield the sections: the elements of a family, solids or shells, and of a material.
+
+    Elements without a material have no section, nor have shells without a thickness.
+    """
+    sections: dict[tuple[str, int], list[int]] = {}
+    number = 0
+    for shape, connectivity in deck.blocks:
+        family = "SHELLS" if shape == "quad8" else "SOLIDS"
+        for _ in range(len(connectivity)):
+            material = int(deck.element_materials[number])
+            number += 1
+            sections.setdefault((family, material), []).append(number)
+    for (family, material), elements in sections.items():
+        if material not in names or (family == "SHELLS" and thickness is None):
+            continue
+        label = family if material < 0 else f"{family}-{material + 1}"
+        yield f"*ELSET, ELSET={label}, GENERATE"
+        # runs of consecutive numbers
+        for run in np.split(elements, np.flatnonzero(np.diff(elements) != 1) + 1):
+            yield f"{run[0]}, {run[-1]}, 1"
+        yield f"*{family[:-1]} SECTION, ELSET={label}, MATERIAL={names[material]}"
+        if family == "SHELLS" and thickness is not None:
+            yield repr(float(thickness))
+
+
+def _data_lines(numbers: Sequence[int]) -> Iterator[str]:
+    """Yield the data lines of a list of numbers; a comma at the end of one says that it goes on."""
+    for start in range(0, len(numbers), _ENTRIES_OF_LINE):
+        end = "," if start + _ENTRIES_OF_LINE < len(numbers) else ""
+        yield ", ".join(map(str, numbers[start : start + _ENTRIES_OF_LINE])) + end
 
 
 def _quoted(name: str) -> str:
-    """Return a name as an Abaqus label, quoted unless it consists of letters, digits, "_"
-    and "-" only.
+    """Return a name as an Abaqus label, quoted unless it is plain.
+
+    A plain label consists of letters, digits, "_" and "-", and begins with a letter.
     """
     label = one_line(name.replace('"', "'"))  # at most 80 characters, the limit of Abaqus
-    plain = (
-        label.isascii() and label.replace("_", "").replace("-", "").isalnum() and label[0].isalpha()
-    )
-    return label if plain else f'"{label}"'
+    letters = label.replace("_", "").replace("-", "")
+    is_plain = label.isascii() and letters.isalnum() and label[0].isalpha()
+    return label if is_plain else f'"{label}"'

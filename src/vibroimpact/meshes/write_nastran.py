@@ -11,7 +11,7 @@ from vibroimpact.arrays import Integers
 from vibroimpact.files.atomic_write import write_text_file
 from vibroimpact.files.plain_names import one_line
 from vibroimpact.materials import Material
-from vibroimpact.meshes.deck_mesh import check_shell_thickness, deck_mesh
+from vibroimpact.meshes.deck_mesh import DeckMesh, check_shell_thickness, deck_mesh
 from vibroimpact.meshes.node_order import NASTRAN, from_ours
 from vibroimpact.structures.mesh import Mesh
 
@@ -26,12 +26,12 @@ _CARDS = {
     "hex20": "CHEXA",
     "quad8": "CQUAD8",
 }
-_JOINTS = 1
-"""Set of the multipoint constraints."""
-_SOLIDS, _SHELLS, _OWN = 1, 2, 3
-"""Property of solids of the body's material, of shells, and the first one of solids with
-materials of their own.
-"""
+_JOINTS = 1  # set of the multipoint constraints
+# numbers of properties
+_SOLIDS = 1  # of the material of the body
+_SHELLS = 2
+_FIRST_OF_MATERIALS = 3  # of solids with materials of their own
+_FIELDS_OF_LINE = 8
 
 
 def write_nastran(
@@ -77,50 +77,58 @@ def write_nastran(
     ...     print(Path(folder, "tet.bdf").read_text().splitlines()[-2])
     CTETRA         1       1       4       1       2       3
     """
-    export = deck_mesh(mesh, material)
+    deck = deck_mesh(mesh, material)
     check_shell_thickness(thickness)
-    rows = ["CEND"]
+    lines = ["CEND"]
     if title:
-        rows.append(f"TITLE = {_one_line(title)[:60]}")
-    for number, (name, nodes) in enumerate(export.node_sets.items(), 1):
-        rows += [f"$ node set {number}: {_one_line(name)}", *_set(number, nodes)]
-    if export.equations:
-        rows.append(f"MPC = {_JOINTS}")
-    rows.append("BEGIN BULK")
-    shapes = {shape for shape, _ in export.blocks}
-    for number, one in export.materials.items():
-        own = _SOLIDS if number < 0 else _OWN + number
-        youngs, poisson, density = (
-            nastran_number(value) for value in (one.youngs_modulus, one.poissons_ratio, one.density)
-        )
-        rows += [f"MAT1*   {own:16d}{youngs:>16}{'':16}{poisson:>16}", f"*       {density:>16}"]
-        if shapes - {"quad8"}:
-            rows.append(f"PSOLID  {own:8d}{own:8d}")
-    if thickness is not None and "quad8" in shapes:
-        rows += [
-            f"PSHELL* {_SHELLS:16d}{1:16d}{nastran_number(thickness):>16}{1:16d}",
-            f"*       {'':16}{1:16d}",
-        ]
-    for number, point in enumerate(export.points.tolist(), 1):
+        lines.append(f"TITLE = {_one_line(title)[:60]}")
+    for number, (name, nodes) in enumerate(deck.node_sets.items(), 1):
+        lines += [f"$ node set {number}: {_one_line(name)}", *_set(number, nodes)]
+    if deck.equations:
+        lines.append(f"MPC = {_JOINTS}")
+    lines.append("BEGIN BULK")
+    lines += _property_cards(deck, thickness)
+    for number, point in enumerate(deck.points.tolist(), 1):
         x, y, z = map(nastran_number, point)
-        rows += [f"GRID*   {number:16d}{'':16}{x:>16}{y:>16}", f"*       {z:>16}"]
+        lines += [f"GRID*   {number:16d}{'':16}{x:>16}{y:>16}", f"*       {z:>16}"]
+    lines += _element_cards(deck)
+    for equation in deck.equations:
+        lines += _constraint(equation)
+    write_text_file(path, "\n".join([*lines, "ENDDATA", ""]))
+
+
+def _property_of_solids(material: int) -> int:
+    """Return the number of the property of solids of a material, and of this material."""
+    return _SOLIDS if material < 0 else _FIRST_OF_MATERIALS + material
+
+
+def _property_cards(deck: DeckMesh, thickness: float | None) -> Iterator[str]:
+    """Yield the lines of the materials, and of the properties that use them."""
+    shapes = {shape for shape, _ in deck.blocks}
+    for number, material in deck.materials.items():
+        own_number = _property_of_solids(number)
+        modulus = nastran_number(material.youngs_modulus)
+        ratio = nastran_number(material.poissons_ratio)
+        density = nastran_number(material.density)
+        yield f"MAT1*   {own_number:16d}{modulus:>16}{'':16}{ratio:>16}"
+        yield f"*       {density:>16}"
+        if shapes - {"quad8"}:
+            yield f"PSOLID  {own_number:8d}{own_number:8d}"
+    if thickness is not None and "quad8" in shapes:
+        yield f"PSHELL* {_SHELLS:16d}{1:16d}{nastran_number(thickness):>16}{1:16d}"
+        yield f"*       {'':16}{1:16d}"
+
+
+def _element_cards(deck: DeckMesh) -> Iterator[str]:
     number = 0
-    for shape, nodes in export.blocks:
-        theirs = nodes[:, from_ours(shape, NASTRAN[shape])] if shape in NASTRAN else nodes
-        for members in theirs.tolist():
-            own = int(export.element_materials[number])
+    for shape, connectivity in deck.blocks:
+        if shape in NASTRAN:
+            connectivity = connectivity[:, from_ours(shape, NASTRAN[shape])]
+        for nodes in connectivity.tolist():
+            material = int(deck.element_materials[number])
             number += 1
-            rows += _card(
-                _CARDS[shape],
-                [
-                    number,
-                    _SHELLS if shape == "quad8" else _SOLIDS if own < 0 else _OWN + own,
-                    *members,
-                ],
-            )
-    for equation in export.equations:
-        rows += _constraint(equation)
-    write_text_file(path, "\n".join([*rows, "ENDDATA", ""]))
+            own_property = _SHELLS if shape == "quad8" else _property_of_solids(material)
+            yield from _card(_CARDS[shape], [number, own_property, *nodes])
 
 
 def nastran_number(value: float) -> str:
@@ -137,57 +145,63 @@ def nastran_number(value: float) -> str:
     ('.1', '-.33333333333333', '-1.2345678901-12', '200000000000.')
     """
     # try the shortest text that gives the same number first: 0.1 rather than 0.10000000000000001
-    form = "e" if abs(value) < 1e-3 else "g"
-    for text in (repr(value), *(f"{value:.{digits}{form}}" for digits in range(15, 8, -1))):
-        mantissa, _, exponent = text.partition("e")
-        sign, mantissa = ("-", mantissa[1:]) if mantissa[0] == "-" else ("", mantissa)
-        if "." not in mantissa:
-            mantissa += "."
-        elif mantissa.endswith(".0"):
-            mantissa = mantissa[:-1]
-        if mantissa.startswith("0.") and mantissa != "0.":
-            mantissa = mantissa[1:]
-        short = sign + mantissa + (f"{int(exponent):+d}" if exponent else "")
-        if len(short) <= 16:
-            return short
+    presentation = "e" if abs(value) < 1e-3 else "g"
+    candidates = [repr(value), *(f"{value:.{digits}{presentation}}" for digits in range(15, 8, -1))]
+    for candidate in candidates:
+        text = _in_nastran_style(candidate)
+        if len(text) <= 16:
+            return text
     raise AssertionError(f"{value} needs more than 16 characters")
 
 
+def _in_nastran_style(text: str) -> str:
+    """Return the text of a number with a point, no superfluous zeros, and no letter e."""
+    mantissa, _, exponent = text.partition("e")
+    sign = ""
+    if mantissa[0] == "-":
+        sign = "-"
+        mantissa = mantissa[1:]
+    if "." not in mantissa:
+        mantissa += "."
+    elif mantissa.endswith(".0"):
+        mantissa = mantissa[:-1]
+    if mantissa.startswith("0.") and mantissa != "0.":
+        mantissa = mantissa[1:]
+    return sign + mantissa + (f"{int(exponent):+d}" if exponent else "")
+
+
 def _card(name: str, numbers: Sequence[int]) -> Iterator[str]:
-    for start in range(0, len(numbers), 8):
-        yield f"{name if start == 0 else '+':8}" + "".join(
-            f"{number:8d}" for number in numbers[start : start + 8]
-        )
+    """Yield the lines of a card in small fields."""
+    for start in range(0, len(numbers), _FIELDS_OF_LINE):
+        label = name if start == 0 else "+"
+        fields = [f"{number:8d}" for number in numbers[start : start + _FIELDS_OF_LINE]]
+        yield f"{label:8}" + "".join(fields)
 
 
 def _constraint(equation: Sequence[tuple[int, int, float]]) -> Iterator[str]:
-    """Yield the lines of a multipoint constraint in large fields, two terms to each pair
-    of lines.
-    """
+    """Yield the lines of a multipoint constraint in large fields, two terms to a pair of lines."""
     for start in range(0, len(equation), 2):
         terms = [
-            f"{node:16d}{axis:16d}{nastran_number(value):>16}"
-            for node, axis, value in equation[start : start + 2]
+            f"{node:16d}{axis:16d}{nastran_number(coefficient):>16}"
+            for node, axis, coefficient in equation[start : start + 2]
         ]
         yield f"MPC*    {_JOINTS:16d}{terms[0]}" if start == 0 else f"*       {'':16}{terms[0]}"
         yield f"*       {terms[1]}" if len(terms) > 1 else "*"
 
 
 def _set(number: int, nodes: Integers) -> Iterator[str]:
-    """Yield the lines of a SET of case control; runs of consecutive numbers are written
-    as ranges (THRU).
+    """Yield the lines of a SET of case control.
+
+    Runs of more than two consecutive numbers are written as ranges (THRU).
     """
     runs = np.split(nodes, np.flatnonzero(np.diff(nodes) != 1) + 1)
     items = [
         f"{run[0]} THRU {run[-1]}" if len(run) > 2 else ", ".join(map(str, run)) for run in runs
     ]
     for start in range(0, len(items), 3):
-        last = start + 3 >= len(items)
-        yield (
-            (f"SET {number} = " if start == 0 else "    ")
-            + ", ".join(items[start : start + 3])
-            + ("" if last else ",")
-        )
+        label = f"SET {number} = " if start == 0 else "    "
+        end = "" if start + 3 >= len(items) else ","
+        yield label + ", ".join(items[start : start + 3]) + end
 
 
 def _one_line(text: str) -> str:

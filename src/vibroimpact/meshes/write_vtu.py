@@ -43,8 +43,7 @@ _TYPES = {
 def write_vtu(
     mesh: Mesh, path: str | PathLike[str], point_data: Mapping[str, ArrayLike] | None = None
 ) -> None:
-    """Write a mesh, and values at its nodes, as a VTK unstructured grid (.vtu), which ParaView
-    opens.
+    """Write a mesh, and values at its nodes, as a VTK unstructured grid (.vtu) for ParaView.
 
     Each plate element becomes four biquadratic quadrilaterals.
 
@@ -77,36 +76,31 @@ def write_vtu(
         name: checked_values(name, data, len(mesh.nodes))
         for name, data in (point_data or {}).items()
     }
-    write_text_file(
-        path, vtu_text(grid_text(np.asarray(mesh.nodes, dtype=float), *cells_of(mesh)), values)
-    )
+    grid = grid_text(np.asarray(mesh.nodes, dtype=float), *cells_of(mesh))
+    write_text_file(path, vtu_text(grid, values))
 
 
 def cells_of(mesh: Mesh) -> tuple[Integers, Integers, NDArray[np.uint8]]:
     """Return the cells of a mesh as VTK arrays: connectivity, offsets and cell types."""
-    cells: list[tuple[int, Integers]] = [
-        (_CELLS[block.kind], _cell_nodes(block)) for block in mesh.blocks
-    ]
-    sizes = np.concatenate(
-        [np.zeros(0, dtype=np.int64), *(np.full(len(nodes), nodes.shape[1]) for _, nodes in cells)]
-    )
-    nodes = np.concatenate([np.zeros(0, dtype=np.int64), *(nodes.ravel() for _, nodes in cells)])
-    types = np.concatenate(
-        [
-            np.zeros(0, dtype=np.uint8),
-            *(np.full(len(nodes), cell, dtype=np.uint8) for cell, nodes in cells),
-        ]
-    )
-    return nodes, np.cumsum(sizes), types
+    # empty arrays first, for a mesh without blocks
+    connectivity = [np.zeros(0, dtype=np.int64)]
+    sizes = [np.zeros(0, dtype=np.int64)]
+    types = [np.zeros(0, dtype=np.uint8)]
+    for block in mesh.blocks:
+        nodes = _cell_nodes(block)
+        connectivity.append(nodes.ravel())
+        sizes.append(np.full(len(nodes), nodes.shape[1]))
+        types.append(np.full(len(nodes), _CELLS[block.kind], dtype=np.uint8))
+    return np.concatenate(connectivity), np.cumsum(np.concatenate(sizes)), np.concatenate(types)
 
 
 def _cell_nodes(block: ElementBlock) -> Integers:
     """Return the nodes of the cells of a block."""
     if block.kind == "quad25":
         return nine_node_shells(block.connectivity)
-    return (
-        block.connectivity[:, :_PYRAMID_NODES] if block.kind == "pyramid14" else block.connectivity
-    )
+    if block.kind == "pyramid14":
+        return block.connectivity[:, :_PYRAMID_NODES]
+    return block.connectivity
 
 
 def grid_text(
@@ -115,8 +109,9 @@ def grid_text(
     ends: NDArray[np.integer],
     types: NDArray[np.uint8],
 ) -> str:
-    """Return the points and cells of a .vtu file, with all that comes before them; each
-    array is written with its own precision.
+    """Return the points and cells of a .vtu file, with all that comes before them.
+
+    Each array is written with its own precision.
     """
     rows = [
         '<?xml version="1.0"?>',
@@ -137,8 +132,9 @@ def grid_text(
 
 
 def vtu_text(grid: str, point_data: Mapping[str, NDArray[np.floating]]) -> str:
-    """Return the content of a .vtu file from its points and cells, by `grid_text`, and
-    the values at its points.
+    """Return the content of a .vtu file from its points and cells, and values at its points.
+
+    The former are those of `grid_text`.
     """
     rows = [
         grid,

@@ -52,14 +52,16 @@ class FrictionLaw(Parameters):
         return np.zeros_like(force)
 
     def twisting_moment(self, force: Floats) -> Floats:
-        """Return the moment of full twisting under a normal force [N m]: 3 pi/16 mu F a
-        (Johnson 1985, section 7.2; Lubkin 1951).
+        """Return the moment of full twisting under a normal force [N m].
+
+        It is 3 pi/16 mu F a (Johnson 1985, section 7.2; Lubkin 1951).
         """
         return np.asarray(FULL_TWISTING * self.coefficient * force * self.contact_radius(force))
 
     def twisting_part(self, force: Floats, friction: Floats, slip: Floats, spin: Floats) -> Floats:
-        """Return the part of the moment of full twisting that a contact has beside its friction
-        [-], of the shape of `force`.
+        """Return the share of the moment of full twisting that a contact has [-].
+
+        The rest is taken by its friction. The result has the shape of `force`.
 
         It is `contact.friction.twisting.twisting_share`, of a contact of the radius that the normal
         force makes.
@@ -98,9 +100,12 @@ class FrictionLaw(Parameters):
         ... ).tolist()
         [1.0, 0.9814, 0.0025]
         """
-        most = self.coefficient * force
-        used = np.divide(friction, most, out=np.ones_like(force), where=most > 0.0)
-        return np.asarray(twisting_share(self.contact_radius(force) * spin, slip, used))
+        sliding_force = self.coefficient * force
+        used = np.divide(
+            friction, sliding_force, out=np.ones_like(force), where=sliding_force > 0.0
+        )
+        rim_speed = self.contact_radius(force) * spin
+        return np.asarray(twisting_share(rim_speed, slip, used))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -124,8 +129,9 @@ class ImpulsiveFriction(FrictionLaw):
         raise NotImplementedError
 
     def force(self, slip: Floats, normal_force: Floats) -> Floats:
-        """Return the friction force against the slip [N]; none where the law tells the
-        impulse alone.
+        """Return the friction force against the slip [N].
+
+        It is zero where the law gives the impulse alone.
         """
         return np.zeros_like(slip)
 
@@ -134,19 +140,18 @@ class ImpulsiveFriction(FrictionLaw):
 class CompliantFriction(FrictionLaw):
     r"""Base of the laws with the tangential compliance of elastic half-spaces.
 
-    The normal force F acts on a Hertzian contact, whose depth under it is :math:`D = [3F / (4 E^*
-    \sqrt R)]^{2/3}`. Tangential
-    displacements s are counted in :math:`\kappa = \mu E^* / G^*`, and the friction force is
-    :math:`2 G^* \sqrt R\, \kappa I`, at most
-    :math:`\mu F`, where :math:`I = \tfrac23 D^{3/2}`.
+    The normal force F acts on a Hertzian contact, whose depth under it is
+    :math:`D = [3F / (4 E^* \sqrt R)]^{2/3}`. Tangential displacements s are counted in
+    :math:`\kappa = \mu E^* / G^*`, and the friction force is :math:`2 G^* \sqrt R\, \kappa I`, at
+    most :math:`\mu F`, where :math:`I = \tfrac23 D^{3/2}`.
     """
 
     stretching: ClassVar[tuple[int, int]] = (0, 0)
     r"""Powers :math:`\gamma` of the contact radius in the integral of a contact that sticks, as it
     grows and as it shrinks.
 
-    With the radius over the root of R, a, that is :math:`I = a^\gamma z`, where :math:`\dot z =
-    a^{1 - \gamma} \dot s`.
+    With a the radius over the root of R, this is :math:`I = a^\gamma z`, where
+    :math:`\dot z = a^{1 - \gamma} \dot s`.
     """
 
     slips_at_rim: ClassVar[bool] = False

@@ -1,5 +1,6 @@
-"""The IMPACT function of MSC Adams: power-law spring and a dashpot that grows with the
-penetration.
+"""The IMPACT function of MSC Adams.
+
+It is a power-law spring and a dashpot that grows with the penetration.
 """
 
 from __future__ import annotations
@@ -21,8 +22,10 @@ from vibroimpact.contact.power_law import PowerLaw, power
 def _forces(
     delta: Array, delta_dot: Array, approach_speed: Array, coefficients: Any
 ) -> tuple[Array, Array]:
-    stiffness, exponent = coefficients[0], coefficients[1]
-    damping_max, full_damping_penetration = coefficients[2], coefficients[3]
+    stiffness = coefficients[0]
+    exponent = coefficients[1]
+    damping_max = coefficients[2]
+    full_damping_penetration = coefficients[3]
     s = np.minimum(delta / full_damping_penetration, 1.0)
     damping = damping_max * (s * s * (3.0 - 2.0 * s))
     return stiffness * power(delta, exponent), damping * delta_dot

@@ -18,18 +18,19 @@ from vibroimpact.contact.power_law import spring_energies
 def _forces(
     delta: Array, delta_dot: Array, approach_speed: Array, coefficients: Any
 ) -> tuple[Array, Array]:
-    penalty, loss = coefficients[0], coefficients[1]
+    penalty = coefficients[0]
+    loss = coefficients[1]
     force = penalty * delta
     return force, -loss * force
 
 
 @dataclass(frozen=True, kw_only=True)
 class AdamsPoisson(TwoPhaseLaw):
-    r"""Penalty spring with Poisson's hypothesis: the impulse of restitution is e times that of
-    compression.
+    r"""Penalty spring with Poisson's hypothesis.
+
+    The impulse of restitution is e times that of compression.
 
     .. math::
-
         F = p\, \delta \ \text{up to the first turn},\qquad F = e^2 p\, \delta \ \text{after it}
 
     Notes
@@ -77,8 +78,9 @@ class AdamsPoisson(TwoPhaseLaw):
 
     @cached_property
     def coefficients(self) -> tuple[Array, ...]:
-        """Penalty, and the part of the force that is lost by phase: 1 - e^2 once the
-        indentation has turned, nothing before.
+        """Penalty, and the lost share of the force by phase.
+
+        It is 1 - e^2 once the indentation has turned, and nothing before.
         """
         return self.coefficients_by_phase(
             self.penalty, 0.0, 1.0 - self.restitution * self.restitution

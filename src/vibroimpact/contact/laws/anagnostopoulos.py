@@ -15,7 +15,6 @@ class Anagnostopoulos(RestitutionForMassLaw, KelvinVoigtLaw):
     r"""Linear viscoelastic impact element of earthquake engineering (Anagnostopoulos 1988).
 
     .. math::
-
         F = k \delta + 2 \xi \sqrt{k m}\, \dot\delta,\qquad \xi = -\ln e / \sqrt{\pi^2 + \ln^2 e}
 
     Notes

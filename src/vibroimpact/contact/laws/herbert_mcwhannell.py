@@ -13,7 +13,6 @@ class HerbertMcWhannell(HystereticLaw):
     r"""Hertz's force with hysteretic damping (Herbert and McWhannell 1977).
 
     .. math::
-
         F = K \delta^n \left[1 + \frac{6 (1 - e)}{(2 e - 1)^2 + 3}\, \dot\delta /
         \dot\delta_0\right]
 

@@ -19,7 +19,8 @@ from vibroimpact.contact.power_law import PowerLaw, power
 def _forces(
     delta: Array, delta_dot: Array, approach_speed: Array, coefficients: Any
 ) -> tuple[Array, Array]:
-    stiffness, exponent = coefficients[0], coefficients[1]
+    stiffness = coefficients[0]
+    exponent = coefficients[1]
     return stiffness * power(delta, exponent), 0.0 * delta
 
 

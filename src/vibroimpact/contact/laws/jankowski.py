@@ -59,8 +59,9 @@ class Jankowski(RestitutionForMassLaw, SphereLaw, TwoPhaseLaw):
 
     @cached_property
     def coefficients(self) -> tuple[Array, ...]:
-        """Stiffness, and the dashpot constant, which is zero once the indentation has
-        turned, by phase.
+        """Stiffness, and the dashpot constant by phase.
+
+        The latter is zero once the indentation has turned.
         """
         e = self.restitution
         ratio = 4.5 * np.sqrt(5.0) * (1.0 - e * e) / (e * (e * (9.0 * np.pi - 16.0) + 16.0))

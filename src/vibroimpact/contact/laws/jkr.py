@@ -16,7 +16,6 @@ class JKR(AdhesiveLaw):
     r"""Elastic sphere with adhesion (Johnson, Kendall and Roberts 1971).
 
     .. math::
-
         F = \frac{4 E^* a^3}{3 R} - \sqrt{8 \pi w E^* a^3},\qquad
         \delta = \frac{a^2}{R} - \sqrt{\frac{2 \pi w a}{E^*}}
 
@@ -59,8 +58,6 @@ class JKR(AdhesiveLaw):
     )
 
     def closed_form_restitution(self, mass: Array, speed: Array) -> Array:
-        r"""Return :math:`\sqrt{1 - v_s^2/v^2}`, with the sticking speed :math:`v_s`,
-        below which it is zero.
-        """
+        r"""Return :math:`\sqrt{1 - v_s^2/v^2}`, zero below the sticking speed :math:`v_s`."""
         lost = self.elastic_energy(self.release_level) / (0.5 * mass * speed * speed)
         return np.sqrt(np.maximum(1.0 - lost, 0.0))

@@ -19,7 +19,8 @@ from vibroimpact.contact.power_law import SphereLaw
 def _forces(
     delta: Array, delta_dot: Array, approach_speed: Array, coefficients: Any
 ) -> tuple[Array, Array]:
-    stiffness, dashpot = coefficients[0], coefficients[1]
+    stiffness = coefficients[0]
+    dashpot = coefficients[1]
     root = np.sqrt(delta)
     return stiffness * (delta * root), dashpot * root * delta_dot
 
@@ -29,7 +30,6 @@ class KuwabaraKono(ViscoelasticLaw, SphereLaw):
     r"""Viscoelastic spheres (Kuwabara and Kono 1987; Brilliantov and others 1996).
 
     .. math::
-
         F = \max\left(0,\ K \left[\delta^{3/2} + \tfrac32 A \sqrt\delta\, \dot\delta\right]\right)
 
     Notes

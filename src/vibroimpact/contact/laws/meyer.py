@@ -1,5 +1,6 @@
-"""Meyer's law: sphere whose contact pressure rises as a power of the contact radius
-between first yield and full plasticity.
+"""Meyer's law: contact pressure that rises as a power of the contact radius.
+
+It does so between first yield and full plasticity of a sphere.
 """
 
 from __future__ import annotations
@@ -18,21 +19,23 @@ from vibroimpact.contact.parameters import parameter
 from vibroimpact.contact.power_law import power
 from vibroimpact.contact.yielding_sphere import YieldingSphereLaw, yielding_sphere
 
-# largest pressure at first yield, and mean pressure when fully plastic, over the yield strength
-_AT_YIELD, _FULLY_PLASTIC = 1.6, 2.8
+_AT_YIELD = 1.6  # largest pressure at first yield, over the yield strength
+_FULLY_PLASTIC = 2.8  # mean pressure when fully plastic, over the yield strength
 # ratio of the mean pressures, which is two thirds of the largest one at first yield
 _RISE = 1.5 * _FULLY_PLASTIC / _AT_YIELD
-# convergence is quadratic: the next step would be below rounding
-_MOST_ITERATIONS, _CONVERGED = 60, 1e-8
+_MOST_ITERATIONS = 60
+_CONVERGED = 1e-8  # relative step: convergence is quadratic, and the next would be below rounding
 
 
 def _relative_radius_of_float(
     relative_indentation: float, meyer_index: float, full_radius: float
 ) -> float:
-    depth, exponent = 2.0 * relative_indentation, meyer_index - 1.0
-    full = 0.5 * (math.sqrt(_RISE * _RISE + 4.0 * depth) - _RISE)
-    if full > full_radius:
-        return full
+    """Return what `_relative_radius` does, of floats."""
+    depth = 2.0 * relative_indentation
+    exponent = meyer_index - 1.0
+    x_at_full_pressure = 0.5 * (math.sqrt(_RISE * _RISE + 4.0 * depth) - _RISE)
+    if x_at_full_pressure > full_radius:
+        return x_at_full_pressure
     x = 0.5 * (math.sqrt(1.0 + 4.0 * depth) - 1.0)
     for _ in range(_MOST_ITERATIONS):
         rising = x**exponent
@@ -45,13 +48,15 @@ def _relative_radius_of_float(
 
 @scalar_as(_relative_radius_of_float)
 def _relative_radius(relative_indentation: Array, meyer_index: Array, full_radius: Array) -> Array:
-    """Return the contact radius relative to that at yield [-], at indentations relative
-    to that at yield [-], at least one.
+    """Return the contact radius relative to that at yield [-].
+
+    Indentations are relative to that at yield, and at least one.
     """
-    depth, exponent = 2.0 * relative_indentation, meyer_index - 1.0
-    # where the pressure is full: x^2 + _RISE x
-    full = 0.5 * (np.sqrt(_RISE * _RISE + 4.0 * depth) - _RISE)
-    # where it does not rise, and not less where it does
+    depth = 2.0 * relative_indentation
+    exponent = meyer_index - 1.0
+    # where the pressure is full, twice the depth is x^2 + _RISE x
+    x_at_full_pressure = 0.5 * (np.sqrt(_RISE * _RISE + 4.0 * depth) - _RISE)
+    # where it rises, x^2 + x^(n-1): at least the root of x^2 + x, that of a constant pressure
     x = 0.5 * (np.sqrt(1.0 + 4.0 * depth) - 1.0)
     # x^2 + x^(n-1) is convex: Newton's method goes down to the root
     for _ in range(_MOST_ITERATIONS):
@@ -60,13 +65,14 @@ def _relative_radius(relative_indentation: Array, meyer_index: Array, full_radiu
         x = x - step
         if np.all(np.abs(step) <= _CONVERGED * x):
             break
-    return np.where(full > full_radius, full, np.maximum(x, 1.0))
+    return np.where(x_at_full_pressure > full_radius, x_at_full_pressure, np.maximum(x, 1.0))
 
 
 @scalar
 def _plastic_force_at(x: Array, coefficients: Any) -> Array:
     """Return the loading force [N] at a contact radius relative to that at yield [-]."""
-    yield_force, meyer_index = coefficients[10], coefficients[11]
+    yield_force = coefficients[10]
+    meyer_index = coefficients[11]
     return yield_force * np.minimum(power(x, meyer_index), _RISE * x * x)
 
 
@@ -79,41 +85,44 @@ def _plastic_force(delta: Array, coefficients: Any) -> Array:
 
 @scalar
 def _plastic_state(delta: Array, coefficients: Any) -> tuple[Array, Array, Array]:
-    yield_indentation, effective_radius, yield_force = (
-        coefficients[6],
-        coefficients[9],
-        coefficients[10],
-    )
-    n, full_radius = coefficients[11], coefficients[12]
+    yield_indentation = coefficients[6]
+    effective_radius = coefficients[9]
+    yield_force = coefficients[10]
+    n = coefficients[11]
+    full_radius = coefficients[12]
     x = _relative_radius(delta / yield_indentation, n, full_radius)
-    rising = np.minimum(x, full_radius)
-    work = (rising ** (n + 2.0) - 1.0) / (n + 2.0) + 0.5 * (n - 1.0) * (
-        rising ** (2.0 * n - 1.0) - 1.0
+    # the integral of the force over the indentation, over that of both at yield. While the pressure
+    # rises, the force is x^n and twice the indentation x^2 + x^(n-1), from x = 1 on
+    x_rising = np.minimum(x, full_radius)
+    work = (x_rising ** (n + 2.0) - 1.0) / (n + 2.0) + 0.5 * (n - 1.0) * (
+        x_rising ** (2.0 * n - 1.0) - 1.0
     ) / (2.0 * n - 1.0)
-    square, rising_square = x * x, rising * rising
-    full = (square * square - rising_square * rising_square) / 4.0 + _RISE * (
-        square * x - rising_square * rising
+    # where the pressure is full, they are _RISE x^2 and x^2 + _RISE x, from the full radius on
+    square = x * x
+    square_rising = x_rising * x_rising
+    work_at_full_pressure = (square * square - square_rising * square_rising) / 4.0 + _RISE * (
+        square * x - square_rising * x_rising
     ) / 6.0
-    work = work + _RISE * full
-    radius = x * np.sqrt(effective_radius * yield_indentation)
-    return _plastic_force_at(x, coefficients), yield_force * yield_indentation * work, radius
+    work = work + _RISE * work_at_full_pressure
+    contact_radius = x * np.sqrt(effective_radius * yield_indentation)
+    work_beyond_yield = yield_force * yield_indentation * work
+    return _plastic_force_at(x, coefficients), work_beyond_yield, contact_radius
 
 
 @scalar
 def _levels(coefficients: Any) -> Levels:
-    loaded_to, touch_level, yield_indentation, full_radius = (
-        coefficients[0],
-        coefficients[1],
-        coefficients[6],
-        coefficients[12],
-    )
-    at_full = yield_indentation * 0.5 * full_radius * (full_radius + _RISE)
+    loaded_to = coefficients[0]
+    touch_level = coefficients[1]
+    yield_indentation = coefficients[6]
+    full_radius = coefficients[12]
+    # the force is not smooth at first yield, nor where the pressure becomes full
+    full_plasticity = yield_indentation * 0.5 * full_radius * (full_radius + _RISE)
     return (
         touch_level,
         touch_level,
         loaded_to,
         np.maximum(yield_indentation, loaded_to),
-        np.maximum(at_full, loaded_to),
+        np.maximum(full_plasticity, loaded_to),
     )
 
 
@@ -125,7 +134,6 @@ class Meyer(YieldingSphereLaw):
     full plasticity:
 
     .. math::
-
         \bar p = \min\left(1.07\, Y (a/a_y)^{n-2},\; 2.8\, Y\right),\qquad F = \pi a^2 \bar p,\qquad
               \delta = \frac{a^2}{2 R} + \frac{3 F}{8 E^* a}
 
@@ -215,8 +223,9 @@ class Meyer(YieldingSphereLaw):
 
     @property
     def _full_radius(self) -> Array:
-        """Contact radius at full plasticity, relative to that at yield [-]; infinite for
-        a pressure that does not rise.
+        """Contact radius at full plasticity, relative to that at yield [-].
+
+        It is infinite for a pressure that does not rise.
         """
         with np.errstate(divide="ignore", over="ignore"):
             return _RISE ** np.divide(1.0, self.meyer_index - 2.0)

@@ -1,5 +1,6 @@
-"""Elastic-plastic sphere of a power-law-hardening material: Thornton's law with the
-pressure of Storakers and others.
+"""Elastic-plastic sphere of a power-law-hardening material.
+
+It is Thornton's law with the pressure of Storakers and others.
 """
 
 from __future__ import annotations
@@ -19,27 +20,31 @@ from vibroimpact.contact.yielding_sphere import YieldingSphereLaw, yielding_sphe
 
 @scalar
 def _plastic_force(delta: Array, coefficients: Any) -> Array:
-    yield_force, plastic_stiffness = coefficients[10], coefficients[11]
-    exponent, power_at_yield = coefficients[12], coefficients[13]
+    yield_force = coefficients[10]
+    plastic_stiffness = coefficients[11]
+    exponent = coefficients[12]
+    power_at_yield = coefficients[13]
     return yield_force + plastic_stiffness * (power(delta, exponent) - power_at_yield)
 
 
 @scalar
 def _plastic_state(delta: Array, coefficients: Any) -> tuple[Array, Array, Array]:
-    yield_indentation, effective_radius = coefficients[6], coefficients[9]
-    yield_force, plastic_stiffness = coefficients[10], coefficients[11]
-    exponent, power_at_yield, next_power_at_yield = (
-        coefficients[12],
-        coefficients[13],
-        coefficients[14],
-    )
-    constant = yield_force - plastic_stiffness * power_at_yield
-    rise = exponent + 1.0
+    yield_indentation = coefficients[6]
+    effective_radius = coefficients[9]
+    yield_force = coefficients[10]
+    plastic_stiffness = coefficients[11]
+    exponent = coefficients[12]
+    power_at_yield = coefficients[13]
+    next_power_at_yield = coefficients[14]
+    # the integral of F_y + k (delta^n - delta_y^n) from yield on
+    constant_force = yield_force - plastic_stiffness * power_at_yield
+    next_exponent = exponent + 1.0
     work = (
-        constant * (delta - yield_indentation)
-        + plastic_stiffness * (power(delta, rise) - next_power_at_yield) / rise
+        constant_force * (delta - yield_indentation)
+        + plastic_stiffness * (power(delta, next_exponent) - next_power_at_yield) / next_exponent
     )
-    return _plastic_force(delta, coefficients), work, np.sqrt(effective_radius * delta)
+    contact_radius = np.sqrt(effective_radius * delta)
+    return _plastic_force(delta, coefficients), work, contact_radius
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -50,7 +55,6 @@ class Storakers(YieldingSphereLaw):
     contact, the mean pressure
 
     .. math::
-
         p = 3 \sigma_0 \left(\frac{a}{6 R}\right)^{1/m},\qquad
         \sigma_0 = Y \left(\frac{E^*}{Y}\right)^{1/m}
 
@@ -128,31 +132,36 @@ class Storakers(YieldingSphereLaw):
     @property
     def yield_indentation(self) -> Array:
         """Indentation at which Hertz's force and the plastic force have the same slope [m]."""
-        slope = self._power * self._plastic_stiffness
-        return (slope / (1.5 * self.stiffness)) ** (1.0 / (1.5 - self._power))
+        slope = self._exponent * self._plastic_stiffness
+        return (slope / (1.5 * self.stiffness)) ** (1.0 / (1.5 - self._exponent))
 
     @property
     def plastic_coefficients(self) -> tuple[Array, ...]:
-        """The force at yield, the stiffness of the plastic force, its exponent n, and the
-        powers n and n + 1 of the yield indentation.
+        """Force at yield, plastic stiffness, exponent n, and powers of the yield indentation.
+
+        The powers are n and n + 1.
         """
-        at_yield, exponent = self.yield_indentation, self._power
-        yield_force = self.stiffness * at_yield**1.5
+        yield_indentation = self.yield_indentation
+        exponent = self._exponent
+        yield_force = self.stiffness * yield_indentation**1.5
         return (
             yield_force,
             self._plastic_stiffness,
             exponent,
-            at_yield**exponent,
-            at_yield ** (exponent + 1.0),
+            yield_indentation**exponent,
+            yield_indentation ** (exponent + 1.0),
         )
 
     @property
-    def _power(self) -> Array:
+    def _exponent(self) -> Array:
+        """Exponent n of the plastic force, 1 + 1/(2 m) [-]."""
         return 1.0 + 0.5 / self.hardening_exponent
 
     @property
     def _plastic_stiffness(self) -> Array:
-        radius, hardening = self.effective_radius, 1.0 / self.hardening_exponent
+        """Stiffness of the plastic force, pi R p(delta) over delta^(1/2m) [N/m^n]."""
+        radius = self.effective_radius
+        hardening = 1.0 / self.hardening_exponent
         flow_stress = (
             self.yield_strength * (self.effective_modulus / self.yield_strength) ** hardening
         )

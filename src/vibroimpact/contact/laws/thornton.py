@@ -16,16 +16,21 @@ from vibroimpact.contact.yielding_sphere import YieldingSphereLaw, yielding_sphe
 
 @scalar
 def _plastic_force(delta: Array, coefficients: Any) -> Array:
-    yield_indentation, yield_force, slope = coefficients[6], coefficients[10], coefficients[11]
+    yield_indentation = coefficients[6]
+    yield_force = coefficients[10]
+    slope = coefficients[11]
     return yield_force + slope * (delta - yield_indentation)
 
 
 @scalar
 def _plastic_state(delta: Array, coefficients: Any) -> tuple[Array, Array, Array]:
-    yield_indentation, effective_radius = coefficients[6], coefficients[9]
-    yield_force, slope = coefficients[10], coefficients[11]
+    yield_indentation = coefficients[6]
+    effective_radius = coefficients[9]
+    yield_force = coefficients[10]
+    slope = coefficients[11]
     work = (yield_force + 0.5 * slope * (delta - yield_indentation)) * (delta - yield_indentation)
-    return _plastic_force(delta, coefficients), work, np.sqrt(effective_radius * delta)
+    contact_radius = np.sqrt(effective_radius * delta)
+    return _plastic_force(delta, coefficients), work, contact_radius
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -97,6 +102,6 @@ class Thornton(YieldingSphereLaw):
     @property
     def plastic_coefficients(self) -> tuple[Array, ...]:
         """The force at yield and the slope of the plastic force."""
-        at_yield = self.yield_indentation
-        yield_force = self.stiffness * at_yield * np.sqrt(at_yield)
+        yield_indentation = self.yield_indentation
+        yield_force = self.stiffness * yield_indentation * np.sqrt(yield_indentation)
         return yield_force, np.pi * self.effective_radius * self.yield_pressure

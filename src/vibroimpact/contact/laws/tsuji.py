@@ -1,5 +1,6 @@
-"""Tsuji and others' law: Hertz's force with a dashpot that makes the restitution
-independent of the speed.
+"""Tsuji and others' law: Hertz's force with a dashpot.
+
+The dashpot makes the restitution independent of the speed.
 """
 
 from __future__ import annotations
@@ -22,8 +23,7 @@ from vibroimpact.contact.power_law import SphereLaw, fourth_root_forces
 
 @dataclass(frozen=True, kw_only=True)
 class Tsuji(RestitutionForMassLaw, SphereLaw):
-    r"""Damped Hertz contact (Tsuji and others 1992), with the damping of Antypov and Elliott
-    (2011).
+    r"""Damped Hertz contact (Tsuji and others 1992; damping of Antypov and Elliott 2011).
 
     .. math:: F = K \delta^{3/2} + \alpha \sqrt{m K}\, \delta^{1/4}\, \dot\delta,
               \qquad \alpha = -\sqrt5 \ln e / \sqrt{\pi^2 + \ln^2 e}

@@ -21,7 +21,10 @@ def _loading_force(delta: Array, coefficients: Any) -> Array:
 
 @scalar
 def _loading_state(delta: Array, coefficients: Any) -> tuple[Array, Array, Array]:
-    stiffness, squared_restitution, stiffening = coefficients[6], coefficients[7], coefficients[8]
+    stiffness = coefficients[6]  # k1
+    squared_restitution = coefficients[7]
+    stiffening = coefficients[8]
+    # F_m/k2, with k2 = k1/e^2 or k1 + S F_m
     recovery = squared_restitution * delta / (1.0 + stiffening * delta)
     return stiffness * delta, 0.5 * stiffness * delta * delta, recovery
 
@@ -110,19 +113,18 @@ class WaltonBraun(ElasticPlasticLaw):
 
     @property
     def loading_coefficients(self) -> tuple[Array, ...]:
-        """Stiffness of loading, square of the restitution, and stiffening: one or zero
-        where they are not given.
+        """Stiffness of loading, square of the restitution, and stiffening.
+
+        Where they are not given, the second is one, and the third zero.
         """
         squared_restitution = 1.0 if self.restitution is None else self.restitution**2
-        return (
-            self.stiffness,
-            squared_restitution,
-            0.0 if self.stiffening is None else self.stiffening,
-        )
+        stiffening = 0.0 if self.stiffening is None else self.stiffening
+        return self.stiffness, squared_restitution, stiffening
 
     def closed_form_restitution(self, mass: Array, speed: Array) -> Array:
-        """Return the published restitution of a fresh contact, that of the energy balance
-        otherwise.
+        """Return the published restitution of a fresh contact.
+
+        That of a dented one follows from the energy balance.
         """
         if np.any(self.loaded_to):
             return super().closed_form_restitution(mass, speed)

@@ -1,5 +1,6 @@
-"""Qin and Lu's law (Qin Zhiying and Lu Qishao): Lankarani and Nikravesh's damping with a
-correction.
+"""Qin and Lu's law (Qin Zhiying and Lu Qishao).
+
+It is Lankarani and Nikravesh's damping with a correction.
 """
 
 from __future__ import annotations
@@ -17,7 +18,6 @@ class ZhiyingQishao(HystereticLaw):
     r"""Hertz's force with hysteretic damping (Qin and Lu 2006).
 
     .. math::
-
         F = K \delta^n \left[1 + \tfrac34 (1 - e^2)\, \mathrm{e}^{2 (1 - e)}\, \dot\delta /
         \dot\delta_0\right]
 

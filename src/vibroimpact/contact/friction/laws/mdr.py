@@ -9,8 +9,9 @@ from vibroimpact.contact.friction.law import CompliantFriction
 
 @dataclass(frozen=True, kw_only=True)
 class MDR(CompliantFriction):
-    r"""The contact of elastic spheres that sticks in its middle and slips at its rim, under any
-    history of both forces.
+    r"""Contact of elastic spheres that sticks in its middle and slips at its rim.
+
+    Both forces may have any history.
 
     .. math::
 

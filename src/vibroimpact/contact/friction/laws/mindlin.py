@@ -48,7 +48,6 @@ class MindlinRescale(Mindlin):
     r"""Mindlin's stiffness as a single spring, whose displacement shrinks with the contact.
 
     .. math::
-
         Q = 2 G^* a\, \xi,\qquad \dot\xi = \dot s + \xi\, \min(\dot a, 0) / a,\qquad Q \le \mu F
 
     Notes

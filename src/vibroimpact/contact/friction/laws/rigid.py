@@ -13,11 +13,12 @@ from vibroimpact.contact.parameters import parameter
 
 @dataclass(frozen=True, kw_only=True)
 class Rigid(ImpulsiveFriction):
-    r"""A coefficient of restitution of the slip, where the friction suffices, else sliding (Walton
-    1993).
+    r"""A coefficient of restitution of the slip, or sliding (Walton 1993).
+
+    The slip is reversed by the coefficient where the friction suffices; elsewhere the contact
+    slides.
 
     .. math::
-
         v_s' = -\beta_0 v_s \quad\text{or, if that takes more than}\ \mu J,\quad v_s' = v_s - \mu J
         / m_t
 
@@ -52,8 +53,9 @@ class Rigid(ImpulsiveFriction):
     source = "Walton 1993, in Particulate Two-Phase Flow, p. 884"
 
     def slip_after(self, slip: Floats, impulse: Floats, whole: Floats, mass: Floats) -> Floats:
-        """Return the slip of first touch, and after the whole impulse what friction has
-        made of it; see `ImpulsiveFriction`.
+        """Return the slip that friction has left; see `ImpulsiveFriction`.
+
+        It is the slip of first touch until the whole impulse has acted.
         """
         change = np.minimum(
             (1.0 + self.slip_restitution) * np.abs(slip), self.coefficient * whole / mass
