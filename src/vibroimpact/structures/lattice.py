@@ -34,8 +34,8 @@ def _tetrahedra(order: int) -> Integers:
             corners.append(corners[-1] + steps[axis])
         if np.linalg.det(np.array(corners[1:]) - corners[0]) < 0.0:  # for a positive volume
             corners[1], corners[2] = corners[2], corners[1]
-        points = reference @ (np.array(corners[1:]) - corners[0]) + corners[0]
-        tetrahedra.append(_brick_nodes_at(points))
+        edges = np.array(corners[1:], dtype=float) - corners[0]
+        tetrahedra.append(_brick_nodes_at(corners[0] + reference @ edges))
     return np.array(tetrahedra)
 
 

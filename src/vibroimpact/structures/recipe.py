@@ -333,15 +333,14 @@ def _normalised(recipe: Recipe) -> Recipe:
 
     For a free sphere it is that of unit radius, density and modulus, else the recipe itself.
     """
+    shape = recipe.shape
     reduction = recipe.reduction
-    is_free_sphere = isinstance(recipe.shape, SphereOfSolids) and not recipe.supports
-    if not is_free_sphere or reduction.modes is None:
+    if not isinstance(shape, SphereOfSolids) or recipe.supports or reduction.modes is None:
         return recipe
     # places that are given by x and y do not scale with the sphere
     if any(spot is not None for spot, _ in (*reduction.interface, *reduction.attachment)):
         return recipe
-    unit_sphere = replace(recipe.shape, radius=1.0)
-    return replace(recipe, shape=unit_sphere, density=1.0, youngs_modulus=1.0)
+    return replace(recipe, shape=replace(shape, radius=1.0), density=1.0, youngs_modulus=1.0)
 
 
 def _stored_model(
