@@ -55,8 +55,9 @@ class Air(Fluid):
 
 
 def check_thin(density: Array, of_sphere: Array, key: str = "") -> None:
-    """Raise InputError, with a key, unless air is so thin beside a sphere that drag is
-    what matters of it; densities [kg/m^3].
+    """Raise InputError, with a key, unless drag is what matters of air around a sphere.
+
+    Air must be thin beside it; densities are in kg/m^3.
     """
     part = float(np.max(density / of_sphere))
     if part > _DENSEST:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -20,11 +20,11 @@ if TYPE_CHECKING:  # a drop of rigid bodies does not load what vibrates
 
 @dataclass(frozen=True)
 class Bounce:
-    """A flight of some drops and the contact that follows it; arrays have one entry for each of
-    `drops` (b,).
+    """A flight of some drops and the contact that follows it.
 
-    `flight_end`: end of the flight [s]. `contact` and `conditions` belong to `contact_drops`; they
-    are None for a flight that ends the run and for an instantaneous law.
+    Arrays have one entry for each of `drops` (b,). `flight_end`: end of the flight [s]. `contact`
+    and `conditions` belong to `contact_drops`; they are None for a flight that ends the run and for
+    an instantaneous law.
     """
 
     drops: Indices
@@ -36,45 +36,42 @@ class Bounce:
     motions: tuple[FreeMotion, ...] = ()
     """Free motions of the bodies of each drop in flight, where a body vibrates."""
     oblique: tuple[Sphere, State] | None = None
-    """The spheres, and their motion along the plate at the start of the flight, where
-    they have any.
-    """
+    """The spheres, and any motion along the plate, at the start of the flight."""
     oblique_contacts: ObliqueContacts = ()
     ride: Ride | None = None
     """Rides of `contact_drops` on a shaken plate after an impact of a law without a force."""
 
     def of(self, drop: int) -> Bounce | None:
         """Return the bounce of one drop, or None if the drop is not in it."""
-        here = np.flatnonzero(self.drops == drop)
-        if not here.size:
+        index = np.flatnonzero(self.drops == drop)
+        if not index.size:
             return None
-        one, alone = np.zeros(1, dtype=np.intp), self.flight.take(here)
-        contact_here = np.flatnonzero(self.contact_drops == drop)
-        motions = self.motions[int(here[0]) : int(here[0]) + 1]
-        oblique = (
-            None
-            if self.oblique is None
-            else (self.oblique[0].take(here), self.oblique[1].take(here))
+        contact_index = np.flatnonzero(self.contact_drops == drop)
+        first = np.zeros(1, dtype=np.intp)  # the drop alone is the first one
+        oblique = None
+        if self.oblique is not None:
+            sphere, state = self.oblique
+            oblique = sphere.take(index), state.take(index)
+        oblique_contacts = []
+        for positions, contact in self.oblique_contacts:
+            for position in np.flatnonzero(np.isin(positions, contact_index)).tolist():
+                oblique_contacts.append((first, contact.of(position)))
+        alone = Bounce(
+            drops=first,
+            flight=self.flight.take(index),
+            flight_end=self.flight_end[index],
+            contact_drops=first[: contact_index.size],
+            motions=self.motions[int(index[0]) : int(index[0]) + 1],
+            oblique=oblique,
+            oblique_contacts=tuple(oblique_contacts),
         )
-        along = tuple(
-            (one, part.of(place))
-            for places, part in self.oblique_contacts
-            for place in np.flatnonzero(np.isin(places, contact_here)).tolist()
-        )
-        if self.contact is None or self.conditions is None or not contact_here.size:
-            ride = (
-                self.ride.of(int(contact_here[0]))
-                if self.ride is not None and contact_here.size
-                else None
+        if not contact_index.size:
+            return alone
+        if self.contact is not None and self.conditions is not None:
+            return replace(
+                alone,
+                contact=self.contact.of(int(contact_index[0])),
+                conditions=self.conditions.take(contact_index),
             )
-            here_alone = one, alone, self.flight_end[here], one[: contact_here.size]
-            return Bounce(
-                *here_alone, motions=motions, oblique=oblique, oblique_contacts=along, ride=ride
-            )
-        contact, conditions = (
-            self.contact.of(int(contact_here[0])),
-            self.conditions.take(contact_here),
-        )
-        return Bounce(
-            one, alone, self.flight_end[here], one, contact, conditions, motions, oblique, along
-        )
+        ride = None if self.ride is None else self.ride.of(int(contact_index[0]))
+        return replace(alone, ride=ride)

@@ -13,8 +13,9 @@ RELATIVE_CHANGE = 1e-9
 
 
 def change_by_impact(impacts: Mapping[str, Floats], tolerance: float) -> Floats:
-    """Return the relative change of each impact for one of 1e-9 in the drop [-]; 0 where nothing
-    vibrates.
+    """Return the relative change of each impact for one of 1e-9 in the drop [-].
+
+    It is 0 where nothing vibrates.
 
     The integration error, of the relative size of the tolerance, grows likewise: a tolerance above
     1e-9 takes the place of it.

@@ -1,5 +1,4 @@
-r"""Radau collocation over one stretch of contact, in a time variable in which the contact force is
-smooth.
+r"""Radau collocation over one stretch of contact, in a time variable in which the force is smooth.
 
 A stretch of duration h is mapped from x in [0, 1] by t = h m(x). Hertz's force is not smooth in
 time where it is zero
@@ -86,8 +85,9 @@ class Rule:
 
     @cached_property
     def end_slope(self) -> Floats:
-        """Weights (N,) of the nodal values in the time derivative at the end, times the
-        duration; not defined for "release".
+        """Weights (N,) of the nodal values in the time derivative at the end, times the duration.
+
+        They are not defined for "release".
         """
         order = np.arange(len(self.nodes))
         return np.asarray((order * (order + 1.0)) @ self.coefficients / self.slope[-1])
@@ -100,28 +100,32 @@ class Rule:
         ).T.copy()
 
     def interpolate(self, x: Floats, values: Floats) -> Floats:
-        """Return the polynomial through nodal `values` (N,) or (N, B), at x (T,): (T,) or
-        (T, B).
+        """Return the polynomial through nodal `values` (N,) or (N, B) at x (T,).
+
+        It is (T,) or (T, B).
         """
         return np.asarray(
             legendre.legvander(2.0 * x - 1.0, len(self.nodes) - 1) @ (self.coefficients @ values)
         )
 
     def integrate(self, x: Floats, values: Floats) -> Floats:
-        """Return the time integral per unit duration of nodal `values` (N,) or (N, B),
-        from 0 to x (T,).
+        """Return the time integral per unit duration of nodal `values`, from 0 to x (T,).
+
+        The values are (N,) or (N, B).
         """
         return self.integral_to(x) @ values
 
     def integral_to(self, x: Floats) -> Floats:
-        """Return the matrix of `integrate`: from nodal values to time integrals per unit
-        duration up to x (T,), of shape (T, N).
+        """Return the matrix of `integrate`, (T, N).
+
+        It takes nodal values to time integrals per unit duration up to x (T,).
         """
         return np.asarray(self.weights(x)[1:].T @ self.integral)  # a polynomial that is zero at 0
 
     def weights(self, x: Floats) -> Floats:
-        """Return the barycentric weights of the values at 0 and at the nodes, for
-        interpolation at x of any shape: (N + 1, ...).
+        """Return the barycentric weights of the values at 0 and at the nodes, (N + 1, ...).
+
+        They interpolate at x of any shape.
         """
         shape = (-1,) + (1,) * x.ndim
         distance = x - np.concatenate([[0.0], self.nodes]).reshape(shape)
@@ -145,15 +149,18 @@ def collocation_rule(number: int, time_map: Map, root: int = 2) -> Rule:
     """
     nodes, coefficients, integral = _radau(number)
     if time_map == "touch":
-        time, slope = nodes**root, root * nodes ** (root - 1)
+        time = nodes**root
+        slope = root * nodes ** (root - 1)
     elif time_map == "release":
-        time, slope = 1.0 - (1.0 - nodes) ** root, root * (1.0 - nodes) ** (root - 1)
+        time = 1.0 - (1.0 - nodes) ** root
+        slope = root * (1.0 - nodes) ** (root - 1)
     else:
-        time, slope = nodes, np.ones(number)
+        time = nodes
+        slope = np.ones(number)
     integral = integral * slope
     points = np.concatenate([[0.0], nodes])
-    # the factor 4 avoids underflow
-    barycentric = 1.0 / np.prod(4.0 * (points[:, None] - points) + np.eye(number + 1), axis=1)
+    distances = 4.0 * (points[:, None] - points)  # the factor 4 avoids underflow
+    barycentric = 1.0 / np.prod(distances + np.eye(number + 1), axis=1)
     return Rule(
         time_map, root, nodes, time, slope, integral, integral @ integral, coefficients, barycentric
     )
@@ -161,12 +168,14 @@ def collocation_rule(number: int, time_map: Map, root: int = 2) -> Rule:
 
 @cache
 def _radau(number: int) -> tuple[Floats, Floats, Floats]:
-    """Return the nodes on (0, 1], and the matrices to Legendre coefficients and of
-    integration at the nodes.
+    """Return the nodes on (0, 1], the matrix to Legendre coefficients, and that of integration.
+
+    The integrals are those at the nodes.
     """
     polynomial = np.zeros(number + 1)
     # P_N - P_{N-1} vanishes at the right-hand nodes
-    polynomial[number], polynomial[number - 1] = 1.0, -1.0
+    polynomial[number] = 1.0
+    polynomial[number - 1] = -1.0
     z = np.sort(legendre.legroots(polynomial).real)
     derivative = legendre.legder(polynomial)
     for _ in range(3):  # refine the roots by Newton's method
@@ -176,4 +185,5 @@ def _radau(number: int) -> tuple[Floats, Floats, Floats]:
         np.linalg.inv(legendre.legvander(z, number - 1)), dtype=np.float64
     )
     antiderivative = legendre.legint(coefficients, lbnd=-1, axis=0) / 2.0
-    return (z + 1.0) / 2.0, coefficients, np.asarray(legendre.legvander(z, number) @ antiderivative)
+    integral = np.asarray(legendre.legvander(z, number) @ antiderivative)
+    return (z + 1.0) / 2.0, coefficients, integral

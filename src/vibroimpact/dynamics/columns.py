@@ -1,6 +1,4 @@
-"""The columns of impact tables and histories: one definition for files, terminal, pages
-and figures.
-"""
+"""The columns of impact tables and histories, for files, terminal, pages and figures."""
 
 from __future__ import annotations
 
@@ -27,8 +25,9 @@ class Column(NamedTuple):
 
 
 def _held(meaning: str, label: str, short: str = "") -> Column:
-    """Return a column of the ledger for energy that is not lost: kinetic, potential,
-    stored, or written off.
+    """Return a column of the ledger for energy that is not lost.
+
+    It is kinetic, potential, stored, or written off.
     """
     return Column("J", meaning, label, short, in_ledger=True)
 

@@ -50,8 +50,9 @@ def close_ledger(energy_in: Floats, added: Floats, entries: dict[str, Floats]) -
 
 
 def closure_in_words(relative: float) -> str:
-    """Return the closure error of the ledger as it is printed: a bound of rounding, which is the
-    same on every machine, or its size.
+    """Return the closure error of the ledger as it is printed.
+
+    It is a bound of rounding, which is the same on every machine, or its size.
 
     Examples
     --------
@@ -74,10 +75,8 @@ def why_failed(energy: Mapping[str, Any]) -> str:
     >>> why_failed({"closure_relative": 0.0, "written_off_at_rest_J": 0.0, "input_J": 1.0})[:53]
     'the contact could not be integrated to the tolerance;'
     """
-    closure_relative, written_off = (
-        float(energy["closure_relative"]),
-        float(energy["written_off_at_rest_J"]),
-    )
+    closure_relative = float(energy["closure_relative"])
+    written_off = float(energy["written_off_at_rest_J"])
     if written_off < -WRITE_OFF_LIMIT * float(energy["input_J"]):
         return (
             f"the sphere was set to rest with {-written_off:.3g} J more than it and the bodies "

@@ -31,5 +31,7 @@ def first_touch(problem: Problem) -> float:
     >>> round(first_touch(drop), 6)  # sqrt(2 h/g)
     0.451601
     """
-    run, drop = RunState(problem, solver_for(problem)), np.zeros(1, dtype=np.intp)
-    return float(run.bodies.next_touch(drop, run.flights(drop), run.law(drop))[0][0])
+    run = RunState(problem, solver_for(problem))
+    drops = np.zeros(1, dtype=np.intp)
+    times, _, _ = run.bodies.next_touch(drops, run.flights(drops), run.law(drops))
+    return float(times[0])

@@ -23,9 +23,9 @@ class Flight:
     velocity: Floats
     gravity: Floats
 
-    def take(self, which: Drops) -> Flight:
+    def take(self, drops: Drops) -> Flight:
         """Return the flights of some of the drops."""
-        return Flight(self.start[which], self.gap[which], self.velocity[which], self.gravity[which])
+        return Flight(self.start[drops], self.gap[drops], self.velocity[drops], self.gravity[drops])
 
     def carry(self, sphere: Sphere, state: State, time: Floats) -> State:
         """Return the state along the plate at times [s], from that at the start of the flight."""
@@ -34,17 +34,18 @@ class Flight:
     def at(self, time: Floats) -> tuple[Floats, Floats]:
         """Return gap [m] and upward velocity [m/s] at times [s] (..., B)."""
         elapsed = time - self.start
-        return self.gap + elapsed * (
-            self.velocity - 0.5 * self.gravity * elapsed
-        ), self.velocity - self.gravity * elapsed
+        gap = self.gap + elapsed * (self.velocity - 0.5 * self.gravity * elapsed)
+        velocity = self.velocity - self.gravity * elapsed
+        return gap, velocity
 
     def acceleration(self, time: Floats) -> Floats:
         """Return the upward acceleration at times [s] (..., B) [m/s^2]."""
         return np.asarray(0.0 * time - self.gravity)
 
     def touch(self, level: Floats) -> tuple[Floats, Floats]:
-        r"""Return time [s] and approach speed [m/s] of the next touch; the time is infinite if
-        there is none.
+        r"""Return time [s] and approach speed [m/s] of the next touch.
+
+        The time is infinite if there is none.
 
         .. math:: v = \sqrt{v_0^2 + 2 g h},\qquad t = (v_0 + v)/g = 2 h/(v - v_0)
 
@@ -55,17 +56,18 @@ class Flight:
         with np.errstate(divide="ignore", invalid="ignore"):
             rising = (self.velocity + speed) / self.gravity
             falling = 2.0 * height / (speed - self.velocity)  # the same root without cancellation
-            elapsed = np.where(
-                self.velocity > 0.0, rising, np.where(speed > self.velocity, falling, np.inf)
-            )
+            falling = np.where(speed > self.velocity, falling, np.inf)
+            elapsed = np.where(self.velocity > 0.0, rising, falling)
         never = (self.gravity == 0.0) & (self.velocity >= 0.0)
         return np.where(never, np.inf, self.start + elapsed), speed
 
     def apex(self) -> tuple[Floats, Floats]:
-        """Return time [s] and gap [m] at the top of the flight; infinite without gravity,
-        if rising.
+        """Return time [s] and gap [m] at the top of the flight.
+
+        They are infinite without gravity, if rising.
         """
+        rises = self.velocity > 0.0
         with np.errstate(divide="ignore", invalid="ignore"):
-            rise = np.where(self.velocity > 0.0, self.velocity / self.gravity, 0.0)
-            height = np.where(self.velocity > 0.0, 0.5 * self.velocity**2 / self.gravity, 0.0)
-        return self.start + rise, self.gap + height
+            rise_time = np.where(rises, self.velocity / self.gravity, 0.0)
+            height = np.where(rises, 0.5 * self.velocity**2 / self.gravity, 0.0)
+        return self.start + rise_time, self.gap + height

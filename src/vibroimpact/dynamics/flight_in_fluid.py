@@ -31,25 +31,26 @@ from vibroimpact.dynamics.fluid import Fluid
 from vibroimpact.dynamics.oblique.state import Sphere, State
 from vibroimpact.dynamics.problem import Problem
 
-_NODES, _ROOT = 12, 2
+_NODES = 12
+_ROOT = 2  # of the time from the top, in which the motion is smooth
 
 
-def _taken(moving: Moving, which: Drops | Bools) -> Moving:
+def _taken(moving: Moving, drops: Drops | Bools) -> Moving:
     """Return the motion of some of the spheres."""
-    return Moving(*(np.ascontiguousarray(part[..., which]) for part in moving))
+    return Moving(*(np.ascontiguousarray(array[..., drops]) for array in moving))
 
 
-def _put(moving: Moving, which: Drops | Bools, others: Moving) -> Moving:
+def _put(moving: Moving, drops: Drops | Bools, others: Moving) -> Moving:
     """Return the motion with that of some of the spheres replaced."""
-    found = Moving(*(part.copy() for part in moving))
-    for part, values in zip(found, others, strict=True):
-        part[..., which] = values
-    return found
+    replaced = Moving(*(array.copy() for array in moving))
+    for array, values in zip(replaced, others, strict=True):
+        array[..., drops] = values
+    return replaced
 
 
-def _falling_of(falling: Falling, which: Drops) -> Falling:
+def _falling_of(falling: Falling, drops: Drops) -> Falling:
     """Return what some of the spheres fall through."""
-    return Falling(*(np.ascontiguousarray(part[..., which]) for part in falling))
+    return Falling(*(np.ascontiguousarray(array[..., drops]) for array in falling))
 
 
 @cache
@@ -66,12 +67,11 @@ def _rules() -> FallRules:
 
 @dataclass(frozen=True)
 class FluidFlight(Flight):
-    """Flights of B drops through air or a liquid, in one dimension or in three; all arrays but
-    those of `along` are (B,).
+    """Flights of B drops through air or a liquid, in one dimension or in three.
 
-    `radius`, `density`: of the spheres [m], [kg/m^3]. `fluid`: what they fly through. `along`:
-    velocities at the start [m/s] and accelerations without drag [m/s^2] along the plate, (2, B), or
-    (0, B) where all motion is along the normal.
+    All arrays but those of `along` are (B,). `radius`, `density`: of the spheres [m], [kg/m^3].
+    `fluid`: what they fly through. `along`: velocities at the start [m/s] and accelerations without
+    drag [m/s^2] along the plate, (2, B), or (0, B) where all motion is along the normal.
     """
 
     radius: Floats
@@ -79,12 +79,18 @@ class FluidFlight(Flight):
     fluid: Fluid
     along: tuple[Floats, Floats]
 
-    def take(self, which: Drops) -> FluidFlight:
+    def take(self, drops: Drops) -> FluidFlight:
         """Return the flights of some of the drops."""
-        motion = (self.start[which], self.gap[which], self.velocity[which], self.gravity[which])
-        along = self.along[0][:, which], self.along[1][:, which]
+        velocity, acceleration = self.along
         return FluidFlight(
-            *motion, self.radius[which], self.density[which], self.fluid.take(which), along
+            start=self.start[drops],
+            gap=self.gap[drops],
+            velocity=self.velocity[drops],
+            gravity=self.gravity[drops],
+            radius=self.radius[drops],
+            density=self.density[drops],
+            fluid=self.fluid.take(drops),
+            along=(velocity[:, drops], acceleration[:, drops]),
         )
 
     def after(self, time: Floats) -> FluidFlight:
@@ -101,98 +107,96 @@ class FluidFlight(Flight):
         return moving.place[-1], moving.velocity[-1]
 
     def touch(self, level: Floats) -> tuple[Floats, Floats]:
-        """Return time [s] and approach speed [m/s] of the next touch; the time is infinite if there
-        is none.
+        """Return time [s] and approach speed [m/s] of the next touch.
 
-        The surfaces meet where the gap has fallen to `level`.
+        The time is infinite if there is none. The surfaces meet where the gap has fallen to
+        `level`.
         """
-        falls, level = (
-            (self.gravity > 0.0) | (self.velocity < 0.0),
-            level + np.zeros(len(self.start)),
-        )
+        falls = (self.gravity > 0.0) | (self.velocity < 0.0)
+        level = level + np.zeros(len(self.start))
         while True:
+            # the last end of a piece above the level
             begin = self._falls[0]
             for corner in self._falls[1:]:
                 above = corner.place[-1] >= level
                 begin = _put(begin, above, _taken(corner, above))
-            height, down = np.maximum(begin.place[-1] - level, 0.0), -begin.velocity[-1]
-            front = begin.time == self._falls[-1].time
-            further = (
-                falls
-                & front
-                & (
-                    _time_to_fall(height, down, 0.5 * self.gravity)
-                    > fall.longest_pieces(self._falling, begin.velocity)
-                )
-            )
+            height = np.maximum(begin.place[-1] - level, 0.0)
+            fall_speed = -begin.velocity[-1]
+            # drops that have to be followed by another piece before they can touch
+            at_front = begin.time == self._falls[-1].time
+            shortest_fall = _time_to_fall(height, fall_speed, 0.5 * self.gravity)
+            longest_piece = fall.longest_pieces(self._falling, begin.velocity)
+            further = falls & at_front & (shortest_fall > longest_piece)
             if not further.any():
                 break
             self._fall_on(np.flatnonzero(further))
         ends = np.where(falls, fall.AT_GAP, fall.GIVEN_TIME)
-        found = fall.follow_pieces(
-            _rules().falling, self._falling, begin, ends, np.where(falls, height, 0.0), down
+        motion = fall.follow_pieces(
+            _rules().falling, self._falling, begin, ends, np.where(falls, height, 0.0), fall_speed
         )
-        touch = np.where(falls, self.start + found.time, np.inf)
-        self._known[:] = [(touch, found)]
-        return touch, -found.velocity[-1]
+        touch = np.where(falls, self.start + motion.time, np.inf)
+        self._known[:] = [(touch, motion)]
+        return touch, -motion.velocity[-1]
 
     def apex(self) -> tuple[Floats, Floats]:
-        """Return time [s] and gap [m] at the top of the flight; infinite without gravity,
-        if rising.
+        """Return time [s] and gap [m] at the top of the flight.
+
+        They are infinite without gravity, if rising.
         """
-        never, top = (self.gravity == 0.0) & (self.velocity > 0.0), self._falls[0]
-        return np.where(never, np.inf, self.start + top.time), np.where(
-            never, np.inf, top.place[-1]
-        )
+        never = (self.gravity == 0.0) & (self.velocity > 0.0)
+        top = self._falls[0]
+        time = np.where(never, np.inf, self.start + top.time)
+        gap = np.where(never, np.inf, top.place[-1])
+        return time, gap
 
     def lost(self, time: Floats) -> Floats:
-        """Return the energy per mass of the sphere that drag has taken by times [s] (...,
-        B) [J/kg].
+        """Return the energy per mass that drag has taken by times [s] (..., B) [J/kg].
+
+        The mass is that of the sphere.
         """
         return self._moving(time).lost
 
     def given(self, time: Floats) -> Floats:
-        """Return the energy per mass that the sphere has given to the fluid by times [s] (..., B)
-        [J/kg].
+        """Return the energy per mass given to the fluid by times [s] (..., B) [J/kg].
 
-        This is what drag has taken, and what the fluid that moves along has gained since the start
-        of the flight.
+        The mass is that of the sphere. The energy is what drag has taken, and what the fluid that
+        moves along has gained since the start of the flight.
         """
-        moving, start = self._moving(time), self._rises[0].velocity
-        along = 0.5 * (self.fluid.inertia(self.density) - 1.0)
-        return np.asarray(
-            moving.lost + along * ((moving.velocity**2).sum(axis=0) - (start**2).sum(axis=0))
-        )
+        moving = self._moving(time)
+        start_velocity = self._rises[0].velocity
+        gain_of_squares = (moving.velocity**2).sum(axis=0) - (start_velocity**2).sum(axis=0)
+        half_added_mass = 0.5 * (self.fluid.inertia(self.density) - 1.0)
+        return np.asarray(moving.lost + half_added_mass * gain_of_squares)
 
     def acceleration(self, time: Floats) -> Floats:
         """Return the upward acceleration at times [s] (..., B) [m/s^2]."""
         velocity = self._moving(time).velocity
-        drops, flat = (
-            self._drops(velocity[0]),
-            np.ascontiguousarray(velocity.reshape(len(velocity), -1)),
-        )
-        return np.asarray(
-            fall.accelerations(self._falling, drops, flat)[-1].reshape(velocity.shape[1:])
-        )
+        flat = np.ascontiguousarray(velocity.reshape(len(velocity), -1))
+        accelerations = fall.accelerations(self._falling, self._drops(velocity[0]), flat)
+        return np.asarray(accelerations[-1].reshape(velocity.shape[1:]))
 
     def carry(self, sphere: Sphere, state: State, time: Floats) -> State:
-        """Return the state along the plate at times [s] (..., B), from that at the start
-        of the flight.
+        """Return the state along the plate at times [s] (..., B).
+
+        It follows from that at the start of the flight.
         """
         moving = self._moving(time)
         return State(state.position + moving.place[:-1], moving.velocity[:-1].copy(), state.spin)
 
     @cached_property
     def _falling(self) -> Falling:
-        fluid, alike = self.fluid, np.ones(len(self.start))
+        """What the spheres fall through, as the core takes it."""
+        fluid = self.fluid
+        ones = np.ones(len(self.start))
         constant = fluid.constant_coefficient
+        _, acceleration_along = self.along
         return Falling(
-            reynolds=fluid.reynolds_number(alike, self.radius),
-            drag=fluid.drag_by_square(self.radius, self.density) * alike,
-            coefficient=(np.nan if constant is None else constant) * alike,
-            inertia=fluid.inertia(self.density) * alike,
+            reynolds=fluid.reynolds_number(ones, self.radius),
+            drag=fluid.drag_by_square(self.radius, self.density) * ones,
+            coefficient=(np.nan if constant is None else constant) * ones,
+            inertia=fluid.inertia(self.density) * ones,
             # in the order that the core takes
-            gravity=np.ascontiguousarray(np.concatenate([self.along[1], -self.gravity[None]])),
+            gravity=np.ascontiguousarray(np.concatenate([acceleration_along, -self.gravity[None]])),
         )
 
     @cached_property
@@ -201,38 +205,34 @@ class FluidFlight(Flight):
         velocity = np.ascontiguousarray(np.concatenate([self.along[0], self.velocity[None]]))
         place = np.zeros(velocity.shape)
         place[-1] = self.gap
-        none = np.zeros(len(self.start))
-        found = [Moving(none, place, velocity, none)]
-        while (
-            rising := np.flatnonzero((found[-1].velocity[-1] > 0.0) & (self.gravity > 0.0))
-        ).size:
+        zeros = np.zeros(len(self.start))
+        pieces = [Moving(zeros, place, velocity, zeros)]
+        while True:
+            last = pieces[-1]
+            rising = np.flatnonzero((last.velocity[-1] > 0.0) & (self.gravity > 0.0))
+            if not rising.size:
+                return pieces
             higher = fall.rise(
-                _rules().rising, _falling_of(self._falling, rising), _taken(found[-1], rising)
+                _rules().rising, _falling_of(self._falling, rising), _taken(last, rising)
             )
-            found.append(_put(found[-1], rising, higher))
-        return found
+            pieces.append(_put(last, rising, higher))
 
     @cached_property
     def _falls(self) -> list[Moving]:
-        """Motion at the top of the flight, and at the end of each piece from there on, as
-        far as they have been asked for.
+        """Motion at the top of the flight, and at the end of each piece from there on.
+
+        It reaches as far as it has been asked for.
         """
         return [self._rises[-1]]
 
     def _fall_on(self, drops: Drops) -> None:
         """Add a piece to the falls of drops."""
-        begin, falling = _taken(self._falls[-1], drops), _falling_of(self._falling, drops)
-        longest, given = (
-            fall.longest_pieces(falling, begin.velocity),
-            np.full(len(drops), fall.GIVEN_TIME),
-        )
-        self._falls.append(
-            _put(
-                self._falls[-1],
-                drops,
-                fall.follow_pieces(_rules().falling, falling, begin, given, longest, longest),
-            )
-        )
+        begin = _taken(self._falls[-1], drops)
+        falling = _falling_of(self._falling, drops)
+        longest = fall.longest_pieces(falling, begin.velocity)
+        ends = np.full(len(drops), fall.GIVEN_TIME)
+        end = fall.follow_pieces(_rules().falling, falling, begin, ends, longest, longest)
+        self._falls.append(_put(self._falls[-1], drops, end))
 
     def _moving(self, time: Floats) -> Moving:
         """Return the motion at times [s] (..., B): its arrays are (..., B) and (C, ..., B)."""
@@ -265,13 +265,14 @@ class FluidFlight(Flight):
         return []
 
     def _short(self, elapsed: Floats) -> Drops:
-        """Return the drops whose falls have to be followed further to reach some times
-        since the start of the flight (..., B).
+        """Return the drops whose falls have to be followed further to reach some times.
+
+        Times are since the start of the flight (..., B).
         """
-        front, last = self._falls[-1], np.fmax.reduce(elapsed.reshape(-1, len(self.start)))
-        return np.flatnonzero(
-            last - front.time > fall.longest_pieces(self._falling, front.velocity)
-        )
+        front = self._falls[-1]
+        last = np.fmax.reduce(elapsed.reshape(-1, len(self.start)))
+        longest = fall.longest_pieces(self._falling, front.velocity)
+        return np.flatnonzero(last - front.time > longest)
 
     @cached_property
     def _known(self) -> list[tuple[Floats, Moving]]:
@@ -279,44 +280,49 @@ class FluidFlight(Flight):
         return []
 
 
-def _time_to_fall(height: Floats, down: Floats, mean: Floats) -> Floats:
-    """Return the time of a fall through a height [s], from a downward velocity and half
-    the mean acceleration of its first part.
+def _time_to_fall(height: Floats, fall_speed: Floats, half_acceleration: Floats) -> Floats:
+    """Return the time of a fall through a height [s].
+
+    `half_acceleration`: half the mean of its first part.
     """
+    root = np.sqrt(np.maximum(fall_speed**2 + 4.0 * half_acceleration * height, 0.0))
     with np.errstate(divide="ignore", invalid="ignore"):
-        time = 2.0 * height / (down + np.sqrt(np.maximum(down**2 + 4.0 * mean * height, 0.0)))
+        time = 2.0 * height / (fall_speed + root)
     return np.where(height > 0.0, time, 0.0)
 
 
 def flights_of(problem: Problem, gap: Floats, velocity: Floats) -> FluidFlight:
-    """Return flights through the air or the liquid of a single drop, from gaps [m] with upward
-    velocities [m/s] (n,).
+    """Return flights through the air or the liquid of a single drop.
 
-    Along the plate they begin with the velocity of the drop.
+    They start from gaps [m] with upward velocities [m/s] (n,). Along the plate they begin with the
+    velocity of the drop.
     """
-    oblique, alike = problem.oblique, np.ones(len(gap))
     assert problem.fluid is not None
-    velocities, gravity = (
-        (np.zeros(0), np.zeros(0))
-        if oblique is None
-        else (np.array(oblique.velocity), np.array(oblique.gravity))
-    )
-    mass, radius = problem.sphere.mass * alike, problem.sphere.contact_offset * alike
-    part = problem.net_weight / problem.flight_inertia
-    along = velocities[:, None] * alike, gravity[:, None] * part * alike
-    pull = problem.gravity * part * alike
+    ones = np.ones(len(gap))
+    velocity_along = np.zeros(0)
+    gravity_along = np.zeros(0)
+    if problem.oblique is not None:
+        velocity_along = np.array(problem.oblique.velocity)
+        gravity_along = np.array(problem.oblique.gravity)
+    mass = problem.sphere.mass * ones
+    radius = problem.sphere.contact_offset * ones
+    gravity_ratio = problem.net_weight / problem.flight_inertia
     return FluidFlight(
-        0.0 * alike, gap, velocity, pull, radius, mean_density(mass, radius), problem.fluid, along
+        start=0.0 * ones,
+        gap=gap,
+        velocity=velocity,
+        gravity=problem.gravity * gravity_ratio * ones,
+        radius=radius,
+        density=mean_density(mass, radius),
+        fluid=problem.fluid,
+        along=(velocity_along[:, None] * ones, gravity_along[:, None] * gravity_ratio * ones),
     )
 
 
 def speed_of_fall(problem: Problem) -> float:
-    """Return the speed at the first touch of a single drop from a height through air or a
-    liquid [m/s].
-    """
+    """Return the speed at the first touch of a drop from a height through air or a liquid [m/s]."""
     assert problem.height is not None
-    gap, velocity = (
-        np.array([problem.height - problem.sphere.contact_offset]),
-        np.array([problem.velocity], dtype=float),
-    )
-    return float(flights_of(problem, gap, velocity).touch(np.zeros(1))[1][0])
+    gap = np.array([problem.height - problem.sphere.contact_offset])
+    velocity = np.array([problem.velocity], dtype=float)
+    _, speed = flights_of(problem, gap, velocity).touch(np.zeros(1))
+    return float(speed[0])

@@ -1,6 +1,4 @@
-r"""What air and liquids have in common: density, viscosity and the drag on a sphere, of
-one drop or of a batch.
-"""
+r"""What air and liquids have in common: density, viscosity and the drag on a sphere."""
 
 from __future__ import annotations
 
@@ -85,14 +83,16 @@ class Fluid:
         return None
 
     def inertia(self, density: Array) -> Array:
-        """Return the mass that is accelerated in flight over that of the sphere [-], from
-        its density [kg/m^3].
+        """Return the mass that is accelerated in flight over that of the sphere [-].
+
+        `density`: of the sphere [kg/m^3].
         """
         return 1.0 + self.added_mass * self.density / density
 
     def weight(self, density: Array) -> Array:
-        """Return the weight in the fluid over that in a vacuum [-], of a sphere of a
-        density [kg/m^3].
+        """Return the weight in the fluid over that in a vacuum [-].
+
+        `density`: of the sphere [kg/m^3].
         """
         return 1.0 + 0.0 * density
 
@@ -122,7 +122,5 @@ class Fluid:
         return self.density * speed * 2.0 * radius / self.viscosity
 
     def drag_by_square(self, radius: Array, density: Array) -> Array:
-        """Return the deceleration of a sphere over its drag coefficient and the square of
-        its speed [1/m].
-        """
+        """Return the deceleration over drag coefficient and square of the speed [1/m]."""
         return 0.375 * self.density / (density * self.inertia(density)) / radius

@@ -19,8 +19,9 @@ MOTION = ("velocity_m_s", "kinetic_J")
 def fluid_history(
     problem: Problem, bounces: Sequence[Bounce], time: Floats, motion: Mapping[str, Floats]
 ) -> dict[str, Floats]:
-    """Return the kinetic energy with that of the liquid that moves along, and what the fluid has
-    taken, of one drop [J] (T,).
+    """Return the kinetic energy with that of the liquid, and what the fluid has taken [J] (T,).
+
+    The liquid moves along with one drop.
 
     Parameters
     ----------
@@ -33,40 +34,41 @@ def fluid_history(
     motion : mapping of str to array
         The other columns then.
     """
-    fluid, mass, begin = problem.fluid, float(problem.sphere.mass), bounces[0].flight
+    fluid = problem.fluid
+    first_flight = bounces[0].flight
     assert fluid is not None
-    assert isinstance(begin, FluidFlight)
-    moving = 0.5 * mass * (float(problem.flight_inertia) - 1.0)  # of the liquid
-    along = moving * sum(
-        (motion[name] ** 2 for name in _VELOCITIES if name in motion), np.zeros(len(time))
-    )
-    at_start = moving * float(begin.velocity[0] ** 2 + (begin.along[0] ** 2).sum())
+    assert isinstance(first_flight, FluidFlight)
+    mass = float(problem.sphere.mass)
+    half_added_mass = 0.5 * mass * (float(problem.flight_inertia) - 1.0)
+    squares = np.zeros(len(time))
+    for name in _VELOCITIES:
+        if name in motion:
+            squares = squares + motion[name] ** 2
+    energy_of_liquid = half_added_mass * squares
+    velocity_along, _ = first_flight.along
+    square_at_start = float(first_flight.velocity[0] ** 2 + (velocity_along**2).sum())
     return {
-        "kinetic_J": motion["kinetic_J"] + along,
-        f"{fluid.key}_J": _given(bounces, mass, time) + at_start - along,
+        "kinetic_J": motion["kinetic_J"] + energy_of_liquid,
+        f"{fluid.key}_J": _given(bounces, mass, time)
+        + half_added_mass * square_at_start
+        - energy_of_liquid,
     }
 
 
 def _given(bounces: Sequence[Bounce], mass: float, time: Floats) -> Floats:
-    """Return the energy that a sphere of a mass [kg] has given to the fluid by times [J]
-    (T,), from its flights.
+    """Return the energy that a sphere has given to the fluid by times [J] (T,).
+
+    `mass`: of the sphere [kg]. The energy follows from its flights.
     """
-    begin = np.maximum(
-        np.searchsorted([float(bounce.flight.start[0]) for bounce in bounces], time, side="right")
-        - 1,
-        0,
-    )
-    found, before = np.zeros(len(time)), 0.0
+    starts = [float(bounce.flight.start[0]) for bounce in bounces]
+    bounce_of_time = np.maximum(np.searchsorted(starts, time, side="right") - 1, 0)
+    given = np.zeros(len(time))
+    given_before = 0.0
     for number, bounce in enumerate(bounces):
         if isinstance(bounce.flight, FluidFlight):
-            here = begin == number
-            if here.any():
-                found[here] = (
-                    before
-                    + mass
-                    * bounce.flight.given(np.minimum(time[here], bounce.flight_end[0])[:, None])[
-                        :, 0
-                    ]
-                )
-            before += mass * float(bounce.flight.given(bounce.flight_end)[0])
-    return found
+            inside = bounce_of_time == number
+            if inside.any():
+                times = np.minimum(time[inside], bounce.flight_end[0])[:, None]
+                given[inside] = given_before + mass * bounce.flight.given(times)[:, 0]
+            given_before += mass * float(bounce.flight.given(bounce.flight_end)[0])
+    return given

@@ -40,8 +40,6 @@ def points_kept(points: Indices, most: int) -> Indices:
 
 def thinned(grid: Floats, count: int) -> Floats:
     """Return `count` evenly spaced points of a grid, including its ends."""
-    return (
-        grid
-        if count >= len(grid)
-        else grid[np.linspace(0.0, len(grid) - 1.0, count).round().astype(int)]
-    )
+    if count >= len(grid):
+        return grid
+    return np.asarray(grid[np.linspace(0.0, len(grid) - 1.0, count).round().astype(int)])

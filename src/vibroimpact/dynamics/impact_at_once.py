@@ -1,6 +1,4 @@
-"""Impacts of laws without a force: a velocity changes at an instant, and a sphere that
-hardly rebounds rides on a plate that is shaken.
-"""
+"""Impacts of laws without a force: a velocity changes at an instant, or a sphere comes to ride."""
 
 from __future__ import annotations
 
@@ -23,8 +21,9 @@ def collide_at_once(
     speed: Floats,
     row: dict[str, Floats],
 ) -> tuple[Bounce, Floats]:
-    """Let the drops of a bounce rebound at their touches, write their row, and return the bounce
-    and the energy lost [J].
+    """Let the drops of a bounce rebound at their touches, and write their row.
+
+    Return the bounce and the energy lost [J].
 
     Parameters
     ----------
@@ -40,11 +39,11 @@ def collide_at_once(
         The row of the impact table.
     """
     drops = bounce.contact_drops
-    place, velocity, _ = run.problem.surface(touch)
+    surface, surface_velocity, _ = run.problem.surface(touch)
     separation = law.separation_speed(speed, run.mass[drops])
     run.time[drops] = touch
-    run.gap[drops] = place
-    run.velocity[drops] = velocity + separation
+    run.gap[drops] = surface
+    run.velocity[drops] = surface_velocity + separation
     row["separation_speed_m_s"][drops] = separation
     for name in ("duration_s", "max_indentation_m", "plastic_work_J"):
         row[name][drops] = 0.0
@@ -68,12 +67,11 @@ def _ride(
     energies: tuple[Floats, Floats],
     row: dict[str, Floats],
 ) -> tuple[Bounce, Floats]:
-    """Let drops that hardly rebound from a shaken plate ride on it; return the bounce with the
-    rides, and the energy lost [J].
+    """Let drops that hardly rebound from a shaken plate ride on it.
 
-    `energies`: lost in the impact without what is lost as they come to ride, and the work of
-    friction by the plate [J]. A sphere that moves along the plate is not followed any further where
-    it rides.
+    Return the bounce with the rides, and the energy lost [J]. `energies`: lost in the impact
+    without what is lost as they come to ride, and the work of friction by the plate [J]. A sphere
+    that moves along the plate is not followed any further where it rides.
     """
     from vibroimpact.dynamics.shaken.shaken_bodies import ShakenBodies
 
@@ -83,17 +81,19 @@ def _ride(
     separation = row["separation_speed_m_s"][drops]
     ride = run.bodies.ride(drops, touch, separation, run.rest_speed[drops])
     if run.oblique is not None:
-        run.stop(drops[ride.end > touch], Outcome.RIDING, touch[ride.end > touch])
+        rides = ride.end > touch
+        run.stop(drops[rides], Outcome.RIDING, touch[rides])
         ride = replace(ride, end=touch)
     rides = ride.end > touch
     end = np.where(np.isfinite(ride.end), ride.end, touch)
+    # the plate works on the impulse of the impact, and on the sphere that it carries
     impulse = ride.mass * (speed + np.where(rides, 0.0, separation))
-    work = (
-        work_of_friction + impulse * ride.surface(touch)[1] + ride.energy(end) - ride.energy(touch)
-    )
+    _, surface_velocity, _ = ride.surface(touch)
+    work = work_of_friction + impulse * surface_velocity + ride.energy(end) - ride.energy(touch)
     run.bodies.work[drops] += work
     row["plate_work_J"][drops] = work
     carried = drops[rides]
     run.time[carried] = end[rides]
     run.gap[carried], run.velocity[carried], _ = ride.surface(end[rides])
-    return replace(bounce, ride=ride), lost + np.where(rides, 0.5 * ride.mass * separation**2, 0.0)
+    lost_to_ride = np.where(rides, 0.5 * ride.mass * separation**2, 0.0)
+    return replace(bounce, ride=ride), lost + lost_to_ride

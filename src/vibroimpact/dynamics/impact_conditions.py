@@ -16,8 +16,7 @@ from vibroimpact.dynamics.law_coefficients import coefficients_of
 
 @dataclass(frozen=True)
 class ImpactConditions:
-    """Data of one impact of B drops: law, effective mass [kg], gravity [m/s^2] and approach speed
-    [m/s].
+    """Law, effective mass [kg], gravity [m/s^2] and approach speed [m/s] of one impact of B drops.
 
     `depth`: largest indentation without damping [m]. `speed_scale`: scale of the speed in contact
     [m/s]: the approach speed, or that due to gravity and adhesion in a soft touch. `floor`: the
@@ -79,8 +78,9 @@ def impact_conditions_of(
 
 
 def undamped_depths(law: CompliantLaw, energy: Floats, weight: Floats) -> Floats:
-    """Return the largest indentations of B impacts without damping [m], to a relative 1e-3, each as
-    it is without the others.
+    """Return the largest indentations of B impacts without damping [m], to a relative 1e-3.
+
+    Each is as it is without the others.
 
     Parameters
     ----------

@@ -30,9 +30,11 @@ class ImpactRows:
     """
 
     def __init__(self, columns: Iterable[str], size: int) -> None:
-        self._columns, self._size = tuple(columns), size
+        self._columns = tuple(columns)
+        self._size = size
         self._blocks: list[Floats] = []  # (columns, rows, B)
-        self._count, self._room = 0, 0
+        self._count = 0
+        self._room = 0  # rows in all blocks
 
     def __len__(self) -> int:
         return self._count
@@ -58,10 +60,9 @@ class ImpactRows:
 
     def table(self) -> dict[str, Floats]:
         """Return the columns of all rows, (B, impacts)."""
-        whole = np.concatenate(
-            [np.zeros((len(self._columns), 0, self._size)), *self._blocks], axis=1
-        )[:, : self._count]
-        return {name: column.T for name, column in zip(self._columns, whole, strict=True)}
+        no_rows = np.zeros((len(self._columns), 0, self._size))
+        table = np.concatenate([no_rows, *self._blocks], axis=1)[:, : self._count]
+        return {name: column.T for name, column in zip(self._columns, table, strict=True)}
 
     def _row(self, block: Floats, number: int) -> dict[str, Floats]:
         return dict(zip(self._columns, block[:, number], strict=True))

@@ -14,8 +14,9 @@ from vibroimpact.contact.law import CompliantLaw
 
 @contextmanager
 def coefficients_of(law: CompliantLaw, size: int) -> Iterator[Floats]:
-    """Give the coefficients of a law for each of B drops (B, K); laws without functions
-    of floats are kept as long as they are used.
+    """Give the coefficients of a law for each of B drops (B, K).
+
+    Laws without functions of floats are kept as long as they are used.
     """
     if type(law).missing_functions():
         laws = [law.take(drop) for drop in range(size)]

@@ -1,5 +1,6 @@
-r"""A liquid around sphere and plate: buoyancy, drag and added mass in flight, and a film that takes
-from the rebound.
+r"""A liquid around sphere and plate: buoyancy, drag, added mass, and a film between them.
+
+The film takes from the rebound.
 
 In flight the sphere is accelerated by
 
@@ -41,8 +42,9 @@ Law = TypeVar("Law", bound=ContactLaw)
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Liquid(Fluid):
-    """A liquid at rest around sphere and plate; each value is a number, or an array with one a
-    drop.
+    """A liquid at rest around sphere and plate.
+
+    Each value is a number, or an array with one a drop.
 
     Parameters
     ----------
@@ -68,8 +70,9 @@ class Liquid(Fluid):
     viscosity: Array = WATER_VISCOSITY
 
     def weight(self, density: Array) -> Array:
-        """Return the weight in the liquid over that in a vacuum [-], of a sphere of a
-        density [kg/m^3]: less buoyancy.
+        """Return the weight in the liquid over that in a vacuum [-]: less buoyancy.
+
+        `density`: of the sphere [kg/m^3].
         """
         return 1.0 - self.density / density
 
@@ -125,9 +128,7 @@ class Liquid(Fluid):
 
 
 def check_sinks(density: Array, of_sphere: Array, key: str = "") -> None:
-    """Raise InputError, with a key, unless a sphere is denser than the liquid; densities
-    [kg/m^3].
-    """
+    """Raise InputError, with a key, unless a sphere is denser than the liquid [kg/m^3]."""
     if np.any(np.asarray(density) >= np.asarray(of_sphere)):
         part = float(np.max(np.asarray(density) / np.asarray(of_sphere)))
         raise InputError(

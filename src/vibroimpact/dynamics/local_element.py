@@ -1,6 +1,4 @@
-"""Stiffness and damping of a local element, from the largest force and the rebound of one
-impact.
-"""
+"""Stiffness and damping of a local element, from the largest force and rebound of one impact."""
 
 from __future__ import annotations
 
@@ -18,7 +16,7 @@ _WITHIN = 1e-9  # relative, of force and speed
 _SWEEPS = 40
 _STEP = 1e-4  # relative, of difference quotients
 # damping over that of a critical oscillator of the sphere's mass, to search
-_LOSSES = (1e-4, *np.geomspace(0.02, 50.0, 8).tolist())
+_DAMPING_RATIOS = (1e-4, *np.geomspace(0.02, 50.0, 8).tolist())
 
 
 def identify_local_element(
@@ -28,8 +26,7 @@ def identify_local_element(
     separation_speed: float | None = None,
     rebound_height: float | None = None,
 ) -> tuple[float, float]:
-    """Return stiffness [N/m] and damping [N s/m] of the local element that reproduces a measured
-    impact.
+    """Return stiffness [N/m] and damping [N s/m] of the local element of a measured impact.
 
     Parameters
     ----------
@@ -63,38 +60,43 @@ def identify_local_element(
     """
     if (separation_speed is None) == (rebound_height is None):
         raise InputError("give either separation_speed [m/s] or rebound_height [m]")
-    column, rebound, unit = (
-        ("separation_speed_m_s", separation_speed, "m/s")
-        if rebound_height is None
-        else ("rebound_height_m", rebound_height, "m")
-    )
-    wanted = np.array([max_force, rebound], dtype=float)
+    if rebound_height is None:
+        rebound = separation_speed
+        column = "separation_speed_m_s"
+        unit = "m/s"
+    else:
+        rebound = rebound_height
+        column = "rebound_height_m"
+        unit = "m"
+    measured = np.array([max_force, rebound], dtype=float)
     problem = replace(problem, impacts=1, duration=None, local_element=None)
 
     def outcome(element: tuple[float, float] | None) -> Floats:
         return _outcome(problem, element, column)
 
-    hard = outcome(None)
-    if not max_force < hard[0]:
+    force_without_element, _ = outcome(None)
+    if not max_force < force_without_element:
         raise InputError(
             "a local element only makes the impact softer: without one the largest force "
-            f"is {hard[0]:.5g} N, and {max_force:.5g} N was measured"
+            f"is {force_without_element:.5g} N, and {max_force:.5g} N was measured"
         )
     mass = float(problem.sphere.mass)
     speed = float(simulate(problem).impacts["approach_speed_m_s"][0])
-    soft = (max_force / speed) ** 2 / mass  # stiffness of a linear spring with that largest force
+    # of a linear spring with that largest force, v sqrt(k m)
+    spring_stiffness = (max_force / speed) ** 2 / mass
 
-    def misses(logarithms: Floats) -> Floats:
+    def deviations(logarithms: Floats) -> Floats:
         stiffness, damping = np.exp(logarithms).tolist()
-        return np.asarray(outcome((stiffness, damping)) / wanted - 1.0)
+        return np.asarray(outcome((stiffness, damping)) / measured - 1.0)
 
-    for loss in (1.0, 0.2, 5.0):
-        found = _newton(misses, np.log([soft, 2.0 * loss * np.sqrt(soft * mass)]))
-        if found is not None:
-            stiffness, damping = np.exp(found).tolist()
+    for damping_ratio in (1.0, 0.2, 5.0):
+        start_damping = 2.0 * damping_ratio * np.sqrt(spring_stiffness * mass)
+        logarithms = _newton(deviations, np.log([spring_stiffness, start_damping]))
+        if logarithms is not None:
+            stiffness, damping = np.exp(logarithms).tolist()
             return stiffness, damping
-    reached = _reached(outcome, max_force, soft, mass)
-    if not reached or min(reached) <= wanted[1] <= max(reached):
+    reached = _reached(outcome, max_force, spring_stiffness, mass)
+    if not reached or min(reached) <= measured[1] <= max(reached):
         raise InputError(
             "no local element was found that gives both a largest force of "
             f"{max_force:.5g} N and a rebound of {rebound:.5g} {unit}; see "
@@ -113,10 +115,9 @@ def local_element_deviations(
     max_force_deviation: float,
     separation_speed_deviation: float,
 ) -> tuple[float, float]:
-    """Return the standard deviations of stiffness [N/m] and damping [N s/m] of a local element
-    identified from force and rebound.
+    """Return the standard deviations of stiffness [N/m] and damping [N s/m] of a local element.
 
-    By linear propagation of independent errors.
+    The element is identified from force and rebound. Independent errors are propagated linearly.
 
     Parameters
     ----------
@@ -137,22 +138,22 @@ def local_element_deviations(
     '2.4e+04 N/m, 9.5 N s/m'
     """
     problem = replace(problem, impacts=1, duration=None)
-    column, slopes = "separation_speed_m_s", []
-    for number in range(2):
-        high, low = (
-            [
-                value * (1.0 + side * _STEP * (place == number))
-                for place, value in enumerate(element)
-            ]
-            for side in (1.0, -1.0)
-        )
-        change = _outcome(problem, (high[0], high[1]), column) - _outcome(
-            problem, (low[0], low[1]), column
-        )
-        slopes.append(change / (2.0 * _STEP * element[number]))
-    noise = np.linalg.inv(np.array(slopes).T) * [max_force_deviation, separation_speed_deviation]
-    stiffness, damping = np.linalg.norm(noise, axis=1).tolist()
-    return stiffness, damping
+    stiffness, damping = element
+
+    def outcome(stiffness: float, damping: float) -> Floats:
+        return _outcome(problem, (stiffness, damping), "separation_speed_m_s")
+
+    # central differences of force and speed
+    higher = 1.0 + _STEP
+    lower = 1.0 - _STEP
+    change = outcome(stiffness * higher, damping) - outcome(stiffness * lower, damping)
+    by_stiffness = change / (2.0 * _STEP * stiffness)
+    change = outcome(stiffness, damping * higher) - outcome(stiffness, damping * lower)
+    by_damping = change / (2.0 * _STEP * damping)
+    jacobian = np.array([by_stiffness, by_damping]).T
+    errors = np.linalg.inv(jacobian) * [max_force_deviation, separation_speed_deviation]
+    stiffness_deviation, damping_deviation = np.linalg.norm(errors, axis=1).tolist()
+    return stiffness_deviation, damping_deviation
 
 
 def _outcome(problem: Problem, element: tuple[float, float] | None, column: str) -> Floats:
@@ -162,28 +163,31 @@ def _outcome(problem: Problem, element: tuple[float, float] | None, column: str)
 
 
 def _newton(function: Callable[[Floats], Floats], start: Floats) -> Floats | None:
-    """Return a zero of a function of two variables by damped Newton iteration, or None if
-    it does not converge.
+    """Return a zero of a function of two variables by damped Newton iteration.
+
+    It is None if that does not converge.
     """
-    place = start
+    x = start
     try:
-        value = function(place)
+        value = function(x)
         for _ in range(_SWEEPS):
             if np.abs(value).max() < _WITHIN:
-                return place
+                return x
             slopes = np.stack(
-                [(function(place + step) - value) / 1e-5 for step in 1e-5 * np.eye(2)], axis=1
+                [(function(x + step) - value) / 1e-5 for step in 1e-5 * np.eye(2)], axis=1
             )
             step = np.linalg.solve(slopes, value)
             step *= min(1.0, 1.0 / float(np.abs(step).max()))
+            # halved until the value decreases
             for _ in range(6):
-                new = function(place - step)
-                if np.abs(new).max() < np.abs(value).max():
+                next_value = function(x - step)
+                if np.abs(next_value).max() < np.abs(value).max():
                     break
                 step = 0.5 * step
             else:
                 return None
-            place, value = place - step, new
+            x = x - step
+            value = next_value
     except (np.linalg.LinAlgError, ComputationError, InputError):
         # an element too soft or too stiff for a number
         return None
@@ -191,26 +195,33 @@ def _newton(function: Callable[[Floats], Floats], start: Floats) -> Floats | Non
 
 
 def _reached(
-    outcome: Callable[[tuple[float, float]], Floats], max_force: float, soft: float, mass: float
+    outcome: Callable[[tuple[float, float]], Floats],
+    max_force: float,
+    spring_stiffness: float,
+    mass: float,
 ) -> list[float]:
-    """Return the rebounds of elements that give the measured force, from low to high
-    damping; empty if none is found.
+    """Return the rebounds of elements that give the measured force, from low to high damping.
+
+    They are empty if none is found.
     """
-    reached = []
-    for loss in _LOSSES:
-        low, high = 1e-6 * soft, 1e6 * soft
+    rebounds = []
+    for damping_ratio in _DAMPING_RATIOS:
+        low = 1e-6 * spring_stiffness
+        high = 1e6 * spring_stiffness
         # bisection: the force grows with the stiffness, as the damping is a fixed multiple of
         # critical damping
         for _ in range(40):
-            middle = float(np.sqrt(low * high))
+            stiffness = float(np.sqrt(low * high))
+            damping = 2.0 * damping_ratio * float(np.sqrt(stiffness * mass))
             try:
-                force, rebound = outcome(
-                    (middle, 2.0 * loss * float(np.sqrt(middle * mass)))
-                ).tolist()
+                force, rebound = outcome((stiffness, damping)).tolist()
             except (ComputationError, InputError):  # too soft or too stiff to be computed
                 break
-            low, high = (low, middle) if force > max_force else (middle, high)
+            if force > max_force:
+                high = stiffness
+            else:
+                low = stiffness
             if abs(force / max_force - 1.0) < 1e-3:
-                reached.append(rebound)
+                rebounds.append(rebound)
                 break
-    return reached
+    return rebounds

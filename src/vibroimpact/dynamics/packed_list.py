@@ -1,6 +1,4 @@
-"""A compact list of records, with all numbers in one buffer: 8 bytes each, where a small
-array takes 120.
-"""
+"""A compact list of records: 8 bytes a number, where a small array takes 120."""
 
 from __future__ import annotations
 
@@ -21,8 +19,9 @@ _UNPACKED = 32
 
 
 class PackedList(Sequence[Item], Generic[Item]):
-    """List of records of dataclasses, lists, tuples and arrays; all but the last ones are stored
-    packed and rebuilt on access.
+    """List of records of dataclasses, lists, tuples and arrays, which it stores packed.
+
+    All but the last ones are rebuilt on access.
 
     Numbers are restored exactly (integers up to 2^53).
 

@@ -451,8 +451,9 @@ class Problem:
 
     @property
     def flight_inertia(self) -> Array:
-        """Mass that is accelerated in flight, with that of a liquid that moves along,
-        over that of the sphere [-].
+        """Mass that is accelerated in flight over that of the sphere [-].
+
+        It includes that of a liquid that moves along.
         """
         return 1.0 if self.fluid is None else self.fluid.inertia(self.sphere_density)
 
@@ -465,8 +466,9 @@ class Problem:
 
     @property
     def shaken(self) -> bool:
-        """Whether the surface of the plate moves without being hit: along its normal, or
-        along itself where the drop is oblique.
+        """Whether the surface of the plate moves without being hit.
+
+        It moves along its normal, or along itself where the drop is oblique.
         """
         along = (
             self.motion is not None
@@ -477,8 +479,9 @@ class Problem:
 
     @cached_property
     def surface_phasors(self) -> Complex:
-        """Phasors of the surface at the contact point where nothing hits it [m] (k,), as
-        `PlateMotion.at` takes them.
+        """Phasors of the surface at the contact point where nothing hits it [m] (k,).
+
+        They are as `PlateMotion.at` takes them.
         """
         return (
             np.zeros(0, dtype=complex)
@@ -487,8 +490,9 @@ class Problem:
         )
 
     def surface(self, time: Array) -> Floats:
-        """Return place [m], velocity [m/s] and acceleration [m/s^2] of that surface,
-        upwards, at times [s] (...), (3, ...).
+        """Return the motion of that surface upwards at times [s] (...), (3, ...).
+
+        It is displacement [m], velocity [m/s] and acceleration [m/s^2].
         """
         return (
             np.zeros((3, *np.shape(time)))
@@ -516,8 +520,9 @@ class Problem:
         return self.laws[min(impact, len(self.laws) - 1)]
 
     def law_at(self, law: ContactLaw, speed: Array) -> ContactLaw:
-        """Return a law with the parameters that are functions of the approach speed at
-        one [m/s].
+        """Return a law with its parameters at an approach speed [m/s].
+
+        They may be functions of it.
         """
         return law.changed(
             {name: held(function, speed) for name, function in self.by_speed.items()}
@@ -553,8 +558,9 @@ class Problem:
         )
 
     def on_plate(self, plate: Body, quasi_static: QuasiStatic) -> Problem:
-        """Return the problem of a drop under way whose contact is at another place of the
-        plate: its start is not checked against that.
+        """Return the problem of a drop under way whose contact is elsewhere on the plate.
+
+        Its start is not checked against that.
         """
         found = copy(self)
         vars(found).pop("surface_phasors", None)

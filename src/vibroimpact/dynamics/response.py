@@ -1,6 +1,4 @@
-"""The response of drops: impacts, motion at any time, energy ledger, signals of sensors,
-and status.
-"""
+"""The response of drops: impacts, motion, energy ledger, signals of sensors, and status."""
 
 from __future__ import annotations
 
@@ -13,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from vibroimpact.arrays import Floats
+from vibroimpact.arrays import Floats, Indices
 from vibroimpact.dynamics.bounce import Bounce
 from vibroimpact.dynamics.columns import (
     FLUID_HISTORY_COLUMNS,
@@ -23,7 +21,6 @@ from vibroimpact.dynamics.columns import (
     VIBRATION_HISTORY_COLUMNS,
     meanings,
 )
-from vibroimpact.dynamics.end_in_words import end_in_words
 from vibroimpact.dynamics.energy import why_failed
 from vibroimpact.dynamics.fluid_history import MOTION, fluid_history
 from vibroimpact.dynamics.history_grid import points_kept, thinned
@@ -38,7 +35,7 @@ from vibroimpact.dynamics.sensors.recording import Signal
 from vibroimpact.dynamics.sensors.sensor import Sensor, sample_count
 from vibroimpact.dynamics.shaken.ride import RideSegment
 from vibroimpact.dynamics.shaken.steady import steady_modes
-from vibroimpact.dynamics.status import Ended, status_of
+from vibroimpact.dynamics.status import Ended, end_in_words, status_of
 from vibroimpact.dynamics.truncation import truncation_estimates
 from vibroimpact.errors import InputError, choices
 
@@ -120,44 +117,52 @@ class Response:
         if self.problem.shape == ():
             return self
         happened = np.isfinite(self.impacts["impact"][index])
+        bounces = None
+        if self.bounces is not None:
+            bounces_of_drop = (bounce.of(index) for bounce in self.bounces)
+            bounces = tuple(bounce for bounce in bounces_of_drop if bounce is not None)
         return Response(
-            self.problem.take(index),
-            {name: column[index, happened] for name, column in self.impacts.items()},
-            {name: np.asarray(value)[index] for name, value in self.energy.items()},
-            self.outcomes[index : index + 1],
-            self.end_time[index : index + 1],
-            self.rest.take(index),
-            None
-            if self.bounces is None
-            else tuple(small for bounce in self.bounces if (small := bounce.of(index)) is not None),
+            problem=self.problem.take(index),
+            impacts={name: column[index, happened] for name, column in self.impacts.items()},
+            energy={name: np.asarray(value)[index] for name, value in self.energy.items()},
+            outcomes=self.outcomes[index : index + 1],
+            end_time=self.end_time[index : index + 1],
+            rest=self.rest.take(index),
+            bounces=bounces,
         )
 
     def squeezed(self) -> Response:
         """Return the response of a batch of one as that of a single drop."""
         impacts = {name: column[0] for name, column in self.impacts.items()}
-        return replace(
-            self, impacts=impacts, energy={name: value[0] for name, value in self.energy.items()}
-        )
+        energy = {name: value[0] for name, value in self.energy.items()}
+        return replace(self, impacts=impacts, energy=energy)
 
     @property
     def failures(self) -> dict[int, str]:
         """Reasons of failed drops, a sentence each, by the index of the drop."""
         energies = {name: np.atleast_1d(values) for name, values in self.energy.items()}
-        failed = [drop for drop, outcome in enumerate(self.outcomes) if outcome is Outcome.FAILED]
-        return {
-            drop: why_failed({name: values[drop] for name, values in energies.items()})
-            for drop in failed
-        }
+        reasons = {}
+        for drop, outcome in enumerate(self.outcomes):
+            if outcome is Outcome.FAILED:
+                ledger = {name: values[drop] for name, values in energies.items()}
+                reasons[drop] = why_failed(ledger)
+        return reasons
 
     @property
     def history_columns(self) -> dict[str, tuple[str, str]]:
         """Unit and meaning of the columns of a history."""
-        of_vibration = VIBRATION_HISTORY_COLUMNS if self.problem.vibrates else {}
-        moving = {} if self.problem.motion is None else SHAKEN_HISTORY_COLUMNS
-        along = {} if self.problem.oblique is None else OBLIQUE_HISTORY_COLUMNS
-        fluid = None if self.problem.fluid is None else f"{self.problem.fluid.key}_J"
-        of_fluid = {name: column for name, column in FLUID_HISTORY_COLUMNS.items() if name == fluid}
-        return meanings({**HISTORY_COLUMNS, **of_vibration, **moving, **along, **of_fluid})
+        columns = dict(HISTORY_COLUMNS)
+        if self.problem.vibrates:
+            columns |= VIBRATION_HISTORY_COLUMNS
+        if self.problem.motion is not None:
+            columns |= SHAKEN_HISTORY_COLUMNS
+        if self.problem.oblique is not None:
+            columns |= OBLIQUE_HISTORY_COLUMNS
+        if self.problem.fluid is not None:
+            name = f"{self.problem.fluid.key}_J"
+            if name in FLUID_HISTORY_COLUMNS:
+                columns[name] = FLUID_HISTORY_COLUMNS[name]
+        return meanings(columns)
 
     @property
     def status(self) -> str:
@@ -198,15 +203,14 @@ class Response:
         if not np.all((flat >= 0.0) & (flat <= end)):
             raise InputError(f"times must lie within the run, 0 to {end_in_words(end)} s")
         starts = self._starts
-        index = np.maximum(np.searchsorted(starts, flat, side="right") - 1, 0)
-        found = {name: np.empty(flat.shape) for name in self._names(columns)}
-        for number in np.unique(index):
-            here = index == number
-            for name, values in self._history(
-                int(number), flat[here] - starts[number], found
-            ).items():
-                found[name][here] = values
-        return {name: values.reshape(times.shape) for name, values in found.items()}
+        segment_of_time = self._segment_of(flat)
+        history = {name: np.empty(flat.shape) for name in self._names(columns)}
+        for number in np.unique(segment_of_time).tolist():
+            inside = segment_of_time == number
+            segment_columns = self._history(number, flat[inside] - starts[number], history)
+            for name, values in segment_columns.items():
+                history[name][inside] = values
+        return {name: values.reshape(times.shape) for name, values in history.items()}
 
     def sample(self, rate: float) -> dict[str, Floats]:
         """Return the motion, force and energies of one drop at a constant sampling rate.
@@ -225,17 +229,15 @@ class Response:
             raise InputError(
                 f"{count:.3g} samples are more than 1e8; ask for a lower rate, or for parts by at()"
             )
-        return self.at(
-            np.minimum(
-                np.arange(sample_count(float(self.end_time[0]), rate)) / rate, self.end_time[0]
-            )
-        )
+        times = np.arange(sample_count(float(self.end_time[0]), rate)) / rate
+        return self.at(np.minimum(times, self.end_time[0]))
 
     def history(
         self, most: int | None = None, columns: Collection[str] | None = None
     ) -> dict[str, Floats]:
-        """Return the history of one drop on a grid that resolves every contact, with both sides of
-        each event.
+        """Return the history of one drop on a grid that resolves every contact.
+
+        It has both sides of each event.
 
         Parameters
         ----------
@@ -257,9 +259,8 @@ class Response:
         history = {name: np.empty(int(kept.sum())) for name in self._names(columns)}
         begin = 0
         for number, (segment, count) in enumerate(zip(self._segments, kept.tolist(), strict=True)):
-            for name, values in self._history(
-                number, thinned(segment.grid(), count), history
-            ).items():
+            times = thinned(segment.grid(), count)
+            for name, values in self._history(number, times, history).items():
                 history[name][begin : begin + count] = values
             begin += count
         if "time_s" in history:  # the times of both sides of an event may differ by rounding
@@ -283,20 +284,22 @@ class Response:
         from vibroimpact.dynamics.vibrating.vibrating_bodies import slices_of
 
         flat = np.atleast_1d(np.asarray(times, dtype=float))
-        starts, segments = self._starts, self._segments
-        index = np.maximum(np.searchsorted(starts, flat, side="right") - 1, 0)
         _, sphere, plate = slices_of(self.problem)
-        found = np.zeros((len(flat), plate.stop))
-        for number in () if isinstance(segments, Timeline) else np.unique(index).tolist():
-            segment, here = segments[number], index == number
-            found[here] = segment.state(
-                np.minimum(flat[here], segment.end) - segment.start
-            ).displacement[:, : plate.stop]
-        motion, modes = self.problem.motion, self.problem.plate.modes
+        coordinates = np.zeros((len(flat), plate.stop))
+        segments = self._segments
+        if not isinstance(segments, Timeline):  # which has no modes
+            segment_of_time = self._segment_of(flat)
+            for number in np.unique(segment_of_time).tolist():
+                segment = segments[number]
+                inside = segment_of_time == number
+                state = segment.state(np.minimum(flat[inside], segment.end) - segment.start)
+                coordinates[inside] = state.displacement[:, : plate.stop]
+        motion = self.problem.motion
+        modes = self.problem.plate.modes
         if motion is not None and modes is not None:
-            turned = np.exp(1j * motion.angular_frequency * flat[:, None])
-            found[:, plate] += (turned @ steady_modes(motion, modes).T).imag
-        return {"sphere": found[:, sphere], "plate": found[:, plate]}
+            rotation = np.exp(1j * motion.angular_frequency * flat[:, None])
+            coordinates[:, plate] += (rotation @ steady_modes(motion, modes).T).imag
+        return {"sphere": coordinates[:, sphere], "plate": coordinates[:, plate]}
 
     def signals(self, *sensors: Sensor) -> dict[str, Signal]:
         """Return what sensors on the plate record over the whole run, by their names.
@@ -321,9 +324,7 @@ class Response:
 
     @cached_property
     def truncation(self) -> dict[str, float]:
-        """Estimated relative error of the largest force due to modal truncation, by the
-        name of the body.
-        """
+        """Estimated relative error of the largest force by modal truncation, by the body's name."""
         return truncation_estimates(self.problem, self.impacts) if self.problem.vibrates else {}
 
     def save(self, directory: str | PathLike[str], *, force: bool = False) -> None:
@@ -349,8 +350,9 @@ class Response:
         vibroimpact.save_result(self, directory, force=force)
 
     def plot(self, name: str = "position") -> go.Figure:
-        """Return a chart of one drop as a figure of plotly, by its name; see
-        `vibroimpact.plot_result`.
+        """Return a chart of one drop as a figure of plotly, by its name.
+
+        See `vibroimpact.plot_result`.
 
         Parameters
         ----------
@@ -387,45 +389,47 @@ class Response:
 
     def _history(self, number: int, times: Floats, columns: Collection[str]) -> dict[str, Floats]:
         """Return columns at times since the start of one segment."""
-        segments, problem = self._segments, self.problem
+        problem = self.problem
+        segments = self._segments
+        segment = segments[number]
         if isinstance(segments, Timeline):
             written_off = float(self.rest.written_off[0])
-            found, resting = (
-                rigid_history(problem, segments, number, times, written_off),
-                isinstance(segments[number], RestSegment),
-            )
+            history = rigid_history(problem, segments, number, times, written_off)
+            resting = isinstance(segment, RestSegment)
         else:
             from vibroimpact.dynamics.vibrating.history import vibrating_history
             from vibroimpact.dynamics.vibrating.rest_motion import RestMotion
 
             others = {**OBLIQUE_HISTORY_COLUMNS, **FLUID_HISTORY_COLUMNS}
-            of_bodies = [
-                *(name for name in columns if name not in others),
-                *(() if problem.fluid is None else MOTION),
-            ]
-            found, resting = (
-                vibrating_history(problem, segments[number], times, of_bodies),
-                isinstance(segments[number].motion, RestMotion),
-            )
+            of_bodies = [name for name in columns if name not in others]
+            if problem.fluid is not None:
+                of_bodies += MOTION
+            history = vibrating_history(problem, segments[number], times, of_bodies)
+            resting = isinstance(segments[number].motion, RestMotion)
+        run_times = segment.start + times
         if self.bounces is not None and problem.oblique is not None:
-            start = segments[number].start
-            flown = np.searchsorted(
-                [float(bounce.flight.start[0]) for bounce in self.bounces], start, side="right"
-            )
-            bounce = (
-                segments.bounce_of(number) if isinstance(segments, Timeline) else int(flown) - 1
-            )
+            bounce = self._bounce_of(number)
             lost = float(self.impacts["friction_lost_J"][:bounce].sum())
-            along = oblique_history(
-                problem, self.bounces[bounce], lost, start + times, start if resting else np.inf
-            )
-            found |= {
-                name: values + found[name] if name in found else values
-                for name, values in along.items()
-            }
+            rests_at = segment.start if resting else np.inf
+            along = oblique_history(problem, self.bounces[bounce], lost, run_times, rests_at)
+            for name, values in along.items():
+                history[name] = values + history[name] if name in history else values
         if self.bounces is not None and problem.fluid is not None:
-            found |= fluid_history(problem, self.bounces, segments[number].start + times, found)
-        return {name: found[name] for name in columns}
+            history |= fluid_history(problem, self.bounces, run_times, history)
+        return {name: history[name] for name in columns}
+
+    def _bounce_of(self, number: int) -> int:
+        """Return the number of the bounce to which a segment belongs."""
+        segments = self._segments
+        if isinstance(segments, Timeline):
+            return segments.bounce_of(number)
+        assert self.bounces is not None
+        flight_starts = [float(bounce.flight.start[0]) for bounce in self.bounces]
+        return int(np.searchsorted(flight_starts, segments[number].start, side="right")) - 1
+
+    def _segment_of(self, times: Floats) -> Indices:
+        """Return the numbers of the segments in which times since the start lie [s]."""
+        return np.maximum(np.searchsorted(self._starts, times, side="right") - 1, 0)
 
     @cached_property
     def _segments(self) -> Sequence[VibratingSegment] | Timeline:
@@ -441,35 +445,30 @@ class Response:
             from vibroimpact.dynamics.vibrating.segments import vibrating_timeline
 
             return vibrating_timeline(self.bounces, self.rest.lying[0], end)
-        plastic = self.impacts["plastic_work_J"]
         rest: RestSegment | RideSegment | None = None
-        ride, work = self.bounces[-1].ride, self.impacts.get("plate_work_J", np.zeros(len(plastic)))
-        if self.outcomes[0].at_rest and ride is not None:
+        if self.outcomes[0].at_rest:
             begin = end_of(self.bounces[-1])
-            rest = RideSegment(begin, end, ride, begin)
-        elif self.outcomes[0].at_rest:
-            weight = float(self.problem.sphere.mass) * float(self.problem.net_gravity)
-            points = 2 if self.problem.oblique is None else 97
-            rest = RestSegment(
-                end_of(self.bounces[-1]),
-                end,
-                float(self.rest.sag[0]),
-                weight,
-                float(self.rest.stored[0]),
-                points,
-            )
-        return timeline_of(
-            self.bounces,
-            rest,
-            np.stack([self.impacts["energy_lost_J"] - plastic, plastic, -work], axis=1),
-        )
+            ride = self.bounces[-1].ride
+            if ride is not None:
+                rest = RideSegment(begin, end, ride, begin)
+            else:
+                rest = RestSegment(
+                    start=begin,
+                    end=end,
+                    sag=float(self.rest.sag[0]),
+                    weight=float(self.problem.sphere.mass) * float(self.problem.net_gravity),
+                    stored=float(self.rest.stored[0]),
+                    points=2 if self.problem.oblique is None else 97,
+                )
+        plastic = self.impacts["plastic_work_J"]
+        drive_work = self.impacts.get("plate_work_J", np.zeros(len(plastic)))
+        dissipated = self.impacts["energy_lost_J"] - plastic
+        return timeline_of(self.bounces, rest, np.stack([dissipated, plastic, -drive_work], axis=1))
 
     @cached_property
     def _starts(self) -> Floats:
         """Start times of the segments [s]."""
         segments = self._segments
-        return (
-            segments.starts
-            if isinstance(segments, Timeline)
-            else np.array([segment.start for segment in segments])
-        )
+        if isinstance(segments, Timeline):
+            return segments.starts
+        return np.array([segment.start for segment in segments])

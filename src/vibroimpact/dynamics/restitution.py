@@ -29,8 +29,9 @@ _INVERSE_TOLERANCE = 1e-12
 def achieved_restitution(
     law: ContactLaw, mass: Array, speed: Array, *, tolerance: float = 1e-9
 ) -> Array:
-    """Return the restitution that a law achieves, by its closed form where there is one, else by
-    integration.
+    """Return the restitution that a law achieves.
+
+    It is that of its closed form where there is one, else that of an integration.
 
     Parameters
     ----------
@@ -69,14 +70,12 @@ def achieved_restitution(
     [0.768, 0.768]
     """
     shape = _shape(law, mass, speed)
-    found = law.closed_form_restitution(
+    closed_form = law.closed_form_restitution(
         np.asarray(mass, dtype=float), np.asarray(speed, dtype=float)
     )
-    return (
-        integrated_restitution(law, mass, speed, tolerance=tolerance)
-        if found is None
-        else np.broadcast_to(found, shape)[()]
-    )
+    if closed_form is None:
+        return integrated_restitution(law, mass, speed, tolerance=tolerance)
+    return np.broadcast_to(closed_form, shape)[()]
 
 
 def integrated_restitution(
@@ -109,13 +108,14 @@ def integrated_restitution(
     True
     """
     check_tolerance(tolerance)
-    found = _by_integration(law, mass, speed, tolerance)
-    if np.isnan(found).any():
+    restitution = _by_integration(law, mass, speed, tolerance)
+    failed = np.isnan(restitution)
+    if failed.any():
         raise ComputationError(
             f"{law.name} could not be integrated to the tolerance for "
-            f"{int(np.isnan(found).sum())} of {np.size(found)} drops"
+            f"{int(failed.sum())} of {np.size(restitution)} drops"
         )
-    return found
+    return restitution
 
 
 def _by_integration(law: ContactLaw, mass: Array, speed: Array, tolerance: float) -> Array:
@@ -124,15 +124,21 @@ def _by_integration(law: ContactLaw, mass: Array, speed: Array, tolerance: float
     if isinstance(law, InstantaneousLaw):
         return np.broadcast_to(law.closed_form_restitution(mass, speed), shape)[()]
     assert isinstance(law, CompliantLaw)
-    masses, speeds = (
-        np.broadcast_to(np.asarray(value, dtype=float), shape).ravel() for value in (mass, speed)
-    )
-    arrays = {item.name: value for item in fields(law) if np.ndim(value := getattr(law, item.name))}
-    flat = law.changed(
-        {name: np.broadcast_to(value, shape).ravel() for name, value in arrays.items()}
-    )
+
+    def flat(value: Array) -> Array:
+        return np.broadcast_to(value, shape).ravel()
+
+    masses = flat(np.asarray(mass, dtype=float))
+    speeds = flat(np.asarray(speed, dtype=float))
+    arrays = {}
+    for field in fields(law):
+        value = getattr(law, field.name)
+        if np.ndim(value):
+            arrays[field.name] = flat(value)
+    laws = law.changed(arrays)
+    # for a few contacts the compiler takes longer to load than they take in plain Python
     with interpreted() if len(masses) < FEW else nullcontext():
-        conditions = impact_conditions_of(flat, masses, np.zeros(len(masses)), speeds)
+        conditions = impact_conditions_of(laws, masses, np.zeros(len(masses)), speeds)
     with np.errstate(all="ignore"):  # Newton iterates may overflow
         return np.abs(release_rates(conditions, tolerance) / speeds).reshape(shape)[()]
 
@@ -165,75 +171,77 @@ def law_achieving(law: Law, restitution: Array, mass: Array, speed: Array) -> La
     >>> round(law.restitution, 6)
     0.715939
     """
-    wanted, mass, speed = (np.asarray(value, dtype=float) for value in (restitution, mass, speed))
+    target = np.asarray(restitution, dtype=float)
+    mass = np.asarray(mass, dtype=float)
+    speed = np.asarray(speed, dtype=float)
     try:
-        Range(at_least=0, at_most=1).check(wanted)
+        Range(at_least=0, at_most=1).check(target)
     except InputError as error:
         raise InputError(error.message, "restitution") from None
     name = law.free_parameter
     if name is None:
-        now = np.asarray(achieved_restitution(law, mass, speed))
-        if np.all(np.abs(now - wanted) <= 1e-12):
+        fixed = np.asarray(achieved_restitution(law, mass, speed))
+        if np.all(np.abs(fixed - target) <= 1e-12):
             return law
         raise InputError(
-            f"{law.name} has no loss parameter; it achieves {_between(now)}, not "
-            f"{_between(wanted, 12)}"
+            f"{law.name} has no loss parameter; it achieves {_between(fixed)}, not "
+            f"{_between(target, 12)}"
         )
-    shape = np.broadcast_shapes(_shape(law, mass, speed), wanted.shape)
-    allowed: Range = next(item for item in fields(law) if item.name == name).metadata["range"]
+    shape = np.broadcast_shapes(_shape(law, mass, speed), target.shape)
+    parameter = next(field for field in fields(law) if field.name == name)
+    allowed: Range = parameter.metadata["range"]
 
     def achieved(value: Array) -> Array:
         trial = law.changed({name: value})
-        found = trial.closed_form_restitution(mass, speed)
-        return np.asarray(
-            _by_integration(trial, mass, speed, _INVERSE_TOLERANCE) if found is None else found
-        )
+        closed_form = trial.closed_form_restitution(mass, speed)
+        if closed_form is None:
+            return np.asarray(_by_integration(trial, mass, speed, _INVERSE_TOLERANCE))
+        return np.asarray(closed_form)
 
-    now = np.broadcast_to(np.asarray(getattr(law, name), dtype=float), shape)
+    current = np.broadcast_to(np.asarray(getattr(law, name), dtype=float), shape)
     # the undamped law achieves the most
     damps = allowed.at_least == 0.0 and not np.isfinite(allowed.at_most)
-    found = solve_monotonic(achieved, wanted, np.where(now > 0.0, now, 1.0), allowed, falls=damps)
-    missed = np.isnan(found.place)
+    start = np.where(current > 0.0, current, 1.0)
+    solution = solve_monotonic(achieved, target, start, allowed, falls=damps)
+    missed = np.isnan(solution.place)
     if missed.any():
         first = np.flatnonzero(missed.ravel())[0]
-        numbers = (
+        least, most, speed_of_first, target_of_first = (
             float(np.broadcast_to(value, shape).ravel()[first])
-            for value in (found.least, found.most, speed, wanted)
+            for value in (solution.least, solution.most, speed, target)
         )
-        least, most, at, asked = numbers
-        highest = _apart(most, asked)
-        reach = (
-            f"up to {highest}"
-            if damps and asked > most
-            else f"from {_apart(least, asked)} to {highest}"
+        highest = _apart(most, target_of_first)
+        if damps and target_of_first > most:
+            reach = f"up to {highest}"
+        else:
+            reach = f"from {_apart(least, target_of_first)} to {highest}"
+        raise InputError(
+            f"{law.name} reaches restitutions {reach} at {speed_of_first:.4g} m/s, "
+            f"not {target_of_first:g}"
         )
-        raise InputError(f"{law.name} reaches restitutions {reach} at {at:.4g} m/s, not {asked:g}")
-    return law.changed({name: found.place if shape else float(found.place)})
+    return law.changed({name: solution.place if shape else float(solution.place)})
 
 
 def _between(values: Array, digits: int = 4) -> str:
-    least, most = float(np.min(values)), float(np.max(values))
+    """Return the range of values in some digits, or their common value."""
+    least = float(np.min(values))
+    most = float(np.max(values))
     return f"{least:.{digits}g}" if least == most else f"{least:.{digits}g} to {most:.{digits}g}"
 
 
-def _apart(value: float, asked: float) -> str:
-    """Return a value in four digits, or in as many as show on which side of the value asked for it
-    lies.
+def _apart(value: float, limit: float) -> str:
+    """Return a value in four digits, or in as many as show on which side of a limit it lies.
 
     Examples
     --------
     >>> _apart(0.662871, 0.5), _apart(0.9999702, 1.0)
     ('0.6629', '0.99997')
     """
-    texts = (f"{value:.{digits}g}" for digits in range(4, 17))
-    return next(
-        (
-            text
-            for text in texts
-            if float(text) != asked and (float(text) < asked) == (value < asked)
-        ),
-        f"{value:.4g}",
-    )
+    for digits in range(4, 17):
+        text = f"{value:.{digits}g}"
+        if float(text) != limit and (float(text) < limit) == (value < limit):
+            return text
+    return f"{value:.4g}"
 
 
 def _shape(law: ContactLaw, mass: Array, speed: Array) -> tuple[int, ...]:

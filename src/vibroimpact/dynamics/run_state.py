@@ -1,6 +1,4 @@
-"""The state of a run: where its drops are, how they move, what they have lost, and how
-those that stopped ended.
-"""
+"""The state of a run: positions, motions and losses of its drops, and how they ended."""
 
 from __future__ import annotations
 
@@ -62,11 +60,10 @@ class RunState:
         self.sag = np.zeros(self.size)
         self.stored = np.zeros(self.size)
         self.written_off = np.zeros(self.size)
-        self.rest_speed = (
-            self.default_rest_speed()
-            if problem.rest_speed is None
-            else self.spread(problem.rest_speed)
-        )
+        if problem.rest_speed is None:
+            self.rest_speed = self.default_rest_speed()
+        else:
+            self.rest_speed = self.spread(problem.rest_speed)
         self.bodies = self._bodies(solve_contact)
         self.memories = {
             name: self.spread(value) for name, value in problem.laws[0].memories().items()
@@ -131,8 +128,9 @@ class RunState:
         return np.asarray(self.mass * (0.5 * self.velocity**2 + self.gravity * self.gap))
 
     def energy_of_liquid(self, velocity: Floats) -> Floats:
-        """Return the kinetic energy of the liquid that moves along with the spheres [J],
-        at their velocities along the normal [m/s].
+        """Return the kinetic energy of the liquid that moves along with the spheres [J].
+
+        `velocity`: of these along the normal [m/s].
         """
         squares = velocity**2 + (
             0.0 if self.oblique is None else (self.oblique.state.velocity**2).sum(axis=0)
@@ -140,8 +138,9 @@ class RunState:
         return np.asarray(0.5 * self.mass * (self.inertia - 1.0) * squares)
 
     def default_rest_speed(self) -> Floats:
-        """Return the speed from which a drop would rise by its static indentation [m/s],
-        at least 1e-6 of the first approach speed.
+        """Return the speed from which a drop would rise by its static indentation [m/s].
+
+        It is at least 1e-6 of the first approach speed.
         """
         law = self.problem.law_of(0)
         least = 1e-6 * self.flights(np.arange(self.size)).touch(np.zeros(1))[1]
@@ -158,40 +157,41 @@ class RunState:
         return law if len(drops) == self.size else law.take(drops)
 
     def law_at(self, drops: Drops, speed: Floats) -> ContactLaw:
-        """Return the law of the next impact of drops at an approach speed [m/s], with
-        what a liquid leaves of its restitution.
+        """Return the law of the next impact of drops at an approach speed [m/s].
+
+        Its restitution is what a liquid leaves of it.
         """
-        law, liquid, radius = (
-            self.problem.law_at(self.law(drops), speed),
-            self.problem.liquid,
-            self.radius[drops],
-        )
-        return (
-            law
-            if liquid is None
-            else liquid.take(drops).around(
-                law, speed, radius, mean_density(self.mass[drops], radius)
-            )
-        )
+        law = self.problem.law_at(self.law(drops), speed)
+        if self.problem.liquid is None:
+            return law
+        radius = self.radius[drops]
+        density = mean_density(self.mass[drops], radius)
+        return self.problem.liquid.take(drops).around(law, speed, radius, density)
 
     def flights(self, drops: Drops) -> Flight:
         """Return the flights that drops are about to make."""
         fluid = self.problem.fluid
-        now = (
-            self.time[drops],
-            self.gap[drops],
-            self.velocity[drops],
-            self.gravity[drops] / self.inertia[drops],
-        )
+        start = self.time[drops]
+        gap = self.gap[drops]
+        velocity = self.velocity[drops]
+        gravity = self.gravity[drops] / self.inertia[drops]
         if fluid is None:
-            return Flight(*now)
+            return Flight(start, gap, velocity, gravity)
         if self.ahead is None or not np.array_equal(self.ahead[0], drops):
-            none = np.zeros((0, len(drops)))
-            velocity, pull = (none, none) if self.oblique is None else self.oblique.pulled(drops)
+            along = np.zeros((0, len(drops)))
+            pull = np.zeros((0, len(drops)))
+            if self.oblique is not None:
+                along, pull = self.oblique.pulled(drops)
             radius = self.radius[drops]
-            density = mean_density(self.mass[drops], radius)
             flights = FluidFlight(
-                *now, radius, density, fluid.take(drops), (velocity, pull / self.inertia[drops])
+                start,
+                gap,
+                velocity,
+                gravity,
+                radius,
+                mean_density(self.mass[drops], radius),
+                fluid.take(drops),
+                (along, pull / self.inertia[drops]),
             )
             self.ahead = drops, flights
         return self.ahead[1]
@@ -203,8 +203,9 @@ class RunState:
         return law
 
     def bring_to_rest(self, drops: Drops, law: ContactLaw, time: Floats, stored: Floats) -> None:
-        """Put drops that have come to rest, with energy `stored` in the contact [J], into
-        their static indentation.
+        """Put drops that have come to rest into their static indentation.
+
+        The contact has an energy `stored` [J].
         """
         weight = self.mass[drops] * self.gravity[drops]
         energy = self.mechanical_energy()[drops] + stored

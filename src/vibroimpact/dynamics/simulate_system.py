@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vibroimpact.arrays import Bools, Floats
-from vibroimpact.dynamics.end_in_words import end_in_words
-from vibroimpact.dynamics.system import MovingBody, System
+from vibroimpact.dynamics.status import end_in_words
+from vibroimpact.dynamics.system import System
 from vibroimpact.dynamics.vibrating.active_contact import ContactDefinition
 from vibroimpact.dynamics.vibrating.free_motion import FreePhase
 from vibroimpact.dynamics.vibrating.linear_system import LinearSystem, State
@@ -135,28 +135,27 @@ class SystemResponse:
         """
         times = self._times(times)
         state = self._states(times)
-        return {
-            name: _motion(body, *self._parts(name, state, times.shape))
-            for name, body in self.system.bodies.items()
-        }
+        return {name: self._motion(name, state, times.shape) for name in self.system.bodies}
 
     def forces(self, times: Any) -> dict[str, Floats]:
-        """Return the forces of the contacts [N] at times since the start [s], by their
-        names; positive where they push.
+        """Return the forces of the contacts [N] at times since the start [s], by their names.
+
+        They are positive where they push.
         """
         times = self._times(times)
-        found = {name: np.zeros(times.shape) for name in self.system.contacts}
-        names = list(found)
-        for motion, here, since in self._parts_at(times.ravel()):
+        forces = {name: np.zeros(times.shape) for name in self.system.contacts}
+        names = list(forces)
+        for motion, inside, elapsed in self._parts_at(times.ravel()):
             if isinstance(motion, VibratingStretch):
                 for contact in motion.contacts:
-                    x = contact.rule.unmap_time(since / motion.length)
-                    found[names[contact.number]].ravel()[here] = contact.force_at(x)
-        return found
+                    x = contact.rule.unmap_time(elapsed / motion.length)
+                    forces[names[contact.number]].ravel()[inside] = contact.force_at(x)
+        return forces
 
     def gaps(self, times: Any) -> dict[str, Floats]:
-        """Return the gaps of the contacts [m] at times since the start [s], by their
-        names; negative where the surfaces overlap.
+        """Return the gaps of the contacts [m] at times since the start [s], by their names.
+
+        They are negative where the surfaces overlap.
         """
         times = self._times(times)
         approach = self._march.system.approach(self._states(times))
@@ -166,12 +165,13 @@ class SystemResponse:
         }
 
     def momentum(self, times: Any) -> Floats:
-        """Return the momentum of all free bodies [kg m/s] at times since the start [s],
-        (..., 3).
+        """Return the momentum of all free bodies [kg m/s] at times [s], (..., 3).
+
+        Times are since the start.
         """
-        moved = self.at(times)
+        motions = self.at(times)
         free = {name: body.mass for name, body in self.system.bodies.items() if not body.held}
-        return np.asarray(sum(mass * moved[name].velocity for name, mass in free.items()))
+        return np.asarray(sum(mass * motions[name].velocity for name, mass in free.items()))
 
     def _times(self, times: Any) -> Floats:
         """Return times as an array of floats; raise unless all lie within the run."""
@@ -194,37 +194,47 @@ class SystemResponse:
     def _parts_at(
         self, times: Floats
     ) -> Iterator[tuple[VibratingStretch | FreePhase, Bools, Floats]]:
-        """Yield each motion of the history with a mask of the times within it, and these
-        times since its start [s].
+        """Yield each motion of the history with a mask of the times within it, and these times.
+
+        The latter are since its start [s].
         """
-        index = np.maximum(np.searchsorted(self._starts, times, side="right") - 1, 0)
-        for number in np.unique(index):
-            part, here = self._march.parts[int(number)], index == number
-            yield part.motion, here, np.minimum(times[here] - part.start, part.motion.length)
+        part_of_time = np.maximum(np.searchsorted(self._starts, times, side="right") - 1, 0)
+        for number in np.unique(part_of_time).tolist():
+            part = self._march.parts[number]
+            inside = part_of_time == number
+            elapsed = np.minimum(times[inside] - part.start, part.motion.length)
+            yield part.motion, inside, elapsed
 
     def _states(self, times: Floats) -> State:
         """Return the states at times, along one axis."""
-        times, number = times.ravel(), self._march.system.number
-        displacement, velocity = np.empty((len(times), number)), np.empty((len(times), number))
-        for motion, here, since in self._parts_at(times):
-            state = motion.state(since)
-            displacement[here], velocity[here] = state.displacement, state.velocity
+        times = times.ravel()
+        number = self._march.system.number
+        displacement = np.empty((len(times), number))
+        velocity = np.empty((len(times), number))
+        for motion, inside, elapsed in self._parts_at(times):
+            state = motion.state(elapsed)
+            displacement[inside] = state.displacement
+            velocity[inside] = state.velocity
         return State(displacement, velocity, np.zeros((len(times), 0)))
 
-    def _parts(
-        self, name: str, state: State, shape: tuple[int, ...]
-    ) -> tuple[Floats, Floats, Floats]:
-        """Return displacements and velocities of the rigid motions of a body, and its
-        modal coordinates.
-        """
+    def _motion(self, name: str, state: State, shape: tuple[int, ...]) -> BodyMotion:
+        """Return the motion of a body in states along one axis, at times of a shape."""
         rigid, modes = self.system.slices[name]
-        of_all = (
-            state.displacement[:, rigid],
-            state.velocity[:, rigid],
-            state.displacement[:, modes],
+
+        def reshaped(values: Floats) -> Floats:
+            return values.reshape(*shape, values.shape[1])
+
+        displacement = reshaped(state.displacement[:, rigid])
+        velocity = reshaped(state.velocity[:, rigid])
+        modal = reshaped(state.displacement[:, modes])
+        translation, rotation = self.system.bodies[name].coordinates()
+        return BodyMotion(
+            displacement @ translation,
+            velocity @ translation,
+            displacement @ rotation,
+            velocity @ rotation,
+            modal,
         )
-        place, speed, modal = (part.reshape(*shape, part.shape[1]) for part in of_all)
-        return place, speed, modal
 
 
 def simulate_system(
@@ -287,15 +297,11 @@ def simulate_system(
             "start, and gravity, if there is any, does not "
             "bring the bodies of a contact together; give a body a velocity, or hold one"
         )
-    march = TimeMarching(
-        linear,
-        [
-            ContactDefinition(one.law, one.series, not one.same_spot)
-            for one in system.contacts.values()
-        ],
-        start,
-        system.tolerance,
-    )
+    definitions = [
+        ContactDefinition(contact.law, contact.series, fresh_surface=not contact.same_spot)
+        for contact in system.contacts.values()
+    ]
+    march = TimeMarching(linear, definitions, start, system.tolerance)
     # Newton iterates may overflow; results that are not finite are detected and retried
     with np.errstate(all="ignore"):
         march.run_until(duration, progress)
@@ -314,43 +320,34 @@ def simulate_system(
     # an independent check of the integration
     energy = _ledger(linear, start, march)
     if not energy["closure_relative"] <= _CLOSURE:
-        off = (
+        raise ComputationError(
+            "the energy ledger does not close: "
             f"it is off by {energy['closure_relative']:.2g} of the energy of "
             f"the motion (limit {_CLOSURE:g})"
         )
-        raise ComputationError(f"the energy ledger does not close: {off}")
     return SystemResponse(system, columns, energy, duration, march)
 
 
 def _ledger(linear: LinearSystem, start: State, march: TimeMarching) -> dict[str, float]:
     """Return the energy balance at the end of a run [J]."""
-    kinetic, strain = (float(part.sum()) for part in linear.energies(march.state))
-    begun, potential = (
-        float(linear.energies(start)[0].sum()),
-        -float(march.state.displacement @ linear.load),
-    )
+    kinetic_at_start, _ = linear.energies(start)
+    input_energy = float(kinetic_at_start.sum())
+    kinetic, strain = (float(energies.sum()) for energies in linear.energies(march.state))
+    potential = -float(march.state.displacement @ linear.load)
+    active = march.active.values()
     energy = {
         "kinetic_J": kinetic,
         "potential_J": potential,
         "strain_J": strain,
         "contact_elastic_J": sum(
-            float(touch.local.energy_at_indentation(touch.law_indentation(linear, march.state)))
-            for touch in march.active.values()
+            float(contact.local.energy_at_indentation(contact.law_indentation(linear, march.state)))
+            for contact in active
         ),
         "modal_damping_J": float(march.lost[:-1].sum()),
         "contact_dissipated_J": float(march.lost[-1]),
         "plastic_work_J": march.plastic
-        + sum(touch.plastic_work(linear, march.state) for touch in march.active.values()),
+        + sum(contact.plastic_work(linear, march.state) for contact in active),
     }
-    moved = begun + max(abs(potential), kinetic)
-    return {
-        **energy,
-        "input_J": begun,
-        "closure_relative": abs(sum(energy.values()) - begun) / moved if moved else 0.0,
-    }
-
-
-def _motion(body: MovingBody, place: Floats, speed: Floats, modal: Floats) -> BodyMotion:
-    """Return the motion of a body from its rigid motions and its modal coordinates."""
-    along, turning = body.coordinates()
-    return BodyMotion(place @ along, speed @ along, place @ turning, speed @ turning, modal)
+    scale = input_energy + max(abs(potential), kinetic)
+    closure = abs(sum(energy.values()) - input_energy) / scale if scale else 0.0
+    return {**energy, "input_J": input_energy, "closure_relative": closure}

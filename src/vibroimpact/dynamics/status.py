@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from decimal import ROUND_FLOOR, Context, Decimal
 
 import numpy as np
 
@@ -15,6 +16,8 @@ from vibroimpact.dynamics.outcome import Outcome
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.rest import Rest
 from vibroimpact.units.display import certain, certain_figures
+
+_DIGITS = Context(prec=6, rounding=ROUND_FLOOR)
 
 
 @dataclass(frozen=True)
@@ -30,12 +33,15 @@ class Ended:
 
 
 def status_of(run: Ended) -> str:
-    """Return the reason and time of the end of a run, in certain digits; of a batch, the
-    number of drops that each rule ended.
+    """Return the reason and time of the end of a run, in certain digits.
+
+    For a batch it is the number of drops that each rule ended.
     """
     if len(run.outcomes) > 1 or run.problem.shape != ():
         return "; ".join(_ended_by(run, outcome) for outcome in Outcome if outcome in run.outcomes)
-    number, end, outcome = len(run.impacts["impact"]), float(run.end_time[0]), run.outcomes[0]
+    number = len(run.impacts["impact"])
+    end = float(run.end_time[0])
+    outcome = run.outcomes[0]
     after = f"after {number} impact{'' if number == 1 else 's'}"
     if outcome is Outcome.IMPACTS:
         return f"Stopped {after}, {_top_or_touch(run)}, at {_time(run, end, 6)} s."
@@ -55,14 +61,13 @@ def status_of(run: Ended) -> str:
         )
     if outcome is Outcome.DURATION:
         asked = float(run.problem.duration or end)
-        finished = (
-            f", and the contact under way was finished, at {_time(run, end, 9)} s"
-            if end > asked
-            else ""
-        )
+        sentence = f"Stopped {after} at {asked:.6g} s, the end of the run"
+        if end > asked:
+            sentence += f", and the contact under way was finished, at {_time(run, end, 9)} s"
         rides = run.problem.shaken and number and np.isnan(run.impacts["separation_speed_m_s"][-1])
-        riding = f"; {_riding(run)}" if np.isfinite(run.rest.left[0]) or rides else ""
-        return f"Stopped {after} at {asked:.6g} s, the end of the run{finished}{riding}."
+        if np.isfinite(run.rest.left[0]) or rides:
+            sentence += f"; {_riding(run)}"
+        return f"{sentence}."
     if outcome is Outcome.LIMIT:
         return (
             f"Stopped {after}, the most that are followed, at {_time(run, end, 6)} s; the "
@@ -88,37 +93,32 @@ def status_of(run: Ended) -> str:
 
 
 def _ended_by(run: Ended, outcome: Outcome) -> str:
-    """Return the number of drops of a batch that a rule ended, and the energy left in
-    vibration, in words.
-    """
-    ended = np.array([one is outcome for one in run.outcomes])
-    left = run.rest.left[ended & np.isfinite(run.rest.left)]
+    """Return the number of drops of a batch that a rule ended, and the energy left in vibration."""
+    ended = np.array([run_outcome is outcome for run_outcome in run.outcomes])
+    energy = run.rest.left[ended & np.isfinite(run.rest.left)]
     counted = f"{np.count_nonzero(ended)} of {len(run.outcomes)} drops: {outcome.value}"
-    if not left.size:
+    if not energy.size:
         return counted
-    riding = "" if outcome.at_rest else f"{left.size} of them riding, "
-    return f"{counted} ({riding}at most {left.max():.3g} J left in vibration)"
+    riding = "" if outcome.at_rest else f"{energy.size} of them riding, "
+    return f"{counted} ({riding}at most {energy.max():.3g} J left in vibration)"
 
 
 def _top_or_touch(run: Ended) -> str:
-    """Return where a run stops after its last impact: at the top of the rebound, or where
-    a plate that is shaken touches sooner.
+    """Return where a run stops after its last impact.
+
+    It is the top of the rebound, or where a plate that is shaken touches sooner.
     """
-    top, sooner = (
-        "at the top of the last rebound",
-        "at the next touch, before the top of the last rebound",
-    )
+    top = "at the top of the last rebound"
     if not run.problem.shaken:
         return top
     if run.problem.oblique is not None:
         return f"{top}, or at the next touch if that is sooner"
-    still = (
-        _STANDING**2
-        * 0.5
-        * float(run.problem.sphere.mass)
-        * float(run.impacts["approach_speed_m_s"][0]) ** 2
-    )
-    return top if float(run.energy["kinetic_J"]) <= still else sooner
+    mass = float(run.problem.sphere.mass)
+    first_speed = float(run.impacts["approach_speed_m_s"][0])
+    # at the top the sphere stands still
+    if float(run.energy["kinetic_J"]) <= _STANDING**2 * 0.5 * mass * first_speed**2:
+        return top
+    return "at the next touch, before the top of the last rebound"
 
 
 def _riding(run: Ended) -> str:
@@ -132,16 +132,17 @@ def _riding(run: Ended) -> str:
 
 
 def _moves_on(run: Ended) -> str:
-    """Return the sentence on a sphere that bounces no more and moves on along the plate;
-    empty if it does not.
+    """Return the sentence on a sphere that bounces no more and moves on along the plate.
+
+    It is empty if the sphere does not.
     """
-    fluid, mass = run.problem.fluid, float(run.problem.sphere.mass)
-    # a liquid moves along
-    moved = mass if fluid is None else mass * float(fluid.inertia(run.problem.sphere_density))
-    speed = float(np.sqrt(2.0 * max(float(run.energy["kinetic_J"]), 0.0) / moved))
-    if run.problem.oblique is None or speed < _STANDING * float(
-        run.impacts["approach_speed_m_s"][0]
-    ):
+    if run.problem.oblique is None:
+        return ""
+    mass = float(run.problem.sphere.mass)
+    if run.problem.fluid is not None:  # a liquid moves along
+        mass *= float(run.problem.fluid.inertia(run.problem.sphere_density))
+    speed = float(np.sqrt(2.0 * max(float(run.energy["kinetic_J"]), 0.0) / mass))
+    if speed < _STANDING * float(run.impacts["approach_speed_m_s"][0]):
         return ""
     return f" It moves on along the plate, at {speed:.4g} m/s when the run ends."
 
@@ -150,16 +151,15 @@ _STANDING = 1e-9  # of the first approach speed
 
 
 def _at_rest(run: Ended) -> str:
-    """Return the rule by which the sphere is at rest, and the energy left in what carries
-    it, in words.
-    """
-    time, left = float(run.rest.time[0]), float(run.rest.left[0])
-    vibration = (
-        ""
-        if np.isnan(left)
-        else f" {_shown(run, left, 3)} J are left in vibration, too little at the contact to "
-        "lift it."
-    )
+    """Return the rule by which the sphere is at rest, and the energy left in what carries it."""
+    time = float(run.rest.time[0])
+    energy = float(run.rest.left[0])
+    vibration = ""
+    if not np.isnan(energy):
+        vibration = (
+            f" {_shown(run, energy, 3)} J are left in vibration, too little at the contact to "
+            "lift it."
+        )
     when = _time(run, time, 7)
     if run.outcomes[0] is Outcome.CAPTURED:
         if vibration:
@@ -173,39 +173,53 @@ def _at_rest(run: Ended) -> str:
             f"from {when} s on it has too little energy left to break the adhesion, and "
             f"sticks.{vibration}"
         )
-    speed, last = float(run.rest.speed[0]), float(run.impacts["separation_speed_m_s"][-1])
-    limit = (
-        f" Bounces with the last restitution would end at {when} s." if np.isfinite(time) else ""
-    )
-    if not last:
+    rest_speed = float(run.rest.speed[0])
+    last_speed = float(run.impacts["separation_speed_m_s"][-1])
+    if not last_speed:
         return f"it did not leave again (rest-speed rule).{vibration}"
+    limit = ""
+    if np.isfinite(time):
+        limit = f" Bounces with the last restitution would end at {when} s."
     return (
-        f"it left at {_shown(run, last, 3)} m/s, below the rest speed of {speed:.3g} m/s "
-        f"(rest-speed rule).{limit}{vibration}"
+        f"it left at {_shown(run, last_speed, 3)} m/s, below the rest speed of "
+        f"{rest_speed:.3g} m/s (rest-speed rule).{limit}{vibration}"
     )
 
 
 def _time(run: Ended, time: float, significant: int) -> str:
-    """Return an end time in the given number of digits, or in fewer that are certain;
-    each flight is as certain as the impact before it.
+    """Return an end time in the given number of digits, or in fewer that are certain.
+
+    Each flight is as certain as the impact before it.
     """
-    change, begin = change_by_impact(run.impacts, run.problem.tolerance), run.impacts["time_s"]
+    begin = run.impacts["time_s"]
     if not len(begin) or not np.isfinite(time):
         return f"{time:.{significant}g}"
+    change = change_by_impact(run.impacts, run.problem.tolerance)
     flights = np.diff(begin, append=max(time, float(begin[-1])))
-    return _digits(
-        time, float(np.minimum(np.nan_to_num(change, nan=1.0), 1.0) @ flights) / time, significant
-    )
+    change_of_time = float(np.minimum(np.nan_to_num(change, nan=1.0), 1.0) @ flights)
+    return _digits(time, change_of_time / time, significant)
 
 
 def _shown(run: Ended, value: float, significant: int) -> str:
-    """Return a quantity of the last impact in the given number of digits, or in fewer
-    that are certain.
-    """
+    """Return a quantity of the last impact in some digits, or in fewer that are certain."""
     change = change_by_impact(run.impacts, run.problem.tolerance)
     return _digits(value, float(change[-1]) if len(change) else 0.0, significant)
 
 
 def _digits(value: float, change: float, significant: int) -> str:
+    """Return a value in some digits, or in fewer that are certain under a relative change."""
     figures = int(certain_figures(change))
     return certain(f"{value:.{significant}g}", value, figures) if figures else f"about {value:.1g}"
+
+
+def end_in_words(end: float) -> str:
+    """Return the end of a run [s] in six digits.
+
+    It is rounded down, so that the time that is named lies within the run.
+
+    Examples
+    --------
+    >>> end_in_words(0.5), end_in_words(2.0 / 3.0)
+    ('0.5', '0.666666')
+    """
+    return f"{float(_DIGITS.create_decimal(Decimal(float(end)))):.6g}"

@@ -1,5 +1,6 @@
-"""Rules that end the run of a drop in its flight; how a contact ends, and whether a sphere is at
-rest then, is decided at its release.
+"""Rules that end the run of a drop in its flight.
+
+How a contact ends, and whether a sphere is at rest then, is decided at its release.
 
 A rule is a function that returns when it ends the runs of drops [s], infinite where it does not.
 """
@@ -23,9 +24,7 @@ StopRule: TypeAlias = Callable[[Drops, Flight, Floats], Floats]
 
 
 class Stops(NamedTuple):
-    """Which of some drops (b,) stop in their flights, when [s], and the codes of the
-    outcomes that this leads to.
-    """
+    """Which of some drops (b,) stop in their flights, when [s], and the codes of their outcomes."""
 
     stopped: Bools
     time: Floats
@@ -33,8 +32,9 @@ class Stops(NamedTuple):
 
 
 def stop_rules(run: RunState) -> tuple[tuple[Outcome, StopRule], ...]:
-    """Return the rules that can end a run, each with the outcome that it leads to; of two
-    that end it at one time the first counts.
+    """Return the rules that can end a run, each with the outcome that it leads to.
+
+    Of two that end it at one time the first counts.
     """
     problem = run.problem
     rules: list[tuple[Outcome, StopRule]] = []
@@ -59,8 +59,9 @@ def at_time(end: float) -> StopRule:
 
 
 def after_impacts(run: RunState, number: int) -> StopRule:
-    """Return the rule that ends runs at the top of the rebound after so many impacts, or
-    where a plate that is shaken touches sooner.
+    """Return the rule that ends runs after so many impacts.
+
+    It does at the top of the rebound, or where a plate that is shaken touches sooner.
     """
 
     def rule(drops: Drops, flight: Flight, touch: Floats) -> Floats:
@@ -83,8 +84,9 @@ def beside_plate(oblique: ObliqueMotion) -> StopRule:
 def first_stops(
     rules: tuple[tuple[Outcome, StopRule], ...], drops: Drops, flight: Flight, touch: Floats
 ) -> Stops:
-    """Return which drops stop before their next touches [s]; one that no rule ends and
-    that never touches again stops as it leaves.
+    """Return which drops stop before their next touches [s].
+
+    One that no rule ends and that never touches again stops as it leaves.
     """
     time = np.full(len(drops), np.inf)
     outcome = np.full(len(drops), Outcome.LEFT.code)

@@ -89,19 +89,20 @@ class MovingBody:
         return bool(np.isinf(self.mass))
 
     def coordinates(self) -> tuple[Floats, Floats]:
-        """Return the rigid motions of unit mass: translation of the centre and rotation
-        in each [kg^-1/2, rad/(kg^1/2 m)], (r, 3) each.
+        """Return the rigid motions of unit mass, (r, 3) each.
+
+        They are the translation of the centre [kg^-1/2] and the rotation [rad/(kg^1/2 m)] in each.
         """
         if self.held:
             return np.zeros((0, 3)), np.zeros((0, 3))
-        along, turning = np.eye(3) / np.sqrt(self.mass), np.zeros((3, 3))
-        if self.inertia is not None:
-            moments, axes = np.linalg.eigh(self.inertia)
-            along, turning = (
-                np.concatenate([along, np.zeros((3, 3))]),
-                np.concatenate([turning, axes.T / np.sqrt(moments)[:, None]]),
-            )
-        return along, turning
+        translation = np.eye(3) / np.sqrt(self.mass)
+        zeros = np.zeros((3, 3))
+        if self.inertia is None:
+            return translation, zeros
+        # about the principal axes
+        moments, axes = np.linalg.eigh(self.inertia)
+        rotation = axes.T / np.sqrt(moments)[:, None]
+        return np.concatenate([translation, zeros]), np.concatenate([zeros, rotation])
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -264,70 +265,70 @@ class System:
 
     @cached_property
     def slices(self) -> dict[str, tuple[slice, slice]]:
-        """Slices of the rigid motions and of the modes of each body among the
-        coordinates; the rigid motions of all bodies come first.
+        """Slices of the rigid motions and of the modes of each body among the coordinates.
+
+        The rigid motions of all bodies come first.
         """
-        rigid = [len(body.coordinates()[0]) for body in self.bodies.values()]
-        modes = [
-            0 if body.modes is None else len(body.modes.frequencies)
-            for body in self.bodies.values()
-        ]
-        at = np.cumsum([0, *rigid, *modes])
+        bodies = self.bodies.values()
+        rigid = [len(body.coordinates()[0]) for body in bodies]
+        modes = [0 if body.modes is None else len(body.modes.frequencies) for body in bodies]
+        ends = np.cumsum([0, *rigid, *modes])
         number = len(rigid)
         return {
-            name: (slice(at[i], at[i + 1]), slice(at[number + i], at[number + i + 1]))
-            for i, name in enumerate(self.bodies)
+            name: (
+                slice(ends[index], ends[index + 1]),
+                slice(ends[number + index], ends[number + index + 1]),
+            )
+            for index, name in enumerate(self.bodies)
         }
 
     def linear(self) -> tuple[LinearSystem, State]:
         """Return the bodies as one linear system, and its state at the start."""
         slices = self.slices
         number = max(part.stop for pair in slices.values() for part in pair)
-        frequency, damping, load, start = (np.zeros(number) for _ in range(4))
+        frequency = np.zeros(number)
+        damping = np.zeros(number)
+        load = np.zeros(number)
+        velocity = np.zeros(number)
         shape = np.zeros((len(self.contacts), number))
         for name, body in self.bodies.items():
             rigid, vibrating = slices[name]
-            along, turning = body.coordinates()
+            translation, rotation = body.coordinates()
             if not body.held:
-                load[rigid] = body.mass * along @ self.gravity
-                start[rigid] = body.mass * along @ body.velocity
-            if body.inertia is not None and not body.held:
-                start[rigid] += turning @ body.inertia @ body.angular_velocity
+                load[rigid] = body.mass * translation @ self.gravity
+                velocity[rigid] = body.mass * translation @ body.velocity
+                if body.inertia is not None:
+                    velocity[rigid] += rotation @ body.inertia @ body.angular_velocity
             if body.modes is not None:
-                frequency[vibrating], damping[vibrating] = (
-                    body.modes.angular_frequencies,
-                    body.modes.damping_ratios,
-                )
+                frequency[vibrating] = body.modes.angular_frequencies
+                damping[vibrating] = body.modes.damping_ratios
             # the approach of a contact grows with the motion of the body below along the normal,
             # and shrinks with that of the one above
-            for row, (where, contact) in enumerate(self.contacts.items()):
+            for row, (contact_name, contact) in enumerate(self.contacts.items()):
                 sign = (contact.below == name) * 1.0 - (contact.above == name)
                 if not sign:
                     continue
                 lever = np.cross(contact.point - body.centre, contact.normal)
-                shape[row, rigid] = sign * (along @ contact.normal + turning @ lever)
+                shape[row, rigid] = sign * (translation @ contact.normal + rotation @ lever)
                 if body.modes is not None:
-                    shape[row, vibrating] = sign * (body.modes.points[where] @ contact.normal)
-        no, nothing, counted = (
-            np.zeros(number, dtype=bool),
-            np.zeros(0),
-            np.ones(shape.shape, dtype=bool),
-        )
+                    mode_shapes = body.modes.points[contact_name]
+                    shape[row, vibrating] = sign * (mode_shapes @ contact.normal)
         gaps = np.array([-contact.gap for contact in self.contacts.values()])
         levels = np.array([float(contact.law.touch_level) for contact in self.contacts.values()])
+        no_elements = np.zeros(0)
         system = LinearSystem(
-            frequency,
-            damping,
-            shape,
-            gaps + levels,
-            load,
-            no,
-            counted,
-            nothing,
-            nothing,
-            np.zeros(0, dtype=np.intp),
+            angular_frequency=frequency,
+            damping_ratio=damping,
+            shape=shape,
+            offset=gaps + levels,
+            load=load,
+            inside=np.zeros(number, dtype=bool),
+            below=np.ones(shape.shape, dtype=bool),
+            rate=no_elements,
+            mobility=no_elements,
+            local_contact=np.zeros(0, dtype=np.intp),
         )
-        return system, State(np.zeros(number), start, nothing)
+        return system, State(np.zeros(number), velocity, no_elements)
 
 
 def _number(name: str, value: object) -> float:
@@ -341,37 +342,41 @@ def _number(name: str, value: object) -> float:
 
 
 def _array(value: object) -> Floats:
-    """Return an array of finite numbers below 1e15 in magnitude, or an empty one if the
-    value is not such an array.
+    """Return an array of finite numbers below 1e15 in magnitude.
+
+    It is empty if the value is not such an array.
     """
+    empty = np.zeros(0)
     try:
-        found = np.asarray(value)
-        found = found.astype(float) if found.dtype.kind in "iuf" else np.zeros(0)
+        array = np.asarray(value)
+        if array.dtype.kind not in "iuf":
+            return empty
+        array = array.astype(float)
     except (TypeError, ValueError, OverflowError):
-        return np.zeros(0)
-    return found if found.size and np.all(np.abs(found) < _LARGEST) else np.zeros(0)
+        return empty
+    return array if array.size and np.all(np.abs(array) < _LARGEST) else empty
 
 
 def _vector(name: str, value: object) -> Floats:
     """Return a vector of three finite numbers."""
-    found = _array(value)
-    if found.shape != (3,):
+    vector = _array(value)
+    if vector.shape != (3,):
         raise InputError(
             f"{name} must be three finite numbers, along x, y and z, below {_LARGEST:g} in "
             f"magnitude; not {value!r}"
         )
-    return found
+    return vector
 
 
 def _inertia(value: object) -> Floats:
     """Return a tensor of inertia (3, 3)."""
-    found = _array(value)
-    if found.shape in ((), (3,)):
-        found = found * np.eye(3)
-    if found.shape == (3, 3) and np.allclose(found, found.T):
-        moments = np.linalg.eigvalsh(found)
+    tensor = _array(value)
+    if tensor.shape in ((), (3,)):
+        tensor = tensor * np.eye(3)
+    if tensor.shape == (3, 3) and np.allclose(tensor, tensor.T):
+        moments = np.linalg.eigvalsh(tensor)
         if moments[0] > 0.0 and moments[2] <= (1.0 + 1e-9) * (moments[0] + moments[1]):
-            return found
+            return tensor
     raise InputError(
         "inertia must be a moment of inertia [kg m^2], > 0, three of them, or a symmetric "
         "matrix of 3 by 3, none of whose principal "

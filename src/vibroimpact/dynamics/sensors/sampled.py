@@ -544,12 +544,12 @@ class _Blocks:
 
 def blocks_of(oscillators: Oscillators, outputs: Floats, rate: float) -> _Blocks:
     """Return oscillators with propagators over a block of samples, cached for few oscillators."""
-    propagators = _block_propagators
-    if len(oscillators.angular_frequency) > _MOST_CACHED:
-        propagators = _block_propagators.__wrapped__
-    cosine, sine, transition = propagators(
-        oscillators.angular_frequency.tobytes(), oscillators.damping_ratio.tobytes(), rate
-    )
+    frequencies = oscillators.angular_frequency.tobytes()
+    ratios = oscillators.damping_ratio.tobytes()
+    if oscillators.number <= _MOST_CACHED:
+        cosine, sine, transition = _block_propagators(frequencies, ratios, rate)
+    else:
+        cosine, sine, transition = _block_propagators.__wrapped__(frequencies, ratios, rate)
     return _Blocks(oscillators, outputs, cosine, sine, transition)
 
 
