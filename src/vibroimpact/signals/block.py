@@ -91,7 +91,7 @@ class Block:
         """Threshold of the envelope, (n,)."""
         if self.given is not None:
             return self.given
-        return THRESHOLD * self.envelope.max(axis=1)
+        return np.asarray(THRESHOLD * self.envelope.max(axis=1))
 
     @cached_property
     def packets(self) -> Packets:
