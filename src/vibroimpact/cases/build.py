@@ -1,5 +1,6 @@
-"""The problem that a case describes, and the resolved case: checks across sections,
-conversion to `Problem`, and back to a table.
+"""The problem that a case describes, and the resolved case.
+
+There are checks across sections, conversion to `Problem`, and back to a table.
 """
 
 from __future__ import annotations
@@ -58,53 +59,95 @@ def check_case(case: CaseTable) -> None:
     law = contact_laws_of(case)[-1]
     # without a limit of impacts or time only losses in the contact end a run
     if impact_limit(case) is None and run_duration(case) is None:
-        remedy = "give a number, or run.duration"
-        # what a function of the approach speed is for the slowest impacts, the last ones
-        slow = {key: held(function, 0.0) for key, function in by_speed_of(case).items()}
-        if is_conservative(law.changed(slow)):
-            words = f"and this {law.name} loses none{' of slow impacts' if slow else ''}"
-            raise InputError(
-                f'"all" needs a law that loses energy, {words}; {remedy}', "run.impacts"
-            )
-        if (
-            isinstance(law, CompliantLaw)
-            and law.lasting
-            and case.drop.same_spot
-            and is_conservative(law.after_compression(1.0))
-        ):
-            words = f"and {law.name} loses none on a dent that it has made"
-            raise InputError(
-                f'"all" needs a law that loses energy, {words}; {remedy}, or '
-                "drop.same_spot = false",
-                "run.impacts",
-            )
+        _check_losses(case, law)
     _check_oblique(case, law)
     _check_liquid(case, law)
     if case.drop.air is not None:
         check_thin(case.drop.air.density, sphere_density(case.sphere), "drop.air.density")
     _check_motion(case)
-    if case.sensors and case.plate.model == "rigid" and case.plate.motion is None:
+    _check_sensors(case)
+    _check_local(case, law)
+    check_positions(case)
+    if elastic_names(case):
+        from vibroimpact.cases.elastic.elastic_bodies import elastic_bodies  # imports scipy.sparse
+
+        elastic_bodies(case)
+
+
+def _check_losses(case: CaseTable, law: ContactLaw) -> None:
+    """Check that a law loses energy until the sphere is at rest.
+
+    Raises
+    ------
+    InputError
+        If not; then the run would not end.
+    """
+    demand = '"all" needs a law that loses energy'
+    remedy = "give a number, or run.duration"
+    # what a function of the approach speed is for the slowest impacts, the last ones
+    slowest = {key: held(function, 0.0) for key, function in by_speed_of(case).items()}
+    if is_conservative(law.changed(slowest)):
+        of_which = " of slow impacts" if slowest else ""
+        raise InputError(
+            f"{demand}, and this {law.name} loses none{of_which}; {remedy}", "run.impacts"
+        )
+    if (
+        isinstance(law, CompliantLaw)
+        and law.lasting
+        and case.drop.same_spot
+        and is_conservative(law.after_compression(1.0))
+    ):
+        raise InputError(
+            f"{demand}, and {law.name} loses none on a dent that it has made; {remedy}, or "
+            "drop.same_spot = false",
+            "run.impacts",
+        )
+
+
+def _check_sensors(case: CaseTable) -> None:
+    """Check that sensors have a plate that moves, and of a kind that their instruments take.
+
+    Raises
+    ------
+    InputError
+        If not.
+    """
+    if not case.sensors:
+        return
+    if case.plate.model == "rigid" and case.plate.motion is None:
         if case.plate.radius is not None:
             raise InputError(
                 "sensors are on a plate, and a sphere takes its place; leave out the "
                 "sensors, or plate.radius",
                 "sensors",
             )
-        movable = not any(sensor.instrument in AT_REST for sensor in case.sensors)
-        remedy = (
-            f'give it model = "elastic"{" or motion" if movable else ""}, or leave out the sensors'
-        )
+        may_be_shaken = not any(sensor.instrument in AT_REST for sensor in case.sensors)
+        motion = " or motion" if may_be_shaken else ""
         raise InputError(
-            f"the plate is rigid and at rest, so that its points do not move; {remedy}", "sensors"
+            "the plate is rigid and at rest, so that its points do not move; "
+            f'give it model = "elastic"{motion}, or leave out the sensors',
+            "sensors",
         )
+    if case.plate.motion is None:
+        return
     for number, sensor in enumerate(case.sensors):
-        if case.plate.motion is not None and sensor.instrument in AT_REST:
-            words = (
-                f"{INSTRUMENTS[sensor.instrument]} is for plates whose supports are at rest; "
-                "leave out the sensor, or the motion"
-            )
+        if sensor.instrument in AT_REST:
             names = [{"name": sensor.name} for sensor in case.sensors]
-            raise InputError(words, f"{item_label('sensors', names, number)}.instrument")
+            raise InputError(
+                f"{INSTRUMENTS[sensor.instrument]} is for plates whose supports are at rest; "
+                "leave out the sensor, or the motion",
+                f"{item_label('sensors', names, number)}.instrument",
+            )
+
+
+def _check_local(case: CaseTable, law: ContactLaw) -> None:
+    """Check the treatment of local compliance against the model of the sphere and the law.
+
+    Raises
+    ------
+    InputError
+        If it does not go with them.
+    """
     local = case.contact.local
     if local.local_compliance == "identified" and case.sphere.model == "elastic":
         raise InputError(
@@ -112,24 +155,19 @@ def check_case(case: CaseTable) -> None:
             'leave it "rigid"',
             "sphere.model",
         )
-    if local.finite_sphere and case.sphere.model == "elastic":
-        words = (
-            'an elastic sphere deforms in its modes, and local_compliance = "consistent" '
-            "corrects the rest"
-        )
+    if not local.finite_sphere:
+        return
+    if case.sphere.model == "elastic":
         raise InputError(
-            f"this is for a rigid sphere: {words}; leave this out", "contact.finite_sphere"
+            "this is for a rigid sphere: an elastic sphere deforms in its modes, and "
+            'local_compliance = "consistent" corrects the rest; leave this out',
+            "contact.finite_sphere",
         )
-    if local.finite_sphere and not isinstance(law, CompliantLaw):
+    if not isinstance(law, CompliantLaw):
         raise InputError(
             f"{law.name} gives no force that a finite sphere would change; leave this out",
             "contact.finite_sphere",
         )
-    check_positions(case)
-    if elastic_names(case):
-        from vibroimpact.cases.elastic.elastic_bodies import elastic_bodies  # imports scipy.sparse
-
-        elastic_bodies(case)
 
 
 def _check_oblique(case: CaseTable, law: ContactLaw) -> None:
@@ -145,11 +183,11 @@ def _check_oblique(case: CaseTable, law: ContactLaw) -> None:
     if not keys:
         return
     if case.contact.local.finite_sphere:
-        words = (
+        raise InputError(
             "this is for drops along the normal, without spin and friction; leave it out, or "
-            f"{' and '.join(keys)}"
+            f"{' and '.join(keys)}",
+            "contact.finite_sphere",
         )
-        raise InputError(words, "contact.finite_sphere")
     if case.plate.radius is not None:
         raise InputError(
             "a sphere may fall obliquely, spin or rub on a flat plate only, not on another "
@@ -157,29 +195,29 @@ def _check_oblique(case: CaseTable, law: ContactLaw) -> None:
             keys[0],
         )
     if isinstance(case.plate.mesh, BroughtMeshTable):
-        words = (
-            "an imported mesh does not define the edges of the plate, over which a sphere may fall"
-        )
-        raise InputError(f"{words}; give size and leave out mesh, or leave this out", keys[0])
-    friction = friction_law_of(case)
-    shaken = case.plate.motion is not None and isinstance(law, CompliantLaw)
-    if (
-        (deforms(case) or shaken)
-        and friction is not None
-        and not isinstance(friction, CompliantFriction)
-    ):
-        words = (
-            f"{friction.name} has no tangential compliance, which friction needs on bodies "
-            "that deform or are shaken"
-        )
         raise InputError(
-            f'{words}; take "mdr" or one of the "mindlin" laws', "contact.friction.law"
+            "an imported mesh does not define the edges of the plate, over which a sphere may "
+            "fall; give size and leave out mesh, or leave this out",
+            keys[0],
+        )
+    friction = friction_law_of(case)
+    if friction is None:
+        return
+    is_shaken = case.plate.motion is not None and isinstance(law, CompliantLaw)
+    if (deforms(case) or is_shaken) and not isinstance(friction, CompliantFriction):
+        raise InputError(
+            f"{friction.name} has no tangential compliance, which friction needs on bodies "
+            'that deform or are shaken; take "mdr" or one of the "mindlin" laws',
+            "contact.friction.law",
         )
     if isinstance(friction, CompliantFriction) and not isinstance(law, CompliantLaw):
-        words = f"{law.name} gives no normal force, which {friction.name} follows"
         # bodies that deform take no friction by the impulse
         remedy = "" if deforms(case) else ', or friction by the impulse: "coulomb" or "rigid"'
-        raise InputError(f"{words}; take another contact law{remedy}", "contact.friction.law")
+        raise InputError(
+            f"{law.name} gives no normal force, which {friction.name} follows; take another "
+            f"contact law{remedy}",
+            "contact.friction.law",
+        )
 
 
 def _check_liquid(case: CaseTable, law: ContactLaw) -> None:
@@ -194,12 +232,15 @@ def _check_liquid(case: CaseTable, law: ContactLaw) -> None:
     if case.contact.local.liquid is None:
         return
     if law.free_parameter != "restitution":
-        words = f"{law.name} takes no restitution, of which a liquid leaves a part"
+        fault = "takes no restitution"
         remedy = 'take a law that does, such as "tsuji" or "flores"'
         if "restitution" in {item.name for item in fields(law)}:
-            words = f"{law.name} is given without a restitution, of which a liquid leaves a part"
+            fault = "is given without a restitution"
             remedy = f"give contact.restitution in place of contact.{law.free_parameter}"
-        raise InputError(f"{words}; {remedy}, or leave this out", "contact.liquid")
+        raise InputError(
+            f"{law.name} {fault}, of which a liquid leaves a part; {remedy}, or leave this out",
+            "contact.liquid",
+        )
     if case.plate.radius is not None:
         raise InputError(
             "what a liquid leaves of the restitution is known for a sphere that meets a "
@@ -244,8 +285,9 @@ def _check_motion(case: CaseTable) -> None:
 
 
 def check_drop(case: CaseTable) -> None:
-    """Check that no free plate is hit under gravity; the modes of such a plate may still be
-    computed.
+    """Check that no free plate is hit under gravity.
+
+    The modes of such a plate may still be computed.
 
     Raises
     ------
@@ -291,96 +333,96 @@ def problem_of(
 
 
 def resolved_case(case: CaseTable) -> ResolvedCase:
-    """Return a case as a table in SI with all defaults resolved, as written to
-    `case.toml`; reading it gives the same case.
+    """Return a case as a table in SI with all defaults resolved, as in `case.toml`.
+
+    Reading it gives the same case.
     """
-    laws = contact_laws_of(case)
-    contact: dict[str, Any] = {"law": case.contact.law}
-    # a parameter is a list only if its values differ between impacts; derived ones are written out,
-    # so that the file is complete
-    functions = by_speed_of(case)
-    for item in fields(laws[0]):
-        if item.name in functions:
-            contact[item.name] = functions[item.name].table()
-            continue
-        values = [getattr(law, item.name) for law in laws]
-        if item.name in case.contact.parameters or values[0] is not None:
-            contact[item.name] = values if len(values) > 1 and len(set(values)) > 1 else values[0]
-    number = impact_limit(case)
+    impacts = impact_limit(case)
     table = {
         "schema_version": case.schema_version,
         "name": case.name,
         "sphere": _body(case, "sphere"),
         "plate": _body(case, "plate"),
-        "drop": {
-            key: list(value) if isinstance(value, tuple) else value
-            for key, value in case.drop.model_dump(exclude_none=True).items()
-        },
+        "drop": _lists(case.drop.model_dump(exclude_none=True)),
         "contact": {
-            **contact,
+            **_law(case),
             **case.contact.local.model_dump(exclude_none=True),
             **_friction(case),
         },
         "run": {
             **case.run.model_dump(exclude_none=True, exclude={"impacts"}),
-            "impacts": "all" if number is None else number,
+            "impacts": "all" if impacts is None else impacts,
         },
-        **(
-            {
-                "sensors": [
-                    sensor.model_dump(exclude_none=True, mode="json") for sensor in case.sensors
-                ]
-            }
-            if case.sensors
-            else {}
-        ),
-        **({"calibrate": calibrate_table(case.calibrate)} if case.calibrate else {}),
-        **({"sweep": case.sweep.model_dump(exclude_none=True, mode="json")} if case.sweep else {}),
     }
+    if case.sensors:
+        table["sensors"] = [
+            sensor.model_dump(exclude_none=True, mode="json") for sensor in case.sensors
+        ]
+    if case.calibrate:
+        table["calibrate"] = calibrate_table(case.calibrate)
+    if case.sweep:
+        table["sweep"] = case.sweep.model_dump(exclude_none=True, mode="json")
     return cast("ResolvedCase", table)
 
 
+def _law(case: CaseTable) -> dict[str, Any]:
+    """Return the name of the contact law of a case, and its parameters.
+
+    Derived ones are written out too, so that the file is complete.
+    """
+    laws = contact_laws_of(case)
+    functions = by_speed_of(case)
+    table: dict[str, Any] = {"law": case.contact.law}
+    for item in fields(laws[0]):
+        if item.name in functions:
+            table[item.name] = functions[item.name].table()
+            continue
+        values = [getattr(law, item.name) for law in laws]
+        if item.name not in case.contact.parameters and values[0] is None:
+            continue
+        # a list only if the values differ between impacts
+        differ = len(values) > 1 and len(set(values)) > 1
+        table[item.name] = values if differ else values[0]
+    return table
+
+
 def _friction(case: CaseTable) -> dict[str, Any]:
-    """Return the friction table of a case under its key, with all parameters; nothing
-    without friction.
+    """Return the friction table of a case under its key, with all parameters.
+
+    Nothing without friction.
     """
     law = friction_law_of(case)
-    return (
-        {}
-        if law is None
-        else {
-            "friction": {
-                "law": law.name,
-                **{item.name: getattr(law, item.name) for item in fields(law)},
-            }
-        }
-    )
+    if law is None:
+        return {}
+    parameters = {item.name: getattr(law, item.name) for item in fields(law)}
+    return {"friction": {"law": law.name, **parameters}}
 
 
 def _body(case: CaseTable, name: Literal["sphere", "plate"]) -> dict[str, Any]:
     """Return the table of a body, without the keys that do not apply to its model."""
     section: SphereSection | PlateSection = getattr(case, name)
-    found = section.model_dump(
+    table = section.model_dump(
         exclude_none=True, exclude={"material", "supports", "damping", "mesh"}
     )
     if section.model == "rigid":
-        found = {
-            key: found[key]
-            for key in ("radius", "mass", "inertia", "size", "model", "inclination", "motion")
-            if key in found
-        }
-        found |= {"supports": "free"} if name == "plate" and is_free_sphere(case) else {}
+        keys = ("radius", "mass", "inertia", "size", "model", "inclination", "motion")
+        table = {key: table[key] for key in keys if key in table}
+        if name == "plate" and is_free_sphere(case):
+            table["supports"] = "free"
     else:
         from vibroimpact.cases.elastic.elastic_bodies import elastic_table  # imports scipy.sparse
 
-        found |= elastic_table(case, name)
-    if "size" in found:
-        found["size"] = list(found["size"])
-    if "motion" in found:
-        motion = {
-            key: list(value) if isinstance(value, tuple) else value
-            for key, value in found["motion"].items()
-        }
-        other = "phase" if "file" in motion else "repeat"
-        found["motion"] = {key: value for key, value in motion.items() if key != other}
-    return {**found, "material": material_table(section.material)}
+        table |= elastic_table(case, name)
+    if "size" in table:
+        table["size"] = list(table["size"])
+    if "motion" in table:
+        motion = _lists(table["motion"])
+        # a file has no phase, and a harmonic motion no period to repeat
+        motion.pop("phase" if "file" in motion else "repeat", None)
+        table["motion"] = motion
+    return {**table, "material": material_table(section.material)}
+
+
+def _lists(table: dict[str, Any]) -> dict[str, Any]:
+    """Return a table with lists in place of tuples."""
+    return {key: list(value) if isinstance(value, tuple) else value for key, value in table.items()}

@@ -1,5 +1,6 @@
-"""The text of a case with other values at some of its keys: all else that stands there,
-comments too, remains.
+"""The text of a case with other values at some of its keys.
+
+All else that stands there, comments too, remains.
 """
 
 from __future__ import annotations
@@ -51,60 +52,71 @@ def changed_text(text: str, changes: Mapping[str, Any]) -> str:
     [drop]
     speed = 2.0
     """
-    before = parse_case(text)
-    wanted = with_values(before, changes, "set")
+    table = parse_case(text)
+    changed = with_values(table, changes, "set")
     lines = text.split("\n")
-    for name, value in wanted.items():
-        known = before.get(name)
-        if isinstance(value, dict) and isinstance(known, dict | None):
+    for name, value in changed.items():
+        old_value = table.get(name)
+        if isinstance(value, dict) and isinstance(old_value, dict | None):
             for key, inner in value.items():
-                if known is None or key not in known or known[key] != inner:
+                if old_value is None or key not in old_value or old_value[key] != inner:
                     _write(lines, name, key, inner)
-        elif name not in before or known != value:
+        elif name not in table or old_value != value:
             _write(lines, "", name, value)
-    found = "\n".join(lines)
-    return found if _table(found) == wanted else tomli_w.dumps(wanted)
+    new_text = "\n".join(lines)
+    return new_text if _table(new_text) == changed else tomli_w.dumps(changed)
 
 
 def _write(lines: list[str], section: str, key: str, value: Any) -> None:
     """Write a value at a key of a section into the lines of a case, in place."""
-    header = re.compile(rf"^\s*\[\s*{re.escape(section)}\s*\]")
-    start = (
-        0
-        if not section
-        else next((number + 1 for number, line in enumerate(lines) if header.match(line)), None)
-    )
-    if start is None:
-        while lines and not lines[-1].strip():
-            lines.pop()
-        lines += ["", f"[{section}]"]
-        start = len(lines)
-    end = next(
-        (number for number in range(start, len(lines)) if _HEADER.match(lines[number])), len(lines)
-    )
-    line, own = f"{_key(key)} = {_inline(value)}", re.compile(rf"^\s*{re.escape(_key(key))}\s*=")
+    start = _section_start(lines, section)
+    end = start
+    while end < len(lines) and not _HEADER.match(lines[end]):
+        end += 1
+    new_line = f"{_key(key)} = {_inline(value)}"
+    assignment = re.compile(rf"^\s*{re.escape(_key(key))}\s*=")
     for first in range(start, end):
-        if own.match(lines[first]):
-            last = next(
-                (
-                    last
-                    for last in range(first + 1, end + 1)
-                    if _table("\n".join(lines[first:last])) is not None
-                ),
-                first + 1,
-            )
-            lines[first:last] = [line + _comment(lines[first])]
+        if assignment.match(lines[first]):
+            last = _value_end(lines, first, end)
+            lines[first:last] = [new_line + _comment(lines[first])]
             return
+    # a new key is above the blank lines at the end of the section
     while end > start and not lines[end - 1].strip():
         end -= 1
-    lines.insert(end, line)
+    lines.insert(end, new_line)
+
+
+def _section_start(lines: list[str], section: str) -> int:
+    """Return the index of the first line of a section below its header, which is added if need be.
+
+    "" are the keys above all sections.
+    """
+    if not section:
+        return 0
+    header = re.compile(rf"^\s*\[\s*{re.escape(section)}\s*\]")
+    for number, line in enumerate(lines):
+        if header.match(line):
+            return number + 1
+    while lines and not lines[-1].strip():
+        lines.pop()
+    lines += ["", f"[{section}]"]
+    return len(lines)
+
+
+def _value_end(lines: list[str], first: int, end: int) -> int:
+    """Return the index of the line after a value, which may go over several lines."""
+    for last in range(first + 1, end + 1):
+        if _table("\n".join(lines[first:last])) is not None:
+            return last
+    return first + 1
 
 
 def _comment(line: str) -> str:
     """Return the comment at the end of a line, with the blanks before it; "" without one."""
-    for found in re.finditer(r"\s*#", line):
-        if _table(line[: found.start()]) is not None:
-            return line[found.start() :]
+    for hash_sign in re.finditer(r"\s*#", line):
+        # one within a text leaves no valid TOML before it
+        if _table(line[: hash_sign.start()]) is not None:
+            return line[hash_sign.start() :]
     return ""
 
 
@@ -129,13 +141,8 @@ def _inline(value: Any) -> str:
     { type = "patches", spacing = ["40 cm", 0.3] }
     """
     if isinstance(value, dict):
-        return (
-            "{ "
-            + ", ".join(f"{_key(name)} = {_inline(inner)}" for name, inner in value.items())
-            + " }"
-            if value
-            else "{}"
-        )
+        items = ", ".join(f"{_key(name)} = {_inline(inner)}" for name, inner in value.items())
+        return f"{{ {items} }}" if items else "{}"
     if isinstance(value, list | tuple):
         return f"[{', '.join(map(_inline, value))}]"
     return tomli_w.dumps({"a": value}).removeprefix("a = ").rstrip("\n")

@@ -1,5 +1,6 @@
-"""The conditions under which the limits of the theory are evaluated: the resolved case
-and the peak values of the drop.
+"""The conditions under which the limits of the theory are evaluated.
+
+They are the resolved case and the peak values of the drop.
 """
 
 from __future__ import annotations
@@ -32,8 +33,9 @@ _OTHER_TABLES = {"friction", "liquid", "measured"}
 
 @dataclass(frozen=True)
 class DropSummary:
-    """Computed or expected peak values of a drop; arrays have one value per drop, NaN where a value
-    is not known.
+    """Computed or expected peak values of a drop.
+
+    Arrays have one value per drop, NaN where a value is not known.
 
     Parameters
     ----------
@@ -104,12 +106,10 @@ class Conditions:
     @cached_property
     def mass(self) -> Array:
         """Mass of the sphere [kg]."""
-        given = self.case["sphere"].get("mass")
-        return (
-            ball_volume(np.asarray(self.radius)) * self.materials["sphere"].density
-            if given is None
-            else given
-        )
+        stated_mass = self.case["sphere"].get("mass")
+        if stated_mass is not None:
+            return stated_mass
+        return ball_volume(np.asarray(self.radius)) * self.materials["sphere"].density
 
     @property
     def density(self) -> Array:
@@ -118,22 +118,26 @@ class Conditions:
 
     @cached_property
     def effective_radius(self) -> Array:
-        """Effective radius of the pair [m]: that of the sphere, or of two spheres if one
-        replaces the plate.
+        """Effective radius of the pair [m].
+
+        It is that of the sphere, or of two spheres if one replaces the plate.
         """
-        below = self.case["plate"].get("radius")
-        return self.radius if below is None else self.radius * below / (self.radius + below)
+        radius_below = self.case["plate"].get("radius")
+        if radius_below is None:
+            return self.radius
+        return self.radius * radius_below / (self.radius + radius_below)
 
     @cached_property
     def effective_mass(self) -> Array:
-        """Effective mass of the pair [kg]: that of the sphere, or the reduced mass if a
-        free sphere replaces the plate.
+        """Effective mass of the pair [kg].
+
+        It is that of the sphere, or the reduced mass if a free sphere replaces the plate.
         """
         plate = self.case["plate"]
         if "radius" not in plate or plate.get("supports") != "free":
             return self.mass
-        below = ball_volume(np.asarray(plate["radius"])) * self.materials["plate"].density
-        return self.mass * below / (self.mass + below)
+        mass_below = ball_volume(np.asarray(plate["radius"])) * self.materials["plate"].density
+        return self.mass * mass_below / (self.mass + mass_below)
 
     @cached_property
     def modulus(self) -> Array:
@@ -158,19 +162,20 @@ class Conditions:
     def law_parameter(self, name: str, otherwise: Any = math.nan) -> Array:
         """Return a parameter of the contact law for the first impact."""
         value = self.case["contact"].get(name, otherwise)
-        if isinstance(value, Mapping):
+        if isinstance(value, Mapping):  # a function of the approach speed
             return held(of_table(value), self.summary.speed)
-        return value[0] if isinstance(value, (list, tuple)) else value
+        if isinstance(value, (list, tuple)):  # by impact
+            return value[0]
+        return value
 
     @cached_property
     def by_speed(self) -> dict[str, BySpeed]:
         """The parameters of the contact law that are functions of the approach speed."""
-        tables = {
-            key: value
+        return {
+            key: of_table(value)
             for key, value in self.case["contact"].items()
-            if isinstance(value, Mapping) and not _OTHER_TABLES & {key}
+            if isinstance(value, Mapping) and key not in _OTHER_TABLES
         }
-        return {key: of_table(value) for key, value in tables.items()}
 
     @property
     def yields(self) -> bool:
@@ -192,14 +197,14 @@ class Conditions:
         contact = self.case["contact"]
         if "effective_modulus" in contact:
             return np.isfinite(self.modulus)
-        if "stiffness" not in contact or (
-            "exponent" not in contact
-            and "1.5" not in self.law.__dataclass_fields__["stiffness"].metadata["unit"]
-        ):
+        if "stiffness" not in contact:
             return False
-        return (abs(self.hertz_ratio - 1.0) < _LIKE_HERTZ) & (
-            self.law_parameter("exponent", 1.5) == 1.5
-        )
+        # a law without an exponent is that of a sphere by the unit of its stiffness
+        unit = self.law.__dataclass_fields__["stiffness"].metadata["unit"]
+        if "exponent" not in contact and "1.5" not in unit:
+            return False
+        has_hertz_stiffness = abs(self.hertz_ratio - 1.0) < _LIKE_HERTZ
+        return has_hertz_stiffness & (self.law_parameter("exponent", 1.5) == 1.5)
 
     def model(self, body: Literal["sphere", "plate"]) -> str:
         """Return whether "sphere" or "plate" is "rigid" or "elastic"."""
@@ -211,5 +216,6 @@ class Conditions:
         return self.case["plate"].get("size")
 
 
-def _material(given: Mapping[str, Any] | str) -> Material:
-    return RIGID if isinstance(given, str) else Material(**given)
+def _material(table: Mapping[str, Any] | str) -> Material:
+    """Return the material of a resolved case, in which "rigid" is the only name."""
+    return RIGID if isinstance(table, str) else Material(**table)

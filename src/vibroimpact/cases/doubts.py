@@ -1,5 +1,6 @@
-"""Doubts about a drop: values that look like a slip of a unit, and limits of the theory
-that are exceeded.
+"""Doubts about a drop.
+
+They are values that look like a slip of a unit, and limits of the theory that are exceeded.
 """
 
 from __future__ import annotations
@@ -13,8 +14,9 @@ from vibroimpact.resolved_case import ResolvedCase
 
 
 def doubts(case: ResolvedCase, summary: DropSummary, aside: Container[str] = ()) -> list[str]:
-    """Return a sentence for each doubt about a drop: slips of units and limits exceeded, each with
-    its cause and a remedy.
+    """Return a sentence for each doubt about a drop.
+
+    There are slips of units and limits exceeded, each with its cause and a remedy.
 
     Parameters
     ----------
@@ -32,10 +34,9 @@ def doubts(case: ResolvedCase, summary: DropSummary, aside: Container[str] = ())
     []
     """
     drop = Conditions(case, summary)
-    found = {name: float(number) for name, number in numbers_of(drop).items()}
-    beyond = [
-        limits()[name].sentence(drop, number)
-        for name, number in found.items()
-        if number > limits()[name].threshold
-    ]
-    return [*(slips(case, aside) if case else ()), *beyond]
+    sentences = list(slips(case, aside)) if case else []
+    for name, number in numbers_of(drop).items():
+        limit = limits()[name]
+        if float(number) > limit.threshold:
+            sentences.append(limit.sentence(drop, float(number)))
+    return sentences

@@ -1,5 +1,6 @@
-"""Expected peak values of the first impact before a case is run, from the undamped
-contact of rigid bodies.
+"""Expected peak values of the first impact before a case is run.
+
+They are those of the undamped contact of rigid bodies.
 """
 
 from __future__ import annotations
@@ -22,29 +23,34 @@ from vibroimpact.errors import InputError
 if TYPE_CHECKING:
     from vibroimpact.cases.case import Case
 
-_SUPPORTED, _CLAMPED = 0.0116, 0.0056
-"""Deflection of a square plate under a force at its centre over F a^2 / D: Timoshenko and
-Woinowsky-Krieger 1959, Tables 23 and 37.
-"""
+# deflection of a square plate under a force at its centre over F a^2 / D: Timoshenko and
+# Woinowsky-Krieger 1959, Tables 23 and 37
+_SUPPORTED = 0.0116
+_CLAMPED = 0.0056
 
 
 def expected_of(case: Case) -> DropSummary:
-    """Return the expected peak values of the first impact without losses; NaN for a law
-    that gives no force.
+    """Return the expected peak values of the first impact without losses.
+
+    They are NaN for a law that gives no force.
     """
-    law, speed = contact_laws_of(case)[0], touch_speed(case)
+    law = contact_laws_of(case)[0]
+    speed = touch_speed(case)
     if not isinstance(law, CompliantLaw):
         return DropSummary(speed=speed)
-    one = np.ones(1)
+    drop = np.ones(1)
+    mass = contact_pair(case).effective_mass * drop
     with interpreted():
-        conditions = impact_conditions_of(
-            law, contact_pair(case).effective_mass * one, case.drop.gravity * one, speed * one
-        )
+        conditions = impact_conditions_of(law, mass, case.drop.gravity * drop, speed * drop)
     depth = float(conditions.depth[0])
-    force = float(
-        np.asarray(law.forces(conditions.depth, 0.0 * one, conditions.approach_speed)[0])[0]
+    static_force, _ = law.forces(conditions.depth, 0.0 * drop, conditions.approach_speed)
+    return DropSummary(
+        force=float(np.asarray(static_force)[0]),
+        depth=depth,
+        duration=HERTZ_TIME * depth / speed,
+        speed=speed,
+        deflection=_deflection(case, speed),
     )
-    return DropSummary(force, depth, HERTZ_TIME * depth / speed, speed, _deflection(case, speed))
 
 
 class ExpectedRestitution(NamedTuple):
@@ -68,8 +74,9 @@ class ExpectedRestitution(NamedTuple):
 
 
 def expected_restitution(law: ContactLaw, mass: float, speed: float) -> ExpectedRestitution:
-    """Return the restitution that a law achieves at the first touch, and the parameter that
-    achieves the one asked.
+    """Return the restitution that a law achieves at the first touch.
+
+    With it is the parameter that achieves the one asked.
 
     Parameters
     ----------
@@ -79,58 +86,57 @@ def expected_restitution(law: ContactLaw, mass: float, speed: float) -> Expected
         Effective mass [kg] and approach speed [m/s].
     """
     achieved = float(achieved_restitution(law, mass, speed))
-    asked = (
-        float(getattr(law, "restitution", math.nan))
-        if law.free_parameter == "restitution"
-        else math.nan
-    )
-    if not abs(achieved - asked) >= 5e-4:
+    asked = math.nan
+    if law.free_parameter == "restitution":
+        asked = float(getattr(law, "restitution", math.nan))
+    if not abs(achieved - asked) >= 5e-4:  # also where nothing is asked
         return ExpectedRestitution(asked, achieved)
     try:
-        return ExpectedRestitution(
-            asked,
-            achieved,
-            float(getattr(law_achieving(law, asked, mass, speed), "restitution", asked)),
-        )
+        tuned_law = law_achieving(law, asked, mass, speed)
     except InputError as error:
         return ExpectedRestitution(asked, achieved, refusal=error.message)
+    to_ask = float(getattr(tuned_law, "restitution", asked))
+    return ExpectedRestitution(asked, achieved, to_ask)
 
 
 def first_restitution(case: Case) -> ExpectedRestitution:
-    """Return the restitution that the law of a case achieves at the first touch; in a
-    liquid the parameter is still that in air.
+    """Return the restitution that the law of a case achieves at the first touch.
+
+    In a liquid the parameter is still that in air.
     """
-    law = contact_laws_of(case)[0]
-    wet = in_liquid(case, law)
-    found = expected_restitution(wet, float(contact_pair(case).effective_mass), touch_speed(case))
-    if wet is law or math.isnan(found.to_ask):
-        return found
-    to_ask = found.to_ask * float(vars(law)["restitution"]) / found.asked
+    law_in_air = contact_laws_of(case)[0]
+    law = in_liquid(case, law_in_air)
+    expected = expected_restitution(
+        law, float(contact_pair(case).effective_mass), touch_speed(case)
+    )
+    if law is law_in_air or math.isnan(expected.to_ask):
+        return expected
+    # the liquid leaves the same share of any restitution
+    to_ask = expected.to_ask * float(vars(law_in_air)["restitution"]) / expected.asked
     if to_ask > 1.0:
-        return found._replace(
-            to_ask=math.nan,
-            refusal=f"no restitution up to 1 in air would achieve {found.asked:.5g}",
-        )
-    return found._replace(to_ask=to_ask)
+        refusal = f"no restitution up to 1 in air would achieve {expected.asked:.5g}"
+        return expected._replace(to_ask=math.nan, refusal=refusal)
+    return expected._replace(to_ask=to_ask)
 
 
 def _deflection(case: Case, speed: float) -> float:
-    """Return the estimated deflection of an elastic plate at the contact point [m]; NaN for a rigid
-    plate.
+    """Return the estimated deflection of an elastic plate at the contact point [m].
+
+    NaN for a rigid plate.
 
     It is the smaller of two bounds. A light sphere rebounds before flexural waves return from the
     edges: the plate takes up twice the momentum of the sphere like an infinite plate, of impedance
     8 sqrt(D rho h). A heavy sphere is stopped by the plate as by a spring of the static stiffness.
     """
-    size, material = case.plate.size, case.plate.material
+    size = case.plate.size
+    material = case.plate.material
     if case.plate.model == "rigid" or size is None:
         return math.nan
-    bending = material.plane_strain_modulus * size[2] ** 3 / 12.0
+    bending_stiffness = material.plane_strain_modulus * size[2] ** 3 / 12.0  # D
     mass = float(contact_pair(case).effective_mass)
-    as_infinite = 2.0 * mass * speed / (8.0 * math.sqrt(bending * material.density * size[2]))
-    compliance = (
-        (_CLAMPED if case.plate.supports == "clamped" else _SUPPORTED)
-        * min(size[:2]) ** 2
-        / bending
-    )
-    return min(as_infinite, speed * math.sqrt(mass * compliance))
+    impedance = 8.0 * math.sqrt(bending_stiffness * material.density * size[2])
+    of_infinite_plate = 2.0 * mass * speed / impedance
+    factor = _CLAMPED if case.plate.supports == "clamped" else _SUPPORTED
+    compliance = factor * min(size[:2]) ** 2 / bending_stiffness
+    of_static_spring = speed * math.sqrt(mass * compliance)
+    return min(of_infinite_plate, of_static_spring)

@@ -1,13 +1,16 @@
-"""Dotted keys of a case, such as "plate.size.thickness": their quantities, and tables
-with other values at them.
+"""Dotted keys of a case, such as "plate.size.thickness".
+
+There are their quantities, and tables with other values at them.
 """
 
 from __future__ import annotations
 
 import copy
 from collections.abc import Iterator, Mapping
-from dataclasses import fields
+from dataclasses import Field, fields
 from typing import Any, get_args, get_origin
+
+from pydantic.fields import FieldInfo
 
 from vibroimpact.cases.fields.air import AirTable
 from vibroimpact.cases.fields.contact import law_of
@@ -26,7 +29,7 @@ from vibroimpact.materials import find_material
 from vibroimpact.quoting import quoted
 from vibroimpact.ranges import Range
 
-_PLACES = {
+_COMPONENTS = {
     "position": ("x", "y"),
     "velocity": ("x", "y", "z"),
     "spin": ("x", "y", "z"),
@@ -35,7 +38,7 @@ _PLACES = {
 }
 """Names of the numbers of a list, such as x in "drop.position.x"."""
 
-_AT_REST = {"position": 2, "velocity": 3, "spin": 3}
+_DEFAULT_ZEROS = {"position": 2, "velocity": 3, "spin": 3}
 """Lists that a case need not have, of zeros then, and how many."""
 
 _DAMPING = Quantity("", "damping ratio", Range(at_least=0))
@@ -45,8 +48,9 @@ _OPEN = ("supports", "mesh", "damping", "reduction")
 
 
 def quantity_keys(table: Mapping[str, Any]) -> dict[str, Quantity | None]:
-    """Return the keys of a case that can be swept with their quantities; None for a key that is not
-    a quantity.
+    """Return the keys of a case that can be swept, with their quantities.
+
+    None for a key that is not a quantity.
 
     Parameters
     ----------
@@ -77,13 +81,12 @@ def find_quantity(table: Mapping[str, Any], key: str) -> Quantity | None:
         If there is no such key, or it can't be swept.
     """
     if key.startswith("sensors."):
-        known = dict(
-            sensor_keys({"sensors": [named_sensor(table.get("sensors"), split_key(table, key)[1])]})
-        )
+        sensor = named_sensor(table.get("sensors"), split_key(table, key)[1])
+        quantities = dict(sensor_keys({"sensors": [sensor]}))
     else:
-        known = quantity_keys(table)
-    if key in known:
-        return known[key]
+        quantities = quantity_keys(table)
+    if key in quantities:
+        return quantities[key]
     body, _, rest = key.partition(".")
     if body in ("sphere", "plate") and rest.partition(".")[0] in _OPEN:
         return None
@@ -91,19 +94,18 @@ def find_quantity(table: Mapping[str, Any], key: str) -> Quantity | None:
         _check_law_is_named(table, "contact.law")
         if rest.startswith("friction."):
             _check_law_is_named(table, "contact.friction.law")
-    words = (
+    raise InputError(
         "no such key is swept; it must be one of [sphere], [plate], [drop], [contact], [run] "
-        f'or of a sensor, such as "{_like(key, known)}"'
+        f'or of a sensor, such as "{_similar(key, quantities)}".{did_you_mean(key, quantities)}'
     )
-    raise InputError(f"{words}.{did_you_mean(key, known)}")
 
 
 def _check_law_is_named(table: Mapping[str, Any], key: str) -> None:
     """Check that there is a law at a key of a case: the other keys of its table depend on it."""
-    inside: Any = table
-    for part in key.split("."):
-        inside = inside.get(part) if isinstance(inside, dict) else None
-    if inside is None:
+    value: Any = table
+    for name in key.split("."):
+        value = value.get(name) if isinstance(value, dict) else None
+    if value is None:
         raise InputError(
             f"the case has no {key}, on which the keys of its table depend; "
             "give it the name of a law"
@@ -111,8 +113,9 @@ def _check_law_is_named(table: Mapping[str, Any], key: str) -> None:
 
 
 def check_laws(table: Mapping[str, Any]) -> None:
-    """Check the names of the contact law and the friction law of a case, on which its keys depend;
-    they may be missing.
+    """Check the names of the contact law and the friction law of a case.
+
+    Its keys depend on them. They may be missing.
 
     Raises
     ------
@@ -129,15 +132,14 @@ def check_laws(table: Mapping[str, Any]) -> None:
         raise InputError(error.message, f"contact.{error.key}".rstrip(".")) from None
 
 
-def _like(key: str, known: Mapping[str, object]) -> str:
-    return next(
-        (name for name in known if name.startswith(key.partition(".")[0] + ".")), "sphere.radius"
-    )
+def _similar(key: str, known: Mapping[str, object]) -> str:
+    """Return a known key of the same section as another one."""
+    section = key.partition(".")[0]
+    return next((name for name in known if name.startswith(f"{section}.")), "sphere.radius")
 
 
 def holds_keys(key: str) -> bool:
-    """Return whether a dotted key is that of a section or a table that contains keys that can be
-    swept.
+    """Return whether a dotted key is that of a section or a table with keys that can be swept.
 
     Examples
     --------
@@ -147,15 +149,16 @@ def holds_keys(key: str) -> bool:
     section, _, field = key.partition(".")
     return holds_sensor_keys(key) or (
         section in (*SECTIONS, "contact")
-        and field in ("", "material", "motion", "air", "liquid", "measured", *_PLACES)
+        and field in ("", "material", "motion", "air", "liquid", "measured", *_COMPONENTS)
     )
 
 
 def with_values(
     table: Mapping[str, Any], values: Mapping[str, Any], done: str = "swept"
 ) -> dict[str, Any]:
-    """Return the case with values at dotted keys; a named material is written out where one of its
-    properties changes.
+    """Return the case with values at dotted keys.
+
+    A named material is written out where one of its properties changes.
 
     Parameters
     ----------
@@ -178,122 +181,146 @@ def with_values(
     ... )
     {'drop': {'position': [0.0, 0.1]}, 'sphere': {'radius': '5 mm'}}
     """
-    found = copy.deepcopy(dict(table))
+    changed = copy.deepcopy(dict(table))
     # a material before its properties
     for key, value in sorted(values.items(), key=lambda item: item[0].count(".")):
-        *way, last = split_key(found, key)
-        # parts of the key that are the way to a sensor
-        named = 2 if way[1:] and way[0] == "sensors" else 0
-        inside: Any = named_sensor(found.get("sensors"), way[1]) if named else found
-        for number, part in enumerate(way[named:], named):
-            holder = inside
-            if not isinstance(inside, dict):
-                raise InputError(
-                    f"{quoted(inside)} is not a table, so that it has no {part}",
-                    ".".join(way[:number]),
-                )
-            missing: Any = (
-                [0.0] * _AT_REST[part] if part in _AT_REST and way[number:] == [part] else {}
-            )
-            inside = inside.setdefault(part, missing)
-            if part in ("air", "liquid") and isinstance(inside, bool):
-                inside = holder[part] = {}
-            if isinstance(inside, str) and part == "material":
-                written = material_table(find_material(inside))
-                if isinstance(written, str):
-                    raise InputError(
-                        f"{quoted(inside)} has no numbers that could be {done}", ".".join(way)
-                    )
-                inside = holder[part] = {
-                    name: number for name, number in written.items() if name != "name"
-                }  # a different material now, without the name
-        if not inside and last in _PLACES.get(way[-1], ()):
+        *path, last = split_key(changed, key)
+        holder = _holder(changed, path, done)
+        components = _COMPONENTS.get(path[-1], ()) if path else ()
+        if not holder and last in components:
             raise InputError(
                 f"it is missing, so that it has no {last} that could be {done}; give all of it",
-                ".".join(way),
+                ".".join(path),
             )
-        names = _PLACES.get(way[-1], ()) if way else ()
-        if isinstance(inside, list) and last in names:
-            if len(inside) != len(names):
-                raise InputError(
-                    f"{quoted(inside)} does not have the right number of values; it takes "
-                    f"{', '.join(names)}",
-                    ".".join(way),
-                )
-            inside[names.index(last)] = value
-        elif isinstance(inside, list) and names:
-            raise InputError(f"there is no {last}; it takes {choices(names, last)}", ".".join(way))
-        elif isinstance(inside, dict):
-            inside[last] = value
-        elif names:
+        if isinstance(holder, list) and components:
+            _set_component(holder, components, last, value, path)
+        elif isinstance(holder, dict):
+            holder[last] = value
+        elif components:
             raise InputError(
-                f"{quoted(inside)} has no {last} that could be {done}; give a list of "
-                f"{', '.join(names)}",
-                ".".join(way),
+                f"{quoted(holder)} has no {last} that could be {done}; give a list of "
+                f"{', '.join(components)}",
+                ".".join(path),
             )
         else:
             raise InputError(
-                f"{quoted(inside)} is not a table, so that it has no {last}", ".".join(way)
+                f"{quoted(holder)} is not a table, so that it has no {last}", ".".join(path)
             )
-    return found
+    return changed
+
+
+def _holder(case: dict[str, Any], path: list[str], done: str) -> Any:
+    """Return what holds the last part of a key: a table, a list, or what stands in its place.
+
+    Tables that are missing are made, and so are lists of zeros.
+    """
+    holder: Any = case
+    start = 0
+    if path[1:] and path[0] == "sensors":
+        holder = named_sensor(case.get("sensors"), path[1])
+        start = 2
+    for number, name in enumerate(path[start:], start):
+        outer = holder
+        if not isinstance(outer, dict):
+            raise InputError(
+                f"{quoted(outer)} is not a table, so that it has no {name}",
+                ".".join(path[:number]),
+            )
+        is_last = number == len(path) - 1
+        missing: Any = [0.0] * _DEFAULT_ZEROS[name] if name in _DEFAULT_ZEROS and is_last else {}
+        holder = outer.setdefault(name, missing)
+        if name in ("air", "liquid") and isinstance(holder, bool):
+            holder = outer[name] = {}
+        if name == "material" and isinstance(holder, str):
+            holder = outer[name] = _material_numbers(holder, done, ".".join(path))
+    return holder
+
+
+def _material_numbers(name: str, done: str, key: str) -> dict[str, Any]:
+    """Return the numbers of a named material; it is a different one now, without the name."""
+    table = material_table(find_material(name))
+    if isinstance(table, str):
+        raise InputError(f"{quoted(name)} has no numbers that could be {done}", key)
+    return {property_: number for property_, number in table.items() if property_ != "name"}
+
+
+def _set_component(
+    numbers: list[Any], components: tuple[str, ...], name: str, value: Any, path: list[str]
+) -> None:
+    """Set a component of a list of numbers, in place, by its name."""
+    if name not in components:
+        raise InputError(
+            f"there is no {name}; it takes {choices(components, name)}", ".".join(path)
+        )
+    if len(numbers) != len(components):
+        raise InputError(
+            f"{quoted(numbers)} does not have the right number of values; it takes "
+            f"{', '.join(components)}",
+            ".".join(path),
+        )
+    numbers[components.index(name)] = value
 
 
 def _keys(table: Mapping[str, Any]) -> Iterator[tuple[str, Quantity | None]]:
+    """Yield the keys of a case that can be swept, with their quantities."""
     for name, section in SECTIONS.items():
         yield name, None
         for field, info in section.model_fields.items():
-            key = f"{name}.{field}"
-            parts = _parts(info.annotation) if field in _PLACES else ()
-            yield key, None if parts else _DAMPING if field == "damping" else quantity_of(info)
-            yield from (
-                (f"{key}.{place}", quantity_among((part,)))
-                for place, part in zip(_PLACES.get(field, ()), parts, strict=True)
-            )
-            if field == "motion":
-                for number, inner in MotionTable.model_fields.items():
-                    yield f"{key}.{number}", None if number == "direction" else quantity_of(inner)
-            if field == "air":
-                yield from (
-                    (f"{key}.{part}", quantity_of(inner))
-                    for part, inner in AirTable.model_fields.items()
-                )
-            if field == "material":
-                for number, inner in InlineMaterial.model_fields.items():
-                    if number != "name":
-                        yield f"{key}.{number}", quantity_among((inner.annotation, *inner.metadata))
+            yield from _keys_of_field(f"{name}.{field}", field, info)
     yield "contact", None
     yield "contact.law", None
     contact = table.get("contact")
     if isinstance(contact, dict) and isinstance(contact.get("law"), str):
-        exponent = contact.get("exponent", 1.5)
-        for item in fields(find_contact_law(contact["law"])):
-            yield (
-                f"contact.{item.name}",
-                Quantity(unit_of(item, exponent), item.metadata["meaning"], item.metadata["range"]),
-            )
-        friction = contact.get("friction")
-        if (
-            isinstance(friction, dict)
-            and isinstance(friction.get("law"), str)
-            and friction["law"] in friction_laws()
-        ):
-            yield "contact.friction.law", None
-            for item in fields(friction_laws()[friction["law"]]):
-                metadata = item.metadata
-                yield (
-                    f"contact.friction.{item.name}",
-                    Quantity(metadata["unit"], metadata["meaning"], metadata["range"]),
-                )
+        yield from _keys_of_laws(contact)
     for field, info in LocalSection.model_fields.items():
         yield f"contact.{field}", quantity_of(info)
-    for name, kind in (("liquid", LiquidTable), ("measured", MeasuredImpact)):
-        yield from (
-            (f"contact.{name}.{part}", quantity_of(inner))
-            for part, inner in kind.model_fields.items()
-        )
+    for name, section in (("liquid", LiquidTable), ("measured", MeasuredImpact)):
+        for inner_key, inner in section.model_fields.items():
+            yield f"contact.{name}.{inner_key}", quantity_of(inner)
 
 
-def _parts(annotation: Any) -> tuple[Any, ...]:
+def _keys_of_field(key: str, field: str, info: FieldInfo) -> Iterator[tuple[str, Quantity | None]]:
+    """Yield the key of a field of a section, and those of the list or table that it takes."""
+    if field in _COMPONENTS:
+        yield key, None
+        components = zip(_COMPONENTS[field], _elements(info.annotation), strict=True)
+        for component, annotation in components:
+            yield f"{key}.{component}", quantity_among((annotation,))
+    else:
+        yield key, _DAMPING if field == "damping" else quantity_of(info)
+    if field == "motion":
+        for inner_key, inner in MotionTable.model_fields.items():
+            yield f"{key}.{inner_key}", None if inner_key == "direction" else quantity_of(inner)
+    if field == "air":
+        for inner_key, inner in AirTable.model_fields.items():
+            yield f"{key}.{inner_key}", quantity_of(inner)
+    if field == "material":
+        for inner_key, inner in InlineMaterial.model_fields.items():
+            if inner_key != "name":
+                quantity = quantity_among((inner.annotation, *inner.metadata))
+                yield f"{key}.{inner_key}", quantity
+
+
+def _keys_of_laws(contact: Mapping[str, Any]) -> Iterator[tuple[str, Quantity | None]]:
+    """Yield the keys of the contact law of a case, and of its friction law, if it has one."""
+    exponent = contact.get("exponent", 1.5)
+    for item in fields(find_contact_law(contact["law"])):
+        yield f"contact.{item.name}", _quantity_of_parameter(item, unit_of(item, exponent))
+    friction = contact.get("friction")
+    name = friction.get("law") if isinstance(friction, dict) else None
+    if isinstance(name, str) and name in friction_laws():
+        yield "contact.friction.law", None
+        for item in fields(friction_laws()[name]):
+            quantity = _quantity_of_parameter(item, item.metadata["unit"])
+            yield f"contact.friction.{item.name}", quantity
+
+
+def _quantity_of_parameter(item: Field[Any], unit: str) -> Quantity:
+    """Return the quantity of a parameter of a law."""
+    return Quantity(unit, item.metadata["meaning"], item.metadata["range"])
+
+
+def _elements(annotation: Any) -> tuple[Any, ...]:
     """Return the annotations of the elements of a tuple type, which may be optional."""
     return next(
         get_args(option)

@@ -1,5 +1,7 @@
-"""Limits of the theory: a dimensionless number of a drop, the threshold above which the
-drop is doubted, and the sentence for it.
+"""Limits of the theory.
+
+Each has a dimensionless number of a drop, the threshold above which the drop is doubted, and the
+sentence for it.
 """
 
 from __future__ import annotations
@@ -63,26 +65,30 @@ def limits() -> Mapping[str, Limit]:
     >>> limits()["air_drag"].threshold
     0.01
     """
-    found = [one for module in modules_in("vibroimpact.cases.validity") for one in module.LIMITS]
-    return {one.name: one for one in sorted(found, key=lambda one: one.name)}
+    registered = [
+        limit for module in modules_in("vibroimpact.cases.validity") for limit in module.LIMITS
+    ]
+    return {limit.name: limit for limit in sorted(registered, key=lambda limit: limit.name)}
 
 
 def numbers_of(drops: Conditions) -> dict[str, Array]:
-    """Return, by name, the number of each limit that applies to a drop, or to any of an
-    array of drops.
+    """Return, by name, the number of each limit that applies to a drop.
+
+    Of an array of drops it applies to any.
     """
     with np.errstate(all="ignore"):  # values that are not known are NaN
-        found = {
+        numbers = {
             name: limit.number(drops)
             for name, limit in limits().items()
             if drops.case or limit.without_case
         }
-    return {name: number for name, number in found.items() if not np.all(np.isnan(number))}
+    return {name: number for name, number in numbers.items() if not np.all(np.isnan(number))}
 
 
 def two_digits(value: float) -> str:
-    """Return a number with two significant digits and without an exponent, unless it is very large
-    or very small.
+    """Return a number with two significant digits.
+
+    It has no exponent, unless it is very large or very small.
 
     Examples
     --------
@@ -115,7 +121,5 @@ def percent_less(part: float) -> str:
 
 
 def percent_more(part: float) -> str:
-    """Return an estimated relative gain in per cent, with two significant digits: 0.135
-    is +14 %.
-    """
+    """Return an estimated relative gain in per cent, as `percent_less` does: 0.135 is +14 %."""
     return percent_less(part).replace("-", "+", 1)

@@ -19,21 +19,21 @@ if TYPE_CHECKING:
 
 
 def oblique_keys(case: CaseTable) -> list[str]:
-    """Return the keys of a case for which a drop is not along the plate's normal alone,
-    friction included.
+    """Return the keys of a case for which a drop is not along the plate's normal alone.
+
+    Friction is one of them.
     """
     drop = case.drop
-    along = drop.velocity is not None and any(np.any(part) for part in drop.velocity[:2])
-    others: dict[str, Any] = {
+    keys = []
+    if drop.velocity is not None and any(np.any(component) for component in drop.velocity[:2]):
+        keys.append("drop.velocity")
+    values: dict[str, Any] = {
         "drop.angle": drop.angle,
         "drop.spin": drop.spin,
         "plate.inclination": case.plate.inclination,
+        "contact.friction": case.contact.friction,
     }
-    others["contact.friction"] = case.contact.friction
-    return [
-        *(["drop.velocity"] if along else []),
-        *(key for key, value in others.items() if value is not None),
-    ]
+    return [*keys, *(key for key, value in values.items() if value is not None)]
 
 
 def is_oblique(case: CaseTable) -> bool:
@@ -54,43 +54,46 @@ def friction_law_of(case: CaseTable) -> FrictionLaw | None:
 
 
 def normal_motion_of(case: CaseTable) -> dict[str, Any]:
-    """Return height, upward velocity there, speed at first touch, and gravity of a case
-    along the normal, as a `Problem` takes them.
+    """Return the motion of a case along the normal, as a `Problem` takes it.
+
+    It has height, upward velocity there, speed at first touch, and gravity.
     """
     drop = case.drop
-    gravity = (
-        drop.gravity
-        if case.plate.inclination is None
-        else drop.gravity * np.cos(case.plate.inclination)
-    )
-    rising = 0.0 if drop.velocity is None else drop.velocity[2]
+    gravity = drop.gravity
+    if case.plate.inclination is not None:
+        gravity = gravity * np.cos(case.plate.inclination)
+    upward_velocity = 0.0 if drop.velocity is None else drop.velocity[2]
     if drop.height is not None:
-        return {"height": drop.height, "velocity": rising, "gravity": gravity}
+        return {"height": drop.height, "velocity": upward_velocity, "gravity": gravity}
     if drop.velocity is not None:
-        return {"speed": -rising, "gravity": gravity}
-    return {
-        "speed": drop.speed if drop.angle is None else drop.speed * np.cos(drop.angle),
-        "gravity": gravity,
-    }
+        return {"speed": -upward_velocity, "gravity": gravity}
+    if drop.angle is not None:
+        return {"speed": drop.speed * np.cos(drop.angle), "gravity": gravity}
+    return {"speed": drop.speed, "gravity": gravity}
 
 
 def oblique_of(case: CaseTable) -> Oblique | None:
-    """Return the motion along the plate of a case; None if the sphere falls along the
-    normal without friction.
+    """Return the motion along the plate of a case.
+
+    None if the sphere falls along the normal without friction.
     """
     if not is_oblique(case):
         return None
-    drop, inclination = case.drop, case.plate.inclination
+    drop = case.drop
+    size = case.plate.size
     velocity: tuple[Array, Array] = (0.0, 0.0)
     if drop.velocity is not None:
         velocity = (drop.velocity[0], drop.velocity[1])
     elif drop.angle is not None:
         velocity = (drop.speed * np.sin(drop.angle), 0.0)
+    gravity_along: Array = 0.0
+    if case.plate.inclination is not None:
+        gravity_along = drop.gravity * np.sin(case.plate.inclination)
     return Oblique(
         velocity=velocity,
         spin=drop.spin or (0.0, 0.0, 0.0),
         position=drop.position,
-        gravity=(0.0 if inclination is None else drop.gravity * np.sin(inclination), 0.0),
+        gravity=(gravity_along, 0.0),
         friction=friction_law_of(case),
-        size=None if case.plate.size is None else (case.plate.size[0], case.plate.size[1]),
+        size=None if size is None else (size[0], size[1]),
     )

@@ -16,9 +16,11 @@ if TYPE_CHECKING:
     from vibroimpact.cases.schema import CaseTable
     from vibroimpact.measurements.table_file import TableFile
 
-_FEWEST, _MOST = 33, 20_000  # samples of a motion; each takes part in every search for a touch
+# samples of a motion; each takes part in every search for a touch
+_FEWEST = 33
+_MOST = 20_000
 _EQUAL = 1e-3  # of a step: the deviation of rounded times from equal steps
-_UNKNOWN = 0.05  # of the range of a motion: the largest error of a sample found from its neighbours
+_LARGEST_ERROR = 0.05  # of a sample found from its neighbours, over the range of the motion
 _SEAM = 2.0  # times the largest of these errors within a period: the largest where it repeats
 _ROUNDING = 1e-9  # of the largest sample: an error that means nothing
 
@@ -67,8 +69,9 @@ def _motion(table: MotionTable) -> tuple[PlateMotion, float]:
 
 
 def _samples(file: str, columns: str | None, repeat: bool) -> tuple[float, Floats]:
-    """Return the step [s] and the displacements [m] of a file, whose columns may be stated;
-    `repeat`: of one period.
+    """Return the step [s] and the displacements [m] of a file.
+
+    Its columns may be stated. With `repeat` the file is of one period.
 
     Raises
     ------
@@ -83,29 +86,16 @@ def _samples(file: str, columns: str | None, repeat: bool) -> tuple[float, Float
     table = read_table_file(
         file, {"time": "s", "displacement": "m", "acceleration": "m/s^2"}, columns=columns
     )
-    missing = (
-        "time"
-        if "time" not in table.columns
-        else "displacement [m], or acceleration [m/s^2]"
-        if len(table.columns) == 1
-        else ""
-    )
-    if missing or len(table.columns) > 2:
-        words = (
-            f"there is no column {missing}"
-            if missing
-            else "it has displacement and acceleration; leave one of them out"
-        )
-        raise InputError(f"{file}: {words}")
-    name = next(name for name in table.columns if name != "time")
-    time, values = table.columns["time"], table.columns[name]
+    name = _displacement_or_acceleration(file, table)
+    time = table.columns["time"]
+    values = table.columns[name]
     if not _FEWEST <= len(time) <= _MOST:
-        many = (
-            f"at least {_FEWEST} are needed"
-            if len(time) < _FEWEST
-            else f"more than {_MOST:,} can't be followed; keep a part, or fewer a second"
+        reason = f"at least {_FEWEST} are needed"
+        if len(time) > _MOST:
+            reason = f"more than {_MOST:,} can't be followed; keep a part, or fewer a second"
+        raise InputError(
+            f"{file}: {len(time)} samples are no motion that can be followed: {reason}"
         )
-        raise InputError(f"{file}: {len(time)} samples are no motion that can be followed: {many}")
     _check_steps(table, time)
     _check_sampling(table, name, values)
     if repeat:
@@ -113,75 +103,92 @@ def _samples(file: str, columns: str | None, repeat: bool) -> tuple[float, Float
     step = float(time[-1] - time[0]) / (len(time) - 1)
     if name == "displacement":
         return step, values
-    return step, integrated_twice_over_period(step, values) if repeat else integrated_twice(
-        step, values
-    )
+    if repeat:
+        return step, integrated_twice_over_period(step, values)
+    return step, integrated_twice(step, values)
+
+
+def _displacement_or_acceleration(file: str, table: TableFile) -> str:
+    """Return the name of the column beside the time.
+
+    Raises
+    ------
+    InputError
+        If there is no time, or not one other column.
+    """
+    if "time" not in table.columns:
+        raise InputError(f"{file}: there is no column time")
+    names = [name for name in table.columns if name != "time"]
+    if not names:
+        raise InputError(f"{file}: there is no column displacement [m], or acceleration [m/s^2]")
+    if len(names) > 1:
+        raise InputError(f"{file}: it has displacement and acceleration; leave one of them out")
+    return names[0]
 
 
 def _check_steps(table: TableFile, time: Floats) -> None:
     """Raise InputError unless times rise by equal steps."""
     steps = np.diff(time)
-    usual, rounding = float(np.median(steps)), 1e-12 * float(np.abs(time).max())
-    odd = np.flatnonzero((steps <= 0.0) | (np.abs(steps - usual) > _EQUAL * usual + rounding))
-    if odd.size:
-        at = int(odd[0])
-        words = (
-            "times must rise"
-            if steps[at] <= 0.0
-            else f"the others come by {usual:.6g} s; a motion has equal steps, and no gaps"
-        )
-        where = f"{table.path}, line {table.lines[at + 1]}"
-        raise InputError(
-            f"{where}: the time {time[at + 1]:.9g} s comes {steps[at]:.6g} s after the one "
-            f"before, and {words}"
-        )
-
-
-def _check_sampling(table: TableFile, name: str, values: Floats) -> None:
-    """Raise InputError if a sample can't be guessed from its neighbours: the values jump,
-    or are too coarse for what they show.
-    """
-    wrong = _off_neighbours(values)
-    worst = int(wrong.argmax())
-    if wrong[worst] > _UNKNOWN * float(np.ptp(values)):
-        words = (
-            f"{_off(name, values[worst + 2], wrong[worst])}; it jumps, or the samples are too "
-            "coarse for the motion"
-        )
-        raise InputError(f"{table.path}, line {table.lines[worst + 2]}: {words}")
-
-
-def _check_seam(table: TableFile, name: str, values: Floats) -> None:
-    """Raise InputError if the samples at both ends of a period follow each other less
-    evenly than those between.
-    """
-    usual = max(float(_off_neighbours(values).max()), _ROUNDING * float(np.abs(values).max()))
-    wrong = _off_neighbours(np.concatenate([values[-4:], values[:4]]))
-    worst = int(wrong.argmax())  # the last two samples, then the first two
-    if wrong[worst] > _SEAM * usual:
-        row = worst - 2
-        words = (
-            f"{_off(name, values[row], wrong[worst])} where the period repeats, and at most "
-            f"{usual:.3g} {_unit(name)} within it"
-        )
-        remedy = (
-            "give one whole period, without the sample at its end that is the first of the next"
-        )
-        raise InputError(f"{table.path}, line {table.lines[row]}: {words}; {remedy}")
-
-
-def _off_neighbours(values: Floats) -> Floats:
-    """Return how far samples are from the cubic through four neighbours (samples - 4,)."""
-    return np.abs(
-        values[2:-2]
-        - np.convolve(values, [-1.0 / 6.0, 2.0 / 3.0, 0.0, 2.0 / 3.0, -1.0 / 6.0], mode="valid")
+    usual = float(np.median(steps))
+    rounding = 1e-12 * float(np.abs(time).max())
+    unequal = np.flatnonzero((steps <= 0.0) | (np.abs(steps - usual) > _EQUAL * usual + rounding))
+    if not unequal.size:
+        return
+    row = int(unequal[0])
+    demand = f"the others come by {usual:.6g} s; a motion has equal steps, and no gaps"
+    if steps[row] <= 0.0:
+        demand = "times must rise"
+    raise InputError(
+        f"{table.path}, line {table.lines[row + 1]}: the time {time[row + 1]:.9g} s comes "
+        f"{steps[row]:.6g} s after the one before, and {demand}"
     )
 
 
-def _off(name: str, value: float, wrong: float) -> str:
+def _check_sampling(table: TableFile, name: str, values: Floats) -> None:
+    """Raise InputError if a sample can't be guessed from its neighbours.
+
+    Then the values jump, or are too coarse for what they show.
+    """
+    errors = _interpolation_errors(values)
+    worst = int(errors.argmax())
+    if errors[worst] > _LARGEST_ERROR * float(np.ptp(values)):
+        row = worst + 2
+        raise InputError(
+            f"{table.path}, line {table.lines[row]}: "
+            f"{_error_in_words(name, values[row], errors[worst])}; it jumps, or the samples are "
+            "too coarse for the motion"
+        )
+
+
+def _check_seam(table: TableFile, name: str, values: Floats) -> None:
+    """Raise InputError unless a period ends where it begins.
+
+    The samples at both ends of it must follow each other as evenly as those between.
+    """
+    usual = max(float(_interpolation_errors(values).max()), _ROUNDING * float(np.abs(values).max()))
+    errors = _interpolation_errors(np.concatenate([values[-4:], values[:4]]))
+    worst = int(errors.argmax())  # the last two samples, then the first two
+    if errors[worst] > _SEAM * usual:
+        row = worst - 2
+        raise InputError(
+            f"{table.path}, line {table.lines[row]}: "
+            f"{_error_in_words(name, values[row], errors[worst])} where the period repeats, and "
+            f"at most {usual:.3g} {_unit(name)} within it; "
+            "give one whole period, without the sample at its end that is the first of the next"
+        )
+
+
+def _interpolation_errors(values: Floats) -> Floats:
+    """Return how far samples are from the cubic through four neighbours (samples - 4,)."""
+    # Lagrange's weights of the neighbours at -2, -1, 1 and 2 steps
+    weights = [-1.0 / 6.0, 2.0 / 3.0, 0.0, 2.0 / 3.0, -1.0 / 6.0]
+    return np.abs(values[2:-2] - np.convolve(values, weights, mode="valid"))
+
+
+def _error_in_words(name: str, value: float, error: float) -> str:
     """Return in words how far a sample is from its neighbours."""
     return (
-        f"the {name} {value:.6g} {_unit(name)} is {wrong:.3g} {_unit(name)} away from the "
+        f"the {name} {value:.6g} {_unit(name)} is {error:.3g} {_unit(name)} away from the "
         "curve through its neighbours"
     )
 

@@ -9,7 +9,7 @@ from functools import cache
 from importlib.resources import files
 from os import PathLike
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, TypeGuard, TypeVar
 
 from pydantic import ValidationError
 
@@ -66,26 +66,27 @@ def _read_to_run(table: dict[str, Any]) -> Case:
     try:
         return _case_of(table)
     except InputError as error:
-        if "calibrate" in table and "contact" in str(error) and "missing" in str(error):
-            raise _with_hint(
-                error, "for `vibroimpact calibrate` what it tunes may be left out"
-            ) from None
-        if "sweep" in table and "missing" in str(error):
-            raise _with_hint(
-                error, "for `vibroimpact sweep` what it sweeps may be left out"
-            ) from None
-        raise
+        is_missing = "missing" in str(error)
+        if is_missing and "calibrate" in table and "contact" in str(error):
+            hint = "for `vibroimpact calibrate` what it tunes may be left out"
+        elif is_missing and "sweep" in table:
+            hint = "for `vibroimpact sweep` what it sweeps may be left out"
+        else:
+            raise
+        raise _with_hint(error, hint) from None
 
 
 def _with_hint(error: InputError, hint: str) -> InputError:
+    """Return an error with a hint after its last fault."""
     return InputError.of_several([*error.faults[:-1], f"{error.faults[-1]}; {hint}"])
 
 
 def load_table(
     source: str | PathLike[str], changes: Mapping[str, Any] | None = None
 ) -> dict[str, Any]:
-    """Return the parsed, not yet validated table of a case file or a shipped case; paths are made
-    absolute, relative to the file.
+    """Return the parsed, not yet validated table of a case file or a shipped case.
+
+    Paths in it are made absolute; they are relative to the file.
 
     Parameters
     ----------
@@ -116,11 +117,9 @@ def case_text(source: str | PathLike[str]) -> str:
     InputError
         If it can't be read, or is too large for a case; the message does not name the source.
     """
-    return (
-        _shipped(str(source))
-        if str(source).partition(":")[0] in GROUPS
-        else read_text(Path(source), _CASE)
-    )
+    if str(source).partition(":")[0] in GROUPS:
+        return _shipped(str(source))
+    return read_text(Path(source), _CASE)
 
 
 def parse_case(text: str) -> dict[str, Any]:
@@ -148,36 +147,31 @@ def parse_case(text: str) -> dict[str, Any]:
 
 
 def _toml_hint(text: str, fault: str) -> str:
-    """Return the likely cause of a TOML syntax error, as a hint to be added to the
-    message; "" if not known.
-    """
-    place = re.search(r"at line (\d+)", fault)
-    line = text.split("\n")[int(place[1]) - 1] if place else ""
+    """Return the likely cause of a TOML syntax error, to be added to the message; "" if unknown."""
+    position = re.search(r"at line (\d+)", fault)
+    line = text.split("\n")[int(position[1]) - 1] if position else ""
     if re.match(r"[^=]{1,100}=\s*[+-]?[\d.]+(?:[eE][+-]?\d+)?\s*[^\W\d_][^\"']*$", line):
         return '; a number with a unit is a text: write it in quotes, such as "25 mm"'
     if "overwrite" in fault or "twice" in fault:
-        again = re.match(r"\s*\[\s*(sensors|plate\.supports)\s*\]", line)
-        return (
-            f"; write [[{again[1]}]] above each table of a list"
-            if again
-            else "; a key or a table stands there twice"
-        )
-    return (
-        "; close the quotes on the line where they are opened"
-        if "Illegal character '\\n'" in fault
-        else ""
-    )
+        header = re.match(r"\s*\[\s*(sensors|plate\.supports)\s*\]", line)
+        if header:
+            return f"; write [[{header[1]}]] above each table of a list"
+        return "; a key or a table stands there twice"
+    if "Illegal character '\\n'" in fault:
+        return "; close the quotes on the line where they are opened"
+    return ""
 
 
 def prefix_errors(source: str | PathLike[str], read: Callable[[], Read]) -> Read:
-    """Return the result of `read`, with the source prefixed to each line of an
-    `InputError` that it raises.
+    """Return the result of `read`; errors have the source before each line.
+
+    These are `InputError`s that it raises.
     """
     try:
         return read()
     except InputError as error:
-        place = shortened(str(source), 160)
-        raise InputError.of_several(f"{place}: {fault}" for fault in error.faults) from None
+        name = shortened(str(source), 160)
+        raise InputError.of_several(f"{name}: {fault}" for fault in error.faults) from None
 
 
 def read_case(table: Mapping[str, Any]) -> Case:
@@ -211,11 +205,11 @@ def _case_of(table: Mapping[str, Any]) -> Case:
         case = Case.model_validate(dict(table))
         check_case(case)
     except ValidationError as error:
-        faults = fault_messages(error, Case, of_case=True)
-        raise InputError.of_several(
-            f"{shortened(path_in_words(path, table), 160)}: {message}" if path else message
-            for path, message in faults
-        ) from None
+        faults = []
+        for path, message in fault_messages(error, Case, of_case=True):
+            prefix = f"{shortened(path_in_words(path, table), 160)}: " if path else ""
+            faults.append(prefix + message)
+        raise InputError.of_several(faults) from None
     return case
 
 
@@ -231,58 +225,81 @@ def shipped_cases() -> dict[str, str]:
 
 
 def _resolve_paths(table: dict[str, Any], folder: Path) -> dict[str, Any]:
-    """Make the file paths of a case absolute, in place, relative to the folder of the
-    case file; return the case.
+    """Make the file paths of a case absolute, in place, and return the case.
+
+    They are relative to the folder of the case file.
     """
-    for body in ("sphere", "plate"):
-        section = table.get(body)
-        mesh = section.get("mesh") if isinstance(section, dict) else None
-        file = mesh.get("file") if isinstance(mesh, dict) else mesh
-        if isinstance(section, dict) and isinstance(file, str) and file.strip():
-            path = str((folder / file).absolute())
-            section["mesh"] = {**mesh, "file": path} if isinstance(mesh, dict) else path
+    sphere = table.get("sphere")
     plate = table.get("plate")
+    for body in (sphere, plate):
+        if isinstance(body, dict):
+            _resolve_mesh_path(body, folder)
     motion = plate.get("motion") if isinstance(plate, dict) else None
-    if isinstance(motion, dict) and isinstance(motion.get("file"), str) and motion["file"].strip():
-        motion["file"] = str((folder / motion["file"]).absolute())
-    wanted = table.get("calibrate")
-    target = wanted.get("target") if isinstance(wanted, dict) else None
-    file = target.get("file") if isinstance(target, dict) else target
-    if isinstance(wanted, dict) and isinstance(file, str) and file.strip():
-        wanted["target"] = {"file": str((folder / file).absolute())}
+    if isinstance(motion, dict) and _is_path(motion.get("file")):
+        motion["file"] = _absolute(motion["file"], folder)
+    calibrate = table.get("calibrate")
+    if isinstance(calibrate, dict):
+        target = calibrate.get("target")
+        file = target.get("file") if isinstance(target, dict) else target
+        if _is_path(file):
+            calibrate["target"] = {"file": _absolute(file, folder)}
     _resolve_sweep_paths(table.get("sweep"), folder)
     return table
 
 
-def _resolve_sweep_paths(inside: Any, folder: Path) -> None:
+def _resolve_mesh_path(body: dict[str, Any], folder: Path) -> None:
+    """Make the file path of the mesh of a body absolute: a text, or one in a table."""
+    mesh = body.get("mesh")
+    if _is_path(mesh):
+        body["mesh"] = _absolute(mesh, folder)
+    elif isinstance(mesh, dict) and _is_path(mesh.get("file")):
+        body["mesh"] = {**mesh, "file": _absolute(mesh["file"], folder)}
+
+
+def _resolve_sweep_paths(section: Any, folder: Path) -> None:
     """Make the file paths of a [sweep] section absolute, in place, at any depth."""
-    for value in inside.values() if isinstance(inside, dict) else ():
-        if isinstance(value, dict) and isinstance(value.get("file"), str) and value["file"].strip():
-            value["file"] = str((folder / value["file"]).absolute())
-        _resolve_sweep_paths(value, folder)
+    if not isinstance(section, dict):
+        return
+    for inner in section.values():
+        if isinstance(inner, dict) and _is_path(inner.get("file")):
+            inner["file"] = _absolute(inner["file"], folder)
+        _resolve_sweep_paths(inner, folder)
+
+
+def _is_path(value: object) -> TypeGuard[str]:
+    return isinstance(value, str) and bool(value.strip())
+
+
+def _absolute(file: str, folder: Path) -> str:
+    return str((folder / file).absolute())
 
 
 @cache
 def _names() -> list[str]:
     """Return the names of the shipped cases."""
     folder = files("vibroimpact").joinpath("cases/library")
-    found = [
-        (group, entry.name)
+    names = [
+        f"{group}:{entry.name.removesuffix('.toml')}"
         for group in GROUPS
         for entry in folder.joinpath(group).iterdir()
         if entry.name.endswith(".toml")
     ]
-    return sorted(f"{group}:{name.removesuffix('.toml')}" for group, name in found)
+    return sorted(names)
 
 
 def _shipped(name: str) -> str:
-    """Return the text of a shipped case."""
-    if name not in (known := _names()):
+    """Return the text of a shipped case.
+
+    Raises
+    ------
+    InputError
+        If there is no such case.
+    """
+    names = _names()
+    if name not in names:
         raise InputError(
-            f"there is no shipped case {quoted(name)}; there are {choices(known, name, 'cases')}"
+            f"there is no shipped case {quoted(name)}; there are {choices(names, name, 'cases')}"
         )
-    return (
-        files("vibroimpact")
-        .joinpath("cases/library", *f"{name}.toml".split(":"))
-        .read_text(encoding="utf-8")
-    )
+    group, _, stem = name.partition(":")
+    folder = files("vibroimpact").joinpath("cases/library", group)
+    return folder.joinpath(f"{stem}.toml").read_text(encoding="utf-8")

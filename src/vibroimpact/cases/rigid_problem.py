@@ -31,8 +31,9 @@ PLATE_FALLS = (
     "sphere; hold it vertically, leave it rigid, or "
     "hit it in free space, with drop.gravity = 0 and drop.speed or drop.velocity"
 )
-"""Message for a plate that its supports do not hold, raised before its modes are computed
-(`"free"`) or after.
+"""Message for a plate that its supports do not hold.
+
+It is raised before its modes are computed (`"free"`) or after.
 """
 
 
@@ -43,31 +44,29 @@ def mass_of_sphere(case: CaseTable) -> float:
 
 @derived
 def contact_laws_of(case: CaseTable) -> tuple[ContactLaw, ...]:
-    """Return the contact law of each impact, as many as the longest list of a parameter has values;
-    the last holds for later impacts.
+    """Return the contact law of each impact.
+
+    There are as many as the longest list of a parameter has values; the last holds for later
+    impacts.
 
     A function of the approach speed has its value at the first touch, in a vacuum.
     """
-    law, pair, functions = find_contact_law(case.contact.law), contact_pair(case), by_speed_of(case)
-    first = {
-        key: held(function, _touch_speed_in_vacuum(case)) for key, function in functions.items()
-    }
-    parameters: dict[str, Any] = {**case.contact.parameters, **first}
+    law = find_contact_law(case.contact.law)
+    pair = contact_pair(case)
+    parameters: dict[str, Any] = dict(case.contact.parameters)
+    for key, function in by_speed_of(case).items():
+        parameters[key] = held(function, _touch_speed_in_vacuum(case))
     lists = {key: value for key, value in parameters.items() if isinstance(value, tuple)}
-    number = max((len(value) for value in lists.values()), default=1)
+    impacts = max((len(values) for values in lists.values()), default=1)
+    laws = []
     try:
-        return tuple(
-            law.for_pair(
-                pair,
-                **{
-                    **parameters,
-                    **{key: value[min(impact, len(value) - 1)] for key, value in lists.items()},
-                },
-            )
-            for impact in range(number)
-        )
+        for impact in range(impacts):
+            # the last value of a shorter list holds
+            of_impact = {key: values[min(impact, len(values) - 1)] for key, values in lists.items()}
+            laws.append(law.for_pair(pair, **{**parameters, **of_impact}))
     except InputError as error:
         raise InputError(error.message, f"contact.{error.key}".rstrip(".")) from None
+    return tuple(laws)
 
 
 def fluid_of(case: CaseTable) -> Fluid | None:
@@ -78,9 +77,7 @@ def fluid_of(case: CaseTable) -> Fluid | None:
 
 
 def by_speed_of(case: CaseTable) -> dict[str, BySpeed]:
-    """Return the parameters of the contact law of a case that are functions of the
-    approach speed.
-    """
+    """Return the parameters of a case's contact law that are functions of the approach speed."""
     return {
         key: value
         for key, value in case.contact.parameters.items()
@@ -89,26 +86,27 @@ def by_speed_of(case: CaseTable) -> dict[str, BySpeed]:
 
 
 def in_liquid(case: CaseTable, law: ContactLaw) -> ContactLaw:
-    """Return a contact law of a case at the speed of the first touch, with the
-    restitution that a liquid, if there is one, leaves it.
+    """Return a contact law of a case at the speed of the first touch.
+
+    It has the restitution that a liquid, if there is one, leaves it.
     """
-    functions, table = by_speed_of(case), case.contact.local.liquid
+    functions = by_speed_of(case)
     if functions:
         law = law.changed(
             {key: held(function, touch_speed(case)) for key, function in functions.items()}
         )
-    return (
-        law
-        if table is None
-        else table.liquid().around(
-            law, touch_speed(case), case.sphere.radius, sphere_density(case.sphere)
-        )
+    table = case.contact.local.liquid
+    if table is None:
+        return law
+    return table.liquid().around(
+        law, touch_speed(case), case.sphere.radius, sphere_density(case.sphere)
     )
 
 
 def impact_limit(case: CaseTable) -> int | None:
-    """Return the number of impacts after which a run stops; None if it continues to rest
-    or to a time.
+    """Return the number of impacts after which a run stops.
+
+    None if it continues to rest or to a time.
     """
     if case.run.impacts is None:
         return _DEFAULT_IMPACTS if run_duration(case) is None else None
@@ -116,11 +114,14 @@ def impact_limit(case: CaseTable) -> int | None:
 
 
 def run_duration(case: CaseTable) -> float | None:
-    """Return the time at which a run stops [s]: its duration, or the end of a tabulated
-    motion of the plate; None without either.
+    """Return the time at which a run stops [s]; None if there is none.
+
+    It is its duration, or the end of a tabulated motion of the plate.
     """
     length = motion_length(case)
-    return case.run.duration if np.isinf(length) else min(case.run.duration or length, length)
+    if np.isinf(length):
+        return case.run.duration
+    return min(case.run.duration or length, length)
 
 
 def elastic_names(case: CaseTable) -> list[Literal["sphere", "plate"]]:
@@ -141,8 +142,9 @@ def deforms(case: CaseTable) -> bool:
 
 
 def rigid_problem(case: CaseTable) -> Problem:
-    """Return the problem of a case with rigid bodies; the numbers of the case may be
-    arrays, one value per drop.
+    """Return the problem of a case with rigid bodies.
+
+    The numbers of the case may be arrays, one value per drop.
     """
     return Problem(
         sphere=ball_of(case.sphere),
@@ -182,12 +184,12 @@ def touch_speed(case: CaseTable) -> float:
 
 
 def _touch_speed_in_vacuum(case: CaseTable) -> Array:
-    """Return the approach speed of the first impact without air [m/s]; the numbers of the
-    case may be arrays.
+    """Return the approach speed of the first impact without air [m/s].
+
+    The numbers of the case may be arrays.
     """
     motion = normal_motion_of(case)
     if "speed" in motion:
         return motion["speed"]
-    return (
-        motion["velocity"] ** 2 + 2.0 * motion["gravity"] * (motion["height"] - case.sphere.radius)
-    ) ** 0.5
+    fall = motion["height"] - case.sphere.radius
+    return (motion["velocity"] ** 2 + 2.0 * motion["gravity"] * fall) ** 0.5

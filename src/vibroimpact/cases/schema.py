@@ -101,20 +101,18 @@ class SphereSection(Section):
 
     @model_validator(mode="before")
     @classmethod
-    def _check_size(cls, given: Any) -> Any:
-        if isinstance(given, Mapping) and "diameter" in given:
+    def _check_size(cls, table: Any) -> Any:
+        if isinstance(table, Mapping) and "diameter" in table:
             raise InputError("give radius, half the diameter, in its place", "diameter")
-        return given
+        return table
 
     @model_validator(mode="after")
     def _check_body(self) -> SphereSection:
         if self.material is RIGID:
-            lacks = (
-                "no density, and the sphere needs a mass"
-                if self.mass is None
-                else "no modulus, and the sphere needs one"
-            )
-            raise InputError(f'"rigid" has {lacks}; only the plate can be rigid', "material")
+            lack = "no modulus, and the sphere needs one"
+            if self.mass is None:
+                lack = "no density, and the sphere needs a mass"
+            raise InputError(f'"rigid" has {lack}; only the plate can be rigid', "material")
         check_ball(self)
         check_elastic(self)
         return self
@@ -171,12 +169,15 @@ class PlateSection(Section):
 
     @model_validator(mode="before")
     @classmethod
-    def _check_sides(cls, given: Any) -> Any:
+    def _check_sides(cls, table: Any) -> Any:
         for side in ("thickness", "length", "width"):
-            if isinstance(given, Mapping) and side in given:
-                words = 'give size = ["600 mm", "400 mm", "10 mm"] (length, width, thickness)'
-                raise InputError(f"{words}, or with --set plate.size.{side}", side)
-        return given
+            if isinstance(table, Mapping) and side in table:
+                raise InputError(
+                    'give size = ["600 mm", "400 mm", "10 mm"] (length, width, thickness), or with '
+                    f"--set plate.size.{side}",
+                    side,
+                )
+        return table
 
     @model_validator(mode="after")
     def _check_body(self) -> PlateSection:
@@ -260,18 +261,17 @@ class DropSection(Section):
         elif self.speed is not None:
             raise InputError("give either speed or velocity; both are given")
         elif self.height is None and self.velocity[2] >= 0.0:
-            words = f"its z is {self.velocity[2]:g} m/s, which does not lead to the plate"
             raise InputError(
-                f"{words}; at first touch it is negative, or give the height "
-                "at which the drop starts",
+                f"its z is {self.velocity[2]:g} m/s, which does not lead to the plate; at first "
+                "touch it is negative, or give the height at which the drop starts",
                 "velocity",
             )
         if self.angle is not None and self.speed is None:
-            given = " and ".join(
+            stated = " and ".join(
                 key for key in ("height", "velocity") if getattr(self, key) is not None
             )
             raise InputError(
-                f"an angle needs the speed at first touch; give speed in place of {given}, "
+                f"an angle needs the speed at first touch; give speed in place of {stated}, "
                 "or leave this out",
                 "angle",
             )
@@ -298,8 +298,9 @@ _DIRECTIONS = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 
 
 def _one_of(names: Collection[str]) -> BeforeValidator:
-    """Return the check of a name, whose message has the likely one; a value that is no
-    string is left to the type check of the field.
+    """Return the check of a name, whose message has the likely one.
+
+    A value that is no string is left to the type check of the field.
     """
 
     def read(value: Any) -> Any:
@@ -404,16 +405,20 @@ class SensorSection(Section):
                 "a microphone is omnidirectional; leave out the direction", "direction"
             )
         if instrument is None and self.quantity not in (None, *MOTIONS):
-            kind = _MEASURED_BY.get(str(self.quantity), "geophone")
-            # some need properties, which their table gives
-            one = f"{kind} = {{ ... }}" if kind in _WITH_PROPERTIES else f'instrument = "{kind}"'
+            likely = _MEASURED_BY.get(str(self.quantity), "geophone")
+            example = f'instrument = "{likely}"'
+            if likely in _WITH_PROPERTIES:  # which their table gives
+                example = f"{likely} = {{ ... }}"
             raise InputError(
-                f"{self.quantity} is the output of an instrument; name one, such as {one}",
+                f"{self.quantity} is the output of an instrument; name one, such as {example}",
                 "quantity",
             )
         if instrument is not None and self.quantity not in (None, instrument.quantity):
-            words = f"{INSTRUMENTS[str(self.instrument)]} measures {instrument.quantity}"
-            raise InputError(f"{words}; leave out quantity, or the {self.instrument}", "quantity")
+            raise InputError(
+                f"{INSTRUMENTS[str(self.instrument)]} measures {instrument.quantity}; leave out "
+                f"quantity, or the {self.instrument}",
+                "quantity",
+            )
         sensor = self.sensor()  # raises if the filter does not take a corner frequency
         self.__dict__["quantity"] = sensor.quantity
         for name, table in (("amplifier", self.amplifier), ("converter", self.converter)):
@@ -425,8 +430,12 @@ class SensorSection(Section):
         return self
 
     def _lay_in_face(self) -> None:
-        """Let a strain gauge lie along x where its direction is not given; one that
-        leaves the face is refused.
+        """Let a strain gauge lie along x where its direction is not given.
+
+        Raises
+        ------
+        InputError
+            If its direction leaves the face.
         """
         if "direction" not in self.model_fields_set:
             self.__dict__["direction"] = "x"
@@ -438,46 +447,55 @@ class SensorSection(Section):
             )
 
     def _instrument(self) -> Instrument | None:
-        """Return the instrument, which its table names where the key does not; None if
-        the motion is read as it is.
+        """Return the instrument, which its table names where the key does not.
+
+        None if the motion is read as it is.
         """
         tables = {name: getattr(self, name.replace("-", "_")) for name in INSTRUMENTS}
-        given = [name for name, table in tables.items() if table is not None]
-        kind: str | None = self.instrument or next(iter(given), None)
-        if kind is None:
+        stated = [name for name, table in tables.items() if table is not None]
+        name: str | None = self.instrument or next(iter(stated), None)
+        if name is None:
             return None
-        wrong = next((name for name in given if name != kind), None)
-        if wrong is not None:
-            other = f', or take instrument = "{wrong}"'
-            if kind in given:
-                other = (
-                    f", or the table {kind.replace('-', '_')}" if self.instrument is None else ""
-                )
+        self._check_one_instrument(name, stated)
+        self.__dict__["instrument"] = name
+        table = tables[name]
+        if table is not None:
+            instrument: Instrument = table.instrument()
+            return instrument
+        if name in _WITH_PROPERTIES:
             raise InputError(
-                f"its instrument is {INSTRUMENTS[kind]}; leave out this table{other}",
-                wrong.replace("-", "_"),
-            )
-        self.__dict__["instrument"] = kind
-        if (table := tables[kind]) is not None:
-            found: Instrument = table.instrument()
-            return found
-        if kind in _WITH_PROPERTIES:
-            raise InputError(
-                f"{INSTRUMENTS[kind]} has properties; give them in a table {kind} = {{ ... }}", kind
+                f"{INSTRUMENTS[name]} has properties; give them in a table {name} = {{ ... }}", name
             )
         ideal: dict[str, Instrument] = {
             "accelerometer": Accelerometer(),
             "strain-gauge": StrainGauge(),
             "force": ForceSensor(),
         }
-        return ideal[kind]
+        return ideal[name]
+
+    def _check_one_instrument(self, name: str, stated: list[str]) -> None:
+        """Raise InputError if a table is that of another instrument than the one of a name.
+
+        `stated` are the instruments whose tables there are.
+        """
+        other = next((other for other in stated if other != name), None)
+        if other is None:
+            return
+        remedy = f', or take instrument = "{other}"'
+        if name in stated:
+            table = name.replace("-", "_")
+            remedy = f", or the table {table}" if self.instrument is None else ""
+        raise InputError(
+            f"its instrument is {INSTRUMENTS[name]}; leave out this table{remedy}",
+            other.replace("-", "_"),
+        )
 
     def sensor(self) -> Sensor:
         """Return the sensor, with its direction as a unit vector."""
-        along = _DIRECTIONS[self.direction] if isinstance(self.direction, str) else self.direction
-        x, y, z = (part / math.hypot(*along) for part in along)
-        amplifier = None if self.amplifier is None else self.amplifier.amplifier()
-        converter = None if self.converter is None else self.converter.converter()
+        direction = self.direction
+        if isinstance(direction, str):
+            direction = _DIRECTIONS[direction]
+        x, y, z = (component / math.hypot(*direction) for component in direction)
         instrument = self._instrument()
         quantity = self.quantity or ("acceleration" if instrument is None else instrument.quantity)
         return Sensor(
@@ -488,8 +506,8 @@ class SensorSection(Section):
             instrument,
             self.filter,
             self.corner,
-            amplifier,
-            converter,
+            amplifier=None if self.amplifier is None else self.amplifier.amplifier(),
+            converter=None if self.converter is None else self.converter.converter(),
         )
 
 
@@ -532,10 +550,10 @@ SECTIONS: dict[str, type[Section]] = {
 """The sections of a case that are there once and have fixed keys."""
 
 
-def _whole_number(given: Any) -> Any:
-    if isinstance(given, bool):  # true equals 1 in Python
-        raise InputError(f"{quoted(given)} is no version; write 1")
-    return given
+def _whole_number(value: Any) -> Any:
+    if isinstance(value, bool):  # true equals 1 in Python
+        raise InputError(f"{quoted(value)} is no version; write 1")
+    return value
 
 
 class CaseTable(Section):
@@ -561,8 +579,32 @@ class CaseTable(Section):
     @model_validator(mode="after")
     def _check_consistency(self) -> Self:
         """Check values of different sections against each other."""
-        radius, height, size = self.sphere.radius, self.drop.height, self.plate.size
-        if height is not None and height <= radius:
+        self._check_height()
+        if self.plate.radius is not None:
+            check_sphere_below(self)
+        self._check_position()
+        uses = Counter(sensor.name for sensor in self.sensors)
+        for name, count in uses.items():
+            if count > 1:
+                raise InputError(
+                    f"two sensors are called {quoted(name)}; each needs a name of its own",
+                    "sensors",
+                )
+        # a microphone is in the air of the case unless it states its own
+        for sensor in self.sensors:
+            if sensor.microphone is not None and sensor.microphone.air_density is None:
+                sensor.microphone.__dict__["air_density"] = (
+                    AIR_DENSITY if self.drop.air is None else self.drop.air.density
+                )
+        return self
+
+    def _check_height(self) -> None:
+        """Raise InputError if the sphere does not fall from its height."""
+        height = self.drop.height
+        if height is None:
+            return
+        radius = self.sphere.radius
+        if height <= radius:
             hint = likely_lengths([radius], [min(height, 3.0)]).replace(
                 "Write", "Write sphere.radius ="
             )
@@ -571,44 +613,25 @@ class CaseTable(Section):
                 f"of its centre, so it must be greater than the radius, {radius:g} m{hint}",
                 "drop.height",
             )
-        if height is not None and self.drop.gravity == 0:
-            remedy = (
-                "give drop.speed instead of drop.height"
-                if self.drop.velocity is None
-                else "leave out drop.height"
-            )
+        if self.drop.gravity == 0:
+            remedy = "leave out drop.height"
+            if self.drop.velocity is None:
+                remedy = "give drop.speed instead of drop.height"
             raise InputError(f"without gravity a sphere does not fall; {remedy}", "drop.gravity")
-        if self.plate.radius is not None:
-            check_sphere_below(self)
-        # the extent of an imported mesh is not known before it is read
-        in_own_coordinates = isinstance(self.plate.mesh, BroughtMeshTable)
-        reach = (
-            [0.5 * length for length in size[:2]]
-            if size and not in_own_coordinates
-            else [math.inf, math.inf]
-        )
-        if any(abs(at) > end for at, end in zip(self.drop.position, reach, strict=True)):
-            x, y = self.drop.position
-            words = (
-                f"({x:g}, {y:g}) m lies outside the plate, which reaches to ({reach[0]:g}, "
-                f"{reach[1]:g}) m"
-            )
-            raise InputError(f"{words}{likely_lengths(self.drop.position, reach)}", "drop.position")
-        twice = next(
-            (
-                name
-                for name, often in Counter(sensor.name for sensor in self.sensors).items()
-                if often > 1
-            ),
-            None,
-        )
-        if twice is not None:
+
+    def _check_position(self) -> None:
+        """Raise InputError if the sphere falls beside the plate.
+
+        The extent of an imported mesh is not known before it is read.
+        """
+        size = self.plate.size
+        if not size or isinstance(self.plate.mesh, BroughtMeshTable):
+            return
+        half = [0.5 * length for length in size[:2]]
+        x, y = self.drop.position
+        if abs(x) > half[0] or abs(y) > half[1]:
             raise InputError(
-                f"two sensors are called {quoted(twice)}; each needs a name of its own", "sensors"
+                f"({x:g}, {y:g}) m lies outside the plate, which reaches to ({half[0]:g}, "
+                f"{half[1]:g}) m{likely_lengths(self.drop.position, half)}",
+                "drop.position",
             )
-        for sensor in self.sensors:
-            if sensor.microphone is not None and sensor.microphone.air_density is None:
-                sensor.microphone.__dict__["air_density"] = (
-                    AIR_DENSITY if self.drop.air is None else self.drop.air.density
-                )
-        return self

@@ -36,20 +36,20 @@ def sensors_of(table: Mapping[str, Any]) -> dict[str, SensorSection]:
         If one is not valid.
     """
     entries = _entries(table)
-    found = {}
+    sensors = {}
     for number, entry in enumerate(entries):
         try:
-            found[entry["name"]] = read_table(SensorSection, entry)
+            sensors[entry["name"]] = read_table(SensorSection, entry)
         except InputError as error:
-            raise InputError(
-                error.message, f"{item_label('sensors', entries, number)}.{error.key}".rstrip(".")
-            ) from None
-    return found
+            key = f"{item_label('sensors', entries, number)}.{error.key}".rstrip(".")
+            raise InputError(error.message, key) from None
+    return sensors
 
 
 def sensor_keys(table: Mapping[str, Any]) -> Iterator[tuple[str, Quantity | None]]:
-    """Yield the keys of the sensors of a case with their quantities; None for a key that is not a
-    quantity.
+    """Yield the keys of the sensors of a case with their quantities.
+
+    None for a key that is not a quantity.
 
     Examples
     --------
@@ -76,16 +76,17 @@ def sensor_keys(table: Mapping[str, Any]) -> Iterator[tuple[str, Quantity | None
                 continue
             key = f"sensors.{name}.{field}"
             yield key, None if field in _NUMBERS else quantity_of(info)
-            yield from (
-                (f"{key}.{part}", quantity) for part, quantity in _NUMBERS.get(field, {}).items()
-            )
-            for part, of_part in _fields(info).items():
-                yield f"{key}.{part}", quantity_of(of_part) or quantity_in_unit(of_part, unit)
+            for axis, quantity in _NUMBERS.get(field, {}).items():
+                yield f"{key}.{axis}", quantity
+            # keys of the table of an instrument, some of which are in the unit of the output
+            for inner_key, inner in _fields(info).items():
+                yield f"{key}.{inner_key}", quantity_of(inner) or quantity_in_unit(inner, unit)
 
 
 def holds_sensor_keys(key: str) -> bool:
-    """Return whether a dotted key is that of a table of sensors, or in one, that contains keys that
-    can be swept.
+    """Return whether a dotted key is that of a table of sensors that contains keys to sweep.
+
+    It may be that of all sensors, of one, or of a table in one.
 
     Examples
     --------
@@ -96,22 +97,21 @@ def holds_sensor_keys(key: str) -> bool:
     ... )
     (True, False, False)
     """
-    first, *rest = key.split(".")
-    if first != "sensors" or len(rest) > 2:
+    section, *rest = key.split(".")
+    if section != "sensors" or len(rest) > 2:
         return False
-    return (
-        len(rest) < 2
-        or rest[1] in _NUMBERS
-        or (
-            rest[1] in SensorSection.model_fields
-            and bool(_fields(SensorSection.model_fields[rest[1]]))
-        )
-    )
+    if len(rest) < 2:
+        return True
+    field = rest[1]
+    if field in _NUMBERS:
+        return True
+    return field in SensorSection.model_fields and bool(_fields(SensorSection.model_fields[field]))
 
 
 def split_key(table: Mapping[str, Any], key: str) -> list[str]:
-    """Return the parts of a dotted key; the name of a sensor, which may have dots itself, is one of
-    them.
+    """Return the parts of a dotted key.
+
+    The name of a sensor, which may have dots itself, is one of them.
 
     Examples
     --------
@@ -121,13 +121,12 @@ def split_key(table: Mapping[str, Any], key: str) -> list[str]:
     ... )
     (['sensors', 'a.1', 'position', 'x'], ['plate', 'size', 'thickness'])
     """
-    names = sorted((entry["name"] for entry in _entries(table)), key=len, reverse=True)
-    name = next((name for name in names if key.startswith(f"sensors.{name}.")), None)
-    return (
-        key.split(".")
-        if name is None
-        else ["sensors", name, *key.removeprefix(f"sensors.{name}.").split(".")]
-    )
+    # the longest name first, as one may begin with another
+    for name in sorted((entry["name"] for entry in _entries(table)), key=len, reverse=True):
+        prefix = f"sensors.{name}."
+        if key.startswith(prefix):
+            return ["sensors", name, *key.removeprefix(prefix).split(".")]
+    return key.split(".")
 
 
 def named_sensor(sensors: Any, name: str) -> dict[str, Any]:
@@ -143,18 +142,16 @@ def named_sensor(sensors: Any, name: str) -> dict[str, Any]:
     if name in names:
         return entries[names.index(name)]
     names = [known for known in names if known]
-    words = f"there are {choices(names, name)}" if names else "the case has none with a name"
-    raise InputError(f"there is no sensor called {quoted(name)}; {words}")
+    others = f"there are {choices(names, name)}" if names else "the case has none with a name"
+    raise InputError(f"there is no sensor called {quoted(name)}; {others}")
 
 
 def _fields(info: FieldInfo) -> dict[str, FieldInfo]:
     """Return the fields of the table that a field of a sensor takes; none if it takes no table."""
-    kinds = (
-        kind
-        for kind in get_args(info.annotation)
-        if isinstance(kind, type) and issubclass(kind, Section)
-    )
-    return next((kind.model_fields for kind in kinds), {})
+    for option in get_args(info.annotation):
+        if isinstance(option, type) and issubclass(option, Section):
+            return option.model_fields
+    return {}
 
 
 def _entries(table: Mapping[str, Any]) -> list[dict[str, Any]]:

@@ -1,4 +1,4 @@
-"""A case to start from: the text of another one, with the keys that it does not use as comments."""
+"""A case to start from: the text of another one, with unused keys as comments."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import json
 import re
 import tomllib
 from collections.abc import Iterator, Mapping
-from dataclasses import MISSING, fields
+from dataclasses import MISSING, Field, fields
 from os import PathLike
 from typing import Any, Literal, get_args, get_origin
 
@@ -36,7 +36,9 @@ def case_template(
     name: str = "",
     changes: Mapping[str, Any] | None = None,
 ) -> str:
-    """Return the text of a new case file: that of another case, with its unused keys as comments.
+    """Return the text of a new case file.
+
+    It is that of another case, with its unused keys as comments.
 
     Parameters
     ----------
@@ -59,75 +61,82 @@ def case_template(
     (True, True)
     """
     text = prefix_errors(source, lambda: case_text(source))
-    others = {**({"name": name} if name else {}), **(changes or {})}
+    others: dict[str, Any] = {"name": name} if name else {}
+    others |= changes or {}
     load_case(source, others)  # which must be valid
     text = changed_text(text, others)
-    used: dict[str, Any] = tomllib.loads(text)
+    table: dict[str, Any] = tomllib.loads(text)
     blocks = _blocks(text.rstrip().split("\n"))
-    for place in range(len(blocks) - 1, -1, -1):
-        section = blocks[place][0]
-        # the last block of a section
-        if section in _SECTIONS and section not in [later for later, _ in blocks[place + 1 :]]:
-            blocks[place][1].extend(_comments(section, used[section]))
+    # below the last block of each section
+    last_blocks = dict(blocks)
+    for section, lines in last_blocks.items():
+        if section in _SECTIONS:
+            lines.extend(_comments(section, table[section]))
     for section in _SECTIONS:
-        if section not in used:
+        if section not in table:
             header = "[[sensors]]" if section == "sensors" else f"[{section}]"
             blocks.append((section, ["", f"# {header}", *_comments(section, {})]))
     return "\n".join(line for _, lines in blocks for line in lines).rstrip() + "\n"
 
 
 def _blocks(lines: list[str]) -> list[tuple[str, list[str]]]:
-    """Return the lines of a case in blocks, each with the section that its first line
-    opens; blank lines belong to the block below.
+    """Return the lines of a case in blocks, each with the section that its first line opens.
+
+    Blank lines belong to the block below.
     """
     blocks: list[tuple[str, list[str]]] = [("", [])]
     for line in lines:
-        if found := _HEADER.match(line):
-            blank = []
-            while blocks[-1][1] and not blocks[-1][1][-1].strip():
-                blank.append(blocks[-1][1].pop())
-            blocks.append((found[1], blank))
+        header = _HEADER.match(line)
+        if header:
+            block_above = blocks[-1][1]
+            blank_lines = []
+            while block_above and not block_above[-1].strip():
+                blank_lines.append(block_above.pop())
+            blocks.append((header[1], blank_lines))
         blocks[-1][1].append(line)
     return blocks
 
 
-def _comments(section: str, used: Any) -> Iterator[str]:
-    """Yield a comment for each key of a section that is not used; of [contact] those of
-    its law first.
+def _comments(section: str, table: Any) -> Iterator[str]:
+    """Yield a comment for each key of a section that its table does not use.
+
+    Of [contact] those of its law are first. The sensors are a list of tables.
     """
-    taken = set().union(*used) if isinstance(used, list) else set(used)
-    if section == "contact" and isinstance(used.get("law"), str):
-        for item in fields(find_contact_law(used["law"])):
-            if item.name not in taken and not item.metadata["memory"]:
-                origin = default_origin(item)
-                value = "..." if origin or item.default in (MISSING, None) else f"{item.default:g}"
-                unit = unit_of(item, used.get("exponent", 1.5))
-                yield _comment(
-                    item.name,
-                    value,
-                    _with_unit(item.metadata["meaning"], unit)
-                    + (f"; by default {origin}" if origin else ""),
-                )
+    used = set().union(*table) if isinstance(table, list) else set(table)
+    if section == "contact" and isinstance(table.get("law"), str):
+        for item in fields(find_contact_law(table["law"])):
+            if item.name not in used and not item.metadata["memory"]:
+                yield _parameter_comment(item, table.get("exponent", 1.5))
     for name, info in _SECTIONS[section].model_fields.items():
-        if name not in taken:
+        if name not in used:
             yield _comment(name, _value(info), _meaning(info))
 
 
+def _parameter_comment(item: Field[Any], exponent: Any) -> str:
+    """Return a comment for a parameter of a contact law."""
+    meaning = _with_unit(item.metadata["meaning"], unit_of(item, exponent))
+    origin = default_origin(item)
+    if origin:
+        return _comment(item.name, "...", f"{meaning}; by default {origin}")
+    has_default = item.default is not MISSING and item.default is not None
+    return _comment(item.name, f"{item.default:g}" if has_default else "...", meaning)
+
+
 def _comment(name: str, value: str, meaning: str) -> str:
-    return (
-        f"# {name} = {value}".ljust(_WIDTH) + f"   # {meaning}"
-        if meaning
-        else f"# {name} = {value}"
-    )
+    """Return a key with a value and its meaning as a comment of TOML."""
+    assignment = f"# {name} = {value}"
+    return f"{assignment.ljust(_WIDTH)}   # {meaning}" if meaning else assignment
 
 
 def _meaning(info: FieldInfo) -> str:
     """Return the meaning of a key, with the unit of a quantity."""
     if info.description:
         return info.description
-    if (quantity := quantity_of(info)) is not None:
+    quantity = quantity_of(info)
+    if quantity is not None:
         return _with_unit(quantity.meaning, quantity.unit)
-    return next((one.description for one in info.metadata if isinstance(one, JsonSchema)), "")
+    schemas = (item for item in info.metadata if isinstance(item, JsonSchema))
+    return next((schema.description for schema in schemas), "")
 
 
 def _with_unit(meaning: str, unit: str) -> str:
@@ -135,17 +144,16 @@ def _with_unit(meaning: str, unit: str) -> str:
 
 
 def _value(info: FieldInfo) -> str:
-    """Return the default of a key as TOML; without one the first word that is allowed, or
-    a gap to be filled.
+    """Return the default of a key as TOML.
+
+    Without one it is the first word that is allowed, or a gap to be filled.
     """
-    if (
-        info.default is not None
-        and isinstance(info.default, (bool, int, float, str, tuple))
-        and info.default != ()
-    ):
+    if isinstance(info.default, (bool, int, float, str, tuple)) and info.default != ():
         return json.dumps(info.default)
     for option in (info.annotation, *get_args(info.annotation)):
         if get_origin(option) is Literal:
             return json.dumps(get_args(option)[0])
     quantity = quantity_of(info)
-    return "..." if quantity is None or not quantity.unit else f'"... {quantity.unit}"'
+    if quantity is None or not quantity.unit:
+        return "..."
+    return f'"... {quantity.unit}"'

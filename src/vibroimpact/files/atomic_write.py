@@ -1,9 +1,9 @@
-"""Atomic writes of a file, of a folder, and of several files into an existing folder: complete, or
-not at all.
+"""Atomic writes of files and folders: complete, or not at all.
 
-Everything is written under a working name on the same file system
-(`vibroimpact.files.working_files`) and renamed at the end. What a process that died has left is
-cleared or completed by `vibroimpact.files.recover`.
+There are those of a file, of a folder, and of several files into an existing folder. Everything is
+written under a working name on the same file system (`vibroimpact.files.working_files`) and renamed
+at the end. What a process that died has left is cleared or completed by
+`vibroimpact.files.recover`.
 """
 
 from __future__ import annotations
@@ -31,10 +31,9 @@ from vibroimpact.files.working_files import (
     working_path,
 )
 
-_PUT, _GONE = "put", "gone"
-"""Subfolders of a working folder: files to be moved to their destinations, and empty
-files named as those to be deleted.
-"""
+# subfolders of a working folder
+_PUT = "put"  # files to be moved to their destinations
+_GONE = "gone"  # empty files, named as those to be deleted
 
 _CURRENT_FOLDER = -100  # AT_FDCWD of Linux: relative paths start from the current directory
 _EXCHANGE = 2  # RENAME_EXCHANGE of renameat2(2)
@@ -45,8 +44,9 @@ _EXCHANGE = 2  # RENAME_EXCHANGE of renameat2(2)
 
 @contextmanager
 def atomic_file(target: Path) -> Iterator[Path]:
-    """Yield the path of an empty working file, which replaces `target` when the block ends without
-    an error.
+    """Yield the path of an empty working file, which replaces `target` at the end of the block.
+
+    It does not if the block raises an error.
 
     The working file is locked; HDF5 locks the files that it writes too, so open it there with
     `locking=False`.
@@ -62,10 +62,10 @@ def atomic_file(target: Path) -> Iterator[Path]:
     OSError
         If it can't be written.
     """
-    place = target.resolve() if target.is_symlink() else target
-    with new_working_path(partial(working_path, place, NEW), _make_empty_file, target) as working:
+    file = target.resolve() if target.is_symlink() else target
+    with new_working_path(partial(working_path, file, NEW), _make_empty_file, target) as working:
         yield working
-        os.replace(working, place)
+        os.replace(working, file)
 
 
 def write_file(target: Path, content: bytes | Iterable[bytes], *, durable: bool = False) -> None:
@@ -129,8 +129,9 @@ def _make_empty_file(path: Path) -> None:
 
 @contextmanager
 def atomic_folder(target: Path, check: Callable[[], None]) -> Iterator[Path]:
-    """Yield the path of an empty working folder, which replaces `target` when the block ends
-    without an error.
+    """Yield the path of an empty working folder, which replaces `target` at the end of the block.
+
+    It does not if the block raises an error.
 
     Parameters
     ----------
@@ -162,24 +163,25 @@ def _put_in_place(working: Path, target: Path) -> None:
         return
     # between the two renames nothing has the name `target`; if this process dies then, `recover`
     # restores the old folder
-    aside = working_path(target, OLD)
+    old = working_path(target, OLD)
     with locked(target):
-        target.rename(aside)
+        target.rename(old)
         try:
             working.rename(target)
         except OSError:
-            aside.rename(target)
+            old.rename(target)
             raise
-        remove(aside)
+        remove(old)
 
 
 def _flush(folder: Path) -> None:
-    """Flush the files of a folder to the disk (fsync), so that either the old or the new
-    folder survives a loss of power.
+    """Flush the files of a folder to the disk (fsync).
+
+    Then either the old or the new folder survives a loss of power.
     """
-    for place, _, names in os.walk(folder):
+    for subfolder, _, names in os.walk(folder):
         for name in names:
-            descriptor = os.open(os.path.join(place, name), os.O_RDWR)
+            descriptor = os.open(os.path.join(subfolder, name), os.O_RDWR)
             try:
                 os.fsync(descriptor)
             finally:
@@ -201,13 +203,12 @@ def exchange(first: Path, second: Path) -> bool:
     False
     """
     rename = _renameat2()
-    return (
-        rename is not None
-        and rename(
-            _CURRENT_FOLDER, os.fsencode(first), _CURRENT_FOLDER, os.fsencode(second), _EXCHANGE
-        )
-        == 0
+    if rename is None:
+        return False
+    status = rename(
+        _CURRENT_FOLDER, os.fsencode(first), _CURRENT_FOLDER, os.fsencode(second), _EXCHANGE
     )
+    return bool(status == 0)
 
 
 @cache
@@ -254,10 +255,8 @@ def write_into(folder: Path, write: Callable[[Path], None], goes: tuple[str, ...
     with new_working_path(partial(inner_path, folder, NEW), Path.mkdir, folder) as working:
         (working / _PUT).mkdir()
         write(working / _PUT)
-        written = _files(working / _PUT)
-        for name in {
-            file.relative_to(folder) for pattern in goes for file in folder.glob(pattern)
-        } - set(written):
+        old = {file.relative_to(folder) for pattern in goes for file in folder.glob(pattern)}
+        for name in old - set(_files(working / _PUT)):
             (working / _GONE / name).parent.mkdir(parents=True, exist_ok=True)
             (working / _GONE / name).touch()
         check_destinations(working, folder)
@@ -267,28 +266,28 @@ def write_into(folder: Path, write: Callable[[Path], None], goes: tuple[str, ...
 
 
 def check_destinations(working: Path, folder: Path) -> None:
-    """Raise OSError unless all files of a working folder can be moved to, or deleted from, their
-    places inside `folder`.
+    """Check that the files of a working folder can be moved to their destinations.
+
+    Those to be deleted must be where they can be. OSError is raised otherwise.
 
     A link that leads out of `folder` is refused: nothing outside of it is written or deleted.
     """
-    inside = folder.resolve()
-    for part in (_PUT, _GONE):
-        for name in _files(working / part):
-            place = folder / name
-            if place.is_dir():
-                raise IsADirectoryError(EISDIR, os.strerror(EISDIR), str(place))
-            if not place.parent.resolve().is_relative_to(inside):
-                raise OSError(
-                    ELOOP, "this is a link that leads out of the folder", str(place.parent)
-                )
-            if place.parent.exists() and not os.access(place.parent, os.W_OK):
-                raise PermissionError(EACCES, os.strerror(EACCES), str(place.parent))
+    root = folder.resolve()
+    for name in [*_files(working / _PUT), *_files(working / _GONE)]:
+        destination = folder / name
+        parent = destination.parent
+        if destination.is_dir():
+            raise IsADirectoryError(EISDIR, os.strerror(EISDIR), str(destination))
+        if not parent.resolve().is_relative_to(root):
+            raise OSError(ELOOP, "this is a link that leads out of the folder", str(parent))
+        if parent.exists() and not os.access(parent, os.W_OK):
+            raise PermissionError(EACCES, os.strerror(EACCES), str(parent))
 
 
 def move_files(complete: Path, folder: Path) -> None:
-    """Move the files of a complete working folder to their destinations, delete the files it lists
-    for deletion, and remove it.
+    """Move the files of a complete working folder to their destinations, and remove it.
+
+    Files that it lists for deletion are deleted.
 
     Raises
     ------

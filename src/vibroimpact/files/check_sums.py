@@ -14,11 +14,11 @@ from vibroimpact.errors import InputError
 from vibroimpact.files.json_reading import JSON_TABLE, read_json_table
 from vibroimpact.files.reading import FileKind, with_path
 
-SHA256, CHECK_SUMS = "sha256", "check_sums"
-"""Keys of a JSON file: the checksum of the rest of its content, and the checksums of
-other files.
-"""
+SHA256 = "sha256"
+"""Key of a JSON file: the checksum of the rest of its content."""
 
+CHECK_SUMS = "check_sums"
+"""Key of a JSON file: the checksums of other files."""
 
 _SUMMARY = "summary.json"
 
@@ -28,8 +28,9 @@ class DamageError(ValueError):
 
 
 def digest(content: Any) -> str:
-    """Return the SHA-256 of numbers, texts, and nested tables and lists of them; independent of the
-    order of keys.
+    """Return the SHA-256 of numbers, texts, and nested tables and lists of them.
+
+    It is independent of the order of keys.
 
     Examples
     --------
@@ -44,18 +45,18 @@ def digest(content: Any) -> str:
 
 def sealed(table: Mapping[str, Any]) -> bytes:
     """Return a table as JSON in UTF-8 that includes its own checksum."""
+    encoder = json.JSONEncoder(indent=2, allow_nan=False)
     text = bytearray()
     # by parts, as json.dumps keeps millions of them for a table of many rows
-    for characters in json.JSONEncoder(indent=2, allow_nan=False).iterencode(
-        {**table, SHA256: digest(table)}
-    ):
+    for characters in encoder.iterencode({**table, SHA256: digest(table)}):
         text += characters.encode()
     return bytes(text + b"\n")
 
 
 def read_sealed(path: Path, kind: FileKind = JSON_TABLE) -> dict[str, Any]:
-    """Read a table written by `sealed` and verify its checksum; one without checksum, from an
-    earlier version, is not verified.
+    """Read a table written by `sealed` and verify its checksum.
+
+    One without checksum, from an earlier version, is not verified.
 
     Raises
     ------
@@ -94,8 +95,9 @@ def check_file(path: Path, expected: str | None) -> None:
 
 
 def recorded_digest(path: Path) -> str | None:
-    """Return the SHA-256 of a file that the `summary.json` beside it records; None if there is no
-    summary, or it records none.
+    """Return the SHA-256 of a file that the `summary.json` beside it records.
+
+    None if there is no summary, or it records none.
 
     Raises
     ------
@@ -108,8 +110,8 @@ def recorded_digest(path: Path) -> str | None:
     try:
         recorded = read_sealed(summary).get(CHECK_SUMS, {})
     except DamageError as error:
-        words = f"delete it, and {path.name} is read without a comparison of its check sum"
-        raise with_path(summary, InputError(f"{error}; {words}")) from None
+        remedy = f"delete it, and {path.name} is read without a comparison of its check sum"
+        raise with_path(summary, InputError(f"{error}; {remedy}")) from None
     expected = recorded.get(path.name) if isinstance(recorded, dict) else None
     return expected if isinstance(expected, str) else None
 

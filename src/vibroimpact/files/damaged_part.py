@@ -15,9 +15,8 @@ from vibroimpact.files.check_sums import CHANGED, DamageError, check_file
 from vibroimpact.files.hdf5 import read_array, short_reason
 
 _TIMEOUT = 20.0  # seconds
-# bytes up to which an array is read as a trial; of larger ones the places of their parts are looked
-# up
-_SOLID = 32_000_000
+# bytes up to which an array is read as a trial; of larger ones its chunks are looked up
+_READ_AS_TRIAL = 32_000_000
 _OTHER_PROCESS = (
     "import sys; from pathlib import Path; from vibroimpact.files.damaged_part import {0}; "
     "print({0}(Path(sys.argv[1])))"
@@ -25,8 +24,9 @@ _OTHER_PROCESS = (
 
 
 def check_hdf5(path: Path, expected: str | None) -> None:
-    """Verify the SHA-256 of an HDF5 file; where none is known, verify that HDF5 neither hangs nor
-    crashes on it.
+    """Verify the SHA-256 of an HDF5 file.
+
+    Where none is known, verify that HDF5 neither hangs nor crashes on it.
 
     Raises
     ------
@@ -47,15 +47,20 @@ def check_hdf5(path: Path, expected: str | None) -> None:
 
 
 def damaged_part(path: Path) -> str:
-    """Return a description of the damaged part of an HDF5 file, beginning with its name;
+    """Return a description of the damaged part of an HDF5 file, beginning with its name.
+
     "" if it can't be located.
     """
-    done = _in_other_process(first_damaged, path)
-    return done.stdout.strip() if done is not None and done.returncode == 0 else ""
+    process = _in_other_process(first_damaged, path)
+    if process is None or process.returncode != 0:
+        return ""
+    return process.stdout.strip()
 
 
 def endures(path: Path) -> bool:
-    """Return whether a process that reads an HDF5 file lives; True where no process can be started.
+    """Return whether a process that reads an HDF5 file lives.
+
+    True where no process can be started.
 
     Raises
     ------
@@ -63,16 +68,15 @@ def endures(path: Path) -> bool:
         If it does not end in time.
     """
     try:
-        done = _in_other_process(try_all, path)
+        process = _in_other_process(try_all, path)
     except OSError:
         return True
-    if done is None:
-        cause = "it is damaged, or its disk or this computer is too slow for it"
+    if process is None:
         raise DamageError(
-            f"HDF5 did not get through the file within {_TIMEOUT:g} s: {cause}; copy it to "
-            "another disk, or make it anew"
+            f"HDF5 did not get through the file within {_TIMEOUT:g} s: it is damaged, or its disk "
+            "or this computer is too slow for it; copy it to another disk, or make it anew"
         )
-    return done.returncode >= 0
+    return process.returncode >= 0  # a negative one is that of a signal, as of a crash
 
 
 def _in_other_process(
@@ -89,8 +93,9 @@ def _in_other_process(
 
 
 def first_damaged(path: Path) -> str:
-    """Return the description of the first damaged group or dataset, found in this
-    process; "" if there is none.
+    """Return the description of the first damaged group or dataset; "" if there is none.
+
+    It is found in this process.
     """
     with h5py.File(path, "r") as file:
         for name, member in _all_members(file, set()):
@@ -105,23 +110,31 @@ def first_damaged(path: Path) -> str:
 
 
 def try_all(path: Path) -> None:
-    """Open all groups, attributes and arrays of a file; a fault that raises an error is
-    left to who reads the file.
+    """Open all groups, attributes and arrays of a file.
+
+    A fault that raises an error is left to who reads the file.
     """
     with suppress(Exception), h5py.File(path, "r") as file:
-        for member in (file, *(member for _, member in _all_members(file, set()))):
-            with suppress(Exception):
-                dict(member.attrs)
-            with suppress(Exception):
-                if member.nbytes <= _SOLID:
-                    read_array(member)
-                elif member.chunks:
-                    member.id.get_num_chunks()
+        _try(file)
+        for _, member in _all_members(file, set()):
+            _try(member)
+
+
+def _try(member: Any) -> None:
+    """Read the attributes and the values of a group or a dataset, ignoring errors."""
+    with suppress(Exception):
+        dict(member.attrs)
+    with suppress(Exception):
+        if member.nbytes <= _READ_AS_TRIAL:
+            read_array(member)
+        elif member.chunks:
+            member.id.get_num_chunks()
 
 
 def _all_members(group: h5py.Group, seen: set[int]) -> Iterator[tuple[str, Any]]:
-    """Yield the path and the content of all members of a group, or the error that they
-    raise; links to other files are left out.
+    """Yield the path and the content of all members of a group, or the error that they raise.
+
+    Links to other files are left out.
     """
     for name in group:
         path = f"{group.name.strip('/')}/{name}".lstrip("/")

@@ -18,45 +18,48 @@ from vibroimpact.errors import InputError
 from vibroimpact.files.check_sums import DamageError
 
 FORMAT = ("v110", "v110")
-"""File format of HDF5 1.10 (2016): object headers have checksums, and small datasets have
-little overhead.
+"""File format of HDF5 1.10 (2016).
+
+Object headers have checksums, and small datasets have little overhead.
 """
 
 CHECKED: dict[str, Any] = {"fletcher32": True}
 """Dataset options of arrays: HDF5's Fletcher-32 checksum."""
 
 PACKED: dict[str, Any] = {"compression": "gzip", "compression_opts": 1, "shuffle": True, **CHECKED}
-"""Dataset options of smooth data: fast compression. It also reveals a block overwritten
-by zeros, whose Fletcher sum is zero too.
+"""Dataset options of smooth data: fast compression.
+
+It also reveals a block overwritten by zeros, whose Fletcher sum is zero too.
 """
 
 _CHUNK = 2**18  # bytes
 _PACKING = 1100  # the most that gzip reduces data by
 _UNPACKED = 100_000_000  # bytes that any array may take, however few of them are stored
 _FAILED_CHECKS = ("checksum", "fletcher32", "inflate", "filter returned failure")
-"""Words by which HDF5 tells that what it read is not what was written."""
+"""Words by which HDF5 says that what it read is not what was written."""
 _LACKING_FILTERS = ("is not registered", "can't open directory")
-"""Words by which it tells that a filter, by which a file is packed, is neither built in
-nor among its plugins.
-"""
+"""Words by which it says that a filter of a file is neither built in nor among its plugins."""
 
 
 class _ErrorStoringFile(FileIO):
-    """A file that stores its first write error in `error` instead of raising it: raised
-    inside HDF5, it would end the process.
+    """A file that stores its first write error in `error` instead of raising it.
+
+    Raised inside HDF5, it would end the process.
     """
 
     error: OSError | None = None
 
     def write(self, data: Any) -> int:
         """Write all data; after the first error, write nothing more."""
-        left = memoryview(data).cast("B")
-        size = len(left)
-        while left and self.error is None:
+        remaining = memoryview(data).cast("B")
+        size = len(remaining)
+        while remaining and self.error is None:
             try:
-                left = left[super().write(left) :]
+                written = super().write(remaining)
             except OSError as error:
                 self.error = error
+            else:
+                remaining = remaining[written:]
         return size
 
     def truncate(self, size: int | None = None) -> int:
@@ -70,8 +73,9 @@ class _ErrorStoringFile(FileIO):
 
 @contextmanager
 def new_hdf5(path: Path) -> Iterator[h5py.File]:
-    """Yield a new HDF5 file, written to the disk as it grows; a full disk raises OSError instead of
-    ending the process.
+    """Yield a new HDF5 file, written to the disk as it grows.
+
+    A full disk raises OSError instead of ending the process.
 
     Raises
     ------
@@ -90,8 +94,9 @@ def new_hdf5(path: Path) -> Iterator[h5py.File]:
 
 
 def new_array(group: h5py.Group, name: str, values: Any, **packing: Any) -> h5py.Dataset:
-    """Write an array with the dataset options CHECKED or PACKED; scalars are stored in
-    the object header, which has a checksum.
+    """Write an array with the dataset options CHECKED or PACKED.
+
+    Scalars are stored in the object header, which has a checksum.
     """
     values = np.asarray(values)
     if values.size and values.ndim:
@@ -116,21 +121,23 @@ def new_array(group: h5py.Group, name: str, values: Any, **packing: Any) -> h5py
 
 
 def chunk_shape(shape: Sequence[int], itemsize: int) -> tuple[int, ...]:
-    """Return the chunk shape of an array: contiguous in memory, so that data written in order touch
-    each chunk once.
+    """Return the chunk shape of an array: contiguous in memory.
+
+    So data written in order touch each chunk once.
 
     Examples
     --------
     >>> chunk_shape((10, 1000, 100), 8)
     (1, 250, 100)
     """
-    found: list[int] = []
-    for place, length in enumerate(shape):
-        inner = itemsize * prod(shape[place + 1 :])
-        most = max(1, min(length, _CHUNK // max(1, inner)))
-        # of even size, since the last chunk is stored in full size
-        found.append(-(-length // -(-length // most)))
-    return tuple(found)
+    chunk: list[int] = []
+    for axis, length in enumerate(shape):
+        bytes_of_row = itemsize * prod(shape[axis + 1 :])
+        most_rows = max(1, min(length, _CHUNK // max(1, bytes_of_row)))
+        # chunks of even size, since the last one is stored in full size
+        chunks = -(-length // most_rows)
+        chunk.append(-(-length // chunks))
+    return tuple(chunk)
 
 
 def read_array(data: h5py.Dataset, place: Any = ()) -> NDArray[Any]:
@@ -159,12 +166,11 @@ def read_array(data: h5py.Dataset, place: Any = ()) -> NDArray[Any]:
             f"{data.shape}; split the file"
         ) from None
     except Exception as error:  # of any type, depending on the damage
-        if any(words in str(error) for words in _LACKING_FILTERS):
-            words = (
-                "is packed by a filter that HDF5 lacks here; where it is installed, pack the "
-                "file by h5repack -f GZIP=1"
-            )
-            raise InputError(f"{data.name.lstrip('/')} {words}") from None
+        if any(sign in str(error) for sign in _LACKING_FILTERS):
+            raise InputError(
+                f"{data.name.lstrip('/')} is packed by a filter that HDF5 lacks here; where it is "
+                "installed, pack the file by h5repack -f GZIP=1"
+            ) from None
         raise DamageError(f"{data.name.lstrip('/')} is damaged ({short_reason(error)})") from None
 
 
@@ -176,21 +182,21 @@ def members(group: h5py.Group) -> dict[str, h5py.Dataset | h5py.Group]:
     DamageError
         If a link leads nowhere or out of the file, or the data of a member lie in other files.
     """
-    found: dict[str, h5py.Dataset | h5py.Group] = {}
+    by_name: dict[str, h5py.Dataset | h5py.Group] = {}
     for name in group:
-        place = f"{group.name.strip('/')}/{name}".lstrip("/")
+        path = f"{group.name.strip('/')}/{name}".lstrip("/")
         if isinstance(group.get(name, getlink=True), h5py.ExternalLink):
-            raise DamageError(f"{place} is a link that leads out of the file")
+            raise DamageError(f"{path} is a link that leads out of the file")
         try:
             member = group[name]
         except Exception as error:  # of any type, depending on the damage
             raise DamageError(
-                f"{place} is a link that leads nowhere, or is damaged ({short_reason(error)})"
+                f"{path} is a link that leads nowhere, or is damaged ({short_reason(error)})"
             ) from None
         if isinstance(member, h5py.Dataset) and (member.is_virtual or member.external):
-            raise DamageError(f"the values of {place} lie in another file")
-        found[name] = member
-    return found
+            raise DamageError(f"the values of {path} lie in another file")
+        by_name[name] = member
+    return by_name
 
 
 def attribute(owner: h5py.Dataset | h5py.Group, name: str, otherwise: Any = None) -> Any:
@@ -213,6 +219,6 @@ def attribute(owner: h5py.Dataset | h5py.Group, name: str, otherwise: Any = None
 def short_reason(error: Exception) -> str:
     """Return a short reason why HDF5 could not read."""
     text = " ".join(str(error).split())
-    if any(words in text for words in _FAILED_CHECKS):
+    if any(sign in text for sign in _FAILED_CHECKS):
         return "its check sum does not match"
     return text if len(text) < 120 else f"{text[:117]}..."

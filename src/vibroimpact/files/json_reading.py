@@ -1,5 +1,6 @@
-"""JSON that is read: bounded in size, in its number of values and in depth, and text that
-can be written again.
+"""JSON that is read: bounded in size, in its number of values and in depth.
+
+Its text can be written again.
 """
 
 from __future__ import annotations
@@ -59,10 +60,14 @@ def parse_json(data: bytes, what: str = "it") -> Any:
         raise _too_deep(what) from None
     except ValueError:
         raise InputError(f"{what} is not JSON") from None
+    # the tables and lists of a level, from the outermost inwards
     level: list[Any] = [[content]]
     for _ in range(DEEPEST + 1):
-        tables = (table.values() if isinstance(table, dict) else table for table in level)
-        level = [value for table in tables for value in table if isinstance(value, (dict, list))]
+        inner_level: list[Any] = []
+        for table in level:
+            values = table.values() if isinstance(table, dict) else table
+            inner_level += [value for value in values if isinstance(value, (dict, list))]
+        level = inner_level
     if level:
         raise _too_deep(what)
     return content

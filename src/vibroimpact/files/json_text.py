@@ -9,8 +9,9 @@ from typing import Any
 
 
 def json_text(document: Mapping[str, Any]) -> str:
-    r"""Return a document as JSON text in printable ASCII; a number that is not finite becomes null,
-    as JSON has none.
+    r"""Return a document as JSON text in printable ASCII.
+
+    A number that is not finite becomes null, as JSON has none.
 
     Parameters
     ----------
@@ -35,7 +36,7 @@ def json_text(document: Mapping[str, Any]) -> str:
 def _finite(value: Any) -> Any:
     """Return a value with None in place of each number that is not finite."""
     if isinstance(value, Mapping):
-        return {key: _finite(one) for key, one in value.items()}
+        return {key: _finite(inner) for key, inner in value.items()}
     if isinstance(value, (list, tuple)):
-        return [_finite(one) for one in value]
+        return [_finite(item) for item in value]
     return None if isinstance(value, float) and not math.isfinite(value) else value

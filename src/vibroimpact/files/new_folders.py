@@ -9,8 +9,9 @@ from pathlib import Path
 
 @contextmanager
 def made_folder(folder: Path) -> Iterator[None]:
-    """Make a folder with those above it; if the block fails, those that were made are removed where
-    they are empty.
+    """Make a folder with those above it.
+
+    If the block fails, those that were made are removed where they are empty.
 
     Raises
     ------
@@ -24,12 +25,12 @@ def made_folder(folder: Path) -> Iterator[None]:
     ...     with made_folder(Path(place, "a", "b")):
     ...         print(Path(place, "a", "b").is_dir(), 1 / 0)
     """
-    missing = [place for place in (folder, *folder.parents) if not place.exists()]
+    missing = [path for path in (folder, *folder.parents) if not path.exists()]
     try:
         folder.mkdir(parents=True, exist_ok=True)
         yield
     except BaseException:
-        for place in missing:  # the innermost first
+        for path in missing:  # the innermost first
             with suppress(OSError):
-                place.rmdir()
+                path.rmdir()
         raise

@@ -1,5 +1,6 @@
-"""Sanitizing of names of cases, sensors and materials for files of other programs, which must not
-interpret them as syntax.
+"""Sanitizing of names for files of other programs, which must not interpret them as syntax.
+
+They are names of cases, sensors and materials.
 
 `plain_words` is for comments, `plain_names` for names of files, groups and columns, `identifier`
 for identifiers of a program, and `one_line` for text that only people read.
@@ -22,8 +23,9 @@ _DEVICES = {
 
 
 def plain_names(names: Iterable[str]) -> dict[str, str]:
-    """Return for each name a distinct name for a file or a group, of letters, digits and a few
-    signs.
+    """Return for each name a distinct name for a file or a group.
+
+    It consists of letters, digits and a few signs.
 
     Names are distinct ignoring case, as some file systems require.
 
@@ -32,22 +34,22 @@ def plain_names(names: Iterable[str]) -> dict[str, str]:
     >>> plain_names(["a1", "left/upper", "left upper"])
     {'a1': 'a1', 'left/upper': 'left_upper', 'left upper': 'left_upper_2'}
     """
-    return _apart({name: identifier(name, r"\w-", "sensor") for name in names})
+    return _distinct({name: identifier(name, r"\w-", "sensor") for name in names})
 
 
-def _apart(wanted: dict[str, str]) -> dict[str, str]:
-    """Return the wanted names, with a number appended where a name is taken already."""
-    found: dict[str, str] = {}
+def _distinct(names: dict[str, str]) -> dict[str, str]:
+    """Return names with a number appended where one is taken already, by the same keys."""
+    distinct: dict[str, str] = {}
     taken: set[str] = set()
     numbers: dict[str, int] = {}
-    for name, plain in wanted.items():
-        tried = plain
-        while tried.lower() in taken:
-            numbers[plain.lower()] = numbers.get(plain.lower(), 1) + 1
-            tried = f"{plain}_{numbers[plain.lower()]}"
-        taken.add(tried.lower())
-        found[name] = tried
-    return found
+    for key, name in names.items():
+        candidate = name
+        while candidate.lower() in taken:
+            numbers[name.lower()] = numbers.get(name.lower(), 1) + 1
+            candidate = f"{name}_{numbers[name.lower()]}"
+        taken.add(candidate.lower())
+        distinct[key] = candidate
+    return distinct
 
 
 def identifier(
@@ -85,8 +87,9 @@ def identifier(
 
 
 def plain_words(name: str) -> str:
-    """Return a name for a comment in a file, without characters that any of the programs could
-    interpret, of at most 80 characters.
+    """Return a name for a comment in a file, of at most 80 characters.
+
+    It has no characters that any of the programs could interpret.
 
     ASCII letters, digits and `.,'()+=%/_-` remain. So there are no line breaks, double quotes, `$`
     and `&` (variables and continuation lines of LAMMPS and Adams), `<`, `--` and `*/` (ends of

@@ -152,27 +152,18 @@ def text_lines(
             errors="strict" if doubts is None else _OR_LATIN_1,
             newline=None,
         )
-        left, number = kind.largest, 0
+        remaining = kind.largest
+        number = 0
         try:
             while line := text.readline(longest + 1):
-                left -= len(line)
-                if left < 0:  # the file may have grown since it was checked
+                remaining -= len(line)
+                if remaining < 0:  # the file may have grown since it was checked
                     raise _too_large(kind)
                 if "\0" in line:
                     raise InputError(f"this is not a text file; {kind.what}")
                 number += 1
-                if (
-                    doubts is not None
-                    and not line.isascii()
-                    and (place := _latin_1_in(line)) is not None
-                ):
-                    line, byte = line.translate(_FROM_LATIN_1), ord(line[place]) - _PRIVATE
-                    if not doubts:
-                        words = (
-                            f"line {number} has the byte {byte:02X}, which is not UTF-8: it is "
-                            f'read as "{chr(byte)}" of Latin-1'
-                        )
-                        doubts.append(f"{words}; save the file as UTF-8 if it should be another")
+                if doubts is not None and not line.isascii():
+                    line = _with_latin_1(line, number, doubts)
                 yield line
         except UnicodeError:
             if encoding == "utf-16":
@@ -184,23 +175,39 @@ def text_lines(
 
 
 def _or_latin_1(error: UnicodeError) -> tuple[str, int]:
-    """Decode a byte that is not UTF-8 to a mark of its own, if it is a printable
-    character of Latin-1.
+    """Decode a byte that is not UTF-8 to a mark of its own.
+
+    It must be a printable character of Latin-1.
     """
     if not isinstance(error, UnicodeDecodeError) or error.object[error.start] < _FIRST_PRINTABLE:
         raise error
     return chr(_PRIVATE + error.object[error.start]), error.start + 1
 
 
-def _latin_1_in(line: str) -> int | None:
-    """Return the place of the first byte of Latin-1 in a line."""
-    return next((place for place, one in enumerate(line) if ord(one) in _FROM_LATIN_1), None)
+def _with_latin_1(line: str, number: int, doubts: list[str]) -> str:
+    """Return a line with characters of Latin-1 in place of their marks.
+
+    A sentence on the first of them in the file is added to the doubts.
+    """
+    mark = next((character for character in line if ord(character) in _FROM_LATIN_1), None)
+    if mark is None:
+        return line
+    if not doubts:
+        byte = ord(mark) - _PRIVATE
+        doubts.append(
+            f"line {number} has the byte {byte:02X}, which is not UTF-8: it is "
+            f'read as "{chr(byte)}" of Latin-1; save the file as UTF-8 if it should be another'
+        )
+    return line.translate(_FROM_LATIN_1)
 
 
-_OR_LATIN_1, _PRIVATE, _FIRST_PRINTABLE = "vibroimpact-or-latin-1", 0x10FF00, 0xA0
-"""Name of the decoding, and the characters for private use that mark its bytes until a
-line is complete.
-"""
+_OR_LATIN_1 = "vibroimpact-or-latin-1"
+"""Name of the decoding."""
+
+_PRIVATE = 0x10FF00
+"""First of the characters for private use that mark its bytes until a line is complete."""
+
+_FIRST_PRINTABLE = 0xA0
 _FROM_LATIN_1 = {_PRIVATE + byte: byte for byte in range(_FIRST_PRINTABLE, 0x100)}
 register_error(_OR_LATIN_1, _or_latin_1)
 
@@ -227,10 +234,10 @@ def input_file_digest(path: str | PathLike[str], kind: FileKind) -> str:
     InputError
         As `read_bytes`.
     """
-    found = sha256()
+    digest = sha256()
     for block in _blocks(path, kind):
-        found.update(block)
-    return found.hexdigest()
+        digest.update(block)
+    return digest.hexdigest()
 
 
 def with_path(path: str | PathLike[str], error: InputError, key: str = "") -> InputError:
@@ -245,19 +252,21 @@ def with_path(path: str | PathLike[str], error: InputError, key: str = "") -> In
 
 
 def _blocks(path: str | PathLike[str], kind: FileKind) -> Iterator[bytes]:
+    """Yield the content of a file in blocks."""
     with opened(path, kind) as file:
-        left = kind.largest
-        while block := file.read(min(_BLOCK, left + 1)):
-            left -= len(block)
-            if left < 0:  # the file may have grown since it was checked
+        remaining = kind.largest
+        while block := file.read(min(_BLOCK, remaining + 1)):
+            remaining -= len(block)
+            if remaining < 0:  # the file may have grown since it was checked
                 raise _too_large(kind)
             yield block
 
 
 @contextmanager
 def opened(path: str | PathLike[str], kind: FileKind) -> Iterator[FileIO]:
-    """Yield a regular file of allowed size, opened for reading; errors in the block are raised as
-    InputError too.
+    """Yield a regular file of allowed size, opened for reading.
+
+    Errors in the block are raised as InputError too.
 
     Raises
     ------
@@ -281,13 +290,12 @@ def opened(path: str | PathLike[str], kind: FileKind) -> Iterator[FileIO]:
         ) from None
 
 
-def _check(found: os.stat_result, kind: FileKind) -> None:
+def _check(status: os.stat_result, kind: FileKind) -> None:
     """Raise unless it is a regular file of allowed size."""
-    if not stat.S_ISREG(found.st_mode):
-        raise InputError(
-            f"this is {_NO_FILES.get(stat.S_IFMT(found.st_mode), 'no regular file')}; {kind.what}"
-        )
-    if found.st_size > kind.largest:
+    if not stat.S_ISREG(status.st_mode):
+        type_of_file = _NO_FILES.get(stat.S_IFMT(status.st_mode), "no regular file")
+        raise InputError(f"this is {type_of_file}; {kind.what}")
+    if status.st_size > kind.largest:
         raise _too_large(kind)
 
 
@@ -296,9 +304,7 @@ def _not_utf8(kind: FileKind) -> InputError:
 
 
 def _too_large(kind: FileKind) -> InputError:
-    size = (
-        f"{kind.largest / 1e9:g} GB"
-        if kind.largest >= 1_000_000_000
-        else f"{kind.largest / 1e6:g} MB"
-    )
+    size = f"{kind.largest / 1e6:g} MB"
+    if kind.largest >= 1_000_000_000:
+        size = f"{kind.largest / 1e9:g} GB"
     return InputError(f"the file is larger than {size}; {kind.smaller}")

@@ -1,5 +1,6 @@
-"""Recovery after a process died while it wrote: run by the next command that uses the
-file or folder.
+"""Recovery after a process died while it wrote.
+
+It is run by the next command that uses the file or folder.
 """
 
 from __future__ import annotations
@@ -21,8 +22,9 @@ from vibroimpact.files.working_files import (
 
 
 def recover(target: Path) -> None:
-    """Clear or complete the leftovers of a file or a folder, next to it and inside it; those of
-    running processes stay.
+    """Clear or complete the leftovers of a file or a folder, next to it and inside it.
+
+    Those of running processes stay.
 
     A replaced folder whose successor is missing gets its name back. Files of a complete working
     folder are moved to their destinations. Where nothing can be written, everything stays as it is.
@@ -50,19 +52,20 @@ def recover(target: Path) -> None:
 
 
 def _complete(path: Path, kind: str, folder: Path) -> None:
-    """Move the files of a complete working folder to their destinations; remove one that
-    is incomplete, or whose files may not go there.
+    """Move the files of a complete working folder to their destinations.
+
+    One that is incomplete, or whose files may not go there, is removed.
     """
-    if kind == COMPLETE:
-        try:
-            check_destinations(path, folder)
-        except OSError:
-            remove(path)
-            return
-        with suppress(OSError):
-            move_files(path, folder)
-    else:
+    if kind != COMPLETE:
         remove(path)
+        return
+    try:
+        check_destinations(path, folder)
+    except OSError:
+        remove(path)
+        return
+    with suppress(OSError):
+        move_files(path, folder)
 
 
 def clear(folder: Path) -> None:

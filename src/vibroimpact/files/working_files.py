@@ -1,5 +1,4 @@
-"""Working files and folders of atomic writes: their names, their locks, and the leftovers of
-processes that died.
+"""Working files and folders of atomic writes: names, locks, and leftovers of dead processes.
 
 A working file or folder is called `.vibroimpact-PLACE-NUMBER.KIND`: a digest of the name of its
 target, a random number, and its kind. The writing process holds an advisory lock (flock) on the
@@ -25,10 +24,10 @@ try:
 except ImportError:  # Windows
     fcntl = None  # type: ignore[assignment]
 
-NEW, OLD, COMPLETE = "new", "old", "whole"
-"""Kinds: not yet complete; the replaced folder, kept until the new one is in place;
-complete, its files being moved.
-"""
+# kinds
+NEW = "new"  # not yet complete
+OLD = "old"  # the replaced folder, kept until the new one is in place
+COMPLETE = "whole"  # complete, its files being moved
 
 _NAME = re.compile(rf"\.vibroimpact-([0-9a-f]{{16}})-[0-9a-f]{{12}}\.({NEW}|{OLD}|{COMPLETE})")
 _TRIES = 100
@@ -45,39 +44,45 @@ def working_path(target: Path, kind: str) -> Path:
     >>> working_path(Path("runs/first"), NEW).parent.as_posix()
     'runs'
     """
-    return target.with_name(f".vibroimpact-{_place(target.name)}-{secrets.token_hex(6)}.{kind}")
+    return target.with_name(f".vibroimpact-{_digest(target.name)}-{secrets.token_hex(6)}.{kind}")
 
 
 def inner_path(folder: Path, kind: str) -> Path:
     """Return an unused path inside a folder, for files to be written into that folder."""
-    return folder / f".vibroimpact-{_place('')}-{secrets.token_hex(6)}.{kind}"
+    return folder / f".vibroimpact-{_digest('')}-{secrets.token_hex(6)}.{kind}"
 
 
 def working_paths(target: Path) -> list[tuple[Path, str]]:
-    """Return the working files and folders of `target`, each with its kind, in use or left over."""
-    return _found(target.parent, _place(target.name))
+    """Return the working files and folders of `target`, each with its kind.
+
+    They are in use or left over.
+    """
+    return _working_paths_in(target.parent, _digest(target.name))
 
 
 def inner_working_paths(folder: Path) -> list[tuple[Path, str]]:
-    """Return the working folders of files to be written into a folder, each with its
-    kind, in use or left over.
+    """Return the working folders of files to be written into a folder, each with its kind.
+
+    They are in use or left over.
     """
-    return _found(folder, _place(""))
+    return _working_paths_in(folder, _digest(""))
 
 
 def all_working_paths(folder: Path) -> list[tuple[Path, str]]:
-    """Return all working files and folders in a folder, whatever their target, each with
-    its kind.
+    """Return all working files and folders in a folder, each with its kind.
+
+    Their targets may be any.
     """
-    return _found(folder, None)
+    return _working_paths_in(folder, None)
 
 
 @contextmanager
 def new_working_path(
     name: Callable[[], Path], make: Callable[[Path], object], target: Path
 ) -> Iterator[Path]:
-    """Create a working file or folder, lock it for the duration of the block, and remove it if the
-    block raises.
+    """Create a working file or folder, and lock it for the duration of the block.
+
+    It is removed if the block raises.
 
     Parameters
     ----------
@@ -132,8 +137,9 @@ def locked(path: Path) -> Iterator[bool]:
 
 @contextmanager
 def alone(folder: Path, longest: float) -> Iterator[None]:
-    """Keep other processes that ask for the same out of a folder during the block; wait for them,
-    but not longer than `longest` [s].
+    """Keep other processes that ask for the same out of a folder during the block.
+
+    They are waited for, but not longer than `longest` [s].
 
     Where the system or the file system has no locks, nothing is waited for.
     """
@@ -152,8 +158,9 @@ def alone(folder: Path, longest: float) -> Iterator[None]:
 
 @contextmanager
 def abandoned(path: Path) -> Iterator[bool]:
-    """Yield whether a working file or folder is a leftover; if so, it is locked against
-    other processes during the block.
+    """Yield whether a working file or folder is a leftover.
+
+    If so, it is locked against other processes during the block.
     """
     if path.is_symlink():
         yield True  # the replaced target was a symbolic link
@@ -163,8 +170,10 @@ def abandoned(path: Path) -> Iterator[bool]:
         yield _is_old(path)
         return
     try:
-        locked = _lock(descriptor, shared=False)
-        yield _is_still(path, descriptor) and (_is_old(path) if locked is None else locked)
+        is_free = _lock(descriptor, shared=False)
+        if is_free is None:  # without locks its age tells
+            is_free = _is_old(path)
+        yield _is_still(path, descriptor) and is_free
     finally:
         os.close(descriptor)
 
@@ -178,21 +187,26 @@ def remove(path: Path) -> None:
             path.unlink(missing_ok=True)
 
 
-def _place(name: str) -> str:
+def _digest(name: str) -> str:
     """Return the digest of a target's name; "" stands for the folder itself."""
     return sha256(name.encode("utf-8", "surrogateescape")).hexdigest()[:16]
 
 
-def _found(folder: Path, place: str | None) -> list[tuple[Path, str]]:
-    """Return the working files in a folder, each with its kind: those of one target, or
-    of all if `place` is None.
+def _working_paths_in(folder: Path, target_digest: str | None) -> list[tuple[Path, str]]:
+    """Return the working files in a folder, each with its kind.
+
+    They are those of one target, or of all if `target_digest` is None.
     """
     try:
         names = os.listdir(folder)
     except OSError:
         return []
-    matches = (match for name in sorted(names) if (match := _NAME.fullmatch(name)))
-    return [(folder / match[0], match[2]) for match in matches if place in (None, match[1])]
+    paths = []
+    for name in sorted(names):
+        match = _NAME.fullmatch(name)
+        if match and target_digest in (None, match[1]):
+            paths.append((folder / name, match[2]))
+    return paths
 
 
 def _opened(path: Path) -> int | None:
@@ -206,8 +220,9 @@ def _opened(path: Path) -> int | None:
 
 
 def _lock(descriptor: int, *, shared: bool) -> bool | None:
-    """Try to lock a descriptor without waiting; return whether it succeeded, or None if
-    the file system does not support the lock.
+    """Try to lock a descriptor without waiting, and return whether it succeeded.
+
+    None if the file system does not support the lock.
     """
     try:
         fcntl.flock(descriptor, (fcntl.LOCK_SH if shared else fcntl.LOCK_EX) | fcntl.LOCK_NB)

@@ -95,8 +95,9 @@ def coupling_of(
     progress: Callable[[float], None] | None = None,
     tell: Callable[[str], None] | None = None,
 ) -> Coupling:
-    """Return the coupling of the bodies of a case; modes and compliances are computed, or read from
-    the mode store.
+    """Return the coupling of the bodies of a case.
+
+    Modes and compliances are computed, or read from the mode store.
 
     Raises
     ------
@@ -107,72 +108,79 @@ def coupling_of(
     treatment = treatment_of(case)
     bodies = compute_modes(case, progress, tell) if elastic_names(case) else {}
     modes = {name: body.basis for name, body in bodies.items()}
-    facts: dict[str, float | str] = (
-        {"treatment": treatment} if bodies or treatment == "identified" else {}
-    )
-    if told := [doubt for body in bodies.values() for doubt in body.doubts]:
-        facts["doubts"] = "\n".join(told)
-    linear, finite, rigid = 0.0, QuasiStatic(), None
+    facts: dict[str, float | str] = {}
+    if bodies or treatment == "identified":
+        facts["treatment"] = treatment
+    doubts = [doubt for body in bodies.values() for doubt in body.doubts]
+    if doubts:
+        facts["doubts"] = "\n".join(doubts)
+    linear = 0.0  # compliance in series
+    finite_sphere = QuasiStatic()
+    rigid: ModalBasis | None = None
     if "plate" in bodies:
         if not bodies["plate"].model.is_held_vertically and case.drop.gravity:
             raise InputError(PLATE_FALLS, "plate.supports")
-        modes["plate"], rigid, beyond = _plate_motions(bodies["plate"], treatment)
-        if beyond:
-            facts[PLATE_THEORY_INERTIA] = beyond
-        carried = _compliance(modes["plate"])
-        facts["plate_modal_compliance_m_N"] = carried
+        modes["plate"], rigid, inertia = _plate_motions(bodies["plate"], treatment)
+        if inertia:
+            facts[PLATE_THEORY_INERTIA] = inertia
+        modal_compliance = _compliance(modes["plate"])
+        facts["plate_modal_compliance_m_N"] = modal_compliance
         if treatment != "superposed":
             # what the truncated modes lack of it is put in series
-            static = _plate_compliance(bodies["plate"], tell)
-            facts["plate_static_compliance_m_N"] = static
-            linear += static - carried
+            plate_compliance = _plate_compliance(bodies["plate"], tell)
+            facts["plate_static_compliance_m_N"] = plate_compliance
+            linear += plate_compliance - modal_compliance
             if bodies["plate"].model.mesh.is_flat:
                 facts[PLATE_MESH_COMPLIANCE] = _lacking_compliance(bodies["plate"], tell)
             modes["plate"] = with_residuals(bodies["plate"], modes["plate"], tell)
     if is_free_sphere(case):
         rigid = _free_sphere(case)
     if case.contact.local.finite_sphere or ("sphere" in bodies and treatment == "consistent"):
-        patch = min(_contact_radius(case), FITTED[1] * case.sphere.radius)
-        finite, facts["finite_sphere_factor"] = _finite_size(case, patch)
+        patch_radius = min(_contact_radius(case), FITTED[1] * case.sphere.radius)
+        finite_sphere, facts["finite_sphere_factor"] = _finite_size(case, patch_radius)
         if "sphere" in bodies:
             # the law already contains the quasi-static compliance of the sphere, so that of the
             # modes is subtracted
-            modes["sphere"] = _averaged_over_patch(bodies["sphere"], patch)
+            modes["sphere"] = _averaged_over_patch(bodies["sphere"], patch_radius)
             linear -= _compliance(modes["sphere"])
-            facts["contact_patch_m"] = patch
+            facts["contact_patch_m"] = patch_radius
     if "sphere" in bodies:
         facts["sphere_modal_compliance_m_N"] = _compliance(modes["sphere"])
-    series = replace(finite, linear=linear)
+    quasi_static = replace(finite_sphere, linear=linear)
     if linear:
         facts["series_compliance_m_N"] = linear
-    if series:
-        _check_well_posed(case, series, facts)
-    return Coupling(
-        modes, rigid, series, facts, {name: body.model for name, body in bodies.items()}
-    )
+    if quasi_static:
+        _check_well_posed(case, quasi_static, facts)
+    models = {name: body.model for name, body in bodies.items()}
+    return Coupling(modes, rigid, quasi_static, facts, models)
 
 
 def _plate_motions(body: BodyModes, treatment: str) -> tuple[ModalBasis, ModalBasis | None, float]:
-    """Return modes and rigid motions of a plate at its contact point, and the inertia that plate
-    theory lacks [m s^2/N].
+    """Return modes and rigid motions of a plate, and the inertia that plate theory lacks.
+
+    The modes are those at its contact point; the inertia is in m s^2/N.
 
     The treatment "superposed" reproduces multibody programs: contact at a node, without
     corrections.
     """
     rigid = None if body.model.is_held_vertically else body.body.rigid_motions(body.model)
-    modes, beyond = (body.basis, 0.0) if treatment == "superposed" else _basis_at_face(body)
-    return modes, rigid, beyond
+    if treatment == "superposed":
+        return body.basis, rigid, 0.0
+    modes, inertia = _basis_at_face(body)
+    return modes, rigid, inertia
 
 
 def _free_sphere(case: CaseTable) -> ModalBasis:
-    """Return the rigid-body mode of a free sphere below: translation along the line of
-    impact, which passes through its centre.
+    """Return the rigid-body mode of a free sphere below.
+
+    It is the translation along the line of impact, which passes through its centre.
     """
     assert case.plate.radius is not None  # the caller has checked it
     mass = float(rigid_sphere(case.plate.radius, case.plate.material).mass)
-    along, up = np.zeros(1), np.array([[0.0, 0.0, math.sqrt(mass)]])
+    zero = np.zeros(1)  # frequency and damping ratio
+    momentum = np.array([[0.0, 0.0, math.sqrt(mass)]])
     return ModalBasis(
-        along, along, np.array([mass**-0.5]), up, mass=mass, rotation=np.zeros((1, 3))
+        zero, zero, np.array([mass**-0.5]), momentum, mass=mass, rotation=np.zeros((1, 3))
     )
 
 
@@ -181,8 +189,9 @@ def carried_modes(
     progress: Callable[[float], None] | None = None,
     tell: Callable[[str], None] | None = None,
 ) -> dict[str, bytes]:
-    """Return the entries of the mode store that a case needs, for a process that does not share the
-    file system.
+    """Return the entries of the mode store that a case needs.
+
+    They are for a process that does not share the file system.
 
     That process passes them to `vibroimpact.structures.store.receive`. Entries that are missing are
     computed.
@@ -193,7 +202,8 @@ def carried_modes(
         As `coupling_of`.
     """
     keys: list[str] = []
-    for name, body in (compute_modes(case, progress, tell) if elastic_names(case) else {}).items():
+    bodies = compute_modes(case, progress, tell) if elastic_names(case) else {}
+    for name, body in bodies.items():
         keys.append(model_key(body.body.recipe))
         if name == "plate" and treatment_of(case) != "superposed":
             _plate_compliance(body, tell)
@@ -219,7 +229,9 @@ def _plate_compliance(body: BodyModes, tell: Callable[[str], None] | None) -> fl
 
 def _lacking_compliance(body: BodyModes, tell: Callable[[str], None] | None) -> float:
     """Return the compliance that the plate elements lack at the contact point [m/N]."""
-    recipe, model, place = body.body.recipe, body.model, contact_place(body)[0]
+    recipe = body.body.recipe
+    model = body.model
+    place, _ = contact_place(body)
 
     def computed() -> float:
         material = Material(recipe.density, recipe.youngs_modulus, recipe.poissons_ratio)
@@ -228,17 +240,21 @@ def _lacking_compliance(body: BodyModes, tell: Callable[[str], None] | None) -> 
     return stored_compliance(mesh_compliance_key(recipe, place), computed, tell)
 
 
-def _finite_size(case: CaseTable, patch: float) -> tuple[QuasiStatic, float]:
-    """Return the compliance correction of a sphere of finite size relative to a half
-    space, and its factor at a contact radius [m].
+def _finite_size(case: CaseTable, patch_radius: float) -> tuple[QuasiStatic, float]:
+    """Return the correction of the compliance for a sphere of finite size, and its factor.
+
+    It is relative to a half space; the factor is that at a contact radius [m].
     """
-    ratio, radius = case.sphere.material.poissons_ratio, case.sphere.radius
-    term, force = sphere_term(ratio), 4.0 / 3.0 * contact_pair(case).effective_modulus * radius**2
+    material = case.sphere.material
+    radius = case.sphere.radius
+    term = sphere_term(material.poissons_ratio)
+    # at which Hertz's contact radius would be that of the sphere
+    force = 4.0 / 3.0 * contact_pair(case).effective_modulus * radius**2
     if not math.isfinite(force):
         raise InputError("the finite size of a sphere needs its modulus", "sphere.material")
     factors = (term.constant, term.logarithm, term.linear, term.square)
-    unit = 1.0 / (case.sphere.material.youngs_modulus * radius)
-    return QuasiStatic(0.0, unit, factors, force), float(term.factor(patch / radius))
+    unit = 1.0 / (material.youngs_modulus * radius)
+    return QuasiStatic(0.0, unit, factors, force), float(term.factor(patch_radius / radius))
 
 
 def _averaged_over_patch(body: BodyModes, radius: float) -> ModalBasis:
@@ -252,8 +268,9 @@ def _averaged_over_patch(body: BodyModes, radius: float) -> ModalBasis:
 
 
 def _basis_at_face(body: BodyModes) -> tuple[ModalBasis, float]:
-    """Return the modes of a plate at its face, at the contact point and the sensors, and the
-    inertia that plate theory lacks [m s^2/N].
+    """Return the modes of a plate at its face, and the inertia that plate theory lacks.
+
+    They are those at the contact point and the sensors; the inertia is in m s^2/N.
 
     The modes of solid elements, and of thin plate theory, in which all points of a normal move
     alike, are returned unchanged.
@@ -268,17 +285,17 @@ def _basis_at_face(body: BodyModes) -> tuple[ModalBasis, float]:
 
     points = dict(body.basis.points)
     for name, spot in body.body.watched.items():
-        at = at_face(place_of(body.model.mesh, *spot), points[name][:, 2])
-        points[name] = np.column_stack([points[name][:, :2], at])
+        normal = at_face(place_of(body.model.mesh, *spot), points[name][:, 2])
+        points[name] = np.column_stack([points[name][:, :2], normal])
     contact = at_face(contact_place(body)[0], body.basis.contact)
-    return replace(body.basis, contact=contact, points=points), inertia_beyond_bending(
-        body.model.thickness, material
-    )
+    modes = replace(body.basis, contact=contact, points=points)
+    return modes, inertia_beyond_bending(body.model.thickness, material)
 
 
 def _first_contact(case: CaseTable) -> tuple[CompliantLaw, float]:
-    """Return the law of the first impact, and its largest indentation without damping
-    between rigid bodies [m].
+    """Return the law of the first impact, and its largest indentation [m].
+
+    The latter is without damping, between rigid bodies.
     """
     law = contact_laws_of(case)[0]
     if not isinstance(law, CompliantLaw):
@@ -286,12 +303,12 @@ def _first_contact(case: CaseTable) -> tuple[CompliantLaw, float]:
             f"{law.name} gives no force, and bodies that deform need one; take another law",
             "contact.law",
         )
-    mass, gravity, speed = (
-        np.array([value])
-        for value in (contact_pair(case).effective_mass, case.drop.gravity, touch_speed(case))
-    )
+    mass = np.array([contact_pair(case).effective_mass])
+    gravity = np.array([case.drop.gravity])
+    speed = np.array([touch_speed(case)])
     with interpreted():
-        return law, float(impact_conditions_of(law, mass, gravity, speed).depth[0])
+        conditions = impact_conditions_of(law, mass, gravity, speed)
+        return law, float(conditions.depth[0])
 
 
 def _contact_radius(case: CaseTable) -> float:
@@ -302,8 +319,9 @@ def _contact_radius(case: CaseTable) -> float:
 def _check_well_posed(
     case: CaseTable, series: QuasiStatic, facts: Mapping[str, float | str]
 ) -> None:
-    """Check that enough compliance of the contact remains after that of the modes is subtracted, up
-    to the largest indentation.
+    """Check that enough compliance of the contact remains, up to the largest indentation.
+
+    That of the modes is subtracted from it.
 
     Raises
     ------
@@ -316,33 +334,36 @@ def _check_well_posed(
     slopes = np.gradient(local.approach_at(delta), delta)
     if slopes.min() >= _LEAST_SLOPE:
         return
-    place = float(delta[slopes < _LEAST_SLOPE][0])
+    indentation = float(delta[slopes < _LEAST_SLOPE][0])
     leaves = (
         f"leaves less than {_LEAST_SLOPE:g} of the law's own compliance from an "
-        f"indentation of {place:.2g} m on, so that the force would not be unique"
+        f"indentation of {indentation:.2g} m on, so that the force would not be unique"
     )
-    taken = facts.get("sphere_modal_compliance_m_N")
+    subtracted = facts.get("sphere_modal_compliance_m_N")
     # only the correction of a rigid sphere takes from the compliance, that of a half space of its
     # material
-    if taken is None:
-        words = "the correction of Hertz's half space for the finite size of the sphere"
+    if subtracted is None:
         raise InputError(
-            f"{words} {leaves}: the law is much stiffer than Hertz's contact; leave this "
+            "the correction of Hertz's half space for the finite size of the sphere "
+            f"{leaves}: the law is much stiffer than Hertz's contact; leave this "
             "out, or take a lower stiffness",
             "contact.finite_sphere",
         )
-    words = (
-        f"the modes of the sphere carry {taken:.3g} m/N of its quasi-static compliance, and "
-        f"taking that out of the contact {leaves}"
-    )
     sphere = case.sphere
-    remedy, key = "keep fewer modes", "modes" if sphere.max_frequency is None else "max_frequency"
     if sphere.attachment_mode:
-        remedy, key = "leave this out", "attachment_mode"
+        remedy = "leave this out"
+        key = "attachment_mode"
     elif sphere.reduction == "craig-bampton":
-        remedy, key = 'take "modal"', "reduction"
+        remedy = 'take "modal"'
+        key = "reduction"
+    else:
+        remedy = "keep fewer modes"
+        key = "modes" if sphere.max_frequency is None else "max_frequency"
     raise InputError(
-        f'{words}; {remedy}, or take contact.local_compliance = "superposed"', f"sphere.{key}"
+        f"the modes of the sphere carry {subtracted:.3g} m/N of its quasi-static compliance, and "
+        f"taking that out of the contact {leaves}; {remedy}, or take "
+        'contact.local_compliance = "superposed"',
+        f"sphere.{key}",
     )
 
 
@@ -354,11 +375,11 @@ def _rebound(case: CaseTable, measured: MeasuredImpact) -> dict[str, float]:
         return {"separation_speed": measured.restitution * touch_speed(case)}
     height = measured.rebound_height or 0.0
     if height <= case.sphere.radius:
-        words = (
+        raise InputError(
             f"{height:g} m is no rebound: it is the height of the centre, which rests at "
-            f"{case.sphere.radius:g} m"
+            f"{case.sphere.radius:g} m",
+            "contact.measured.rebound_height",
         )
-        raise InputError(words, "contact.measured.rebound_height")
     return {"rebound_height": height}
 
 
@@ -368,8 +389,9 @@ def couple_bodies(
     progress: Callable[[float], None] | None = None,
     tell: Callable[[str], None] | None = None,
 ) -> Problem:
-    """Return the problem of a case with its elastic bodies and its local element, made from the
-    problem with rigid bodies.
+    """Return the problem of a case with its elastic bodies and its local element.
+
+    It is made from the problem with rigid bodies.
 
     Raises
     ------
@@ -382,7 +404,7 @@ def couple_bodies(
     }
     if coupling.rigid is not None:
         bodies["plate"] = replace(bodies.get("plate", problem.plate), rigid=coupling.rigid)
-    found = replace(
+    coupled = replace(
         problem,
         **bodies,
         sphere_inside=treatment_of(case) == "consistent",
@@ -391,27 +413,29 @@ def couple_bodies(
         models=coupling.models,
     )
     if problem.oblique is not None and "plate" in coupling.modes:
-        found = replace(
-            found,
-            at_place=partial(at_place, case, found),
-            plate_at_place=partial(plate_at_place, case, found),
+        coupled = replace(
+            coupled,
+            at_place=partial(at_place, case, coupled),
+            plate_at_place=partial(plate_at_place, case, coupled),
         )
     local = case.contact.local
     if local.local_compliance != "identified":
-        return found
+        return coupled
     if local.measured is None:
         assert local.local_stiffness is not None  # validated by the section
         assert local.local_damping is not None
-        given = (local.local_stiffness, local.local_damping)
-        facts = {**coupling.facts, "local_stiffness_N_m": given[0], "local_damping_N_s_m": given[1]}
-        return replace(found, local_element=given, facts=facts)
-    element, facts = _identified(
-        case,
-        local.measured,
+        element = (local.local_stiffness, local.local_damping)
+        element_facts = _element_facts(element)
+    else:
+        tested = problem if local.measured.plate == "rigid" else coupled
         # measured on a plate at rest
-        replace(problem if local.measured.plate == "rigid" else found, motion=None),
-    )
-    return replace(found, local_element=element, facts={**coupling.facts, **facts})
+        element, element_facts = _identified(case, local.measured, replace(tested, motion=None))
+    return replace(coupled, local_element=element, facts={**coupling.facts, **element_facts})
+
+
+def _element_facts(element: tuple[float, float]) -> dict[str, float | str]:
+    """Return the facts of a local element of a stiffness and a damping."""
+    return {"local_stiffness_N_m": element[0], "local_damping_N_s_m": element[1]}
 
 
 def at_place(case: CaseTable, problem: Problem, place: tuple[float, float]) -> Problem:
@@ -442,8 +466,9 @@ def at_place(case: CaseTable, problem: Problem, place: tuple[float, float]) -> P
 
 
 def plate_at_place(case: CaseTable, problem: Problem, place: tuple[float, float]) -> Body:
-    """Return the plate of a case with the contact at another place [m], for its motion:
-    without residual compliances to sensors.
+    """Return the plate of a case with the contact at another place [m], for its motion.
+
+    It is without residual compliances to sensors.
     """
     body = compute_modes(_with_contact_at(case, place))["plate"]
     modes, rigid, _ = _plate_motions(body, treatment_of(case))
@@ -457,29 +482,28 @@ def _with_contact_at(case: CaseTable, place: tuple[float, float]) -> CaseTable:
 def _identified(
     case: CaseTable, measured: MeasuredImpact, problem: Problem
 ) -> tuple[tuple[float, float], dict[str, float | str]]:
-    """Return the local element identified from the measurement, and its facts: stiffness
-    and damping, with deviations if known.
+    """Return the local element identified from the measurement, and its facts.
+
+    These are stiffness and damping, with deviations if known.
     """
     try:
         element = identify_local_element(problem, measured.max_force, **_rebound(case, measured))
     except InputError as error:
         raise InputError(error.message, error.key or "contact.measured") from None
-    facts: dict[str, float | str] = {
-        "local_stiffness_N_m": element[0],
-        "local_damping_N_s_m": element[1],
+    facts = _element_facts(element)
+    relative_deviation = measured.relative_deviation
+    if relative_deviation is None:
+        return element, facts
+    impact = simulate(replace(problem, impacts=1, duration=None, local_element=element)).impacts
+    speed = float(impact["separation_speed_m_s"][0])
+    if measured.rebound_height is None:
+        speed_deviation = relative_deviation * speed
+    else:  # v^2 = 2 g h, so that dv = g dh / v
+        speed_deviation = relative_deviation * measured.rebound_height * case.drop.gravity / speed
+    force_deviation = relative_deviation * measured.max_force
+    deviations = local_element_deviations(problem, element, force_deviation, speed_deviation)
+    facts |= {
+        "local_stiffness_deviation_N_m": deviations[0],
+        "local_damping_deviation_N_s_m": deviations[1],
     }
-    if measured.relative_deviation is not None:
-        speed = float(
-            simulate(replace(problem, impacts=1, duration=None, local_element=element)).impacts[
-                "separation_speed_m_s"
-            ][0]
-        )
-        part = measured.relative_deviation
-        height = measured.rebound_height
-        of_speed = part * speed if height is None else part * height * case.drop.gravity / speed
-        deviations = local_element_deviations(problem, element, part * measured.max_force, of_speed)
-        facts |= {
-            "local_stiffness_deviation_N_m": deviations[0],
-            "local_damping_deviation_N_s_m": deviations[1],
-        }
     return element, facts

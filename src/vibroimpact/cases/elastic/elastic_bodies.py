@@ -52,11 +52,14 @@ def _body(case: CaseTable, name: Literal["sphere", "plate"]) -> ElasticBody:
 
 
 def elastic_table(case: CaseTable, name: Literal["sphere", "plate"]) -> dict[str, Any]:
-    """Return the resolved keys of an elastic body: mesh, reduction, modes, damping, and
-    supports of a plate.
+    """Return the resolved keys of an elastic body.
+
+    They are mesh, reduction, modes, damping, and supports of a plate.
     """
-    section, body = getattr(case, name), elastic_bodies(case)[name]
-    shape, reduction = body.recipe.shape, body.recipe.reduction
+    section = getattr(case, name)
+    body = elastic_bodies(case)[name]
+    shape = body.recipe.shape
+    reduction = body.recipe.reduction
     damping = body.damping if section.damping is None else section.damping
     table: dict[str, Any] = {"reduction": reduction.method, "damping": damping_table(damping)}
     if reduction.modes:
@@ -75,46 +78,42 @@ def elastic_table(case: CaseTable, name: Literal["sphere", "plate"]) -> dict[str
 
 
 def _sphere(case: CaseTable) -> ElasticBody:
-    section, mesh = case.sphere, case.sphere.mesh
+    """Return the sphere of a case as an elastic body."""
+    sphere = case.sphere
+    mesh = sphere.mesh
     contact = mesh.contact if isinstance(mesh, BroughtMeshTable) else None
-    reduction = reduction_of("sphere", section, (contact, "lower"))
+    reduction = reduction_of("sphere", sphere, (contact, "lower"))
     if isinstance(mesh, BroughtMeshTable):
-        recipe = recipe_of(mesh.brought(contact, "lower"), section.material, reduction)
+        recipe = recipe_of(mesh.brought(contact, "lower"), sphere.material, reduction)
     else:
         options = mesh.model_dump(exclude_none=True) if isinstance(mesh, SphereMeshTable) else {}
-        recipe = sphere_recipe(section.radius, section.material, reduction, **options)
-    return ElasticBody(
-        recipe, "lower", contact, damping_of(section.damping, section.material.loss_factor)
-    )
+        recipe = sphere_recipe(sphere.radius, sphere.material, reduction, **options)
+    damping = damping_of(sphere.damping, sphere.material.loss_factor)
+    return ElasticBody(recipe, "lower", contact, damping)
 
 
 def _plate(case: CaseTable) -> ElasticBody:
-    section = case.plate
+    """Return the plate of a case as an elastic body, with its sensors by what they measure."""
+    plate = case.plate
     contact: Spot = case.drop.position
-    if isinstance(section.mesh, BroughtMeshTable) and section.mesh.contact:
-        contact = section.mesh.contact
-    places = {
-        sensor.name: (sensor.position, sensor.face)
-        for sensor in case.sensors
-        if sensor.microphone is None
-    }
-    strained = {
-        sensor.name: places.pop(sensor.name)
-        for sensor in case.sensors
-        if sensor.instrument == "strain-gauge"
-    }
-    pressed = {
-        sensor.name: places.pop(sensor.name)
-        for sensor in case.sensors
-        if sensor.instrument == "force"
-    }
-    damping = damping_of(section.damping, section.material.loss_factor)
+    if isinstance(plate.mesh, BroughtMeshTable) and plate.mesh.contact:
+        contact = plate.mesh.contact
+    watched = {}
+    strained = {}
+    pressed = {}
+    for sensor in case.sensors:
+        if sensor.instrument == "strain-gauge":
+            strained[sensor.name] = (sensor.position, sensor.face)
+        elif sensor.instrument == "force":
+            pressed[sensor.name] = (sensor.position, sensor.face)
+        elif sensor.microphone is None:
+            watched[sensor.name] = (sensor.position, sensor.face)
     return ElasticBody(
         _plate_recipe(case, contact),
         "upper",
         contact,
-        damping,
-        places,
+        damping_of(plate.damping, plate.material.loss_factor),
+        watched,
         strained,
         _heard(case),
         pressed,
@@ -137,21 +136,21 @@ def _heard(case: CaseTable) -> dict[str, Listener]:
 
 
 def _plate_recipe(case: CaseTable, contact: Spot) -> Recipe:
-    section, mesh = case.plate, case.plate.mesh
-    reduction = reduction_of("plate", section, (contact, "upper"))
-    supports = supports_of(section.supports)
+    """Return the recipe of the modes of a plate."""
+    plate = case.plate
+    mesh = plate.mesh
+    reduction = reduction_of("plate", plate, (contact, "upper"))
+    supports = supports_of(plate.supports)
     if isinstance(mesh, BroughtMeshTable):
-        return recipe_of(mesh.brought(contact, "upper"), section.material, reduction, supports)
-    assert section.size is not None  # validated by the section
-    element = section.element or "plate"
-    options = (
-        mesh.model_dump(exclude_none=True, exclude={"elements"})
-        if isinstance(mesh, PlateMeshTable)
-        else {}
-    )
-    if isinstance(mesh, PlateMeshTable) and mesh.elements:
-        options = {**_mesh_options(section.size, mesh.elements, mesh.layers, supports), **options}
-    return plate_recipe(section.size, section.material, reduction, supports, element, **options)
+        return recipe_of(mesh.brought(contact, "upper"), plate.material, reduction, supports)
+    assert plate.size is not None  # validated by the section
+    options: dict[str, Any] = {}
+    if isinstance(mesh, PlateMeshTable):
+        if mesh.elements:
+            options = _mesh_options(plate.size, mesh.elements, mesh.layers, supports)
+        options |= mesh.model_dump(exclude_none=True, exclude={"elements"})
+    element = plate.element or "plate"
+    return plate_recipe(plate.size, plate.material, reduction, supports, element, **options)
 
 
 def _mesh_options(
@@ -160,16 +159,18 @@ def _mesh_options(
     layers: int | None,
     supports: tuple[Support, ...],
 ) -> dict[str, Any]:
-    """Return the element size and the number of layers of a plate with about this many
-    elements, near-cubic if `layers` is None.
+    """Return the element size and the number of layers of a plate with about so many elements.
+
+    Elements are nearly cubic if `layers` is None.
     """
     layers = layers or max(1, round(size[2] * (elements / math.prod(size)) ** (1.0 / 3.0)))
     side = math.sqrt(size[0] * size[1] * layers / elements)
-    tried: dict[float, float] = {}
+    errors: dict[float, float] = {}  # of the number of elements, by their size
     # the count scales as 1 / side^2, except for elements around patches and rounding
     for _ in range(8):
         blocks = rectangle_blocks(size[:2], side, 1, *mesh_features(supports))
         count = layers * sum((block.shape[0] - 1) * (block.shape[1] - 1) for block in blocks)
-        tried[side] = abs(count - elements)
+        errors[side] = abs(count - elements)
         side *= math.sqrt(count / elements)
-    return {"element_size": min(tried, key=lambda one: tried[one]), "layers": layers, **_UNSPLIT}
+    element_size = min(errors, key=lambda size: errors[size])
+    return {"element_size": element_size, "layers": layers, **_UNSPLIT}

@@ -1,5 +1,6 @@
-"""Meshes of the elastic bodies of a case, generated or read, with checks that contact,
-sensors and supports lie on them.
+"""Meshes of the elastic bodies of a case, generated or read.
+
+There are checks that contact, sensors and supports lie on them.
 """
 
 from __future__ import annotations
@@ -34,7 +35,7 @@ def meshes_of(case: CaseTable) -> dict[str, Mesh]:
         If one can't be made or read, or the contact point, a sensor or a support does not lie on
         it; with its key.
     """
-    found = {}
+    meshes = {}
     for name, body in elastic_bodies(case).items():
         try:
             mesh = body.recipe.shape.mesh(body.recipe.supports)
@@ -42,29 +43,32 @@ def meshes_of(case: CaseTable) -> dict[str, Mesh]:
                 check_mesh(mesh)
         except InputError as error:
             raise InputError(error.message, f"{name}.{error.key}".rstrip(".")) from None
-        brought = getattr(getattr(case, name), "mesh", None)
-        at = (
-            f"{name}.mesh.contact"
-            if getattr(brought, "contact", None)
-            else "drop.position"
-            if name == "plate"
-            else f"{name}.mesh"
-        )
-        _check_spot(mesh, body.contact, body.side, at)
-        names = [{"name": one} for one in body.sensors]
+        _check_spot(mesh, body.contact, body.side, _contact_key(case, name))
+        names = [{"name": sensor} for sensor in body.sensors]
         for number, (spot, face) in enumerate(body.sensors.values()):
             _check_spot(mesh, spot, face, f"{item_label('sensors', names, number)}.position")
         for sensor, listener in body.heard.items():
             try:
                 place_of(mesh, listener.spot, listener.side)
             except InputError as error:
-                raise InputError(
-                    error.message, f"{item_label('sensors', [{'name': sensor}], 0)}.position"
-                ) from None
+                raise InputError(error.message, _position_key(sensor)) from None
         if name == "plate":
             _check_supports(case, body, mesh)
-        found[name] = mesh
-    return found
+        meshes[name] = mesh
+    return meshes
+
+
+def _contact_key(case: CaseTable, name: str) -> str:
+    """Return the key of a case by which the contact point of a body is given."""
+    mesh = getattr(getattr(case, name), "mesh", None)
+    if getattr(mesh, "contact", None):
+        return f"{name}.mesh.contact"
+    return "drop.position" if name == "plate" else f"{name}.mesh"
+
+
+def _position_key(sensor: str) -> str:
+    """Return the key of the position of a sensor, by its name."""
+    return f"{item_label('sensors', [{'name': sensor}], 0)}.position"
 
 
 def _check_spot(mesh: Mesh, spot: Spot, side: Side, key: str) -> None:
@@ -76,17 +80,18 @@ def _check_spot(mesh: Mesh, spot: Spot, side: Side, key: str) -> None:
 
 
 def _check_supports(case: CaseTable, body: ElasticBody, mesh: Mesh) -> None:
-    """Check that each support finds degrees of freedom to constrain that no other does,
-    and each force sensor a support.
+    """Check that each support finds degrees of freedom to constrain that no other does.
+
+    Each force sensor must find a support.
     """
     tables = case.plate.supports if isinstance(case.plate.supports, tuple) else ()
     # constraints depend on the mesh and its mass properties only, so zero matrices and unit density
     # serve
     dofs = mesh.dofs_per_node * len(mesh.nodes)
-    nothing = csr_array((dofs, dofs))
+    zero = csr_array((dofs, dofs))
     thickness = case.plate.size[2] if case.plate.size is not None and mesh.is_flat else 0.0
     constraints = Constraints(
-        Structure(mesh, nothing, nothing, mass_properties(mesh, 1.0, thickness or 1.0), thickness)
+        Structure(mesh, zero, zero, mass_properties(mesh, 1.0, thickness or 1.0), thickness)
     )
     kinds = [{"type": table.type} for table in tables]
     for number, table in enumerate(tables):
@@ -94,13 +99,10 @@ def _check_supports(case: CaseTable, body: ElasticBody, mesh: Mesh) -> None:
             try:
                 support.hold(constraints)
             except InputError as error:
-                raise InputError(
-                    error.message, item_label("plate.supports", kinds, number)
-                ) from None
+                key = item_label("plate.supports", kinds, number)
+                raise InputError(error.message, key) from None
     for name, (spot, _) in body.pressed.items():
         try:
             support_at(constraints.structure, body.recipe.supports, spot)
         except InputError as error:
-            raise InputError(
-                error.message, f"{item_label('sensors', [{'name': name}], 0)}.position"
-            ) from None
+            raise InputError(error.message, _position_key(name)) from None

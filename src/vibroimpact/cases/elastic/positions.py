@@ -19,8 +19,9 @@ _RIGID = ("patch", "patches", "bar", "bars")  # the mesh follows their rims
 
 
 def check_positions(case: CaseTable) -> None:
-    """Check that the sensors of a plate, and the supports of an elastic one with a generated mesh,
-    lie on it.
+    """Check that the sensors and supports of a plate lie on it.
+
+    The supports are those of an elastic plate with a generated mesh.
 
     Raises
     ------
@@ -42,25 +43,22 @@ def check_positions(case: CaseTable) -> None:
                 _check_point(sensor.position, half, "position")
         except InputError as error:
             names = [{"name": sensor.name} for sensor in case.sensors]
-            raise InputError(
-                error.message, f"{item_label('sensors', names, number)}.position"
-            ) from None
-    tables = (
-        plate.supports if plate.model == "elastic" and isinstance(plate.supports, tuple) else ()
-    )
-    for number, table in enumerate(tables):
+            key = f"{item_label('sensors', names, number)}.position"
+            raise InputError(error.message, key) from None
+    if plate.model != "elastic" or not isinstance(plate.supports, tuple):
+        return
+    for number, table in enumerate(plate.supports):
         try:
             _check_support(table, half)
         except InputError as error:
-            kinds = [{"type": table.type} for table in tables]
-            raise InputError(
-                error.message,
-                f"{item_label('plate.supports', kinds, number)}.{error.key}".rstrip("."),
-            ) from None
+            types = [{"type": table.type} for table in plate.supports]
+            key = f"{item_label('plate.supports', types, number)}.{error.key}".rstrip(".")
+            raise InputError(error.message, key) from None
 
 
 def _check_point(position: Sequence[float], half: tuple[float, float], key: str) -> None:
-    if any(abs(at) > _ROUNDING * end for at, end in zip(position, half, strict=True)):
+    """Raise InputError if a point lies outside the plate, of which `half` are the half sides."""
+    if any(abs(x) > _ROUNDING * end for x, end in zip(position, half, strict=True)):
         raise InputError(
             f"{_shown(position)} m lies outside the plate, "
             f"{_reaches(half)}{likely_lengths(position, half)}",
@@ -69,8 +67,9 @@ def _check_point(position: Sequence[float], half: tuple[float, float], key: str)
 
 
 def _check_support(table: Any, half: tuple[float, float]) -> None:
-    """Check that a support lies on the plate: its centre, or those of a group of four,
-    and its rim.
+    """Check that a support lies on the plate with its rim.
+
+    Of a group of four it is their centres that lie on it.
     """
     if table.type == "set":
         raise InputError(
@@ -78,47 +77,67 @@ def _check_support(table: Any, half: tuple[float, float]) -> None:
             "edges, points or springs"
         )
     centre = getattr(table, "position", None)
+    spacing = getattr(table, "spacing", None)
     if centre is not None:
         _check_point(centre, half, "position")
-    elif (spacing := getattr(table, "spacing", None)) is not None:
-        if any(0.5 * apart > _ROUNDING * end for apart, end in zip(spacing, half, strict=True)):
-            sides = (2.0 * half[0], 2.0 * half[1])
-            raise InputError(
-                f"{_shown(spacing)} m is wider than the plate, {_shown(sides)} "
-                f"m{likely_lengths(spacing, sides)}",
-                "spacing",
-            )
+    elif spacing is not None:
+        _check_spacing(spacing, half)
         centre = (0.5 * spacing[0], 0.5 * spacing[1])
-    if centre is None:
+    else:
         return
-    room = [end - abs(at) for at, end in zip(centre, half, strict=True)]
     if getattr(table, "size", None) is not None:
-        if any(
-            0.5 * side > left + 1e-9 * end
-            for side, left, end in zip(table.size, room, half, strict=True)
-        ):
-            hint = likely_lengths(table.size, [2.0 * end for end in half])
+        _check_size(table.size, centre, half)
+    else:
+        radius = getattr(table, "radius", None) or 0.0
+        _check_radius(radius, centre, half, is_rigid=table.type in _RIGID)
+
+
+def _check_spacing(spacing: Sequence[float], half: tuple[float, float]) -> None:
+    """Raise InputError if a group of four supports is wider than the plate."""
+    if any(0.5 * width > _ROUNDING * end for width, end in zip(spacing, half, strict=True)):
+        sides = (2.0 * half[0], 2.0 * half[1])
+        raise InputError(
+            f"{_shown(spacing)} m is wider than the plate, {_shown(sides)} "
+            f"m{likely_lengths(spacing, sides)}",
+            "spacing",
+        )
+
+
+def _check_size(size: Sequence[float], centre: Sequence[float], half: tuple[float, float]) -> None:
+    """Raise InputError if a rectangular support reaches beyond the plate."""
+    for side, x, end in zip(size, centre, half, strict=True):
+        if 0.5 * side > end - abs(x) + 1e-9 * end:
+            hint = likely_lengths(size, [2.0 * end for end in half])
             raise InputError(
-                f"{_shown(table.size)} m around {_shown(centre)} m reaches beyond the "
+                f"{_shown(size)} m around {_shown(centre)} m reaches beyond the "
                 f"plate, {_reaches(half)}{hint}",
                 "size",
             )
-        return
-    radius = getattr(table, "radius", None) or 0.0
-    is_rigid = table.type in _RIGID
+
+
+def _check_radius(
+    radius: float, centre: Sequence[float], half: tuple[float, float], *, is_rigid: bool
+) -> None:
+    """Raise InputError if a round support reaches beyond the plate.
+
+    The mesh follows the rim of a rigid one, which needs a margin to the edge.
+    """
+    distance = min(end - abs(x) for x, end in zip(centre, half, strict=True))  # from the edge
     # with the tolerance of supports on meshes
     least = CLOSEST * radius if is_rigid else radius - 1e-9 * max(half)
-    if least > min(room):
-        margin = (
-            f"; between it and the edge must be at least {CLOSEST - 1.0:.2g} radii"
-            if is_rigid
-            else ""
-        )
-        beyond = "is too near the edge of" if is_rigid and radius <= min(room) else "reaches beyond"
-        words = (
-            f"{radius:g} m around {_shown(centre)} m {beyond} the plate, {_reaches(half)}{margin}"
-        )
-        raise InputError(f"{words}{likely_lengths([radius], [min(half)])}", "radius")
+    if least <= distance:
+        return
+    fault = "reaches beyond"
+    margin = ""
+    if is_rigid:
+        margin = f"; between it and the edge must be at least {CLOSEST - 1.0:.2g} radii"
+        if radius <= distance:
+            fault = "is too near the edge of"
+    raise InputError(
+        f"{radius:g} m around {_shown(centre)} m {fault} the plate, {_reaches(half)}{margin}"
+        f"{likely_lengths([radius], [min(half)])}",
+        "radius",
+    )
 
 
 def _reaches(half: Sequence[float]) -> str:

@@ -21,16 +21,15 @@ from vibroimpact.structures.transfer_compliance import (
 from vibroimpact.structures.transfer_strain import strain_key, transfer_strains
 
 _FACES = 2
-"""Number of points, out of contact and sensor, at which the mode shapes are those at the
-face of the plate.
-"""
+"""Number of points, of contact and sensor, at which mode shapes are those at the face."""
 
 
 def with_residuals(
     body: BodyModes, basis: ModalBasis, tell: Callable[[str], None] | None = None
 ) -> ModalBasis:
-    """Return the modes of a plate with the residual static compliance between the contact point and
-    each sensor.
+    """Return the modes of a plate with residual compliances to its sensors.
+
+    They are the static ones between the contact point and each sensor that the modes lack.
 
     Parameters
     ----------
@@ -43,37 +42,33 @@ def with_residuals(
     """
     if not body.body.sensors:
         return basis
-    recipe, (place, side) = body.body.recipe, contact_place(body)
-    found: dict[str, Floats] = {}
+    recipe = body.body.recipe
+    place, side = contact_place(body)
+    mesh = body.model.mesh
+    # static compliances by the name of the sensor, of all modes
+    static: dict[str, Floats] = {}
     if body.body.watched:
-        moved = transfer_compliances(
-            recipe, place, side, _points(body.model.mesh, body.body.watched), _FACES, tell
-        )
-        found |= dict(zip(body.body.watched, moved, strict=True))
+        points = _points(mesh, body.body.watched)
+        compliances = transfer_compliances(recipe, place, side, points, _FACES, tell)
+        static |= dict(zip(body.body.watched, compliances, strict=True))
     if body.body.strained:
-        found |= dict(
-            zip(
-                body.body.strained,
-                transfer_strains(
-                    recipe, place, side, _points(body.model.mesh, body.body.strained), tell
-                ),
-                strict=True,
-            )
-        )
+        points = _points(mesh, body.body.strained)
+        strains = transfer_strains(recipe, place, side, points, tell)
+        static |= dict(zip(body.body.strained, strains, strict=True))
     if body.body.pressed:
-        found |= dict(
-            zip(body.body.pressed, body.body.support_forces(body.model, tell).static, strict=True)
-        )
+        forces = body.body.support_forces(body.model, tell).static
+        static |= dict(zip(body.body.pressed, forces, strict=True))
     weights = basis.contact / basis.angular_frequencies**2
-    return replace(
-        basis,
-        residuals={name: static - weights @ basis.points[name] for name, static in found.items()},
-    )
+    residuals = {
+        name: of_all_modes - weights @ basis.points[name] for name, of_all_modes in static.items()
+    }
+    return replace(basis, residuals=residuals)
 
 
 def hold_residuals(body: ElasticBody, mesh: Mesh, places: Sequence[tuple[float, float]]) -> None:
-    """Compute the compliances between places of a plate and its sensors of motion
-    together, for calls of `with_residuals` that follow.
+    """Compute the compliances between places of a plate and its sensors of motion together.
+
+    This is for calls of `with_residuals` that follow.
     """
     if body.watched:
         hold_transfers(body.recipe, places, body.side, _points(mesh, body.watched), _FACES)
@@ -81,22 +76,19 @@ def hold_residuals(body: ElasticBody, mesh: Mesh, places: Sequence[tuple[float, 
 
 def residual_keys(body: BodyModes) -> list[str]:
     """Return the keys of the compliances of `with_residuals` in the mode store."""
-    recipe, (place, side), watched, strained = (
-        body.body.recipe,
-        contact_place(body),
-        body.body.watched,
-        body.body.strained,
-    )
-    pressed = [spot for spot, _ in body.body.pressed.values()]
-    moved = (
-        [transfer_key(recipe, place, side, _points(body.model.mesh, watched), _FACES)]
-        if watched
-        else []
-    )
-    pulled = (
-        [strain_key(recipe, place, side, _points(body.model.mesh, strained))] if strained else []
-    )
-    return moved + pulled + ([support_force_key(recipe, place, side, pressed)] if pressed else [])
+    recipe = body.body.recipe
+    place, side = contact_place(body)
+    mesh = body.model.mesh
+    keys = []
+    if body.body.watched:
+        points = _points(mesh, body.body.watched)
+        keys.append(transfer_key(recipe, place, side, points, _FACES))
+    if body.body.strained:
+        keys.append(strain_key(recipe, place, side, _points(mesh, body.body.strained)))
+    if body.body.pressed:
+        spots = [spot for spot, _ in body.body.pressed.values()]
+        keys.append(support_force_key(recipe, place, side, spots))
+    return keys
 
 
 def _points(mesh: Mesh, sensors: Mapping[str, tuple[Spot, Side]]) -> list[Point]:

@@ -19,8 +19,9 @@ if TYPE_CHECKING:
 
 
 def solve_together(cases: Iterable[CaseTable]) -> None:
-    """Solve the statics of plates at the contact points of cases together, where several share a
-    plate and its sensors.
+    """Solve the statics of plates at the contact points of cases together.
+
+    This is for cases of which several share a plate and its sensors.
 
     Their problems then take them from memory. A case that can't be solved is left to be refused by
     itself.
@@ -31,12 +32,13 @@ def solve_together(cases: Iterable[CaseTable]) -> None:
             body = elastic_bodies(case)["plate"]
             groups[plate_key(body.recipe), repr(body.watched)].append(body)
     for bodies in groups.values():
-        body = bodies[0]
+        recipe = bodies[0].recipe
+        side = bodies[0].side
         try:
-            mesh = modal_model_of(body.recipe).mesh
-            places = list({place_of(mesh, one.contact, one.side): None for one in bodies})
+            mesh = modal_model_of(recipe).mesh
+            places = list({place_of(mesh, body.contact, body.side): None for body in bodies})
             if len(places) > 1:
-                hold_compliances(body.recipe, places, body.side)
-                hold_residuals(body, mesh, places)
+                hold_compliances(recipe, places, side)
+                hold_residuals(bodies[0], mesh, places)
         except (InputError, ComputationError):
             continue

@@ -19,15 +19,17 @@ from vibroimpact.errors import InputError, choices, listed
 from vibroimpact.quoting import quoted
 
 Parameter: TypeAlias = float | tuple[float, ...] | BySpeed
-"""The value of a parameter of a contact law: a number, one per impact, or a function of
-the approach speed.
+"""The value of a parameter of a contact law.
+
+It is a number, one per impact, or a function of the approach speed.
 """
 
 
 @dataclass(frozen=True)
 class ContactSection:
-    """Name and parameters [SI] of a contact law, how it is combined with the local deformation of
-    elastic bodies (`local`), and friction.
+    """Name and parameters [SI] of a contact law, local deformation, and friction.
+
+    `local` is how the law is combined with the local deformation of elastic bodies.
 
     A tuple has one value per impact; its last value holds for all later impacts. A parameter may be
     a function of the approach speed.
@@ -50,43 +52,20 @@ def read_contact(value: Any) -> ContactSection:
     if isinstance(value, ContactSection):
         return value
     law = law_of(value)
-    known = {item.name: item for item in fields(law)}
+    items = {item.name: item for item in fields(law)}
     # the SI unit of a stiffness depends on the exponent of the law
-    exponent = value.get("exponent", known["exponent"].default if "exponent" in known else 1.0)
+    exponent = value.get("exponent", items["exponent"].default if "exponent" in items else 1.0)
     parameters: dict[str, Parameter] = {}
-    for key, given in value.items():
+    for key, stated in value.items():
         if key in ("law", "friction") or key in LocalSection.model_fields:
             continue
-        if key not in known:
-            every = [*known, *LocalSection.model_fields, "friction"]
+        if key not in items:
+            known = [*items, *LocalSection.model_fields, "friction"]
             raise InputError(
-                f"unknown key {quoted(key)}; {law.name} takes {choices(every, key, 'schema')}", key
+                f"unknown key {quoted(key)}; {law.name} takes {choices(known, key, 'schema')}", key
             )
-        unit, allowed = unit_of(known[key], exponent), known[key].metadata["range"]
         try:
-            if isinstance(given, list):
-                if not given:
-                    raise InputError(
-                        "the list is empty; it must have one value per impact, the last of "
-                        "which holds for all later ones"
-                    )
-                check_count(len(given), MOST_OF_A_LIST, "values")
-                parameters[key] = tuple(read_quantity(item, unit, allowed) for item in given)
-            elif isinstance(given, dict):
-                if not varies_with_speed(known[key]):
-                    why = "it follows from the bodies"
-                    if known[key].metadata["memory"]:
-                        why = "it is the state before the first impact"
-                    elif key == "exponent":
-                        why = "it is an exponent"
-                    words = (
-                        "and can't be a function of the approach speed; give a number, or a "
-                        "list with one value per impact"
-                    )
-                    raise InputError(f"{why}, {words}")
-                parameters[key] = read_by_speed(given, unit, allowed)
-            else:
-                parameters[key] = read_quantity(given, unit, allowed)
+            parameters[key] = _read_parameter(stated, items[key], exponent)
         except InputError as error:
             raise InputError(error.message, key) from None
     local = {key: value[key] for key in LocalSection.model_fields if key in value}
@@ -94,9 +73,43 @@ def read_contact(value: Any) -> ContactSection:
     return ContactSection(law.name, parameters, read_table(LocalSection, local), friction)
 
 
+def _read_parameter(value: Any, item: Field[Any], exponent: Any) -> Parameter:
+    """Return a parameter of a law: a number, a list of them, or a function of the speed.
+
+    Raises
+    ------
+    InputError
+        If it can't be read, or lies outside its range.
+    """
+    unit = unit_of(item, exponent)
+    allowed = item.metadata["range"]
+    if isinstance(value, list):
+        if not value:
+            raise InputError(
+                "the list is empty; it must have one value per impact, the last of "
+                "which holds for all later ones"
+            )
+        check_count(len(value), MOST_OF_A_LIST, "values")
+        return tuple(read_quantity(number, unit, allowed) for number in value)
+    if not isinstance(value, dict):
+        return read_quantity(value, unit, allowed)
+    if varies_with_speed(item):
+        return read_by_speed(value, unit, allowed)
+    reason = "it follows from the bodies"
+    if item.metadata["memory"]:
+        reason = "it is the state before the first impact"
+    elif item.name == "exponent":
+        reason = "it is an exponent"
+    raise InputError(
+        f"{reason}, and can't be a function of the approach speed; give a number, or a "
+        "list with one value per impact"
+    )
+
+
 def varies_with_speed(item: Field[Any]) -> bool:
-    """Return whether a parameter may be a function of the approach speed: if it follows
-    neither from the bodies nor is an exponent.
+    """Return whether a parameter may be a function of the approach speed.
+
+    It may not if it follows from the bodies, is a state, or is an exponent.
     """
     return not (item.metadata["from_pair"] or item.metadata["memory"] or item.name == "exponent")
 
@@ -105,7 +118,9 @@ def in_table(value: Parameter) -> Any:
     """Return the value of a parameter as the table of a case has it."""
     if isinstance(value, (SpeedFunction, SpeedTable)):
         return value.table()
-    return list(value) if isinstance(value, tuple) else value
+    if isinstance(value, tuple):
+        return list(value)
+    return value
 
 
 def law_of(value: Any) -> type[ContactLaw]:
@@ -144,23 +159,25 @@ def contact_schema() -> dict[str, Any]:
 
 
 def law_schema() -> dict[str, Any]:
-    """Return the JSON schema of a law and its parameters, without the keys of
-    `LocalSection`: one alternative per law.
+    """Return the JSON schema of a law and its parameters: one alternative per law.
+
+    The keys of `LocalSection` are not among them.
     """
     return {"oneOf": [_law_schema(law, {}) for law in contact_laws().values()]}
 
 
 def _law_schema(law: type[ContactLaw], more: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the JSON schema of a law and its parameters, and of more keys."""
     properties: dict[str, Any] = {
         "law": {"const": law.name, "description": f"{law.equation} ({law.source})"},
         **more,
     }
     for item in fields(law):
-        one = quantity_schema(item.metadata["unit"], item.metadata["meaning"])
-        forms = [one, {"type": "array", "items": one, "minItems": 1}]
+        number = quantity_schema(item.metadata["unit"], item.metadata["meaning"])
+        forms = [number, {"type": "array", "items": number, "minItems": 1}]
         if varies_with_speed(item):
             forms += by_speed_schema(item.metadata["unit"], item.metadata["meaning"])
-        properties[item.name] = {"anyOf": forms, "description": one["description"]}
+        properties[item.name] = {"anyOf": forms, "description": number["description"]}
     return {
         "type": "object",
         "properties": properties,

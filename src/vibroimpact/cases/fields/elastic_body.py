@@ -1,5 +1,6 @@
-"""The fields of the [sphere] and [plate] sections that describe an elastic body: mesh,
-modes and reduction, and their checks.
+"""The fields of the [sphere] and [plate] sections that describe an elastic body.
+
+They are mesh, modes and reduction, with their checks.
 """
 
 from __future__ import annotations
@@ -77,8 +78,9 @@ class BroughtMeshTable(Section):
         return self
 
     def brought(self, contact: Spot, side: Side) -> ImportedMesh:
-        """Return the mesh, which is identified by the checksum of its file and of those it
-        includes, and read when it is first used.
+        """Return the mesh, which is read when it is first used.
+
+        It is identified by the checksum of its file and of those it includes.
 
         Of a file with several parts that are not joined it is the part at the contact, and
         identified by its nodes too.
@@ -113,8 +115,9 @@ class BroughtMeshTable(Section):
         return ImportedMesh(digest, read)
 
     def _number_of_parts(self, digest: str) -> int:
-        """Return the number of parts of the file that are not joined, from the store if
-        it is there.
+        """Return the number of parts of the file that are not joined.
+
+        It is that of the store if it is there.
         """
         from vibroimpact.meshes.mesh_file import mesh_of_file
         from vibroimpact.structures.parts import number_of_parts
@@ -141,8 +144,9 @@ class BroughtMeshTable(Section):
         return table
 
     def read(self, contact: tuple[Spot, Side] | None = None) -> Mesh:
-        """Read the mesh, with coordinates in metres; of several parts that are not joined
-        the one at the contact, or all.
+        """Read the mesh, with coordinates in metres.
+
+        Of several parts that are not joined it is the one at the contact, or all.
         """
         from vibroimpact.meshes.mesh_file import read_mesh
 
@@ -220,8 +224,9 @@ class PlateMeshTable(Section):
 
 
 def _mesh_field(kind: type[Section]) -> Any:
-    """Return the type of a mesh field: a file name, a table with a file, or a table of
-    the given kind for a generated mesh.
+    """Return the type of a mesh field.
+
+    It takes a file name, a table with a file, or a table of the given kind for a generated mesh.
     """
 
     def read(value: Any) -> Any:
@@ -257,9 +262,7 @@ FrequencyField = Annotated[float, Quantity("Hz", "all modes up to this frequency
 MethodField = Literal["modal", "craig-bampton"]
 
 _ROUNDED = 1e-3
-"""Relative difference of a mass or a moment of inertia from that of a solid sphere that
-counts as rounding.
-"""
+"""Relative difference of a mass or a moment of inertia from a solid sphere's that is rounding."""
 
 _ELASTIC_KEYS = (
     "modes",
@@ -314,43 +317,40 @@ def check_elastic(section: Any) -> None:
 
 
 def check_ball(section: Any) -> None:
-    """Check mass and moment of inertia of the sphere, which of an elastic one follow from its
-    material.
+    """Check mass and moment of inertia of the sphere.
+
+    Of an elastic one they follow from its material.
 
     Raises
     ------
     InputError
         With the invalid key.
     """
-    radius, material = section.radius, section.material
+    radius = section.radius
+    material = section.material
     # raises if no ball has that moment of inertia
-    found = rigid_sphere(radius, material, mass=section.mass, inertia=section.inertia)
+    ball = rigid_sphere(radius, material, mass=section.mass, inertia=section.inertia)
     if section.model == "rigid":
         return
-    solid, remedy = (
-        rigid_sphere(radius, material, inertia="solid"),
-        'leave it out, or give model = "rigid"',
-    )
-    if abs(found.mass - solid.mass) > _ROUNDED * solid.mass:
-        words = (
-            f"an elastic sphere is solid, {solid.mass:.4g} kg of its material, not "
-            f"{found.mass:.4g} kg"
-        )
+    solid = rigid_sphere(radius, material, inertia="solid")
+    remedy = 'leave it out, or give model = "rigid"'
+    if abs(ball.mass - solid.mass) > _ROUNDED * solid.mass:
         raise InputError(
-            f"{words}; {remedy}, or a material with the density "
-            f"{mean_density(found.mass, radius):.4g} kg/m^3",
+            f"an elastic sphere is solid, {solid.mass:.4g} kg of its material, not "
+            f"{ball.mass:.4g} kg; {remedy}, or a material with the density "
+            f"{mean_density(ball.mass, radius):.4g} kg/m^3",
             "mass",
         )
     if (
-        found.inertia is not None
+        ball.inertia is not None
         and solid.inertia is not None
-        and abs(found.inertia - solid.inertia) > _ROUNDED * solid.inertia
+        and abs(ball.inertia - solid.inertia) > _ROUNDED * solid.inertia
     ):
-        words = (
+        raise InputError(
             f"an elastic sphere is solid, with {solid.inertia:.4g} kg m^2 of its material, not "
-            f"{found.inertia:.4g} kg m^2"
+            f"{ball.inertia:.4g} kg m^2; {remedy}",
+            "inertia",
         )
-        raise InputError(f"{words}; {remedy}", "inertia")
 
 
 def check_plate(section: Any) -> None:
@@ -368,10 +368,9 @@ def check_plate(section: Any) -> None:
                 "size",
             )
         if section.model == "elastic":
-            words = "a sphere in the place of the plate is rigid but for its contact"
             raise InputError(
-                f"{words}; leave out model, or take a System in Python, "
-                "whose bodies may all vibrate",
+                "a sphere in the place of the plate is rigid but for its contact; leave out "
+                "model, or take a System in Python, whose bodies may all vibrate",
                 "model",
             )
         if section.supports is not None and section.material.name == "rigid":
@@ -382,8 +381,8 @@ def check_plate(section: Any) -> None:
         return
     # an elastic plate: its size, supports and mesh keys must suit its elements
     mesh = section.mesh
-    brought = isinstance(mesh, BroughtMeshTable)
-    if section.size is None and not brought:
+    is_brought = isinstance(mesh, BroughtMeshTable)
+    if section.size is None and not is_brought:
         raise InputError(
             "an elastic plate needs its length, width and thickness, or a mesh file", "size"
         )
@@ -393,28 +392,30 @@ def check_plate(section: Any) -> None:
             "tables such as patches",
             "supports",
         )
-    if brought and section.element == "plate":
+    if is_brought and section.element == "plate":
         raise InputError(
             "a mesh file has solid elements; leave out element, or the mesh file", "element"
         )
     if isinstance(mesh, PlateMeshTable):
-        solid = section.element == "solid"
-        for key in (
-            ("theory", "margin")
-            if solid
-            else ("elements", "layers", "kind", "splits", "lower_splits")
-        ):
+        element = section.element or "plate"
+        other = "solid"
+        keys_of_other = ["elements", "layers", "kind", "splits", "lower_splits"]
+        if element == "solid":
+            other = "plate"
+            keys_of_other = ["theory", "margin"]
+        for key in keys_of_other:
             if getattr(mesh, key) is not None:
-                words = f'element = "{section.element or "plate"}" does not take it'
                 raise InputError(
-                    f'{words}; leave it out, or give element = "{"plate" if solid else "solid"}"',
+                    f'element = "{element}" does not take it; leave it out, or give element = '
+                    f'"{other}"',
                     f"mesh.{key}",
                 )
 
 
 def check_sphere_below(case: Any) -> None:
-    """Check a case in which a sphere replaces the plate: a central impact of bodies that deform
-    only in their contact.
+    """Check a case in which a sphere replaces the plate.
+
+    It is a central impact of bodies that deform only in their contact.
 
     Raises
     ------
@@ -423,15 +424,18 @@ def check_sphere_below(case: Any) -> None:
     """
     local = case.contact.local
     if any(case.drop.position):
-        words = "beside the top of a sphere the impact is oblique, and spheres meet head on here"
-        raise InputError(f"{words}; leave it out", "drop.position")
-    given = {
+        raise InputError(
+            "beside the top of a sphere the impact is oblique, and spheres meet head on here; "
+            "leave it out",
+            "drop.position",
+        )
+    states_elasticity = {
         "sphere.model": case.sphere.model == "elastic",
         "contact.local_compliance": local.local_compliance is not None,
         "contact.finite_sphere": local.finite_sphere,
     }
-    for key, is_given in given.items():
-        if is_given:
+    for key, is_stated in states_elasticity.items():
+        if is_stated:
             raise InputError("two spheres are rigid but for their contact; leave this out", key)
 
 
@@ -439,13 +443,11 @@ def reduction_of(body: Literal["sphere", "plate"], section: Any, place: Place) -
     """Return the modal reduction of a body with its contact point at `place`."""
     from vibroimpact.structures.recipe import Reduction
 
-    number = (
-        DEFAULT_MODES[body]
-        if section.modes is None and section.max_frequency is None
-        else section.modes
-    )
+    modes = section.modes
+    if modes is None and section.max_frequency is None:
+        modes = DEFAULT_MODES[body]
     return Reduction(
-        modes=number,
+        modes=modes,
         max_frequency=section.max_frequency,
         method=section.reduction or "modal",
         interface=(place,) if section.reduction == "craig-bampton" else (),

@@ -15,8 +15,9 @@ _LONGEST = 40  # characters of a name that serves as a label
 
 
 def item_label(key: str, items: Sequence[Any], number: int) -> str:
-    """Return the key of a list item with its name, such as sensors."a1", or with its ordinal if the
-    list has several items.
+    """Return the key of a list item with its name, such as sensors."a1", or with its ordinal.
+
+    The only item of a list needs neither.
 
     Parameters
     ----------
@@ -41,17 +42,14 @@ def item_label(key: str, items: Sequence[Any], number: int) -> str:
     ('drop.position.y', 'plate.supports')
     """
     item = items[number] if number < len(items) else None
-    names = NUMBER_LABELS.get(key.rpartition(".")[2], ())
-    if not isinstance(item, dict) and number < len(names):
-        return f"{key}.{names[number]}"
+    labels = NUMBER_LABELS.get(key.rpartition(".")[2], ())
+    if not isinstance(item, dict) and number < len(labels):
+        return f"{key}.{labels[number]}"
     name = item.get("name") if isinstance(item, dict) else None
-    alone = (
-        isinstance(name, str)
-        and name
-        and sum(isinstance(one, dict) and one.get("name") == name for one in items) == 1
-    )
-    if alone and len(str(name)) <= _LONGEST and str(name).isprintable():
-        return f'{key}."{name}"'
+    if isinstance(name, str) and name and len(name) <= _LONGEST and name.isprintable():
+        names = [other.get("name") for other in items if isinstance(other, dict)]
+        if names.count(name) == 1:
+            return f'{key}."{name}"'
     return key if len(items) == 1 else f"{key} (the {ordinal(number + 1)})"
 
 
@@ -63,9 +61,9 @@ def ordinal(number: int) -> str:
     >>> [ordinal(number) for number in (1, 2, 3, 4, 11, 22, 113)]
     ['1st', '2nd', '3rd', '4th', '11th', '22nd', '113th']
     """
-    ending = (
-        "th" if 10 <= number % 100 <= 20 else {1: "st", 2: "nd", 3: "rd"}.get(number % 10, "th")
-    )
+    ending = {1: "st", 2: "nd", 3: "rd"}.get(number % 10, "th")
+    if 10 <= number % 100 <= 20:
+        ending = "th"
     return f"{number}{ending}"
 
 
@@ -84,12 +82,14 @@ def path_in_words(path: str, table: Any) -> str:
     >>> path_in_words("sensors.1.filter", {"sensors": [{"name": "a1"}, {"name": "b"}]})
     'sensors."b".filter'
     """
-    words, inside = "", table
+    label = ""
+    value = table
     for part in path.split("."):
-        if isinstance(inside, (list, tuple)) and part.isdigit():
-            words = item_label(words, inside, int(part))
-            inside = inside[int(part)] if int(part) < len(inside) else None
+        if isinstance(value, (list, tuple)) and part.isdigit():
+            index = int(part)
+            label = item_label(label, value, index)
+            value = value[index] if index < len(value) else None
         else:
-            words = f"{words}.{part}" if words else part
-            inside = inside.get(part) if isinstance(inside, dict) else None
-    return words
+            label = f"{label}.{part}" if label else part
+            value = value.get(part) if isinstance(value, dict) else None
+    return label

@@ -1,5 +1,6 @@
-"""What the sections of a case take: their keys as a file has them, and the fields and
-tables at a key path, for messages.
+"""What the sections of a case take, for messages.
+
+There are their keys as a file has them, and the fields and tables at a key path.
 """
 
 from __future__ import annotations
@@ -12,8 +13,9 @@ from pydantic.fields import FieldInfo
 
 
 def keys_of(section: type[BaseModel]) -> list[str]:
-    """Return the keys of a section as a file has them; without the type of a table, by which the
-    section was chosen.
+    """Return the keys of a section as a file has them.
+
+    The type of a table, by which the section was chosen, is none of them.
 
     Examples
     --------
@@ -36,31 +38,29 @@ def section_at(section: type[BaseModel], path: Sequence[str]) -> type[BaseModel]
     ... )
     ('GeophoneTable', 'ClassTable')
     """
-    inside: type[BaseModel] | None = section
-    named = False
+    inner: type[BaseModel] | None = section
+    has_chosen_keys = False
     for key in path:
         # an item of a list of tables, or a table by a name that the user chose
-        if key.isdigit() or named:
-            named = False
+        if key.isdigit() or has_chosen_keys:
+            has_chosen_keys = False
             continue
-        field = None if inside is None else field_of(inside, key)
+        field = None if inner is None else field_of(inner, key)
         if field is None:
             return None
-        inside = next(
-            (
-                part
-                for part in parts_of(field)
-                if isinstance(part, type) and issubclass(part, BaseModel)
-            ),
-            None,
+        parts = list(parts_of(field))
+        sections = (
+            part for part in parts if isinstance(part, type) and issubclass(part, BaseModel)
         )
-        named = any(get_origin(part) is dict for part in parts_of(field))
-    return inside
+        inner = next(sections, None)
+        has_chosen_keys = any(get_origin(part) is dict for part in parts)
+    return inner
 
 
 def field_at(section: type[BaseModel], path: Sequence[str]) -> FieldInfo | None:
-    """Return the field at a key path in a section, of an item of a list that of the list;
-    None if there is none.
+    """Return the field at a key path in a section; None if there is none.
+
+    The field of an item of a list is that of the list.
     """
     keys = [key for number, key in enumerate(path) if number < len(path) - 1 or not key.isdigit()]
     above = section_at(section, keys[:-1])
@@ -69,14 +69,14 @@ def field_at(section: type[BaseModel], path: Sequence[str]) -> FieldInfo | None:
 
 def field_of(section: type[BaseModel], key: str) -> FieldInfo | None:
     """Return the field of a section by its key in a file; None if there is none."""
-    fields = section.model_fields.items()
-    return next((info for name, info in fields if key == (info.alias or name)), None)
+    for name, info in section.model_fields.items():
+        if key == (info.alias or name):
+            return info
+    return None
 
 
 def parts_of(field: FieldInfo) -> Iterator[Any]:
-    """Yield the types that the annotation of a field is made of, and what they are
-    annotated with.
-    """
+    """Yield the types that the annotation of a field is made of, and their annotations."""
     yield from field.metadata
     yield from _parts(field.annotation)
 

@@ -52,29 +52,25 @@ class MotionTable(Section):
 
     @model_validator(mode="after")
     def _one_of_two(self) -> MotionTable:
-        given = [name for name in ("amplitude", "frequency") if getattr(self, name) is not None]
-        harmonic = [*given, *(["phase"] if "phase" in self.model_fields_set else [])]
+        needed = ("amplitude", "frequency")
+        missing = [name for name in needed if getattr(self, name) is None]
+        harmonic = [name for name in needed if name not in missing]
+        if "phase" in self.model_fields_set:
+            harmonic.append("phase")
         if self.file is not None and harmonic:
-            words = (
+            raise InputError(
                 f"give either a file or a harmonic motion; leave out {' and '.join(harmonic)}, "
-                "or leave out this"
+                "or leave out this",
+                "file",
             )
-            raise InputError(words, "file")
         if self.file is None and self.repeat:
             raise InputError(
                 "only the motion of a file is repeated, and a harmonic motion repeats by "
                 "itself; leave this out",
                 "repeat",
             )
-        if self.file is None and len(given) < 2:
-            missing = (
-                "amplitude"
-                if given == ["frequency"]
-                else "frequency"
-                if given
-                else "amplitude and frequency"
-            )
-            raise InputError(f"this key needs {missing}, or file in place of both")
+        if self.file is None and missing:
+            raise InputError(f"this key needs {' and '.join(missing)}, or file in place of both")
         if self.file is None and self.columns is not None:
             raise InputError("only a file has columns; leave this out", "columns")
         if not any(self.direction):

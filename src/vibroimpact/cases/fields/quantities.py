@@ -16,10 +16,11 @@ from vibroimpact.units.quantity_text import number_and_unit
 from vibroimpact.units.reading import to_si
 from vibroimpact.units.written import Written, has_deviation, read_written, without_deviation
 
-SMALLEST, LARGEST = 1e-50, 1e50
-"""Range of the magnitude of a nonzero quantity in SI, within which squares and products
-neither overflow nor underflow.
-"""
+SMALLEST = 1e-50
+"""Smallest magnitude of a nonzero quantity in SI, whose square does not underflow."""
+
+LARGEST = 1e50
+"""Largest magnitude of a quantity in SI, whose square does not overflow."""
 
 
 def read_quantity(value: Any, unit: str, allowed: Range) -> float:
@@ -37,10 +38,10 @@ def read_quantity(value: Any, unit: str, allowed: Range) -> float:
     """
     if has_deviation(value):
         keys = "drop.height, drop.speed, drop.gravity, sphere.radius and material.density"
-        words = (
-            f"a standard deviation, for the intervals of a calibration, may stand at {keys} alone"
+        raise InputError(
+            f"{quoted(value, 80)}: a standard deviation, for the intervals of a calibration, may "
+            f'stand at {keys} alone; write "{without_deviation(value)}"'
         )
-        raise InputError(f'{quoted(value, 80)}: {words}; write "{without_deviation(value)}"')
     try:
         number = to_si(value, unit)
     except InputError:
@@ -51,8 +52,9 @@ def read_quantity(value: Any, unit: str, allowed: Range) -> float:
 
 
 def _check_remedy(value: Any, unit: str, allowed: Range) -> None:
-    """Check the number of a text that lacks its unit, or has one where none belongs: only
-    one in range is worth to be written otherwise.
+    """Check the number of a text that lacks its unit, or has one where none belongs.
+
+    Only one in range is worth being written otherwise.
     """
     parts = number_and_unit(value) if isinstance(value, str) else None
     if parts is not None and not (unit and parts[1]):
@@ -73,10 +75,10 @@ def _check(number: float, value: Any, unit: str, allowed: Range) -> None:
 
 @dataclass(frozen=True)
 class Quantity:
-    """Annotation of a quantity field with its SI unit, meaning and range, from which pydantic
-    validates it and makes its JSON schema.
+    """Annotation of a quantity field with its SI unit, meaning and range.
 
-    `words` may stand in place of a value, and are left as they are.
+    From it pydantic validates the field and makes its JSON schema. `words` may stand in place of a
+    value, and are left as they are.
     """
 
     unit: str
@@ -102,11 +104,10 @@ class Quantity:
             return read_quantity(value, self.unit, self.allowed)
         if value not in self.words:
             known = " or ".join(f'"{word}"' for word in self.words)
-            words = (
+            raise InputError(
                 f"{quoted(value)} is not allowed; it must be {known}, or a {self.meaning} with "
-                f"its unit [{self.unit}]"
+                f"its unit [{self.unit}].{did_you_mean(value, self.words)}"
             )
-            raise InputError(f"{words}.{did_you_mean(value, self.words)}")
         return value
 
     def __get_pydantic_core_schema__(
@@ -117,18 +118,20 @@ class Quantity:
     def __get_pydantic_json_schema__(
         self, schema: CoreSchema, handler: GetJsonSchemaHandler
     ) -> dict[str, Any]:
-        found = quantity_schema(self.unit, self.meaning)
-        return (
-            {"anyOf": [{"enum": list(self.words)}, found], "description": found["description"]}
-            if self.words
-            else found
-        )
+        number = quantity_schema(self.unit, self.meaning)
+        if not self.words:
+            return number
+        return {
+            "anyOf": [{"enum": list(self.words)}, number],
+            "description": number["description"],
+        }
 
 
 @dataclass(frozen=True)
 class UncertainQuantity(Quantity):
-    """Annotation of a quantity with which a measurement is evaluated: a text may have a
-    standard deviation, "0.6 m +- 5 mm".
+    """Annotation of a quantity with which a measurement is evaluated.
+
+    A text may have a standard deviation, "0.6 m +- 5 mm".
     """
 
     def __get_pydantic_core_schema__(
@@ -171,9 +174,9 @@ def quantity_schema(unit: str, description: str) -> dict[str, Any]:
     """Return the JSON schema of a quantity."""
     if not unit:
         return {"type": "number", "description": description}
-    gravity = (
-        ', in which "g" is standard gravity, 9.80665 m/s^2' if unit in ("m/s^2", "V s^2/m") else ""
-    )
+    gravity = ""
+    if unit in ("m/s^2", "V s^2/m"):
+        gravity = ', in which "g" is standard gravity, 9.80665 m/s^2'
     return {
         "type": ["number", "string"],
         "description": f"{description} [{unit}]; a string carries its own unit{gravity}",
@@ -188,11 +191,10 @@ def quantity_of(info: FieldInfo) -> Quantity | None:
 def quantity_among(annotations: tuple[Any, ...]) -> Quantity | None:
     """Return the first quantity among annotations or nested in them."""
     for annotation in annotations:
-        found = (
-            annotation
-            if isinstance(annotation, Quantity)
-            else quantity_among((*get_args(annotation), *getattr(annotation, "__metadata__", ())))
-        )
-        if found is not None:
-            return found
+        if isinstance(annotation, Quantity):
+            return annotation
+        inner = (*get_args(annotation), *getattr(annotation, "__metadata__", ()))
+        quantity = quantity_among(inner)
+        if quantity is not None:
+            return quantity
     return None

@@ -107,8 +107,9 @@ _BarMaterial = Annotated[MaterialField, AfterValidator(_not_rigid)]
 
 
 def _elastic_part(material: Material) -> Material:
-    """Return the properties that determine the modes of a bar, so that names and sources
-    do not change the key of the mode store.
+    """Return the properties that determine the modes of a bar.
+
+    So names and sources do not change the key of the mode store.
     """
     return Material(material.density, material.youngs_modulus, material.poissons_ratio)
 
@@ -246,15 +247,14 @@ def _read_supports(value: Any) -> Any:
         return (_read_support(value),)
     if isinstance(value, (list, tuple)):
         check_count(len(value), MOST_ITEMS, "supports")
-        found = []
+        tables = []
         for number, item in enumerate(value):
             try:
-                found.append(item if isinstance(item, SupportTable) else _read_support(item))
+                tables.append(item if isinstance(item, SupportTable) else _read_support(item))
             except InputError as error:
-                raise InputError(
-                    error.message, ".".join(part for part in (str(number), error.key) if part)
-                ) from None
-        return tuple(found)
+                key = f"{number}.{error.key}".rstrip(".")
+                raise InputError(error.message, key) from None
+        return tuple(tables)
     raise InputError(f"{quoted(value)} is not allowed; it must be {_ALLOWED}")
 
 
@@ -269,11 +269,9 @@ def _read_support(value: Any) -> SupportTable:
             raise InputError(
                 f"{quoted(value)} stands alone, without a list: supports = {quoted(value)}"
             )
-        fault = (
-            f"there is no support of type {quoted(name)}"
-            if name is not None
-            else "a support is a table with a type"
-        )
+        fault = "a support is a table with a type"
+        if name is not None:
+            fault = f"there is no support of type {quoted(name)}"
         raise InputError(f"{fault}; there are {choices(_TABLES, str(name))}")
     return read_table(_TABLES[name], value)
 
@@ -306,20 +304,12 @@ def _corners(spacing: tuple[float, float]) -> list[tuple[float, float]]:
 
 def supports_table(value: Any) -> Any:
     """Return supports as they are written in a resolved case file."""
-    if isinstance(value, tuple):
-        return [
-            {
-                **table.model_dump(exclude_none=True, exclude={"material"}, mode="json"),
-                **_material(table),
-            }
-            for table in value
-        ]
-    return value
-
-
-def _material(table: SupportTable) -> dict[str, Any]:
-    return (
-        {"material": material_table(table.material)}
-        if isinstance(table, (BarTable, BarsTable))
-        else {}
-    )
+    if not isinstance(value, tuple):
+        return value
+    tables = []
+    for support in value:
+        table = support.model_dump(exclude_none=True, exclude={"material"}, mode="json")
+        if isinstance(support, (BarTable, BarsTable)):
+            table["material"] = material_table(support.material)
+        tables.append(table)
+    return tables

@@ -25,9 +25,8 @@ def drag_loss(
 
     With a constant drag coefficient the speed after a fall of height H is
     :math:`\sqrt{1 - e^{-2 k H}}\,\sqrt{g/k}`, with :math:`k = \tfrac12 \rho_a C_d \pi R^2 / m`. As
-    the drag grows with the square of
-    the speed, and so with the height fallen, the coefficient is evaluated after two thirds of the
-    fall.
+    the drag grows with the square of the speed, and so with the height fallen, the coefficient is
+    evaluated after two thirds of the fall.
 
     Parameters
     ----------
@@ -40,66 +39,73 @@ def drag_loss(
     longer : float or array, default 1
         What drag takes on the way of the sphere over what it takes in the fall from rest.
     """
-    speed = np.sqrt(2.0 * gravity * fall)
-    part, exponent = 1.0, 0.0
+    speed_in_vacuum = np.sqrt(2.0 * gravity * fall)
+    ratio = 1.0  # of the speed in air to that in a vacuum
     for _ in range(_ROUNDS):
-        reynolds = AIR_DENSITY * math.sqrt(2.0 / 3.0) * speed * part * 2.0 * radius / AIR_VISCOSITY
+        reynolds = (
+            AIR_DENSITY
+            * math.sqrt(2.0 / 3.0)
+            * speed_in_vacuum
+            * ratio
+            * 2.0
+            * radius
+            / AIR_VISCOSITY
+        )
         exponent = (
             0.75 * AIR_DENSITY / density * drag_coefficient(reynolds) * longer * fall / radius
         )
-        part = np.sqrt(-np.expm1(-exponent) / exponent)
-    return 1.0 - part
+        ratio = np.sqrt(-np.expm1(-exponent) / exponent)
+    return 1.0 - ratio
 
 
 def _number(drops: Conditions) -> Array:
-    height = drops.case["drop"].get("height")
-    if (
-        height is None
-        or drops.case["drop"].get("air") is not None
-        or drops.case["contact"].get("liquid") is not None
-    ):
+    drop = drops.case["drop"]
+    height = drop.get("height")
+    if height is None:
         return math.nan
-    gravity, slope = (
-        drops.case["drop"]["gravity"],
-        np.cos(drops.case["plate"].get("inclination") or 0.0),
-    )
-    velocity = drops.case["drop"].get("velocity")
+    if drop.get("air") is not None or drops.case["contact"].get("liquid") is not None:
+        return math.nan
+    gravity = drop["gravity"]
+    slope = np.cos(drops.case["plate"].get("inclination") or 0.0)
+    velocity = drop.get("velocity")
     if velocity is None:  # straight down
         return drag_loss(drops.radius, drops.density, (height - drops.radius) / slope, gravity)
     # along the normal: the top of a flight that is thrown up, or from which it would have the speed
     # that it is thrown down with, is higher; on the way from there drag takes energy with the
     # square of its length, up once more in the first case, and none in the second
     higher = 0.5 * velocity[2] ** 2 / (gravity * slope)
-    whole = height - drops.radius + higher
-    return drag_loss(
-        drops.radius,
-        drops.density,
-        whole,
-        gravity * slope,
-        1.0 + np.sign(velocity[2]) * (higher / whole) ** 2,
-    )
+    fall = height - drops.radius + higher
+    longer = 1.0 + np.sign(velocity[2]) * (higher / fall) ** 2
+    return drag_loss(drops.radius, drops.density, fall, gravity * slope, longer)
 
 
-def _sentence(drop: Conditions, lost: float) -> str:
-    plate, flight = drop.case["plate"], drop.case["drop"]
-    velocity, is_inclined = flight.get("velocity"), plate.get("inclination") is not None
-    about = (
-        "" if velocity is None else "at least " if is_inclined or any(velocity[:2]) else "about "
-    )
+def _sentence(drop: Conditions, loss: float) -> str:
+    plate = drop.case["plate"]
+    flight = drop.case["drop"]
+    velocity = flight.get("velocity")
+    is_inclined = plate.get("inclination") is not None
+    if velocity is None:
+        about = ""
+    elif is_inclined or any(velocity[:2]):
+        about = "at least "
+    else:
+        about = "about "
     remedy = f"give {_air_for(drop)}"
     if velocity is None and not is_inclined and plate.get("motion") is None:
-        speed = math.sqrt(2.0 * flight["gravity"] * (flight["height"] - drop.radius)) * (1.0 - lost)
+        fall = flight["height"] - drop.radius
+        speed = math.sqrt(2.0 * flight["gravity"] * fall) * (1.0 - loss)
         remedy += f", or drop.speed = {speed:.4g} in place of the height to begin with that speed"
     return (
-        f"in air the first touch would be {about}{percent_less(lost).removeprefix('-')} "
+        f"in air the first touch would be {about}{percent_less(loss).removeprefix('-')} "
         "slower than in the vacuum that this drop falls "
         f"through, and each rebound loses speed again; {remedy}"
     )
 
 
 def _air_for(drop: Conditions) -> str:
-    """Return the key that makes a sphere fall through air, of which a very light one
-    takes more than drag.
+    """Return the key that makes a sphere fall through air.
+
+    Of a very light one air takes more than drag.
     """
     try:
         check_thin(AIR_DENSITY, drop.density)

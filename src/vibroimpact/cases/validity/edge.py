@@ -1,5 +1,6 @@
-r"""Proximity to an edge: the contact is that of a half space, which is too stiff near an
-edge (quarter space).
+r"""Proximity to an edge.
+
+The contact is that of a half space, which is too stiff near an edge (quarter space).
 """
 
 from __future__ import annotations
@@ -13,23 +14,26 @@ from vibroimpact.cases.conditions import Conditions
 from vibroimpact.cases.limit import Limit
 from vibroimpact.materials import RIGID
 
-_RADII, _THICKNESSES = 10.0, 2.0
-"""Least distance of the contact from an edge: for a rigid plate in contact radii, where a half
-space is 3 to 5 % too stiff; for an elastic plate in thicknesses, beyond which the local deformation
-vanishes (it decays as exp(-pi d / h))."""
+_RADII = 10.0
+"""Least distance from an edge, in contact radii: a half space is 3 to 5 % too stiff there."""
+
+_THICKNESSES = 2.0
+"""Least distance from an edge of an elastic plate, in thicknesses.
+
+Beyond, the local deformation vanishes: it decays as exp(-pi d / h).
+"""
 
 _NEAR = 2.0  # contact radii: a nearer edge softens more than to first order
 
 
 def softening(contact_radius: Array, distance: Array, poissons_ratio: Array, share: Array) -> Array:
-    r"""Return the relative reduction of contact stiffness near a free edge, to first order in
-    contact radius over distance from the edge.
+    r"""Return the relative reduction of contact stiffness near a free edge.
+
+    It is to first order in contact radius over distance from the edge.
 
     Under a force F at a distance d from the edge, the indentation of a quarter space exceeds that
-    of a half space by
-    :math:`\psi (1 - \nu^2) F / (2 \pi E d)`: :math:`\psi` times that due to the mirror image of the
-    force. Hertz's indentation is
-    :math:`3 F / (4 E^* a)`.
+    of a half space by :math:`\psi (1 - \nu^2) F / (2 \pi E d)`: :math:`\psi` times that due to the
+    mirror image of the force. Hertz's indentation is :math:`3 F / (4 E^* a)`.
 
     Parameters
     ----------
@@ -43,9 +47,8 @@ def softening(contact_radius: Array, distance: Array, poissons_ratio: Array, sha
     Notes
     -----
     :math:`\psi = 1.35 + 0.3 \nu + 4.2 \nu^2` is fitted to three-dimensional finite elements, within
-    4 %. The problem is that of
-    Hetenyi, M. (1970). A general solution for the elastic quarter space. Journal of Applied
-    Mechanics 37, 70-76.
+    4 %. The problem is that of Hetenyi, M. (1970). A general solution for the elastic quarter
+    space. Journal of Applied Mechanics 37, 70-76.
 
     Examples
     --------
@@ -57,31 +60,33 @@ def softening(contact_radius: Array, distance: Array, poissons_ratio: Array, sha
 
 
 def _distance(drops: Conditions) -> Array:
-    """Return the distance of the contact from the nearest edge [m]; NaN if the edges of
-    the plate are not known.
+    """Return the distance of the contact from the nearest edge [m].
+
+    NaN if the edges of the plate are not known.
     """
-    if drops.size is None or (
-        isinstance(drops.case["plate"].get("mesh"), dict) and "file" in drops.case["plate"]["mesh"]
-    ):
+    mesh = drops.case["plate"].get("mesh")
+    if drops.size is None or (isinstance(mesh, dict) and "file" in mesh):
         return math.nan
-    sides = zip(drops.size[:2], _place(drops), strict=True)
-    distance = np.minimum(*(0.5 * length - abs(place) for length, place in sides))
+    length, width = drops.size[:2]
+    x, y = _first_contact(drops)
+    distance = np.minimum(0.5 * length - abs(x), 0.5 * width - abs(y))
     # beyond an edge it falls past the plate
     return np.where(distance >= 0.0, distance, math.nan)[()]
 
 
-def _place(drops: Conditions) -> tuple[Array, Array]:
+def _first_contact(drops: Conditions) -> tuple[Array, Array]:
     """Return x and y of the first contact [m], to which an oblique drop flies through a vacuum."""
-    drop, inclination = drops.case["drop"], drops.case["plate"].get("inclination") or 0.0
+    drop = drops.case["drop"]
     x, y = drop["position"]
     if drop.get("height") is None or not _is_oblique(drops):
         return x, y
-    along_x, along_y, up = drop.get("velocity") or (0.0, 0.0, 0.0)
-    down = drop["gravity"] * np.cos(inclination)
-    time = (up + np.sqrt(up**2 + 2.0 * down * (drop["height"] - drops.radius))) / down
-    return x + along_x * time + 0.5 * drop["gravity"] * np.sin(
-        inclination
-    ) * time**2, y + along_y * time
+    inclination = drops.case["plate"].get("inclination") or 0.0
+    gravity_down = drop["gravity"] * np.cos(inclination)
+    velocity_x, velocity_y, velocity_up = drop.get("velocity") or (0.0, 0.0, 0.0)
+    fall = drop["height"] - drops.radius
+    time = (velocity_up + np.sqrt(velocity_up**2 + 2.0 * gravity_down * fall)) / gravity_down
+    x_of_contact = x + velocity_x * time + 0.5 * drop["gravity"] * np.sin(inclination) * time**2
+    return x_of_contact, y + velocity_y * time
 
 
 def _is_oblique(drops: Conditions) -> bool:
@@ -89,48 +94,53 @@ def _is_oblique(drops: Conditions) -> bool:
 
 
 def _least_distance(drops: Conditions) -> Array:
-    """Return the distance from the edge beyond which the half space holds [m]; a rigid
-    one holds where it is touched.
+    """Return the distance from the edge beyond which the half space holds [m].
+
+    A rigid one holds where it is touched.
     """
     if drops.model("plate") == "elastic":
         return _THICKNESSES * drops.size[2]
-    return (1.0 if drops.materials["plate"] is RIGID else _RADII) * drops.contact_radius
+    radii = 1.0 if drops.materials["plate"] is RIGID else _RADII
+    return radii * drops.contact_radius
 
 
 def _number(drops: Conditions) -> Array:
     distance = _distance(drops)
-    return distance if np.all(np.isnan(distance)) else _least_distance(drops) / distance
+    if np.all(np.isnan(distance)):
+        return distance
+    return _least_distance(drops) / distance
 
 
 def _sentence(drop: Conditions, _: float) -> str:
-    distance, plate = float(_distance(drop)), drop.materials["plate"]
-    patch, least = float(drop.contact_radius), float(_least_distance(drop))
-    reach = (
-        f"{distance / drop.size[2]:.2g} thicknesses"
-        if drop.model("plate") == "elastic"
-        else f"{distance / patch:.2g} contact radii"
-    )
-    why = "it reaches over the edge, and is computed as on a plane"
-    if plate is not RIGID:
-        soft = float(
-            softening(
-                patch,
-                max(distance, patch),
-                plate.poissons_ratio,
-                float(drop.modulus / plate.plane_strain_modulus),
-            )
-        )
-        by = "at least" if distance < _NEAR * patch else "about"
-        why = (
-            f"a half space is too stiff there, by {by} {100.0 * soft:.2g} % where the edge is free"
-        )
+    distance = float(_distance(drop))
+    contact_radius = float(drop.contact_radius)
+    if drop.model("plate") == "elastic":
+        relative = f"{distance / drop.size[2]:.2g} thicknesses"
+    else:
+        relative = f"{distance / contact_radius:.2g} contact radii"
+    least = float(_least_distance(drop))
     remedy = f"choose drop.position so that it keeps {least:.3g} m"
     if least > 0.5 * float(min(drop.size[:2])):
         remedy = f"take a larger plate, on which it keeps {least:.3g} m"
     about = "about " if _is_oblique(drop) else ""
     return (
-        f"the first contact is {about}{distance:.3g} m from the edge of the plate, {reach}: "
-        f"{why}; {remedy}"
+        f"the first contact is {about}{distance:.3g} m from the edge of the plate, {relative}: "
+        f"{_effect(drop, distance, contact_radius)}; {remedy}"
+    )
+
+
+def _effect(drop: Conditions, distance: float, contact_radius: float) -> str:
+    """Return in words what the edge does to the contact."""
+    plate = drop.materials["plate"]
+    if plate is RIGID:
+        return "it reaches over the edge, and is computed as on a plane"
+    share = float(drop.modulus / plate.plane_strain_modulus)
+    reduction = float(
+        softening(contact_radius, max(distance, contact_radius), plate.poissons_ratio, share)
+    )
+    by = "at least" if distance < _NEAR * contact_radius else "about"
+    return (
+        f"a half space is too stiff there, by {by} {100.0 * reduction:.2g} % where the edge is free"
     )
 
 

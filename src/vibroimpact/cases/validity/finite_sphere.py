@@ -20,13 +20,13 @@ _RATIOS = np.linspace(0.0, 0.49, 15)
 def force_lacking(
     force: Array, radius: Array, modulus: Array, youngs_modulus: Array, poissons_ratio: Array
 ) -> Array:
-    r"""Return the relative deficit of Hertz's largest force (half space) with respect to that of a
-    sphere of finite size.
+    r"""Return the relative deficit of Hertz's largest force.
+
+    It is that of a half space with respect to a sphere of finite size.
 
     Both absorb the same energy quasi-statically. With Hertz's indentation :math:`\delta` at his
-    force :math:`F`, and the displacement
-    :math:`s(F)` in series for the finite sphere (`QuasiStatic`), the force of the finite sphere is
-    :math:`f F`, and
+    force :math:`F`, and the displacement :math:`s(F)` in series for the finite sphere
+    (`QuasiStatic`), the force of the finite sphere is :math:`f F`, and
 
     .. math:: \tfrac25 F \delta\, f^{5/3} + \int_0^{f F} F'\, s'(F')\, dF' = \tfrac25 F \delta
 
@@ -52,23 +52,27 @@ def force_lacking(
     ... )
     0.054
     """
-    whole = 4.0 / 3.0 * modulus * radius**2
-    ratio = np.minimum(np.cbrt(force / whole), FITTED[1])
-    force = whole * ratio**3  # limited to the range of the fitted correction
-    series = QuasiStatic(0.0, 1.0 / (youngs_modulus * radius), _factors(poissons_ratio), whole)
-    hertz = 0.4 * force * radius * ratio**2
-    more = 1.0
+    # at which Hertz's contact radius would be that of the sphere
+    unit_force = 4.0 / 3.0 * modulus * radius**2
+    relative_radius = np.minimum(np.cbrt(force / unit_force), FITTED[1])
+    force = unit_force * relative_radius**3  # limited to the range of the fitted correction
+    series = QuasiStatic(0.0, 1.0 / (youngs_modulus * radius), _factors(poissons_ratio), unit_force)
+    hertz_energy = 0.4 * force * radius * relative_radius**2
+    factor = 1.0  # f of the equation, by Newton's method
     for _ in range(_STEPS):
-        part = np.cbrt(more)
-        wrong = hertz * (part**5 - 1.0) + series.energy(more * force)
-        more = more - wrong / (
-            hertz * 5.0 / 3.0 * part**2 + more * force**2 * series.linearised(more * force)[1]
-        )
-    return 1.0 - 1.0 / more
+        root = np.cbrt(factor)
+        excess = hertz_energy * (root**5 - 1.0) + series.energy(factor * force)
+        _, compliance = series.linearised(factor * force)
+        slope = hertz_energy * 5.0 / 3.0 * root**2 + factor * force**2 * compliance
+        factor = factor - excess / slope
+    return 1.0 - 1.0 / factor
 
 
 def _factors(poissons_ratio: Array) -> tuple[Array, Array, Array, Array]:
-    """Return the factors of the finite-size term; for an array of ratios they are interpolated."""
+    """Return the factors of the finite-size term.
+
+    For an array of ratios they are interpolated.
+    """
     if np.ndim(poissons_ratio) == 0:
         # rare negative ratios: the term of zero is close
         term = sphere_term(min(max(float(poissons_ratio), 0.0), 0.5))
@@ -81,8 +85,9 @@ def _factors(poissons_ratio: Array) -> tuple[Array, Array, Array, Array]:
 
 @cache
 def _table() -> Array:
-    """Return the factors of the finite-size term at the ratios of the interpolation
-    table, one row per factor.
+    """Return the factors of the finite-size term at the ratios of the interpolation table.
+
+    There is one row per factor.
     """
     terms = [sphere_term(float(ratio)) for ratio in _RATIOS]
     return np.array([[term.constant, term.logarithm, term.linear, term.square] for term in terms]).T
@@ -99,30 +104,30 @@ def _number(drops: Conditions) -> Array:
     ):
         return np.nan  # these include the effect, or count local deformation twice
     sphere = drops.materials["sphere"]
-    lacking = force_lacking(
+    deficit = force_lacking(
         drops.summary.force,
         drops.radius,
         drops.modulus,
         sphere.youngs_modulus,
         sphere.poissons_ratio,
     )
-    return np.where(drops.is_hertzian, lacking, np.nan)
+    return np.where(drops.is_hertzian, deficit, np.nan)
 
 
-def _sentence(drop: Conditions, lacking: float) -> str:
+def _sentence(drop: Conditions, deficit: float) -> str:
     case = drop.case
-    oblique = (
+    is_oblique = (
         {"velocity", "angle", "spin"} & set(case["drop"])
         or "inclination" in case["plate"]
         or "friction" in case["contact"]
     )
-    remedy = "" if oblique else "; contact.finite_sphere = true corrects it"
-    ratio = float(drop.contact_radius / drop.radius)
-    about = "about" if ratio <= FITTED[1] else "at least"
+    remedy = "" if is_oblique else "; contact.finite_sphere = true corrects it"
+    relative_radius = float(drop.contact_radius / drop.radius)
+    about = "about" if relative_radius <= FITTED[1] else "at least"
     return (
         f"Hertz's half space makes the largest force {about} "
-        f"{percent_less(lacking).removeprefix('-')} too small: the contact radius is "
-        f"{ratio:.2g} of the sphere's, which is stiffer than a half space{remedy}"
+        f"{percent_less(deficit).removeprefix('-')} too small: the contact radius is "
+        f"{relative_radius:.2g} of the sphere's, which is stiffer than a half space{remedy}"
     )
 
 

@@ -10,17 +10,16 @@ from vibroimpact.cases.conditions import Conditions
 from vibroimpact.cases.limit import Limit, percent_more, two_digits
 
 PLATE_MESH_COMPLIANCE = "plate_mesh_compliance_m_N"
-"""The fact of the elastic bodies with the compliance that the elements of the plate lack
-at the contact point.
-"""
+"""The fact with the compliance that the elements of the plate lack at the contact point."""
 
 _ALLOWED = 0.005  # relative error of the largest force
 _SPARE = 2.0  # the error differs by so much with the place in an element
 
 
 def plate_mesh_error(facts: Mapping[str, Any], impacts: Mapping[str, Any]) -> float:
-    r"""Return the estimated part by which the first largest force is too large, as the elements of
-    the plate lack compliance.
+    r"""Return the estimated share by which the first largest force is too large.
+
+    It is so as the elements of the plate lack compliance.
 
     A compliance c that is added in series with the contact takes energy from it. While the ball is
     stopped the plate hardly yields but in the quasi-static response C of the modes left out, so
@@ -50,26 +49,23 @@ def plate_mesh_error(facts: Mapping[str, Any], impacts: Mapping[str, Any]) -> fl
     lacking = facts.get(PLATE_MESH_COMPLIANCE)
     if lacking is None or not len(impacts["impact"]):
         return math.nan
-    force, depth = (float(impacts[name][0]) for name in ("max_force_N", "max_indentation_m"))
-    return (
-        0.5
-        * float(lacking)
-        * force
-        / (2.0 / 3.0 * depth + float(facts.get("series_compliance_m_N", 0.0)) * force)
-    )
+    force = float(impacts["max_force_N"][0])
+    depth = float(impacts["max_indentation_m"][0])
+    # the equation, with both sides of its fraction times the force
+    series_compliance = float(facts.get("series_compliance_m_N", 0.0))
+    return 0.5 * float(lacking) * force / (2.0 / 3.0 * depth + series_compliance * force)
 
 
 def _sentence(drop: Conditions, error: float) -> str:
     # what elements lack grows a little less than with the square of their size, and faster where
     # they are small
-    large = percent_more(error).removeprefix("+")
-    finer = float(drop.case["plate"]["mesh"]["element_size"]) * math.sqrt(
-        _ALLOWED / (_SPARE * error)
-    )
+    percentage = percent_more(error).removeprefix("+")
+    size = float(drop.case["plate"]["mesh"]["element_size"])
+    finer = size * math.sqrt(_ALLOWED / (_SPARE * error))
     return (
         "the elements of the plate are large for its thickness and do not follow its "
         "deflection next to the contact, which makes "
-        f"the first largest force about {large} too large; give plate.mesh.element_size = "
+        f"the first largest force about {percentage} too large; give plate.mesh.element_size = "
         f'"{two_digits(1e3 * finer)} mm"'
     )
 

@@ -15,15 +15,14 @@ PLATE_THEORY_INERTIA = "plate_theory_inertia_m_s2_N"
 
 
 def plate_theory_error(facts: Mapping[str, Any], impacts: Mapping[str, Any]) -> float:
-    r"""Return the estimated part by which the first largest force is too large, as plate elements
-    have no thickness waves.
+    r"""Return the estimated share by which the first largest force is too large.
+
+    It is so as plate elements have no thickness waves.
 
     A short force also excites waves through the thickness of a plate. To first order these reduce
-    the displacement of the face by
-    :math:`c \ddot F`, of which the inertia c is among the facts; the error of the largest force is
-    that displacement over the tangent
-    compliance of the contact, two thirds of indentation over force. A Hertzian force is about
-    :math:`\sin^{3/2}(\pi t / T)`.
+    the displacement of the face by :math:`c \ddot F`, of which the inertia c is among the facts.
+    The error of the largest force is that displacement over the tangent compliance of the contact,
+    two thirds of indentation over force. A Hertzian force is about :math:`\sin^{3/2}(\pi t / T)`.
 
     Parameters
     ----------
@@ -45,14 +44,11 @@ def plate_theory_error(facts: Mapping[str, Any], impacts: Mapping[str, Any]) -> 
     inertia = facts.get(PLATE_THEORY_INERTIA)
     if inertia is None or not len(impacts["impact"]):
         return math.nan
-    force, depth = (float(impacts[name][0]) for name in ("max_force_N", "max_indentation_m"))
-    return (
-        float(inertia)
-        * 1.5
-        * (math.pi / time_of_contact(impacts)) ** 2
-        * force
-        / (2.0 / 3.0 * depth)
-    )
+    force = float(impacts["max_force_N"][0])
+    depth = float(impacts["max_indentation_m"][0])
+    duration = time_of_contact(impacts)
+    # at the peak the second derivative of the force is -3/2 (pi/T)^2 times it
+    return float(inertia) * 1.5 * (math.pi / duration) ** 2 * force / (2.0 / 3.0 * depth)
 
 
 def _sentence(drop: Conditions, error: float) -> str:

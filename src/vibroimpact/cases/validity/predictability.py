@@ -22,19 +22,21 @@ def _number(drops: Conditions) -> Array:
 
 def _sentence(drop: Conditions, _: float) -> str:
     changes = np.asarray(drop.summary.changes, dtype=float)
-    first, lost = np.flatnonzero(~(changes <= _PREDICTED))[0], np.flatnonzero(~(changes <= _LOST))
-    grown = (
-        []
-        if lost.size and lost[0] == first
-        else [f"to {100.0 * changes[first]:.2g} % of impact {first + 1}"]
-    )
-    grown += [f"to {100.0 * _LOST:g} % or more of impact {lost[0] + 1}"] if lost.size else []
+    first = np.flatnonzero(~(changes <= _PREDICTED))[0]
+    lost = np.flatnonzero(~(changes <= _LOST))
+    growth = []
+    if not lost.size or lost[0] != first:
+        growth.append(f"to {100.0 * changes[first]:.2g} % of impact {first + 1}")
+    if lost.size:
+        growth.append(f"to {100.0 * _LOST:g} % or more of impact {lost[0] + 1}")
     undamped = _undamped(drop)
     remedy = f"give {undamped} damping, or judge" if undamped else "judge"
-    small = max(RELATIVE_CHANGE, drop.case["run"]["tolerance"]) if drop.case else RELATIVE_CHANGE
+    perturbation = RELATIVE_CHANGE
+    if drop.case:
+        perturbation = max(RELATIVE_CHANGE, drop.case["run"]["tolerance"])
     return (
-        f"the drop is sensitive from impact {first + 1} on: a relative change of {small:g} "
-        f"in it grows {' and '.join(grown)}, "
+        f"the drop is sensitive from impact {first + 1} on: a relative change of "
+        f"{perturbation:g} in it grows {' and '.join(growth)}, "
         f"so that these impacts are not predictable; {remedy} them by their distribution "
         f"in a study over {_start(drop)}"
     )
@@ -42,17 +44,19 @@ def _sentence(drop: Conditions, _: float) -> str:
 
 def _start(drop: Conditions) -> str:
     """Return the key by which the case gives how the drop begins."""
-    given = drop.case["drop"] if drop.case else {}
-    return next(
-        (f"drop.{key}" for key in ("height", "speed") if given.get(key) is not None),
-        "drop.velocity.z" if given else "drop.height",
-    )
+    if not drop.case:
+        return "drop.height"
+    table = drop.case["drop"]
+    for key in ("height", "speed"):
+        if table.get(key) is not None:
+            return f"drop.{key}"
+    return "drop.velocity.z"
 
 
 def _shown(change: float) -> str:
-    part = f"{two_digits(100.0 * change)} %" if change < 0.995 else "100 % or more"
+    percentage = f"{two_digits(100.0 * change)} %" if change < 0.995 else "100 % or more"
     return (
-        f"an impact that changes by {part} for a relative change of the drop by "
+        f"an impact that changes by {percentage} for a relative change of the drop by "
         f"{RELATIVE_CHANGE:g}, or by the tolerance if that is larger"
     )
 
@@ -66,7 +70,9 @@ def _undamped(drop: Conditions) -> str:
         for body in ("plate", "sphere")
         if drop.model(body) == "elastic" and not drop.case[body].get("damping")
     ]
-    return f"{' and '.join(bodies)} {'its' if len(bodies) == 1 else 'their'}" if bodies else ""
+    if not bodies:
+        return ""
+    return f"{' and '.join(bodies)} {'its' if len(bodies) == 1 else 'their'}"
 
 
 LIMITS = (

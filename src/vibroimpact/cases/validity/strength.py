@@ -19,12 +19,12 @@ _BODIES = ("sphere", "plate")
 
 
 def demands(material: Material, peak_pressure: Array) -> dict[str, tuple[Array, Array, str]]:
-    r"""Return, by the name of each known strength, the stress in a body under a Hertz contact, the
-    strength, and the verb of its failure.
+    r"""Return the stress in a body under a Hertz contact for each known strength, by its name.
+
+    With it are the strength, and the verb of its failure.
 
     The largest shear stress below the surface equals that of a uniaxial test at :math:`p_0 / 1.6`;
-    the tension at the rim of the contact
-    is :math:`(1 - 2 \nu) p_0 / 3`.
+    the tension at the rim of the contact is :math:`(1 - 2 \nu) p_0 / 3`.
 
     Parameters
     ----------
@@ -38,64 +38,65 @@ def demands(material: Material, peak_pressure: Array) -> dict[str, tuple[Array, 
     Johnson, K. L. (1985). Contact Mechanics. Cambridge University Press, section 3.4 (rim) and eq.
     (6.9).
     """
-    uniaxial, rim = (
-        peak_pressure / _YIELD,
-        (1.0 - 2.0 * material.poissons_ratio) / 3.0 * peak_pressure,
-    )
-    found = {
-        "yield_strength": (uniaxial, material.yield_strength, "yields"),
-        "compressive_strength": (uniaxial, material.compressive_strength, "is crushed"),
-        "tensile_strength": (rim, material.tensile_strength, "cracks"),
+    uniaxial_stress = peak_pressure / _YIELD
+    rim_tension = (1.0 - 2.0 * material.poissons_ratio) / 3.0 * peak_pressure
+    failures = {
+        "yield_strength": (uniaxial_stress, material.yield_strength, "yields"),
+        "compressive_strength": (uniaxial_stress, material.compressive_strength, "is crushed"),
+        "tensile_strength": (rim_tension, material.tensile_strength, "cracks"),
     }
     return {
         name: (stress, strength, verb)
-        for name, (stress, strength, verb) in found.items()
+        for name, (stress, strength, verb) in failures.items()
         if strength is not None
     }
 
 
 def _stress_ratio(body: str, drops: Conditions) -> Array:
-    """Return the largest ratio of stress to strength of a body; NaN if no strength is
-    known or the law models yielding.
+    """Return the largest ratio of stress to strength of a body.
+
+    NaN if no strength is known or the law models yielding.
     """
     if drops.yields:
         return math.nan
-    ratios = [
-        stress / strength
-        for stress, strength, _ in demands(drops.materials[body], drops.peak_pressure).values()
-    ]
-    return math.nan if not ratios else np.maximum.reduce(np.broadcast_arrays(*ratios))
+    failures = demands(drops.materials[body], drops.peak_pressure)
+    if not failures:
+        return math.nan
+    ratios = [stress / strength for stress, strength, _ in failures.values()]
+    return np.maximum.reduce(np.broadcast_arrays(*ratios))
 
 
 def _strength_sentence(body: str, drop: Conditions, ratio: float) -> str:
-    material, pressure = drop.materials[body], float(drop.peak_pressure)
+    material = drop.materials[body]
+    pressure = float(drop.peak_pressure)
     name, (stress, strength, verb) = max(
-        demands(material, pressure).items(), key=lambda item: item[1][0] / item[1][1]
+        demands(material, pressure).items(), key=lambda failure: failure[1][0] / failure[1][1]
     )
     known = f"its {name.replace('_', ' ')} of {_stress(strength)}"
-    how = (
-        f": the tension at the rim of the contact is {_stress(stress)}, {two_digits(ratio)} "
-        f"times {known}"
-    )
-    if name != "tensile_strength":
+    if name == "tensile_strength":
+        comparison = (
+            f": the tension at the rim of the contact is {_stress(stress)}, {two_digits(ratio)} "
+            f"times {known}"
+        )
+    else:
         begins = "yield" if name == "yield_strength" else "be crushed"
         times = "just above" if ratio < 1.05 else f"{two_digits(ratio)} times"
-        how = f", {times} that at which it begins to {begins} ({_YIELD} times {known})"
-    remedy = (
-        "take a law that yields, such as meyer"
-        # in which laws take a restitution
-        if name == "yield_strength" and drop.case["contact"].get("liquid") is None
-        else "take the force for an upper bound, and the restitution from a measurement"
+        comparison = f", {times} that at which it begins to {begins} ({_YIELD} times {known})"
+    remedy = "take the force for an upper bound, and the restitution from a measurement"
+    # in a liquid a law needs a restitution
+    if name == "yield_strength" and drop.case["contact"].get("liquid") is None:
+        remedy = "take a law that yields, such as meyer"
+    return (
+        f"{_named(body, material)} {verb} under Hertz's peak pressure of "
+        f"{_stress(pressure)}{comparison}; {drop.law.name} leaves this out: {remedy}"
     )
-    beginning = (
-        f"{_named(body, material)} {verb} under Hertz's peak pressure of {_stress(pressure)}{how}"
-    )
-    return f"{beginning}; {drop.law.name} leaves this out: {remedy}"
 
 
 def _stress(value: float) -> str:
     """Return a stress in MPa or GPa."""
-    return f"{value / 1e9:.3g} GPa" if value >= 0.9995e9 else f"{value / 1e6:.3g} MPa"
+    if value >= 0.9995e9:
+        return f"{value / 1e9:.3g} GPa"
+    return f"{value / 1e6:.3g} MPa"
 
 
 def _named(body: str, material: Material) -> str:

@@ -25,8 +25,9 @@ _PREFIXED = ("Pa", "N", "Hz")  # large values of these units are written with k,
 
 
 class _Number(NamedTuple):
-    """A number of a case, or a list with one value per impact: its key in words, and the
-    table and the name that hold it.
+    """A number of a case, or a list with one value per impact.
+
+    It is given by its key in words, and the table and the name that hold it.
     """
 
     key: str
@@ -66,18 +67,21 @@ def slips(case: ResolvedCase, aside: Container[str] = ()) -> list[str]:
     >>> slips(resolved_case(case))
     ['sphere.radius: 25 m is very large for a sphere; was 25 mm meant? Write "25 mm"']
     """
-    found = []
-    for checked, at, estimate in _checked_numbers(case):
-        said, meant = _assess(checked, estimate, at.key, at.table, at.table[at.name])
-        if said and at.key not in aside:
-            found.append(said)
-        at.table[at.name] = meant  # later ranges are evaluated with the corrected value
-    return found
+    sentences = []
+    for checked, number, estimate in _checked_numbers(case):
+        value = number.table[number.name]
+        sentence, corrected = _assess(checked, estimate, number.key, number.table, value)
+        if sentence and number.key not in aside:
+            sentences.append(sentence)
+        # later ranges are evaluated with the corrected value
+        number.table[number.name] = corrected
+    return sentences
 
 
 def swept_slips(case: ResolvedCase, swept: Mapping[str, Any]) -> list[str]:
-    """Return a sentence for each swept key with implausible values: how many, an example, and the
-    unit that was likely meant.
+    """Return a sentence for each swept key with implausible values.
+
+    It says how many there are, with an example, and the unit that was likely meant.
 
     Parameters
     ----------
@@ -95,14 +99,17 @@ def swept_slips(case: ResolvedCase, swept: Mapping[str, Any]) -> list[str]:
     ['sphere.radius: 2 of 3 values, such as 10 m, which is very large for a sphere; was 10 mm meant?
     Write "10 mm"']
     """
-    found = []
-    for checked, at, estimate in _checked_numbers(case, swept):
-        values = swept.get(at.key)
+    sentences = []
+    for checked, number, estimate in _checked_numbers(case, swept):
+        key = number.key
+        table = number.table
+        values = swept.get(key)
         if values is not None and np.asarray(values).dtype.kind == "f":
-            said, _ = _assess(checked, estimate, at.key, at.table, np.unique(values).tolist())
-            found += [said] if said else []
-        at.table[at.name] = _assess(checked, estimate, at.key, at.table, at.table[at.name])[1]
-    return found
+            sentence, _ = _assess(checked, estimate, key, table, np.unique(values).tolist())
+            if sentence:
+                sentences.append(sentence)
+        _, table[number.name] = _assess(checked, estimate, key, table, table[number.name])
+    return sentences
 
 
 def _checked_numbers(
@@ -124,23 +131,24 @@ def _checked_numbers(
     }
     with np.errstate(all="ignore"):
         for checked in CHECKED_KEYS:
-            for at in _numbers_at(table, checked.key.split("."), ""):
-                yield checked, at, HertzEstimate(table)
+            for number in _numbers_at(table, checked.key.split("."), ""):
+                yield checked, number, HertzEstimate(table)
 
 
 def _numbers_at(table: Any, path: Sequence[str], above: str) -> Iterator[_Number]:
     """Yield the numbers at a key path below a table."""
     part, *rest = path
-    if part == "#":
-        for count, one in enumerate(table if isinstance(table, list) else ()):
-            yield from _numbers_at(one, rest, item_label(above, table, count))
+    if part == "#":  # each item of a list
+        items = table if isinstance(table, list) else []
+        for number, item in enumerate(items):
+            yield from _numbers_at(item, rest, item_label(above, items, number))
         return
-    if isinstance(table, list):
-        name: Any = next(
-            (names.index(part) for names in NUMBER_LABELS.values() if part in names), None
-        )
-    else:
-        name = part if isinstance(table, dict) and part in table else None
+    name: Any = None
+    if isinstance(table, list):  # of numbers, which have labels such as "length"
+        labels = next((labels for labels in NUMBER_LABELS.values() if part in labels), ())
+        name = labels.index(part) if labels else None
+    elif isinstance(table, dict) and part in table:
+        name = part
     if name is None:
         return
     key = f"{above}.{part}" if above else part
@@ -153,8 +161,9 @@ def _numbers_at(table: Any, path: Sequence[str], above: str) -> Iterator[_Number
 def _assess(
     checked: CheckedKey, estimate: HertzEstimate, key: str, table: Mapping[Any, Any], given: Any
 ) -> tuple[str, Any]:
-    """Return the message for a value or a list of values, "" if plausible; and the values
-    with their corrections.
+    """Return the message for a value or a list of values, and the values with their corrections.
+
+    The message is "" if they are plausible.
     """
     try:
         return _assess_values(checked, estimate, key, table, given)
@@ -167,99 +176,104 @@ def _assess_values(
     checked: CheckedKey, estimate: HertzEstimate, key: str, table: Mapping[Any, Any], given: Any
 ) -> tuple[str, Any]:
     """Return what `_assess` returns, without its protection against extreme values."""
-    values = [float(one) for one in given] if isinstance(given, list) else [float(given)]
+    values = [float(value) for value in given] if isinstance(given, list) else [float(given)]
     bounds = checked.rule(estimate, table if isinstance(table, Mapping) else {})
-    strange = [
+    implausible = [
         value
         for value in values
         if value != 0.0 and (abs(value) < bounds.low or abs(value) > bounds.high)
     ]
-    if not strange:
+    if not implausible:
         return "", given
     unit = checked.unit.replace("N/m^n", stiffness_unit(estimate.exponent))
-    units = tuple(
-        one.replace("^n", f"^{estimate.exponent:g}")
-        if estimate.exponent != 1.0
-        else one.replace("^n", "")
-        for one in checked.units
-    )
-    meant = {value: _most_likely(abs(value), bounds, unit, units) for value in strange}
-    first = next((value for value in strange if meant[value] is not None), strange[0])
-    likely = meant[first]
-    remedy = (
-        _text(bounds.remedy, first)
-        if likely is None
-        else f'was {likely.text} meant? Write "{likely.text}"'
-    )
+    power = "" if estimate.exponent == 1.0 else f"^{estimate.exponent:g}"
+    units = tuple(other.replace("^n", power) for other in checked.units)
+    corrections = {value: _most_likely(abs(value), bounds, unit, units) for value in implausible}
+    # one that a unit explains serves as the example
+    example = next((value for value in implausible if corrections[value]), implausible[0])
+    correction = corrections[example]
+    if correction is None:
+        remedy = _text(bounds.remedy, example)
+    else:
+        remedy = f'was {correction.text} meant? Write "{correction.text}"'
     if not remedy:
         return "", given
-    words = _text(bounds.below if abs(first) < bounds.low else bounds.above, first)
-    shown = f"{number_text(first)} {unit}"
-    many = (
-        f"{shown} {words}"
-        if len(values) == 1
-        else f"{len(strange)} of {len(values)} values, such as {shown}, which {words}"
-    )
-    repaired = [value if (one := meant.get(value)) is None else one.value for value in values]
-    return f"{key}: {many}; {remedy}", repaired if isinstance(given, list) else repaired[0]
+    fault = _text(bounds.below if abs(example) < bounds.low else bounds.above, example)
+    shown = f"{number_text(example)} {unit}"
+    if len(values) == 1:
+        sentence = f"{key}: {shown} {fault}; {remedy}"
+    else:
+        sentence = (
+            f"{key}: {len(implausible)} of {len(values)} values, such as {shown}, which {fault}; "
+            f"{remedy}"
+        )
+    corrected = []
+    for value in values:
+        correction = corrections.get(value)
+        corrected.append(value if correction is None else correction.value)
+    return sentence, corrected if isinstance(given, list) else corrected[0]
 
 
 def _most_likely(
     value: float, bounds: PlausibleRange, unit: str, units: tuple[str, ...]
 ) -> _Correction | None:
     """Return the most likely correction of an implausible value; None if no unit explains it."""
-    sizes = {one: _si_factor(one, unit) for one in units}
-    likely = [
-        one for one in _corrections(value, unit, sizes) if bounds.low <= one.value <= bounds.high
+    sizes = {other: _si_factor(other, unit) for other in units}
+    plausible = [
+        correction
+        for correction in _corrections(value, unit, sizes)
+        if bounds.low <= correction.value <= bounds.high
     ]
     if bounds.reference is None:
-        return likely[0] if likely else None
-    near = math.log10(bounds.within)
+        return plausible[0] if plausible else None
     # score: decades between corrected value and reference, plus half a decade for each step down
-    # the order of likelihood
-    scored = [
-        (abs(math.log10(one.value / bounds.reference)), 0.5 * place, place, one)
-        for place, one in enumerate(likely)
-    ]
-    return min(
-        ((off + rare, place, one) for off, rare, place, one in scored if off <= near),
-        default=(0.0, 0, None),
-    )[2]
+    # the order of likelihood; of equal scores the first one counts
+    best: _Correction | None = None
+    best_score = math.inf
+    for rank, correction in enumerate(plausible):
+        decades = abs(math.log10(correction.value / bounds.reference))
+        score = decades + 0.5 * rank
+        if decades <= math.log10(bounds.within) and score < best_score:
+            best = correction
+            best_score = score
+    return best
 
 
 def _text(words: Words, value: float) -> str:
+    """Return a part of a message, which may be a function of the value."""
     return words if isinstance(words, str) else words(abs(value))
 
 
 def _corrections(value: float, unit: str, sizes: Mapping[str, float]) -> Iterator[_Correction]:
-    """Yield the possible corrections of a value: a unit was omitted, given in place of
-    SI, or confused with another.
+    """Yield the possible corrections of a value.
+
+    A unit was omitted, given in place of SI, or confused with another.
     """
-    natural = sorted([(1.0, unit), *((size, one) for one, size in sizes.items())], reverse=True)
+    natural = sorted([(1.0, unit), *((size, other) for other, size in sizes.items())], reverse=True)
 
-    def written(meant: float) -> str:
-        size, name = next(
-            ((size, one) for size, one in natural if meant >= 0.999 * size), natural[-1]
-        )
-        return f"{number_text(meant / size)} {name}"
+    def in_natural_unit(value: float) -> str:
+        """Return a value in the largest unit in which it is not below one."""
+        size, name = next((item for item in natural if value >= 0.999 * item[0]), natural[-1])
+        return f"{number_text(value / size)} {name}"
 
-    for one, size in sizes.items():
-        yield _Correction(
-            value * size, f"{number_text(value)} {one}" if value < _SHORT else written(value * size)
-        )
+    # the unit was omitted
+    for other, size in sizes.items():
+        text = f"{number_text(value)} {other}" if value < _SHORT else in_natural_unit(value * size)
+        yield _Correction(value * size, text)
+    # a value in SI was given in another unit
     for size in sizes.values():
         meant = value / size
-        yield _Correction(
-            meant,
-            written(meant)
-            if meant >= _SHORT and unit in _PREFIXED
-            else f"{number_text(meant)} {unit}",
-        )
-    for size, other in permutations(sizes.values(), 2):
-        yield _Correction(value * size / other, written(value * size / other))
+        text = f"{number_text(meant)} {unit}"
+        if meant >= _SHORT and unit in _PREFIXED:
+            text = in_natural_unit(meant)
+        yield _Correction(meant, text)
+    # two units were confused
+    for size, other_size in permutations(sizes.values(), 2):
+        meant = value * size / other_size
+        yield _Correction(meant, in_natural_unit(meant))
 
 
 @cache
-def _si_factor(one: str, unit: str) -> float:
+def _si_factor(other: str, unit: str) -> float:
     """Return the conversion factor of a unit to the SI unit."""
-    return to_si(f"1 {one}", unit)
+    return to_si(f"1 {other}", unit)
