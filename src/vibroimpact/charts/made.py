@@ -1,5 +1,6 @@
-"""Making of charts: one that can't be made or drawn is replaced by one that says why, so
-that what was computed is written all the same.
+"""Making of charts: one that can't be made or drawn is replaced by one that says why.
+
+What was computed is thus written all the same.
 """
 
 from __future__ import annotations
@@ -21,8 +22,9 @@ SCENE = "plate_in_motion"
 
 
 def made_charts(makers: Mapping[str, Callable[[], Chart | None]]) -> list[Chart]:
-    """Return charts, each as its function makes it; one that raises is replaced by one that says
-    why, with a `ChartWarning`.
+    """Return charts, each as its function makes it.
+
+    One that raises is replaced by one that says why, with a `ChartWarning`.
 
     Parameters
     ----------
@@ -60,8 +62,9 @@ def drawn(chart: Chart, draw: Callable[[Chart], dict[str, Any]]) -> dict[str, An
 def made_scene(
     make: Callable[[], dict[str, Any] | None],
 ) -> tuple[dict[str, Any] | None, list[Chart]]:
-    """Return the plate in motion and no chart, or where it can't be made None and the
-    chart that says why.
+    """Return the plate in motion and no chart.
+
+    Where it can't be made, return None and the chart that says why.
     """
     try:
         return make(), []
@@ -78,6 +81,7 @@ def warn_of_lost(name: str, error: Exception) -> str:
 
 
 def _lost(name: str, title: str, error: Exception) -> Chart:
-    words = f"This chart could not be drawn: {warn_of_lost(name, error)}"
+    reason = warn_of_lost(name, error)
     blank = Panel(Axis(), Axis(), (), picture=True)
-    return Chart(name, title, ((blank,),), height=_HEIGHT, subtitle=words)
+    subtitle = f"This chart could not be drawn: {reason}"
+    return Chart(name, title, ((blank,),), height=_HEIGHT, subtitle=subtitle)

@@ -143,7 +143,8 @@ class _Print:
         views_part: Any = None
         if views_below:
             height_ratios = [sum(heights), _ENLARGED_ROW]
-            rows_part, views_part = figure.subfigures(2, 1, height_ratios=height_ratios)
+            parts: Any = figure.subfigures(2, 1, height_ratios=height_ratios)
+            rows_part, views_part = parts
         self._rows(rows_part, heights)
         if views_below:
             self._views_below(views_part, views_below)

@@ -1,10 +1,10 @@
-"""A chart as a figure of plotly, in plain dictionaries: its traces and layout, with arrays in SI
-units and the frames that show them.
+"""A chart as a figure of plotly, in plain dictionaries.
 
-Neither plotly itself nor a browser is needed here. A page completes the figure in the browser,
-where a view or a zoom chooses what is drawn of long arrays (`scripts/charts.js`);
-`vibroimpact.charts.notebook` completes it in Python. Colours are names of roles after an "@",
-replaced by those of the light or the dark ground.
+They are its traces and layout, with arrays in SI units and the frames that show them. Neither
+plotly itself nor a browser is needed here. A page completes the figure in the browser, where a view
+or a zoom chooses what is drawn of long arrays (`scripts/charts.js`); `vibroimpact.charts.notebook`
+completes it in Python. Colours are names of roles after an "@", replaced by those of the light or
+the dark ground.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from vibroimpact.charts.axis import Axis
+from vibroimpact.charts.axis import Axis, View
 from vibroimpact.charts.chart import Chart, Panel, values_on
 from vibroimpact.charts.contours import contours_of
 from vibroimpact.charts.frame import (
@@ -56,16 +56,29 @@ from vibroimpact.charts.traces import (
     silence,
 )
 
-ROW, SMALL_ROW, PICTURE_ROW = 300, 170, 340
-"""Height of a row: the only one, one of several, and one of pictures [px]."""
+ROW = 300
+"""Height of the only row [px]."""
+
+SMALL_ROW = 170
+"""Height of one of several rows [px]."""
+
+PICTURE_ROW = 340
+"""Height of a row of one or two pictures [px]."""
 
 _PICTURE_INCH = 118.0
 """What an inch of a picture in print is on a wide page [px]."""
 
-_GAP_ACROSS, _GAP_BESIDE, _GAP_BETWEEN_PICTURES, _GAP_UP = 0.07, 0.17, 0.03, 64
-"""Gap between panels of a row, where colour bars are in it, and between pictures of a row
-[parts of the width], and between rows [px].
-"""
+_GAP = 0.07
+"""Gap between panels of a row [parts of the width]."""
+
+_GAP_WITH_COLOUR_BARS = 0.17
+"""Gap between panels of a row where colour bars are in it [parts of the width]."""
+
+_GAP_BETWEEN_PICTURES = 0.03
+"""Gap between pictures of a row [parts of the width]."""
+
+_GAP_BETWEEN_ROWS = 64
+"""Gap between rows [px]."""
 
 _ANCHORS: dict[str, dict[str, Any]] = {
     "left": {"xanchor": "left", "yanchor": "middle", "xshift": 6},
@@ -74,7 +87,7 @@ _ANCHORS: dict[str, dict[str, Any]] = {
     "above": {"xanchor": "center", "yanchor": "bottom", "yshift": 4},
     "below": {"xanchor": "center", "yanchor": "top", "yshift": -4},
 }
-"""How words lie beside their place."""
+"""How words lie beside their position."""
 
 _SHADES = 40
 """Number of colours of facets, which are drawn as one trace each."""
@@ -118,52 +131,46 @@ class _Drawing:
         self.bars: dict[str, str] = {}
 
     def figure(self) -> dict[str, Any]:
+        """Return the figure."""
         chart = self.chart
-        shown: dict[str, Frame] = {}
-        places: dict[str, Panel] = {}
-        number, heights = 0, self._heights()
-        bottom = sum(heights) + _GAP_UP * (len(heights) - 1)
-        total = bottom
-        first: dict[Axis, str] = {}
+        heights = self._heights()
+        total = sum(heights) + _GAP_BETWEEN_ROWS * (len(heights) - 1)
+        top = total
+        frames: dict[str, Frame] = {}
+        panels: dict[str, Panel] = {}  # by the suffix of the names of their axes
+        first: dict[Axis, str] = {}  # the name of each axis in the first panel that has it
         rows: list[list[tuple[str, int]]] = []
-        for place, (row, height) in enumerate(zip(chart.rows, heights, strict=True)):
+        for number, (row, height) in enumerate(zip(chart.rows, heights, strict=True)):
             rows.append([])
-            below = {panel.x for later in chart.rows[place + 1 :] for panel in later}
+            axes_below = {panel.x for later in chart.rows[number + 1 :] for panel in later}
+            gap = self._gap(row)
+            width = (1.0 - gap * (len(row) - 1)) / len(row)
             for column, panel in enumerate(row):
-                number += 1
-                suffix = "" if number == 1 else str(number)
-                own_bar = any(
-                    isinstance(mark, Map) and self._own_scale(mark.scale) for mark in row[0].marks
-                )
-                gap = (
-                    _GAP_BETWEEN_PICTURES
-                    if self._pictures()
-                    else _GAP_BESIDE
-                    if own_bar
-                    else _GAP_ACROSS
-                )
-                width = (1.0 - gap * (len(row) - 1)) / len(row)
+                suffix = str(len(panels) + 1) if panels else ""
                 left = column * (width + gap)
                 self._place(
                     panel,
                     suffix,
                     (left, left + width),
-                    ((bottom - height) / total, bottom / total),
+                    ((top - height) / total, top / total),
                     first,
-                    panel.x not in below,
+                    panel.x not in axes_below,
                 )
                 # names that the panel before has already
                 if column and panel.y.names and panel.y is row[column - 1].y:
                     self.layout[f"yaxis{suffix}"]["showticklabels"] = False
-                rows[-1] += [(suffix, height)] if panel.marks else []
-                shown |= {f"x{suffix}": self.frames[panel.x], f"y{suffix}": self.frames[panel.y]}
-                places[suffix] = panel
+                if panel.marks:
+                    rows[-1].append((suffix, height))
+                frames[f"x{suffix}"] = self.frames[panel.x]
+                frames[f"y{suffix}"] = self.frames[panel.y]
+                panels[suffix] = panel
                 for mark in panel.marks:
                     self._draw(mark, panel, suffix)
-            bottom -= height + _GAP_UP
-        without = panels_without_label(chart, self.frames)
-        for suffix in (suffix for suffix, panel in places.items() if panel in without):
-            self.layout[f"yaxis{suffix}"]["title"]["text"] = ""
+            top -= height + _GAP_BETWEEN_ROWS
+        unlabelled = panels_without_label(chart, self.frames)
+        for suffix, panel in panels.items():
+            if panel in unlabelled:
+                self.layout[f"yaxis{suffix}"]["title"]["text"] = ""
         self.layout["height"] = total
         self.layout["showlegend"] = bool(self.named)
         return {
@@ -176,11 +183,20 @@ class _Drawing:
             "pictures": self._pictures(),
             "rows": rows,
             "bars": self.bars,
-            "frames": {name: _as_dict(frame) for name, frame in shown.items()},
+            "frames": {name: _as_dict(frame) for name, frame in frames.items()},
             "levels": self.levels,
             "spans": self.spans,
-            "views": self._views(places),
+            "views": self._views(panels),
         }
+
+    def _gap(self, row: tuple[Panel, ...]) -> float:
+        """Return the gap between the panels of a row [parts of the width]."""
+        if self._pictures():
+            return _GAP_BETWEEN_PICTURES
+        for mark in row[0].marks:
+            if isinstance(mark, Map) and self._own_scale(mark.scale):
+                return _GAP_WITH_COLOUR_BARS
+        return _GAP
 
     def _heights(self) -> list[int]:
         if self.chart.height is not None:
@@ -345,19 +361,21 @@ class _Drawing:
                     },
                 )
             case Label():
-                xref, yref = (
-                    (f"x{suffix} domain", f"y{suffix} domain")
-                    if mark.corner
-                    else (f"x{suffix}", f"y{suffix}")
-                )
-                x, y = (
-                    (mark.x, mark.y)
-                    if mark.corner
-                    else (self._place_of(panel.x, mark.x), self._place_of(panel.y, mark.y))
-                )
-                self._write(mark.words, xref, yref, x, y, **_ANCHORS[mark.anchor])
+                self._label(mark, panel, suffix)
             case Arrow():
                 self._arrow(mark, panel, suffix)
+
+    def _label(self, mark: Label, panel: Panel, suffix: str) -> None:
+        """Write words at a position of a panel, or at a part of its width and height."""
+        anchor = _ANCHORS[mark.anchor]
+        if mark.corner:
+            xref = f"x{suffix} domain"
+            yref = f"y{suffix} domain"
+            self._write(mark.words, xref, yref, mark.x, mark.y, **anchor)
+        else:
+            x = self._position(panel.x, mark.x)
+            y = self._position(panel.y, mark.y)
+            self._write(mark.words, f"x{suffix}", f"y{suffix}", x, y, **anchor)
 
     def _add(self, mark: Any, at: dict[str, str], trace: dict[str, Any]) -> None:
         self.data.append({**trace, **at, **self._legend(mark)})
@@ -396,13 +414,14 @@ class _Drawing:
         frame = self.frames[mark.scale]
         if mark.scale not in self.scales:
             self._add_scale(mark, frame)
-        # plotly would put the edges of a logarithmic axis midway, or below zero
-        x, y = (
-            (cell_edges(mark.x, log=panel.x.log), cell_edges(mark.y, log=panel.y.log))
-            if mark.cells
-            else (mark.x, mark.y)
-        )
-        shown, unit = frame.shown(mark.values), plain(frame.unit)
+        x = mark.x
+        y = mark.y
+        if mark.cells:
+            # plotly would put the edges of a logarithmic axis midway, or below zero
+            x = cell_edges(mark.x, log=panel.x.log)
+            y = cell_edges(mark.y, log=panel.y.log)
+        shown = frame.shown(mark.values)
+        unit = plain(frame.unit)
         trace = {
             "type": "heatmap",
             "x": x,
@@ -457,8 +476,10 @@ class _Drawing:
         self.scales[mark.scale] = name
         log = is_log(mark.scale, self.chart)
         low, high = frame.shown(np.array(ends_on(mark.scale, self.chart))).tolist()
-        low, high = (math.log10(low), math.log10(high)) if log else (low, high)
-        most = max(abs(low), abs(high)) or 1.0
+        if log:
+            low = math.log10(low)
+            high = math.log10(high)
+        largest = max(abs(low), abs(high)) or 1.0
         bar: dict[str, Any] = {
             "title": {"text": plain(frame.title), "side": "right"},
             "thickness": 12,
@@ -472,52 +493,46 @@ class _Drawing:
                 "tickvals": ticks.tolist(),
                 "ticktext": [f"{10.0**value:.3g}" for value in ticks],
             }
-        if len(
-            [one for one in self.chart.panels if any(isinstance(m, Map) for m in one.marks)]
-        ) > 1 and self._own_scale(mark.scale):
+        panels_with_maps = [
+            panel
+            for panel in self.chart.panels
+            if any(isinstance(other, Map) for other in panel.marks)
+        ]
+        if len(panels_with_maps) > 1 and self._own_scale(mark.scale):
             bar |= self._beside(mark.scale)
         self.layout[name] = {
-            "cmin": -most if mark.diverging else low,
-            "cmax": most if mark.diverging else high,
+            "cmin": -largest if mark.diverging else low,
+            "cmax": largest if mark.diverging else high,
             "colorscale": [list(stop) for stop in (DIVERGING if mark.diverging else SEQUENTIAL)],
             "colorbar": bar,
         }
 
     def _own_scale(self, scale: Axis) -> bool:
         """Return whether a scale is that of a single panel among several."""
-        return (
-            sum(
-                any(getattr(mark, "scale", None) is scale for mark in panel.marks)
-                for panel in self.chart.panels
-            )
-            == 1
-        )
+        return sum(_has_scale(panel, scale) for panel in self.chart.panels) == 1
 
     def _beside(self, scale: Axis) -> dict[str, Any]:
-        """Return the place of a colour bar beside its only panel."""
+        """Return the position of a colour bar beside its only panel."""
         number = next(
-            index
-            for index, panel in enumerate(self.chart.panels)
-            if any(getattr(mark, "scale", None) is scale for mark in panel.marks)
+            index for index, panel in enumerate(self.chart.panels) if _has_scale(panel, scale)
         )
         suffix = "" if number == 0 else str(number + 1)
         self.bars[suffix] = self.scales[scale]
-        across, up = (
-            self.layout[f"xaxis{suffix}"]["domain"],
-            self.layout[f"yaxis{suffix}"]["domain"],
-        )
+        _, right = self.layout[f"xaxis{suffix}"]["domain"]
+        bottom, top = self.layout[f"yaxis{suffix}"]["domain"]
         return {
-            "x": across[1],
+            "x": right,
             "xanchor": "left",
-            "y": 0.5 * (up[0] + up[1]),
+            "y": 0.5 * (bottom + top),
             "yanchor": "middle",
-            "len": up[1] - up[0],
+            "len": top - bottom,
             "title": {"text": self.frames[scale].unit, "side": "top"},
         }
 
     def _facets(self, mark: Facets, at: dict[str, str]) -> None:
-        """Draw facets in a few colours: one filled trace of each, whose outlines are
-        interrupted by NaN.
+        """Draw facets in a few colours: one filled trace of each.
+
+        Its outlines are interrupted by NaN.
         """
         values = mark.values if mark.scale is None else values_on(mark.scale, self.chart.panels)
         low, high = float(values.min()), float(values.max())
@@ -528,11 +543,11 @@ class _Drawing:
         shade = np.clip((part * _SHADES).astype(int), 0, _SHADES - 1)
         stops = DIVERGING if mark.diverging else SHADES
         for number in np.unique(shade):
-            here = shade == number
-            corners = mark.corners[here]
-            closed = np.concatenate(
-                [corners, corners[:, :1], np.full_like(corners[:, :1], np.nan)], axis=1
-            ).reshape(-1, 2)
+            is_of_shade = shade == number
+            corners = mark.corners[is_of_shade]
+            first_corner = corners[:, :1]
+            gap = np.full_like(first_corner, np.nan)
+            closed = np.concatenate([corners, first_corner, gap], axis=1).reshape(-1, 2)
             colour = colour_between(stops, (number + 0.5) / _SHADES)
             trace: dict[str, Any] = {
                 "type": "scatter",
@@ -544,7 +559,7 @@ class _Drawing:
             trace |= {"hoverinfo": "skip", "showlegend": False}
             if mark.scale is not None:
                 frame = self.frames[mark.scale]
-                mean = float(frame.shown(mark.values[here].mean()))
+                mean = float(frame.shown(mark.values[is_of_shade].mean()))
                 trace |= {
                     "hoveron": "fills",
                     "hoverinfo": "text",
@@ -565,53 +580,64 @@ class _Drawing:
             }
             self.data.append({**nothing, "marker": bar, **at})
 
-    def _place_of(self, axis: Axis, value: float) -> float:
-        """Return the place of an annotation along an axis: on a logarithmic one plotly
-        takes the logarithm, other than of a trace.
+    def _position(self, axis: Axis, value: float) -> float:
+        """Return the position of an annotation along an axis.
+
+        On a logarithmic one plotly takes the logarithm, other than of a trace.
         """
         shown = float(self.frames[axis].shown(np.array(value)))
         return math.log10(shown) if axis.log else shown
 
     def _arrow(self, mark: Arrow, panel: Panel, suffix: str) -> None:
-        (x0, y0), (x1, y1) = (
-            (self._place_of(panel.x, x), self._place_of(panel.y, y))
-            for x, y in (mark.start, mark.end)
-        )
-        ref = {
+        start_x, start_y = mark.start
+        end_x, end_y = mark.end
+        arrow = {
+            "text": "",
+            "showarrow": True,
+            "x": self._position(panel.x, end_x),
+            "y": self._position(panel.y, end_y),
+            "ax": self._position(panel.x, start_x),
+            "ay": self._position(panel.y, start_y),
             "xref": f"x{suffix}",
             "yref": f"y{suffix}",
             "axref": f"x{suffix}",
             "ayref": f"y{suffix}",
-        }
-        heads = {
             "arrowhead": 2,
             "arrowside": "end+start" if mark.both else "end",
             "arrowwidth": LOOKS[mark.role].width,
             "arrowcolor": f"@{mark.role}",
         }
-        self.layout["annotations"].append(
-            {"text": "", "showarrow": True, "x": x1, "y": y1, "ax": x0, "ay": y0, **ref, **heads}
-        )
+        self.layout["annotations"].append(arrow)
 
-    def _views(self, places: dict[str, Panel]) -> list[dict[str, Any]]:
+    def _views(self, panels: dict[str, Panel]) -> list[dict[str, Any]]:
         """Return the views with the frames and ranges that each of them changes."""
-        found = []
+        views = []
         for number, view in enumerate(self.chart.views):
             frames: dict[str, Any] = {}
-            for suffix, panel in places.items():
+            for suffix, panel in panels.items():
                 if number < len(panel.x.views):
-                    own, panels = panel.x.views[number], self.chart.panels
-                    across, up = view_frames(panel, own, self.frames[panel.y], panels)
-                    span = view_range(panel, own, panels)
-                    frames[f"x{suffix}"] = {
-                        **_as_dict(across),
-                        "range": across.shown(np.array([own.start, own.end])).tolist(),
-                    }
-                    frames[f"y{suffix}"] = _as_dict(up) | (
-                        {} if span is None else {"range": up.shown(np.array(span)).tolist()}
-                    )
-            found.append({"name": view.name, "headline": view.headline, "frames": frames})
-        return found
+                    across, up = self._view_frames(panel, panel.x.views[number])
+                    frames[f"x{suffix}"] = across
+                    frames[f"y{suffix}"] = up
+            views.append({"name": view.name, "headline": view.headline, "frames": frames})
+        return views
+
+    def _view_frames(self, panel: Panel, view: View) -> tuple[dict[str, Any], dict[str, Any]]:
+        """Return the frames of both axes of a panel in a view, with the ranges shown."""
+        panels = self.chart.panels
+        across, up = view_frames(panel, view, self.frames[panel.y], panels)
+        horizontal = _as_dict(across)
+        horizontal["range"] = across.shown(np.array([view.start, view.end])).tolist()
+        vertical = _as_dict(up)
+        span = view_range(panel, view, panels)
+        if span is not None:
+            vertical["range"] = up.shown(np.array(span)).tolist()
+        return horizontal, vertical
+
+
+def _has_scale(panel: Panel, scale: Axis) -> bool:
+    """Return whether a panel has a map or facets of a scale."""
+    return any(getattr(mark, "scale", None) is scale for mark in panel.marks)
 
 
 def _as_dict(frame: Frame) -> dict[str, Any]:
