@@ -123,10 +123,24 @@ def departures(name: str) -> dict[str, float]:
         for same in (np.isnan, np.isposinf, np.isneginf):
             assert np.array_equal(same(now[key]), same(old)), key
         finite = np.isfinite(old)
+        if key.startswith("history/"):
+            finite &= _beside_impulses(before).reshape(-1, *[1] * (old.ndim - 1))
         off = float(np.abs(now[key][finite] - old[finite]).max(initial=0.0))
         allowed = max(_allowance(key) * growth, _known_to(name))
         found[key] = off / ((_scale(key, before) or 1.0) * allowed)
     return found
+
+
+def _beside_impulses(numbers: Mapping[str, Floats]) -> Floats:
+    """Return which times of a history are not those of impacts without duration, at which a
+    velocity is either one.
+    """
+    times = numbers["history/time_s"]
+    if "impacts/duration_s" not in numbers:
+        return np.ones(len(times), dtype=bool)
+    impulses = numbers["impacts/time_s"][numbers["impacts/duration_s"] == 0.0]
+    apart = np.abs(times[:, None] - impulses[None, :])
+    return np.asarray((apart > 1e-12 * times[-1]).all(axis=1))
 
 
 def _known_to(name: str) -> float:
