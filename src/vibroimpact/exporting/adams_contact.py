@@ -4,7 +4,7 @@ newtons and seconds.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import NamedTuple
@@ -19,6 +19,7 @@ from vibroimpact.contact.laws.hunt_crossley import HuntCrossley
 from vibroimpact.contact.registry import contact_laws
 from vibroimpact.contact.speed_function import SpeedFunction
 from vibroimpact.errors import InputError
+from vibroimpact.exporting.adams_text import adams_number
 from vibroimpact.exporting.contact_parameters import approach_speeds
 from vibroimpact.exporting.drop import Drop
 
@@ -214,39 +215,6 @@ def adams_contact(drop: Drop) -> AdamsContact:
         damping=damping,
         varies=varies,
         meaning=meaning,
-    )
-
-
-def adams_number(value: float) -> str:
-    """Return a number in Adams' syntax with 15 digits: with a decimal point, and an exponent with
-    capital E.
-
-    Examples
-    --------
-    >>> (
-    ...     adams_number(1e-05),
-    ...     adams_number(25.0),
-    ...     adams_number(0.1 + 0.2),
-    ...     adams_number(5),
-    ...     adams_number(1e22),
-    ... )
-    ('1.0E-05', '25.0', '0.3', '5.0', '1.0E+22')
-    """
-    mantissa, _, exponent = repr(float(f"{value:.15g}")).partition("e")
-    return (mantissa if "." in mantissa else f"{mantissa}.0") + (f"E{exponent}" if exponent else "")
-
-
-def adams_numbers(values: Sequence[float]) -> str:
-    """Return numbers as a comma-separated list."""
-    return ", ".join(map(adams_number, values))
-
-
-def column_titles(readings: Mapping[int, tuple[str, str]]) -> str:
-    """Return the titles of the columns of a request up to the last one used, empty for
-    unused columns.
-    """
-    return ", ".join(
-        f'"{readings.get(column, ("",))[0]}"' for column in range(1, max(readings) + 1)
     )
 
 

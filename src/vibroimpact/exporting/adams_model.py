@@ -8,8 +8,9 @@ from textwrap import wrap
 from typing import Any, NamedTuple
 
 from vibroimpact.calibration.adams_dialog import dialog_rows
-from vibroimpact.exporting.adams_contact import AdamsContact, adams_contact
+from vibroimpact.exporting.adams_contact import AdamsContact, Names, adams_contact
 from vibroimpact.exporting.adams_motion import AdamsMotion, adams_friction, adams_motion
+from vibroimpact.exporting.adams_text import LINE
 from vibroimpact.exporting.contact_parameters import first_contact, laws_of_impacts, shared_notes
 from vibroimpact.exporting.drop import Drop
 from vibroimpact.exporting.program_friction import friction_notes
@@ -25,9 +26,6 @@ _OWN_NAMES = {
     *("slip_x", "slip_y", "drag", "friction", "opposite", "along_plate"),
 }
 """Names of the other elements of the model, which a material may not have."""
-
-LINE = 80
-"""Largest length of a line."""
 
 ACCURACY = 1e-6
 """Error tolerance of the integrator; of displacements [mm]."""
@@ -88,6 +86,12 @@ class AdamsModel:
         """Acceleration of gravity [mm/s^2]."""
         along = (0.0, 0.0) if self.motion is None else self.motion.gravity
         return *along, -self.contact.gravity
+
+    @property
+    def spot(self) -> tuple[float, float, float]:
+        """The point of the plate below the sphere at the start [mm]."""
+        x, y, _ = self.centre
+        return x, y, 0.0
 
     @property
     def corner(self) -> tuple[float, float, float]:
@@ -192,30 +196,56 @@ def legal_name(text: str) -> str:
     return f"drop_{name}" if name[0].isdigit() else name
 
 
-def header_comments(model: AdamsModel) -> list[str]:
-    """Return the comment lines at the head of a file."""
+def header_lines(model: AdamsModel) -> list[str]:
+    """Return the lines of the comment at the head of a file, without their marks."""
     return [
-        f"! {line}"
+        line
         for remark in (model.title, *remarks(model))
         for line in wrap(remark, LINE - 2, break_on_hyphens=False)
     ]
 
 
-def wrap_expression(text: str, width: int) -> list[str]:
-    """Return an expression as lines of at most `width` characters, broken at blanks.
+def adams_quantities(model: AdamsModel, names: Names, contact: str) -> dict[str, Any]:
+    """Return what the templates of Adams View and Adams/Solver name, in Adams' units; functions
+    are run-time expressions.
 
-    Examples
-    --------
-    >>> wrap_expression("A + B * (C - D)", 8)
-    ['A + B *', '(C - D)']
+    Parameters
+    ----------
+    model : AdamsModel
+        The model.
+    names : Names
+        References to its elements.
+    contact : str
+        Reference to the force element of the contact.
     """
-    lines = [""]
-    for word in text.split(" "):
-        if lines[-1] and len(lines[-1]) + 1 + len(word) > width:
-            lines.append(word)
-        else:
-            lines[-1] = f"{lines[-1]} {word}".lstrip()
-    return lines
+    quantities: dict[str, Any] = {
+        "model": model,
+        "names": names,
+        "header_lines": header_lines(model),
+        "diameter": 2.0 * model.radius,
+        "oblique": model.motion is not None,
+        "stores_approach_speed": model.contact.holds_speed,
+        "damping_varies": model.contact.varies,
+        "sensor_error": SENSOR_ERROR,
+        "error_tolerance": ACCURACY,
+        "gap": model.contact.gap(names),
+        "speed_at_touch": model.contact.coming_speed(names),
+        "stored_approach_speed": model.contact.held_speed(names),
+        "damping": model.contact.damping_now(names),
+        "contact_force": model.contact.force(names),
+        "requests": {"motion": model.contact.readings(names, contact)},
+    }
+    if model.motion is not None:
+        components = model.motion.components(names)
+        quantities["velocity_along_plate"] = model.motion.velocity
+        quantities["spin"] = model.motion.spin
+        # Adams View takes angles in degrees, Adams/Solver in radians
+        quantities["spin_in_degrees"] = [math.degrees(spin) for spin in model.motion.spin]
+        quantities["friction_variables"] = model.motion.variables(names, contact)
+        quantities["friction_force"] = components[:3]
+        quantities["friction_torque"] = components[3:]
+        quantities["requests"]["along_plate"] = model.motion.readings(names)
+    return quantities
 
 
 def _is_elastic(material: Material) -> bool:

@@ -7,7 +7,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from vibroimpact.contact.friction.law import FrictionLaw
-from vibroimpact.exporting.adams_contact import Names, adams_number
+from vibroimpact.exporting.adams_contact import Names
+from vibroimpact.exporting.adams_text import adams_number
 from vibroimpact.exporting.contact_parameters import approach_speeds
 from vibroimpact.exporting.drop import Drop
 from vibroimpact.exporting.program_friction import COULOMB, friction_in

@@ -8,6 +8,14 @@ from functools import cache
 from importlib.resources import files
 from typing import TYPE_CHECKING, Any
 
+from vibroimpact.exporting.adams_text import (
+    adams_number,
+    adams_numbers,
+    column_titles,
+    solver_lines,
+    view_function,
+)
+
 if TYPE_CHECKING:
     from jinja2 import Environment
 
@@ -27,7 +35,7 @@ def render_deck(template: str, **quantities: Any) -> str:
         Name of the template in `exporting/formats/templates/`.
     **quantities
         What the template names; one that is missing is an error. Filters for templates
-        are the other functions of this module.
+        are the other functions of this module, and those of `adams_text`.
 
     Examples
     --------
@@ -60,6 +68,11 @@ def _environment() -> Environment:
         "numbers": numbers,
         "comment_lines": comment_lines,
         "xml_comment": xml_comment,
+        "adams_number": adams_number,
+        "adams_numbers": adams_numbers,
+        "column_titles": column_titles,
+        "view_function": view_function,
+        "solver_lines": solver_lines,
     }
     return environment
 
