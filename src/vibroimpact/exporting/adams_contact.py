@@ -104,12 +104,11 @@ class AdamsContact:
 
     def force(self, names: Names) -> str:
         """Return the contact force [N]."""
-        height, velocity = names.height, names.velocity
-        stiffness, exponent, radius = (
-            adams_number(self.stiffness),
-            adams_number(self.exponent),
-            adams_number(self.radius),
-        )
+        height = names.height
+        velocity = names.velocity
+        radius = adams_number(self.radius)
+        stiffness = adams_number(self.stiffness)
+        exponent = adams_number(self.exponent)
         damping = f"VARVAL({names.damping})" if self.varies else self.damping
         if self.penetration is not None:
             return (
@@ -182,33 +181,32 @@ def adams_contact(drop: Drop) -> AdamsContact:
         )
     # damping that changes from impact to impact becomes an expression of the approach speed, by
     # which the impacts are distinguished
-    dampings = [_damping(one, speed) for one, speed in zip(laws, speeds, strict=False)]
+    dampings = [_damping(of_impact, speed) for of_impact, speed in zip(laws, speeds, strict=False)]
     by_speed = isinstance(law, HuntCrossley) and law.dissipation is not None and len(laws) == 1
     varies = drop.function is not None or by_speed or len(set(dampings)) > 1
     if drop.function is not None:
         damping, meaning = _by_function(law, *drop.function)
     elif by_speed:  # the stored speed is in mm/s
-        damping, meaning = (
-            f"{adams_number(dampings[0] / (1000.0 * speeds[0]))} * speed",
-            "the dissipation times the approach speed",
-        )
+        damping = f"{adams_number(dampings[0] / (1000.0 * speeds[0]))} * speed"
+        meaning = "the dissipation times the approach speed"
     elif varies:
         damping, meaning = _by_steps(dampings, speeds, impact_law=isinstance(law, AdamsImpact))
     else:
-        damping, meaning = adams_number(dampings[0]), "the same in every impact"
-    for one in laws[1:]:
-        if _stiffness_terms(one) != _stiffness_terms(law):
+        damping = adams_number(dampings[0])
+        meaning = "the same in every impact"
+    for of_impact in laws[1:]:
+        if _stiffness_terms(of_impact) != _stiffness_terms(law):
             raise InputError(
                 "Adams' contact can change its damping from impact to impact, and nothing else",
                 "contact",
             )
     stiffness, exponent, penetration = _stiffness_terms(law)
+    fall = max(drop.height - drop.radius, 0.0)
     # from SI to mm, N and s
     return AdamsContact(
         radius=1e3 * drop.radius,
         gravity=1e3 * drop.gravity,
-        first_speed=1e3
-        * float(np.sqrt(drop.speed**2 + 2.0 * drop.gravity * max(drop.height - drop.radius, 0.0))),
+        first_speed=1e3 * float(np.sqrt(drop.speed**2 + 2.0 * drop.gravity * fall)),
         stiffness=stiffness / 1000.0**exponent,
         exponent=exponent,
         penetration=None if penetration is None else 1e3 * penetration,

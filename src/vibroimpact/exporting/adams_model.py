@@ -17,7 +17,12 @@ from vibroimpact.exporting.program_friction import friction_notes
 from vibroimpact.files.plain_names import identifier, plain_words
 from vibroimpact.materials import Material
 
-_STEPS, _OUTPUTS = 50, 20  # least numbers of integration steps and of outputs per contact
+_STEPS = 50
+"""Least number of integration steps per contact."""
+
+_OUTPUTS = 20
+"""Least number of outputs per contact."""
+
 _LONGEST_NAME = 40
 
 _OWN_NAMES = {
@@ -111,11 +116,9 @@ def adams_model(drop: Drop) -> AdamsModel:
     """
     contact = adams_contact(drop)
     duration, _ = first_contact(laws_of_impacts(drop)[0], drop)
-    both = (
-        [drop.sphere_material]
-        if drop.sphere_material == drop.plate_material
-        else [drop.sphere_material, drop.plate_material]
-    )
+    materials = [drop.sphere_material]
+    if drop.plate_material != drop.sphere_material:
+        materials.append(drop.plate_material)
     x, y = drop.position
     return AdamsModel(
         name=legal_name(drop.name),
@@ -131,7 +134,7 @@ def adams_model(drop: Drop) -> AdamsModel:
         plate=None
         if drop.plate_size is None
         else (1e3 * drop.plate_size[0], 1e3 * drop.plate_size[1], 1e3 * drop.plate_size[2]),
-        materials=_material_data([material for material in both if _is_elastic(material)]),
+        materials=_material_data([material for material in materials if _is_elastic(material)]),
         notes=tuple(adams_notes(drop)),
         end=drop.end_time,
         longest_step=_round_down(duration / _STEPS),
@@ -259,12 +262,16 @@ def _material_data(materials: list[Material]) -> tuple[MaterialData, ...]:
     names: list[str] = []
     for material in materials:
         name = legal_name(material.name or "material")
-        taken = name.lower() in _OWN_NAMES or name.lower() in (one.lower() for one in names)
+        taken = name.lower() in _OWN_NAMES or name.lower() in (other.lower() for other in names)
         names.append(f"{name}_material_{len(names) + 1}" if taken else name)
-    each = zip(names, materials, strict=True)
     return tuple(
-        MaterialData(name, 1e-9 * one.density, 1e-6 * one.youngs_modulus, one.poissons_ratio)
-        for name, one in each
+        MaterialData(
+            name=name,
+            density=1e-9 * material.density,
+            youngs_modulus=1e-6 * material.youngs_modulus,
+            poissons_ratio=material.poissons_ratio,
+        )
+        for name, material in zip(names, materials, strict=True)
     )
 
 
