@@ -4,7 +4,7 @@ newtons and seconds.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import NamedTuple
@@ -19,6 +19,7 @@ from vibroimpact.contact.laws.hunt_crossley import HuntCrossley
 from vibroimpact.contact.registry import contact_laws
 from vibroimpact.contact.speed_function import SpeedFunction
 from vibroimpact.errors import InputError
+from vibroimpact.exporting.adams_text import adams_number
 from vibroimpact.exporting.contact_parameters import approach_speeds
 from vibroimpact.exporting.drop import Drop
 
@@ -103,12 +104,11 @@ class AdamsContact:
 
     def force(self, names: Names) -> str:
         """Return the contact force [N]."""
-        height, velocity = names.height, names.velocity
-        stiffness, exponent, radius = (
-            adams_number(self.stiffness),
-            adams_number(self.exponent),
-            adams_number(self.radius),
-        )
+        height = names.height
+        velocity = names.velocity
+        radius = adams_number(self.radius)
+        stiffness = adams_number(self.stiffness)
+        exponent = adams_number(self.exponent)
         damping = f"VARVAL({names.damping})" if self.varies else self.damping
         if self.penetration is not None:
             return (
@@ -181,72 +181,38 @@ def adams_contact(drop: Drop) -> AdamsContact:
         )
     # damping that changes from impact to impact becomes an expression of the approach speed, by
     # which the impacts are distinguished
-    dampings = [_damping(one, speed) for one, speed in zip(laws, speeds, strict=False)]
+    dampings = [_damping(of_impact, speed) for of_impact, speed in zip(laws, speeds, strict=False)]
     by_speed = isinstance(law, HuntCrossley) and law.dissipation is not None and len(laws) == 1
     varies = drop.function is not None or by_speed or len(set(dampings)) > 1
     if drop.function is not None:
         damping, meaning = _by_function(law, *drop.function)
     elif by_speed:  # the stored speed is in mm/s
-        damping, meaning = (
-            f"{adams_number(dampings[0] / (1000.0 * speeds[0]))} * speed",
-            "the dissipation times the approach speed",
-        )
+        damping = f"{adams_number(dampings[0] / (1000.0 * speeds[0]))} * speed"
+        meaning = "the dissipation times the approach speed"
     elif varies:
         damping, meaning = _by_steps(dampings, speeds, impact_law=isinstance(law, AdamsImpact))
     else:
-        damping, meaning = adams_number(dampings[0]), "the same in every impact"
-    for one in laws[1:]:
-        if _stiffness_terms(one) != _stiffness_terms(law):
+        damping = adams_number(dampings[0])
+        meaning = "the same in every impact"
+    for of_impact in laws[1:]:
+        if _stiffness_terms(of_impact) != _stiffness_terms(law):
             raise InputError(
                 "Adams' contact can change its damping from impact to impact, and nothing else",
                 "contact",
             )
     stiffness, exponent, penetration = _stiffness_terms(law)
+    fall = max(drop.height - drop.radius, 0.0)
     # from SI to mm, N and s
     return AdamsContact(
         radius=1e3 * drop.radius,
         gravity=1e3 * drop.gravity,
-        first_speed=1e3
-        * float(np.sqrt(drop.speed**2 + 2.0 * drop.gravity * max(drop.height - drop.radius, 0.0))),
+        first_speed=1e3 * float(np.sqrt(drop.speed**2 + 2.0 * drop.gravity * fall)),
         stiffness=stiffness / 1000.0**exponent,
         exponent=exponent,
         penetration=None if penetration is None else 1e3 * penetration,
         damping=damping,
         varies=varies,
         meaning=meaning,
-    )
-
-
-def adams_number(value: float) -> str:
-    """Return a number in Adams' syntax with 15 digits: with a decimal point, and an exponent with
-    capital E.
-
-    Examples
-    --------
-    >>> (
-    ...     adams_number(1e-05),
-    ...     adams_number(25.0),
-    ...     adams_number(0.1 + 0.2),
-    ...     adams_number(5),
-    ...     adams_number(1e22),
-    ... )
-    ('1.0E-05', '25.0', '0.3', '5.0', '1.0E+22')
-    """
-    mantissa, _, exponent = repr(float(f"{value:.15g}")).partition("e")
-    return (mantissa if "." in mantissa else f"{mantissa}.0") + (f"E{exponent}" if exponent else "")
-
-
-def adams_numbers(values: Sequence[float]) -> str:
-    """Return numbers as a comma-separated list."""
-    return ", ".join(map(adams_number, values))
-
-
-def column_titles(readings: Mapping[int, tuple[str, str]]) -> str:
-    """Return the titles of the columns of a request up to the last one used, empty for
-    unused columns.
-    """
-    return ", ".join(
-        f'"{readings.get(column, ("",))[0]}"' for column in range(1, max(readings) + 1)
     )
 
 

@@ -8,15 +8,21 @@ from textwrap import wrap
 from typing import Any, NamedTuple
 
 from vibroimpact.calibration.adams_dialog import dialog_rows
-from vibroimpact.exporting.adams_contact import AdamsContact, adams_contact
+from vibroimpact.exporting.adams_contact import AdamsContact, Names, adams_contact
 from vibroimpact.exporting.adams_motion import AdamsMotion, adams_friction, adams_motion
+from vibroimpact.exporting.adams_text import LINE
 from vibroimpact.exporting.contact_parameters import first_contact, laws_of_impacts, shared_notes
 from vibroimpact.exporting.drop import Drop
 from vibroimpact.exporting.program_friction import friction_notes
 from vibroimpact.files.plain_names import identifier, plain_words
 from vibroimpact.materials import Material
 
-_STEPS, _OUTPUTS = 50, 20  # least numbers of integration steps and of outputs per contact
+_STEPS = 50
+"""Least number of integration steps per contact."""
+
+_OUTPUTS = 20
+"""Least number of outputs per contact."""
+
 _LONGEST_NAME = 40
 
 _OWN_NAMES = {
@@ -25,9 +31,6 @@ _OWN_NAMES = {
     *("slip_x", "slip_y", "drag", "friction", "opposite", "along_plate"),
 }
 """Names of the other elements of the model, which a material may not have."""
-
-LINE = 80
-"""Largest length of a line."""
 
 ACCURACY = 1e-6
 """Error tolerance of the integrator; of displacements [mm]."""
@@ -90,6 +93,12 @@ class AdamsModel:
         return *along, -self.contact.gravity
 
     @property
+    def spot(self) -> tuple[float, float, float]:
+        """The point of the plate below the sphere at the start [mm]."""
+        x, y, _ = self.centre
+        return x, y, 0.0
+
+    @property
     def corner(self) -> tuple[float, float, float]:
         """The lower corner of the plate from which it reaches along x, y and z [mm]."""
         assert self.plate is not None
@@ -107,11 +116,9 @@ def adams_model(drop: Drop) -> AdamsModel:
     """
     contact = adams_contact(drop)
     duration, _ = first_contact(laws_of_impacts(drop)[0], drop)
-    both = (
-        [drop.sphere_material]
-        if drop.sphere_material == drop.plate_material
-        else [drop.sphere_material, drop.plate_material]
-    )
+    materials = [drop.sphere_material]
+    if drop.plate_material != drop.sphere_material:
+        materials.append(drop.plate_material)
     x, y = drop.position
     return AdamsModel(
         name=legal_name(drop.name),
@@ -127,7 +134,7 @@ def adams_model(drop: Drop) -> AdamsModel:
         plate=None
         if drop.plate_size is None
         else (1e3 * drop.plate_size[0], 1e3 * drop.plate_size[1], 1e3 * drop.plate_size[2]),
-        materials=_material_data([material for material in both if _is_elastic(material)]),
+        materials=_material_data([material for material in materials if _is_elastic(material)]),
         notes=tuple(adams_notes(drop)),
         end=drop.end_time,
         longest_step=_round_down(duration / _STEPS),
@@ -192,30 +199,56 @@ def legal_name(text: str) -> str:
     return f"drop_{name}" if name[0].isdigit() else name
 
 
-def header_comments(model: AdamsModel) -> list[str]:
-    """Return the comment lines at the head of a file."""
+def header_lines(model: AdamsModel) -> list[str]:
+    """Return the lines of the comment at the head of a file, without their marks."""
     return [
-        f"! {line}"
+        line
         for remark in (model.title, *remarks(model))
         for line in wrap(remark, LINE - 2, break_on_hyphens=False)
     ]
 
 
-def wrap_expression(text: str, width: int) -> list[str]:
-    """Return an expression as lines of at most `width` characters, broken at blanks.
+def adams_quantities(model: AdamsModel, names: Names, contact: str) -> dict[str, Any]:
+    """Return what the templates of Adams View and Adams/Solver name, in Adams' units; functions
+    are run-time expressions.
 
-    Examples
-    --------
-    >>> wrap_expression("A + B * (C - D)", 8)
-    ['A + B *', '(C - D)']
+    Parameters
+    ----------
+    model : AdamsModel
+        The model.
+    names : Names
+        References to its elements.
+    contact : str
+        Reference to the force element of the contact.
     """
-    lines = [""]
-    for word in text.split(" "):
-        if lines[-1] and len(lines[-1]) + 1 + len(word) > width:
-            lines.append(word)
-        else:
-            lines[-1] = f"{lines[-1]} {word}".lstrip()
-    return lines
+    quantities: dict[str, Any] = {
+        "model": model,
+        "names": names,
+        "header_lines": header_lines(model),
+        "diameter": 2.0 * model.radius,
+        "oblique": model.motion is not None,
+        "stores_approach_speed": model.contact.holds_speed,
+        "damping_varies": model.contact.varies,
+        "sensor_error": SENSOR_ERROR,
+        "error_tolerance": ACCURACY,
+        "gap": model.contact.gap(names),
+        "speed_at_touch": model.contact.coming_speed(names),
+        "stored_approach_speed": model.contact.held_speed(names),
+        "damping": model.contact.damping_now(names),
+        "contact_force": model.contact.force(names),
+        "requests": {"motion": model.contact.readings(names, contact)},
+    }
+    if model.motion is not None:
+        components = model.motion.components(names)
+        quantities["velocity_along_plate"] = model.motion.velocity
+        quantities["spin"] = model.motion.spin
+        # Adams View takes angles in degrees, Adams/Solver in radians
+        quantities["spin_in_degrees"] = [math.degrees(spin) for spin in model.motion.spin]
+        quantities["friction_variables"] = model.motion.variables(names, contact)
+        quantities["friction_force"] = components[:3]
+        quantities["friction_torque"] = components[3:]
+        quantities["requests"]["along_plate"] = model.motion.readings(names)
+    return quantities
 
 
 def _is_elastic(material: Material) -> bool:
@@ -229,12 +262,16 @@ def _material_data(materials: list[Material]) -> tuple[MaterialData, ...]:
     names: list[str] = []
     for material in materials:
         name = legal_name(material.name or "material")
-        taken = name.lower() in _OWN_NAMES or name.lower() in (one.lower() for one in names)
+        taken = name.lower() in _OWN_NAMES or name.lower() in (other.lower() for other in names)
         names.append(f"{name}_material_{len(names) + 1}" if taken else name)
-    each = zip(names, materials, strict=True)
     return tuple(
-        MaterialData(name, 1e-9 * one.density, 1e-6 * one.youngs_modulus, one.poissons_ratio)
-        for name, one in each
+        MaterialData(
+            name=name,
+            density=1e-9 * material.density,
+            youngs_modulus=1e-6 * material.youngs_modulus,
+            poissons_ratio=material.poissons_ratio,
+        )
+        for name, material in zip(names, materials, strict=True)
     )
 
 

@@ -7,7 +7,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from vibroimpact.contact.friction.law import FrictionLaw
-from vibroimpact.exporting.adams_contact import Names, adams_number
+from vibroimpact.exporting.adams_contact import Names
+from vibroimpact.exporting.adams_text import adams_number
 from vibroimpact.exporting.contact_parameters import approach_speeds
 from vibroimpact.exporting.drop import Drop
 from vibroimpact.exporting.program_friction import COULOMB, friction_in
@@ -37,9 +38,11 @@ class AdamsMotion:
 
         `force`: the reference of the contact force.
         """
-        measure, radius = f"({names.centre}, {names.spot}, {names.spot}", adams_number(self.radius)
-        x, y = (f"VARVAL({one})" for one in (names.slip_x, names.slip_y))
-        slip = f"SQRT({x}**2 + {y}**2 + {adams_number(self.creep)}**2)"
+        measure = f"({names.centre}, {names.spot}, {names.spot}"
+        radius = adams_number(self.radius)
+        slip_x = f"VARVAL({names.slip_x})"
+        slip_y = f"VARVAL({names.slip_y})"
+        slip = f"SQRT({slip_x}**2 + {slip_y}**2 + {adams_number(self.creep)}**2)"
         pressing = f"MAX(SFORCE({force}, 0, 4, {names.spot}), 0.0)"
         return {
             "slip_x": (names.slip_x, f"VX{measure}, {names.spot}) - {radius} * WY{measure})"),
@@ -49,9 +52,12 @@ class AdamsMotion:
 
     def components(self, names: Names) -> list[str]:
         """Return the force on the centre along x, y and z [N], and the moment about them [N mm]."""
-        x, y = (f"VARVAL({names.drag}) * VARVAL({one})" for one in (names.slip_x, names.slip_y))
+        drag_x = f"VARVAL({names.drag}) * VARVAL({names.slip_x})"
+        drag_y = f"VARVAL({names.drag}) * VARVAL({names.slip_y})"
         radius = adams_number(self.radius)
-        return [f"-{x}", f"-{y}", "0.0", f"-{radius} * {y}", f"{radius} * {x}", "0.0"]
+        force = [f"-{drag_x}", f"-{drag_y}", "0.0"]
+        moment = [f"-{radius} * {drag_y}", f"{radius} * {drag_x}", "0.0"]
+        return force + moment
 
     def readings(self, names: Names) -> dict[int, tuple[str, str]]:
         """Return title and expression of each output, as `AdamsContact.readings` does."""
@@ -82,14 +88,14 @@ def adams_motion(drop: Drop) -> AdamsMotion | None:
     """
     if drop.oblique is None:
         return None
-    law, given = adams_friction(drop), drop.oblique
-    (x, y), (about_x, about_y, about_z), (pull_x, pull_y) = (
-        tuple(map(float, one)) for one in (given.velocity, given.spin, given.gravity)
-    )
+    law = adams_friction(drop)
+    velocity_x, velocity_y = map(float, drop.oblique.velocity)
+    spin_x, spin_y, spin_z = map(float, drop.oblique.spin)
+    gravity_x, gravity_y = map(float, drop.oblique.gravity)
     return AdamsMotion(
-        velocity=(1e3 * x, 1e3 * y),
-        spin=(about_x, about_y, about_z),
-        gravity=(1e3 * pull_x, 1e3 * pull_y),
+        velocity=(1e3 * velocity_x, 1e3 * velocity_y),
+        spin=(spin_x, spin_y, spin_z),
+        gravity=(1e3 * gravity_x, 1e3 * gravity_y),
         radius=1e3 * drop.radius,
         coefficient=0.0 if law is None else float(law.coefficient),
         creep=1e3 * _CREEP * approach_speeds(drop)[0],

@@ -91,14 +91,3 @@ def file_name(drop: Drop, ending: str) -> str:
     'the-paper-s-type-1.in'
     """
     return f"{identifier(drop.name.lower(), 'a-z0-9', 'drop', '-')}{ending}"
-
-
-def comment_lines(notes: list[str]) -> str:
-    """Return notes as comment lines of a script.
-
-    Examples
-    --------
-    >>> comment_lines(["one thing", "another"])
-    '# one thing\\n# another'
-    """
-    return "\n".join(f"# {note}" for note in notes)

@@ -5,13 +5,11 @@ and dashpot.
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Mapping
-from dataclasses import dataclass
 from xml.sax.saxutils import quoteattr
 
-from vibroimpact.arrays import Array
 from vibroimpact.contact.laws.adams_impact import AdamsImpact
+from vibroimpact.dynamics.oblique.statement import Oblique
 from vibroimpact.dynamics.restitution import achieved_restitution
 from vibroimpact.errors import InputError
 from vibroimpact.exporting.contact_parameters import (
@@ -22,8 +20,9 @@ from vibroimpact.exporting.contact_parameters import (
     power_law_spring,
     shared_notes,
 )
+from vibroimpact.exporting.deck import render_deck
 from vibroimpact.exporting.drop import Drop
-from vibroimpact.exporting.export_format import ExportFormat, comment_lines, file_name
+from vibroimpact.exporting.export_format import ExportFormat, file_name
 from vibroimpact.exporting.rigid_drop import as_rigid
 from vibroimpact.files.plain_names import plain_words
 
@@ -38,7 +37,8 @@ def _linear(drop: Drop) -> AdamsImpact:
     """Return the linear spring-dashpot without tension that has the restitution and
     duration of the drop's first contact.
     """
-    law, speed = laws_of_impacts(drop)[0], approach_speeds(drop)[0]
+    law = laws_of_impacts(drop)[0]
+    speed = approach_speeds(drop)[0]
     power_law_spring(law, "MuJoCo")
     restitution = float(achieved_restitution(law, drop.mass, speed))
     duration, _ = first_contact(law, drop)
@@ -58,92 +58,63 @@ def _linear(drop: Drop) -> AdamsImpact:
     return achieving(trial * (first_contact(achieving(trial), drop)[0] / duration) ** 2)
 
 
-@dataclass(frozen=True)
-class _Motion:
-    """How the sphere may move: its joint, coordinates and velocities at the start,
-    gravity along the plate, and what is said of them.
-    """
-
-    joint: str
-    place: str
-    velocity: str
-    gravity: str
-    meaning: str
-
-
-def _motion(drop: Drop) -> _Motion:
-    """Return the motion along the normal alone, or that of a free body."""
-    height, rising = float(drop.height), -float(drop.speed)
-    if drop.oblique is None:
-        joint = f'<joint name="height" type="slide" axis="0 0 1" ref="{height!r}"/>'
-        meaning = (
-            "The height of the sphere's centre above the plate is qpos[0], its velocity qvel[0]."
-        )
-        return _Motion(joint, repr(height), repr(rising), "0 0", meaning)
-    if drop.oblique.friction is not None:
+def _check_frictionless(drop: Drop) -> None:
+    """Raise InputError if the drop has friction."""
+    if drop.oblique is not None and drop.oblique.friction is not None:
         raise InputError(
             f"{drop.oblique.friction.name} can't be written for MuJoCo, whose friction is "
             "viscous up to its cone, and changes the "
             "restitution of what slides; a drop without friction can be",
             "contact.friction",
         )
-    return _Motion(
-        '<freejoint name="motion"/>',
-        _numbers(*drop.position, height, 1.0, 0.0, 0.0, 0.0),
-        _numbers(*drop.oblique.velocity, rising, *drop.oblique.spin),
-        _numbers(*drop.oblique.gravity),
-        "The position of the sphere's centre is qpos[0:3], its velocity qvel[0:3], its "
-        "angular velocity in its own axes qvel[3:6].",
+
+
+def _deck(drop: Drop) -> str:
+    contact_law = laws_of_impacts(drop)[0]
+    spring_dashpot = _linear(drop)
+    duration, largest_force = first_contact(spring_dashpot, drop)
+    _, largest_force_of_law = first_contact(contact_law, drop)
+    _check_frictionless(drop)
+    # MuJoCo's planes of size zero have infinite extent
+    plate_length, plate_width, _ = drop.plate_size or (0.0, 0.0, 0.0)
+    oblique = drop.oblique or Oblique()
+    return render_deck(
+        "mujoco.xml.j2",
+        case_name=plain_words(drop.name),
+        quoted_case_name=quoteattr(plain_words(drop.name)),
+        contact_law=contact_law,
+        notes=_notes(drop),
+        radius=drop.radius,
+        mass=drop.mass,
+        inertia=drop.inertia,
+        plate_half_length=0.5 * plate_length,
+        plate_half_width=0.5 * plate_width,
+        height=drop.height,
+        position=[*drop.position, drop.height],
+        vertical_velocity=-float(drop.speed),  # ours is the speed downwards
+        velocity=[*oblique.velocity, -drop.speed],
+        # MuJoCo's is about the axes of the body, at the start those of the plate
+        angular_velocity=oblique.spin,
+        oblique=drop.oblique is not None,
+        normal_gravity=drop.gravity,
+        gravity_along_plate=oblique.gravity,
+        time_step=duration / _STEPS,
+        stiffness=spring_dashpot.stiffness,
+        damping=spring_dashpot.damping_max,
+        impedance=_IMPEDANCE,
+        contact_duration=duration,
+        largest_force=largest_force,
+        largest_force_of_law=largest_force_of_law,
     )
 
 
-def _numbers(*values: Array) -> str:
-    return " ".join(repr(float(value)) for value in values)
-
-
 def _write(drop: Drop) -> Mapping[str, bytes]:
-    linear, laws = _linear(drop), laws_of_impacts(drop)
-    duration, force = first_contact(linear, drop)
-    _, own_force = first_contact(laws[0], drop)
-    length, width, _ = drop.plate_size or (0.0, 0.0, 0.0)  # zero means infinite extent
-    x, y = (float(value) for value in drop.position)
-    motion = _motion(drop)
-    comment = f"""\
-{plain_words(drop.name)}. Units: m, kg, s, N.
-The contact law is {laws[0].name}: {laws[0].equation}
-{comment_lines(_notes(drop)).replace("# ", "")}
-solref = -(stiffness / mass), -(damping / mass) of the contact: {linear.stiffness:.9g} N/m and {linear.damping_max:.9g} N s/m.
-Duration of the first contact {duration:.6g} s; largest force {force:.6g} N, where the law has {own_force:.6g} N.
-{motion.meaning}"""
-    comment = re.sub("-(?=-)", "- ", comment)  # two hyphens would end the XML comment
-    text = f"""\
-<!--
-{comment}
--->
-<mujoco model={quoteattr(plain_words(drop.name))}>
-  <option timestep="{duration / _STEPS!r}" gravity="{motion.gravity} {-drop.gravity!r}" integrator="Euler" cone="elliptic"/>
-  <default>
-    <geom condim="1" solref="{-linear.stiffness / drop.mass!r} {-linear.damping_max / drop.mass!r}"
-          solimp="{_IMPEDANCE} {_IMPEDANCE} 1 0.5 1"/>
-  </default>
-  <worldbody>
-    <geom name="plate" type="plane" size="{0.5 * length!r} {0.5 * width!r} 1"/>
-    <body name="sphere" pos="{x!r} {y!r} {drop.height!r}">
-      {motion.joint}
-      <inertial pos="0 0 0" mass="{drop.mass!r}" diaginertia="{_numbers(*[drop.inertia] * 3)}"/>
-      <geom name="surface" type="sphere" size="{drop.radius!r}"/>
-    </body>
-  </worldbody>
-  <keyframe>
-    <key name="start" qpos="{motion.place}" qvel="{motion.velocity}"/>
-  </keyframe>
-</mujoco>
-"""
-    return {file_name(drop, ".xml"): text.encode()}
+    return {file_name(drop, ".xml"): _deck(drop).encode()}
 
 
 def _notes(drop: Drop) -> list[str]:
-    laws, notes = laws_of_impacts(drop), shared_notes(drop)
+    laws = laws_of_impacts(drop)
+    notes = shared_notes(drop)
     _, exponent = power_law_spring(laws[0], "MuJoCo")
     speed = approach_speeds(drop)[0]
     notes.append(
