@@ -85,7 +85,6 @@ def folders_of_examples(
         return
     import vibroimpact.recognition.recognise as recognition
     from knock_data import write_knocks
-    from vibroimpact.recognition.folder import save_recognition
 
     folder = tmp_path_factory.mktemp("recognition")
     monkeypatch.chdir(folder)
@@ -93,7 +92,7 @@ def folders_of_examples(
     once = request.getfixturevalue("recognise_once")
     monkeypatch.setattr(recognition, "recognise", once)
     if _says(item, '"recognised"'):
-        save_recognition(once("falls", folds=2, seeds=1), folder / "recognised")
+        once("falls", folds=2, seeds=1).save(folder / "recognised")
 
 
 def _says(item: DoctestItem, *words: str) -> bool:
