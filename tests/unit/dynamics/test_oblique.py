@@ -15,7 +15,7 @@ from vibroimpact.arrays import Floats
 from vibroimpact.cases.keys import with_values
 from vibroimpact.contact.friction.law import CompliantFriction
 from vibroimpact.dynamics.columns import LEDGER, OBLIQUE_LEDGER, VIBRATION_LEDGER
-from vibroimpact.dynamics.oblique import motion, sliding
+from vibroimpact.dynamics.oblique import oblique_motion, sliding
 from vibroimpact.dynamics.oblique.normal_motion import NormalMotion
 from vibroimpact.dynamics.rigid import solve_contact
 from vibroimpact.runs.tables import ledger_table
@@ -394,7 +394,7 @@ def normal_motion_of(drops: vi.Problem) -> NormalMotion:
     heard: list[NormalMotion] = []
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(
-            motion,
+            oblique_motion,
             "slide",
             lambda law, normal, *others: (
                 heard.append(normal) or sliding.slide(law, normal, *others)

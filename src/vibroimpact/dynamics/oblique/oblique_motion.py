@@ -209,9 +209,9 @@ class ObliqueMotion:
         contact = ObliqueContact(
             sphere, before, direction, sliding, _twist(law, normal, sliding, sphere, before)
         )
-        sliding = sphere.tangential_mass * np.abs(sliding.slip[-1] - slip - pull * normal.time[-1])
         contact = contact.changed(_across(sphere, contact))
-        contact = contact.changed(_rolling(law, sphere, contact.end, normal.impulse[-1], sliding))
+        rubbed = sphere.tangential_mass * np.abs(sliding.slip[-1] - slip - pull * normal.time[-1])
+        contact = contact.changed(_rolling(law, sphere, contact.end, normal.impulse[-1], rubbed))
         after = contact.end
         self.finish(drops, after, energy_taken(sphere, before, after), sliding.microslip, row)
         return contact
