@@ -20,14 +20,16 @@ import numpy as np
 
 from vibroimpact.compiler.deferred import INTERPRETING, DeferredFunction, interpreted
 from vibroimpact.compiler.function_values import (
-    LAW_FUNCTIONS,
+    ALL_FUNCTIONS,
     compressed_at,
     energies_at,
     force_at,
+    friction_at,
     interpreted_function,
     law_coefficients,
     levels_at,
     multiply_row,
+    slip_after_at,
 )
 from vibroimpact.compiler.marks import Function, scalar, scalar_as
 
@@ -36,6 +38,7 @@ __all__ = [
     "compressed_at",
     "energies_at",
     "force_at",
+    "friction_at",
     "interpreted",
     "law_addresses",
     "law_coefficients",
@@ -44,6 +47,7 @@ __all__ = [
     "multiply_row",
     "scalar",
     "scalar_as",
+    "slip_after_at",
     "why_not_compiled",
 ]
 
@@ -84,8 +88,7 @@ def compiled(signature: Callable[[Any], Any]) -> Callable[[Function], Function]:
 
 
 def law_function(law_class: type[Any], kind: str = "force") -> Any:
-    """Return a function of a contact law as a function value; without a compiler the Python
-    function.
+    """Return a function of a law as a function value; without a compiler the Python function.
 
     A law that numba cannot compile is called in Python from compiled code; a `SlowLawWarning` says
     so.
@@ -93,8 +96,8 @@ def law_function(law_class: type[Any], kind: str = "force") -> Any:
     Parameters
     ----------
     law_class : type
-        Class of the law, a `CompliantLaw`.
-    kind : {"force", "energies", "levels", "compressed"}
+        Class of the law, a `CompliantLaw` or an `ImpulsiveFriction`.
+    kind : {"force", "energies", "levels", "compressed", "slip_after", "friction"}
         Which of its functions.
     """
     if why_not_compiled():
@@ -105,18 +108,19 @@ def law_function(law_class: type[Any], kind: str = "force") -> Any:
 
 
 def law_addresses(law_class: type[Any]) -> Any:
-    """Return what compiled functions take from Python for the four functions of a law, and make
-    them of by `force_at` and its like.
+    """Return what compiled functions take from Python for the functions of a law, and make them of
+    by `force_at` and its like.
 
     Parameters
     ----------
     law_class : type
-        Class of the law, a `CompliantLaw`.
+        Class of the law, a `CompliantLaw` or an `ImpulsiveFriction`.
 
     Returns
     -------
-    array, shape (4,)
-        Of its force, energies, levels and change by compression.
+    array, shape (4,) or (2,)
+        Of its force, energies, levels and change by compression; or of what friction leaves of a
+        slip, and of its force.
 
     Examples
     --------
@@ -129,12 +133,11 @@ def law_addresses(law_class: type[Any]) -> Any:
     >>> static_force(law_addresses(type(law)), 4.0, law_coefficients(law))
     16.0
     """
+    kinds = [kind for kind, attribute in ALL_FUNCTIONS.items() if hasattr(law_class, attribute)]
     if INTERPRETING.get():
-        return np.array(
-            [interpreted_function(law_class, kind) for kind in LAW_FUNCTIONS], dtype=object
-        )
+        return np.array([interpreted_function(law_class, kind) for kind in kinds], dtype=object)
     if law_class not in _ADDRESSES:
-        functions = [law_function(law_class, kind) for kind in LAW_FUNCTIONS]
+        functions = [law_function(law_class, kind) for kind in kinds]
         _ADDRESSES[law_class] = (
             np.array(functions, dtype=object)
             if why_not_compiled()

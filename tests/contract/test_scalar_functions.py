@@ -17,7 +17,14 @@ import pytest
 import vibroimpact as vi
 from support import plain_case
 from vibroimpact.compiled import law_coefficients, law_function
-from vibroimpact.compiler.function_values import LAW_FUNCTIONS, interpreted_function
+from vibroimpact.compiler.function_values import (
+    FRICTION_FUNCTIONS,
+    LAW_FUNCTIONS,
+    interpreted_function,
+)
+from vibroimpact.contact.friction.law import ImpulsiveFriction
+from vibroimpact.contact.friction.laws.coulomb import Coulomb
+from vibroimpact.contact.friction.laws.rigid import Rigid
 from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.contact.laws.hertz import Hertz
 from vibroimpact.contact.laws.hunt_crossley import HuntCrossley
@@ -264,6 +271,69 @@ def test_a_law_of_methods_is_called(take: Callable[..., list[Callable[..., Any]]
     assert forces(0.08, 1.0, 1.0, coefficients)[0] == pytest.approx(6.0)
     assert energies(0.1, coefficients) == pytest.approx((0.25, 0.0))
     assert forces(0.1, 1.0, 1.0, law_coefficients(law)) == pytest.approx((10.0, 0.0))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Halting(ImpulsiveFriction):
+    """Coulomb's friction given by methods alone, as another package may."""
+
+    name = "halting"
+    equation = "Q = mu F"
+    source = "this test"
+
+    def slip_after(
+        self, slip: np.ndarray, impulse: np.ndarray, whole: np.ndarray, mass: np.ndarray
+    ) -> np.ndarray:
+        taken = np.minimum(np.abs(slip), self.coefficient * impulse / mass)
+        return slip - np.sign(slip) * taken
+
+    def force(self, slip: np.ndarray, normal_force: np.ndarray) -> np.ndarray:
+        return np.sign(slip) * self.coefficient * normal_force
+
+
+@pytest.mark.parametrize("name", ["newton", "hertz"])
+@pytest.mark.filterwarnings("ignore::vibroimpact.errors.SlowLawWarning")
+def test_a_friction_law_of_methods_is_followed(name: str) -> None:
+    """It gives what the same law gives that is compiled, in an impulse and in a contact."""
+    assert Halting.missing_functions() == list(FRICTION_FUNCTIONS.values())
+    assert not Coulomb.missing_functions()
+    number = {"newton": {"restitution": 0.6}, "hertz": {"stiffness": 1e8}}[name]
+    velocity = np.array([0.1, 3.0])
+    found = [
+        vi.tabulate(
+            vi.Problem(
+                sphere=vi.Body(mass=0.03, contact_offset=0.01),
+                plate=vi.rigid_plate(),
+                laws=(vi.find_contact_law(name)(**number),),
+                speed=1.0,
+                impacts=2,
+                oblique=vi.Oblique(
+                    velocity=(velocity, 0.0),
+                    gravity=(0.3, 0.2),
+                    friction=law(coefficient=np.array([0.3, 0.2])),
+                ),
+            )
+        ).impacts
+        for law in (Halting, Coulomb)
+    ]
+    for column, values in found[0].items():
+        np.testing.assert_array_equal(values, found[1][column], err_msg=column)
+
+
+@pytest.mark.parametrize("law", [Coulomb, Rigid])
+def test_friction_of_floats_is_that_of_arrays(law: type[ImpulsiveFriction]) -> None:
+    random = np.random.default_rng(5)
+    slip, impulse, whole, mass = random.uniform(0.0, 3.0, (4, DROPS))
+    impulse[::3] = whole[::3]
+    drops = law(coefficient=random.uniform(0.0, 1.0, DROPS))
+    left, force = drops.slip_after(slip, impulse, whole, mass), drops.force(slip, whole)
+    for kind in (interpreted_function, law_function):
+        slip_after, friction = (kind(law, name) for name in FRICTION_FUNCTIONS)
+        for drop in range(DROPS):
+            coefficients = law_coefficients(drops.take(drop))
+            numbers = (float(values[drop]) for values in (slip, impulse, whole, mass))
+            assert slip_after(*numbers, coefficients) == left[drop]
+            assert friction(float(slip[drop]), float(whole[drop]), coefficients) == force[drop]
 
 
 def test_a_law_of_methods_may_be_collected() -> None:

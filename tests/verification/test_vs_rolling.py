@@ -4,7 +4,7 @@ SciPy's integration of their equations.
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
@@ -13,7 +13,16 @@ from scipy.integrate import solve_ivp
 import vibroimpact as vi
 from agreement import Against, Agrees
 from vibroimpact.arrays import Floats
-from vibroimpact.dynamics.oblique.rolling import LyingSpheres
+from vibroimpact.dynamics.core.lying_sphere import (
+    BEGIN,
+    IS_EVENT,
+    follow,
+    lying_sphere,
+    start_of,
+)
+from vibroimpact.dynamics.core.sphere_records import RubbedSphere, SphereState
+from vibroimpact.dynamics.oblique import lying
+from vibroimpact.dynamics.oblique.lying import lie
 from vibroimpact.dynamics.oblique.state import Sphere, State
 
 AGAINST = Against(
@@ -60,9 +69,8 @@ def after(
         np.array(spin, dtype=float)[:, None],
     )
     law = vi.find_friction_law("coulomb")(coefficient=mu, rolling_coefficient=rolling)
-    return LyingSpheres(ball, start, law, GRAVITY * np.cos(angle) * one, time * one).at(
-        np.array([0]), time * one
-    )
+    state, friction, _ = lie(ball, start, law, GRAVITY * np.cos(angle) * one, np.array([[time]]))
+    return state, friction
 
 
 def test_sliding_ends_in_rolling_with_five_sevenths(agrees: Agrees) -> None:
@@ -250,9 +258,31 @@ def test_a_sphere_rolls_off_the_edge() -> None:
     )
 
 
+class OnSlope(NamedTuple):
+    """A sphere that lies on a slope."""
+
+    ball: Sphere
+    start: State
+    law: vi.FrictionLaw
+    pressing: Floats
+    until: float
+
+    def at(self, times: Floats, half: float = np.inf) -> tuple[State, Floats, Floats]:
+        """States, friction and times up to the end, or until it leaves the plate."""
+        return lie(*self[:4], np.append(times, self.until)[None], (half, half))
+
+    def edge_time(self, half: float) -> float:
+        return float(self.at(np.zeros(0), half)[2][0, -1])
+
+    def parts(self) -> Floats:
+        sphere = RubbedSphere(*self.ball.rows(self.law)[0])
+        start = start_of(sphere, SphereState(*self.start.rows[0]))
+        return follow(lying_sphere(sphere, float(self.pressing[0]), start), start, self.until)
+
+
 def on_slope(
     velocity: Any, spin: Any, mu: float, rolling: float, until: float, angle: float = 0.2
-) -> LyingSpheres:
+) -> OnSlope:
     one, law = (
         np.ones(1),
         vi.find_friction_law("coulomb")(coefficient=mu, rolling_coefficient=rolling),
@@ -268,7 +298,7 @@ def on_slope(
         np.array(velocity, dtype=float)[:, None],
         np.array([*spin, 0.0], dtype=float)[:, None],
     )
-    return LyingSpheres(ball, start, law, GRAVITY * np.cos(angle) * one, until * one)
+    return OnSlope(ball, start, law, GRAVITY * np.cos(angle) * one, until)
 
 
 def test_a_sphere_that_rolls_over_the_uphill_edge_does_not_come_back() -> None:
@@ -277,13 +307,11 @@ def test_a_sphere_that_rolls_over_the_uphill_edge_does_not_come_back() -> None:
     """
     speed, up, edge = 1.0, 5.0 / 7.0 * GRAVITY * np.sin(0.2), 0.3
     rolls = on_slope((-speed, 0.0), (0.0, -speed / RADIUS), 0.5, 0.0, 2.0 * speed / up)
-    assert rolls.at(np.array([0]), rolls.until)[0].position[0, 0] == pytest.approx(0.0, abs=1e-12)
-    assert rolls.edge_time(np.full((2, 1), edge))[0] == pytest.approx(
+    assert rolls.at(np.zeros(0))[0].position[0, 0] == pytest.approx(0.0, abs=1e-12)
+    assert rolls.edge_time(edge) == pytest.approx(
         (speed - np.sqrt(speed**2 - 2.0 * up * edge)) / up, rel=1e-12
     )
-    assert (
-        rolls.edge_time(np.full((2, 1), 0.5 * speed**2 / up * (1.0 + 1e-12)))[0] == rolls.until[0]
-    )
+    assert rolls.edge_time(0.5 * speed**2 / up * (1.0 + 1e-12)) == rolls.until
 
 
 @pytest.mark.slow
@@ -297,11 +325,11 @@ def test_the_first_edge_of_spheres_that_turn(rolling: float) -> None:
         velocity, spin = random.normal(size=2) * 0.4 - [1.2, 0.0], random.normal(size=2) * 30.0
         moves = on_slope(velocity, spin, float(random.uniform(0.05, 0.4)), rolling, 2.0)
         times = np.linspace(0.0, 2.0, 20001)
-        places = np.abs(moves.at(np.zeros(20001, dtype=int), times)[0].position)
-        half = float(random.uniform(0.2, 1.0)) * places[0].max() * np.ones((2, 1))
+        places = np.abs(moves.at(times[:-1])[0].position)
+        half = float(random.uniform(0.2, 1.0)) * places[0].max()
         out = (places > half).any(axis=0)
         first = times[out.argmax()] if out.any() else 2.0
-        found = float(moves.edge_time(half)[0])
+        found = moves.edge_time(half)
         assert first - 1e-4 * (1.0 + 1e-9) <= found <= first
         back += bool(out.any() and not out[-1])
     assert back > 3
@@ -311,10 +339,10 @@ def test_a_motion_is_the_same_however_far_it_is_followed() -> None:
     for rolling in (0.0, 0.1):
         moves = on_slope((-0.4, 1.0), (8.0, 30.0), 0.3, rolling, 2.0)
         for time in (0.05, 0.2, 0.9, 2.0):
-            alone, friction = on_slope((-0.4, 1.0), (8.0, 30.0), 0.3, rolling, time).at(
-                np.array([0]), np.array([time])
+            alone, friction, _ = on_slope((-0.4, 1.0), (8.0, 30.0), 0.3, rolling, time).at(
+                np.zeros(0)
             )
-            among, frictions = moves.at(np.zeros(3, dtype=int), np.array([0.0, time, 2.0]))
+            among, frictions, _ = moves.at(np.array([0.0, time]))
             np.testing.assert_allclose(among.position[:, 1], alone.position[:, 0], atol=1e-10)
             np.testing.assert_allclose(among.velocity[:, 1], alone.velocity[:, 0], atol=1e-9)
             np.testing.assert_allclose(frictions[:, 1], friction[:, 0], atol=1e-6)
@@ -479,21 +507,19 @@ def test_a_run_comes_to_rest_by_rolling_resistance() -> None:
 
 
 def test_a_history_is_integrated_once(monkeypatch: pytest.MonkeyPatch) -> None:
-    import scipy.integrate
-
     friction = vi.find_friction_law("coulomb")(coefficient=0.3, rolling_coefficient=0.05)
     response = resting(
         oblique=vi.Oblique(
             velocity=(0.3, 0.7), spin=(10.0, 0.0, 0.0), gravity=(0.9, 0.0), friction=friction
         )
     )
-    calls, integrate = [], scipy.integrate.solve_ivp
+    calls, integrate = [], lying.lie_on_plate
 
-    def counted(*parts: Any, **settings: Any) -> Any:
+    def counted(*parts: Any) -> None:
         calls.append(1)
-        return integrate(*parts, **settings)
+        integrate(*parts)
 
-    monkeypatch.setattr(scipy.integrate, "solve_ivp", counted)
+    monkeypatch.setattr(lying, "lie_on_plate", counted)
     response.at(np.linspace(float(response.rest.time[0]), 3.0, 500))
     assert 0 < len(calls) < 5
 
@@ -725,9 +751,7 @@ def test_a_contact_with_an_area_resists_twisting(agrees: Agrees) -> None:
     law = vi.find_friction_law("mdr")(coefficient=0.2, **pair)
     until = 3.0 * 0.4 * MASS * RADIUS**2 / moment
     for time, left in ((0.25 * until, 2.25), (until, 0.0), (3.0 * until, 0.0)):
-        state, _ = LyingSpheres(ball, start, law, GRAVITY * one, time * one).at(
-            np.array([0]), time * one
-        )
+        state, _, _ = lie(ball, start, law, GRAVITY * one, np.array([[time]]))
         agrees(
             "sphere at rest on the plate, spinning about the normal",
             "angular velocity about the normal",
@@ -736,9 +760,8 @@ def test_a_contact_with_an_area_resists_twisting(agrees: Agrees) -> None:
             unit="rad/s",
             absolute=1e-12,
         )
-    state, _ = LyingSpheres(
-        ball, start, vi.find_friction_law("coulomb")(coefficient=0.2), GRAVITY * one, one
-    ).at(np.array([0]), one)
+    point = vi.find_friction_law("coulomb")(coefficient=0.2)
+    state, _, _ = lie(ball, start, point, GRAVITY * one, np.ones((1, 1)))
     assert state.spin[2, 0] == 3.0
 
 
@@ -804,7 +827,7 @@ def test_a_slip_of_rounding_is_none() -> None:
         State(np.zeros((2, 1)), velocity, spin),
         vi.find_friction_law("coulomb")(coefficient=0.3),
     )
-    state, _ = LyingSpheres(ball, start, law, 9.81 * one, 2.0 * one).at(np.array([0]), 2.0 * one)
+    state, _, _ = lie(ball, start, law, 9.81 * one, np.array([[2.0]]))
     assert state.velocity[:, 0] == pytest.approx([1.3 + 2.0 * 5.0 / 7.0, 0.7], rel=1e-12)
 
 
@@ -815,10 +838,9 @@ def test_a_slow_slip_across_a_slope_ends_as_a_fast_one(size: float, rolling: flo
     earlier by it, in as many steps.
     """
     fast, slow = (
-        on_slope((0.3 * part, 0.4 * part), (50.0 * part, -15.0 * part), 0.1, rolling, 3.0).curves[0]
+        on_slope((0.3 * part, 0.4 * part), (50.0 * part, -15.0 * part), 0.1, rolling, 3.0).parts()
         for part in (1.0, size)
     )
-    assert [begin / size for begin, _ in slow.parts] == pytest.approx(
-        [begin for begin, _ in fast.parts], rel=1e-8
-    )
-    assert len(slow.steps) < 5 * len(fast.steps)
+    begins, expected = (moves[moves[:, IS_EVENT] > 0.0, BEGIN] for moves in (slow, fast))
+    assert begins / size == pytest.approx(expected, rel=1e-8)
+    assert len(slow) < 5 * len(fast)

@@ -13,7 +13,8 @@ from scipy.integrate import solve_ivp
 import vibroimpact as vi
 from agreement import Against, Agrees
 from vibroimpact.arrays import Floats
-from vibroimpact.dynamics.oblique.rolling import LyingSpheres
+from vibroimpact.dynamics.core.twisting import Twisting, moment_share
+from vibroimpact.dynamics.oblique.lying import lie
 from vibroimpact.dynamics.oblique.state import Sphere, State
 from vibroimpact.structures.modal_model import ModalBasis
 
@@ -40,6 +41,21 @@ def friction(name: str = "mdr", coefficient: float = 0.092, softer: float = 1.0)
         "effective_radius": RADIUS,
     }
     return vi.find_friction_law(name)(coefficient=coefficient, **pair)
+
+
+def part_of(law: Any, force: Floats, used: Floats, slip: Floats, spin: Floats) -> Floats:
+    """Return the part of the moment of full twisting of contacts under normal forces [N] and the
+    friction forces `used` [N].
+    """
+    twisting = Twisting(law.coefficient, float(law.contact_radius(np.ones(1))[0]))
+    return np.array(
+        [
+            moment_share(twisting, *numbers)
+            for numbers in zip(
+                *(values.tolist() for values in (force, used, slip, spin)), strict=True
+            )
+        ]
+    )
 
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(60)
@@ -110,7 +126,7 @@ def test_the_part_that_sliding_leaves(agrees: Agrees, ratio: float) -> None:
     """
     law, force = friction(), np.array([100.0])
     spin = ratio / law.contact_radius(force)
-    part = law.twisting_part(force, 0.092 * force, np.ones(1), spin)
+    part = part_of(law, force, 0.092 * force, np.ones(1), spin)
     case, within = (
         "rim velocity below 0.8 of the sliding velocity"
         if ratio < 0.8
@@ -133,11 +149,11 @@ def test_the_limits_of_the_part() -> None:
     law, force = friction(), np.full(5, 100.0)
     rim = np.array([1.0, 1e-7, 1e3, 1.0 - 1e-12, 1.0 + 1e-12])
     slip = np.array([0.0, 1.0, 1.0, 1.0, 1.0])
-    part = law.twisting_part(force, 0.092 * force, slip, rim / law.contact_radius(force))
+    part = part_of(law, force, 0.092 * force, slip, rim / law.contact_radius(force))
     assert part[:4] == pytest.approx([1.0, 16e-7 / (15.0 * np.pi), 1.0 - 1e-6, 0.375], rel=1e-11)
     assert part[4] == pytest.approx(part[3], rel=1e-10)
     # a contact without friction sticks
-    assert law.twisting_part(force, 0.0 * force, slip, 0.0 * rim).tolist() == [1.0] * 5
+    assert part_of(law, force, 0.0 * force, slip, 0.0 * rim).tolist() == [1.0] * 5
 
 
 @pytest.mark.parametrize("ratio", [0.1, 0.5, 1.3, 2.0, 5.0])
@@ -145,9 +161,9 @@ def test_a_contact_that_sticks_has_an_upper_bound(ratio: float) -> None:
     """Friction and moment that Hertz's pressure has together lie within the ellipse, by
     no more than a third of the moment.
     """
-    friction, moment = over_pressure(ratio)
+    sliding_force, moment = over_pressure(ratio)
     law, force = friction(), np.array([100.0])
-    bound = law.twisting_part(force, 0.092 * friction * force, np.ones(1), np.zeros(1))
+    bound = part_of(law, force, 0.092 * sliding_force * force, np.ones(1), np.zeros(1))
     assert moment < FULL * float(bound[0]) < 4.0 / 3.0 * moment
 
 
@@ -254,9 +270,7 @@ def test_a_sphere_that_lies_slides_and_spins(agrees: Agrees, slip: float, spin: 
     ).y[0, -1]
     expected = max(before - (until - stop) * mu * MASS * gravity * contact * FULL / INERTIA, 0.0)
     times = np.linspace(0.0, until, 401)
-    state, _ = LyingSpheres(ball, start, law, gravity * one, until * one).at(
-        np.zeros(401, dtype=int), times
-    )
+    state, _, _ = lie(ball, start, law, gravity * one, times[None])
     left = np.abs(state.spin[2])
     assert left[0] == abs(spin)
     agrees(

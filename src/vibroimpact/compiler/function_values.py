@@ -23,9 +23,14 @@ LAW_FUNCTIONS = {
     "levels": "scalar_levels",
     "compressed": "scalar_compressed",
 }
-"""The functions of a law, in the order of `law_addresses`, with the attributes of its
+"""The functions of a contact law, in the order of `law_addresses`, with the attributes of its
 class that hold them.
 """
+
+FRICTION_FUNCTIONS = {"slip_after": "scalar_slip_after", "friction": "scalar_friction"}
+"""The same of a friction law without tangential compliance."""
+
+ALL_FUNCTIONS = LAW_FUNCTIONS | FRICTION_FUNCTIONS
 
 MOST_COEFFICIENTS = 24
 """Largest number of coefficients of a law."""
@@ -61,6 +66,20 @@ def levels_at(address: Any) -> Any:
 def compressed_at(address: Any) -> Any:
     """Return the function value of a law's change by compression at an address; for use
     in compiled functions.
+    """
+    return address
+
+
+def slip_after_at(address: Any) -> Any:
+    """Return the function value of what a friction law leaves of a slip, at an address; for use in
+    compiled functions.
+    """
+    return address
+
+
+def friction_at(address: Any) -> Any:
+    """Return the function value of a law's friction at an address; for use in compiled
+    functions.
     """
     return address
 
@@ -110,12 +129,12 @@ def law_coefficients(law: Any) -> Floats:
 
 def interpreted_function(law_class: type[Any], kind: str) -> Callable[..., Any]:
     """Return a function of a law as a Python function of floats and coefficients; `kind`: of
-    `LAW_FUNCTIONS`.
+    `ALL_FUNCTIONS`.
 
-    Of a law that lacks any of the four it is one that calls its methods.
+    Of a law that lacks any of its own it is one that calls its methods.
     """
     function: Callable[..., Any] = (
-        _OF_HELD[kind] if law_class.missing_functions() else getattr(law_class, LAW_FUNCTIONS[kind])
+        _OF_HELD[kind] if law_class.missing_functions() else getattr(law_class, ALL_FUNCTIONS[kind])
     )
     return function
 
@@ -159,6 +178,22 @@ def compress_held(deepest: float, coefficients: Any, changed: Any) -> float:
     return max(float(law.touch_level), deepest) if law.memories() else np.inf
 
 
+def slip_after_of_held(
+    slip: float, impulse: float, whole: float, mass: float, coefficients: Any
+) -> float:
+    """Return what a friction law with the number that `law_coefficients` returned leaves of a
+    slip.
+    """
+    law = _held(coefficients)
+    arguments = (np.array([value]) for value in (slip, impulse, whole, mass))
+    return float(law.slip_after(*arguments)[0])
+
+
+def friction_of_held(slip: float, normal_force: float, coefficients: Any) -> float:
+    """Return the friction force of such a law."""
+    return float(_held(coefficients).force(np.array([slip]), np.array([normal_force]))[0])
+
+
 def _number(law: Any) -> int:
     """Return the number of a law; a copy of a law, which comes with the number of that,
     gets its own.
@@ -193,4 +228,6 @@ _OF_HELD: dict[str, Callable[..., Any]] = {
     "energies": energies_of_held,
     "levels": levels_of_held,
     "compressed": compress_held,
+    "slip_after": slip_after_of_held,
+    "friction": friction_of_held,
 }

@@ -225,7 +225,7 @@ def _seconds() -> float:
 def _register() -> None:
     """Tell numba of the functions that were marked since the last time."""
     if not _REPLACED:
-        for kind in function_values.LAW_FUNCTIONS:
+        for kind in function_values.ALL_FUNCTIONS:
             at = getattr(function_values, f"{kind}_at")
             of_address = getattr(intrinsics, f"{kind}_of_address")
             _REPLACED[at] = getattr(of_address, "_defn", at)

@@ -32,6 +32,8 @@ force_of_address = _function_of_address(types.force)
 energies_of_address = _function_of_address(types.energies)
 levels_of_address = _function_of_address(types.levels)
 compressed_of_address = _function_of_address(types.compressed)
+slip_after_of_address = _function_of_address(types.slip_after)
+friction_of_address = _function_of_address(types.friction)
 
 
 _LANES = 8  # doubles of a vector; a machine with shorter ones takes several

@@ -28,7 +28,7 @@ _WARNED: set[type[Any]] = set()
 
 def compiled_law_function(law_class: type[Any], kind: str) -> CompiledFunction:
     """Return a function of a law as a function value, compiled once a process; `kind`: of
-    `LAW_FUNCTIONS`.
+    `ALL_FUNCTIONS`.
     """
     source = interpreted_function(law_class, kind)
     if source not in _COMPILED:
@@ -108,11 +108,31 @@ def _calling_compressed(source: Callable[..., Any]) -> Callable[..., Any]:
     return compressed
 
 
+def _calling_slip_after(source: Callable[..., Any]) -> Callable[..., Any]:
+    def slip_after(slip, impulse, whole, mass, coefficients):  # type: ignore[no-untyped-def]
+        with objmode(left="float64"):
+            left = source(slip, impulse, whole, mass, coefficients)
+        return left  # noqa: RET504
+
+    return slip_after
+
+
+def _calling_friction(source: Callable[..., Any]) -> Callable[..., Any]:
+    def friction(slip, normal_force, coefficients):  # type: ignore[no-untyped-def]
+        with objmode(force="float64"):
+            force = source(slip, normal_force, coefficients)
+        return force  # noqa: RET504
+
+    return friction
+
+
 _CALLING = {
     "force": _calling_force,
     "energies": _calling_energies,
     "levels": _calling_levels,
     "compressed": _calling_compressed,
+    "slip_after": _calling_slip_after,
+    "friction": _calling_friction,
 }
 
 

@@ -42,6 +42,15 @@ of them, the last argument.
 It returns the indentation beyond which compression changes the memory again.
 """
 
+slip_after = types.FunctionType(real(real, real, real, real, vector))
+"""Of a friction law: slip without friction, normal impulse so far and as a whole, effective mass
+and coefficients give the slip.
+"""
+
+friction = types.FunctionType(real(real, real, vector))
+"""Of a friction law: slip, normal force and coefficients give the friction force against the slip.
+"""
+
 
 def tuple(*members: types.Type) -> types.Type:
     """Return the type of a tuple, from those of its members."""

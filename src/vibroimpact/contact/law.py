@@ -17,7 +17,7 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Callable
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, ClassVar, Literal, Self
 
@@ -113,12 +113,6 @@ class ContactLaw(Parameters):
         """
         return None
 
-    def memories(self) -> dict[str, Array]:
-        """Return the state variables by name."""
-        return {
-            item.name: getattr(self, item.name) for item in fields(self) if item.metadata["memory"]
-        }
-
 
 @dataclass(frozen=True, kw_only=True)
 class CompliantLaw(ContactLaw):
@@ -187,30 +181,16 @@ class CompliantLaw(ContactLaw):
     memory defines its own.
     """
 
-    # what the methods below evaluate: the functions of the law, or those of its base where the law
-    # defines the methods anew
+    function_methods = _METHODS
+
     _array_forces: ClassVar[ScalarForces | None] = None
     _array_energies: ClassVar[ScalarEnergies | None] = None
     _array_levels: ClassVar[ScalarLevels] = staticmethod(levels_of_smooth_contact)
 
     def __init_subclass__(cls, **options: Any) -> None:
         super().__init_subclass__(**options)
-        for name, methods in _METHODS.items():
-            function = getattr(cls, name)
-            if function is not None:
-                setattr(cls, name.replace("scalar", "_array"), staticmethod(function))
-            if name not in vars(cls) and any(method in vars(cls) for method in methods):
-                setattr(cls, name, None)  # compiled code would pass over the new method
         if "plastic_work" in vars(cls):
             cls.yields = True
-
-    @classmethod
-    def missing_functions(cls) -> list[str]:
-        """Return the names of the functions of floats that the law lacks.
-
-        It is compiled if it has all.
-        """
-        return [name for name in _METHODS if getattr(cls, name) is None]
 
     @property
     def touch_level(self) -> Array:
@@ -235,15 +215,6 @@ class CompliantLaw(ContactLaw):
     @cached_property
     def _levels(self) -> Levels:
         return type(self)._array_levels(self.coefficients)
-
-    @cached_property
-    def coefficients(self) -> tuple[Array, ...]:
-        """The numbers that the functions of floats take, made once from parameters and memory.
-
-        They are floats, or arrays with one value per drop; compiled code has them as an array of
-        floats, one drop at a time.
-        """
-        return ()
 
     def forces(self, delta: Array, delta_dot: Array, approach_speed: Array) -> tuple[Array, Array]:
         """Return the static and the dissipative part of the force [N], before any clipping at zero.

@@ -8,10 +8,12 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
+from functools import cached_property
 from typing import Any, ClassVar, Self
 
 import numpy as np
 
+from vibroimpact.arrays import Array
 from vibroimpact.contact.docstring import with_parameters
 from vibroimpact.contact.pair import ContactPair
 from vibroimpact.errors import InputError, choices
@@ -127,8 +129,22 @@ class Parameters:
     equation: ClassVar[str]
     source: ClassVar[str]
 
+    function_methods: ClassVar[Mapping[str, tuple[str, ...]]] = {}
+    """The functions of floats of a law, `scalar_...`, which compiled code calls, and the methods
+    for arrays that stand for each in a law that is not compiled. The methods evaluate
+    `_array_...`: the functions of the law, or those of its base where the law defines the methods
+    anew.
+    """
+
     def __init_subclass__(cls, **options: Any) -> None:
         super().__init_subclass__(**options)
+        for function, methods in cls.function_methods.items():
+            if getattr(cls, function) is not None:
+                setattr(
+                    cls, function.replace("scalar", "_array"), staticmethod(getattr(cls, function))
+                )
+            if function not in vars(cls) and any(method in vars(cls) for method in methods):
+                setattr(cls, function, None)  # compiled code would pass over the new method
         items: dict[str, dataclasses.Field[Any]] = {}
         for base in reversed(cls.__mro__[1:]):
             items |= getattr(base, "__dataclass_fields__", {})
@@ -157,6 +173,28 @@ class Parameters:
                     item.metadata["range"].check(value, item.metadata["unit"])
             except InputError as error:
                 raise InputError(error.message, item.name) from None
+
+    @classmethod
+    def missing_functions(cls) -> list[str]:
+        """Return the names of the functions of floats that the law lacks; it is compiled
+        if it has all.
+        """
+        return [function for function in cls.function_methods if getattr(cls, function) is None]
+
+    @cached_property
+    def coefficients(self) -> tuple[Array, ...]:
+        """The numbers that the functions of floats take, made once from parameters and memory.
+
+        They are floats, or arrays with one value per drop; compiled code has them as an array of
+        floats, one drop at a time.
+        """
+        return ()
+
+    def memories(self) -> dict[str, Array]:
+        """Return the state variables by name."""
+        return {
+            item.name: getattr(self, item.name) for item in fields(self) if item.metadata["memory"]
+        }
 
     @classmethod
     def example(cls, pair: ContactPair) -> Self:

@@ -9,14 +9,13 @@ import numpy as np
 
 from vibroimpact.arrays import Floats
 from vibroimpact.compiled import law_coefficients
-from vibroimpact.contact.law import CompliantLaw
+from vibroimpact.contact.parameters import Parameters
 
 
 @contextmanager
-def coefficients_of(law: CompliantLaw, size: int) -> Iterator[Floats]:
-    """Give the coefficients of a law for each of B drops (B, K).
-
-    Laws without functions of floats are kept as long as they are used.
+def coefficients_of(law: Parameters, size: int) -> Iterator[Floats]:
+    """Give the coefficients of a law for each of B drops (B, K); laws without functions
+    of floats are kept as long as they are used.
     """
     if type(law).missing_functions():
         laws = [law.take(drop) for drop in range(size)]

@@ -334,12 +334,13 @@ def test_friction_of_a_drop_does_not_depend_on_its_neighbours(friction: str) -> 
         )
     )
     none = np.zeros(len(speeds))
-    whole = sliding.slide(law, normal, speeds, MASS + none, none)
+    slips = np.stack([1.0 + none, none, speeds, none], axis=1)
+    whole = sliding.slide(law, normal, slips, MASS + none)
     for drop in range(len(speeds)):
         here = np.array([drop])
-        alone = sliding.slide(law, normal.take(here), speeds[here], MASS + none[here], none[here])
-        for name, values in vars(alone).items():
-            assert np.array_equal(values[..., 0], getattr(whole, name)[..., drop]), name
+        alone = sliding.slide(law, normal.take(here), slips[here], MASS + none[here])
+        for one, all_of_them in zip(alone, whole, strict=True):
+            assert np.array_equal(one[0], all_of_them[drop])
 
 
 @pytest.mark.parametrize(
@@ -395,9 +396,9 @@ def normal_motion_of(drops: vi.Problem) -> NormalMotion:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(
             oblique_motion,
-            "slide",
+            "collide",
             lambda law, normal, *others: (
-                heard.append(normal) or sliding.slide(law, normal, *others)
+                heard.append(normal) or sliding.collide(law, normal, *others)
             ),
         )
         vi.tabulate(drops)

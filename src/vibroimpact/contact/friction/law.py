@@ -11,14 +11,23 @@ do, and is one of
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
 from vibroimpact.arrays import Array, Floats
-from vibroimpact.contact.friction.twisting import FULL_TWISTING, twisting_share
+from vibroimpact.compiled import scalar
 from vibroimpact.contact.parameters import Parameters, parameter
+
+SlipAfter = Callable[[Array, Array, Array, Array, Any], Array]
+"""A function of slip without friction [m/s], normal impulse so far and as a whole [N s], effective
+mass [kg] and coefficients: slip [m/s].
+"""
+
+SlidingForce = Callable[[Array, Array, Any], Array]
+"""A function of slip [m/s], normal force [N] and coefficients: friction force [N]."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -51,66 +60,38 @@ class FrictionLaw(Parameters):
         """Return the radius of the contact under a normal force [m]; none where it is a point."""
         return np.zeros_like(force)
 
-    def twisting_moment(self, force: Floats) -> Floats:
-        """Return the moment of full twisting under a normal force [N m].
 
-        It is 3 pi/16 mu F a (Johnson 1985, section 7.2; Lubkin 1951).
-        """
-        return np.asarray(FULL_TWISTING * self.coefficient * force * self.contact_radius(force))
-
-    def twisting_part(self, force: Floats, friction: Floats, slip: Floats, spin: Floats) -> Floats:
-        """Return the share of the moment of full twisting that a contact has [-].
-
-        The rest is taken by its friction. The result has the shape of `force`.
-
-        It is `contact.friction.twisting.twisting_share`, of a contact of the radius that the normal
-        force makes.
-
-        Parameters
-        ----------
-        force : array
-            Normal force F [N].
-        friction : array
-            Size of the friction force Q [N].
-        slip : array
-            Speed of the contact point along the plate s [m/s].
-        spin : array
-            Rate of twisting [rad/s], >= 0.
-
-        References
-        ----------
-        Contensou, P. (1963). Couplage entre frottement de glissement et frottement de pivotement
-        dans la theorie de la toupie. In: Kreiselprobleme (ed. H. Ziegler), Springer, 201-216.
-
-        Howe, R. D. and Cutkosky, M. R. (1996). Practical force-motion models for sliding
-        manipulation. Int. J. Robotics Res. 15, 557-572.
-
-        Examples
-        --------
-        >>> from vibroimpact.contact.friction.laws.mdr import MDR
-        >>> law = MDR(
-        ...     coefficient=0.1,
-        ...     effective_modulus=60e9,
-        ...     effective_shear_modulus=50e9,
-        ...     effective_radius=2.5e-3,
-        ... )
-        >>> force, spin = np.full(3, 100.0), np.full(3, 50.0)
-        >>> law.twisting_part(force, 0.1 * force, np.array([0.0, 1e-3, 1.0]), spin).round(
-        ...     4
-        ... ).tolist()
-        [1.0, 0.9814, 0.0025]
-        """
-        sliding_force = self.coefficient * force
-        used = np.divide(
-            friction, sliding_force, out=np.ones_like(force), where=sliding_force > 0.0
-        )
-        rim_speed = self.contact_radius(force) * spin
-        return np.asarray(twisting_share(rim_speed, slip, used))
+@scalar
+def no_friction(slip: Array, normal_force: Array, coefficients: Any) -> Array:
+    """Return no friction force [N]: the law tells the impulse alone."""
+    return 0.0 * slip
 
 
 @dataclass(frozen=True, kw_only=True)
 class ImpulsiveFriction(FrictionLaw):
-    """Base of the laws without tangential compliance."""
+    """Base of the laws without tangential compliance.
+
+    A law gives its functions of floats or arrays, and the coefficients of these. One that defines
+    `slip_after` and `force` instead works as well, but is not compiled.
+    """
+
+    function_methods: ClassVar[Mapping[str, tuple[str, ...]]] = {
+        "scalar_slip_after": ("slip_after",),
+        "scalar_friction": ("force",),
+    }
+
+    scalar_slip_after: ClassVar[SlipAfter | None] = None
+    """The slip as a function of floats, marked by `compiled.scalar`: of the arguments of
+    `slip_after` and the coefficients.
+    """
+
+    scalar_friction: ClassVar[SlidingForce | None] = staticmethod(no_friction)
+    """The friction force as a function of floats: of the arguments of `force` and the
+    coefficients.
+    """
+
+    _array_slip_after: ClassVar[SlipAfter | None] = None
+    _array_friction: ClassVar[SlidingForce] = staticmethod(no_friction)
 
     def slip_after(self, slip: Floats, impulse: Floats, whole: Floats, mass: Floats) -> Floats:
         """Return the slip velocity [m/s], of the shape of `impulse`.
@@ -126,14 +107,19 @@ class ImpulsiveFriction(FrictionLaw):
         mass : array, shape (B,)
             Effective mass of the tangential motion [kg].
         """
-        raise NotImplementedError
+        array_slip_after = type(self)._array_slip_after
+        if array_slip_after is None:
+            raise NotImplementedError(
+                f"{type(self).__name__} has neither `scalar_slip_after` nor `slip_after`"
+            )
+        return np.asarray(array_slip_after(slip, impulse, whole, mass, self.coefficients))
 
     def force(self, slip: Floats, normal_force: Floats) -> Floats:
         """Return the friction force against the slip [N].
 
         It is zero where the law gives the impulse alone.
         """
-        return np.zeros_like(slip)
+        return np.asarray(type(self)._array_friction(slip, normal_force, self.coefficients))
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -7,7 +7,7 @@ import numpy as np
 from vibroimpact.arrays import Floats
 from vibroimpact.dynamics.bounce import Bounce
 from vibroimpact.dynamics.columns import OBLIQUE_HISTORY_COLUMNS
-from vibroimpact.dynamics.oblique.rolling import LyingSpheres
+from vibroimpact.dynamics.oblique.lying import lie
 from vibroimpact.dynamics.oblique.state import State, energy_taken
 from vibroimpact.dynamics.oblique.statement import Oblique
 from vibroimpact.dynamics.problem import Problem
@@ -85,17 +85,15 @@ def _lying(problem: Problem, bounce: Bounce, moving: Moving, elapsed: Floats) ->
     """
     assert bounce.oblique is not None
     assert problem.oblique is not None
-    (sphere, _), (states, _, taken), same = (
-        bounce.oblique,
-        moving,
-        np.zeros(len(elapsed), dtype=np.intp),
-    )
-    start, pressing = states.take(same[:1]), np.array([float(problem.net_gravity)])
-    lying = LyingSpheres(
-        sphere, start, problem.oblique.friction, pressing, elapsed.max(keepdims=True)
-    )
-    state, friction = lying.at(same, elapsed)
-    return state, friction, taken + energy_taken(sphere, start, state)
+    sphere, _ = bounce.oblique
+    states, _, taken = moving
+    start = states.take(np.zeros(1, dtype=np.intp))
+    pressing = np.array([float(problem.net_gravity)])
+    # up to the largest time: the steps of twisting depend on it
+    times = np.append(elapsed, elapsed.max())[None]
+    lying, friction, _ = lie(sphere, start, problem.oblique.friction, pressing, times)
+    state = lying.take(np.arange(len(elapsed)))
+    return state, friction[:, :-1], taken + energy_taken(sphere, start, state)
 
 
 def _columns(

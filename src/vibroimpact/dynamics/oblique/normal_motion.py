@@ -52,11 +52,6 @@ class NormalMotion:
         return self._row(records.PACE)
 
     @property
-    def pace_slope(self) -> Floats:
-        """Its derivative [s]."""
-        return self._row(records.PACE_SLOPE)
-
-    @property
     def force(self) -> Floats:
         """Contact force, >= 0 [N]."""
         return self._row(records.FORCE)
@@ -84,23 +79,6 @@ class NormalMotion:
         laws have at the end, gives nothing back.
         """
         return np.asarray(np.maximum.accumulate(self.impulse, axis=0))
-
-    def integrals(self, values: Floats, slopes: Floats) -> Floats:
-        """Return the integrals over time so far (G, B) of a quantity with these values,
-        and slopes by the parameter.
-        """
-        rate, bend, step = (
-            self.pace * values,
-            self.pace_slope * values + self.pace * slopes,
-            self.steps[:, None],
-        )
-        found = np.zeros_like(rate)
-        np.cumsum(
-            step * (0.5 * (rate[1:] + rate[:-1]) + (bend[:-1] - bend[1:]) / 12.0),
-            axis=0,
-            out=found[1:],
-        )
-        return found
 
 
 def normal_motions(

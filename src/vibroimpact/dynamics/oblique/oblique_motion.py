@@ -4,34 +4,37 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from contextlib import nullcontext
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from vibroimpact.arrays import Bools, Drops, Floats
-from vibroimpact.contact.friction.law import CompliantFriction, FrictionLaw, ImpulsiveFriction
+from vibroimpact.compiled import interpreted, law_addresses
+from vibroimpact.contact.friction.law import CompliantFriction, ImpulsiveFriction
+from vibroimpact.contact.friction.laws.coulomb import Coulomb
 from vibroimpact.dynamics.columns import OBLIQUE_IMPACT_COLUMNS
+from vibroimpact.dynamics.core.sphere_contact import strike
 from vibroimpact.dynamics.flight import Flight
+from vibroimpact.dynamics.law_coefficients import coefficients_of
+from vibroimpact.dynamics.oblique.lying import lie
 from vibroimpact.dynamics.oblique.normal_motion import NormalMotion
 from vibroimpact.dynamics.oblique.resisted_contact import ResistedContact, resisted_contact
-from vibroimpact.dynamics.oblique.rolling import ACROSS, LyingSpheres
-from vibroimpact.dynamics.oblique.sliding import slide
+from vibroimpact.dynamics.oblique.sliding import ObliqueContact, collide
 from vibroimpact.dynamics.oblique.state import (
     ContactAlong,
     ImpulseAlong,
-    ObliqueContact,
     ObliqueContacts,
-    Sliding,
     Sphere,
     State,
     energy_taken,
 )
 from vibroimpact.dynamics.oblique.statement import Oblique
-from vibroimpact.dynamics.oblique.twisting import slowed_spins
 from vibroimpact.dynamics.shaken.statement import PlateMotion
 
-_PARTS = 8  # of a step for twisting, whose moment grows steeply where a slip ends
+_FEW = 200
+"""Fewer impulses than these do not load the compiler."""
 
 # of each phase of a contact at the default tolerance: the slip velocity at its end is within 2e-4
 # of that at first touch
@@ -111,13 +114,11 @@ class ObliqueMotion:
         """
         sphere, before = self.sphere.take(drops), self.state.take(drops)
         law = None if self.law is None else self.law.take(drops)
-        lying = LyingSpheres(sphere, before, law, pressing, elapsed)
-        if self.half is not None:
-            elapsed = lying.edge_time(self.half)
-        after, _ = lying.at(np.arange(len(drops)), elapsed)
+        half = (np.inf, np.inf) if self.half is None else tuple(self.half[:, 0].tolist())
+        after, _, times = lie(sphere, before, law, pressing, elapsed[:, None], half)
         self.lost[drops] += energy_taken(sphere, before, after)
         self._put(drops, after)
-        return elapsed
+        return times[:, 0]
 
     def distance(self, drops: Drops, flight: Flight, time: Floats) -> Floats:
         """Return how far drops move along the plate in their flights up to a time [m]."""
@@ -202,22 +203,12 @@ class ObliqueMotion:
     def _collide(
         self, drops: Drops, normal: NormalMotion, row: dict[str, Floats]
     ) -> ObliqueContact:
-        sphere, before = self.sphere.take(drops), self.state.take(drops)
+        sphere, before = self.now(drops)
         law = self.law if self.law is None or len(drops) == len(self.lost) else self.law.take(drops)
-        direction, slip, pull = _along(sphere, before)
-        sliding = slide(law, normal, slip, sphere.tangential_mass, pull)
-        contact = ObliqueContact(
-            sphere, before, direction, sliding, _twist(law, normal, sliding, sphere, before)
+        contact = collide(law, normal, sphere, before)
+        self.finish(
+            drops, contact.end, energy_taken(sphere, before, contact.end), contact.microslip, row
         )
-        friction_impulse = sphere.tangential_mass * np.abs(
-            sliding.slip[-1] - slip - pull * normal.time[-1]
-        )
-        contact = contact.changed(_across(sphere, contact))
-        contact = contact.changed(
-            _rolling(law, sphere, contact.end, normal.impulse[-1], friction_impulse)
-        )
-        after = contact.end
-        self.finish(drops, after, energy_taken(sphere, before, after), sliding.microslip, row)
         return contact
 
     def collide_at_once(
@@ -229,24 +220,23 @@ class ObliqueMotion:
         Return the contacts, and the plate's work [J]: that of friction on the spheres, as the plate
         moves along itself.
         """
-        sphere, start = self.sphere.take(drops), self.state.take(drops)
+        sphere, start = self.now(drops)
         surface = (
             0.0
             if self.motion is None
             else np.outer(self.motion.direction[:2], self.motion.at(time)[1])
         )
         before = replace(start, velocity=start.velocity - surface)  # seen from the plate
-        direction, slip, _ = _along(sphere, before)
-        left = slip
-        if isinstance(self.law, ImpulsiveFriction):
-            left = self.law.take(drops).slip_after(slip, impulse, impulse, sphere.tangential_mass)
-        after = sphere.pushed(before, sphere.tangential_mass * (left - slip) * direction)
-        law, friction_impulse = (
-            None if self.law is None else self.law.take(drops),
-            sphere.tangential_mass * np.abs(left - slip),
-        )
-        change = _rolling(law, sphere, after, impulse, friction_impulse)
-        after = after if change is None else after.changed(change)
+        law = Coulomb(coefficient=0.0) if self.law is None else self.law.take(drops)
+        assert isinstance(law, ImpulsiveFriction)  # others follow a force
+        rows = before.rows
+        ends = np.empty_like(rows)
+        with (
+            interpreted() if len(drops) < _FEW else nullcontext(),
+            coefficients_of(law, len(drops)) as coefficients,
+        ):
+            strike(law_addresses(type(law)), coefficients, sphere.rows(law), rows, impulse, ends)
+        after = State.of_rows(ends)
         lost, after = (
             energy_taken(sphere, before, after),
             replace(after, velocity=after.velocity + surface),
@@ -303,102 +293,3 @@ class ObliqueMotion:
         `FRICTION_PARTS`.
         """
         return {"microslip_J": self.microslip, "gross_slip_J": self.lost - self.microslip}
-
-
-def _along(sphere: Sphere, state: State) -> tuple[Floats, Floats, Floats]:
-    """Return the directions of slip (2, B), the slip speeds [m/s], and the accelerations of gravity
-    along the directions [m/s^2].
-
-    Where nothing slips the direction is that of gravity.
-    """
-    slip = sphere.slip(state)
-    speed = np.hypot(*slip)
-    ahead = np.where(speed > 0.0, slip, sphere.gravity)
-    length = np.hypot(*ahead)
-    with np.errstate(invalid="ignore"):
-        direction = np.where(length > 0.0, ahead / length, np.array([[1.0], [0.0]]))
-    return direction, speed, (sphere.gravity * direction).sum(axis=0)
-
-
-def _across(sphere: Sphere, contact: ObliqueContact) -> State | None:
-    """Return what friction changes across the direction of slip in contacts, where gravity pulls
-    across it; None if it does nowhere.
-
-    The slip across is small: friction Q against a slip s along the direction slows it at the rate Q
-    / (m s), and holds it where s is over.
-    """
-    direction, sliding = contact.direction, contact.sliding
-    along = (sphere.gravity * direction).sum(axis=0)
-    across = sphere.gravity - along * direction
-    if not (np.hypot(*across) > ACROSS * np.hypot(*sphere.gravity)).any():
-        return None
-    elapsed, slip = np.diff(sliding.time, axis=0), sliding.slip
-    slowed = np.divide(
-        slip[1:] - along * elapsed, slip[:-1], out=np.zeros_like(elapsed), where=slip[:-1] > 0.0
-    )
-    # what is left by the end of the slip that is there at a point
-    left = np.cumprod(
-        np.append(np.clip(slowed, 0.0, 1.0), np.ones_like(elapsed[:1]), axis=0)[::-1], axis=0
-    )[::-1]
-    lost = (elapsed * (0.5 * (left[1:] + left[:-1]) - 1.0)).sum(axis=0) * across
-    still = np.zeros_like(direction)
-    return sphere.pushed(
-        State(still, still, np.zeros((3, still.shape[1]))), sphere.tangential_mass * lost
-    )
-
-
-def _twist(
-    law: FrictionLaw | None, normal: NormalMotion, sliding: Sliding, sphere: Sphere, before: State
-) -> Floats:
-    """Return the change of the spin about the normal by twisting of the contact [rad/s]."""
-    spin = before.spin[2]
-    if law is None or not spin.any():
-        return np.zeros_like(spin)
-    moment = law.twisting_moment(normal.force)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        growth = np.where(
-            normal.force > 0.0, (4.0 / 3.0) * moment * normal.force_slope / normal.force, 0.0
-        )
-    slower = normal.integrals(moment, growth) / sphere.inertia
-    known = (slower, normal.force, np.abs(sliding.force), np.abs(sliding.slip))
-    left, _ = slowed_spins(law, spin, *(_between(one) for one in known))
-    return np.asarray(np.sign(spin) * (left[-1] - left[0]))
-
-
-def _between(values: Floats) -> Floats:
-    """Return values at G points, and on straight lines at more between each two of them
-    (`_PARTS` (G - 1) + 1, B).
-    """
-    share = np.arange(_PARTS)[:, None] / _PARTS
-    between = values[:-1, None] + share * (values[1:] - values[:-1])[:, None]
-    return np.concatenate([between.reshape(-1, values.shape[1]), values[-1:]])
-
-
-def _rolling(
-    law: FrictionLaw | None, sphere: Sphere, after: State, impulse: Floats, friction_impulse: Floats
-) -> State | None:
-    """Return what rolling resistance changes in states after contacts; None if it does not act.
-
-    Its moment acts at the end, against the spin that is left, with the whole normal impulse [N s].
-    What the impulse of friction so far, `friction_impulse` [N s], has left of friction keeps the
-    sphere
-    rolling, but where the contact point slips with the spin so fast that this made energy.
-    """
-    if law is None or not np.any(law.rolling_coefficient):
-        return None
-    share, turning = sphere.tangential_mass / sphere.mass, sphere.turning(after)
-    speed, moment = np.hypot(*turning), law.rolling_coefficient * impulse
-    along = np.divide(turning, speed, out=np.zeros_like(turning), where=speed > 0.0)
-    slips = 2.0 * (1.0 - share) * (sphere.slip(after) * along).sum(axis=0) > speed
-    held = np.where(
-        slips,
-        0.0,
-        np.minimum(
-            (1.0 - share) * moment, np.maximum(law.coefficient * impulse - friction_impulse, 0.0)
-        ),
-    )
-    turn = sphere.radius**2 / sphere.inertia
-    slower = (moment - held) * turn
-    part = np.divide(speed, slower, out=np.ones_like(speed), where=slower > speed)
-    still = State(np.zeros_like(turning), np.zeros_like(turning), np.zeros_like(after.spin))
-    return sphere.turned(sphere.pushed(still, part * held * along), -part * moment * turn * along)

@@ -13,10 +13,10 @@ from vibroimpact.contact.friction.law import CompliantFriction
 from vibroimpact.dynamics.core.cubics import values_in_parts
 from vibroimpact.dynamics.core.resisted_contact import RollingSphere, march_resisted
 from vibroimpact.dynamics.core.tangential_history import lost_in_microslip
+from vibroimpact.dynamics.core.twisting import Twisting, slow_spin
 from vibroimpact.dynamics.oblique.normal_motion import NormalMotion
 from vibroimpact.dynamics.oblique.state import Sphere, State, energy_taken
 from vibroimpact.dynamics.oblique.tangential_history import tangential_history
-from vibroimpact.dynamics.oblique.twisting import slowed_spins
 
 _PARTS = 16
 """Steps in each of the normal motion's: spins after the contact are then within 1e-3 of
@@ -174,11 +174,10 @@ def _spins_about_normal(
     """Return the spins about the normal of one drop [rad/s] (G,), which twisting slows;
     they do not act on the motion along the plate.
     """
-    if not before.spin[2].any():
+    spin = float(before.spin[2, 0])
+    if spin == 0.0:
         return np.zeros_like(time)
-    moment = law.twisting_moment(force)
-    slower = np.zeros_like(time)
-    np.cumsum(0.5 * np.diff(time) * (moment[1:] + moment[:-1]), out=slower[1:])
-    series = (slower / sphere.inertia[0], force, friction, slip)
-    left, _ = slowed_spins(law, before.spin[2], *(values[:, None] for values in series))
-    return np.asarray(np.sign(before.spin[2]) * left[:, 0])
+    twisting = Twisting(float(law.coefficient), float(law.contact_radius(np.ones(1))[0]))
+    spins = np.empty_like(time)
+    slow_spin(twisting, abs(spin), float(sphere.inertia[0]), time, force, friction, slip, spins)
+    return np.asarray(np.sign(spin) * spins)

@@ -3,11 +3,27 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, ClassVar
 
 import numpy as np
 
-from vibroimpact.arrays import Floats
-from vibroimpact.contact.friction.law import ImpulsiveFriction
+from vibroimpact.arrays import Array
+from vibroimpact.compiled import scalar
+from vibroimpact.contact.friction.law import ImpulsiveFriction, SlidingForce, SlipAfter
+
+
+@scalar
+def _slip_after(slip: Array, impulse: Array, whole: Array, mass: Array, coefficients: Any) -> Array:
+    """Return the slip that friction has left; see `ImpulsiveFriction.slip_after`."""
+    taken = coefficients[0] * impulse / mass
+    return slip - np.sign(slip) * np.minimum(np.abs(slip), taken)
+
+
+@scalar
+def _friction(slip: Array, normal_force: Array, coefficients: Any) -> Array:
+    """Return the force of sliding where it slips [N]."""
+    return np.sign(slip) * coefficients[0] * normal_force
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -38,12 +54,10 @@ class Coulomb(ImpulsiveFriction):
     equation = "Q = mu F while it slips"
     source = "Johnson 1985, Contact Mechanics, section 11.6"
 
-    def slip_after(self, slip: Floats, impulse: Floats, whole: Floats, mass: Floats) -> Floats:
-        """Return the slip that friction has left; see `ImpulsiveFriction`."""
-        return np.asarray(
-            slip - np.sign(slip) * np.minimum(np.abs(slip), self.coefficient * impulse / mass)
-        )
+    scalar_slip_after: ClassVar[SlipAfter | None] = staticmethod(_slip_after)
+    scalar_friction: ClassVar[SlidingForce | None] = staticmethod(_friction)
 
-    def force(self, slip: Floats, normal_force: Floats) -> Floats:
-        """Return the force of sliding where it slips [N]."""
-        return np.asarray(np.sign(slip) * self.coefficient * normal_force)
+    @cached_property
+    def coefficients(self) -> tuple[Array, ...]:
+        """The coefficient of friction."""
+        return (self.coefficient,)

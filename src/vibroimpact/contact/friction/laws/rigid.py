@@ -3,12 +3,27 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, ClassVar
 
 import numpy as np
 
-from vibroimpact.arrays import Array, Floats
-from vibroimpact.contact.friction.law import ImpulsiveFriction
+from vibroimpact.arrays import Array
+from vibroimpact.compiled import scalar
+from vibroimpact.contact.choice import where
+from vibroimpact.contact.friction.law import ImpulsiveFriction, SlipAfter
 from vibroimpact.contact.parameters import parameter
+
+
+@scalar
+def _slip_after(slip: Array, impulse: Array, whole: Array, mass: Array, coefficients: Any) -> Array:
+    """Return the slip of first touch, and after the whole impulse what friction has made of it; see
+    `ImpulsiveFriction.slip_after`.
+    """
+    coefficient = coefficients[0]
+    slip_restitution = coefficients[1]
+    change = np.minimum((1.0 + slip_restitution) * np.abs(slip), coefficient * whole / mass)
+    return where(impulse >= whole, slip - np.sign(slip) * change, slip)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -52,12 +67,9 @@ class Rigid(ImpulsiveFriction):
     equation = "v_s' = -beta0 v_s, or v_s - sgn(v_s) mu J / m_t if it slips"
     source = "Walton 1993, in Particulate Two-Phase Flow, p. 884"
 
-    def slip_after(self, slip: Floats, impulse: Floats, whole: Floats, mass: Floats) -> Floats:
-        """Return the slip that friction has left; see `ImpulsiveFriction`.
+    scalar_slip_after: ClassVar[SlipAfter | None] = staticmethod(_slip_after)
 
-        It is the slip of first touch until the whole impulse has acted.
-        """
-        change = np.minimum(
-            (1.0 + self.slip_restitution) * np.abs(slip), self.coefficient * whole / mass
-        )
-        return np.where(impulse >= whole, slip - np.sign(slip) * change, slip)
+    @cached_property
+    def coefficients(self) -> tuple[Array, ...]:
+        """The coefficient of friction and the restitution of the slip."""
+        return self.coefficient, self.slip_restitution
