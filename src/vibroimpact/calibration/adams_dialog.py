@@ -47,9 +47,9 @@ def dialog_rows(laws: Iterable[ContactLaw]) -> list[dict[str, Any]]:
 
     Examples
     --------
-    >>> dialog_rows([AdamsImpact(stiffness=1e9, damping_max=150.0, exponent=1.0)])
-    [{'stiffness_N_mm_n': 1000000.0, 'force_exponent': 1.0, 'damping_N_s_mm': 0.15,
-    'penetration_depth_mm': 0.1}]
+    >>> (row,) = dialog_rows([AdamsImpact(stiffness=1e9, damping_max=150.0, exponent=1.0)])
+    >>> row["stiffness_N_mm_n"], row["force_exponent"], row["damping_N_s_mm"]
+    (1000000.0, 1.0, 0.15)
     """
     rows = []
     for law in laws:

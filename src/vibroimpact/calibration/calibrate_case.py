@@ -99,9 +99,8 @@ def read_calibration(table: Mapping[str, Any]) -> ToCalibrate:
     >>> import vibroimpact as vi
     >>> case = vi.load_case("paper:type1-constant").to_problem().source
     >>> what = vi.read_calibration({**case, "calibrate": {"target": {"restitution": 0.7}}})
-    >>> what.case.contact.law, what.case.calibrate.target
-    ('adams-impact', RestitutionTarget(restitution=0.7, approach_speed=None,
-    standard_deviation=None))
+    >>> what.case.contact.law, what.case.calibrate.target.restitution
+    ('adams-impact', 0.7)
     """
     whole = dict(table)
     section = whole.get("calibrate", {})

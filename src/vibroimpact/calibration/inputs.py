@@ -69,9 +69,9 @@ def inputs_sentence(inputs: Sequence[Input]) -> str:
     --------
     >>> inputs_sentence([as_input("height", "0.6 m +- 5 mm", "m")]).replace("\u00a0", " ")
     'The intervals include the standard deviations of these inputs: height 0.6 m, 5 mm.'
-    >>> inputs_sentence([as_input("height", "0.6 m", "m")]).replace("\u00a0", " ")
-    'The intervals include the standard deviations of these inputs: height 0.6 m, 29 mm (since its
-    last digit leaves open \u00b1 50 mm).'
+    >>> sentence = inputs_sentence([as_input("height", "0.6 m", "m")]).replace("\u00a0", " ")
+    >>> sentence.partition(": ")[2]
+    'height 0.6 m, 29 mm (since its last digit leaves open \u00b1 50 mm).'
     """
     if not inputs:
         return ""
@@ -84,10 +84,13 @@ def guessed_doubt(typed: Input, of_what: str) -> str:
 
     Examples
     --------
-    >>> guessed_doubt(as_input("height", "0.6 m", "m"), "impact 1").replace("\u00a0", " ")
-    'the interval of impact 1 is mostly that of height, 0.6 m with a standard deviation of 29 mm,
-    since its last digit leaves open \u00b1 \
-50 mm; give the standard deviation, as in "0.6 m +- 10 mm"'
+    >>> doubt = guessed_doubt(as_input("height", "0.6 m", "m"), "impact 1")
+    >>> for clause in doubt.replace("\u00a0", " ").split(", "):
+    ...     print(clause)
+    the interval of impact 1 is mostly that of height
+    0.6 m with a standard deviation of 29 mm
+    since its last digit leaves open \u00b1 50 mm; give the standard deviation
+    as in "0.6 m +- 10 mm"
     """
     deviation = typed.value.deviation
     value = _value_text(typed)
