@@ -74,7 +74,7 @@ def test_plain_python_gives_the_same() -> None:
     if why_not_compiled():
         pytest.skip("nothing is compiled")
     source = Path(vibroimpact.__file__).parents[1]  # that of this process, whatever is installed
-    folders = (source, Path(__file__).parent, Path(__file__).parents[1])
+    folders = (source, Path(__file__).parent, Path(__file__).parents[2])
     environment = {**os.environ, SWITCH: "0", "PYTHONPATH": os.pathsep.join(map(str, folders))}
     script = "import json; from test_plain_python import numbers; print(json.dumps(numbers()))"
     told = subprocess.run(
