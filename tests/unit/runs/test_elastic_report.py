@@ -529,7 +529,7 @@ def test_a_grid_lies_on_the_uppermost_face_and_leaves_holes_out() -> None:
 
 
 def test_further_columns_are_documented() -> None:
-    text = (Path(__file__).parents[2] / "docs" / "result-folder.md").read_text(encoding="utf-8")
+    text = (Path(__file__).parents[3] / "docs" / "result-folder.md").read_text(encoding="utf-8")
     assert all(f"`{name}`" in text for name in (*VIBRATION_IMPACT_COLUMNS, *VIBRATION_LEDGER))
 
 
