@@ -217,7 +217,7 @@ def test_thresholds_of_doubts() -> None:
         "Above {} % a doubt is raised, with a smaller element size",
         100.0 * plate_mesh.LIMITS[0].threshold,
     )
-    says(PAGE, "(more than {} % of the rms value", 100.0 * sensor_doubts._PROMISED)
+    says(PAGE, "(more than {} % of the rms value", 100.0 * sensor_doubts._DOUBTED_ERROR)
     says(PAGE, "contact radii up to about {} radii", small_contact.LIMITS[0].threshold)
 
 

@@ -109,8 +109,8 @@ def test_thresholds() -> None:
         PAGE,
         "below {}; above {} %; any; any; above {} %",
         sensor_doubts._NEAR,
-        100.0 * sensor_doubts._PROMISED,
-        100.0 * sensor_doubts._LOW,
+        100.0 * sensor_doubts._DOUBTED_ERROR,
+        100.0 * sensor_doubts._DOUBTED_SHARE,
     )
     says(
         PAGE,

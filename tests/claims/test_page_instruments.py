@@ -10,7 +10,7 @@ import pytest
 import vibroimpact as vi
 from stated_numbers import ROOT, says
 from support import blocks
-from vibroimpact.cases.sensor_doubts import _LOW
+from vibroimpact.cases.sensor_doubts import _DOUBTED_SHARE
 
 PAGE = "docs/instruments.md"
 
@@ -40,5 +40,5 @@ def test_power_that_needs_a_baffle() -> None:
     says(
         PAGE,
         "A doubt is raised if more than {} % of the power lies below the former frequency",
-        100.0 * _LOW,
+        100.0 * _DOUBTED_SHARE,
     )

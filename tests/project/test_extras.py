@@ -25,6 +25,7 @@ _PACKAGE_OF = {
     "tomli_w": "tomli-w",
     "markdown_it": "markdown-it-py",
     "mpl_toolkits": "matplotlib",
+    "lazy_loader": "lazy-loader",
 }
 
 

@@ -43,8 +43,8 @@ def report_of(bound: Bound) -> Report:
     --------
     >>> import vibroimpact as vi
     >>> report = report_of(vi.bound_of(vi.load_sweep("signals:coal-gangue", samples=100)))
-    >>> report.title, list(report.files)
-    ('Bounds on the classification error: coal-gangue', ['bound.csv', 'map.csv'])
+    >>> list(report.files), report.sections[0].title
+    (['bound.csv', 'map.csv'], 'Classification error by measured quantities')
     """
     measured = Section(
         "measured",

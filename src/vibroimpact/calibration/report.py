@@ -143,7 +143,7 @@ def _report(
         warnings=calibration.doubts,
         files=files,
         summary={"name": case.name, "version": __version__, "calibration": parameter},
-        details={**document, **tables},
+        data={**document, **tables},
     )
 
 

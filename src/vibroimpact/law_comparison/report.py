@@ -86,7 +86,7 @@ def report_of(comparison: Comparison) -> Report:
             },
         },
         summary=summary,
-        details={"laws": cases},
+        data={**summary, "laws": cases},
         provenance="the case under each law is in the folder cases.",
     )
 

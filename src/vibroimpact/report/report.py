@@ -151,7 +151,7 @@ class Report:
     sections : sequence of Section
         Tables with their notes.
     summary : mapping
-        Content of `summary.json` in the folder, and of what `--json` prints; in SI.
+        Content of `summary.json` in the folder; in SI.
     charts : sequence of Chart
         The charts.
     files : mapping of str to callable
@@ -164,8 +164,8 @@ class Report:
         What may be wrong with it, each without the full stop.
     provenance : str
         What it was made from, in words that follow the version of the program.
-    details : mapping
-        What `--json` prints beside the summary, or in place of its entries.
+    data : mapping, optional
+        What `--json` prints; by default the summary.
     """
 
     title: str
@@ -177,12 +177,12 @@ class Report:
     sentences: Sequence[str] = ()
     warnings: Sequence[str] = ()
     provenance: str = ""
-    details: Mapping[str, Any] = field(default_factory=dict)
+    data: Mapping[str, Any] | None = None
 
     @property
     def document(self) -> dict[str, Any]:
         """What `--json` prints."""
-        return {**self.summary, **self.details}
+        return dict(self.summary if self.data is None else self.data)
 
 
 _MOST_ROWS = 50

@@ -48,8 +48,8 @@ def report_of(correlation: Correlation) -> Report:
             ),
             octave_table(correlation),
             Note(
-                "Frequency response assurance criterion (FRAC) of "
-                f"{what_frac_is_of(correlation)}: 1 where they are equal except for a factor."
+                f"FRAC of {what_frac_is_of(correlation)}: the frequency response assurance "
+                "criterion, 1 where they are equal except for a factor."
             ),
         ),
     )

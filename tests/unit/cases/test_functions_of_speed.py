@@ -316,11 +316,11 @@ def test_what_a_calibration_fits_is_run_as_a_case(
     with pytest.raises(SystemExit):
         main()
     line = next(
-        line for line in capsys.readouterr().out.splitlines() if line.startswith(" In a case: ")
+        line for line in capsys.readouterr().out.splitlines() if line.startswith("In a case: ")
     )
     table = json.loads(Path("found/calibration.json").read_text())
     case = vi.load_case("found/case.toml", {"contact.damping_max": table["by_speed"]})
-    assert line.startswith(" In a case: damping_max = { polynomial = [")
+    assert line.startswith("In a case: damping_max = { polynomial = [")
     found = vi.simulate(case).impacts
     fitted = np.polyval(table["fit"]["coefficients"][::-1], found["approach_speed_m_s"])
     listed = vi.simulate(

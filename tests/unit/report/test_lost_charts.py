@@ -14,10 +14,9 @@ import pytest
 import tomli_w
 
 import vibroimpact as vi
-from drawn_points import drawn
 from support import plain_case
 from vibroimpact.charts import files as chart_files
-from vibroimpact.charts.made import made_charts, made_scene
+from vibroimpact.charts.made import drawn, made_charts, made_scene
 from vibroimpact.charts.plotly import plotly_chart
 from vibroimpact.cli import main
 from vibroimpact.errors import ChartWarning

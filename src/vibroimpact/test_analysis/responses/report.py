@@ -47,8 +47,8 @@ def report_of(correlation: ResponseCorrelation) -> Report:
             ),
             octave_table(correlation),
             Note(
-                f"Frequency response assurance criterion (FRAC) of {WHAT_FRAC_IS_OF}: 1 where they "
-                "are equal except for a factor."
+                f"FRAC of {WHAT_FRAC_IS_OF}: the frequency response assurance criterion, 1 where "
+                "they are equal except for a factor."
             ),
         ),
     )
