@@ -23,7 +23,7 @@ from vibroimpact.report.report import (
     Table,
     table_of,
 )
-from vibroimpact.results.csv_files import write_csv
+from vibroimpact.results.csv_files import write_rows
 from vibroimpact.units.display import MISSING
 
 _FEW = 5.0
@@ -218,7 +218,7 @@ def bound_rows(bound: Bound) -> list[dict[str, str | float]]:
 def _write_bound(bound: Bound, path: Path) -> None:
     """Write the errors of all observations."""
     rows = bound_rows(bound)
-    write_csv(rows, list(rows[0]), path)
+    write_rows(rows, path)
 
 
 def _write_map(bound: Bound, path: Path) -> None:
@@ -232,7 +232,7 @@ def _write_map(bound: Bound, path: Path) -> None:
         for row, bandwidth in enumerate(BANDWIDTHS)
         for column, ratio in enumerate(SIGNAL_TO_NOISE)
     ]
-    write_csv(rows, list(rows[0]), path)
+    write_rows(rows, path)
 
 
 def _summary(bound: Bound) -> dict[str, Any]:

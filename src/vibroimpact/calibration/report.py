@@ -43,8 +43,7 @@ from vibroimpact.cases.case import Case
 from vibroimpact.files.check_sums import CHECK_SUMS, file_digest, sealed
 from vibroimpact.report.report import Block, Code, Explanation, Note, Report, Section
 from vibroimpact.results.csv_files import write_csv
-
-CASE = "case.toml"
+from vibroimpact.results.folder import CASE, write_case
 
 
 def report_of(case: Case, calibration: Calibration | FrictionCalibration) -> Report:
@@ -129,7 +128,7 @@ def _report(
     code = Code("case", lead, tomli_w.dumps(resolved_case(case)))
     calibrated = calibrated_case(case, calibration)
     files: dict[str, Callable[[Path], object]] = {
-        CASE: partial(_write_case, calibrated),
+        CASE: partial(write_case, resolved_case(calibrated)),
         CALIBRATION: partial(_write_calibration, document),
     }
     for table, rows in tables.items():
@@ -145,11 +144,6 @@ def _report(
         summary={"name": case.name, "version": __version__, "calibration": parameter},
         data={**document, **tables},
     )
-
-
-def _write_case(case: Case, path: Path) -> None:
-    """Write the case with the values found."""
-    path.write_text(tomli_w.dumps(resolved_case(case)), encoding="utf-8")
 
 
 def _write_calibration(document: Mapping[str, Any], path: Path) -> None:

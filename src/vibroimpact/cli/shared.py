@@ -188,8 +188,10 @@ def show_folder(
     as_json: bool,
 ) -> None:
     """Print what a folder with a report holds, as `show` does, and that it was written."""
+    from vibroimpact.results.folder import REPORT
+
     show(lambda: {"folder": str(folder), **document()}, *tables, as_json=as_json)
-    say(f"wrote {folder / 'report.html'}", err=as_json)
+    say(f"wrote {folder / REPORT}", err=as_json)
 
 
 def save_and_show(

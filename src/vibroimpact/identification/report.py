@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-import tomli_w
 
 from vibroimpact._version import __version__
 from vibroimpact.cases.build import resolved_case
@@ -15,6 +15,7 @@ from vibroimpact.identification.charts import identification_charts
 from vibroimpact.identification.identify import Identification
 from vibroimpact.report.report import Explanation, Note, Report, Section, Table, table_of
 from vibroimpact.results.csv_files import write_columns
+from vibroimpact.results.folder import CASE, write_case
 from vibroimpact.signals.estimate import Estimate
 from vibroimpact.units.display import digits, multiple
 
@@ -57,7 +58,9 @@ def report_of(identification: Identification) -> Report:
             ),
         ),
     )
-    files = {"case.toml": partial(_write_case, identification)}
+    files: dict[str, Callable[[Path], object]] = {
+        CASE: partial(write_case, resolved_case(identification.plate.case))
+    }
     if identification.force is not None:
         files = {"force.csv": partial(_write_force, identification), **files}
     return Report(
@@ -101,11 +104,6 @@ def _write_force(identification: Identification, path: Path) -> None:
         "force_high_N": recovered.force + half_width,
     }
     write_columns(columns, path)
-
-
-def _write_case(identification: Identification, path: Path) -> None:
-    """Write the case with what was found."""
-    path.write_text(tomli_w.dumps(resolved_case(identification.plate.case)), encoding="utf-8")
 
 
 def _summary(identification: Identification) -> dict[str, Any]:

@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import tomli_w
 
 from vibroimpact._version import __version__
 from vibroimpact.contact.law import ContactLaw
@@ -24,6 +23,7 @@ from vibroimpact.report.report import (
     Table,
 )
 from vibroimpact.results.csv_files import impact_rows, write_csv
+from vibroimpact.results.folder import write_case
 from vibroimpact.results.result import Result
 from vibroimpact.runs.tables import formatted_column
 from vibroimpact.units.display import MISSING, text
@@ -81,7 +81,7 @@ def report_of(comparison: Comparison) -> Report:
         files={
             "comparison.csv": partial(_write_impacts, comparison),
             **{
-                f"cases/{name}.toml": partial(_write_case, result)
+                f"cases/{name}.toml": partial(write_case, result.case)
                 for name, result in comparison.results.items()
             },
         },
@@ -188,8 +188,3 @@ def _write_impacts(comparison: Comparison, path: Path) -> None:
         name for result in comparison.results.values() for name in result.impacts
     )
     write_csv(rows, ["law", *columns], path)
-
-
-def _write_case(result: Result, path: Path) -> None:
-    """Write the case of a run."""
-    path.write_text(tomli_w.dumps(result.case), encoding="utf-8")

@@ -9,8 +9,6 @@ from os import PathLike
 from pathlib import Path
 from typing import Any
 
-import tomli_w
-
 from vibroimpact.cases.build import resolved_case
 from vibroimpact.cases.case import Case
 from vibroimpact.cases.elastic.modes import BodyModes
@@ -29,7 +27,7 @@ from vibroimpact.modes.document import (
 from vibroimpact.modes.measured_table import MeasuredTable
 from vibroimpact.modes.page import modes_page
 from vibroimpact.results.csv_files import write_csv
-from vibroimpact.results.folder import new_folder, write_summary
+from vibroimpact.results.folder import CASE, REPORT, new_folder, write_case, write_summary
 
 _SHAPES_WRITTEN = 50  # limits the size of the file for ParaView
 
@@ -96,7 +94,7 @@ def save_modes(
     'summary.json']
     """
     with new_folder(directory, force=force) as folder:
-        (folder / "case.toml").write_text(tomli_w.dumps(resolved_case(case)), encoding="utf-8")
+        write_case(resolved_case(case), folder / CASE)
         write_csv(
             [row for name, body in modes.items() for row in mode_rows(name, body)],
             list(MODE_COLUMNS),
@@ -114,9 +112,7 @@ def save_modes(
         summary = summary_of_modes(case, modes)
         write_summary(summary, folder)
         charts = mode_charts(modes)
-        (folder / "report.html").write_text(
-            modes_page(case, modes, charts, measured), encoding="utf-8"
-        )
+        (folder / REPORT).write_text(modes_page(case, modes, charts, measured), encoding="utf-8")
         write_figures(charts, folder, figures)
         for name, body in modes.items():
             _write_meshes(folder, name, body, getattr(case, name).material)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import cached_property
 from importlib import import_module
 from os import PathLike
 from pathlib import Path
@@ -31,7 +32,7 @@ class Reported:
         if reported_in:
             cls._reported_in = reported_in
 
-    @property
+    @cached_property
     def report(self) -> Report:
         """The report: title, answer, tables, charts, warnings and files, as data."""
         report: Report = import_module(self._reported_in).report_of(self)

@@ -9,10 +9,7 @@ from pathlib import Path
 from vibroimpact.charts.figures_folder import write_figures
 from vibroimpact.report.page_of_report import page_of_report
 from vibroimpact.report.report import Report
-from vibroimpact.results.folder import new_folder, write_summary
-
-REPORT = "report.html"
-"""Name of the page in a folder."""
+from vibroimpact.results.folder import REPORT, new_folder, write_summary
 
 
 def save_report(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import csv
 import math
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -60,6 +60,11 @@ def write_csv(rows: Iterable[dict[str, Any]], columns: list[str], path: Path) ->
         writer.writeheader()
         for row in rows:
             writer.writerow({name: "" if cell is None else cell for name, cell in row.items()})
+
+
+def write_rows(rows: Sequence[dict[str, Any]], path: Path) -> None:
+    """Write rows that have the same columns as a CSV file; the first row names them."""
+    write_csv(rows, list(rows[0]), path)
 
 
 def write_columns(columns: Mapping[str, Floats], path: Path) -> None:

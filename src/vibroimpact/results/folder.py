@@ -47,7 +47,7 @@ from vibroimpact.results.netcdf import read_groups, write_groups
 from vibroimpact.results.result import Result
 from vibroimpact.results.summary import check_case, check_types, summary_of
 
-SUMMARY, CASE, NETCDF = "summary.json", "case.toml", "result.nc"
+SUMMARY, CASE, NETCDF, REPORT = "summary.json", "case.toml", "result.nc", "report.html"
 
 LONGEST_FOLDER_NAME = 200
 """In bytes; most file systems allow 255. This leaves room for what is appended, such as
@@ -170,6 +170,11 @@ def write_summary(summary: Mapping[str, Any], folder: Path) -> None:
     )
 
 
+def write_case(case: Mapping[str, Any], path: Path) -> None:
+    """Write a resolved case as a file that can be run."""
+    path.write_text(tomli_w.dumps(case), encoding="utf-8")
+
+
 def write_result(result: Result, directory: Path) -> None:
     """Write the data files of a result into an existing folder.
 
@@ -178,7 +183,7 @@ def write_result(result: Result, directory: Path) -> None:
     """
     # a problem defined in Python has no case; its provenance holds its representation
     if result.case:
-        (directory / CASE).write_text(tomli_w.dumps(result.case), encoding="utf-8")
+        write_case(result.case, directory / CASE)
     write_impacts(result.impacts, directory / "impacts.csv")
     write_groups(result, directory / NETCDF)
     check_sums = {

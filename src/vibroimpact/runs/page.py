@@ -12,6 +12,7 @@ from vibroimpact.charts.made import made_charts, made_scene
 from vibroimpact.dynamics.energy import CLOSURE_LIMIT
 from vibroimpact.report.page import render_page
 from vibroimpact.resolved_case import ResolvedCase
+from vibroimpact.results.folder import REPORT
 from vibroimpact.results.result import Result
 from vibroimpact.runs.below import level_below
 from vibroimpact.runs.captions import left_out, scene_caption, sensors_left_out
@@ -33,7 +34,7 @@ def write_report(result: Result, directory: Path) -> None:
     directory : pathlib.Path
         Existing directory.
     """
-    (directory / "report.html").write_text(run_page(result), encoding="utf-8")
+    (directory / REPORT).write_text(run_page(result), encoding="utf-8")
 
 
 def run_page(result: Result) -> str:

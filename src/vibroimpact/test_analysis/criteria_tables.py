@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from vibroimpact.arrays import Floats
+from vibroimpact.files.plain_names import plain_names
 from vibroimpact.quoting import visible
-from vibroimpact.report.report import Block, Code, Explanation, Section, Table, table_of
+from vibroimpact.report.report import Block, Code, Explanation, Note, Section, Table, table_of
+from vibroimpact.results.csv_files import write_columns, write_csv
 from vibroimpact.test_analysis.criteria import Criteria, Responses
 from vibroimpact.test_analysis.mode_pairs import ModePair, damping_field
 from vibroimpact.units.display import MISSING, digits
@@ -27,8 +29,8 @@ MODE_HEADERS = (
     "Remark",
 )
 """Headers of the table of modes."""
-TEXTS = ("Record", "Response", "Unit", "Polarity", "Band", "Remark")
-"""Headers of columns of words."""
+TEXTS = ("Remark",)
+"""Headers of columns of words in a table of modes."""
 MODE_COLUMNS = (
     "mode",
     "case_frequency_Hz",
@@ -46,36 +48,31 @@ MODE_COLUMNS = (
 """Columns of `modes.csv`."""
 
 
-def response_columns(found: Responses, plain: Mapping[str, str]) -> dict[str, Floats]:
-    """Return the columns of `responses.csv`: the frequency, and of each response magnitude and
-    phase of both, and the coherence.
-
-    Parameters
-    ----------
-    found : Responses
-        The correlation.
-    plain : mapping of str to str
-        What stands for the name of each sensor.
-    """
-    columns = {"frequency_Hz": found.frequency}
-    for number, sensor in enumerate(found.sensors):
+def write_responses(correlation: Responses, path: Path) -> None:
+    """Write frequency, and of each response magnitude and phase of both, and the coherence."""
+    plain = plain_names([sensor.name for sensor in correlation.sensors])
+    columns = {"frequency_Hz": correlation.frequency}
+    for number, sensor in enumerate(correlation.sensors):
         name = plain[sensor.name]
-        for what, response in (
-            ("measured", found.measured_response),
-            ("simulated", found.simulated_response),
+        for origin, response in (
+            ("measured", correlation.measured_response),
+            ("simulated", correlation.simulated_response),
         ):
-            columns |= {
-                f"{name}_{what}_magnitude": np.abs(response[number]),
-                f"{name}_{what}_phase_rad": np.angle(response[number]),
-            }
-        if found.coherence is not None:
-            columns[f"{name}_coherence"] = found.coherence[number]
-    return columns
+            columns[f"{name}_{origin}_magnitude"] = np.abs(response[number])
+            columns[f"{name}_{origin}_phase_rad"] = np.angle(response[number])
+        if correlation.coherence is not None:
+            columns[f"{name}_coherence"] = correlation.coherence[number]
+    write_columns(columns, path)
 
 
-def octave_table(criteria: Criteria) -> Table:
-    """Return the table of octaves: the criterion of each record over each, and over the
-    whole band.
+def write_modes(correlation: Criteria, path: Path) -> None:
+    """Write the modes of both."""
+    write_csv(mode_table(correlation), list(MODE_COLUMNS), path)
+
+
+def octave_blocks(criteria: Criteria, compared: str) -> tuple[Table, Note]:
+    """Return the table of octaves with its note: the criterion of each record over each octave,
+    and over the whole band; `compared`: of what it is.
     """
     headings = ["Band", *(visible(sensor.name) for sensor in criteria.sensors)]
     low, high = criteria.band
@@ -83,7 +80,11 @@ def octave_table(criteria: Criteria) -> Table:
     for (low, high), fracs in zip(criteria.octaves, criteria.octave_frac.T, strict=True):
         cells = [MISSING if np.isnan(frac) else f"{frac:.3f}" for frac in fracs]
         rows.append([f"{low:.5g} to {high:.5g} Hz", *cells])
-    return table_of(headings, rows)
+    note = Note(
+        f"FRAC of {compared}: the frequency response assurance criterion, 1 where they are equal "
+        "except for a factor."
+    )
+    return table_of(headings, rows), note
 
 
 def modes_section(modes: Sequence[ModePair], explanation: str) -> Section:

@@ -7,22 +7,22 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import tomli_w
 
 from vibroimpact._version import __version__
 from vibroimpact.cases.build import resolved_case
 from vibroimpact.files.plain_names import plain_names
 from vibroimpact.quoting import visible
-from vibroimpact.report.report import Explanation, Note, Report, Section, Table, table_of
-from vibroimpact.results.csv_files import write_columns, write_csv
+from vibroimpact.report.report import Explanation, Report, Section, Table, table_of
+from vibroimpact.results.csv_files import write_columns
+from vibroimpact.results.folder import CASE, write_case
 from vibroimpact.test_analysis.charts import correlation_charts, what_frac_is_of
 from vibroimpact.test_analysis.correlate import Correlation
 from vibroimpact.test_analysis.criteria_tables import (
-    MODE_COLUMNS,
     mode_table,
     modes_section,
-    octave_table,
-    response_columns,
+    octave_blocks,
+    write_modes,
+    write_responses,
 )
 from vibroimpact.test_analysis.mode_pairs import damping_field
 from vibroimpact.units.display import digits
@@ -46,11 +46,7 @@ def report_of(correlation: Correlation) -> Report:
                 "scale factor that fits the simulation best to the record; the residual is given "
                 "by its rms value relative to that of the record."
             ),
-            octave_table(correlation),
-            Note(
-                f"FRAC of {what_frac_is_of(correlation)}: the frequency response assurance "
-                "criterion, 1 where they are equal except for a factor."
-            ),
+            *octave_blocks(correlation, what_frac_is_of(correlation)),
         ),
     )
     modes = modes_section(
@@ -66,9 +62,9 @@ def report_of(correlation: Correlation) -> Report:
         warnings=correlation.doubts,
         files={
             "overlay.csv": partial(_write_overlay, correlation),
-            "responses.csv": partial(_write_responses, correlation),
-            "modes.csv": partial(_write_modes, correlation),
-            "case.toml": partial(_write_case, correlation),
+            "responses.csv": partial(write_responses, correlation),
+            "modes.csv": partial(write_modes, correlation),
+            CASE: partial(write_case, resolved_case(correlation.case)),
         },
         summary=_summary(correlation),
         provenance="the case is case.toml, beside this page.",
@@ -103,22 +99,6 @@ def _write_overlay(correlation: Correlation, path: Path) -> None:
         overlay[f"{name}_simulated"] = correlation.simulated[number]
         overlay[f"{name}_residual"] = correlation.residual[number]
     write_columns(overlay, path)
-
-
-def _write_responses(correlation: Correlation, path: Path) -> None:
-    """Write the frequency responses of both."""
-    plain = plain_names([sensor.name for sensor in correlation.sensors])
-    write_columns(response_columns(correlation, plain), path)
-
-
-def _write_modes(correlation: Correlation, path: Path) -> None:
-    """Write the modes of both."""
-    write_csv(mode_table(correlation), list(MODE_COLUMNS), path)
-
-
-def _write_case(correlation: Correlation, path: Path) -> None:
-    """Write the case."""
-    path.write_text(tomli_w.dumps(resolved_case(correlation.case)), encoding="utf-8")
 
 
 def _summary(correlation: Correlation) -> dict[str, Any]:

@@ -15,7 +15,7 @@ from vibroimpact.calibration.bounces.rebounds import Rebounds
 from vibroimpact.calibration.bounces.speed_laws import CONSTANT, LINEAR, POWER, Fitted, SpeedLaw
 from vibroimpact.calibration.inputs import inputs_document, inputs_sentence
 from vibroimpact.report.report import Column, Note, Paragraph, Report, Section, Table
-from vibroimpact.results.csv_files import write_csv
+from vibroimpact.results.csv_files import write_rows
 from vibroimpact.units.display import MISSING, digits, known_text, known_texts, multiple, text
 
 _MOST_SOUNDS = 20
@@ -185,7 +185,7 @@ def bounce_rows(rebounds: Rebounds) -> list[dict[str, Any]]:
 def _write_bounces(rebounds: Rebounds, path: Path) -> None:
     """Write the impacts as a table."""
     rows = bounce_rows(rebounds)
-    write_csv(rows, list(rows[0]), path)
+    write_rows(rows, path)
 
 
 def _summary(rebounds: Rebounds) -> dict[str, Any]:

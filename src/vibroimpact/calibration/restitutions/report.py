@@ -14,7 +14,7 @@ from vibroimpact.calibration.restitutions.restitutions import Restitutions
 from vibroimpact.charts.made import made_charts
 from vibroimpact.contact.speed_function import toml_of
 from vibroimpact.report.report import Column, Note, Paragraph, Report, Section, Table
-from vibroimpact.results.csv_files import write_csv
+from vibroimpact.results.csv_files import write_rows
 from vibroimpact.units.display import MISSING, column_texts
 
 
@@ -124,7 +124,7 @@ def restitution_rows(restitutions: Restitutions) -> list[dict[str, Any]]:
 def _write_restitutions(restitutions: Restitutions, path: Path) -> None:
     """Write the restitutions as a table."""
     rows = restitution_rows(restitutions)
-    write_csv(rows, list(rows[0]), path)
+    write_rows(rows, path)
 
 
 def _summary(restitutions: Restitutions) -> dict[str, Any]:

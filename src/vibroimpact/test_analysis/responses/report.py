@@ -3,24 +3,21 @@
 from __future__ import annotations
 
 from functools import partial
-from pathlib import Path
 from typing import Any
 
 import numpy as np
-import tomli_w
 
 from vibroimpact._version import __version__
 from vibroimpact.cases.build import resolved_case
-from vibroimpact.files.plain_names import plain_names
 from vibroimpact.quoting import visible
-from vibroimpact.report.report import Explanation, Note, Report, Section, Table, table_of
-from vibroimpact.results.csv_files import write_columns, write_csv
+from vibroimpact.report.report import Explanation, Report, Section, Table, table_of
+from vibroimpact.results.folder import CASE, write_case
 from vibroimpact.test_analysis.criteria_tables import (
-    MODE_COLUMNS,
     mode_table,
     modes_section,
-    octave_table,
-    response_columns,
+    octave_blocks,
+    write_modes,
+    write_responses,
 )
 from vibroimpact.test_analysis.mode_pairs import damping_field
 from vibroimpact.test_analysis.responses.charts import WHAT_FRAC_IS_OF, response_charts
@@ -45,11 +42,7 @@ def report_of(correlation: ResponseCorrelation) -> Report:
                 "best to the measured one; level and phase are the medians over the band of the "
                 "absolute differences, and the coherence is its median."
             ),
-            octave_table(correlation),
-            Note(
-                f"FRAC of {WHAT_FRAC_IS_OF}: the frequency response assurance criterion, 1 where "
-                "they are equal except for a factor."
-            ),
+            *octave_blocks(correlation, WHAT_FRAC_IS_OF),
         ),
     )
     modes = modes_section(
@@ -64,9 +57,9 @@ def report_of(correlation: ResponseCorrelation) -> Report:
         charts=response_charts(correlation),
         warnings=correlation.doubts,
         files={
-            "responses.csv": partial(_write_responses, correlation),
-            "modes.csv": partial(_write_modes, correlation),
-            "case.toml": partial(_write_case, correlation),
+            "responses.csv": partial(write_responses, correlation),
+            "modes.csv": partial(write_modes, correlation),
+            CASE: partial(write_case, resolved_case(correlation.case)),
         },
         summary=_summary(correlation),
         provenance="the case is case.toml, beside this page.",
@@ -113,22 +106,6 @@ def _coherences(correlation: ResponseCorrelation) -> list[float | None]:
         None if np.isnan(coherence).any() else float(np.median(coherence))
         for coherence in correlation.coherence
     ]
-
-
-def _write_responses(correlation: ResponseCorrelation, path: Path) -> None:
-    """Write the responses of both."""
-    plain = plain_names([sensor.name for sensor in correlation.sensors])
-    write_columns(response_columns(correlation, plain), path)
-
-
-def _write_modes(correlation: ResponseCorrelation, path: Path) -> None:
-    """Write the modes of both."""
-    write_csv(mode_table(correlation), list(MODE_COLUMNS), path)
-
-
-def _write_case(correlation: ResponseCorrelation, path: Path) -> None:
-    """Write the case."""
-    path.write_text(tomli_w.dumps(resolved_case(correlation.case)), encoding="utf-8")
 
 
 def _summary(correlation: ResponseCorrelation) -> dict[str, Any]:
