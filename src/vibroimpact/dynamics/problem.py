@@ -15,7 +15,7 @@ from vibroimpact.arrays import Array, Complex, Floats
 from vibroimpact.bodies.ball import SOLID, mean_density
 from vibroimpact.bodies.body import Body
 from vibroimpact.contact.friction.law import CompliantFriction
-from vibroimpact.contact.law import ContactLaw, InstantaneousLaw
+from vibroimpact.contact.law import CompliantLaw, ContactLaw, InstantaneousLaw
 from vibroimpact.contact.quasi_static import QuasiStatic
 from vibroimpact.contact.speed_function import BySpeed, held
 from vibroimpact.dynamics.air import Air, check_thin
@@ -514,6 +514,25 @@ class Problem:
             for value in fluid.values
         ]
         return np.broadcast_shapes(*(np.shape(value) for value in values if value is not None))
+
+    @property
+    def memory_lasts(self) -> bool:
+        """Whether a law goes on with its memory of the last impact, as on a permanent dent."""
+        law = self.laws[0]
+        return self.same_spot and isinstance(law, CompliantLaw) and law.lasting
+
+    @property
+    def is_rigid_and_normal(self) -> bool:
+        """Whether rigid bodies meet along the normal under a law with a force, in a vacuum, on a
+        plate whose supports have no motion.
+        """
+        return (
+            isinstance(self.laws[0], CompliantLaw)
+            and not self.vibrates
+            and self.oblique is None
+            and self.motion is None
+            and self.fluid is None
+        )
 
     def law_of(self, impact: int) -> ContactLaw:
         """Return the law of an impact, counted from 0; the last one goes on."""

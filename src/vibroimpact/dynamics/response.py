@@ -29,6 +29,7 @@ from vibroimpact.dynamics.outcome import Outcome
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.rest import Rest
 from vibroimpact.dynamics.rigid.history import rigid_history
+from vibroimpact.dynamics.rigid.recorded_drops import RecordedDrops
 from vibroimpact.dynamics.rigid.segments import RestSegment
 from vibroimpact.dynamics.rigid.timeline import Timeline, end_of, timeline_of
 from vibroimpact.dynamics.sensors.recording import Signal
@@ -69,7 +70,7 @@ class Response:
     rest : Rest
         State of the drops that have come to rest. `rest.left` is what they, and those that ride,
         have left in vibration [J], (B,).
-    bounces : sequence of Bounce, optional
+    bounces : sequence of Bounce or RecordedDrops, optional
         Flights and contacts, from which histories are read; None where none are kept, as by
         `tabulate`.
 
@@ -93,7 +94,7 @@ class Response:
     outcomes: tuple[Outcome, ...]
     end_time: Floats
     rest: Rest
-    bounces: Sequence[Bounce] | None
+    bounces: Sequence[Bounce] | RecordedDrops | None
 
     def __len__(self) -> int:
         """Return the number of drops."""
@@ -117,10 +118,6 @@ class Response:
         if self.problem.shape == ():
             return self
         happened = np.isfinite(self.impacts["impact"][index])
-        bounces = None
-        if self.bounces is not None:
-            bounces_of_drop = (bounce.of(index) for bounce in self.bounces)
-            bounces = tuple(bounce for bounce in bounces_of_drop if bounce is not None)
         return Response(
             problem=self.problem.take(index),
             impacts={name: column[index, happened] for name, column in self.impacts.items()},
@@ -128,14 +125,17 @@ class Response:
             outcomes=self.outcomes[index : index + 1],
             end_time=self.end_time[index : index + 1],
             rest=self.rest.take(index),
-            bounces=bounces,
+            bounces=None if self.bounces is None else _bounces_of(self.bounces, index),
         )
 
     def squeezed(self) -> Response:
         """Return the response of a batch of one as that of a single drop."""
         impacts = {name: column[0] for name, column in self.impacts.items()}
         energy = {name: value[0] for name, value in self.energy.items()}
-        return replace(self, impacts=impacts, energy=energy)
+        bounces = self.bounces
+        if isinstance(bounces, RecordedDrops):
+            bounces = _bounces_of(bounces, 0)
+        return replace(self, impacts=impacts, energy=energy, bounces=bounces)
 
     @property
     def failures(self) -> dict[int, str]:
@@ -407,15 +407,15 @@ class Response:
             history = vibrating_history(problem, segments[number], times, of_bodies)
             resting = isinstance(segments[number].motion, RestMotion)
         run_times = segment.start + times
-        if self.bounces is not None and problem.oblique is not None:
+        if problem.oblique is not None:
             bounce = self._bounce_of(number)
             lost = float(self.impacts["friction_lost_J"][:bounce].sum())
             rests_at = segment.start if resting else np.inf
-            along = oblique_history(problem, self.bounces[bounce], lost, run_times, rests_at)
+            along = oblique_history(problem, self._bounces[bounce], lost, run_times, rests_at)
             for name, values in along.items():
                 history[name] = values + history[name] if name in history else values
-        if self.bounces is not None and problem.fluid is not None:
-            history |= fluid_history(problem, self.bounces, run_times, history)
+        if problem.fluid is not None:
+            history |= fluid_history(problem, self._bounces, run_times, history)
         return {name: history[name] for name in columns}
 
     def _bounce_of(self, number: int) -> int:
@@ -423,9 +423,15 @@ class Response:
         segments = self._segments
         if isinstance(segments, Timeline):
             return segments.bounce_of(number)
-        assert self.bounces is not None
-        flight_starts = [float(bounce.flight.start[0]) for bounce in self.bounces]
+        flight_starts = [float(bounce.flight.start[0]) for bounce in self._bounces]
         return int(np.searchsorted(flight_starts, segments[number].start, side="right")) - 1
+
+    @property
+    def _bounces(self) -> Sequence[Bounce]:
+        """Flights and contacts of one drop."""
+        assert self.bounces is not None
+        assert not isinstance(self.bounces, RecordedDrops)
+        return self.bounces
 
     def _segment_of(self, times: Floats) -> Indices:
         """Return the numbers of the segments in which times since the start lie [s]."""
@@ -444,11 +450,11 @@ class Response:
         if self.problem.vibrates:
             from vibroimpact.dynamics.vibrating.segments import vibrating_timeline
 
-            return vibrating_timeline(self.bounces, self.rest.lying[0], end)
+            return vibrating_timeline(self._bounces, self.rest.lying[0], end)
         rest: RestSegment | RideSegment | None = None
         if self.outcomes[0].at_rest:
-            begin = end_of(self.bounces[-1])
-            ride = self.bounces[-1].ride
+            begin = end_of(self._bounces[-1])
+            ride = self._bounces[-1].ride
             if ride is not None:
                 rest = RideSegment(begin, end, ride, begin)
             else:
@@ -463,7 +469,9 @@ class Response:
         plastic = self.impacts["plastic_work_J"]
         drive_work = self.impacts.get("plate_work_J", np.zeros(len(plastic)))
         dissipated = self.impacts["energy_lost_J"] - plastic
-        return timeline_of(self.bounces, rest, np.stack([dissipated, plastic, -drive_work], axis=1))
+        return timeline_of(
+            self._bounces, rest, np.stack([dissipated, plastic, -drive_work], axis=1)
+        )
 
     @cached_property
     def _starts(self) -> Floats:
@@ -472,3 +480,11 @@ class Response:
         if isinstance(segments, Timeline):
             return segments.starts
         return np.array([segment.start for segment in segments])
+
+
+def _bounces_of(bounces: Sequence[Bounce] | RecordedDrops, drop: int) -> Sequence[Bounce]:
+    """Return the flights and contacts of one drop of a batch."""
+    if isinstance(bounces, RecordedDrops):
+        return bounces.of(drop)
+    bounces_of_drop = (bounce.of(drop) for bounce in bounces)
+    return tuple(bounce for bounce in bounces_of_drop if bounce is not None)

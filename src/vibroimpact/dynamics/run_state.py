@@ -152,7 +152,7 @@ class RunState:
     def law(self, drops: Drops) -> ContactLaw:
         """Return the law of the next impact of drops, with their memory of the last one."""
         law = self.problem.law_of(len(self.rows))
-        if self.problem.same_spot and isinstance(law, CompliantLaw) and law.lasting:
+        if self.problem.memory_lasts:
             law = law.changed(self.memories)
         return law if len(drops) == self.size else law.take(drops)
 

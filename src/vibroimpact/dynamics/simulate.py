@@ -11,7 +11,7 @@ from vibroimpact.dynamics.bounce import Bounce
 from vibroimpact.dynamics.end_of_run import response_of
 from vibroimpact.dynamics.outcome import Outcome
 from vibroimpact.dynamics.packed_list import PackedList
-from vibroimpact.dynamics.problem import StatesProblem
+from vibroimpact.dynamics.problem import Problem, StatesProblem
 from vibroimpact.dynamics.response import Response
 from vibroimpact.dynamics.rigid.solve_contact import solver_for
 from vibroimpact.dynamics.run import Run
@@ -69,20 +69,31 @@ def simulate(problem: StatesProblem, progress: Callable[[float], None] | None = 
     stated = problem.to_problem()
     # Newton iterates may overflow; results that are not finite are detected and retried
     with np.errstate(all="ignore"):
-        run = Run(stated, solver_for(stated))
-        bounces: PackedList[Bounce] | list[Bounce] = []
-        if stated.shape == () and not stated.vibrates:
-            bounces = PackedList[Bounce](PlateMotion)
-        while run.moving.any():
-            bounces.append(run.advance())
-            if progress is not None:
-                progress(run.fraction_done())
-        response = replace(response_of(run), bounces=bounces)
+        if stated.is_rigid_and_normal:
+            # a law without a force does not load the compiler
+            from vibroimpact.dynamics.rigid.drops import follow
+
+            response = follow(stated, progress, keeps_bounces=True)
+        else:
+            response = _advanced(stated, progress)
     if stated.shape == ():
         response = response.squeezed()
     if response.problem.shape == () and response.outcomes[0] is Outcome.FAILED:
         raise ComputationError(response.status)
     return response
+
+
+def _advanced(problem: Problem, progress: Callable[[float], None] | None) -> Response:
+    """Return the response of drops that the core does not follow from start to end."""
+    run = Run(problem, solver_for(problem))
+    bounces: PackedList[Bounce] | list[Bounce] = []
+    if problem.shape == () and not problem.vibrates:
+        bounces = PackedList[Bounce](PlateMotion)
+    while run.moving.any():
+        bounces.append(run.advance())
+        if progress is not None:
+            progress(run.fraction_done())
+    return replace(response_of(run), bounces=bounces)
 
 
 def simulate_together(problems: Sequence[StatesProblem]) -> list[Response | Exception]:

@@ -101,6 +101,11 @@ def _table_of(problem: Problem) -> Response:
     """Return the response of a block of drops, with arrays of a batch, and without its history."""
     # Newton iterates may overflow; results that are not finite are detected and retried
     with np.errstate(all="ignore"):
+        if problem.is_rigid_and_normal:
+            # a law without a force does not load the compiler
+            from vibroimpact.dynamics.rigid.drops import follow
+
+            return follow(problem, None, keeps_bounces=False)
         run = Run(problem, solver_for(problem))
         while run.moving.any():
             run.advance()

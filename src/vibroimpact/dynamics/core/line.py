@@ -27,7 +27,6 @@ from vibroimpact.dynamics.core.line_events import (
     extreme_force,
     length_to,
     length_to_tension,
-    sag_of,
 )
 from vibroimpact.dynamics.core.line_records import (
     Advance,
@@ -50,6 +49,7 @@ from vibroimpact.dynamics.core.line_step import (
     root_of,
 )
 from vibroimpact.dynamics.core.records import Law
+from vibroimpact.dynamics.core.static import bisected_indentation
 
 RELEASED, CAPTURED, FAILED = 0, 1, 2
 """Outcomes: released; too little energy to leave the indentation; not to be integrated."""
@@ -252,7 +252,7 @@ def sinks_to(line: Line, state: LineState, least_energy: float) -> tuple[bool, f
     if not energy_to_part(line, state) < least_energy:
         return False, 0.0
     weight = line.mass * line.gravity
-    sag = sag_of(line, weight)
+    sag = bisected_indentation(line.force, line.coefficients, line.release, weight)
     elastic, plastic = energies_of(line, state.delta)
     elastic_there, plastic_there = energies_of(line, sag)
     kinetic = 0.5 * line.mass * state.rate * state.rate

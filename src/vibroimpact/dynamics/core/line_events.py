@@ -9,7 +9,7 @@ import math
 import numpy as np
 
 from vibroimpact.arrays import Floats
-from vibroimpact.compiled import compiled, force_at
+from vibroimpact.compiled import compiled
 from vibroimpact.dynamics.core.line_records import Bracket, Line, LineState
 from vibroimpact.dynamics.core.line_step import FREE, advance, energies_of, force_of, force_trend
 
@@ -26,9 +26,6 @@ _NEAR = 1e-15  # of the step
 _PROBES = np.array([0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875, 0.95, 0.99, 0.999, 0.9999])
 _SAMPLES = 32
 _NEAR_PEAK = 1e-8  # of the span
-_FIRST_SAG = 1e-9  # m
-_MOST_DOUBLINGS = 200
-_MOST_HALVINGS = 200
 
 
 @compiled(lambda t: t.real(t.of(Line), t.integer, t.real, t.of(LineState)))
@@ -198,34 +195,6 @@ def after_glide(line: Line, begun: LineState, length: float, within: bool) -> Li
     delta = after.delta if within else line.release
     lost = energies_of(line, begun.delta)[0] - energies_of(line, delta)[0]
     return LineState(after.time, delta, after.rate, after.lost + lost)
-
-
-@compiled(lambda t: t.real(t.of(Line), t.real))
-def static_force_of(line: Line, delta: float) -> float:
-    """Return the static force of the law [N]."""
-    static, _ = force_at(line.force)(delta, 0.0, line.speed, line.coefficients)
-    return float(static)
-
-
-@compiled(lambda t: t.real(t.of(Line), t.real))
-def sag_of(line: Line, weight: float) -> float:
-    """Return the indentation at which the static force equals a weight [m]."""
-    low = line.release
-    high = low + _FIRST_SAG
-    for _ in range(_MOST_DOUBLINGS):
-        if not static_force_of(line, high) < weight:
-            break
-        low = high
-        high = line.release + 4.0 * (high - line.release)
-    for _ in range(_MOST_HALVINGS):
-        middle = 0.5 * (low + high)
-        if not low < middle < high:
-            break
-        if static_force_of(line, middle) < weight:
-            low = middle
-        else:
-            high = middle
-    return high
 
 
 @compiled(

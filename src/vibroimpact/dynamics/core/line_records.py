@@ -143,3 +143,15 @@ class LineContacts(NamedTuple):
     shapes: Integers
     begins: Integers
     motions: Vector
+
+
+class ContactRoom(NamedTuple):
+    """Room in which contacts are solved one after the other.
+
+    nodes (17, M): of a collocated segment. steps: none, which are counted only. series (7,): a
+    compliance in series that is none.
+    """
+
+    nodes: Matrix
+    steps: LineSteps
+    series: Vector

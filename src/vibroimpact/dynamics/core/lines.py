@@ -11,7 +11,9 @@ from vibroimpact.compiled import compiled
 from vibroimpact.dynamics.core.law import law_at_touch, law_remembering
 from vibroimpact.dynamics.core.line import follow_line, line_under
 from vibroimpact.dynamics.core.line_records import (
+    ContactRoom,
     Line,
+    LineContact,
     LineContacts,
     LineManner,
     LineState,
@@ -27,22 +29,63 @@ _MOST_ITERATIONS = 60
 _NEAR = 4e-16  # of the time since touch
 
 
-@compiled(lambda t: t.of(LineManner)(t.of(LineManner), t.matrix, t.integer))
-def with_bodies(manner: LineManner, touches: Floats, pair: int) -> LineManner:
-    """Return what stays the same through the contact of a pair of bodies; `touches` (5,
-    B): as in `follow_lines`.
-    """
+@compiled(lambda t: t.of(LineManner)(t.of(LineManner), t.real, t.real, t.real, t.real))
+def with_bodies(
+    manner: LineManner, mass: float, gravity: float, depth: float, speed_scale: float
+) -> LineManner:
+    """Return what stays the same through the contact of a pair of bodies."""
     return LineManner(
         manner.root,
         manner.tension,
         manner.contact_end,
-        touches[0, pair],
-        touches[1, pair],
-        touches[3, pair],
-        touches[4, pair],
+        mass,
+        gravity,
+        depth,
+        speed_scale,
         manner.tolerance,
         manner.most_steps,
     )
+
+
+@compiled(lambda t: t.of(ContactRoom)(t.of(PhaseRules)))
+def room_of(rules: PhaseRules) -> ContactRoom:
+    """Return the room in which contacts are solved whose steps are not recorded."""
+    steps = LineSteps(
+        np.zeros(0, np.int64),
+        np.zeros(0, np.bool_),
+        np.zeros((0, 4)),
+        np.zeros(0),
+        np.zeros(1, np.int64),
+    )
+    return ContactRoom(np.zeros((ROWS, rules.vectors.shape[2])), steps, np.zeros(7))
+
+
+@compiled(
+    lambda t: t.tuple(t.boolean, t.of(LineContact))(
+        t.of(Law),
+        t.of(LineManner),
+        t.of(PhaseRules),
+        t.of(NormalGrid),
+        t.boolean,
+        t.of(ContactRoom),
+    )
+)
+def solve_pair(
+    law: Law,
+    bodies: LineManner,
+    rules: PhaseRules,
+    grid: NormalGrid,
+    collocates: bool,
+    room: ContactRoom,
+) -> tuple[bool, LineContact]:
+    """Return whether the contact of a pair of rigid bodies is solved by collocation, and the
+    contact, which is followed step by step where that does not come out.
+    """
+    if collocates:
+        solved, contact = collocate_contact(law, bodies, rules, grid, room.nodes)
+        if solved:
+            return True, contact
+    return False, follow_line(law, bodies, room.steps)
 
 
 @compiled(
@@ -99,25 +142,15 @@ def follow_lines(
     first, written : int
         What earlier calls returned.
     """
-    room = np.zeros((ROWS, rules.vectors.shape[2]))
-    series = np.zeros(7)
-    steps = LineSteps(
-        np.zeros(0, np.int64),
-        np.zeros(0, np.bool_),
-        np.zeros((0, 4)),
-        np.zeros(0),
-        np.zeros(1, np.int64),
-    )
+    room = room_of(rules)
     outcomes = contacts.outcomes
     ends = contacts.ends
     for pair in range(first, len(outcomes)):
-        law = law_at_touch(addresses, coefficients[pair], series, touches[2, pair])
-        bodies = with_bodies(manner, touches, pair)
-        solved = False
-        if collocates:
-            solved, contact = collocate_contact(law, bodies, rules, grid, room)
-        if not solved:
-            contact = follow_line(law, bodies, steps)
+        law = law_at_touch(addresses, coefficients[pair], room.series, touches[2, pair])
+        bodies = with_bodies(
+            manner, touches[0, pair], touches[1, pair], touches[3, pair], touches[4, pair]
+        )
+        solved, contact = solve_pair(law, bodies, rules, grid, collocates, room)
         outcomes[pair] = contact.outcome
         ends[0, pair] = contact.end.time
         ends[1, pair] = contact.end.delta

@@ -61,6 +61,20 @@ def follow_contacts(
         Of the normal motion in each segment of a contact, if it drives friction.
     """
     contacts = _solve(conditions, tolerance, friction_steps)
+    peak_force, time_of_peak = contacts.ends[6:8]
+    return contact_of(conditions, tolerance, contacts, friction_steps), peak_force, time_of_peak
+
+
+def contact_of(
+    conditions: ImpactConditions,
+    tolerance: float,
+    contacts: records.LineContacts,
+    friction_steps: int = 0,
+) -> Contact:
+    """Return the contacts of B drops that the core has solved.
+
+    `conditions`, `tolerance`, `friction_steps`: as for `follow_contacts`.
+    """
     (
         duration,
         final_delta,
@@ -68,8 +82,8 @@ def follow_contacts(
         dissipated,
         deepest,
         time_of_deepest,
-        peak_force,
-        time_of_peak,
+        _,
+        _,
         plastic,
         stored,
     ) = contacts.ends
@@ -90,7 +104,7 @@ def follow_contacts(
     normals = None
     if friction_steps:
         normals = NormalRecords(friction_steps, contacts.shapes, contacts.begins, contacts.motions)
-    contact = Contact(
+    return Contact(
         pieces=pieces,
         outcome=_OUTCOMES[contacts.outcomes],
         duration=duration,
@@ -104,7 +118,6 @@ def follow_contacts(
         law=law_after,
         normals=normals,
     )
-    return contact, peak_force, time_of_peak
 
 
 def _solve(
@@ -130,9 +143,9 @@ def _solve(
         while True:
             solved, written = follow_lines(
                 _manner(conditions, 0, tolerance),
-                _rules(law, tolerance),
+                gauss_rules(law, tolerance),
                 grid,
-                _collocates(law, tolerance),
+                collocates(law, tolerance),
                 law_addresses(type(law)),
                 coefficients,
                 touches,
@@ -163,7 +176,7 @@ def release_rates(conditions: ImpactConditions, tolerance: float) -> Floats:
     """
     size = len(conditions.mass)
     rates = np.full(size, np.nan)
-    if size < FEW and _collocates(conditions.law, tolerance):
+    if size < FEW and collocates(conditions.law, tolerance):
         with interpreted():
             rates = np.array(
                 [
@@ -184,7 +197,7 @@ def _collocated_rate(conditions: ImpactConditions, tolerance: float) -> float:
 
     It is NaN if the contact cannot be collocated.
     """
-    rules = _rules(conditions.law, tolerance)
+    rules = gauss_rules(conditions.law, tolerance)
     law = _law_at_touch(conditions.law.take(0), conditions)
     room = np.zeros((ROWS, rules.vectors.shape[2]))
     solved, contact = collocate_contact(
@@ -203,12 +216,12 @@ def _law_at_touch(law: CompliantLaw, conditions: ImpactConditions) -> Law:
     )
 
 
-def _collocates(law: CompliantLaw, tolerance: float) -> bool:
+def collocates(law: CompliantLaw, tolerance: float) -> bool:
     """Whether collocation is tried for contacts under a law."""
     return tolerance >= _TIGHTEST and law.contact_end != "pull-off"
 
 
-def _rules(law: CompliantLaw, tolerance: float) -> PhaseRules:
+def gauss_rules(law: CompliantLaw, tolerance: float) -> PhaseRules:
     """Return the Gauss rules of the collocation."""
     return phase_rules(law.root, min(max(tolerance, _TIGHTEST), _LOOSEST))
 
@@ -389,17 +402,26 @@ class RecordedContact:
         return np.concatenate([[0.0], times[inside], [end]])
 
 
-def _manner(conditions: ImpactConditions, drop: int, tolerance: float) -> records.LineManner:
-    """Return a drop of an impact as the core takes it."""
-    law = conditions.law
+def common_manner(law: CompliantLaw, tolerance: float) -> records.LineManner:
+    """Return what contacts under a law have in common, as the core takes it, without bodies."""
     return records.LineManner(
         root=law.root,
         tension=TENSIONS.index(law.tension),
         contact_end=ENDS.index(law.contact_end),
+        mass=0.0,
+        gravity=0.0,
+        depth=0.0,
+        speed_scale=0.0,
+        tolerance=max(_OF_STEP * tolerance, _LEAST_ERROR),
+        most_steps=_MOST_STEPS,
+    )
+
+
+def _manner(conditions: ImpactConditions, drop: int, tolerance: float) -> records.LineManner:
+    """Return a drop of an impact as the core takes it."""
+    return common_manner(conditions.law, tolerance)._replace(
         mass=float(conditions.mass[drop]),
         gravity=float(conditions.gravity[drop]),
         depth=float(conditions.depth[drop]),
         speed_scale=float(conditions.speed_scale[drop]),
-        tolerance=max(_OF_STEP * tolerance, _LEAST_ERROR),
-        most_steps=_MOST_STEPS,
     )

@@ -1,0 +1,329 @@
+"""Rigid drops from their starts to the ends of their runs: flight, touch, contact, release, rest.
+
+A batch is a loop over its drops, each of which is what it is alone. What each impact is like goes
+into the rows of a table, and what has become of the energy into the state of the drop.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from vibroimpact.arrays import Floats, Integers
+from vibroimpact.compiled import compiled, compressed_at, energies_at, levels_at
+from vibroimpact.dynamics.core.depths import undamped_depth
+from vibroimpact.dynamics.core.drop_records import (
+    ACCELERATION,
+    APPROACH,
+    AT_START,
+    AT_TOUCH,
+    CLOSING,
+    COMPRESSION,
+    DAMPED,
+    DEEPEST,
+    DISSIPATED,
+    DURATION,
+    END_BY_REST_SPEED,
+    END_CAPTURED,
+    END_FAILED,
+    END_STUCK,
+    END_TIME,
+    FORCE,
+    GAP,
+    GRAVITY,
+    IMPACT,
+    IN_FLIGHT,
+    INDENTATION,
+    LEFT_STORED,
+    LOST,
+    MASS,
+    PLASTIC,
+    PLASTIC_WORK,
+    RADIUS,
+    REBOUND,
+    RELEASE_GAP,
+    RELEASE_VELOCITY,
+    REST_SPEED,
+    REST_TIME,
+    RESTITUTION,
+    SAG,
+    SEPARATION,
+    STORED,
+    TIME,
+    TIME_OF_FORCE,
+    TIME_OF_INDENTATION,
+    TOUCH,
+    VELOCITY,
+    WRITTEN_OFF,
+    DropManner,
+    Drops,
+    FreeFall,
+    StopRules,
+)
+from vibroimpact.dynamics.core.events import ENDS
+from vibroimpact.dynamics.core.law import law_at_touch, law_remembering
+from vibroimpact.dynamics.core.line import CAPTURED, FAILED
+from vibroimpact.dynamics.core.line_records import LineContact, LineManner
+from vibroimpact.dynamics.core.lines import room_of, solve_pair, with_bodies
+from vibroimpact.dynamics.core.records import Law
+from vibroimpact.dynamics.core.static import static_indentation
+from vibroimpact.dynamics.core.stop_rules import first_end
+
+_LEAST_REST_SPEED = 1e-6  # of the first approach speed
+_LEAST_MISSING = 1e-6  # of a restitution of one, with which bounces have an end
+_ENDS_AT_PULL_OFF = ENDS.index("pull-off")
+
+
+@compiled(lambda t: t.void(t.of(DropManner), t.of(Drops), t.integer))
+def follow_drops(manner: DropManner, drops: Drops, pause: int) -> None:
+    """Follow drops until their runs end, or they have had `pause` impacts.
+
+    Where the law depends on the approach speed, they are followed until they touch; in the next
+    call they go on from there, with the coefficients at that speed. The law at rest is that of the
+    next impact, or there that of the last one.
+    """
+    room = room_of(manner.rules)
+    addresses = manner.addresses
+    lasts = manner.lasts
+    rules = manner.rules
+    grid = manner.grid
+    next_coefficients = np.zeros(drops.coefficients.shape[1])
+    last_law = drops.laws.shape[1] - 1
+    for drop in range(len(drops.phases)):
+        state = drops.state[drop]
+        coefficients = drops.coefficients[drop]
+        impacts = drops.impacts[drop]
+        phase = drops.phases[drop]
+        if phase == AT_START:
+            remember(addresses, False, drops.laws[drop, 0], 0.0, coefficients)
+            set_rest_speed(addresses, coefficients, state)
+            phase = IN_FLIGHT
+        if phase == AT_TOUCH and manner.waits:
+            remember(addresses, lasts, drops.at_touch[drop], state[DEEPEST], coefficients)
+        while phase == IN_FLIGHT or (phase == AT_TOUCH and impacts < pause):
+            if phase == IN_FLIGHT:
+                level, _, _, _, _ = levels_at(addresses[2])(coefficients)
+                phase = fly(manner.stops, -level, impacts, state)
+                drops.flights[drop] += 1
+                if manner.waits:
+                    break
+                continue
+            law = law_at_touch(addresses, coefficients, room.series, state[CLOSING])
+            bodies = bodies_at_touch(manner.manner, law, state)
+            _, contact = solve_pair(law, bodies, rules, grid, manner.collocates, room)
+            row = drops.rows[drop, impacts]
+            write_contact(state, row, contact)
+            impacts += 1
+            row[IMPACT] = impacts
+            fresh = drops.laws[drop, min(impacts, last_law)]
+            remember(addresses, lasts, fresh, state[DEEPEST], next_coefficients)
+            law = law_remembering(law, contact.deepest)
+            next_law = law_at_touch(addresses, next_coefficients, room.series, law.speed)
+            phase = release(state, row, contact, law, next_law.touch)
+            if phase == IN_FLIGHT and is_slow(state):
+                end_bounces(state, row, law if manner.waits else next_law)
+                phase = END_BY_REST_SPEED
+            coefficients[:] = next_coefficients
+        drops.phases[drop] = phase
+        drops.impacts[drop] = impacts
+
+
+@compiled(lambda t: t.void(t.integers, t.boolean, t.vector, t.real, t.vector))
+def remember(
+    addresses: Integers, lasts: bool, fresh: Floats, deepest: float, coefficients: Floats
+) -> None:
+    """Write the coefficients of a law, which remembers the deepest indentation so far [m] if its
+    memory lasts.
+    """
+    for number in range(len(fresh)):
+        coefficients[number] = fresh[number]
+    if lasts:
+        _, _, memory_level, _, _ = levels_at(addresses[2])(fresh)
+        if deepest > memory_level:
+            compressed_at(addresses[3])(deepest, fresh, coefficients)
+
+
+@compiled(lambda t: t.void(t.integers, t.vector, t.vector))
+def set_rest_speed(addresses: Integers, coefficients: Floats, state: Floats) -> None:
+    """Give a drop a rest speed, unless it has one.
+
+    That is the speed from which it would rise by its static indentation, and at least 1e-6 of the
+    first approach speed.
+    """
+    if not math.isnan(state[REST_SPEED]):
+        return
+    touch, release, _, _, _ = levels_at(addresses[2])(coefficients)
+    weight = state[MASS] * state[GRAVITY]
+    sag = static_indentation(addresses, coefficients, release, weight) - touch
+    least = _LEAST_REST_SPEED * next_touch(state, 0.0).speed
+    state[REST_SPEED] = max(math.sqrt(2.0 * state[GRAVITY] * sag), least)
+
+
+@compiled(lambda t: t.of(FreeFall)(t.vector, t.real))
+def next_touch(state: Floats, level: float) -> FreeFall:
+    """Return the flight that a drop is about to make until its gap is at a level [m].
+
+    That is zero, or below it in a dent. The speed of touch v follows from v^2 = v0^2 + 2 g h, and
+    the time is (v0 + v)/g = 2 h/(v - v0), with the height h above the level.
+    """
+    start = state[TIME]
+    velocity = state[VELOCITY]
+    gravity = state[GRAVITY]
+    height = state[GAP] - level
+    speed = math.sqrt(max(velocity * velocity + 2.0 * gravity * height, 0.0))
+    if velocity > 0.0:
+        if gravity == 0.0:
+            return FreeFall(start, math.inf, math.inf, speed)
+        return FreeFall(
+            start, start + velocity / gravity, start + (velocity + speed) / gravity, speed
+        )
+    if speed > velocity and not (gravity == 0.0 and velocity == 0.0):
+        # the same root without cancellation
+        return FreeFall(start, start, start + 2.0 * height / (speed - velocity), speed)
+    return FreeFall(start, start, math.inf, speed)
+
+
+@compiled(lambda t: t.integer(t.of(StopRules), t.real, t.integer, t.vector))
+def fly(stops: StopRules, level: float, impacts: int, state: Floats) -> int:
+    """Let a drop fly until it touches at a gap [m], or until a rule ends its run.
+
+    Return its phase then.
+    """
+    flight = next_touch(state, level)
+    end, ending = first_end(stops, flight, impacts)
+    time = min(end, flight.touch)
+    elapsed = time - flight.start
+    velocity = state[VELOCITY]
+    gravity = state[GRAVITY]
+    state[GAP] += elapsed * (velocity - 0.5 * gravity * elapsed)
+    state[VELOCITY] = velocity - gravity * elapsed
+    state[TIME] = time
+    if flight.touch >= end:
+        state[END_TIME] = end
+        return ending
+    state[CLOSING] = flight.speed
+    return AT_TOUCH
+
+
+@compiled(lambda t: t.of(LineManner)(t.of(LineManner), t.of(Law), t.vector))
+def bodies_at_touch(manner: LineManner, law: Law, state: Floats) -> LineManner:
+    """Return the bodies of a drop as it touches, with the depth that it would reach undamped."""
+    mass = state[MASS]
+    gravity = state[GRAVITY]
+    weight = mass * gravity
+    square = law.speed * law.speed
+    depth = undamped_depth(law.addresses, law.coefficients, law.touch, 0.5 * mass * square, weight)
+    scale = square + gravity * (depth - law.touch)
+    if manner.contact_end == _ENDS_AT_PULL_OFF:
+        sag = static_indentation(law.addresses, law.coefficients, law.release, weight)
+        # negative: the energy of adhesion
+        scale -= 2.0 * elastic_energy(law, sag) / mass
+    return with_bodies(manner, mass, gravity, depth, math.sqrt(max(scale, 0.0)))
+
+
+@compiled(lambda t: t.real(t.of(Law), t.real))
+def elastic_energy(law: Law, delta: float) -> float:
+    """Return the energy that a law stores at an indentation [J]."""
+    elastic, _ = energies_at(law.addresses[1])(delta, law.coefficients)
+    return float(elastic)
+
+
+@compiled(lambda t: t.void(t.vector, t.vector, t.of(LineContact)))
+def write_contact(state: Floats, row: Floats, contact: LineContact) -> None:
+    """Write the columns of a contact, and where it leaves the drop."""
+    touch = state[TIME]
+    gravity = state[GRAVITY]
+    row[TOUCH] = touch
+    row[APPROACH] = state[CLOSING]
+    row[DURATION] = contact.end.time
+    row[PLASTIC_WORK] = contact.plastic
+    row[INDENTATION] = contact.deepest
+    row[TIME_OF_INDENTATION] = touch + contact.time_of_deepest
+    row[FORCE] = contact.peak_force
+    row[TIME_OF_FORCE] = touch + contact.time_of_peak_force
+    row[ACCELERATION] = max(contact.peak_force / state[MASS] - gravity, gravity)
+    row[COMPRESSION] = contact.time_of_deepest
+    row[DAMPED] = contact.end.lost
+    row[RELEASE_GAP] = -contact.end.delta
+    row[RELEASE_VELOCITY] = -contact.end.rate
+    row[LEFT_STORED] = contact.stored
+    state[DEEPEST] = max(state[DEEPEST], contact.deepest)
+    state[TIME] = touch + contact.end.time
+    state[GAP] = -contact.end.delta
+    state[VELOCITY] = -contact.end.rate
+
+
+@compiled(lambda t: t.integer(t.vector, t.vector, t.of(LineContact), t.of(Law), t.real))
+def release(state: Floats, row: Floats, contact: LineContact, law: Law, next_level: float) -> int:
+    """Write what the contact of a drop took and how it leaves it, and return its phase then.
+
+    It stays where it has too little energy to leave the indentation, or falls back before it has
+    risen to the touch level of its next law [m]. `law`: with its memory of the contact.
+    """
+    velocity = state[VELOCITY]
+    overlap = max(contact.end.delta - next_level, 0.0)
+    failed = contact.outcome == FAILED
+    falls_back = velocity * velocity < 2.0 * state[GRAVITY] * overlap
+    stays = contact.outcome == CAPTURED or (falls_back and not failed)
+    phase = IN_FLIGHT
+    if failed:
+        phase = END_FAILED
+        state[END_TIME] = state[TIME]
+    elif stays:
+        phase = END_STUCK if elastic_energy(law, law.release) > 0.0 else END_CAPTURED
+        row[SEPARATION] = 0.0
+        state[END_TIME] = state[TIME]
+        bring_to_rest(state, law, state[TIME], contact.stored)
+    else:
+        row[SEPARATION] = velocity
+    lost = contact.end.lost + (0.0 if stays else contact.stored) + contact.plastic
+    state[DISSIPATED] += lost - contact.plastic
+    state[PLASTIC] += contact.plastic
+    row[LOST] = lost
+    separation = row[SEPARATION]
+    row[RESTITUTION] = separation / row[APPROACH]
+    if state[GRAVITY] > 0.0:
+        rise = 0.5 * (separation * separation) / state[GRAVITY]
+        row[REBOUND] = state[RADIUS] + state[GAP] + rise
+    return phase
+
+
+@compiled(lambda t: t.void(t.vector, t.of(Law), t.real, t.real))
+def bring_to_rest(state: Floats, law: Law, time: float, stored: float) -> None:
+    """Put a drop that has come to rest at a time [s] into its static indentation.
+
+    The contact has an energy `stored` [J]; what the drop has beyond that at rest is written off.
+    """
+    mass = state[MASS]
+    gravity = state[GRAVITY]
+    velocity = state[VELOCITY]
+    weight = mass * gravity
+    energy = mass * (0.5 * (velocity * velocity) + gravity * state[GAP]) + stored
+    sag = static_indentation(law.addresses, law.coefficients, law.release, weight)
+    state[REST_TIME] = time
+    state[SAG] = sag
+    state[STORED] = elastic_energy(law, sag)
+    state[WRITTEN_OFF] = energy - (state[STORED] - weight * sag)
+
+
+@compiled(lambda t: t.boolean(t.vector))
+def is_slow(state: Floats) -> bool:
+    """Does a drop separate below the rest speed, or not at all?"""
+    return bool(state[VELOCITY] < state[REST_SPEED] or state[VELOCITY] == 0.0)
+
+
+@compiled(lambda t: t.void(t.vector, t.vector, t.of(Law)))
+def end_bounces(state: Floats, row: Floats, law: Law) -> None:
+    """Bring a drop to rest under a law, at the end of bounces that are not followed.
+
+    Their flights are a geometric series with the ratio of the last restitution e, whose sum is that
+    of the first, 2 v/g, over 1 - e.
+    """
+    gravity = state[GRAVITY]
+    missing = 1.0 - row[RESTITUTION]
+    limit = math.inf
+    if gravity > 0.0 and missing > _LEAST_MISSING:
+        limit = state[TIME] + 2.0 * state[VELOCITY] / gravity / missing
+    state[END_TIME] = limit if limit < math.inf else state[TIME]
+    bring_to_rest(state, law, limit, 0.0)

@@ -1,0 +1,56 @@
+"""Rules that end the run of a drop in its flight.
+
+How a contact ends, and whether a sphere is at rest then, is decided at its release.
+
+A rule is a function that returns when it ends a run [s], infinite where it does not. A further one
+is a function of this file, with a number that `end_under` knows.
+"""
+
+from __future__ import annotations
+
+import math
+
+from vibroimpact.compiled import compiled
+from vibroimpact.dynamics.core.drop_records import END_LEFT, FreeFall, StopRules
+
+AT_TIME, AFTER_IMPACTS = range(2)
+"""Kinds of rules; their values are a time [s], and a number of impacts."""
+
+
+@compiled(lambda t: t.real(t.real, t.of(FreeFall)))
+def end_at_time(time: float, flight: FreeFall) -> float:
+    """Return the end of a run at a time [s], or after a contact that is under way then."""
+    return max(time, flight.start)
+
+
+@compiled(lambda t: t.real(t.real, t.of(FreeFall), t.integer))
+def end_after_impacts(number: float, flight: FreeFall, impacts: int) -> float:
+    """Return the end of a run after so many impacts [s], at the top of the rebound."""
+    return min(flight.top, flight.touch) if impacts >= number else math.inf
+
+
+@compiled(lambda t: t.real(t.integer, t.real, t.of(FreeFall), t.integer))
+def end_under(kind: int, value: float, flight: FreeFall, impacts: int) -> float:
+    """Return when a rule of a kind ends a run [s]."""
+    if kind == AT_TIME:
+        return end_at_time(value, flight)
+    return end_after_impacts(value, flight, impacts)
+
+
+@compiled(lambda t: t.tuple(t.real, t.integer)(t.of(StopRules), t.of(FreeFall), t.integer))
+def first_end(rules: StopRules, flight: FreeFall, impacts: int) -> tuple[float, int]:
+    """Return when the first rule ends a run [s], and how it ends then.
+
+    Of two rules that end it at one time the first counts. A drop that no rule ends and that never
+    touches again stops as it leaves.
+    """
+    time = math.inf
+    ending = END_LEFT
+    for rule in range(len(rules.kinds)):
+        end = end_under(rules.kinds[rule], rules.values[rule], flight, impacts)
+        if end < time:
+            time = end
+            ending = rules.endings[rule]
+    if flight.touch == math.inf and time == math.inf:
+        time = flight.start
+    return time, ending

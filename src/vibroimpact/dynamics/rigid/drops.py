@@ -1,0 +1,268 @@
+"""Drops of rigid bodies along the normal, which the core follows from start to end."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from contextlib import ExitStack
+
+import numpy as np
+
+from vibroimpact.arrays import Drops as Indices
+from vibroimpact.arrays import Floats
+from vibroimpact.compiled import law_addresses
+from vibroimpact.contact.law import CompliantLaw, ContactLaw
+from vibroimpact.dynamics.columns import IMPACT_COLUMNS
+from vibroimpact.dynamics.core import drop_records as records
+from vibroimpact.dynamics.core import stop_rules
+from vibroimpact.dynamics.core.drop_records import DropManner, Drops, StopRules
+from vibroimpact.dynamics.core.drops import follow_drops
+from vibroimpact.dynamics.energy import CLOSURE_LIMIT, WRITE_OFF_LIMIT, close_ledger
+from vibroimpact.dynamics.law_coefficients import coefficients_of
+from vibroimpact.dynamics.outcome import OUTCOMES, Outcome
+from vibroimpact.dynamics.problem import MOST_IMPACTS, Problem
+from vibroimpact.dynamics.response import Response
+from vibroimpact.dynamics.rest import Rest
+from vibroimpact.dynamics.rigid.line_contact import collocates, common_manner, gauss_rules
+from vibroimpact.dynamics.rigid.phase_rules import normal_grid
+from vibroimpact.dynamics.rigid.recorded_drops import RecordedDrops
+
+_FIRST_ROOM = 8  # impacts of a drop; the room doubles
+
+_OUTCOMES = np.array([Outcome(ending).code for ending in records.ENDINGS])
+"""Codes of outcomes by the numbers of endings."""
+
+_AT_REST = np.array([Outcome(ending).at_rest for ending in records.ENDINGS])
+
+
+def follow(
+    problem: Problem, progress: Callable[[float], None] | None, keeps_bounces: bool
+) -> Response:
+    """Return the response of the drops of a problem, with arrays of a batch.
+
+    Parameters
+    ----------
+    problem : Problem
+        Of rigid bodies at rest, whose spheres fall along the normal under a law with a force.
+    progress : callable, optional
+        Called after each impact with the fraction done, in [0, 1].
+    keeps_bounces : bool
+        Are flights and contacts kept, from which histories are read?
+    """
+    with ExitStack() as held:  # laws of other packages, which the core calls
+        drops = _at_start(problem, held)
+        manner = _manner_of(problem)
+        energy_in = _mechanical_energy(drops.state.T)
+        start = drops.state[:, [records.GAP, records.VELOCITY]]
+        while True:
+            room = drops.rows.shape[1]
+            pause = room if progress is None else min(int(drops.impacts.max()) + 1, room)
+            follow_drops(manner, drops, pause)
+            if manner.waits:
+                _take_laws_at_touch(problem, drops, held)
+            if progress is not None:
+                progress(_fraction_done(problem, drops))
+            moving = drops.phases < 0
+            if not moving.any():
+                break
+            if drops.impacts[moving].max() == room:
+                drops = _with_more_room(drops)
+    return _response_of(problem, drops, energy_in, start if keeps_bounces else None)
+
+
+def _at_start(problem: Problem, held: ExitStack) -> Drops:
+    """Return the drops of a problem at their start."""
+    size = math.prod(problem.shape)
+    state = np.zeros((size, records.STATES))
+    state[:, records.MASS] = problem.sphere.mass
+    state[:, records.RADIUS] = problem.sphere.contact_offset
+    state[:, records.GRAVITY] = problem.gravity
+    state[:, records.REST_SPEED] = np.nan if problem.rest_speed is None else problem.rest_speed
+    state[:, records.REST_TIME] = np.nan
+    state[:, records.END_TIME] = np.nan
+    if problem.height is None:
+        state[:, records.VELOCITY] = -np.asarray(problem.speed)
+    else:
+        state[:, records.GAP] = problem.height - state[:, records.RADIUS]
+        state[:, records.VELOCITY] = problem.velocity
+    laws = np.stack(
+        [held.enter_context(coefficients_of(law, size)) for law in _laws(problem)], axis=1
+    )
+    room = min(problem.impacts or MOST_IMPACTS, _FIRST_ROOM)
+    rows = np.full((size, room, records.COLUMNS), np.nan)
+    return Drops(
+        phases=np.full(size, records.AT_START),
+        impacts=np.zeros(size, dtype=np.int64),
+        flights=np.zeros(size, dtype=np.int64),
+        state=state,
+        rows=rows,
+        laws=laws,
+        at_touch=np.zeros(laws[:, 0].shape),
+        coefficients=np.zeros(laws[:, 0].shape),
+    )
+
+
+def _laws(problem: Problem) -> list[ContactLaw]:
+    """Return the laws of the impacts of a problem, of which the last one goes on.
+
+    Where the memory lasts, that of the first law at the start is that of all.
+    """
+    if not problem.memory_lasts:
+        return list(problem.laws)
+    memories = problem.laws[0].memories()
+    return [law.changed(memories) for law in problem.laws]
+
+
+def _manner_of(problem: Problem) -> DropManner:
+    """Return what stays the same for all drops of a problem."""
+    law = problem.laws[0]
+    assert isinstance(law, CompliantLaw)
+    return DropManner(
+        manner=common_manner(law, problem.tolerance),
+        rules=gauss_rules(law, problem.tolerance),
+        grid=normal_grid(0),
+        collocates=collocates(law, problem.tolerance),
+        addresses=law_addresses(type(law)),
+        lasts=problem.memory_lasts,
+        waits=bool(problem.by_speed),
+        stops=_stop_rules(problem),
+    )
+
+
+def _stop_rules(problem: Problem) -> StopRules:
+    """Return the rules that can end a run; of two that end it at one time the first counts."""
+    rules: list[tuple[int, float, int]] = []
+    if problem.duration is not None:
+        rules.append((stop_rules.AT_TIME, problem.duration, records.END_BY_DURATION))
+    if problem.impacts is not None:
+        rules.append((stop_rules.AFTER_IMPACTS, problem.impacts, records.END_BY_IMPACTS))
+    else:
+        rules.append((stop_rules.AFTER_IMPACTS, MOST_IMPACTS, records.END_AT_LIMIT))
+    kinds, values, endings = zip(*rules, strict=True)
+    return StopRules(np.array(kinds), np.array(values, dtype=float), np.array(endings))
+
+
+def _take_laws_at_touch(problem: Problem, drops: Drops, held: ExitStack) -> None:
+    """Give drops that wait at their touch the coefficients of the law at their approach speed."""
+    touching = np.flatnonzero(drops.phases == records.AT_TOUCH)
+    if not touching.size:
+        return
+    number = int(drops.impacts[touching[0]])  # the same of all that move
+    speed = drops.state[touching, records.CLOSING]
+    law = _law_at(problem, number, touching, speed)
+    drops.at_touch[touching] = held.enter_context(coefficients_of(law, len(touching)))
+    drops.rows[touching, number, records.ASKED] = _nominal_restitution(law)
+
+
+def _law_at(problem: Problem, number: int, drops: Indices, speed: Floats) -> ContactLaw:
+    """Return the law of an impact, counted from 0, of some drops at their approach speeds [m/s]."""
+    laws = _laws(problem)
+    law = laws[min(number, len(laws) - 1)]
+    return problem.law_at(law.take(drops), speed)
+
+
+def _nominal_restitution(law: ContactLaw) -> Floats | float:
+    """Return the restitution that a law is given, or NaN."""
+    asked = getattr(law, "restitution", None)
+    return np.nan if asked is None else asked
+
+
+def _with_more_room(drops: Drops) -> Drops:
+    """Return drops with room for twice as many impacts."""
+    more = np.full_like(drops.rows, np.nan)
+    return drops._replace(rows=np.concatenate([drops.rows, more], axis=1))
+
+
+def _fraction_done(problem: Problem, drops: Drops) -> float:
+    """Return the fraction of the run that is done, in [0, 1]."""
+    moving = drops.phases < 0
+    if not moving.any():
+        return 1.0
+    number = int(drops.impacts.max())
+    fraction = number / (problem.impacts or MOST_IMPACTS)
+    state = drops.state[moving].T
+    if problem.duration is not None:
+        fraction = max(fraction, float(state[records.TIME].min()) / problem.duration)
+    # up to rest: the logarithm of the speed falls about linearly
+    if problem.impacts is None and number:
+        first_speed = drops.rows[moving, 0, records.APPROACH]
+        decay = np.log(first_speed / drops.rows[moving, number - 1, records.RELEASE_VELOCITY])
+        decay_at_rest = np.log(first_speed / state[records.REST_SPEED])
+        slowest = np.nanmin(np.clip(decay / decay_at_rest, 0.0, 1.0), initial=1.0)
+        fraction = max(fraction, float(slowest))
+    return fraction
+
+
+def _mechanical_energy(state: Floats) -> Floats:
+    """Return the kinetic and potential energy of drops [J]."""
+    velocity = state[records.VELOCITY]
+    potential = state[records.GRAVITY] * state[records.GAP]
+    return np.asarray(state[records.MASS] * (0.5 * velocity**2 + potential))
+
+
+def _response_of(
+    problem: Problem, drops: Drops, energy_in: Floats, start: Floats | None
+) -> Response:
+    """Return the response of drops that have ended.
+
+    `start`: gaps [m] and upward velocities [m/s] at the start, where bounces are kept.
+    """
+    state = drops.state.T.copy()  # which all that is told of the drops holds
+    end_time = state[records.END_TIME]
+    at_rest = _AT_REST[drops.phases]
+    if problem.duration is not None:
+        end_time[at_rest] = np.maximum(end_time, problem.duration)[at_rest]
+    energy, added = _ledger(state, energy_in, at_rest)
+    closes = energy["closure_relative"] <= CLOSURE_LIMIT
+    holds = state[records.WRITTEN_OFF] >= -WRITE_OFF_LIMIT * (energy_in + added)
+    codes = np.where(closes & holds, _OUTCOMES[drops.phases], Outcome.FAILED.code)
+    size = len(codes)
+    rest = Rest(
+        speed=state[records.REST_SPEED],
+        time=state[records.REST_TIME],
+        sag=state[records.SAG],
+        stored=state[records.STORED],
+        written_off=state[records.WRITTEN_OFF],
+        left=np.full(size, np.nan),
+        lying=(None,) * size,
+    )
+    outcomes = tuple([OUTCOMES[code] for code in codes.tolist()])
+    bounces = None
+    if start is not None:
+        bounces = RecordedDrops(problem, start, drops.impacts, drops.flights, drops.rows, end_time)
+    return Response(problem, _table(problem, drops), energy, outcomes, end_time, rest, bounces)
+
+
+def _table(problem: Problem, drops: Drops) -> dict[str, Floats]:
+    """Return the columns of the impact table, (B, impacts)."""
+    most = int(drops.impacts.max())
+    table = drops.rows[:, :most, : len(IMPACT_COLUMNS)].transpose(2, 0, 1).copy()
+    if not problem.by_speed:
+        happened = np.isfinite(table[records.IMPACT])
+        for number, law in enumerate(problem.laws):
+            asked = np.reshape(_nominal_restitution(law), (-1, 1))
+            table[records.ASKED, :, number:] = np.where(happened[:, number:], asked, np.nan)
+    return dict(zip(IMPACT_COLUMNS, table, strict=True))
+
+
+def _ledger(state: Floats, energy_in: Floats, at_rest: Floats) -> tuple[dict[str, Floats], Floats]:
+    """Return the energy ledger [J], and the energy that gravity and adhesion added [J].
+
+    It was added to that of the start.
+    """
+    mass = state[records.MASS]
+    gravity = state[records.GRAVITY]
+    stored = state[records.STORED]
+    gap = np.where(at_rest, -state[records.SAG], state[records.GAP])
+    velocity = np.where(at_rest, 0.0, state[records.VELOCITY])
+    # the stored energy is negative where it sticks
+    added = mass * gravity * state[records.DEEPEST] + np.maximum(-stored, 0.0)
+    entries = {
+        "kinetic_J": 0.5 * mass * velocity**2,
+        "potential_J": mass * gravity * gap,
+        "contact_elastic_J": stored,
+        "contact_dissipated_J": state[records.DISSIPATED],
+        "plastic_work_J": state[records.PLASTIC],
+        "written_off_at_rest_J": state[records.WRITTEN_OFF],
+    }
+    return close_ledger(energy_in, added, entries), added
