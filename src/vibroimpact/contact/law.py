@@ -101,6 +101,12 @@ class ContactLaw(Parameters):
         """
         return "restitution" if getattr(self, "restitution", None) is not None else None
 
+    @property
+    def nominal_restitution(self) -> Array:
+        """The restitution that the law is given [-], NaN if it is given none."""
+        restitution = getattr(self, "restitution", None)
+        return np.nan if restitution is None else restitution
+
     def closed_form_restitution(self, mass: Array, speed: Array) -> Array | None:
         """Return the restitution without gravity where there is a closed form, else None.
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from vibroimpact.arrays import Drops, Floats
-from vibroimpact.dynamics.energy import CLOSURE_LIMIT, WRITE_OFF_LIMIT, close_ledger
+from vibroimpact.dynamics.energy import close_ledger, ledger_holds
 from vibroimpact.dynamics.oblique.oblique_motion import ObliqueMotion
 from vibroimpact.dynamics.outcome import OUTCOMES, Outcome
 from vibroimpact.dynamics.response import Response
@@ -25,9 +25,7 @@ def response_of(run: RunState) -> Response:
     along = {} if run.oblique is None else _lie_on_plate(run, run.oblique, resting)
     final_gap, final_velocity = _final_motion(run, resting)
     energy, added = _ledger(run, along, final_gap, final_velocity)
-    closes = energy["closure_relative"] <= CLOSURE_LIMIT
-    holds = run.written_off >= -WRITE_OFF_LIMIT * (run.energy_in + added)
-    run.outcomes[~(closes & holds)] = Outcome.FAILED.code
+    run.outcomes[~ledger_holds(energy, added)] = Outcome.FAILED.code
     rest = Rest(
         run.rest_speed,
         run.rest_time,

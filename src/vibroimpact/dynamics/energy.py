@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from vibroimpact.arrays import Floats
+from vibroimpact.arrays import Bools, Floats
 
 CLOSURE_LIMIT = 1e-6
 """Largest closure error of the ledger, as a part of the energy put in, above which a run
@@ -47,6 +47,21 @@ def close_ledger(energy_in: Floats, added: Floats, entries: dict[str, Floats]) -
     closure = sum(entries.values(), -energy_in)
     relative = np.abs(closure) / (energy_in + added)
     return {"input_J": energy_in, **entries, "closure_J": closure, "closure_relative": relative}
+
+
+def ledger_holds(energy: Mapping[str, Floats], added: Floats) -> Bools:
+    """Return whether a ledger closes, and no more was written off at rest than was there.
+
+    Parameters
+    ----------
+    energy : mapping of str to array
+        The ledger, as `close_ledger` returns it [J].
+    added : array, shape (B,)
+        As `close_ledger` takes it [J].
+    """
+    closes = energy["closure_relative"] <= CLOSURE_LIMIT
+    least = -WRITE_OFF_LIMIT * (energy["input_J"] + added)
+    return np.asarray(closes & (energy["written_off_at_rest_J"] >= least))
 
 
 def closure_in_words(relative: float) -> str:

@@ -15,7 +15,8 @@ from vibroimpact.dynamics.impact_at_once import collide_at_once
 from vibroimpact.dynamics.impact_conditions import ImpactConditions, impact_conditions_of
 from vibroimpact.dynamics.oblique.oblique_motion import ObliqueMotion
 from vibroimpact.dynamics.outcome import Outcome
-from vibroimpact.dynamics.problem import MOST_IMPACTS, Problem
+from vibroimpact.dynamics.problem import Problem
+from vibroimpact.dynamics.progress import fraction_done
 from vibroimpact.dynamics.rigid.solve_contact import SolvesContact
 from vibroimpact.dynamics.run_state import RunState
 from vibroimpact.dynamics.stop_rules import first_stops, stop_rules
@@ -33,18 +34,15 @@ class Run(RunState):
         moving = self.moving
         if not moving.any():
             return 1.0
-        problem = self.problem
-        fraction = len(self.rows) / (problem.impacts or MOST_IMPACTS)
-        if problem.duration is not None:
-            fraction = max(fraction, float(self.time[moving].min()) / problem.duration)
-        # up to rest: the logarithm of the speed falls about linearly
-        if problem.impacts is None and self.rows and not problem.shaken:
-            first_speed = self.rows.first["approach_speed_m_s"][moving]
-            decay = np.log(first_speed / self.velocity[moving])
-            decay_at_rest = np.log(first_speed / self.rest_speed[moving])
-            slowest = np.nanmin(np.clip(decay / decay_at_rest, 0.0, 1.0), initial=1.0)
-            fraction = max(fraction, float(slowest))
-        return fraction
+        first_speed = self.rows.first["approach_speed_m_s"] if self.rows else self.velocity
+        return fraction_done(
+            self.problem,
+            len(self.rows),
+            float(self.time[moving].min()),
+            first_speed[moving],
+            self.velocity[moving],
+            self.rest_speed[moving],
+        )
 
     def advance(self) -> Bounce:
         """Advance all moving drops to their next touch and through one contact.
@@ -135,7 +133,7 @@ class Run(RunState):
         row["impact"][drops] = len(self.rows)
         row["time_s"][drops] = touch
         row["approach_speed_m_s"][drops] = speed
-        row["restitution_asked"][drops] = _nominal_restitution(law)
+        row["restitution_asked"][drops] = law.nominal_restitution
         if self.problem.motion is None:
             return
         _, surface_velocity, _ = self.problem.surface(touch)
@@ -276,9 +274,3 @@ class Run(RunState):
             limit = time + first_flight / np.where(missing > 1e-6, missing, 0.0)
         self.bring_to_rest(slow, law.take(np.flatnonzero(resting)), limit, np.zeros(len(slow)))
         self.stop(slow, Outcome.REST_SPEED, np.where(np.isfinite(limit), limit, time))
-
-
-def _nominal_restitution(law: ContactLaw) -> Floats | float:
-    """Return the restitution that a law is given, or NaN."""
-    asked = getattr(law, "restitution", None)
-    return np.nan if asked is None else asked

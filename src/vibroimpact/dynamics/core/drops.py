@@ -80,8 +80,7 @@ def follow_drops(manner: DropManner, drops: Drops, pause: int) -> None:
     """Follow drops until their runs end, or they have had `pause` impacts.
 
     Where the law depends on the approach speed, they are followed until they touch; in the next
-    call they go on from there, with the coefficients at that speed. The law at rest is that of the
-    next impact, or there that of the last one.
+    call they go on from there, with the coefficients at that speed.
     """
     room = room_of(manner.rules)
     addresses = manner.addresses
@@ -118,12 +117,7 @@ def follow_drops(manner: DropManner, drops: Drops, pause: int) -> None:
             row[IMPACT] = impacts
             fresh = drops.laws[drop, min(impacts, last_law)]
             remember(addresses, lasts, fresh, state[DEEPEST], next_coefficients)
-            law = law_remembering(law, contact.deepest)
-            next_law = law_at_touch(addresses, next_coefficients, room.series, law.speed)
-            phase = release(state, row, contact, law, next_law.touch)
-            if phase == IN_FLIGHT and is_slow(state):
-                end_bounces(state, row, law if manner.waits else next_law)
-                phase = END_BY_REST_SPEED
+            phase = leave(manner.waits, law, contact, next_coefficients, state, row)
             coefficients[:] = next_coefficients
         drops.phases[drop] = phase
         drops.impacts[drop] = impacts
@@ -254,6 +248,37 @@ def write_contact(state: Floats, row: Floats, contact: LineContact) -> None:
     state[VELOCITY] = -contact.end.rate
 
 
+@compiled(
+    lambda t: t.integer(t.boolean, t.of(Law), t.of(LineContact), t.vector, t.vector, t.vector)
+)
+def leave(
+    waits: bool,
+    law: Law,
+    contact: LineContact,
+    next_coefficients: Floats,
+    state: Floats,
+    row: Floats,
+) -> int:
+    """Release a drop from its contact, and bring it to rest if it is slow; return its phase then.
+
+    Its law at rest is that of the next impact, or, where a drop waits for this, that of the last.
+    """
+    addresses = law.addresses
+    touch_level, release_level, _, _, _ = levels_at(addresses[2])(next_coefficients)
+    compressed_law = law_remembering(law, contact.deepest)
+    phase = release(state, row, contact, compressed_law, touch_level)
+    if phase != IN_FLIGHT or not is_slow(state):
+        return phase
+    limit = end_of_bounces(state, row)
+    state[END_TIME] = limit if limit < math.inf else state[TIME]
+    coefficients = next_coefficients
+    if waits:
+        coefficients = compressed_law.coefficients
+        release_level = compressed_law.release
+    bring_to_rest(state, addresses, coefficients, release_level, limit, 0.0)
+    return END_BY_REST_SPEED
+
+
 @compiled(lambda t: t.integer(t.vector, t.vector, t.of(LineContact), t.of(Law), t.real))
 def release(state: Floats, row: Floats, contact: LineContact, law: Law, next_level: float) -> int:
     """Write what the contact of a drop took and how it leaves it, and return its phase then.
@@ -274,7 +299,9 @@ def release(state: Floats, row: Floats, contact: LineContact, law: Law, next_lev
         phase = END_STUCK if elastic_energy(law, law.release) > 0.0 else END_CAPTURED
         row[SEPARATION] = 0.0
         state[END_TIME] = state[TIME]
-        bring_to_rest(state, law, state[TIME], contact.stored)
+        bring_to_rest(
+            state, law.addresses, law.coefficients, law.release, state[TIME], contact.stored
+        )
     else:
         row[SEPARATION] = velocity
     lost = contact.end.lost + (0.0 if stays else contact.stored) + contact.plastic
@@ -289,8 +316,15 @@ def release(state: Floats, row: Floats, contact: LineContact, law: Law, next_lev
     return phase
 
 
-@compiled(lambda t: t.void(t.vector, t.of(Law), t.real, t.real))
-def bring_to_rest(state: Floats, law: Law, time: float, stored: float) -> None:
+@compiled(lambda t: t.void(t.vector, t.integers, t.vector, t.real, t.real, t.real))
+def bring_to_rest(
+    state: Floats,
+    addresses: Integers,
+    coefficients: Floats,
+    release_level: float,
+    time: float,
+    stored: float,
+) -> None:
     """Put a drop that has come to rest at a time [s] into its static indentation.
 
     The contact has an energy `stored` [J]; what the drop has beyond that at rest is written off.
@@ -300,11 +334,12 @@ def bring_to_rest(state: Floats, law: Law, time: float, stored: float) -> None:
     velocity = state[VELOCITY]
     weight = mass * gravity
     energy = mass * (0.5 * (velocity * velocity) + gravity * state[GAP]) + stored
-    sag = static_indentation(law.addresses, law.coefficients, law.release, weight)
+    sag = static_indentation(addresses, coefficients, release_level, weight)
+    stored_at_rest, _ = energies_at(addresses[1])(sag, coefficients)
     state[REST_TIME] = time
     state[SAG] = sag
-    state[STORED] = elastic_energy(law, sag)
-    state[WRITTEN_OFF] = energy - (state[STORED] - weight * sag)
+    state[STORED] = stored_at_rest
+    state[WRITTEN_OFF] = energy - (stored_at_rest - weight * sag)
 
 
 @compiled(lambda t: t.boolean(t.vector))
@@ -313,17 +348,14 @@ def is_slow(state: Floats) -> bool:
     return bool(state[VELOCITY] < state[REST_SPEED] or state[VELOCITY] == 0.0)
 
 
-@compiled(lambda t: t.void(t.vector, t.vector, t.of(Law)))
-def end_bounces(state: Floats, row: Floats, law: Law) -> None:
-    """Bring a drop to rest under a law, at the end of bounces that are not followed.
+@compiled(lambda t: t.real(t.vector, t.vector))
+def end_of_bounces(state: Floats, row: Floats) -> float:
+    """Return when infinitely many bounces with the last restitution would end [s].
 
     Their flights are a geometric series with the ratio of the last restitution e, whose sum is that
     of the first, 2 v/g, over 1 - e.
     """
-    gravity = state[GRAVITY]
     missing = 1.0 - row[RESTITUTION]
-    limit = math.inf
-    if gravity > 0.0 and missing > _LEAST_MISSING:
-        limit = state[TIME] + 2.0 * state[VELOCITY] / gravity / missing
-    state[END_TIME] = limit if limit < math.inf else state[TIME]
-    bring_to_rest(state, law, limit, 0.0)
+    if state[GRAVITY] > 0.0 and missing > _LEAST_MISSING:
+        return float(state[TIME] + 2.0 * state[VELOCITY] / state[GRAVITY] / missing)
+    return math.inf

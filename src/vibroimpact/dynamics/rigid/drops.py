@@ -17,10 +17,11 @@ from vibroimpact.dynamics.core import drop_records as records
 from vibroimpact.dynamics.core import stop_rules
 from vibroimpact.dynamics.core.drop_records import DropManner, Drops, StopRules
 from vibroimpact.dynamics.core.drops import follow_drops
-from vibroimpact.dynamics.energy import CLOSURE_LIMIT, WRITE_OFF_LIMIT, close_ledger
+from vibroimpact.dynamics.energy import close_ledger, ledger_holds
 from vibroimpact.dynamics.law_coefficients import coefficients_of
 from vibroimpact.dynamics.outcome import OUTCOMES, Outcome
 from vibroimpact.dynamics.problem import MOST_IMPACTS, Problem
+from vibroimpact.dynamics.progress import fraction_done
 from vibroimpact.dynamics.response import Response
 from vibroimpact.dynamics.rest import Rest
 from vibroimpact.dynamics.rigid.line_contact import collocates, common_manner, gauss_rules
@@ -151,7 +152,7 @@ def _take_laws_at_touch(problem: Problem, drops: Drops, held: ExitStack) -> None
     speed = drops.state[touching, records.CLOSING]
     law = _law_at(problem, number, touching, speed)
     drops.at_touch[touching] = held.enter_context(coefficients_of(law, len(touching)))
-    drops.rows[touching, number, records.ASKED] = _nominal_restitution(law)
+    drops.rows[touching, number, records.ASKED] = law.nominal_restitution
 
 
 def _law_at(problem: Problem, number: int, drops: Indices, speed: Floats) -> ContactLaw:
@@ -159,12 +160,6 @@ def _law_at(problem: Problem, number: int, drops: Indices, speed: Floats) -> Con
     laws = _laws(problem)
     law = laws[min(number, len(laws) - 1)]
     return problem.law_at(law.take(drops), speed)
-
-
-def _nominal_restitution(law: ContactLaw) -> Floats | float:
-    """Return the restitution that a law is given, or NaN."""
-    asked = getattr(law, "restitution", None)
-    return np.nan if asked is None else asked
 
 
 def _with_more_room(drops: Drops) -> Drops:
@@ -179,18 +174,15 @@ def _fraction_done(problem: Problem, drops: Drops) -> float:
     if not moving.any():
         return 1.0
     number = int(drops.impacts.max())
-    fraction = number / (problem.impacts or MOST_IMPACTS)
-    state = drops.state[moving].T
-    if problem.duration is not None:
-        fraction = max(fraction, float(state[records.TIME].min()) / problem.duration)
-    # up to rest: the logarithm of the speed falls about linearly
-    if problem.impacts is None and number:
-        first_speed = drops.rows[moving, 0, records.APPROACH]
-        decay = np.log(first_speed / drops.rows[moving, number - 1, records.RELEASE_VELOCITY])
-        decay_at_rest = np.log(first_speed / state[records.REST_SPEED])
-        slowest = np.nanmin(np.clip(decay / decay_at_rest, 0.0, 1.0), initial=1.0)
-        fraction = max(fraction, float(slowest))
-    return fraction
+    rows = drops.rows[moving]
+    return fraction_done(
+        problem,
+        number,
+        float(drops.state[moving, records.TIME].min()),
+        rows[:, 0, records.APPROACH],
+        rows[:, max(number - 1, 0), records.RELEASE_VELOCITY],
+        drops.state[moving, records.REST_SPEED],
+    )
 
 
 def _mechanical_energy(state: Floats) -> Floats:
@@ -213,9 +205,8 @@ def _response_of(
     if problem.duration is not None:
         end_time[at_rest] = np.maximum(end_time, problem.duration)[at_rest]
     energy, added = _ledger(state, energy_in, at_rest)
-    closes = energy["closure_relative"] <= CLOSURE_LIMIT
-    holds = state[records.WRITTEN_OFF] >= -WRITE_OFF_LIMIT * (energy_in + added)
-    codes = np.where(closes & holds, _OUTCOMES[drops.phases], Outcome.FAILED.code)
+    holds = ledger_holds(energy, added)
+    codes = np.where(holds, _OUTCOMES[drops.phases], Outcome.FAILED.code)
     size = len(codes)
     rest = Rest(
         speed=state[records.REST_SPEED],
@@ -240,7 +231,7 @@ def _table(problem: Problem, drops: Drops) -> dict[str, Floats]:
     if not problem.by_speed:
         happened = np.isfinite(table[records.IMPACT])
         for number, law in enumerate(problem.laws):
-            asked = np.reshape(_nominal_restitution(law), (-1, 1))
+            asked = np.reshape(law.nominal_restitution, (-1, 1))
             table[records.ASKED, :, number:] = np.where(happened[:, number:], asked, np.nan)
     return dict(zip(IMPACT_COLUMNS, table, strict=True))
 
