@@ -173,7 +173,7 @@ class Problem:
             isinstance(self.laws, (tuple, list)) and len({type(law) for law in self.laws}) == 1
         )
         if not one_kind or not isinstance(self.laws[0], ContactLaw):
-            example = 'such as vi.find_contact_law("newton")(restitution=0.7)'
+            example = 'such as vi.laws.find_contact_law("newton")(restitution=0.7)'
             raise InputError(
                 f"laws must be one or more contact laws with their parameters, {example}, "
                 "all of one kind"

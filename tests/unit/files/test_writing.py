@@ -233,7 +233,7 @@ def test_no_folder_is_left_where_nothing_could_be_written(
     writes = [
         lambda place: vi.save_figures(folder, ["png"], place),
         lambda place: vi.save_result(response, place),
-        lambda place: vi.export_result(folder, "csv", place),
+        lambda place: vi.exporting.export_result(folder, "csv", place),
     ]
     for number, write in enumerate(writes):
         with pytest.raises((OSError, vi.InputError), match="No space left on device"):
