@@ -115,7 +115,10 @@ class Lines(Spectra):
         for number in range(len(self.value)):
             channel = [number]
             spread = _spread(noise[:, channel], response[:, channel], self.floor[channel])
-            channels.append(replace(self, value=self.value[channel], spread=spread))
+            one_channel = replace(
+                self, value=self.value[channel], floor=self.floor[channel], spread=spread
+            )
+            channels.append(one_channel)
 
         def misfit(tones: Floats) -> float:
             return sum(channel.misfit(tones) for channel in channels)
@@ -220,8 +223,10 @@ def modes_in_responses(
     >>> import vibroimpact as vi
     >>> frequency = np.arange(200.0, 800.0, 0.5)
     >>> value = 1.0 / (400.0**2 - frequency**2 + 2j * 0.01 * 400.0 * frequency)
-    >>> ends = (vi.DegreeOfFreedom(("a1",)), vi.DegreeOfFreedom(("hammer",)))
-    >>> (mode,) = vi.modes_in_responses([vi.FrequencyResponse(*ends, frequency, value, "m/N")])
+    >>> ends = (vi.signals.DegreeOfFreedom(("a1",)), vi.signals.DegreeOfFreedom(("hammer",)))
+    >>> (mode,) = vi.signals.modes_in_responses(
+    ...     [vi.signals.FrequencyResponse(*ends, frequency, value, "m/N")]
+    ... )
     >>> round(mode.frequency.value, 3), round(mode.damping_ratio.value, 6)
     (400.0, 0.01)
     """
