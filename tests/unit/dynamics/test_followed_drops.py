@@ -25,12 +25,12 @@ from vibroimpact.dynamics.core import static
 
 PAIR = ContactPair(2.4e9, 0.02, 0.1, 8e7, 0.3)
 BALL = vi.Body(mass=0.1, contact_offset=0.02)
-SLUGGISH = vi.find_contact_law("flores")(stiffness=1e7, restitution=0.05)
+SLUGGISH = vi.laws.find_contact_law("flores")(stiffness=1e7, restitution=0.05)
 LAWS = sorted(name for name, law in contact_laws().items() if issubclass(law, CompliantLaw))
 
 
 def problem(**changes: object) -> vi.Problem:
-    law = vi.find_contact_law("flores").example(PAIR).changed({"restitution": 0.6})
+    law = vi.laws.find_contact_law("flores").example(PAIR).changed({"restitution": 0.6})
     stated = {"sphere": BALL, "plate": vi.rigid_plate(), "laws": (law,), "height": 1.0}
     return vi.Problem(**{**stated, **changes})
 
@@ -58,7 +58,7 @@ def test_columns_and_endings_are_those_of_the_rest() -> None:
 
 @pytest.mark.parametrize("name", LAWS)
 def test_interpreted_drops_have_the_same_numbers(name: str) -> None:
-    law = vi.find_contact_law(name).example(PAIR)
+    law = vi.laws.find_contact_law(name).example(PAIR)
     for changes in ({"impacts": 2}, {"height": 0.05, "impacts": None, "rest_speed": 0.6}):
         stated = problem(laws=(law,), duration=1.0, **changes)
         compiled = vi.simulate(stated)
@@ -81,14 +81,14 @@ def test_pauses_change_no_digit(shape: tuple[int, ...]) -> None:
     height = 1.0 if shape == () else np.geomspace(0.03, 2.0, 5)
     told: list[float] = []
     for changes in ({"impacts": 40}, {"impacts": None, "rest_speed": 1e-3}):
-        law = vi.find_contact_law("hunt-crossley").example(PAIR).changed({"restitution": 0.9})
+        law = vi.laws.find_contact_law("hunt-crossley").example(PAIR).changed({"restitution": 0.9})
         stated = problem(laws=(law,), height=height, **changes)
         assert_same(vi.simulate(stated), vi.simulate(stated, told.append))
     assert len(told) > 80
 
 
 def test_laws_at_the_speed_of_each_impact_are_those_of_the_drop_alone() -> None:
-    law = vi.find_contact_law("walton-braun").example(PAIR)
+    law = vi.laws.find_contact_law("walton-braun").example(PAIR)
     by_speed = {"restitution": SpeedTable((0.5, 5.0), (0.9, 0.6))}
     stated = problem(
         laws=(law,), by_speed=by_speed, height=np.geomspace(0.05, 2.0, 6), impacts=4, gravity=9.8
@@ -147,7 +147,7 @@ def test_a_dent_is_remembered_from_impact_to_impact() -> None:
 
 @pytest.mark.parametrize("name", LAWS)
 def test_the_static_indentation_is_that_of_arrays(name: str) -> None:
-    law = vi.find_contact_law(name).example(PAIR)
+    law = vi.laws.find_contact_law(name).example(PAIR)
     for weight in (0.0, 1e-3, 1.0, 30.0):
         expected = float(static_indentation(law, weight))
         found = static.static_indentation(
