@@ -43,12 +43,12 @@ from .charts.files import save_charts as save_charts
 from .charts.matplotlib import matplotlib_figure as matplotlib_figure
 from .charts.notebook import plotly_figure as plotly_figure
 from .contact.friction.law import FrictionLaw as FrictionLaw
+from .contact.friction.registry import find_friction_law as find_friction_law
+from .contact.friction.registry import friction_laws as friction_laws
 from .contact.law import ContactLaw as ContactLaw
 from .contact.quasi_static import QuasiStatic as QuasiStatic
 from .contact.registry import contact_laws as contact_laws
 from .contact.registry import find_contact_law as find_contact_law
-from .contact.registry import find_friction_law as find_friction_law
-from .contact.registry import friction_laws as friction_laws
 from .contact.speed_function import SpeedFunction as SpeedFunction
 from .contact.speed_function import SpeedTable as SpeedTable
 from .dynamics.air import Air as Air

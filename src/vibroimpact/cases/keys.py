@@ -22,8 +22,9 @@ from vibroimpact.cases.fields.plate_motion import MotionTable
 from vibroimpact.cases.fields.quantities import Quantity, quantity_among, quantity_of
 from vibroimpact.cases.schema import SECTIONS
 from vibroimpact.cases.sensor_keys import holds_sensor_keys, named_sensor, sensor_keys, split_key
+from vibroimpact.contact.friction.registry import friction_laws
 from vibroimpact.contact.law import unit_of
-from vibroimpact.contact.registry import find_contact_law, friction_laws
+from vibroimpact.contact.registry import find_contact_law
 from vibroimpact.errors import InputError, choices, did_you_mean
 from vibroimpact.materials import find_material
 from vibroimpact.quoting import quoted

@@ -13,8 +13,9 @@ from vibroimpact.cases.fields.instruments import INSTRUMENTS
 from vibroimpact.charts.axis import Axis
 from vibroimpact.charts.chart import Chart, Panel
 from vibroimpact.charts.marks import Arrow, Label, Line, Mark, Outline
+from vibroimpact.contact.friction.registry import friction_laws
 from vibroimpact.contact.law import unit_of
-from vibroimpact.contact.registry import contact_laws, friction_laws
+from vibroimpact.contact.registry import contact_laws
 from vibroimpact.contact.speed_function import of_table
 from vibroimpact.quoting import shortened, visible
 from vibroimpact.results.result import Result

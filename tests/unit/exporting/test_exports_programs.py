@@ -16,6 +16,7 @@ import pytest
 
 from exported_drops import MASS, RADIUS, STIFFNESS, told, told_case
 from vibroimpact.contact.friction.laws.mindlin import MindlinForce
+from vibroimpact.contact.friction.registry import find_friction_law
 from vibroimpact.contact.hysteretic import HystereticLaw
 from vibroimpact.contact.laws.adams_impact import AdamsImpact
 from vibroimpact.contact.laws.hertz import Hertz
@@ -25,7 +26,7 @@ from vibroimpact.contact.laws.newton import Newton
 from vibroimpact.contact.laws.tsuji import Tsuji
 from vibroimpact.contact.pair import ContactPair
 from vibroimpact.contact.parameters import parameter
-from vibroimpact.contact.registry import contact_laws, find_friction_law
+from vibroimpact.contact.registry import contact_laws
 from vibroimpact.contact.speed_function import SpeedFunction
 from vibroimpact.dynamics.oblique.statement import Oblique
 from vibroimpact.dynamics.restitution import achieved_restitution
