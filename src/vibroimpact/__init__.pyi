@@ -123,13 +123,13 @@ from .signals.feature_table import feature_table as feature_table
 from .signals.frac import frac as frac
 from .signals.frequency_response import DegreeOfFreedom as DegreeOfFreedom
 from .signals.frequency_response import FrequencyResponse as FrequencyResponse
-from .signals.one_record import one_record as one_record
 from .signals.onset import from_onset as from_onset
 from .signals.onset import onset_time as onset_time
 from .signals.packets import Packets as Packets
 from .signals.packets import find_packets as find_packets
 from .signals.packets import packet_records as packet_records
-from .signals.read_records import read_records as read_records
+from .signals.reading.one_record import one_record as one_record
+from .signals.reading.read_records import read_records as read_records
 from .signals.reading.universal_responses import read_responses as read_responses
 from .signals.record import Record as Record
 from .signals.record_table import RecordTable as RecordTable

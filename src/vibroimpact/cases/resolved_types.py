@@ -15,11 +15,11 @@ from typing import Any, Literal, get_args, get_origin
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
-from vibroimpact import resolved_case
 from vibroimpact.cases.fields.quantities import Quantity
 from vibroimpact.cases.schema import SECTIONS, CaseTable, SensorSection
+from vibroimpact.resolved_case import ResolvedCase
 
-TYPES_FILE = Path(resolved_case.__file__)
+TYPES_FILE = Path(inspect.getfile(ResolvedCase))
 
 _HEADING = '''"""Types of the resolved case: the tables of `case.toml`, in SI, with all defaults.
 

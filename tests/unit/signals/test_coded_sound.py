@@ -14,7 +14,7 @@ import pytest
 
 import vibroimpact as vi
 from vibroimpact.calibration.calibrate_case import calibrate_case, read_calibration
-from vibroimpact.signals.read_records import read_records
+from vibroimpact.signals.reading.read_records import read_records
 
 RATE, GRAVITY, HEIGHT, RESTITUTION = 48_000, 9.81, 0.3, 0.8
 LOSSY = {

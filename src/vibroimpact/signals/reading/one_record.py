@@ -9,7 +9,7 @@ from vibroimpact.errors import InputError, did_you_mean
 from vibroimpact.files.reading import with_path
 from vibroimpact.measurements.header_cells import name_and_unit
 from vibroimpact.quoting import quoted
-from vibroimpact.signals.read_records import read_records
+from vibroimpact.signals.reading.read_records import read_records
 from vibroimpact.signals.record import Record
 
 _MOST_LISTED = 10
