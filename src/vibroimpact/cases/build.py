@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Literal, cast
 
 from vibroimpact.calibration.section import calibrate_table
 from vibroimpact.cases.elastic.positions import check_positions
-from vibroimpact.cases.fields.elastic_body import BroughtMeshTable
+from vibroimpact.cases.fields.elastic_body import ELASTIC_KEYS, BroughtMeshTable
 from vibroimpact.cases.fields.instruments import AT_REST, INSTRUMENTS
 from vibroimpact.cases.fields.item_labels import item_label
 from vibroimpact.cases.fields.material import material_table
@@ -405,8 +405,7 @@ def _body(case: CaseTable, name: Literal["sphere", "plate"]) -> dict[str, Any]:
         exclude_none=True, exclude={"material", "supports", "damping", "mesh"}
     )
     if section.model == "rigid":
-        keys = ("radius", "mass", "inertia", "size", "model", "inclination", "motion")
-        table = {key: table[key] for key in keys if key in table}
+        table = {key: value for key, value in table.items() if key not in ELASTIC_KEYS}
         if name == "plate" and is_free_sphere(case):
             table["supports"] = "free"
     else:
