@@ -16,7 +16,8 @@ from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
 from vibroimpact.cases.fields.quantities import Quantity
-from vibroimpact.cases.schema import SECTIONS, CaseTable, SensorSection
+from vibroimpact.cases.fields.sensor import SensorSection
+from vibroimpact.cases.schema import SECTIONS, CaseTable
 from vibroimpact.resolved_case import ResolvedCase
 
 TYPES_FILE = Path(inspect.getfile(ResolvedCase))
