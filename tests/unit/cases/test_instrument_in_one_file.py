@@ -81,7 +81,7 @@ table = {
     ],
 }
 assert find_quantity(table, "sensors.v3.laser_vibrometer.sensitivity").unit == "V s/m"
-case = vi.read_case(table)
+case = vi.case_of(table)
 resolved = resolved_case(case)["sensors"][2]
 assert resolved["instrument"] == "laser-vibrometer", resolved
 assert resolved["quantity"] == "voltage", resolved
@@ -95,7 +95,7 @@ words = dict(setup_rows(result))["Sensor v3"]
 assert words.startswith("voltage by a laser vibrometer at "), words
 
 try:
-    vi.read_case({**table, "sensors": [{**table["sensors"][2], "geophone": {}}]})
+    vi.case_of({**table, "sensors": [{**table["sensors"][2], "geophone": {}}]})
 except vi.InputError as error:
     print(error)
 """
