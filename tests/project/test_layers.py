@@ -145,15 +145,15 @@ def test_folders_do_not_import_in_circles() -> None:
             continue
         for name in imports_of(path) - SECTIONS:
             parts = name.split(".")[1:]
-            there = PACKAGE.joinpath(*parts)
-            there = there if there.is_dir() else there.parent
-            below[path.parent] |= {there} & folders - {path.parent}
+            imported = PACKAGE.joinpath(*parts)
+            imported = imported if imported.is_dir() else imported.parent
+            below[path.parent] |= {imported} & folders - {path.parent}
     reached = {folder: reachable(folder, below) for folder in folders}
     circles = {
-        (here.relative_to(PACKAGE).parts[0], there.relative_to(PACKAGE).parts[0])
-        for here in folders
-        for there in reached[here]
-        if here in reached[there]
+        (folder.relative_to(PACKAGE).parts[0], lower.relative_to(PACKAGE).parts[0])
+        for folder in folders
+        for lower in reached[folder]
+        if folder in reached[lower]
     }
     assert circles == {(name, name) for name in ENTWINED}
 

@@ -29,5 +29,5 @@ def check_tolerance(tolerance: float) -> None:
     """
     lowest, highest = TOLERANCES.at_least, TOLERANCES.at_most
     if not lowest <= tolerance <= highest:
-        words = f"{lowest:.0e} and {highest:.0e}".replace("e-0", "e-")
-        raise InputError(f"tolerance must lie between {words}")
+        bounds = f"{lowest:.0e} and {highest:.0e}".replace("e-0", "e-")
+        raise InputError(f"tolerance must lie between {bounds}")

@@ -47,13 +47,13 @@ class Formula(np.lib.mixins.NDArrayOperatorsMixin):
         if ufunc is np.negative:
             return Formula(f"-{operands[0]._bound(_PRODUCT)}", _SUM)
         if ufunc in _OPERATORS:
-            left, right = operands
+            first, second = operands
             sign, binding = _OPERATORS[ufunc]
             is_power = binding == _POWER
             # operators of equal rank are taken from the left, powers from the right
-            left_text = left._bound(binding + is_power)
-            right_text = right._bound(binding + (not is_power))
-            return Formula(f"{left_text} {sign} {right_text}", binding)
+            first_text = first._bound(binding + is_power)
+            second_text = second._bound(binding + (not is_power))
+            return Formula(f"{first_text} {sign} {second_text}", binding)
         if ufunc.nin == 1 and hasattr(math, ufunc.__name__):
             return Formula(f"math.{ufunc.__name__}({operands[0].text})")
         return NotImplemented

@@ -91,8 +91,8 @@ motion, ideal, given = (result.signals[name].value for name in ("v1", "v2", "v3"
 assert np.abs(motion).max() > 0.0
 np.testing.assert_allclose(ideal, 2.5 * motion, rtol=1e-12)
 np.testing.assert_allclose(given, 4.0 * motion, rtol=1e-12)
-words = dict(setup_rows(result))["Sensor v3"]
-assert words.startswith("voltage by a laser vibrometer at "), words
+description = dict(setup_rows(result))["Sensor v3"]
+assert description.startswith("voltage by a laser vibrometer at "), description
 
 try:
     vi.case_of({**table, "sensors": [{**table["sensors"][2], "geophone": {}}]})

@@ -47,7 +47,7 @@ def test_a_key_of_a_section_is_one_field(monkeypatch: pytest.MonkeyPatch) -> Non
     assert "    charge: Array\n    wind: Mapping[str, Any]\n    tilt: Sequence[Array]\n" in types
     # sweeps and --set
     quantities = keys.quantity_keys({})
-    units = {key: None if one is None else one.unit for key, one in quantities.items()}
+    units = {key: quantity and quantity.unit for key, quantity in quantities.items()}
     assert {key: units[f"drop.{key}"] for key in ("charge", "wind.speed", "tilt.x", "tilt.z")} == {
         "charge": "V",
         "wind.speed": "m/s",
@@ -70,8 +70,8 @@ def test_a_deviation_may_stand_where_the_message_says() -> None:
     }
     with pytest.raises(vi.InputError) as refusal:
         vi.load_case("paper:type1-theory", {"run.rest_speed": "1 mm/s +- 1 %"})
-    words = str(refusal.value).split("may stand at ")[1].split(" alone")[0]
-    assert set(words.replace(" and ", ", ").split(", ")) == uncertain
+    allowed_keys = str(refusal.value).split("may stand at ")[1].split(" alone")[0]
+    assert set(allowed_keys.replace(" and ", ", ").split(", ")) == uncertain
 
 
 @pytest.mark.parametrize("name", ["position", "velocity", "spin", "size"])

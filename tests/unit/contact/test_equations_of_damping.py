@@ -18,12 +18,12 @@ TOKEN = re.compile(r"\d+(?:\.\d+)?|[a-z]+|[-+/()^]")
 
 def written_factor(equation: str) -> str:
     """Return the damping factor of an equation as Python: products are written by a blank."""
-    (words,) = re.findall(r"\[1 \+ (.*?) delta_dot / v0\]", equation)
-    tokens = TOKEN.findall(words)
-    assert "".join(tokens) == words.replace(" ", "")
+    (factor,) = re.findall(r"\[1 \+ (.*?) delta_dot / v0\]", equation)
+    tokens = TOKEN.findall(factor)
+    assert "".join(tokens) == factor.replace(" ", "")
     python = tokens[0]
-    for before, token in pairwise(tokens):
-        ends = before == ")" or before == "e" or before[0].isdigit()
+    for previous, token in pairwise(tokens):
+        ends = previous == ")" or previous == "e" or previous[0].isdigit()
         begins = token == "(" or token.isalpha() or token[0].isdigit()
         python += (" * " if ends and begins else " ") + token
     return python.replace("^", "**")

@@ -25,11 +25,11 @@ Seed = Annotated[int, Field(ge=0, strict=True)]
 
 def _table_of(kind: type[InstrumentInCase]) -> type[Section]:
     """Return the section of a case for the table of an instrument."""
-    words = "".join(word.capitalize() for word in kind.name.split("-"))
+    title = "".join(word.capitalize() for word in kind.name.split("-"))
     description = (inspect.getdoc(kind) or "").split("\n\n")[0]
     keys: dict[str, Any] = {item.name: _field_of(item) for item in fields(kind)}
     return create_model(
-        f"{words}Table", __base__=Section, __module__=__name__, __doc__=description, **keys
+        f"{title}Table", __base__=Section, __module__=__name__, __doc__=description, **keys
     )
 
 
@@ -44,7 +44,7 @@ def _field_of(item: DataclassField[Any]) -> tuple[Any, Any]:
     return (annotation | None if item.default is None else annotation), item.default
 
 
-TABLES = {name.replace("-", "_"): _table_of(kind) for name, kind in instruments().items()}
+TABLES = {kind.key(): _table_of(kind) for kind in instruments().values()}
 """The sections of the tables of instruments, by the keys of these in a sensor."""
 
 
@@ -55,10 +55,9 @@ def __getattr__(name: str) -> type[Section]:
 def instrument_fields() -> dict[str, tuple[Any, Any]]:
     """Return the fields of a sensor for the tables of instruments, those on the plate first."""
     kinds = sorted(instruments().values(), key=lambda kind: kind.subject == "sound")
-    keys = [kind.name.replace("-", "_") for kind in kinds]
     return {
-        key: (TABLES[key] | None, Field(None, description=kind.properties))
-        for key, kind in zip(keys, kinds, strict=True)
+        kind.key(): (TABLES[kind.key()] | None, Field(None, description=kind.properties))
+        for kind in kinds
     }
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection
-from dataclasses import MISSING, fields
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, create_model, model_validator
@@ -153,34 +152,35 @@ class SensorSection(_WithTables):
             If a table is that of another instrument than the one named, or the instrument has
             properties without which it is not known.
         """
-        tables = [name for name in instruments() if self._table_of(name) is not None]
-        name = self.instrument or next(iter(tables), None)
-        if name is None:
+        with_table = [
+            kind for kind in instruments().values() if getattr(self, kind.key()) is not None
+        ]
+        kind = self._kind or next(iter(with_table), None)
+        if kind is None:
             return
-        self._check_one_instrument(name, tables)
-        self.__dict__["instrument"] = name
-        kind = instruments()[name]
-        needs_table = any(item.default is MISSING for item in fields(kind))
-        if self.table is None and needs_table:
+        self._check_one_instrument(kind, with_table)
+        self.__dict__["instrument"] = kind.name
+        if kind.needs_table() and kind not in with_table:
             raise InputError(
-                f"{kind.noun} has properties; give them in a table {name} = {{ ... }}", name
+                f"{kind.noun} has properties; give them in a table {kind.name} = {{ ... }}",
+                kind.name,
             )
 
-    def _check_one_instrument(self, name: str, stated: list[str]) -> None:
-        """Raise InputError if a table is that of another instrument than the one of a name.
+    def _check_one_instrument(
+        self, kind: type[InstrumentInCase], with_table: list[type[InstrumentInCase]]
+    ) -> None:
+        """Raise InputError if there is a table of another instrument than the one of this sensor.
 
-        `stated` are the instruments whose tables there are.
+        `with_table` are the instruments whose tables there are.
         """
-        other = next((other for other in stated if other != name), None)
-        if other is None:
+        second_kind = next((stated for stated in with_table if stated is not kind), None)
+        if second_kind is None:
             return
-        remedy = f', or take instrument = "{other}"'
-        if name in stated:
-            table = name.replace("-", "_")
-            remedy = f", or the table {table}" if self.instrument is None else ""
+        remedy = f', or take instrument = "{second_kind.name}"'
+        if kind in with_table:
+            remedy = f", or the table {kind.key()}" if self.instrument is None else ""
         raise InputError(
-            f"its instrument is {instruments()[name].noun}; leave out this table{remedy}",
-            other.replace("-", "_"),
+            f"its instrument is {kind.noun}; leave out this table{remedy}", second_kind.key()
         )
 
     def _check_motion(self) -> None:
@@ -195,7 +195,7 @@ class SensorSection(_WithTables):
             return
         likely = next(kind for kind in instruments().values() if kind.measures == self.quantity)
         example = f'instrument = "{likely.name}"'
-        if any(item.default is MISSING for item in fields(likely)):  # which its table gives
+        if likely.needs_table():
             example = f"{likely.name} = {{ ... }}"
         raise InputError(
             f"{self.quantity} is the output of an instrument; name one, such as {example}",
@@ -241,10 +241,7 @@ class SensorSection(_WithTables):
     @property
     def table(self) -> Section | None:
         """The table of its instrument; None if it has none."""
-        return None if self.instrument is None else self._table_of(self.instrument)
-
-    def _table_of(self, name: str) -> Section | None:
-        table: Section | None = getattr(self, name.replace("-", "_"))
+        table: Section | None = None if self._kind is None else getattr(self, self._kind.key())
         return table
 
     def instrument_in_case(self) -> InstrumentInCase | None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import MISSING, dataclass, fields
 from typing import ClassVar, Literal, Protocol, cast
 
 from vibroimpact.dynamics.sensors.pole_pairs import Section
@@ -80,7 +80,7 @@ class InstrumentInCase:
     """
 
     name: ClassVar[str]
-    """The value of `instrument`, and, with "_" for "-", the key of the table."""
+    """The value of `instrument`; with "_" for "-" the key of the table."""
 
     noun: ClassVar[str]
     """What it is called in a sentence, with its article."""
@@ -92,6 +92,16 @@ class InstrumentInCase:
     """What it puts out unless a sensitivity makes this a voltage."""
 
     subject: ClassVar[Subject]
+
+    @classmethod
+    def key(cls) -> str:
+        """Return the key of the table."""
+        return cls.name.replace("-", "_")
+
+    @classmethod
+    def needs_table(cls) -> bool:
+        """Return whether it has properties without a default."""
+        return any(item.default is MISSING for item in fields(cls))
 
     def instrument(self) -> Instrument:
         """Return the instrument as the measuring chain takes it."""
