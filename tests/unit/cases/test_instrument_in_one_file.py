@@ -6,6 +6,9 @@ import subprocess
 import sys
 from pathlib import Path
 
+import vibroimpact as vi
+from vibroimpact.dynamics.sensors.registry import instruments
+
 INSTRUMENT = '''
 """A laser vibrometer, which follows the velocity of a spot."""
 
@@ -108,3 +111,9 @@ def test_an_instrument_is_one_file(tmp_path: Path) -> None:
     )
     assert run.returncode == 0, run.stderr
     assert "geophone" in run.stdout
+
+
+def test_python_has_all_instruments() -> None:
+    names = {kind.__name__.removesuffix("InCase") for kind in instruments().values()}
+    assert len(names) >= 5
+    assert names <= set(vi.sensors.__all__)
