@@ -30,8 +30,9 @@ MOST_SAMPLES = 4_000_000
 """Largest number of samples of all sensors."""
 
 MOST_NODES = 100_000
-"""Largest number of nodes of a mesh, about: more take too much memory in any case, and
-seconds to make before that is known.
+"""Largest number of nodes of a mesh, about.
+
+More take too much memory in any case, and seconds to make before that is known.
 """
 
 MOST_SECONDS = 180.0

@@ -21,8 +21,9 @@ _SYSTEMS: dict[str, dict[str, str]] = {
     "cm, g, dyn, s (cgs)": {"force": "dyn", "mass": "g", "length": "cm", "time": "s"},
     "in, lb, lbf, s (Adams IPS)": {"force": "lbf", "mass": "lb", "length": "in", "time": "s"},
 }
-"""Unit systems with the unit of each dimension; where force is not mass length / time^2,
-contact parameters contain the unit of force.
+"""The unit of each dimension in each unit system.
+
+Where force is not mass length / time^2, contact parameters contain the unit of force.
 """
 
 

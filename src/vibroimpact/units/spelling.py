@@ -1,6 +1,4 @@
-"""Spellings of units: as instruments, languages and this program's own tables write them,
-brought to the one that pint reads.
-"""
+"""Spellings of units, which instruments, languages and tables write in many ways."""
 
 from __future__ import annotations
 
@@ -39,9 +37,7 @@ _WORDS = {
     **dict.fromkeys(("meter", "meters", "metre", "metres"), "m"),
     **dict.fromkeys(("pascal", "pascals"), "Pa"),
 }
-"""Names of units, which oscilloscopes and LabVIEW write with and without a capital
-letter, and in the plural.
-"""
+"""Symbols of units by their names, as oscilloscopes and LabVIEW write them, in lower case."""
 
 _PLAIN = {
     **dict.fromkeys(("", "1", "-", "none"), 1.0),
