@@ -14,9 +14,7 @@ from vibroimpact.arrays import Array
 
 
 class ResolvedBody(TypedDict, total=False):
-    """The keys that sphere and plate share: material, and mesh, reduction and damping of
-    an elastic body.
-    """
+    """The keys that sphere and plate share."""
 
     material: Any  # a table of numbers, or "rigid"
     model: str
@@ -47,17 +45,15 @@ class ResolvedPlate(ResolvedBody, total=False):
 
 
 class ResolvedDrop(TypedDict, total=False):
-    """The drop: height or speed [m], [m/s], its angle [rad] or a velocity, spin [rad/s],
-    position [m], gravity [m/s^2], air.
-    """
+    """The drop: height or speed, its angle or a velocity, spin, position, gravity, air."""
 
-    height: Array
-    speed: Array
-    angle: Array
-    velocity: Sequence[Array]
-    spin: Sequence[Array]
-    position: Sequence[Array]
-    gravity: Array
+    height: Array  # m
+    speed: Array  # m/s
+    angle: Array  # rad
+    velocity: Sequence[Array]  # m/s
+    spin: Sequence[Array]  # rad/s
+    position: Sequence[Array]  # m
+    gravity: Array  # m/s^2
     air: Mapping[str, Array]
     same_spot: bool
 
