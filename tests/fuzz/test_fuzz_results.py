@@ -217,14 +217,14 @@ def read_calibration(folder: Path) -> Any:
 
 @pytest.fixture(scope="module")
 def calibration(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    from vibroimpact.calibration.calibrate_case import calibrate_case, read_calibration
+    from vibroimpact.calibration.calibrate_case import calibrate_case, calibration_of
 
     case = plain_case(
         contact={"law": "adams-impact", "damping_max": 100.0},
         run={"impacts": 2},
         calibrate={"target": {"restitution": 0.6}},
     )
-    what = read_calibration(case)
+    what = calibration_of(case)
     return calibrate_case(what).save(tmp_path_factory.mktemp("calibrations") / "out")
 
 

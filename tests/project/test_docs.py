@@ -480,10 +480,7 @@ def test_public_names_are_documented() -> None:
     tops = [getattr(vi, name) for name in vi.__all__ if name != "__version__"]
     modules = [thing for thing in tops if inspect.ismodule(thing)]
     inner = [
-        getattr(module, name)
-        for module in modules
-        for name in module.__all__
-        if not name.isupper()
+        getattr(module, name) for module in modules for name in module.__all__ if not name.isupper()
     ]
     for thing in [*(thing for thing in tops if not inspect.ismodule(thing)), *inner]:
         name = thing.__name__
