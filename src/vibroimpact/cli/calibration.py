@@ -183,7 +183,7 @@ def _rebounds_in(
     from vibroimpact.calibration.inputs import BRIEF
     from vibroimpact.files.reading import with_path
     from vibroimpact.signals.bounces.find import find_bounces
-    from vibroimpact.signals.one_record import one_record
+    from vibroimpact.signals.reading.one_record import one_record
 
     contact_duration = BRIEF if contact is None else written_in("--contact", contact, "s")
     acceleration = None if gravity is None else written_in("--gravity", gravity, "m/s^2")

@@ -192,7 +192,7 @@ def _records(
 def _records_without_baseline(paths: list[Path], columns: str | None) -> Iterator[Record]:
     """Yield the records of files and folders, and show the doubts about them."""
     from vibroimpact.signals.baseline import without_baseline
-    from vibroimpact.signals.record_files import load_records
+    from vibroimpact.signals.reading.record_files import load_records
 
     doubts: set[str] = set()
     for path in paths:
