@@ -1,5 +1,4 @@
-"""Scalar functions that numba compiles where it is there, and that plain Python runs where it is
-not.
+"""Scalar functions that numba compiles, and that plain Python runs without it.
 
 Two decorators mark them. `scalar` marks a function of a contact law: it stays a Python function,
 which NumPy's arrays go through as well, and compiled code may call it. `compiled` marks a function
@@ -108,8 +107,9 @@ def law_function(law_class: type[Any], kind: str = "force") -> Any:
 
 
 def law_addresses(law_class: type[Any]) -> Any:
-    """Return what compiled functions take from Python for the functions of a law, and make them of
-    by `force_at` and its like.
+    """Return what compiled functions take from Python for the functions of a law.
+
+    They make the functions of it by `force_at` and its like.
 
     Parameters
     ----------
@@ -136,14 +136,15 @@ def law_addresses(law_class: type[Any]) -> Any:
     kinds = [kind for kind, attribute in ALL_FUNCTIONS.items() if hasattr(law_class, attribute)]
     if INTERPRETING.get():
         return np.array([interpreted_function(law_class, kind) for kind in kinds], dtype=object)
-    if law_class not in _ADDRESSES:
+    addresses = _ADDRESSES.get(law_class)
+    if addresses is None:
         functions = [law_function(law_class, kind) for kind in kinds]
-        _ADDRESSES[law_class] = (
-            np.array(functions, dtype=object)
-            if why_not_compiled()
-            else np.array([function.address() for function in functions], dtype=np.int64)
-        )
-    return _ADDRESSES[law_class]
+        if why_not_compiled():
+            addresses = np.array(functions, dtype=object)
+        else:
+            addresses = np.array([function.address() for function in functions], dtype=np.int64)
+        _ADDRESSES[law_class] = addresses
+    return addresses
 
 
 _ADDRESSES: WeakKeyDictionary[type[Any], Any] = WeakKeyDictionary()

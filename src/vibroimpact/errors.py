@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from difflib import get_close_matches
 from itertools import accumulate, islice
 
@@ -11,7 +11,6 @@ from vibroimpact.quoting import shortened, visible
 _LONGEST_WORD = 100
 _LARGEST_COUNT = 200  # faults that are formatted; a hundred thousand would take long
 
-
 LONGEST_MESSAGE = 490
 """Largest length of a message: that of all its lines."""
 
@@ -19,9 +18,7 @@ LONGEST_LINE = 450
 """Largest length of a line of a message; what is left is for the number of further faults."""
 
 MOST_LINES = 10
-"""Largest number of faults in a message, one line each; another line gives the number of
-further faults.
-"""
+"""Largest number of faults in a message, one line each; one more line counts further faults."""
 
 # characters of the names that a message lists; those of the longest section of a case
 _LONGEST_LIST = 220
@@ -78,8 +75,9 @@ class SlowLawWarning(UserWarning):
 
 
 class InputError(VibroimpactError, ValueError):
-    """An invalid case, argument or file; the message states the location, the fault, and what is
-    allowed.
+    """An invalid case, argument or file.
+
+    The message states the location, the fault, and what is allowed.
 
     Parameters
     ----------
@@ -100,7 +98,8 @@ class InputError(VibroimpactError, ValueError):
 
     def __init__(self, message: str, key: str = "") -> None:
         super().__init__(f"{shortened(key, 160)}: {message}" if key else message)
-        (self.message,), self.key = lines_of((message,)), key
+        (self.message,) = lines_of([message])
+        self.key = key
 
     @classmethod
     def of_several(cls, faults: Iterable[str]) -> InputError:
@@ -147,30 +146,38 @@ def lines_of(faults: Iterable[str]) -> tuple[str, ...]:
     >>> lines_of(map(str, range(500)))[-1]
     'and at least 190 other faults'
     """
-    first = iter(faults)
-    found = tuple(
-        dict.fromkeys(
-            shortened(visible(fault), LONGEST_LINE) for fault in islice(first, _LARGEST_COUNT)
-        )
+    remaining = iter(faults)
+    formatted = (
+        shortened(visible(fault), LONGEST_LINE) for fault in islice(remaining, _LARGEST_COUNT)
     )
-    all_seen = next(first, None) is None
-    few = len(found) <= MOST_LINES + 1  # a line that counts one fault would be as long as the fault
-    if all_seen and few and len("\n".join(found)) <= LONGEST_MESSAGE:
-        return found
+    lines = tuple(dict.fromkeys(formatted))
+    all_seen = next(remaining, None) is None
+    few = len(lines) <= MOST_LINES + 1  # a line that counts one fault would be as long as the fault
+    if all_seen and few and len("\n".join(lines)) <= LONGEST_MESSAGE:
+        return lines
     room = LONGEST_MESSAGE - len("and at least 200 other faults")
-    fitting = sum(end <= room for end in accumulate(len(line) + 1 for line in found[:MOST_LINES]))
-    rest = len(found) - fitting
-    if not rest:  # many are alike, and not all were looked at
-        return (*found, "and perhaps other faults")
-    return (
-        *found[:fitting],
-        f"and {'' if all_seen else 'at least '}{rest} other fault{'s' if rest > 1 else ''}",
-    )
+    fitting = _number_fitting(lines[:MOST_LINES], room, separator_length=1)
+    further = len(lines) - fitting
+    if further == 0:  # many are alike, and not all were looked at
+        return (*lines, "and perhaps other faults")
+    at_least = "" if all_seen else "at least "
+    return (*lines[:fitting], f"and {at_least}{further} other fault{_plural(further)}")
+
+
+def _number_fitting(texts: Sequence[str], room: int, *, separator_length: int) -> int:
+    """Return how many texts, each with a separator, fit into a number of characters."""
+    ends = accumulate(len(text) + separator_length for text in texts)
+    return sum(end <= room for end in ends)
+
+
+def _plural(number: int) -> str:
+    return "s" if number > 1 else ""
 
 
 def listed(names: Iterable[str], near: str = "", command: str = "") -> str:
-    """Return names for a message, separated by commas: all of them, or if that would be long those
-    closest to a word, and more.
+    """Return names for a message, separated by commas.
+
+    If all would be long, those closest to a word come first, and further ones are counted.
 
     Parameters
     ----------
@@ -189,21 +196,22 @@ def listed(names: Iterable[str], near: str = "", command: str = "") -> str:
     >>> text[:18], text[-53:]
     ('a-long-name-47, a-', 'and 36 others, which "vibroimpact laws" lists in full')
     """
-    ordered = [shortened(visible(name), _LONGEST_NAME) for name in names]
-    text = ", ".join(ordered)
+    printable = [shortened(visible(name), _LONGEST_NAME) for name in names]
+    text = ", ".join(printable)
     if len(text) <= _LONGEST_LIST:
         return text
-    first = get_close_matches(near[:_LONGEST_WORD], ordered, n=_MOST_NEAR)
-    ordered = [*first, *(name for name in ordered if name not in first)]
-    fitting = sum(end <= _LONGEST_LIST for end in accumulate(len(name) + 2 for name in ordered))
-    where = f', which "vibroimpact {command}" lists in full' if command else ""
-    rest = len(ordered) - fitting
-    return f"{', '.join(ordered[:fitting])} and {rest} other{'s' if rest > 1 else ''}{where}"
+    close = get_close_matches(near[:_LONGEST_WORD], printable, n=_MOST_NEAR)
+    ordered = [*close, *(name for name in printable if name not in close)]
+    fitting = _number_fitting(ordered, _LONGEST_LIST, separator_length=2)
+    further = len(ordered) - fitting
+    text = f"{', '.join(ordered[:fitting])} and {further} other{_plural(further)}"
+    if command:
+        text += f', which "vibroimpact {command}" lists in full'
+    return text
 
 
 def choices(names: Iterable[str], given: str, command: str = "") -> str:
-    """Return the names that are allowed in place of one that was given, as `listed` does, and which
-    of them was probably meant.
+    """Return the names that are allowed in place of one that was given, and the likely one.
 
     Examples
     --------
@@ -215,8 +223,9 @@ def choices(names: Iterable[str], given: str, command: str = "") -> str:
 
 
 def did_you_mean(word: str, known: Iterable[str]) -> str:
-    """Return " Did you mean ...?" for the known word closest to `word`, or "" if there is none, or
-    it is the word itself.
+    """Return " Did you mean ...?" for the known word closest to a word, or "".
+
+    It is "" if no known word is close, or the word itself is known.
 
     Examples
     --------
@@ -226,4 +235,6 @@ def did_you_mean(word: str, known: Iterable[str]) -> str:
     ''
     """
     close = get_close_matches(word[:_LONGEST_WORD], list(known), n=1, cutoff=0.6)
-    return f' Did you mean "{close[0]}"?' if close and close[0] != word else ""
+    if not close or close[0] == word:
+        return ""
+    return f' Did you mean "{close[0]}"?'

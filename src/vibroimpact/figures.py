@@ -56,10 +56,9 @@ def save_figures(
     --------
     >>> import tempfile
     >>> import vibroimpact as vi
-    >>> with tempfile.TemporaryDirectory() as place:
-    ...     folder = vi.save_result(
-    ...         vi.simulate(vi.load_case("paper:type1-theory")), f"{place}/theory"
-    ...     )
+    >>> response = vi.simulate(vi.load_case("paper:type1-theory"))
+    >>> with tempfile.TemporaryDirectory() as temporary:
+    ...     folder = vi.save_result(response, f"{temporary}/theory")
     ...     sorted(file.name for file in save_figures(folder, ["svg"]).iterdir())[:3]
     ['acceleration.svg', 'energy.svg', 'force.svg']
     """
@@ -89,9 +88,7 @@ def _write_below(write: Callable[[Path], None], folder: Path) -> None:
 def _writer_of(
     folder: Path, formats: Sequence[str], progress: Callable[[float], None]
 ) -> Callable[[Path], None]:
-    """Return the function that writes the figures of a result folder or a study into a
-    directory.
-    """
+    """Return the function that writes the figures of a result folder or a study."""
     from vibroimpact.studies.study_folder import is_study
 
     if is_study(folder):
@@ -100,16 +97,17 @@ def _writer_of(
 
         charts = study_charts(load_study(folder))
 
-        def write(place: Path) -> None:
-            save_charts(charts, place, formats, progress)
+        def write(target: Path) -> None:
+            save_charts(charts, target, formats, progress)
 
         return write
     return partial(write_figures, _result_in(folder), formats=formats, progress=progress)
 
 
 def _result_in(folder: Path) -> Result:
-    """Return the result in a folder; a reproduction of the paper, which has none, has its
-    figures already.
+    """Return the result in a folder.
+
+    A reproduction of the paper has none, and has its figures already.
     """
     try:
         return load_result(folder)

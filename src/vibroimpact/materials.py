@@ -86,14 +86,10 @@ class Material:
     def __post_init__(self) -> None:
         for name, allowed in _RANGES.items():
             value = getattr(self, name)
-            absent = value is None or np.all(
-                np.isnan(value)
-                if name == "density"
-                else np.isinf(value) & (name == "youngs_modulus")
-            )
+            if _may_be_any(name, value):
+                continue
             try:
-                if not absent:
-                    allowed.check(value)
+                allowed.check(value)
             except InputError as error:
                 raise InputError(error.message, name) from None
 
@@ -103,7 +99,18 @@ class Material:
         return self.youngs_modulus / (1.0 - self.poissons_ratio**2)
 
 
-_OTHER = "other_names"
+def _may_be_any(name: str, value: Any) -> bool:
+    """Return whether a value is left out: None, the density of a fixed body, rigidity."""
+    if value is None:
+        return True
+    if name == "density":
+        return bool(np.all(np.isnan(value)))
+    if name == "youngs_modulus":
+        return bool(np.all(np.isinf(value)))
+    return False
+
+
+_OTHER_NAMES = "other_names"
 """Key of the library file for other common names of a material."""
 
 RIGID = Material(
@@ -124,39 +131,40 @@ def material_library() -> Mapping[str, Material]:
     >>> material_library()["rock-paper"].youngs_modulus
     2260000000.0
     """
-    entries = _library_file().items()
-    return {
-        name: Material(name=name, **{key: value for key, value in entry.items() if key != _OTHER})
-        for name, entry in entries
-    }
+    library = {}
+    for name, entry in _library_file().items():
+        values = {key: value for key, value in entry.items() if key != _OTHER_NAMES}
+        library[name] = Material(name=name, **values)
+    return library
 
 
 @cache
 def _library_file() -> Mapping[str, Mapping[str, Any]]:
-    return tomllib.loads(
-        files("vibroimpact").joinpath("materials.toml").read_text(encoding="utf-8")
-    )
+    file = files("vibroimpact").joinpath("materials.toml")
+    return tomllib.loads(file.read_text(encoding="utf-8"))
 
 
 @cache
-def _known_by() -> Mapping[str, str]:
-    """Return the library name for each known name of a material, reduced to lower-case
-    letters and digits.
-    """
-    names = {name: (name, *entry.get(_OTHER, ())) for name, entry in _library_file().items()}
-    return {_plain(one): name for name, several in names.items() for one in (*several, name)}
+def _names_in_library() -> Mapping[str, str]:
+    """Return the name in the library for each known name of a material, reduced by `_plain`."""
+    names = {}
+    for name, entry in _library_file().items():
+        for known_name in (name, *entry.get(_OTHER_NAMES, ())):
+            names[_plain(known_name)] = name
+    return names
 
 
 def _plain(name: str) -> str:
-    return "".join(letter for letter in name.lower() if letter.isalnum())
+    """Return the letters and digits of a name in lower case."""
+    return "".join(character for character in name.lower() if character.isalnum())
 
 
-def _meant(name: str) -> str:
-    """Return " Did you mean ...?" for the material with this other name, or with the
-    closest name; "" if there is none.
-    """
-    found = _known_by().get(_plain(name))
-    return f' Did you mean "{found}"?' if found else did_you_mean(name.lower(), material_library())
+def _did_you_mean(name: str) -> str:
+    """Return " Did you mean ...?" for the material with this other name or the closest, or ""."""
+    name_in_library = _names_in_library().get(_plain(name))
+    if name_in_library:
+        return f' Did you mean "{name_in_library}"?'
+    return did_you_mean(name.lower(), material_library())
 
 
 def find_material(name: str) -> Material:
@@ -182,17 +190,17 @@ def find_material(name: str) -> Material:
         )
         raise InputError(
             f'there is no material {quoted(name)} in the library; "vibroimpact materials" '
-            f"lists them, {remedy}.{_meant(name)}"
+            f"lists them, {remedy}.{_did_you_mean(name)}"
         )
     return library[name]
 
 
 def __getattr__(name: str) -> Material:
     library = material_library()
-    listed = name.replace("_", "-")
-    if listed not in library:
+    name_in_library = name.replace("_", "-")
+    if name_in_library not in library:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    return library[listed]
+    return library[name_in_library]
 
 
 def __dir__() -> list[str]:

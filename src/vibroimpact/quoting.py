@@ -10,8 +10,7 @@ from typing import Any
 
 
 def visible(text: str) -> str:
-    r"""Return a text with control characters, line breaks and other unprintable characters as
-    escape sequences.
+    r"""Return a text with unprintable characters, such as line breaks, as escape sequences.
 
     Examples
     --------
@@ -20,7 +19,9 @@ def visible(text: str) -> str:
     >>> visible("8 mm steel")
     '8 mm steel'
     """
-    return text if text.isprintable() else "".join(map(_visible, text))
+    if text.isprintable():
+        return text
+    return "".join(map(_visible, text))
 
 
 def _visible(character: str) -> str:
@@ -41,13 +42,13 @@ def shortened(text: str, most: int) -> str:
     """
     if len(text) <= most:
         return text
-    end = (most - 5) // 3
-    return f"{text[: most - 5 - end]} ... {text[len(text) - end :]}"
+    kept = most - len(" ... ")
+    from_end = kept // 3
+    return f"{text[: kept - from_end]} ... {text[len(text) - from_end :]}"
 
 
 def quoted(value: Any, most: int = 60) -> str:
-    r"""Return a value for a message, as a case file has it: a text in quotes, true, a list, a
-    table; of limited length.
+    r"""Return a value for a message, as a case file has it, of limited length.
 
     Examples
     --------
@@ -64,20 +65,19 @@ def quoted(value: Any, most: int = 60) -> str:
 
 
 class _Short(reprlib.Repr):
-    """Representation of limited depth and length, as TOML has it: a value from Python may
-    be arbitrarily large.
-    """
+    """Representation of limited depth and length, as TOML has it."""
 
     def __init__(self) -> None:
         super().__init__()
-        self.maxlevel, self.maxstring, self.maxother = 4, 60, 60
+        self.maxlevel = 4
+        self.maxstring = 60
+        self.maxother = 60
 
     def repr_int(self, x: int, level: int) -> str:
-        return (
-            repr(x)
-            if x.bit_length() < 400
-            else f"a whole number of about {int(x.bit_length() * 0.30103)} digits"
-        )
+        bits = x.bit_length()
+        if bits < 400:
+            return repr(x)
+        return f"a whole number of about {int(bits * 0.30103)} digits"
 
     def repr_bool(self, x: bool, level: int) -> str:
         return str(x).lower()
@@ -86,13 +86,17 @@ class _Short(reprlib.Repr):
         return f'"{shortened(x[: 10 * self.maxstring], self.maxstring)}"'
 
     def repr_dict(self, x: dict[Any, Any], level: int) -> str:
-        if not x or level <= 0:
-            return "{ ... }" if x else "{}"
+        if not x:
+            return "{}"
+        if level <= 0:
+            return "{ ... }"
         entries = [
             f"{shortened(str(key), self.maxstring)} = {self.repr1(value, level - 1)}"
             for key, value in islice(x.items(), self.maxdict)
         ]
-        return f"{{ {', '.join(entries)}{', ...' if len(x) > self.maxdict else ''} }}"
+        if len(x) > self.maxdict:
+            entries.append("...")
+        return f"{{ {', '.join(entries)} }}"
 
     def repr_date(self, x: date, level: int) -> str:
         return x.isoformat()

@@ -29,13 +29,15 @@ class Range:
     @property
     def words(self) -> str:
         """The range in words; "" if every finite number is inside."""
-        bounds = (
-            ("greater than", self.above),
-            ("at least", self.at_least),
-            ("less than", self.below),
-            ("at most", self.at_most),
+        bounds = {
+            "greater than": self.above,
+            "at least": self.at_least,
+            "less than": self.below,
+            "at most": self.at_most,
+        }
+        return " and ".join(
+            f"{relation} {bound:g}" for relation, bound in bounds.items() if math.isfinite(bound)
         )
-        return " and ".join(f"{word} {bound:g}" for word, bound in bounds if math.isfinite(bound))
 
     def clip(self, values: Any) -> Any:
         """Return values clipped to the range, just inside an open end.
@@ -45,13 +47,13 @@ class Range:
         >>> Range(at_least=0).clip(np.array([-1.0, 2.0])).tolist()
         [0.0, 2.0]
         """
-        low = (
-            self.above + 1e-12 * abs(self.above) + 1e-300
-            if math.isfinite(self.above)
-            else self.at_least
-        )
-        high = self.below - 1e-12 * abs(self.below) if math.isfinite(self.below) else self.at_most
-        return np.clip(values, low, high)
+        lowest = self.at_least
+        if math.isfinite(self.above):
+            lowest = self.above + 1e-12 * abs(self.above) + 1e-300
+        highest = self.at_most
+        if math.isfinite(self.below):
+            highest = self.below - 1e-12 * abs(self.below)
+        return np.clip(values, lowest, highest)
 
     def bounded(self, values: Any) -> Any:
         """Return values clipped to the closed interval, including its open ends.
@@ -80,9 +82,9 @@ class Range:
         try:
             array = np.asarray(values, dtype=float)
         except (TypeError, ValueError):
+            number = f"number in {unit}" if unit else "number"
             raise InputError(
-                f"{values!r} is not allowed; it must be a "
-                f"number{' in ' + unit if unit else ''}, or an array of them"
+                f"{values!r} is not allowed; it must be a {number}, or an array of them"
             ) from None
         inside = (
             np.isfinite(array)
@@ -92,6 +94,6 @@ class Range:
             & (array <= self.at_most)
         )
         if not inside.all():
-            wrong = shown or f"{array[~inside].flat[0]:g}"
-            allowed = f"{self.words}{' ' + unit if unit else ''}" if self.words else "finite"
-            raise InputError(f"{wrong} is not allowed; it must be {allowed}")
+            invalid = shown or f"{array[~inside].flat[0]:g}"
+            allowed = f"{self.words} {unit}".rstrip() if self.words else "finite"
+            raise InputError(f"{invalid} is not allowed; it must be {allowed}")

@@ -27,11 +27,10 @@ def remake_report(directory: str | PathLike[str]) -> Path:
     --------
     >>> from tempfile import TemporaryDirectory
     >>> import vibroimpact as vi
-    >>> with TemporaryDirectory() as folder:
-    ...     place = vi.save_result(
-    ...         vi.simulate(vi.load_case("paper:type1-theory")), f"{folder}/theory"
-    ...     )
-    ...     vi.remake_report(place).name
+    >>> response = vi.simulate(vi.load_case("paper:type1-theory"))
+    >>> with TemporaryDirectory() as temporary:
+    ...     folder = vi.save_result(response, f"{temporary}/theory")
+    ...     vi.remake_report(folder).name
     'theory'
     """
     # imported here, since a run does not need them

@@ -1,6 +1,4 @@
-"""Registries of plug-in modules: all modules of a package, and look-up of registered
-entries by name.
-"""
+"""Registries of plug-in modules, and look-up of their entries by name."""
 
 from __future__ import annotations
 
@@ -13,7 +11,7 @@ from typing import TypeVar
 from vibroimpact.errors import InputError, choices
 from vibroimpact.quoting import quoted
 
-Found = TypeVar("Found")
+Entry = TypeVar("Entry")
 
 
 def modules_in(package: str) -> list[ModuleType]:
@@ -24,13 +22,12 @@ def modules_in(package: str) -> list[ModuleType]:
     >>> modules_in("vibroimpact.studies.designs")[0].__name__
     'vibroimpact.studies.designs.grid'
     """
-    names = sorted(
-        info.name for info in pkgutil.iter_modules(importlib.import_module(package).__path__)
-    )
+    folders = importlib.import_module(package).__path__
+    names = sorted(module.name for module in pkgutil.iter_modules(folders))
     return [importlib.import_module(f"{package}.{name}") for name in names]
 
 
-def find_named(kind: str, name: str, known: Mapping[str, Found], command: str = "") -> Found:
+def find_named(kind: str, name: str, known: Mapping[str, Entry], command: str = "") -> Entry:
     """Return the entry of a registry with a given name.
 
     Parameters
@@ -63,7 +60,7 @@ def find_named(kind: str, name: str, known: Mapping[str, Found], command: str = 
     return known[name]
 
 
-def class_named(registered: Mapping[str, type[Found]], name: str, module: str) -> type[Found]:
+def class_named(registered: Mapping[str, type[Entry]], name: str, module: str) -> type[Entry]:
     """Return a registered class by the name of the class, as a module has it as an attribute.
 
     Parameters

@@ -1,6 +1,4 @@
-"""The address of the live page, which carries the case after its "#", so that a link
-reproduces it.
-"""
+"""The address of the live page, which carries the case after its "#"."""
 
 from __future__ import annotations
 
@@ -11,8 +9,9 @@ from typing import Any
 
 
 def fragment_of(table: dict[str, Any]) -> str:
-    """Return the fragment of an address that carries a case: its table as JSON, compressed, in the
-    letters of an address.
+    """Return the fragment of an address that carries a case, so that a link reproduces it.
+
+    It is the table of the case as JSON, compressed, in the letters of an address.
 
     Parameters
     ----------
@@ -27,4 +26,5 @@ def fragment_of(table: dict[str, Any]) -> str:
     b'{"name":"a"}'
     """
     text = json.dumps(table, separators=(",", ":"), default=str, ensure_ascii=False)
-    return f"#case={urlsafe_b64encode(zlib.compress(text.encode(), 9)).decode().rstrip('=')}"
+    letters = urlsafe_b64encode(zlib.compress(text.encode(), 9)).decode()
+    return f"#case={letters.rstrip('=')}"

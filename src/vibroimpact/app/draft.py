@@ -1,6 +1,4 @@
-"""The result of a drop while it is being changed: as of a run, but with fewer points and
-without doubts, so that it is there at once.
-"""
+"""The result of a drop while it is being changed: with fewer points, and without doubts."""
 
 from __future__ import annotations
 
@@ -33,11 +31,9 @@ class _Deferred(Mapping[str, Any]):
     """Mapping whose values are computed group by group, at the first access to one of the group."""
 
     def __init__(self, *groups: tuple[Iterable[str], Callable[[], Mapping[str, Any]]]) -> None:
-        self._compute = {
-            name: once
-            for names, once in ((names, cache(compute)) for names, compute in groups)
-            for name in names
-        }
+        self._compute: dict[str, Callable[[], Mapping[str, Any]]] = {}
+        for names, compute in groups:
+            self._compute |= dict.fromkeys(names, cache(compute))
 
     def __getitem__(self, name: str) -> Any:
         return self._compute[name]()[name]
@@ -53,15 +49,15 @@ class _Deferred(Mapping[str, Any]):
 
 
 def drafted(problem: Problem) -> Problem:
-    """Return the problem that is simulated while it is being changed: to six digits, and
-    without the growth of small changes.
+    """Return the problem that is simulated for a draft.
+
+    Its numbers are right to six digits, and the growth of small changes is not computed.
     """
     return replace(problem, tolerance=max(problem.tolerance, _TOLERANCE), sensitivity=False)
 
 
 def draft_of(response: Response) -> Result:
-    """Return the result of a response to one drop whose bodies vibrate, with a history of about
-    1000 points.
+    """Return the result of a response to one drop, with a history of about 1000 points.
 
     Of the history, the peaks and the signals only what is looked at is computed. For rigid bodies
     it is the result itself, which takes no time.
@@ -69,18 +65,30 @@ def draft_of(response: Response) -> Result:
     problem = response.problem
     if not problem.vibrates:
         return result_of(response)
-    further = [name for name in response.history_columns if name not in MOTION_COLUMNS]
+    further_columns = [name for name in response.history_columns if name not in MOTION_COLUMNS]
     history = _Deferred(
-        *((names, partial(response.history, _POINTS, names)) for names in (MOTION_COLUMNS, further))
+        (MOTION_COLUMNS, partial(response.history, _POINTS, MOTION_COLUMNS)),
+        (further_columns, partial(response.history, _POINTS, further_columns)),
     )
+    signals = _Deferred(([sensor.name for sensor in problem.sensors], response.signals))
+    return bare_result(
+        response,
+        history,
+        _peaks(response, history),
+        signals,
+        deflection_of(response, _FRAMES),
+    )
+
+
+def _peaks(response: Response, history: Mapping[str, Any]) -> dict[str, Mapping[str, Any]]:
+    """Return peaks and frequencies of each body that vibrates."""
     maxima = cache(lambda: peaks_of(response, history))
 
-    def of_body(body: str, modes: ModalBasis) -> _Deferred:
+    def peaks_of_body(body: str, modes: ModalBasis) -> _Deferred:
         return _Deferred(
-            (MAXIMA, lambda: maxima()[body]), (FREQUENCIES, partial(frequencies_of, modes))
+            (MAXIMA, lambda: maxima()[body]),
+            (FREQUENCIES, partial(frequencies_of, modes)),
         )
 
-    bodies = {"sphere": problem.sphere.modes, "plate": problem.plate.modes}
-    peaks = {body: of_body(body, modes) for body, modes in bodies.items() if modes is not None}
-    signals = _Deferred(([sensor.name for sensor in problem.sensors], response.signals))
-    return bare_result(response, history, peaks, signals, deflection_of(response, _FRAMES))
+    bodies = {"sphere": response.problem.sphere.modes, "plate": response.problem.plate.modes}
+    return {body: peaks_of_body(body, modes) for body, modes in bodies.items() if modes is not None}

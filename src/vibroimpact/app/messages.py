@@ -1,7 +1,6 @@
-"""The protocol of the live page: what a window asks, and what it is told. It knows nothing of how
-messages travel.
+"""The protocol of the live page: what a window asks, and what it is told.
 
-A window sends texts of JSON with a `type`:
+It knows nothing of how messages travel. A window sends texts of JSON with a `type`:
 
 `{"type": "open", "number": 1, "source": "paper:type3"}`
     for the table of a shipped case, or `"text"` in place of `"source"` for that of the text of a
@@ -56,13 +55,8 @@ _KEYS = {
     "report": set[str](),
     "signals": set[str](),
 }
-_KINDS: dict[str, tuple[type, str]] = {
-    "source": (str, "a text"),
-    "text": (str, "a text"),
-    "case": (dict, "a table"),
-    "detail": (str, "a text"),
-    "charts": (list, "a list"),
-}
+_TYPES: dict[str, type] = {"source": str, "text": str, "case": dict, "detail": str, "charts": list}
+_NAMES_OF_TYPES: dict[type, str] = {str: "a text", dict: "a table", list: "a list"}
 
 
 class Message(NamedTuple):
@@ -91,32 +85,30 @@ def read_message(text: str | bytes) -> Message:
     vibroimpact.errors.InputError: a message is a table with a type: open, case, cancel, report,
     signals
     """
-    found = _parsed(text.encode("utf-8", "surrogatepass") if isinstance(text, str) else text)
-    if (
-        not isinstance(found, dict)
-        or not isinstance(found.get("type"), str)
-        or found["type"] not in _KEYS
-    ):
-        raise InputError(f"a message is a table with a type: {', '.join(_KEYS)}")
-    kind, number = found.pop("type"), found.pop("number", 0)
-    if type(number) is not int or not 0 <= number < 2**53:
-        raise InputError(f"{quoted(number)} is not the number of a message")
-    for key, value in found.items():
-        if key not in _KEYS[kind]:
-            raise InputError(f"a message of type {kind} has no {quoted(key)}")
-        if not isinstance(value, _KINDS[key][0]):
-            raise InputError(f"{key} of a message must be {_KINDS[key][1]}")
-    if kind == "open" and len(found) != 1:
-        raise InputError("a message of type open has either a source or a text")
-    if kind == "case" and (
-        "case" not in found or found.setdefault("detail", "full") not in ("draft", "full")
-    ):
-        raise InputError('a message of type case has a case, and "draft" or "full" as detail')
-    return Message(kind, number, found)
-
-
-def _parsed(block: bytes) -> Any:
-    """Return what a block of JSON says."""
+    block = text.encode("utf-8", "surrogatepass") if isinstance(text, str) else text
     if len(block) > LONGEST:
         raise InputError(f"the message has {len(block)} bytes; {LONGEST} are the most")
-    return parse_json(block, "the message")
+    content = parse_json(block, "the message")
+    kind = content.pop("type", None) if isinstance(content, dict) else None
+    if not isinstance(kind, str) or kind not in _KEYS:
+        raise InputError(f"a message is a table with a type: {', '.join(_KEYS)}")
+    number = content.pop("number", 0)
+    # not True or False, and what a double of the browser holds exactly
+    if type(number) is not int or not 0 <= number < 2**53:
+        raise InputError(f"{quoted(number)} is not the number of a message")
+    if kind == "case":
+        content.setdefault("detail", "full")
+    _check_content(kind, content)
+    return Message(kind, number, content)
+
+
+def _check_content(kind: str, content: dict[str, Any]) -> None:
+    for key, value in content.items():
+        if key not in _KEYS[kind]:
+            raise InputError(f"a message of type {kind} has no {quoted(key)}")
+        if not isinstance(value, _TYPES[key]):
+            raise InputError(f"{key} of a message must be {_NAMES_OF_TYPES[_TYPES[key]]}")
+    if kind == "open" and len(content) != 1:
+        raise InputError("a message of type open has either a source or a text")
+    if kind == "case" and ("case" not in content or content["detail"] not in ("draft", "full")):
+        raise InputError('a message of type case has a case, and "draft" or "full" as detail')

@@ -1,6 +1,4 @@
-"""What the live page offers: shipped cases, contact and friction laws, materials,
-colours, and the length of messages.
-"""
+"""What the live page offers: shipped cases, laws, materials, colours, length of messages."""
 
 from __future__ import annotations
 
@@ -26,14 +24,13 @@ def offer() -> dict[str, Any]:
 
     Examples
     --------
-    >>> found = offer()
-    >>> [found["laws"]["hunt-crossley"]["parameters"][0][name] for name in ("name", "unit")]
-    ['stiffness', 'N/m¹·⁵']
+    >>> stiffness = offer()["laws"]["hunt-crossley"]["parameters"][0]
+    >>> stiffness["name"], stiffness["unit"]
+    ('stiffness', 'N/m¹·⁵')
     """
+    titles = shipped_cases()
     return {
-        "cases": {
-            name: title for name, title in shipped_cases().items() if name not in _OF_OTHER_COMMANDS
-        },
+        "cases": {name: titles[name] for name in titles if name not in _OF_OTHER_COMMANDS},
         "laws": {name: _law(law) for name, law in contact_laws().items()},
         "friction": list(friction_laws()),
         "materials": list(material_library()),
@@ -44,19 +41,21 @@ def offer() -> dict[str, Any]:
 
 _OF_OTHER_COMMANDS = ("paper:sweep", "paper:calibration", "paper:full-damping-penetration")
 
+_HERTZ_EXPONENT = 1.5
+"""Exponent of the indentation, on which units of stiffness depend."""
+
 
 def _law(law: Any) -> dict[str, Any]:
     text = law_text(law)
-    exponent = 1.5
-    units = {item.name: unit_of(item, exponent) for item in fields(law)}
+    units = {field.name: unit_of(field, _HERTZ_EXPONENT) for field in fields(law)}
     parameters = [
         {
-            "name": one.name,
-            "meaning": plain_text(one.meaning),
-            "unit": multiple(units.get(one.name, one.unit), 1.0).unit,
-            "allowed": one.allowed,
-            "default": one.default,
+            "name": parameter.name,
+            "meaning": plain_text(parameter.meaning),
+            "unit": multiple(units.get(parameter.name, parameter.unit), 1.0).unit,
+            "allowed": parameter.allowed,
+            "default": parameter.default,
         }
-        for one in text.parameters
+        for parameter in text.parameters
     ]
     return {"equation": text.equation, "parameters": parameters}

@@ -14,30 +14,48 @@ from vibroimpact.errors import InputError
 if TYPE_CHECKING:
     from vibroimpact.structures.recipe import Recipe
 
-MOST_MODES, MOST_IMPACTS, LONGEST_RUN, MOST_SENSORS, MOST_SAMPLES = 400, 300, 60.0, 8, 4_000_000
-"""Largest number of modes of a body and of impacts, longest run [s], largest number of
-sensors and of samples.
-"""
+MOST_MODES = 400
+"""Largest number of modes of a body."""
+
+MOST_IMPACTS = 300
+"""Largest number of impacts."""
+
+LONGEST_RUN = 60.0
+"""Longest run [s]."""
+
+MOST_SENSORS = 8
+"""Largest number of sensors."""
+
+MOST_SAMPLES = 4_000_000
+"""Largest number of samples of all sensors."""
 
 MOST_NODES = 100_000
-"""Largest number of nodes of a mesh, about: more take too much memory in any case, and
-seconds to make before that is known.
+"""Largest number of nodes of a mesh, about.
+
+More take too much memory in any case, and seconds to make before that is known.
 """
 
-MOST_SECONDS, MOST_MEMORY = 180.0, 3e9
-"""Longest time [s] and largest memory [bytes] that a case may take by the estimate of its costs."""
+MOST_SECONDS = 180.0
+"""Longest time that a case may take by the estimate of its costs [s]."""
 
-_ELSEWHERE = {"sweep": "vibroimpact sweep", "calibrate": "vibroimpact calibrate"}
+MOST_MEMORY = 3e9
+"""Largest memory that a case may take by the estimate of its costs [bytes]."""
+
+_COMMANDS_OF_SECTIONS = {"sweep": "vibroimpact sweep", "calibrate": "vibroimpact calibrate"}
+"""Sections that the live page leaves out, and the commands that they are for."""
+
+_KEYS_OF_FILES = (("sphere", "mesh"), ("plate", "mesh"), ("plate", "motion"))
+"""Section and key of the values that may name a file."""
 
 
 def check_table(table: dict[str, Any]) -> None:
-    """Check that the table of a case names no file of this machine, and that it could stand in
-    TOML, which has no null.
+    """Check that the table of a case could stand in TOML, and names no file of this machine.
 
     Raises
     ------
     InputError
-        If it does.
+        If a value is null, which TOML does not have; if it names a file; or if it has a section for
+        another command.
 
     Examples
     --------
@@ -47,44 +65,56 @@ def check_table(table: dict[str, Any]) -> None:
     vibroimpact.errors.InputError: plate.mesh: the live page reads no files; run the case with:
     vibroimpact run
     """
-    left: list[tuple[Any, str]] = [(table, "")]
-    while left:
-        within, where = left.pop()
-        for key, value in within.items() if isinstance(within, dict) else enumerate(within):
+    _check_not_null(table)
+    for section, key in _KEYS_OF_FILES:
+        if _names_file(table.get(section), key):
+            raise _reads_no_files(f"{section}.{key}")
+    for section, command in _COMMANDS_OF_SECTIONS.items():
+        if section in table:
+            raise InputError(f"the live page does not read this section; use: {command}", section)
+
+
+def _check_not_null(table: dict[str, Any]) -> None:
+    # without recursion, as tables may be deep
+    containers: list[tuple[Any, str]] = [(table, "")]
+    while containers:
+        container, prefix = containers.pop()
+        items = container.items() if isinstance(container, dict) else enumerate(container)
+        for key, value in items:
             if value is None:
                 raise InputError(
                     "null is not a value of a case; leave it out",
-                    path_in_words(f"{where}{key}", table),
+                    path_in_words(f"{prefix}{key}", table),
                 )
             if isinstance(value, (dict, list)):
-                left.append((value, f"{where}{key}."))
-    for body, key in (("sphere", "mesh"), ("plate", "mesh"), ("plate", "motion")):
-        section = table.get(body)
-        part = section.get(key) if isinstance(section, dict) else None
-        if isinstance(part, str) or (isinstance(part, dict) and "file" in part):
-            raise InputError(
-                "the live page reads no files; run the case with: vibroimpact run", f"{body}.{key}"
-            )
-    for name, command in _ELSEWHERE.items():
-        if name in table:
-            raise InputError(f"the live page does not read this section; use: {command}", name)
+                containers.append((value, f"{prefix}{key}."))
+
+
+def _names_file(section: Any, key: str) -> bool:
+    """Return whether a key of a section is the path of a file, or a table that has one."""
+    value = section.get(key) if isinstance(section, dict) else None
+    return isinstance(value, str) or (isinstance(value, dict) and "file" in value)
+
+
+def _reads_no_files(key: str) -> InputError:
+    return InputError("the live page reads no files; run the case with: vibroimpact run", key)
 
 
 def without_other_work(table: dict[str, Any]) -> tuple[dict[str, Any], list[str]]:
-    """Return the table of a case without the sections for other commands, and a sentence on each of
-    them.
+    """Return the table of a case without sections for other commands, and a sentence on each.
 
     Examples
     --------
     >>> without_other_work({"name": "a", "sweep": {}})
     ({'name': 'a'}, ['[sweep] is left out here; use: vibroimpact sweep'])
     """
-    left = [
-        f"[{name}] is left out here; use: {command}"
-        for name, command in _ELSEWHERE.items()
-        if name in table
+    remaining = {name: table[name] for name in table if name not in _COMMANDS_OF_SECTIONS}
+    sentences = [
+        f"[{section}] is left out here; use: {command}"
+        for section, command in _COMMANDS_OF_SECTIONS.items()
+        if section in table
     ]
-    return {name: value for name, value in table.items() if name not in _ELSEWHERE}, left
+    return remaining, sentences
 
 
 def check_bounds(case: Case) -> None:
@@ -100,11 +130,14 @@ def check_bounds(case: Case) -> None:
     _bound(impacts_expected(case), MOST_IMPACTS, "run.impacts", "impacts")
     _bound(len(case.sensors), MOST_SENSORS, "sensors", "sensors")
     rate = sum(sensor.rate for sensor in case.sensors)
+    # for the expected time a contact is integrated, for its upper bound none
     if rate * seconds_at_most(case) > MOST_SAMPLES:
         _bound(rate * seconds_expected(case), MOST_SAMPLES, "sensors", "samples in all")
     costs = costs_of(case)
-    _bound(sum(cost.seconds for cost in costs), MOST_SECONDS, "", "s of computing")
-    _bound(sum(cost.memory for cost in costs) / 1e9, MOST_MEMORY / 1e9, "", "GB of memory")
+    seconds = sum(cost.seconds for cost in costs)
+    memory = sum(cost.memory for cost in costs)
+    _bound(seconds, MOST_SECONDS, "", "s of computing")
+    _bound(memory / 1e9, MOST_MEMORY / 1e9, "", "GB of memory")
 
 
 def _check_bodies(case: Case) -> None:
@@ -116,20 +149,14 @@ def _check_bodies(case: Case) -> None:
 
     for name, body in elastic_bodies(case).items():
         if isinstance(getattr(case, name).mesh, BroughtMeshTable):
-            raise InputError(
-                "the live page reads no files; run the case with: vibroimpact run", f"{name}.mesh"
-            )
-        by_number = body.recipe.reduction.max_frequency is None
-        _bound(
-            modes_expected(body.recipe),
-            MOST_MODES,
-            f"{name}.{'modes' if by_number else 'max_frequency'}",
-            "modes",
-        )
-        _bound(_nodes(body.recipe), MOST_NODES, f"{name}.mesh", "nodes")
+            raise _reads_no_files(f"{name}.mesh")
+        has_frequency = body.recipe.reduction.max_frequency is not None
+        key = "max_frequency" if has_frequency else "modes"
+        _bound(modes_expected(body.recipe), MOST_MODES, f"{name}.{key}", "modes")
+        _bound(_nodes_expected(body.recipe), MOST_NODES, f"{name}.mesh", "nodes")
 
 
-def _nodes(recipe: Recipe) -> float:
+def _nodes_expected(recipe: Recipe) -> float:
     """Return about how many nodes the mesh of a recipe has."""
     from vibroimpact.structures.recipe import PlateOfPlates, SphereOfSolids, mesh_features
 
@@ -137,21 +164,22 @@ def _nodes(recipe: Recipe) -> float:
     if isinstance(shape, SphereOfSolids):
         return 4.0 * shape.elements_across**3
     discs, lines = mesh_features(recipe.supports)
-    across = [
-        max(1.0, side / shape.element_size) + 3.0 * len(discs) + len(at)
-        for side, at in zip(shape.size[:2], lines, strict=True)
-    ]
-    return float(
-        across[0] * across[1] * (9.0 if isinstance(shape, PlateOfPlates) else 8.0 * shape.layers)
-    )
+    elements = 1.0
+    for side, lines_across in zip(shape.size[:2], lines, strict=True):
+        regular = max(1.0, side / shape.element_size)
+        elements *= regular + 3.0 * len(discs) + len(lines_across)
+    nodes_per_element = 9.0 if isinstance(shape, PlateOfPlates) else 8.0 * shape.layers
+    return float(elements * nodes_per_element)
 
 
 def _bound(value: float, most: float, key: str, what: str) -> None:
-    if not value <= most:
-        rounded = float(f"{value:.3g}")
-        there = rounded if rounded > most else value
-        raise InputError(
-            f"{there:,.12g} {what} are more than the {most:,.12g} of the live page; "
-            "vibroimpact run takes more",
-            key,
-        )
+    """Raise if a value is not at most a bound; what: its unit, or what is counted."""
+    if value <= most:
+        return
+    rounded = float(f"{value:.3g}")
+    shown = rounded if rounded > most else value
+    raise InputError(
+        f"{shown:,.12g} {what} are more than the {most:,.12g} of the live page; "
+        "vibroimpact run takes more",
+        key,
+    )

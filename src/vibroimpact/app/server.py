@@ -31,12 +31,10 @@ MOST_WINDOWS = 12
 """Largest number of windows at a time."""
 
 _LONGEST_END = 1.0
-"""Time from a signal that ends the server until the process ends, if connections are open
-or a case is being computed [s].
-"""
+"""Time that the server takes at most to end after a signal [s]."""
 
-_NAMES = ("127.0.0.1", "localhost", "[::1]")
-_FILES = {
+_HOST_NAMES = ("127.0.0.1", "localhost", "[::1]")
+_PACKAGES_OF_SCRIPTS = {
     "arrays.js": "vibroimpact.charts",
     "charts.js": "vibroimpact.charts",
     "scene.js": "vibroimpact.charts",
@@ -51,6 +49,13 @@ _POLICY = (
     "blob:; connect-src 'self' {socket}; "
     "base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
 )
+_HEADERS = (
+    (b"x-content-type-options", b"nosniff"),
+    (b"referrer-policy", b"no-referrer"),
+    (b"cross-origin-opener-policy", b"same-origin"),
+    (b"cross-origin-resource-policy", b"same-origin"),
+    (b"cache-control", b"no-cache"),
+)
 
 
 def application(port: int) -> ASGIApp:
@@ -60,20 +65,6 @@ def application(port: int) -> ASGIApp:
     are refused.
     """
     windows: set[WebSocket] = set()
-
-    async def page(request: Request) -> Response:
-        return HTMLResponse(_text("vibroimpact.app", "page.html"))
-
-    async def script(request: Request) -> Response:
-        name = request.path_params["name"]
-        if name == "plotly.js":
-            return Response(plotly_script(), media_type="text/javascript")
-        if name not in _FILES:
-            return PlainTextResponse("there is no such script", 404)
-        return Response(
-            _text(_FILES[name], f"scripts/{name}"),
-            media_type="text/css" if name.endswith(".css") else "text/javascript",
-        )
 
     async def live(socket: WebSocket) -> None:
         if not _is_own(socket.headers.get("origin", ""), port):
@@ -90,8 +81,23 @@ def application(port: int) -> ASGIApp:
         finally:
             windows.discard(socket)
 
-    routes = [Route("/", page), Route("/scripts/{name}", script), WebSocketRoute("/live", live)]
+    routes = [Route("/", _page), Route("/scripts/{name}", _script), WebSocketRoute("/live", live)]
     return _guarded(Starlette(routes=routes), port)
+
+
+async def _page(request: Request) -> Response:
+    return HTMLResponse(_text("vibroimpact.app", "page.html"))
+
+
+async def _script(request: Request) -> Response:
+    name = request.path_params["name"]
+    if name == "plotly.js":
+        return Response(plotly_script(), media_type="text/javascript")
+    if name not in _PACKAGES_OF_SCRIPTS:
+        return PlainTextResponse("there is no such script", 404)
+    text = _text(_PACKAGES_OF_SCRIPTS[name], f"scripts/{name}")
+    media_type = "text/css" if name.endswith(".css") else "text/javascript"
+    return Response(text, media_type=media_type)
 
 
 async def _serve_window(socket: WebSocket) -> None:
@@ -126,30 +132,29 @@ def _guarded(app: ASGIApp, port: int) -> ASGIApp:
         if scope["type"] not in ("http", "websocket"):
             await app(scope, receive, send)
             return
-        host = next(
-            (value.decode("latin-1") for name, value in scope["headers"] if name == b"host"), ""
-        )
+        host = _host_asked_for(scope)
         if host not in _hosts(port):
             await _refuse(scope, receive, send, port)
             return
-        policy = _POLICY.format(socket=f"ws://{host}")
+        policy = _POLICY.format(socket=f"ws://{host}").encode()
+        headers = [(b"content-security-policy", policy), *_HEADERS]
 
-        async def with_headers(message: Any) -> None:
+        async def send_with_headers(message: Any) -> None:
             if message["type"] == "http.response.start":
-                message["headers"] = [
-                    *message.get("headers", []),
-                    (b"content-security-policy", policy.encode()),
-                    (b"x-content-type-options", b"nosniff"),
-                    (b"referrer-policy", b"no-referrer"),
-                    (b"cross-origin-opener-policy", b"same-origin"),
-                    (b"cross-origin-resource-policy", b"same-origin"),
-                    (b"cache-control", b"no-cache"),
-                ]
+                message["headers"] = [*message.get("headers", []), *headers]
             await send(message)
 
-        await app(scope, receive, with_headers)
+        await app(scope, receive, send_with_headers)
 
     return guarded
+
+
+def _host_asked_for(scope: Scope) -> str:
+    """Return the host that a request names, or ""."""
+    for name, value in scope["headers"]:
+        if name == b"host":
+            return str(value.decode("latin-1"))
+    return ""
 
 
 async def _refuse(scope: Scope, receive: Receive, send: Answer, port: int) -> None:
@@ -157,10 +162,8 @@ async def _refuse(scope: Scope, receive: Receive, send: Answer, port: int) -> No
         await receive()
         await send({"type": "websocket.close", "code": 1008, "reason": "another host"})
         return
-    words = (
-        f"this page is only for the machine on which it runs; open http://{_NAMES[0]}:{port} there"
-    )
-    await PlainTextResponse(words, 403)(scope, receive, send)
+    refusal = f"this page is only for the machine on which it runs; open http://{HOST}:{port} there"
+    await PlainTextResponse(refusal, 403)(scope, receive, send)
 
 
 def _is_own(origin: str, port: int) -> bool:
@@ -187,7 +190,10 @@ def _hosts(port: int) -> set[str]:
     >>> sorted(_hosts(80))
     ['127.0.0.1', '127.0.0.1:80', '[::1]', '[::1]:80', 'localhost', 'localhost:80']
     """
-    return {f"{name}:{port}" for name in _NAMES} | (set(_NAMES) if port == 80 else set())
+    with_port = {f"{name}:{port}" for name in _HOST_NAMES}
+    if port == 80:
+        return with_port | set(_HOST_NAMES)
+    return with_port
 
 
 def _text(package: str, file: str) -> str:
@@ -195,8 +201,9 @@ def _text(package: str, file: str) -> str:
 
 
 class _Server(uvicorn.Server):
-    """A server that ends soon after a signal, whatever is computed in its threads and
-    whoever does not read what it sends.
+    """A server that ends soon after a signal.
+
+    It waits neither for what is computed in its threads nor for windows that do not read.
     """
 
     def handle_exit(self, sig: int, frame: FrameType | None) -> None:

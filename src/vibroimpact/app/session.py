@@ -6,6 +6,7 @@ import asyncio
 import json
 import logging
 from collections.abc import Awaitable, Callable, Mapping
+from functools import partial
 from threading import Event
 from typing import Any
 
@@ -30,14 +31,15 @@ _SECONDS_BETWEEN = 0.1
 """Time between two messages on progress [s]."""
 
 _SHORT = 2.0
-"""Time after which a draft is given up for what is asked for next [s]; until then it is
-finished, so that charts follow a slider.
+"""Time until which a draft is finished though another case is asked for [s].
+
+So charts follow a slider.
 """
 
-
 _MOST_FILES = 2
-"""Number of reports and signals that wait for the one being made; for a further one the
-session takes no message until there is room.
+"""Number of reports and signals that wait for the one being made.
+
+With more, the session takes no message until one is made.
 """
 
 
@@ -57,13 +59,13 @@ class Session:
     def __init__(self, send: Send) -> None:
         self._send = send
         self._wanted: Message | None = None  # the case to compute next
-        self._running: Message | None = None
-        self._stage = ""  # what is being computed
-        self._since = 0.0  # and since when [s]
+        self._running: Message | None = None  # the case that is being computed
+        self._activity = ""  # what of it is being computed
+        self._start = 0.0  # and since when [s]
         self._stop = Event()
         self._changed = asyncio.Event()
-        self._last: State | None = None  # computed in full
-        # those to make, each of a state
+        self._last_state: State | None = None  # computed in full
+        # the files to make, each of a state
         self._files: asyncio.Queue[tuple[Message, State | None]] = asyncio.Queue(_MOST_FILES)
 
     async def welcome(self) -> None:
@@ -82,31 +84,35 @@ class Session:
     async def _take(self, message: Message) -> None:
         match message.type:
             case "open":
-                await self._send(
-                    await asyncio.to_thread(_packed, "opened", message, lambda: _opened(message))
-                )
+                await self._reply("opened", message, lambda: _opened(message))
             case "case":
                 self._want(message)
             case "cancel":
-                waiting, self._wanted = self._wanted, None
-                self._stop.set()
-                if waiting is not None:
-                    await self._tell("cancelled", waiting.number, {})
+                await self._cancel()
             case "report" | "signals":
-                await self._files.put((message, self._last))
+                await self._files.put((message, self._last_state))
 
     def _want(self, message: Message) -> None:
-        """Compute a case next. What is computed now is given up unless it is short, or
-        the modes that the new case needs as well.
-        """
+        """Compute a case next."""
         self._wanted = message
-        if self._running is not None:
-            modes = self._stage == MODES
-            begun = asyncio.get_running_loop().time() - self._since
-            short = not modes and self._running.content["detail"] == "draft" and begun < _SHORT
-            if not (short or (modes and _same_bodies(self._running, message))):
-                self._stop.set()
+        if self._running is not None and not self._is_worth_finishing(self._running, message):
+            self._stop.set()
         self._changed.set()
+
+    def _is_worth_finishing(self, running: Message, wanted: Message) -> bool:
+        """Return whether what is computed is short, or the modes that the next case needs too."""
+        if self._activity == MODES:
+            return _same_bodies(running, wanted)
+        elapsed = asyncio.get_running_loop().time() - self._start
+        return running.content["detail"] == "draft" and elapsed < _SHORT
+
+    async def _cancel(self) -> None:
+        """Give up the case that is being computed, and the one that waits."""
+        waiting = self._wanted
+        self._wanted = None
+        self._stop.set()
+        if waiting is not None:
+            await self._tell("cancelled", waiting.number, {})
 
     async def work(self) -> None:
         """Compute the cases that are asked for, and make files beside them, until cancelled."""
@@ -117,12 +123,8 @@ class Session:
     async def _make_files(self) -> None:
         while True:
             message, state = await self._files.get()
-            await self._answer(message.number, self._send_files(message, state))
-
-    async def _send_files(self, message: Message, state: State | None) -> None:
-        await self._send(
-            await asyncio.to_thread(_packed, "files", message, lambda: _files(message.type, state))
-        )
+            content = partial(_files, message.type, state)
+            await self._answer(message.number, self._reply("files", message, content))
 
     async def _compute_cases(self) -> None:
         try:
@@ -130,8 +132,10 @@ class Session:
                 await self._changed.wait()
                 self._changed.clear()
                 while (message := self._wanted) is not None:
-                    self._wanted, self._running, self._stage = None, message, ""
-                    self._since = asyncio.get_running_loop().time()
+                    self._wanted = None
+                    self._running = message
+                    self._activity = ""
+                    self._start = asyncio.get_running_loop().time()
                     self._stop.clear()
                     await self._answer(message.number, self._compute(message))
                     self._running = None
@@ -139,34 +143,33 @@ class Session:
             self._stop.set()
 
     async def _compute(self, message: Message) -> None:
-        loop, told = asyncio.get_running_loop(), [0.0]
+        loop = asyncio.get_running_loop()
+        # what is done at once needs no progress
+        last_shown = loop.time() + _SECONDS_BETWEEN
 
-        def show(what: str, part: float = 0.0) -> None:
+        def show(activity: str, fraction: float = 0.0) -> None:
             # modes and compiled code are also for the case that was asked for last
-            asked = self._wanted or message
-            asyncio.run_coroutine_threadsafe(
-                self._tell("progress", asked.number, {"what": what, "part": part}), loop
-            )
+            number = (self._wanted or message).number
+            content = {"what": activity, "part": fraction}
+            asyncio.run_coroutine_threadsafe(self._tell("progress", number, content), loop)
 
-        def tell(what: str, part: float) -> None:
+        def tell(activity: str, fraction: float) -> None:
+            nonlocal last_shown
             if self._stop.is_set():
                 raise GivenUp
-            self._stage = what
-            if loop.time() - told[0] > _SECONDS_BETWEEN:
-                told[0] = loop.time()
-                show(what, part)
+            self._activity = activity
+            if loop.time() - last_shown > _SECONDS_BETWEEN:
+                last_shown = loop.time()
+                show(activity, fraction)
 
-        told[0] = loop.time() + _SECONDS_BETWEEN  # what is done at once needs no progress
         with heard_by(show):
-            state, answer = await asyncio.to_thread(_answered, message, tell)
+            state, reply = await asyncio.to_thread(_state_and_reply, message, tell)
         if message.content["detail"] == "full":
-            self._last = state
-        await self._send(answer)
+            self._last_state = state
+        await self._send(reply)
 
     async def _answer(self, number: int, work: Awaitable[None]) -> None:
-        """Do what a message asks for; the window hears of whatever goes wrong, and the
-        next message is taken.
-        """
+        """Do what a message asks for, and tell the window of whatever goes wrong."""
         try:
             await work
         except GivenUp:
@@ -181,6 +184,12 @@ class Session:
                 number, ComputationError(f"the case can't be computed: {short_reason(error)}")
             )
 
+    async def _reply(
+        self, kind: str, message: Message, content: Callable[[], Mapping[str, Any]]
+    ) -> None:
+        """Reply to a message with what a function returns, which is called in a thread."""
+        await self._send(await asyncio.to_thread(_packed, kind, message, content))
+
     async def _tell(self, kind: str, number: int, content: dict[str, Any]) -> None:
         await self._send(pack({"type": kind, "number": number, **content}))
 
@@ -188,40 +197,47 @@ class Session:
         await self._tell("fault", number, {"lines": str(error).split("\n")})
 
 
-def _answered(message: Message, tell: Tell) -> tuple[State, bytes]:
-    """Return the state of the case of a message, and the answer that brings it."""
-    state = state_of(
-        message.content["case"], message.content["detail"], tell, message.content.get("charts")
-    )
+def _state_and_reply(message: Message, tell: Tell) -> tuple[State, bytes]:
+    """Return the state of the case of a message, and the reply that has it."""
+    content = message.content
+    state = state_of(content["case"], content["detail"], tell, content.get("charts"))
     return state, _packed("state", message, lambda: state.document)
 
 
 def _packed(kind: str, message: Message, content: Callable[[], Mapping[str, Any]]) -> bytes:
-    """Return the answer of a kind to a message."""
+    """Return the reply of a kind to a message."""
     return pack({"type": kind, "number": message.number, **content()})
 
 
 def _same_bodies(first: Message, second: Message) -> bool:
     """Return whether two cases have the same bodies, and so the same modes."""
-    return all(
-        json.dumps(first.content["case"].get(name), sort_keys=True)
-        == json.dumps(second.content["case"].get(name), sort_keys=True)
-        for name in ("sphere", "plate")
-    )
+    return _bodies_text(first) == _bodies_text(second)
+
+
+def _bodies_text(message: Message) -> str:
+    case = message.content["case"]
+    return json.dumps([case.get("sphere"), case.get("plate")], sort_keys=True)
 
 
 def _opened(message: Message) -> dict[str, Any]:
-    """Return the table of a shipped case, or of a text."""
-    source = message.content.get("source")
-    # a source is never the path of a file
-    if source is not None and source not in (known := shipped_cases()):
+    """Return the table of a case, and sentences on the sections that are left out."""
+    table, left_out = without_other_work(_table_to_open(message.content))
+    return {"case": json.loads(json.dumps(table, default=str)), "left_out": left_out}
+
+
+def _table_to_open(content: dict[str, Any]) -> dict[str, Any]:
+    """Return the table of a shipped case, or of the text of a TOML file."""
+    source = content.get("source")
+    if source is None:
+        return parse_case(content["text"])
+    names = shipped_cases()
+    # a source is never read as the path of a file
+    if source not in names:
         raise InputError(
             f"there is no shipped case {quoted(source)}; there are "
-            f"{choices(known, source, 'cases')}"
+            f"{choices(names, source, 'cases')}"
         )
-    table = parse_case(message.content["text"]) if source is None else load_table(source)
-    table, left_out = without_other_work(table)
-    return {"case": json.loads(json.dumps(table, default=str)), "left_out": left_out}
+    return load_table(source)
 
 
 def _files(kind: str, state: State | None) -> dict[str, Any]:
@@ -230,21 +246,14 @@ def _files(kind: str, state: State | None) -> dict[str, Any]:
         raise InputError("nothing was computed in full yet")
     result = state.result
     if kind == "report":
-        return {
-            "files": [
-                {
-                    "name": f"{identifier(result.name, 'A-Za-z0-9', 'drop', '-')}.html",
-                    "kind": "text/html",
-                    "text": run_page(result),
-                }
-            ]
-        }
+        stem = identifier(result.name, "A-Za-z0-9", "drop", "-")
+        report = {"name": f"{stem}.html", "kind": "text/html", "text": run_page(result)}
+        return {"files": [report]}
     if not result.signals:
         raise InputError("there are no signals: the case has no sensors", "sensors")
     names = plain_names(list(result.signals))
-    return {
-        "files": [
-            {"name": f"{names[name]}.csv", "kind": "text/csv", "text": signal_csv(signal)}
-            for name, signal in result.signals.items()
-        ]
-    }
+    tables = [
+        {"name": f"{names[name]}.csv", "kind": "text/csv", "text": signal_csv(signal)}
+        for name, signal in result.signals.items()
+    ]
+    return {"files": tables}

@@ -21,9 +21,7 @@ from vibroimpact.runs.scene import rigid_scene, scene_of
 from vibroimpact.runs.tables import impact_table, ledger_table
 
 Tell = Callable[[str, float], None]
-"""Function that is told what is being computed, and the part that is done; it may raise
-to give it up.
-"""
+"""Function that is told what is being computed, and the fraction done; it raises to give it up."""
 
 MODES = "computing modes"
 """What is told while modes are computed, which may take long."""
@@ -68,12 +66,13 @@ def state_of(
     check_table(table)
     case = case_of(table)
     check_bounds(case)
-    problem = case.to_problem(lambda part: tell(MODES, part), lambda note: None)
+    problem = case.to_problem(lambda fraction: tell(MODES, fraction), lambda note: None)
+    is_draft = detail == "draft"
     response = simulate(
-        drafted(problem) if detail == "draft" else problem, lambda part: tell("simulating", part)
+        drafted(problem) if is_draft else problem, lambda fraction: tell("simulating", fraction)
     )
     tell("reading histories", 1.0)
-    result = draft_of(response) if detail == "draft" else result_of(response)
+    result = draft_of(response) if is_draft else result_of(response)
     tell("drawing", 1.0)
     return State(result, _document(result, table, detail, looked_at))
 
@@ -81,37 +80,51 @@ def state_of(
 def _document(
     result: Result, table: dict[str, Any], detail: Detail, looked_at: Collection[str] | None
 ) -> dict[str, Any]:
-    impacts, (unit, ledger) = impact_table(result), ledger_table(result)
     makers = chart_makers(result)
     # the plate in motion takes the place of its maps
     names = [name for name in makers if name != "deflection"]
-    seen = {name: makers[name] for name in names if looked_at is None or name in looked_at}
+    makers_looked_at = {
+        name: makers[name] for name in names if looked_at is None or name in looked_at
+    }
+    is_full = detail == "full"
     return {
         "name": result.name,
         "status": result.status,
-        "doubts": result.doubts if detail == "full" else [],
-        "impacts": {
-            "headers": impacts.headers,
-            "rows": [*impacts.head, *impacts.tail],
-            "left_out": impacts.left_out,
-        },
-        "ledger": {"unit": unit, "rows": [[row.title, row.energy, row.part] for row in ledger]},
-        "charts": [drawn(chart, plotly_chart) for chart in made_charts(seen)],
+        "doubts": result.doubts if is_full else [],
+        "impacts": _impacts(result),
+        "ledger": _ledger(result),
+        "charts": [drawn(chart, plotly_chart) for chart in made_charts(makers_looked_at)],
         "names": names,
-        "scene": scene_of(result) if result.deflection is not None else rigid_scene(result),
+        "scene": rigid_scene(result) if result.deflection is None else scene_of(result),
         "case": result.case,
         "toml": tomli_w.dumps(table),
         "detail": detail,
-        "signals": [
-            {
-                "name": name,
-                "rate": signal.sensor.rate,
-                "unit": signal.sensor.unit,
-                "value": signal.value,
-            }
-            for name, signal in result.signals.items()
-        ]
-        if detail == "full"
-        else [],
+        "signals": _signals(result) if is_full else [],
         "frequencies": {body: np.array(result.frequencies(body)) for body in ("sphere", "plate")},
     }
+
+
+def _impacts(result: Result) -> dict[str, Any]:
+    table = impact_table(result)
+    return {
+        "headers": table.headers,
+        "rows": [*table.head, *table.tail],
+        "left_out": table.left_out,
+    }
+
+
+def _ledger(result: Result) -> dict[str, Any]:
+    unit, rows = ledger_table(result)
+    return {"unit": unit, "rows": [[row.title, row.energy, row.part] for row in rows]}
+
+
+def _signals(result: Result) -> list[dict[str, Any]]:
+    return [
+        {
+            "name": name,
+            "rate": signal.sensor.rate,
+            "unit": signal.sensor.unit,
+            "value": signal.value,
+        }
+        for name, signal in result.signals.items()
+    ]

@@ -54,19 +54,21 @@ def main() -> None:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         sys.exit(1)
     except OSError as error:
-        where = f"{shortened(visible(str(error.filename)), 200)}: " if error.filename else ""
-        fail(f"{where}the computer says: {error.strerror or error}", 1)
+        file = f"{shortened(visible(str(error.filename)), 200)}: " if error.filename else ""
+        fail(f"{file}the computer says: {error.strerror or error}", 1)
 
 
 def _isolate_matplotlib() -> None:
     """Isolate this process from user settings of matplotlib, before it is imported."""
-    os.environ["MPLBACKEND"], os.environ["MATPLOTLIBRC"] = "agg", os.devnull
+    os.environ["MPLBACKEND"] = "agg"
+    os.environ["MATPLOTLIBRC"] = os.devnull
     # it logs each unknown line of a settings file
     logging.getLogger("matplotlib").setLevel(logging.CRITICAL)
     # one in the working directory is read regardless of MATPLOTLIBRC
     settings = Path("matplotlibrc")
     try:
-        settings.read_text(encoding="utf-8") if settings.is_file() else None
+        if settings.is_file():
+            settings.read_text(encoding="utf-8")
     except (OSError, ValueError):
         fail(
             "matplotlibrc: this file in the working directory, with settings of matplotlib, "
@@ -76,15 +78,12 @@ def _isolate_matplotlib() -> None:
 
 
 def _run() -> int:
-    """Run the command and return its exit status; typer's own errors are shown without
-    control characters, and shortened.
-    """
+    """Run the command and return its exit status; typer's own errors are shown shortened."""
+    # the name under which a shell completes, however the program was started
+    name = PROGRAM if concerns_completion() else None
     try:
         with whole_words():
-            return (
-                app(standalone_mode=False, prog_name=PROGRAM if concerns_completion() else None)
-                or 0
-            )
+            return app(standalone_mode=False, prog_name=name) or 0
     except typer.Abort:
         fail("aborted", 1)
     except Exception as error:
@@ -92,8 +91,7 @@ def _run() -> int:
         # typer's own errors are told by their methods, since their class depends on its version
         if not (hasattr(usage_error, "show") and hasattr(usage_error, "exit_code")):
             raise
-        usage_error.message = "\n".join(
-            shortened(visible(line), LONGEST_LINE) for line in usage_error.message.split("\n")
-        )
+        lines = usage_error.message.split("\n")
+        usage_error.message = "\n".join(shortened(visible(line), LONGEST_LINE) for line in lines)
         usage_error.show()
         return int(usage_error.exit_code)

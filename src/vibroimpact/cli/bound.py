@@ -1,6 +1,4 @@
-"""The command `bound`, which computes the lowest error of classifiers that see stated
-quantities of a population.
-"""
+"""The command `bound`, which computes the lowest error of classifiers of a population."""
 
 from __future__ import annotations
 

@@ -1,11 +1,10 @@
-"""The command `calibrate`, which finds the damping for a required or measured rebound, or
-the restitution of bounces in a record.
-"""
+"""The command `calibrate`: damping for a rebound, or restitution of bounces in a record."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -26,6 +25,11 @@ from vibroimpact.cli.shared import (
     written_in,
 )
 from vibroimpact.errors import InputError
+
+if TYPE_CHECKING:
+    from vibroimpact.calibration.bounces.rebounds import Rebounds
+    from vibroimpact.calibration.restitutions.restitutions import Restitutions
+    from vibroimpact.report.reported import Reported
 
 
 @app.command()
@@ -91,95 +95,102 @@ def calibrate(
     a record of sound or vibration, restitution and speed of each impact follow from the times
     between bounces; a table has them: speed [m/s], restitution and, for means, count.
     """
-    from vibroimpact.calibration.impact_table import holds_restitutions
     from vibroimpact.results.folder import check_free
 
     target = Path(f"{stem(case)}-calibrated") if output is None else output
-    given = {"--channel": channel, "--gravity": gravity, "--height": height, "--contact": contact}
-    if Path(case).suffix.lower() in RECORDS:
+    options_of_records = {
+        "--channel": channel,
+        "--gravity": gravity,
+        "--height": height,
+        "--contact": contact,
+    }
+    finding: Reported
+    if Path(case).suffix.lower() not in RECORDS:
+        _check_has_no_options(options_of_records, columns)
+        finding = _calibrated_case(case, changes, target, force=force, as_json=as_json)
+    else:
         if changes:
             raise InputError("--set changes the keys of a case, and a record or a table has none")
         check_free(target, force=force)
-        if Path(case).suffix.lower() in TABLES and holds_restitutions(case, columns):
-            of_records = [option for option, value in given.items() if value is not None]
-            if of_records:
-                raise InputError(
-                    f"{of_records[0]} goes with a record of bounces; {case} is a table of "
-                    "restitutions, which has no times"
-                )
-            _fit_table(Path(case), target, columns, figures=figures, force=force, as_json=as_json)
-            return
-        _listen(
-            Path(case),
-            target,
-            channel,
-            columns,
-            gravity,
-            height,
-            contact,
-            figures=figures,
-            force=force,
-            as_json=as_json,
-        )
-        return
-    for option, value in {**given, "--columns": columns}.items():
+        if _is_restitution_table(case, columns):
+            finding = _fitted_restitutions(case, columns, options_of_records)
+        else:
+            with exit_on_interrupt():
+                finding = _rebounds_in(Path(case), channel, columns, gravity, height, contact)
+    save_and_show(finding, target, force=force, figures=figures, as_json=as_json)
+
+
+def _check_has_no_options(options: Mapping[str, str | None], columns: str | None) -> None:
+    """Raise if options are given with a case that go with a record or a table."""
+    for option, value in options.items():
         if value is not None:
-            kinds = (
-                ("a table of restitutions or of bounces", TABLES)
-                if option == "--columns"
-                else ("a record of bounces", RECORDS)
-            )
             raise InputError(
-                f"{option} goes with {kinds[0]} ({', '.join(kinds[1])}); a case has its own keys"
+                f"{option} goes with a record of bounces ({', '.join(RECORDS)}); a case has its "
+                "own keys"
             )
+    if columns is not None:
+        raise InputError(
+            "--columns goes with a table of restitutions or of bounces "
+            f"({', '.join(TABLES)}); a case has its own keys"
+        )
+
+
+def _calibrated_case(
+    case: str, changes: list[str] | None, target: Path, *, force: bool, as_json: bool
+) -> Reported:
+    """Return the calibration of a case."""
     from vibroimpact.calibration.calibrate_case import calibrate_case, load_calibration
     from vibroimpact.cases.reader import prefix_errors
+    from vibroimpact.results.folder import check_free
 
-    what = load_calibration(case, settings_of(changes))
+    problem = load_calibration(case, settings_of(changes))
     check_free(target, force=force)
     with progress_of("calibrating", as_json=as_json) as progress:
-        calibration = prefix_errors(case, lambda: calibrate_case(what, progress, note))
-    save_and_show(calibration, target, force=force, figures=figures, as_json=as_json)
+        return prefix_errors(case, lambda: calibrate_case(problem, progress, note))
 
 
-def _fit_table(
-    file: Path, target: Path, columns: str | None, *, figures: bool, force: bool, as_json: bool
-) -> None:
-    """Fit the restitutions of a table over the approach speed, and print and write them."""
+def _is_restitution_table(path: str, columns: str | None) -> bool:
+    from vibroimpact.calibration.impact_table import holds_restitutions
+
+    return Path(path).suffix.lower() in TABLES and holds_restitutions(path, columns)
+
+
+def _fitted_restitutions(
+    path: str, columns: str | None, options_of_records: Mapping[str, str | None]
+) -> Restitutions:
+    """Return the fit of the restitutions of a table over the approach speed."""
     from vibroimpact.calibration.restitutions.restitutions import load_restitutions
 
-    restitutions = load_restitutions(file, columns=columns)
-    save_and_show(restitutions, target, force=force, figures=figures, as_json=as_json)
+    for option, value in options_of_records.items():
+        if value is not None:
+            raise InputError(
+                f"{option} goes with a record of bounces; {path} is a table of "
+                "restitutions, which has no times"
+            )
+    return load_restitutions(Path(path), columns=columns)
 
 
-def _listen(
-    file: Path,
-    target: Path,
+def _rebounds_in(
+    path: Path,
     channel: str | None,
     columns: str | None,
     gravity: str | None,
     height: str | None,
     contact: str | None,
-    *,
-    figures: bool,
-    force: bool,
-    as_json: bool,
-) -> None:
-    """Find the restitution of bounces in a record, and print and write it."""
+) -> Rebounds:
+    """Return the rebounds of the bounces in a record."""
     from vibroimpact.calibration.bounces.rebounds import rebounds_of
     from vibroimpact.calibration.inputs import BRIEF
     from vibroimpact.files.reading import with_path
     from vibroimpact.signals.bounces.find import find_bounces
     from vibroimpact.signals.reading.one_record import one_record
 
-    with exit_on_interrupt():
-        contact_duration = BRIEF if contact is None else written_in("--contact", contact, "s")
-        acceleration = None if gravity is None else written_in("--gravity", gravity, "m/s^2")
-        drop_height = None if height is None else written_in("--height", height, "m")
-        record = one_record(file, channel, columns)
-        try:
-            bounces = find_bounces(record, contact_duration)
-            rebounds = rebounds_of(bounces, gravity=acceleration, height=drop_height)
-        except InputError as error:
-            raise with_path(file, error) from None
-    save_and_show(rebounds, target, force=force, figures=figures, as_json=as_json)
+    contact_duration = BRIEF if contact is None else written_in("--contact", contact, "s")
+    acceleration = None if gravity is None else written_in("--gravity", gravity, "m/s^2")
+    drop_height = None if height is None else written_in("--height", height, "m")
+    record = one_record(path, channel, columns)
+    try:
+        bounces = find_bounces(record, contact_duration)
+        return rebounds_of(bounces, gravity=acceleration, height=drop_height)
+    except InputError as error:
+        raise with_path(path, error) from None

@@ -26,14 +26,15 @@ def shipped_cases_table() -> RenderableType:
 def shipped_cases_document() -> dict[str, Any]:
     """Return the shipped cases by name, each with its title and the command that it is for."""
     tables = {name: load_table(name) for name in shipped_cases()}
-    return {
-        "cases": {
-            name: {"name": case["name"], "command": command_for(case)}
-            for name, case in tables.items()
-        }
+    cases = {
+        name: {"name": case["name"], "command": command_for(case)} for name, case in tables.items()
     }
+    return {"cases": cases}
 
 
 def command_for(case: dict[str, Any]) -> str:
     """Return the command that a case is meant for: it has a section of its own in the case."""
-    return "sweep" if "sweep" in case else "calibrate" if "calibrate" in case else "run"
+    for command in ("sweep", "calibrate"):
+        if command in case:
+            return command
+    return "run"

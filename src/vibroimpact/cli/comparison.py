@@ -72,12 +72,12 @@ def compare(
     from vibroimpact.law_comparison.comparison import compare_laws
     from vibroimpact.results.folder import check_free
 
-    found = load_case(case)
+    compared_case = load_case(case)
     target = Path(f"{stem(case)}-compared") if output is None else output
     check_free(target, force=force)
     with progress_of("comparing", as_json=as_json) as progress:
         comparison = compare_laws(
-            found,
+            compared_case,
             names_in(laws),
             settings_of(given, "restitution=0.7 or adams-impact.damping_max=180"),
             achieving=achieving,

@@ -1,6 +1,4 @@
-"""Completion in the shell: what can follow at each place of the command line. It imports
-nothing heavy: every Tab starts the program.
-"""
+"""Completion in the shell. It imports nothing heavy, since every Tab starts the program."""
 
 from __future__ import annotations
 
@@ -14,7 +12,9 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-PROGRAM, VARIABLE = "vibroimpact", "_VIBROIMPACT_COMPLETE"
+PROGRAM = "vibroimpact"
+VARIABLE = "_VIBROIMPACT_COMPLETE"
+"""Environment variable by which a shell asks for completion."""
 
 WORDS = Path(__file__).with_name("completion.json")
 """The names and keys, which `completion_words` collects."""
@@ -42,8 +42,8 @@ _SPECIAL = set(" \t\n\"'\\$`*?[]{}()<>|&;!#~")  # letters that a shell would rea
 
 @cache
 def _words() -> dict[str, Any]:
-    found: dict[str, Any] = json.loads(WORDS.read_text(encoding="utf-8"))
-    return found
+    words: dict[str, Any] = json.loads(WORDS.read_text(encoding="utf-8"))
+    return words
 
 
 def complete_case(incomplete: str) -> list[str]:
@@ -69,8 +69,7 @@ def complete_case_or_record(incomplete: str) -> list[str]:
 
 
 def complete_change(incomplete: str) -> list[str]:
-    """Return what KEY=VALUE may be: the keys of a case; or, of one key alone, the words that it
-    takes.
+    """Return what KEY=VALUE may be: keys of a case or, of a single key, the words that it takes.
 
     Examples
     --------
@@ -78,8 +77,7 @@ def complete_change(incomplete: str) -> list[str]:
     (['plate.size.thickness=', 'plate.size.thickness=VALUE'], ['drop.same_spot=true',
     'drop.same_spot=false'])
     """
-    words = {**_words()["keys"], "contact.law": _laws()}
-    return _assignments(incomplete, words)
+    return _assignments(incomplete, {**_words()["keys"], "contact.law": _laws()})
 
 
 def complete_parameter(incomplete: str) -> list[str]:
@@ -91,11 +89,9 @@ def complete_parameter(incomplete: str) -> list[str]:
     ['newton.restitution=', 'newton.restitution=VALUE']
     """
     laws: dict[str, list[str]] = _words()["laws"]
-    parameters = sorted({one for several in laws.values() for one in several})
-    return _assignments(
-        incomplete,
-        {key: [] for key in (*parameters, *(f"{law}.{one}" for law in laws for one in laws[law]))},
-    )
+    parameters = sorted({parameter for law in laws for parameter in laws[law]})
+    of_one_law = [f"{law}.{parameter}" for law in laws for parameter in laws[law]]
+    return _assignments(incomplete, {key: [] for key in (*parameters, *of_one_law)})
 
 
 def complete_law(incomplete: str) -> list[str]:
@@ -148,10 +144,8 @@ def complete_compared(incomplete: str) -> list[str]:
 def _laws() -> list[str]:
     from importlib.metadata import entry_points
 
-    return [
-        *_words()["laws"],
-        *(point.name for point in entry_points(group="vibroimpact.contact_laws")),
-    ]
+    of_other_packages = [point.name for point in entry_points(group="vibroimpact.contact_laws")]
+    return [*_words()["laws"], *of_other_packages]
 
 
 def _starting(incomplete: str, names: Iterable[str]) -> list[str]:
@@ -159,25 +153,24 @@ def _starting(incomplete: str, names: Iterable[str]) -> list[str]:
 
 
 def _lists(incomplete: str, names: Iterable[str]) -> list[str]:
-    before, comma, last = incomplete.rpartition(",")
-    return [
-        f"{before}{comma}{name}" for name in _starting(last, names) if name not in before.split(",")
-    ]
+    complete, comma, last = incomplete.rpartition(",")
+    chosen = complete.split(",")
+    return [f"{complete}{comma}{name}" for name in _starting(last, names) if name not in chosen]
 
 
-def _assignments(incomplete: str, words: dict[str, list[str]]) -> list[str]:
-    key, sign, value = incomplete.partition("=")
+def _assignments(incomplete: str, values_of_keys: dict[str, list[str]]) -> list[str]:
+    typed_key, sign, typed_value = incomplete.partition("=")
     if sign:
-        return [f"{key}={word}" for word in _starting(value, words.get(key, ()))]
-    keys = _starting(key, words)
-    if len(keys) > 1:
-        return [f"{one}=" for one in keys]
-    # two or more are offered, as a shell would add a blank to one
-    return [
-        f"{one}={word}"
-        for one in keys
-        for word in (words[one] if len(words[one]) > 1 else ("", *(words[one] or ["VALUE"])))
-    ]
+        values = _starting(typed_value, values_of_keys.get(typed_key, ()))
+        return [f"{typed_key}={value}" for value in values]
+    keys = _starting(typed_key, values_of_keys)
+    if len(keys) != 1:
+        return [f"{key}=" for key in keys]
+    (key,) = keys
+    values = values_of_keys[key] or ["VALUE"]
+    if len(values) == 1:
+        values = ["", *values]  # a shell would add a blank to a single one
+    return [f"{key}={value}" for value in values]
 
 
 def _shipped() -> list[str]:
@@ -185,82 +178,93 @@ def _shipped() -> list[str]:
 
 
 def _files(incomplete: str, endings: tuple[str, ...]) -> list[str]:
-    """Return the files with these endings and folders; of a single folder what is in it,
-    as a shell would add a blank to one.
-    """
-    before, slash, start = incomplete.rpartition("/")
-    found = []
+    """Return the folders and the files with these endings; of a single folder what is in it."""
+    parent, slash, start = incomplete.rpartition("/")
+    names = []
     with suppress(OSError):
-        for entry in sorted(Path(before + slash).iterdir()):
-            name, is_folder = f"{before}{slash}{entry.name}", entry.is_dir()
-            hidden = entry.name.startswith(".") and not start.startswith(".")
-            if (
-                not entry.name.startswith(start)
-                or hidden
-                or _SPECIAL & set(name)
-                or not name.isprintable()
-            ):
+        for path in sorted(Path(parent + slash).iterdir()):
+            name = f"{parent}{slash}{path.name}"
+            if not path.name.startswith(start) or not _can_be_typed(name):
                 continue
-            if is_folder or entry.suffix in endings:
-                found.append(f"{name}/" if is_folder else name)
-    return _files(found[0], endings) if len(found) == 1 and found[0].endswith("/") else found
+            if path.name.startswith(".") and not start:
+                continue  # hidden
+            if path.is_dir():
+                names.append(f"{name}/")
+            elif path.suffix in endings:
+                names.append(name)
+    if len(names) == 1 and names[0].endswith("/"):
+        return _files(names[0], endings)  # a shell would add a blank to a single one
+    return names
+
+
+def _can_be_typed(name: str) -> bool:
+    return name.isprintable() and _SPECIAL.isdisjoint(name)
 
 
 def concerns_completion() -> bool:
-    """Return whether this process was started to complete a command line, or to install
-    completion.
-    """
-    return VARIABLE in os.environ or not {"--install-completion", "--show-completion"}.isdisjoint(
-        sys.argv
-    )
+    """Return whether this process completes a command line, or installs completion."""
+    if VARIABLE in os.environ:
+        return True
+    return "--install-completion" in sys.argv or "--show-completion" in sys.argv
 
 
 @contextmanager
 def whole_words() -> Iterator[None]:
-    """Context manager that joins the words that bash breaks at ":" and "=", and cuts what
-    is printed to what follows the break.
-    """
+    """Undo that bash breaks words at ":" and "=": they are joined, and completions are cut."""
     if os.environ.get(VARIABLE) != "complete_bash":
         yield
         return
     text = os.environ["COMP_WORDS"]
-    between = "\n" if "\n" in text else " "
-    words, place, before = joined(text.split(between), int(os.environ["COMP_CWORD"]))
-    if before.startswith("-"):
+    separator = "\n" if "\n" in text else " "
+    words, current, prefix = joined(text.split(separator), int(os.environ["COMP_CWORD"]))
+    if prefix.startswith("-"):
         # of --from=paper:type1 the option is not part of what is completed
-        before = before.partition("=")[2]
-    os.environ |= {"COMP_WORDS": between.join(words), "COMP_CWORD": str(place)}
+        prefix = prefix.partition("=")[2]
+    os.environ |= {"COMP_WORDS": separator.join(words), "COMP_CWORD": str(current)}
     printed = io.StringIO()
     try:
         with redirect_stdout(printed):
             yield
     finally:
-        print("\n".join(line.removeprefix(before) for line in printed.getvalue().splitlines()))
+        completions = printed.getvalue().splitlines()
+        print("\n".join(completion.removeprefix(prefix) for completion in completions))
 
 
-def joined(words: list[str], place: int) -> tuple[list[str], int, str]:
-    """Return words whole again that bash broke at ":" and "=", the place of the current one, and
-    what it has before the last break.
+def joined(broken: list[str], current: int) -> tuple[list[str], int, str]:
+    """Return words whole again that bash broke at ":" and "=".
 
     Parameters
     ----------
-    words : list of str
+    broken : list of str
         Words as bash has them, with the breaks as words.
-    place : int
+    current : int
         Index of the current one.
+
+    Returns
+    -------
+    words : list of str
+        The whole words.
+    current : int
+        Index of the current one among them.
+    prefix : str
+        What the current one has up to its last break.
 
     Examples
     --------
     >>> joined(["vibroimpact", "run", "paper", ":", "ty"], 4)
     (['vibroimpact', 'run', 'paper:ty'], 2, 'paper:')
     """
-    found: list[str] = []
-    at, before, goes_on = 0, "", False
-    for number, word in enumerate(words):
+    words: list[str] = []
+    index_of_current = 0
+    prefix = ""
+    after_break = False
+    for index, word in enumerate(broken):
         is_break = bool(word) and set(word) <= set(":=")
-        start = found.pop() if found and (is_break or (goes_on and word)) else ""
-        found.append(start + word)
-        if number == place:
-            at, before = len(found) - 1, start + word if is_break else start
-        goes_on = is_break
-    return found, at, before
+        continues = is_break or (after_break and word != "")
+        start = words.pop() if words and continues else ""
+        words.append(start + word)
+        if index == current:
+            index_of_current = len(words) - 1
+            prefix = start + word if is_break else start
+        after_break = is_break
+    return words, index_of_current, prefix

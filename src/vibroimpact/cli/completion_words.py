@@ -1,6 +1,6 @@
-"""What a shell completes, collected from the schema and the registries into a file: to import these
-takes a second at each Tab.
+"""What a shell completes, collected from the schema and the registries into a file.
 
+To import these would take a second at each Tab.
 `python -m vibroimpact.cli.completion_words` writes the file again, and `make docs` does; a test
 finds it stale.
 """
@@ -26,8 +26,7 @@ Schema = Mapping[str, Any]
 
 
 def completion_words() -> dict[str, Any]:
-    """Return the keys of a case with the words that each takes, the laws of this package with their
-    parameters, and other names.
+    """Return keys of a case with the words that they take, laws with their parameters, and names.
 
     Examples
     --------
@@ -35,25 +34,10 @@ def completion_words() -> dict[str, Any]:
     >>> words["keys"]["sphere.model"], words["laws"]["newton"], words["materials"][0]
     (['rigid', 'elastic'], ['restitution'], 'rock-paper')
     """
-    laws = {
-        name: law
-        for name, law in contact_laws().items()
-        if law.__module__.startswith("vibroimpact.")
-    }
-    parameters = {
-        name: [item.name for item in fields(law) if not item.metadata["memory"]]
-        for name, law in laws.items()
-    }
-    materials, schema = list(material_library()), case_schema()
-    keys: dict[str, list[str]] = {
-        key: [] for key in quantity_keys({}) if key.count(".") == 2
-    }  # such as "drop.position.x", which no schema has
-    for key, words in _keys(schema, schema["$defs"]):
-        keys[key] = list(dict.fromkeys([*keys.get(key, []), *words]))
-    keys |= {"sphere.material": materials, "plate.material": [*materials, RIGID.name]}
+    materials = list(material_library())
     return {
-        "keys": dict(sorted(keys.items())),
-        "laws": parameters,
+        "keys": _keys_of_case(materials),
+        "laws": _parameters_of_laws(),
         "materials": [*materials, RIGID.name],
         "formats": list(export_formats()),
         "parts": list(PARTS),
@@ -62,52 +46,72 @@ def completion_words() -> dict[str, Any]:
     }
 
 
+def _parameters_of_laws() -> dict[str, list[str]]:
+    """Return the parameters of the laws of this package."""
+    return {
+        name: [field.name for field in fields(law) if not field.metadata["memory"]]
+        for name, law in contact_laws().items()
+        if law.__module__.startswith("vibroimpact.")
+    }
+
+
+def _keys_of_case(materials: list[str]) -> dict[str, list[str]]:
+    schema = case_schema()
+    # such as "drop.position.x", which no schema has
+    keys: dict[str, list[str]] = {key: [] for key in quantity_keys({}) if key.count(".") == 2}
+    for key, words in _keys(schema, schema["$defs"]):
+        keys[key] = list(dict.fromkeys([*keys.get(key, []), *words]))
+    keys["sphere.material"] = materials
+    keys["plate.material"] = [*materials, RIGID.name]
+    return dict(sorted(keys.items()))
+
+
 def _keys(
     schema: Schema, definitions: Mapping[str, Schema], prefix: str = ""
 ) -> Iterator[tuple[str, list[str]]]:
-    """Yield each dotted key of a JSON schema, but for those of tables in lists, with the
-    words that it takes.
+    """Yield the dotted keys of a JSON schema with the words that each takes.
+
+    Keys of tables in lists are left out.
     """
-    for table in _options(schema, definitions):
-        for name, inner in table.get("properties", {}).items():
-            options = [
-                option
-                for option in _options(inner, definitions)
-                if not _is_table(option, definitions)
+    for table in _alternatives(schema, definitions):
+        for name, value in table.get("properties", {}).items():
+            # a table is given by its keys
+            scalars = [
+                alternative
+                for alternative in _alternatives(value, definitions)
+                if not _is_table(alternative, definitions)
             ]
-            if options:  # a table is given by its keys
-                yield f"{prefix}{name}", [word for option in options for word in _words(option)]
-            yield from _keys(inner, definitions, f"{prefix}{name}.")
+            if scalars:
+                yield f"{prefix}{name}", [word for scalar in scalars for word in _words(scalar)]
+            yield from _keys(value, definitions, f"{prefix}{name}.")
 
 
-def _options(schema: Schema, definitions: Mapping[str, Schema]) -> Iterator[Schema]:
-    """Yield the alternatives of a schema."""
+def _alternatives(schema: Schema, definitions: Mapping[str, Schema]) -> Iterator[Schema]:
     if "$ref" in schema:
-        yield from _options(definitions[schema["$ref"].rpartition("/")[2]], definitions)
-    elif several := schema.get("anyOf") or schema.get("oneOf"):
-        for one in several:
-            yield from _options(one, definitions)
+        yield from _alternatives(definitions[schema["$ref"].rpartition("/")[2]], definitions)
+    elif alternatives := schema.get("anyOf") or schema.get("oneOf"):
+        for alternative in alternatives:
+            yield from _alternatives(alternative, definitions)
     elif schema.get("type") != "null":
         yield schema
 
 
 def _is_table(schema: Schema, definitions: Mapping[str, Schema]) -> bool:
     """Return whether a schema is that of a table, or of a list of tables."""
-    items = [*_options(schema["items"], definitions)] if "items" in schema else []
-    return schema.get("type") == "object" or (
-        bool(items) and all(_is_table(one, definitions) for one in items)
-    )
+    if schema.get("type") == "object":
+        return True
+    if "items" not in schema:
+        return False
+    items = list(_alternatives(schema["items"], definitions))
+    return bool(items) and all(_is_table(item, definitions) for item in items)
 
 
 def _words(schema: Schema) -> list[str]:
     """Return the words that a schema allows."""
     if schema.get("type") == "boolean":
         return ["true", "false"]
-    return [
-        word
-        for word in (*schema.get("enum", ()), schema.get("const"))
-        if isinstance(word, str) and " " not in word
-    ]
+    values = (*schema.get("enum", ()), schema.get("const"))
+    return [value for value in values if isinstance(value, str) and " " not in value]
 
 
 if __name__ == "__main__":

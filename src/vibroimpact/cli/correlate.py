@@ -1,6 +1,4 @@
-"""The command `correlate`, which compares records or frequency responses of a test with
-the simulation of the case.
-"""
+"""The command `correlate`, which compares a test with the simulation of the case."""
 
 from __future__ import annotations
 
@@ -110,7 +108,6 @@ def correlate(
     from vibroimpact.results.folder import check_free
     from vibroimpact.signals.reading.record_files import load_records
     from vibroimpact.test_analysis.compared_kind import compared_kind
-    from vibroimpact.test_analysis.correlate import correlate as correlate_records
 
     test_case = load_case(case, settings_of(changes))
     target = Path(f"{stem(case)}-correlated") if output is None else output
@@ -129,19 +126,31 @@ def correlate(
         correlation = _correlated_responses(test_case, records, hammer, band_ends, as_json=as_json)
     else:
         measured = [record for path in records for record in load_records(path, columns)]
-        force_record = None if hammer is None else _force_among(measured, hammer)
-        motions = [record for record in measured if record is not force_record]
-        with progress_of("correlating", as_json=as_json) as progress:
-            correlation = correlate_records(
-                test_case,
-                motions,
-                force=force_record,
-                window=window_length,
-                band=band_ends,
-                progress=progress,
-            )
+        correlation = _correlated_records(
+            test_case, measured, hammer, window_length, band_ends, as_json=as_json
+        )
     correlation = replace(correlation, doubts=(*compared.remarks, *correlation.doubts))
     save_and_show(correlation, target, force=force, figures=figures, as_json=as_json)
+
+
+def _correlated_records(
+    case: Case,
+    records: list[Record],
+    force_channel: str | None,
+    window: float | None,
+    band: tuple[float, float] | None,
+    *,
+    as_json: bool,
+) -> Correlation:
+    """Return the comparison of records with the simulation of a case."""
+    from vibroimpact.test_analysis.correlate import correlate as correlate_records
+
+    force = None if force_channel is None else _force_among(records, force_channel)
+    motions = [record for record in records if record is not force]
+    with progress_of("correlating", as_json=as_json) as progress:
+        return correlate_records(
+            case, motions, force=force, window=window, band=band, progress=progress
+        )
 
 
 def _correlated_responses(
@@ -174,11 +183,11 @@ def _force_among(records: list[Record], name: str) -> Record:
     from vibroimpact.signals.reading.one_record import is_named
 
     named = [record for record in records if is_named(record, name)]
-    if len(named) != 1:
-        names = list(dict.fromkeys(record.name for record in records))
-        there = f"the records are {', '.join(map(quoted, names))}.{did_you_mean(name, names)}"
-        raise InputError(
-            f"--hammer {quoted(name)}: there "
-            f"{'are several channels' if named else 'is no channel'} of this name; {there}"
-        )
-    return named[0]
+    if len(named) == 1:
+        return named[0]
+    number = "are several channels" if named else "is no channel"
+    names = list(dict.fromkeys(record.name for record in records))
+    raise InputError(
+        f"--hammer {quoted(name)}: there {number} of this name; the records are "
+        f"{', '.join(map(quoted, names))}.{did_you_mean(name, names)}"
+    )

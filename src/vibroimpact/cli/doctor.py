@@ -1,11 +1,10 @@
-"""Diagnosis of the installation: versions, compiled code, the store of modes, and a
-reference computation.
-"""
+"""Diagnosis of the installation: versions, what is kept on disk, and a reference computation."""
 
 from __future__ import annotations
 
 import os
 import platform
+import re
 from collections.abc import Mapping
 from functools import cache
 from importlib.metadata import PackageNotFoundError, requires, version
@@ -20,16 +19,15 @@ from vibroimpact.structures.free_memory import free_memory
 from vibroimpact.structures.store import entries, store_folder, store_size
 
 _SWITCHES = {"onnxruntime": SWITCH}
-"""Packages that send usage data to their makers unless they are told not to, and the
-environment variable by which they are.
-"""
+"""Packages that send usage data to their makers, and the variable that switches that off."""
 
 _FIRST_REBOUND = 6.8386265  # m/s: PAPER, section 4, theory, integrated independently at 1e-12
 
 
 def diagnose() -> dict[str, Any]:
-    """Return the state of the installation as data; the version of a package that is not installed
-    is None.
+    """Return the state of the installation as data.
+
+    The version of a package that is not installed is None.
 
     Examples
     --------
@@ -59,7 +57,7 @@ def diagnose() -> dict[str, Any]:
     }
 
 
-def diagnosis_rows(found: Mapping[str, Any]) -> list[tuple[str, str]]:
+def diagnosis_rows(diagnosis: Mapping[str, Any]) -> list[tuple[str, str]]:
     """Return a diagnosis as rows (name, version or how to install it).
 
     Examples
@@ -67,17 +65,21 @@ def diagnosis_rows(found: Mapping[str, Any]) -> list[tuple[str, str]]:
     >>> diagnosis_rows(diagnose())[0][0]
     'vibroimpact'
     """
-    extras, memory = _requirements(), found["resources"]["free_memory_byte"]
+    resources = diagnosis["resources"]
+    extras = _requirements()
+    packages = [
+        (name, version or _missing(extras[name])) for name, version in diagnosis["packages"].items()
+    ]
     return [
-        ("vibroimpact", found["version"]),
-        ("python", found["python"]),
-        ("platform", found["platform"]),
-        ("processors", str(found["resources"]["processors"])),
-        ("memory free", f"{memory / 1e9:.3g} GB"),
-        ("compiled code", _compiler_words(found["compiler"])),
-        ("store of modes", _store_words(found["store"])),
-        ("usage data", _usage_words(found["usage_data"])),
-        *((name, version or _missing(extras[name])) for name, version in found["packages"].items()),
+        ("vibroimpact", diagnosis["version"]),
+        ("python", diagnosis["python"]),
+        ("platform", diagnosis["platform"]),
+        ("processors", str(resources["processors"])),
+        ("memory free", f"{resources['free_memory_byte'] / 1e9:.3g} GB"),
+        ("compiled code", _compiler_state(diagnosis["compiler"])),
+        ("store of modes", _store_state(diagnosis["store"])),
+        ("usage data", _usage_state(diagnosis["usage_data"])),
+        *packages,
     ]
 
 
@@ -97,20 +99,20 @@ def _compiler() -> dict[str, Any]:
 
 def _is_usable(folder: Path) -> bool:
     """Can files be written to a folder, or can it be made?"""
-    there = folder
-    while not os.path.lexists(there) and there != there.parent:
-        there = there.parent
-    return there.is_dir() and os.access(there, os.W_OK | os.X_OK)
+    existing = folder
+    while not os.path.lexists(existing) and existing != existing.parent:
+        existing = existing.parent
+    return existing.is_dir() and os.access(existing, os.W_OK | os.X_OK)
 
 
 def _requirements() -> dict[str, str]:
     """Return the packages that this one requires, each with the extra that it belongs to, or ""."""
-    found = {}
+    extras = {}
     for requirement in requires("vibroimpact") or []:
-        name, _, marker = requirement.partition(";")
-        name = name.split("[")[0].split(">")[0].split("=")[0].split("<")[0].split("~")[0].strip()
-        found[name] = marker.partition("extra ==")[2].strip(" '\"")
-    return found
+        specifier, _, marker = requirement.partition(";")
+        name = re.split(r"[\[><=~]", specifier)[0].strip()
+        extras[name] = marker.partition("extra ==")[2].strip(" '\"")
+    return extras
 
 
 def _installed(name: str) -> str | None:
@@ -124,33 +126,36 @@ def _missing(extra: str) -> str:
     return f'not installed; pip install "vibroimpact[{extra}]"' if extra else "missing"
 
 
-def _usage_words(usage: Mapping[str, Any]) -> str:
-    switches = ", ".join(f"that of {name} by {one['switch']}=1" for name, one in usage.items())
-    return f"none is sent; {switches}, before it is loaded" if switches else "none is sent"
+def _usage_state(usage: Mapping[str, Any]) -> str:
+    if not usage:
+        return "none is sent"
+    switches = [f"that of {name} by {usage[name]['switch']}=1" for name in usage]
+    return f"none is sent; {', '.join(switches)}, before it is loaded"
 
 
-def _compiler_words(compiler: Mapping[str, Any]) -> str:
+def _compiler_state(compiler: Mapping[str, Any]) -> str:
     if not compiler["compiled"]:
         slower = "some ten times slower, where bodies vibrate one to two hundred times"
         return f"none: the solver runs in plain Python, {slower}: {compiler['reason']}"
     if not compiler["usable"]:
-        where = f"{compiler['folder']} is not a folder that can be written to"
-        kept = (
-            f", but for the {compiler['entries']} functions that it has"
-            if compiler["entries"]
-            else ""
+        state = (
+            f"{compiler['folder']} is not a folder that can be written to: the solver is compiled "
+            "again by each command"
         )
-        return f"{where}: the solver is compiled again by each command{kept}"
-    return (
-        f"{compiler['entries']} functions, {compiler['size_byte'] / 1e6:.3g} MB, in "
-        f"{compiler['folder']}"
-    )
+        if compiler["entries"]:
+            state += f", but for the {compiler['entries']} functions that it has"
+        return state
+    return f"{compiler['entries']} functions, {_size_and_folder(compiler)}"
 
 
-def _store_words(store: Mapping[str, Any]) -> str:
+def _store_state(store: Mapping[str, Any]) -> str:
     if not store["usable"]:
         return f"{store['folder']} is not a folder that can be written to: modes are not kept"
-    return f"{store['entries']} entries, {store['size_byte'] / 1e6:.3g} MB, in {store['folder']}"
+    return f"{store['entries']} entries, {_size_and_folder(store)}"
+
+
+def _size_and_folder(kept: Mapping[str, Any]) -> str:
+    return f"{kept['size_byte'] / 1e6:.3g} MB, in {kept['folder']}"
 
 
 @cache

@@ -60,17 +60,16 @@ def export(
             raise InputError("name the format: vibroimpact export DIR --to FORMAT")
         show(formats_document, format_table, as_json=as_json)
         return
-    found = find_export_format(to)
+    export_format = find_export_format(to)
     if directory is None:
         raise InputError(
             f"name the folder that is to be exported: vibroimpact export DIR --to {to}"
         )
-    drop = found.prepare(load_drop(directory))
-    written = save_export(
-        drop, found, default_output(directory, to) if output is None else output, force=force
-    )
+    drop = export_format.prepare(load_drop(directory))
+    target = default_output(directory, to) if output is None else output
+    files = save_export(drop, export_format, target, force=force)
     show(
-        lambda: export_document(drop, found, written),
-        lambda: export_summary(drop, found, written),
+        lambda: export_document(drop, export_format, files),
+        lambda: export_summary(drop, export_format, files),
         as_json=as_json,
     )

@@ -1,6 +1,4 @@
-"""The table of features in docs/signals.md: `make docs` writes it again, and a test finds
-it stale.
-"""
+"""The table of features in docs/signals.md, which `make docs` writes again."""
 
 from __future__ import annotations
 
@@ -9,10 +7,14 @@ from pathlib import Path
 
 from vibroimpact.errors import InputError
 from vibroimpact.report.markdown_table import markdown_table
+from vibroimpact.signals.feature import Feature
 from vibroimpact.signals.registry import signal_features
 
-BEGIN, END = "<!-- features: begin (written by make docs) -->", "<!-- features: end -->"
-"""The marker lines before and after the table."""
+BEGIN = "<!-- features: begin (written by make docs) -->"
+"""The line before the table."""
+
+END = "<!-- features: end -->"
+"""The line after the table."""
 
 
 def feature_page(page: str) -> str:
@@ -28,22 +30,23 @@ def feature_page(page: str) -> str:
     >>> feature_page(f"Features:\\n{BEGIN}\\n{END}").splitlines()[4][:24]
     '| `peak` | x | largest m'
     """
-    before, begin, rest = page.partition(BEGIN)
-    _, end, after = rest.partition(END)
+    start, begin, table_and_end = page.partition(BEGIN)
+    _, end, remainder = table_and_end.partition(END)
     if not begin or not end:
         raise InputError(f"signals.md: the lines {BEGIN} and {END} must stand around the table")
-    rows = (
-        (
-            f"`{one.name}`",
-            one.unit_for("x"),
-            _cell(one.meaning),
-            f"`{_cell(one.equation)}`",
-            one.source,
-        )
-        for one in signal_features().values()
-    )
+    rows = [_row(feature) for feature in signal_features().values()]
     table = markdown_table(("feature", "unit", "what", "equation", "source"), rows)
-    return f"{before}{BEGIN}\n{table}\n{END}{after}"
+    return f"{start}{BEGIN}\n{table}\n{END}{remainder}"
+
+
+def _row(feature: Feature) -> tuple[str, ...]:
+    return (
+        f"`{feature.name}`",
+        feature.unit_for("x"),
+        _cell(feature.meaning),
+        f"`{_cell(feature.equation)}`",
+        feature.source,
+    )
 
 
 def _cell(text: str) -> str:
@@ -51,6 +54,6 @@ def _cell(text: str) -> str:
 
 
 if __name__ == "__main__":
-    place = Path(sys.argv[1]) / "signals.md"
-    place.write_text(feature_page(place.read_text(encoding="utf-8")), encoding="utf-8")
-    print(f"wrote {place}")
+    path = Path(sys.argv[1]) / "signals.md"
+    path.write_text(feature_page(path.read_text(encoding="utf-8")), encoding="utf-8")
+    print(f"wrote {path}")

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections import Counter
-from typing import Any
+from collections.abc import Iterator
+from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 from rich.console import Group, RenderableType
 from rich.text import Text
 
@@ -21,13 +23,14 @@ _SIGNAL = "x"
 
 def feature_list() -> RenderableType:
     """Return the table of features."""
-    found = signal_features().values()
+    features = signal_features().values()
+    units = [feature.unit_for(_SIGNAL) for feature in features]
     columns = (
-        TerminalColumn("feature", [one.name for one in found], text=True),
-        TerminalColumn("unit", [one.unit_for(_SIGNAL) for one in found], text=True),
-        TerminalColumn("what", [one.meaning for one in found], text=True),
-        TerminalColumn("equation", [one.equation for one in found], text=True),
-        TerminalColumn("source", [one.source for one in found], text=True),
+        TerminalColumn("feature", [feature.name for feature in features], text=True),
+        TerminalColumn("unit", units, text=True),
+        TerminalColumn("what", [feature.meaning for feature in features], text=True),
+        TerminalColumn("equation", [feature.equation for feature in features], text=True),
+        TerminalColumn("source", [feature.source for feature in features], text=True),
     )
     note = (
         "x are the samples, and their unit; a is their envelope, X their transform, P their "
@@ -37,89 +40,91 @@ def feature_list() -> RenderableType:
 
 
 def features_document() -> dict[str, Any]:
-    """Return the features by name: unit (with x for that of the signal), meaning,
-    equation, source, and how they scale.
-    """
-    return {
-        "features": {
-            one.name: {
-                "unit": one.unit_for(_SIGNAL),
-                "meaning": one.meaning,
-                "equation": one.equation,
-                "source": one.source,
-                "degree": one.degree,
-                "offset_free": one.offset_free,
-                "least_samples": one.least,
-            }
-            for one in signal_features().values()
+    """Return the features by name, with x for the unit of the signal, and how they scale."""
+    features = {
+        feature.name: {
+            "unit": feature.unit_for(_SIGNAL),
+            "meaning": feature.meaning,
+            "equation": feature.equation,
+            "source": feature.source,
+            "degree": feature.degree,
+            "offset_free": feature.offset_free,
+            "least_samples": feature.least,
         }
+        for feature in signal_features().values()
     }
+    return {"features": features}
 
 
 def table_document(table: RecordTable) -> dict[str, Any]:
     """Return the rows of a table as its file has them, with null where a feature has no value."""
-    return {
-        "signals": [
+    offsets = table.offset
+    drifts = table.drift
+    signals = []
+    for row, record in enumerate(table.records):
+        values = table.values[row].tolist()
+        signals.append(
             {
-                "file": one.source,
-                "channel": one.name,
-                "signal": number,
-                "start_s": one.start,
-                "rate_Hz": one.rate,
-                "unit": one.unit,
+                "file": record.source,
+                "channel": record.name,
+                "signal": table.numbers[row],
+                "start_s": record.start,
+                "rate_Hz": record.rate,
+                "unit": record.unit,
                 **dict(zip(table.columns, values, strict=True)),
-                "offset": table.offset[row],
-                "drift": table.drift[row],
+                "offset": offsets[row],
+                "drift": drifts[row],
                 "lacking": table.lacking(row),
             }
-            for row, (one, number, values) in enumerate(
-                zip(table.records, table.numbers, table.values.tolist(), strict=True)
-            )
-        ]
-    }
+        )
+    return {"signals": signals}
+
+
+class _Row(NamedTuple):
+    """A row of the summary; its numbers are texts."""
+
+    name: str
+    unit: str
+    numbers: list[str]
+    lacking: str
 
 
 def table_summary(table: RecordTable) -> RenderableType:
-    """Return each feature with its least, middle and largest value over the signals, and
-    why signals lack it.
-    """
-    units = {one.unit for one in table.records}
+    """Return the least, middle and largest value of each feature, and why signals lack it."""
+    units = {record.unit for record in table.records}
     unit = units.pop() if len(units) == 1 else _SIGNAL
-    cells: list[tuple[str, ...]] = []
-    for name, values, reasons in zip(table.names, table.values.T, table.reasons.T, strict=True):
-        there = values[~np.isnan(values)]
-        shown = (
-            [digits(float(one)) for one in np.percentile(there, (0, 50, 100), method="nearest")]
-            if there.size
-            else [""] * 3
-        )
-        lacking = "; ".join(
-            f"{count}: {Reason(code).text}"
-            for code, count in Counter(reasons[reasons > 0].tolist()).items()
-        )
-        cells.append(
-            (
-                name,
-                signal_features()[name].unit_for(unit),
-                *(shown if len(table.records) > 1 else shown[:1]),
-                lacking,
-            )
-        )
-    for name, removed in (("offset", table.offset), ("drift", table.drift)):
-        if any(removed):
-            shown = [
-                digits(float(one)) for one in np.percentile(removed, (0, 50, 100), method="nearest")
-            ]
-            cells.append(
-                (f"{name} removed", unit, *(shown if len(table.records) > 1 else shown[:1]), "")
-            )
-    heads = ("least", "median", "largest") if len(table.records) > 1 else ("value",)
-    names, of_units, *numbers, lacking_cells = zip(*cells, strict=True)
-    columns = [
-        TerminalColumn("feature", names, text=True),
-        *(TerminalColumn(head, one) for head, one in zip(heads, numbers, strict=True)),
-    ]
-    columns.append(TerminalColumn("unit", of_units, text=True))
-    if any(lacking_cells):
-        columns.append(TerminalColumn("signals without it", lacking_cells, text=True))
+    rows = [*_feature_rows(table, unit), *_baseline_rows(table, unit)]
+    number_heads = ("least", "median", "largest") if len(table.records) > 1 else ("value",)
+    columns = [TerminalColumn("feature", [row.name for row in rows], text=True)]
+    for position, head in enumerate(number_heads):
+        columns.append(TerminalColumn(head, [row.numbers[position] for row in rows]))
+    columns.append(TerminalColumn("unit", [row.unit for row in rows], text=True))
+    lacking = [row.lacking for row in rows]
+    if any(lacking):
+        columns.append(TerminalColumn("signals without it", lacking, text=True))
     return TerminalTable(columns)
+
+
+def _feature_rows(table: RecordTable, unit: str) -> Iterator[_Row]:
+    for name, values, reasons in zip(table.names, table.values.T, table.reasons.T, strict=True):
+        numbers = _least_middle_largest(values[~np.isnan(values)])
+        counts = Counter(reasons[reasons > 0].tolist())
+        lacking = "; ".join(f"{count}: {Reason(code).text}" for code, count in counts.items())
+        yield _Row(name, signal_features()[name].unit_for(unit), numbers, lacking)
+
+
+def _baseline_rows(table: RecordTable, unit: str) -> Iterator[_Row]:
+    """Yield what was removed from the records, if anything was."""
+    if any(table.offset):
+        yield _Row("offset removed", unit, _least_middle_largest(table.offset), "")
+    if any(table.drift):
+        yield _Row("drift removed", unit, _least_middle_largest(table.drift), "")
+
+
+def _least_middle_largest(values: ArrayLike) -> list[str]:
+    """Return three of the values as texts; of a single one they are alike, of none empty."""
+    numbers = np.asarray(values, dtype=float)
+    if not numbers.size:
+        return ["", "", ""]
+    percentiles = np.percentile(numbers, (0, 50, 100), method="nearest")
+    return [digits(float(percentile)) for percentile in percentiles]

@@ -25,9 +25,10 @@ from vibroimpact.errors import InputError
 
 if TYPE_CHECKING:
     from vibroimpact.signals.record import Record
+    from vibroimpact.signals.record_table import RecordTable
 
-_TOLD = 10
-"""Doubts about records that are told one by one."""
+_MOST_DOUBTS = 10
+"""Number of doubts about records that are shown; further ones are counted."""
 
 
 @app.command()
@@ -110,8 +111,6 @@ def features(
             "name the files or folders with signals: vibroimpact features DIR|FILE... -o "
             "table.csv; --list lists the features"
         )
-    from vibroimpact.files.atomic_write import write_file
-    from vibroimpact.files.recover import recover
     from vibroimpact.report.progress import counting_progress
     from vibroimpact.signals.record_table import record_table
 
@@ -119,10 +118,8 @@ def features(
         raise InputError(
             "a row is a packet with --packets, and a window with --window; give one of them"
         )
-    if output is not None and output.is_dir():
-        raise InputError(f"{output} is a folder; name a file for the table")
-    if output is not None and output.exists() and not force:
-        raise InputError(f"{output} exists; take another name, or --force to replace it")
+    if output is not None:
+        _check_table_file(output, force=force)
     names = None if only is None else names_in(only)
     if names == []:
         raise InputError("--only names no feature; --list lists them")
@@ -139,18 +136,31 @@ def features(
             progress=lambda done: count(done, None),
         )
     if not table.records:
-        raise InputError(
-            "there are no signals" + (" with a packet above the threshold" if packets else "")
-        )
+        condition = " with a packet above the threshold" if packets else ""
+        raise InputError(f"there are no signals{condition}")
     if output is not None:
-        recover(output)
-        write_file(output, table.csv_text())
+        _write_table(table, output)
     show(lambda: table_document(table), lambda: table_summary(table), as_json=as_json)
     if output is not None:
         say(
             f"wrote {output}: {len(table.records)} signals, {len(table.names)} features",
             err=as_json,
         )
+
+
+def _check_table_file(file: Path, *, force: bool) -> None:
+    if file.is_dir():
+        raise InputError(f"{file} is a folder; name a file for the table")
+    if file.exists() and not force:
+        raise InputError(f"{file} exists; take another name, or --force to replace it")
+
+
+def _write_table(table: RecordTable, file: Path) -> None:
+    from vibroimpact.files.atomic_write import write_file
+    from vibroimpact.files.recover import recover
+
+    recover(file)
+    write_file(file, table.csv_text())
 
 
 def _records(
@@ -164,31 +174,36 @@ def _records(
 ) -> Iterator[Record]:
     """Yield the records of files and folders, or their windows from the onset, or their packets."""
     from vibroimpact.files.reading import with_path
-    from vibroimpact.signals.baseline import without_baseline
     from vibroimpact.signals.onset import from_onset
     from vibroimpact.signals.packets import packet_records
+
+    for record in _records_without_baseline(paths, columns):
+        try:
+            if packets:
+                yield from packet_records(record, threshold, dead_time)
+            elif window is not None:
+                yield from_onset(record, window, threshold=threshold)
+            else:
+                yield record
+        except InputError as error:
+            raise with_path(record.source, error) from None
+
+
+def _records_without_baseline(paths: list[Path], columns: str | None) -> Iterator[Record]:
+    """Yield the records of files and folders, and show the doubts about them."""
+    from vibroimpact.signals.baseline import without_baseline
     from vibroimpact.signals.reading.record_files import load_records
 
-    told: set[str] = set()
+    doubts: set[str] = set()
     for path in paths:
         for record in map(without_baseline, load_records(path, columns)):
             for doubt in record.named_doubts:
-                if doubt not in told and len(told) < _TOLD:
+                if doubt not in doubts and len(doubts) < _MOST_DOUBTS:
                     note(f"doubt: {doubt}")
-                told.add(doubt)
-            try:
-                if packets:
-                    yield from packet_records(record, threshold, dead_time)
-                else:
-                    yield (
-                        record
-                        if window is None
-                        else from_onset(record, window, threshold=threshold)
-                    )
-            except InputError as error:
-                raise with_path(record.source, error) from None
-    if len(told) > _TOLD:
+                doubts.add(doubt)
+            yield record
+    if len(doubts) > _MOST_DOUBTS:
         note(
-            f"doubt: there are {len(told) - _TOLD:,} further doubts about records; offset "
-            "and drift of a table (-o) are what was removed"
+            f"doubt: there are {len(doubts) - _MOST_DOUBTS:,} further doubts about records; "
+            "offset and drift of a table (-o) are what was removed"
         )

@@ -1,6 +1,4 @@
-"""The command `identify`, which estimates force, position, size and speed of an impact
-from records.
-"""
+"""The command `identify`, which estimates an impact from records."""
 
 from __future__ import annotations
 

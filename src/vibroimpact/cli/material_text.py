@@ -11,16 +11,30 @@ from rich.text import Text
 from vibroimpact.materials import find_material, material_library
 from vibroimpact.report.terminal_table import TerminalColumn, TerminalTable, facts, numbers
 
+_UNITS = {
+    "density": "kg/m3",
+    "youngs_modulus": "Pa",
+    "poissons_ratio": "",
+    "yield_strength": "Pa",
+    "compressive_strength": "Pa",
+    "tensile_strength": "Pa",
+    "loss_factor": "",
+}
+
 
 def material_library_table() -> RenderableType:
     """Return the table of shipped materials."""
     library = material_library()
+    materials = library.values()
+    densities = [f"{material.density:g}" for material in materials]
+    moduli = [f"{material.youngs_modulus / 1e9:g}" for material in materials]
+    poissons_ratios = [f"{material.poissons_ratio:g}" for material in materials]
     columns = (
         TerminalColumn("name", list(library), text=True),
-        numbers("density", "kg/m3", [f"{one.density:g}" for one in library.values()]),
-        numbers("Young's", "GPa", [f"{one.youngs_modulus / 1e9:g}" for one in library.values()]),
-        numbers("Poisson's", "-", [f"{one.poissons_ratio:g}" for one in library.values()]),
-        TerminalColumn("what", [one.description for one in library.values()], text=True),
+        numbers("density", "kg/m3", densities),
+        numbers("Young's", "GPa", moduli),
+        numbers("Poisson's", "-", poissons_ratios),
+        TerminalColumn("what", [material.description for material in materials], text=True),
     )
     notes = (
         'Also "rigid" for a plate. "vibroimpact materials NAME" gives the source of each '
@@ -37,21 +51,13 @@ def material_sheet(name: str) -> RenderableType:
     InputError
         If the material is unknown.
     """
-    material, rows = find_material(name), []
-    for key, unit in (
-        ("density", "kg/m3"),
-        ("youngs_modulus", "Pa"),
-        ("poissons_ratio", ""),
-        ("yield_strength", "Pa"),
-        ("compressive_strength", "Pa"),
-        ("tensile_strength", "Pa"),
-        ("loss_factor", ""),
-    ):
+    material = find_material(name)
+    rows = []
+    for key, unit in _UNITS.items():
         value = getattr(material, key)
         if value is not None:
-            rows.append(
-                (key, f"{value:g}\u00a0{unit}".strip("\u00a0"), material.sources.get(key, ""))
-            )
+            quantity = f"{value:g}\u00a0{unit}".strip("\u00a0")
+            rows.append((key, quantity, material.sources.get(key, "")))
     note = [Text(material.note)] if material.note else []
     return Group(Text(f"{material.name}: {material.description}", style="bold"), facts(rows), *note)
 

@@ -1,6 +1,4 @@
-"""The command `recognise`, which trains and validates classifiers of a data set, or
-applies a saved one.
-"""
+"""The command `recognise`, which trains classifiers of a data set, or applies a saved one."""
 
 from __future__ import annotations
 
@@ -96,16 +94,13 @@ def recognise(
     from vibroimpact.recognition.recognise import recognise as recognise_signals
     from vibroimpact.results.folder import check_free
 
-    name = stem(str(Path(dataset).parent if dataset.endswith(".nc") else Path(dataset)))
+    folder = Path(dataset).parent if dataset.endswith(".nc") else Path(dataset)
+    name = stem(str(folder))
     target = Path(f"{name}-recognised") if output is None else output
     check_free(target, force=force)
-    for given in (Path(dataset), *([] if model is None else [model])):
-        if given.exists() and target.resolve() in (given.resolve(), *given.resolve().parents):
-            raise InputError(
-                f"{target}: {given} lies there, and would be replaced; "
-                "name another place for the result"
-            )
+    _check_outside(target, Path(dataset))
     if model is not None:
+        _check_outside(target, model)
         with exit_on_interrupt():
             recognised = apply_recogniser(model, dataset)
         save_and_show(recognised, target, force=force, figures=figures, as_json=as_json)
@@ -123,20 +118,30 @@ def recognise(
     save_and_show(recognition, target, force=force, figures=figures, as_json=as_json)
 
 
-def _progress_lines() -> Callable[[str, int, int], None]:
-    """Return a callback that prints a line when something begins, and every ten seconds
-    while it lasts.
-    """
-    said = time.monotonic()
+def _check_outside(target: Path, source: Path) -> None:
+    """Raise if a folder that is made would replace what it is made from."""
+    if not source.exists():
+        return
+    path = source.resolve()
+    if target.resolve() in (path, *path.parents):
+        raise InputError(
+            f"{target}: {source} lies there, and would be replaced; "
+            "name another place for the result"
+        )
 
-    def progress(what: str, done: int, total: int) -> None:
-        nonlocal said
+
+def _progress_lines() -> Callable[[str, int, int], None]:
+    """Return a callback that prints a line at the start of a step, and every ten seconds."""
+    last_line = time.monotonic()
+
+    def progress(step: str, done: int, total: int) -> None:
+        nonlocal last_line
         if not done:
-            note(what)
-        elif done < total and time.monotonic() - said > _EVERY:
-            note(f"{what}: {done} of {total}")
+            note(step)
+        elif done < total and time.monotonic() - last_line > _EVERY:
+            note(f"{step}: {done} of {total}")
         else:
             return
-        said = time.monotonic()
+        last_line = time.monotonic()
 
     return progress

@@ -1,6 +1,4 @@
-"""The commands for reference: `cases`, `new`, `units`, `laws`, `materials`, `schema` and
-`doctor`.
-"""
+"""The commands `cases`, `new`, `units`, `laws`, `materials`, `schema` and `doctor`."""
 
 from __future__ import annotations
 
@@ -61,7 +59,8 @@ def new(
     text = case_template(source, title, settings_of(changes))
     recover(path)
     write_text_file(path, text)
-    quoted, command = shlex.quote(str(path)), command_for(load_table(path))
+    quoted = shlex.quote(str(path))
+    command = command_for(load_table(path))
     say(
         f"wrote {path}; explain it: vibroimpact check {quoted}; {command} it: vibroimpact "
         f"{command} {quoted}"
@@ -88,34 +87,33 @@ def units(
 
     The number of a stiffness in N/m^n is 1000^n times that in N/mm^n.
     """
-    from vibroimpact.cli.unit_table import converted, unit_document, unit_table
+    from vibroimpact.cli.unit_table import unit_conversion, unit_document, unit_table
     from vibroimpact.units.reading import parse_quantity
 
     try:
         value, unit = parse_quantity(" ".join(quantity))
-        shown = unit_table(value, unit) if to is None else converted(value, unit, to)
+        table = unit_table(value, unit) if to is None else unit_conversion(value, unit, to)
     except InputError as error:
-        raise InputError(f"{error}{_quotes_hint(quantity, to)}") from None
-    show(lambda: unit_document(value, unit, to), lambda: shown, as_json=as_json)
+        hint = _quotes_hint(quantity, to) if to else ""
+        raise InputError(f"{error}{hint}") from None
+    show(lambda: unit_document(value, unit, to), lambda: table, as_json=as_json)
 
 
-def _quotes_hint(quantity: list[str], to: str | None) -> str:
-    """Return a hint that the unit of --to needs quotes, if its last words became those of
-    the quantity; else an empty text.
+def _quotes_hint(quantity: list[str], to: str) -> str:
+    """Return a hint that the unit of --to needs quotes, or "".
+
+    It does if the end of the quantity is that of the unit: 5 N/mm --to N m has "5 N/mm m".
     """
     from vibroimpact.units.reading import convert_units, parse_quantity
 
-    for count in range(1, len(quantity) - 1) if to else ():
+    for length in range(1, len(quantity) - 1):
+        whole_unit = " ".join([to, *quantity[-length:]])
         try:
-            convert_units(
-                *parse_quantity(" ".join(quantity[:-count])),
-                " ".join([str(to), *quantity[-count:]]),
-            )
+            value, unit = parse_quantity(" ".join(quantity[:-length]))
+            convert_units(value, unit, whole_unit)
         except InputError:
             continue
-        return (
-            f'; a unit with blanks needs quotes: --to "{" ".join([str(to), *quantity[-count:]])}"'
-        )
+        return f'; a unit with blanks needs quotes: --to "{whole_unit}"'
     return ""
 
 
@@ -212,22 +210,12 @@ def doctor(
     from vibroimpact.runs.text import versions_table
 
     if clear_store:
-        from vibroimpact.compiler.code_store import clear_code
-        from vibroimpact.structures.store import clear_store as clear
-
-        removed = clear()
-        functions = clear_code()
-        show(lambda: {"removed": removed, "removed_functions": functions}, as_json=as_json)
-        say(
-            f"removed {removed} entries from the store of modes, and {functions} compiled "
-            "functions",
-            err=as_json,
-        )
+        _clear_stores(as_json=as_json)
         return
-    found = diagnose()
+    diagnosis = diagnose()
     show(
-        lambda: {**found, "first_rebound_error": first_rebound_error()},
-        lambda: versions_table(diagnosis_rows(found)),
+        lambda: {**diagnosis, "first_rebound_error": first_rebound_error()},
+        lambda: versions_table(diagnosis_rows(diagnosis)),
         as_json=as_json,
     )
     error = first_rebound_error()
@@ -237,3 +225,16 @@ def doctor(
             f"{error:.1e}; reinstall the package"
         )
     say("self-test passed: the speed of the paper's first rebound is right to 1e-7", err=as_json)
+
+
+def _clear_stores(*, as_json: bool) -> None:
+    from vibroimpact.compiler.code_store import clear_code
+    from vibroimpact.structures.store import clear_store
+
+    entries = clear_store()
+    functions = clear_code()
+    show(lambda: {"removed": entries, "removed_functions": functions}, as_json=as_json)
+    say(
+        f"removed {entries} entries from the store of modes, and {functions} compiled functions",
+        err=as_json,
+    )

@@ -43,19 +43,20 @@ def serve(
     fragment = _fragment_of(case)
     listening = _listen(HOST, port)
     port = int(listening.getsockname()[1])
-    place = f"http://{HOST}:{port}/"
-    address = place + fragment  # which is long, and told where people open it themselves
+    page = f"http://{HOST}:{port}/"
+    address = page + fragment
+    # the address with the case is long, and shown only where people open it themselves
+    shown = page if browser else address
 
-    def tell() -> None:
-        say(f"the live page is at {place if browser else address}; Ctrl-C ends it")
+    def say_address() -> None:
+        say(f"the live page is at {shown}; Ctrl-C ends it")
         note(
-            f"on another machine: ssh -L {port}:{HOST}:{port} THIS-MACHINE, and open "
-            f"{place if browser else address} there"
+            f"on another machine: ssh -L {port}:{HOST}:{port} THIS-MACHINE, and open {shown} there"
         )
         if browser and not _open(address):
             note(f"no browser could be opened; open this address in one: {address}")
 
-    serve_page([listening], port, tell)
+    serve_page([listening], port, say_address)
 
 
 def _fragment_of(case: str | None) -> str:
@@ -67,7 +68,8 @@ def _fragment_of(case: str | None) -> str:
     from vibroimpact.cases.reader import load_case, load_table, prefix_errors
 
     load_case(case)
-    table, left_out = without_other_work(prefix_errors(case, lambda: load_table(case)))
+    whole_table = prefix_errors(case, lambda: load_table(case))
+    table, left_out = without_other_work(whole_table)
     prefix_errors(case, lambda: check_table(table))
     for sentence in left_out:
         note(sentence)

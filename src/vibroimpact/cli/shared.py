@@ -1,6 +1,4 @@
-"""Elements common to all commands: the application, options, console output, and exits on
-failure or interrupt.
-"""
+"""What commands share: the application, options, output, and exits on failure or interrupt."""
 
 from __future__ import annotations
 
@@ -105,18 +103,18 @@ _LONGEST_STEM = 60
 
 
 def stem(case: str) -> str:
-    """Return the base name of folders for a case: its file name, shortened, without
-    unprintable characters.
-    """
-    name = Path(case.removeprefix("paper:").removeprefix("signals:")).stem[:_LONGEST_STEM]
+    """Return the base name of folders for a case: its file name, shortened and printable."""
+    path = Path(case.removeprefix("paper:").removeprefix("signals:"))
+    name = path.stem[:_LONGEST_STEM]
     return "".join(character if character.isprintable() else "_" for character in name)
 
 
 def settings_of(
     texts: list[str] | None, example: str = 'plate.size.thickness="10 mm"'
 ) -> dict[str, Any]:
-    """Return the values that `--set` gives by key, read as in a case file; a text, also with a
-    unit, needs no quotes.
+    """Return the values that `--set` gives by key, read as in a case file.
+
+    A text, also with a unit, needs no quotes.
 
     Examples
     --------
@@ -133,7 +131,7 @@ def settings_of(
     """
     settings: dict[str, Any] = {}
     for text in texts or ():
-        key, sign, value = (part.strip() for part in text.partition("="))
+        key, sign, value = map(str.strip, text.partition("="))
         if not (sign and value and all(key.split("."))):
             raise InputError(f'--set "{text}": give KEY=VALUE, such as {example}')
         try:
@@ -144,22 +142,19 @@ def settings_of(
 
 
 def console(*, err: bool = False) -> Console:
-    """Return the console of standard output, or of standard error, with a fixed width of
-    160 off a terminal.
-    """
+    """Return the console of standard output, or of standard error."""
     from vibroimpact.report.console import TerminalConsole
 
-    screen = TerminalConsole(stderr=err)
-    if not screen.is_terminal:
-        screen = TerminalConsole(width=160, stderr=err)  # a pipe or a file has no width of its own
-    return screen
+    terminal = TerminalConsole(stderr=err)
+    if terminal.is_terminal:
+        return terminal
+    return TerminalConsole(width=160, stderr=err)  # a pipe or a file has no width of its own
 
 
 def show(
     document: Callable[[], Mapping[str, Any]], *tables: Callable[[], RenderableType], as_json: bool
 ) -> None:
-    """Print tables, each as soon as it is made; or in their place the document with their data, as
-    JSON.
+    """Print tables, each as soon as it is made, or the document with their data as JSON.
 
     Parameters
     ----------
@@ -221,8 +216,9 @@ def save_and_show(
 
 @contextmanager
 def progress_of(activity: str, *, as_json: bool) -> Iterator[Callable[[float], None]]:
-    """Show the progress of what a command computes, and yield what is called with the fraction
-    done; Ctrl-C exits with the message that nothing was written.
+    """Show the progress of a command, and yield what is called with the fraction done.
+
+    Ctrl-C exits with the message that nothing was written.
     """
     from vibroimpact.report.progress import patient_progress
 
@@ -231,20 +227,18 @@ def progress_of(activity: str, *, as_json: bool) -> Iterator[Callable[[float], N
 
 
 def say(text: str, *, err: bool = False) -> None:
-    """Print lines, transliterated to the encoding of the stream and with control
-    characters escaped.
-    """
+    """Print lines in the encoding of the stream, with control characters escaped."""
     from vibroimpact.report.encodable import encodable
 
-    stream, text = sys.stderr if err else sys.stdout, "\n".join(map(visible, text.split("\n")))
+    stream = sys.stderr if err else sys.stdout
+    encoding = getattr(stream, "encoding", None) or "ascii"
+    printable = "\n".join(map(visible, text.split("\n")))
     # flushed, so that a closed pipe raises here and not at exit
-    print(encodable(text, getattr(stream, "encoding", None) or "ascii"), file=stream, flush=True)
+    print(encodable(printable, encoding), file=stream, flush=True)
 
 
 def never_fail_to_print() -> None:
-    """Let standard output and error escape characters that they can't encode, instead of
-    raising.
-    """
+    """Let standard output and error escape characters that they can't encode."""
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")
@@ -263,18 +257,17 @@ def pair_in(option: str, text: str, unit: str, what: str, example: str) -> tuple
     >>> pair_in("--place", "60 mm, 40 mm", "m", "x and y", "60 mm, 40 mm")
     (0.06, 0.04)
     """
-    parts = names_in(text)
-    if len(parts) != 2 or text.count(",") != 1:
+    quantities = names_in(text)
+    if len(quantities) != 2 or text.count(",") != 1:
         raise InputError(
             f'{option} "{text}": give {what}, separated by a comma, such as "{example}"'
         )
-    first, second = (quantity_in(option, part, unit) for part in parts)
+    first, second = (quantity_in(option, quantity, unit) for quantity in quantities)
     return first, second
 
 
 def quantity_in(option: str, text: str, unit: str) -> float:
-    """Return the value of an option in SI; a bare number, which has no quotes in a shell, is in SI
-    already.
+    """Return the value of an option in SI; a bare number is in SI already.
 
     Examples
     --------
@@ -284,16 +277,20 @@ def quantity_in(option: str, text: str, unit: str) -> float:
     from vibroimpact.units.quantity_text import number_and_unit
     from vibroimpact.units.reading import to_si
 
-    parts = number_and_unit(text)
+    value: float | str = text
+    quantity = number_and_unit(text)
+    if quantity is not None and not quantity[1]:
+        value = quantity[0]
     try:
-        return to_si(text if parts is None or parts[1] else parts[0], unit)
+        return to_si(value, unit)
     except InputError as error:
         raise InputError(error.message, option) from None
 
 
 def written_in(option: str, text: str, unit: str) -> Written:
-    """Return the value of an option in SI with its standard deviation, which is given in it or left
-    open by its digits.
+    """Return the value of an option in SI with its standard deviation.
+
+    This is given in the text, or left open by its digits.
 
     Examples
     --------
@@ -306,11 +303,11 @@ def written_in(option: str, text: str, unit: str) -> Written:
     from vibroimpact.units.quantity_text import number_and_unit
     from vibroimpact.units.written import read_written
 
-    parts = number_and_unit(text)
+    quantity = number_and_unit(text)
+    if quantity is not None and not quantity[1] and unit:
+        text = f"{text} {unit}"
     try:
-        return read_written(
-            text if parts is None or parts[1] or not unit else f"{text} {unit}", unit
-        )
+        return read_written(text, unit)
     except InputError as error:
         raise InputError(error.message, option) from None
 
@@ -321,18 +318,16 @@ def note(text: str) -> None:
 
 
 def note_warnings() -> None:
-    """Show warnings about charts that could not be drawn, and about laws that are not
-    compiled, as notes.
-    """
-    show_others = warnings.showwarning
+    """Show the warnings of the package as notes."""
+    show_as_python_does = warnings.showwarning
 
     def show_warning(
-        message: Warning | str, category: type[Warning], *where: Any, **to: Any
+        message: Warning | str, category: type[Warning], *location: Any, **options: Any
     ) -> None:
         if issubclass(category, ChartWarning | SlowLawWarning):
             note(str(message))
         else:
-            show_others(message, category, *where, **to)
+            show_as_python_does(message, category, *location, **options)
 
     warnings.simplefilter("always", ChartWarning)
     warnings.simplefilter("always", SlowLawWarning)
@@ -341,8 +336,9 @@ def note_warnings() -> None:
 
 @contextmanager
 def exit_on_interrupt() -> Iterator[None]:
-    """Exit on Ctrl-C with the message that nothing was written: results inside are
-    written atomically at the end.
+    """Exit on Ctrl-C with the message that nothing was written.
+
+    What is written inside must be written atomically, at the end.
     """
     try:
         yield
@@ -352,36 +348,39 @@ def exit_on_interrupt() -> Iterator[None]:
 
 @contextmanager
 def interrupt_flag(message: str) -> Iterator[Callable[[], bool]]:
-    """Yield a function that returns whether SIGINT or SIGTERM was received, so that running work
-    can finish; a second one exits at once.
+    """Yield a function that returns whether SIGINT or SIGTERM was received; a second one exits.
 
-    An exception raised in a signal handler can surface where it is swallowed, and be lost.
+    Running work can then finish. An exception raised in a signal handler can surface where it is
+    swallowed, and be lost.
 
     Parameters
     ----------
     message : str
         Message printed on an immediate exit.
     """
-    pressed = 0
+    received = 0
 
-    def press(*_: object) -> None:
-        nonlocal pressed
-        pressed += 1
-        if pressed > 1:
+    def receive(*_: object) -> None:
+        nonlocal received
+        received += 1
+        if received > 1:
             note(message)
             os._exit(130)  # worker processes end with this one
         note("stopping after what is under way; Ctrl-C once more stops at once")
 
     # schedulers send SIGTERM
-    before = {number: signal.signal(number, press) for number in (signal.SIGINT, signal.SIGTERM)}
+    previous_handlers = {
+        number: signal.signal(number, receive) for number in (signal.SIGINT, signal.SIGTERM)
+    }
     try:
-        yield lambda: pressed > 0
+        yield lambda: received > 0
     finally:
-        for number, handler in before.items():
+        for number, handler in previous_handlers.items():
             signal.signal(number, handler)
 
 
 def fail(message: str, status: int) -> NoReturn:
     """Print an error message and exit with a status."""
-    say("\n".join(f"vibroimpact: {line}" for line in lines_of(message.split("\n"))), err=True)
+    lines = [f"vibroimpact: {line}" for line in lines_of(message.split("\n"))]
+    say("\n".join(lines), err=True)
     sys.exit(status)

@@ -21,8 +21,9 @@ _SYSTEMS: dict[str, dict[str, str]] = {
     "cm, g, dyn, s (cgs)": {"force": "dyn", "mass": "g", "length": "cm", "time": "s"},
     "in, lb, lbf, s (Adams IPS)": {"force": "lbf", "mass": "lb", "length": "in", "time": "s"},
 }
-"""Unit systems with the unit of each dimension; where force is not mass length / time^2,
-contact parameters contain the unit of force.
+"""The unit of each dimension in each unit system.
+
+Where force is not mass length / time^2, contact parameters contain the unit of force.
 """
 
 
@@ -40,21 +41,21 @@ def in_unit_systems(value: float, unit: str) -> list[tuple[str, float, str]]:
     >>> in_unit_systems(179.75, "N s/m")[3]
     ('mm, g, N, ms, MPa', 179.75, 'N ms/mm')
     """
-    dimension = dimension_of(unit)
-    others = dimension.keys() - _SYSTEMS["SI"].keys()
-    if others or not dimension:
+    exponents = dimension_of(unit)
+    unknown = exponents.keys() - _SYSTEMS["SI"].keys()
+    if unknown or not exponents:
         raise InputError(
-            f'"{unit}" holds {", ".join(sorted(others)) or "no dimension"}; only units of '
+            f'"{unit}" holds {", ".join(sorted(unknown)) or "no dimension"}; only units of '
             "force, mass, length and time are shown"
         )
-    found = []
-    for name, units in _SYSTEMS.items():
-        there = unit_text([(units[one], power) for one, power in dimension.items()])
-        found.append((name, convert_units(value, unit, there), there))
-    return found
+    rows = []
+    for system, units in _SYSTEMS.items():
+        system_unit = unit_text((units[name], exponent) for name, exponent in exponents.items())
+        rows.append((system, convert_units(value, unit, system_unit), system_unit))
+    return rows
 
 
-def converted(value: float, unit: str, to: str) -> RenderableType:
+def unit_conversion(value: float, unit: str, to: str) -> RenderableType:
     """Return one conversion as a line of text, with a note on powers of length.
 
     Raises
@@ -62,13 +63,13 @@ def converted(value: float, unit: str, to: str) -> RenderableType:
     InputError
         As `convert_units`.
     """
-    there = convert_units(value, unit, to)
-    power = dimension_of(unit).get("length", 0.0)
-    from_metres = value != 0.0 and abs(there / value * 1000.0**-power - 1.0) < 1e-9
-    return Group(
-        Text(f"{number_text(value)} {unit} = {number_text(there)} {to}"),
-        *(_power_note(unit) if from_metres else []),
-    )
+    number = convert_units(value, unit, to)
+    exponent = dimension_of(unit).get("length", 0.0)
+    # is the factor that of metres to millimetres?
+    from_metres = value != 0.0 and abs(number / value * 1000.0**-exponent - 1.0) < 1e-9
+    line = Text(f"{number_text(value)} {unit} = {number_text(number)} {to}")
+    notes = _power_note(unit) if from_metres else []
+    return Group(line, *notes)
 
 
 def unit_table(value: float, unit: str) -> RenderableType:
@@ -79,13 +80,12 @@ def unit_table(value: float, unit: str) -> RenderableType:
     InputError
         As `in_unit_systems`.
     """
-    names, values, there = zip(*in_unit_systems(value, unit), strict=True)
-    shown = [number_text(one) for one in values]
+    systems, numbers, units = zip(*in_unit_systems(value, unit), strict=True)
     table = TerminalTable(
         [
-            TerminalColumn("unit system", names, text=True),
-            TerminalColumn("number", shown),
-            TerminalColumn("unit", there, text=True),
+            TerminalColumn("unit system", systems, text=True),
+            TerminalColumn("number", [number_text(number) for number in numbers]),
+            TerminalColumn("unit", units, text=True),
         ]
     )
     return Group(Text(f"{number_text(value)} {unit}", style="bold"), table, *_power_note(unit))
@@ -105,13 +105,13 @@ def unit_document(value: float, unit: str, to: str | None = None) -> dict[str, A
     [{'number': 5000.0, 'unit': 'N/m'}]
     """
     if to is not None:
-        found = [{"number": convert_units(value, unit, to), "unit": to}]
+        converted = [{"number": convert_units(value, unit, to), "unit": to}]
     else:
-        found = [
-            {"unit_system": name, "number": number, "unit": there}
-            for name, number, there in in_unit_systems(value, unit)
+        converted = [
+            {"unit_system": system, "number": number, "unit": system_unit}
+            for system, number, system_unit in in_unit_systems(value, unit)
         ]
-    return {"number": value, "unit": unit, "converted": found}
+    return {"number": value, "unit": unit, "converted": converted}
 
 
 def number_text(number: float) -> str:
@@ -126,19 +126,18 @@ def number_text(number: float) -> str:
 
 
 def _power_note(unit: str) -> list[RenderableType]:
-    """Return the note on a common error by hand: a length to the power p converts with
-    the factor to the power p.
-    """
-    dimension = dimension_of(unit)
-    power = dimension.get("length", 0.0)
-    if "force" not in dimension or power in (0.0, 1.0):
+    """Return the note on a common error by hand: a power of length has a power of the factor."""
+    exponents = dimension_of(unit)
+    exponent = exponents.get("length", 0.0)
+    if "force" not in exponents or exponent in (0.0, 1.0):
         return []
-    does, size = ("divided" if power < 0.0 else "multiplied"), abs(power)
-    factor = f"1000^{size:g} = {number_text(1000.0**size)}, not by 1000" if size != 1.0 else "1000"
-    return [
-        Text(
-            f" From metres to millimetres the number is {does} by {factor}: length has the "
-            f"power {power:g} in it.",
-            style="dim",
-        )
-    ]
+    operation = "divided" if exponent < 0.0 else "multiplied"
+    power = abs(exponent)
+    factor = "1000"
+    if power != 1.0:
+        factor = f"1000^{power:g} = {number_text(1000.0**power)}, not by 1000"
+    sentence = (
+        f" From metres to millimetres the number is {operation} by {factor}: length has the "
+        f"power {exponent:g} in it."
+    )
+    return [Text(sentence, style="dim")]

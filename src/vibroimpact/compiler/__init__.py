@@ -1,3 +1,1 @@
-"""The compiler of scalar functions: their types, the forces of laws as function values,
-and compiled code kept on disk.
-"""
+"""The compiler of scalar functions, and compiled code kept on disk."""

@@ -1,6 +1,4 @@
-"""The code of one compiled function on the disk, which numba asks for before it compiles,
-and keeps afterwards.
-"""
+"""The code of a compiled function on the disk, as numba asks for it and keeps it."""
 
 from __future__ import annotations
 
@@ -20,11 +18,11 @@ from vibroimpact.compiler.symbols import are_linked, called_by_symbol
 
 
 class CodeCache(caching._Cache):  # type: ignore[misc]
-    """Compiled code of a function in the project's own folder, under its digest; damage counts as
-    absence.
+    """Compiled code of a function in a folder of this project, under its digest.
 
-    Numba's own cache looks at the file of a function and not at its callees, does not survive
-    damaged files, and takes a folder for all that use numba in this process.
+    Damaged code counts as absent. Numba's own cache looks at the file of a function and not at its
+    callees, does not survive damaged files, and takes a folder for all that use numba in this
+    process.
 
     Parameters
     ----------
@@ -45,9 +43,7 @@ class CodeCache(caching._Cache):  # type: ignore[misc]
         self.trouble = ""
         """Why the code is not on the disk, or ""."""
         self.size = 0
-        """Size of the machine code [bytes], once it is compiled or loaded; 0 if it can't
-        be kept.
-        """
+        """Size of the machine code [bytes]; 0 before it is compiled or loaded, or if not kept."""
 
     @property
     def cache_path(self) -> str:
@@ -70,14 +66,14 @@ class CodeCache(caching._Cache):  # type: ignore[misc]
         try:
             if self._is_own:
                 _register_runtime(target_context)
-                called, parts = _Unpickler(io.BytesIO(data)).load()
+                callees, compiled = _Unpickler(io.BytesIO(data)).load()
             else:
                 target_context.refresh()  # packages that extend numba may be needed
-                called, parts = pickle.loads(data)
-            if not are_linked(called):
+                callees, compiled = pickle.loads(data)
+            if not are_linked(callees):
                 return None
-            self.size = _size_of(parts)
-            return compiler.CompileResult._rebuild(target_context, *parts)
+            self.size = _machine_code_size(compiled)
+            return compiler.CompileResult._rebuild(target_context, *compiled)
         except Exception:  # whatever a pickle raises
             return None
 
@@ -85,9 +81,9 @@ class CodeCache(caching._Cache):  # type: ignore[misc]
         """Keep a compiled function, unless its code holds addresses of this process."""
         if data.library.has_dynamic_globals or not all(lifted.can_cache for lifted in data.lifted):
             return
-        parts = data._reduce()
-        self.size = _size_of(parts)
-        content = serialize.dumps((called_by_symbol(data.library), parts))
+        compiled = data._reduce()
+        self.size = _machine_code_size(compiled)
+        content = serialize.dumps((called_by_symbol(data.library), compiled))
         self.trouble = save_code(self.folder(data.target_context), self._file, content)
 
     def enable(self) -> None:
@@ -100,9 +96,10 @@ class CodeCache(caching._Cache):  # type: ignore[misc]
         """Do nothing."""
 
 
-def _size_of(parts: tuple[Any, ...]) -> int:
-    """Return the size of the machine code among what numba keeps of a compiled function [bytes]."""
-    (_name, _kind, (machine_code, _bitcode)), *_others = parts
+def _machine_code_size(compiled: tuple[Any, ...]) -> int:
+    """Return the size of the machine code in what numba keeps of a compiled function [bytes]."""
+    library = compiled[0]
+    _name, _kind, (machine_code, _bitcode) = library
     return len(machine_code)
 
 
@@ -120,9 +117,7 @@ def _register_runtime(target_context: Any) -> None:
 
 
 class _Unpickler(pickle.Unpickler):
-    """Reads code without loading the modules of numba that it was made by, for a tenth of
-    a second or two.
-    """
+    """Reads code without the modules of numba that made it, which saves a tenth of a second."""
 
     def find_class(self, module: str, name: str) -> Any:
         if (module, name) == (environment.__name__, "_rebuild_env"):
@@ -131,8 +126,9 @@ class _Unpickler(pickle.Unpickler):
 
 
 def _environment(module: str, constants: list[Any], name: str) -> Any:
-    """Return what numba keeps for a function: its globals, which only interpreted parts
-    read, and its constants.
+    """Return what numba keeps for a function: its globals and its constants.
+
+    Only interpreted code reads the globals.
     """
     if module in sys.modules or not module.startswith("numba."):
         return environment._rebuild_env(module, constants, name)

@@ -27,9 +27,7 @@ PLACE = "VIBROIMPACT_CODE_STORE"
 """Environment variable with the folder of compiled code."""
 
 FORMAT = 3
-"""Part of every folder's name: to be increased when the files, or the options of the
-compiler, change.
-"""
+"""Part of the names of folders; to be increased with the files or the options of the compiler."""
 
 LARGEST = 100_000_000
 """Largest size of the store [bytes]."""
@@ -40,9 +38,7 @@ _LONGEST_WAIT = 300.0  # seconds
 
 
 def code_folder() -> Path:
-    """Return the folder of compiled code: that of the environment variable
-    VIBROIMPACT_CODE_STORE, else one in the user's cache.
-    """
+    """Return the folder of compiled code: of VIBROIMPACT_CODE_STORE, else in the user's cache."""
     from platformdirs import user_cache_path
 
     given = os.environ.get(PLACE)
@@ -51,14 +47,14 @@ def code_folder() -> Path:
 
 def machine_folder(processor: str) -> Path:
     """Return the folder for this Python, its packages, and a processor."""
-    return code_folder() / _kind(processor)
+    return code_folder() / _machine_digest(processor)
 
 
 @cache
-def _kind(processor: str) -> str:
+def _machine_digest(processor: str) -> str:
     packages = [f"{name} {version(name)}" for name in ("numba", "llvmlite", "numpy")]
-    words = (str(FORMAT), __version__, sys.version, *packages, platform.machine(), processor)
-    return hashlib.sha256("|".join(words).encode()).hexdigest()[:16]
+    machine = (str(FORMAT), __version__, sys.version, *packages, platform.machine(), processor)
+    return hashlib.sha256("|".join(machine).encode()).hexdigest()[:16]
 
 
 def has_code(folder: Path, name: str) -> bool:
@@ -96,9 +92,7 @@ def save_code(folder: Path, name: str, data: bytes) -> str:
 
 @contextmanager
 def compiling_alone(folder: Path) -> Iterator[None]:
-    """Wait while another process compiles, so that it is done once, and its code is found
-    afterwards.
-    """
+    """Wait while another process compiles, so that its code is found afterwards."""
     with suppress(OSError):
         folder.mkdir(parents=True, exist_ok=True)
     with alone(folder, _LONGEST_WAIT):

@@ -1,6 +1,4 @@
-"""A function that is compiled when it is first called, and for which numba is not loaded
-before that.
-"""
+"""Functions that are compiled, and for which numba is loaded, when they are first called."""
 
 from __future__ import annotations
 
@@ -18,9 +16,7 @@ INTERPRETING = ContextVar("INTERPRETING", default=False)
 
 @contextmanager
 def interpreted() -> Iterator[None]:
-    """Run functions of the core as plain Python, for a computation so short that loading
-    numba would take longer.
-    """
+    """Run functions of the core as plain Python, where loading numba would take longer."""
     token = INTERPRETING.set(True)
     try:
         yield
@@ -55,9 +51,7 @@ class DeferredFunction:
 
     @cached_property
     def compiled(self) -> Any:
-        """The compiled function, as Python calls it; the Python function if numba turns
-        out not to load.
-        """
+        """The compiled function, as Python calls it; the Python function if numba does not load."""
         if self._why_not():
             return self.py_func
         from vibroimpact.compiler.functions import CompiledFunction

@@ -1,6 +1,4 @@
-"""The digest of a function: its code, and everything that compiled code takes from
-outside of it.
-"""
+"""The digest of a function: its code, and all that compiled code takes from outside of it."""
 
 from __future__ import annotations
 
@@ -12,10 +10,7 @@ from typing import Any, cast
 import numpy as np
 
 _KNOWN_PACKAGES = ("numpy", "math", "cmath", "operator", "builtins", "numba", "llvmlite")
-"""Packages whose versions are in the name of the folder, so that their functions need
-only be named.
-"""
-
+"""Packages whose functions need only be named: their versions are in the name of the folder."""
 
 _OWN_PACKAGE = "vibroimpact"
 
@@ -53,9 +48,7 @@ class Digest:
 
     @property
     def text(self) -> str:
-        """A hash that changes whenever the compiled code may: with the function, its
-        callees, or the constants that they use.
-        """
+        """A hash that changes with the function, its callees, and the constants that they use."""
         return hashlib.sha256("\n".join(self._words).encode()).hexdigest()[:32]
 
     def _add(self, value: Any) -> None:
@@ -64,29 +57,12 @@ class Digest:
             value = value.py_func
         if isinstance(value, FunctionType):
             self._add_function(cast(FunctionType, self._replaced.get(value, value)))
-        elif isinstance(value, np.ndarray):
-            content = hashlib.sha256(np.ascontiguousarray(value).tobytes()).hexdigest()
-            self._words.append(f"array {value.dtype} {value.shape} {content}")
         elif isinstance(value, tuple):
             self._words.append(f"{type(value).__qualname__} of {len(value)}")
             for member in value:
                 self._add(member)
-        elif (
-            isinstance(value, bool | int | float | complex | str | bytes | np.generic)
-            or value is None
-        ):
-            self._words.append(f"{type(value).__qualname__} {value!r}")
-        elif isinstance(value, ModuleType):
-            self._words.append(f"module {value.__name__}")
-        elif isinstance(value, type) and issubclass(value, tuple):
-            self._words.append(f"{value.__qualname__} {getattr(value, '_fields', ())}")
-        elif (
-            isinstance(value, type | BuiltinFunctionType | np.ufunc)
-            or _package(value) in _KNOWN_PACKAGES
-        ):
-            self._words.append(f"{_package(value)} {getattr(value, '__qualname__', value)!r}")
         else:
-            raise NotDigestible(f"{type(value).__qualname__} {value!r}")
+            self._words.append(_text_of(value))
 
     def _add_function(self, function: FunctionType) -> None:
         if _package(function) in _KNOWN_PACKAGES:
@@ -115,33 +91,59 @@ class Digest:
                 self._words.append(repr(constant))
 
 
+_PLAIN_TYPES = bool | int | float | complex | str | bytes | np.generic | None
+_NAMED_TYPES = type | BuiltinFunctionType | np.ufunc
+
+
+def _text_of(value: Any) -> str:
+    """Return a text of a value that is neither a function nor a tuple."""
+    if isinstance(value, np.ndarray):
+        content = hashlib.sha256(np.ascontiguousarray(value).tobytes()).hexdigest()
+        return f"array {value.dtype} {value.shape} {content}"
+    if isinstance(value, _PLAIN_TYPES):
+        return f"{type(value).__qualname__} {value!r}"
+    if isinstance(value, ModuleType):
+        return f"module {value.__name__}"
+    if isinstance(value, type) and issubclass(value, tuple):
+        return f"{value.__qualname__} {getattr(value, '_fields', ())}"
+    if isinstance(value, _NAMED_TYPES) or _package(value) in _KNOWN_PACKAGES:
+        return f"{_package(value)} {getattr(value, '__qualname__', value)!r}"
+    raise NotDigestible(f"{type(value).__qualname__} {value!r}")
+
+
 def _package(value: Any) -> str:
     return str(getattr(value, "__module__", None) or type(value).__module__).partition(".")[0]
 
 
 def _used(function: FunctionType) -> list[tuple[str, Any]]:
-    """Return what a function takes from outside: globals, variables of functions around
-    it, and members of modules.
+    """Return what a function takes from outside, sorted by name.
+
+    That are globals, variables of functions around it, and members of modules.
     """
-    names = set(_names(function.__code__))
+    code = function.__code__
+    names = set(_names(code))
     values = {name: function.__globals__[name] for name in names if name in function.__globals__}
-    for name, cell in zip(function.__code__.co_freevars, function.__closure__ or (), strict=True):
+    for name, cell in zip(code.co_freevars, function.__closure__ or (), strict=True):
         values[name] = cell.cell_contents
-    new = values
-    while modules := [
-        value
-        for value in new.values()
-        if isinstance(value, ModuleType) and value.__name__ not in _KNOWN_PACKAGES
-    ]:
-        members = {
-            f"{module.__name__}.{name}": getattr(module, name)
-            for module in modules
-            for name in names
-            if hasattr(module, name)
-        }
-        new = {name: member for name, member in members.items() if name not in values}
-        values = values | new
+    # members of modules may be modules with members
+    new_values = values
+    while new_values:
+        members = _members_of_modules(new_values, names)
+        new_values = {name: member for name, member in members.items() if name not in values}
+        values = values | new_values
     return sorted(values.items(), key=lambda item: item[0])
+
+
+def _members_of_modules(values: Mapping[str, Any], names: set[str]) -> dict[str, Any]:
+    """Return the members with these names of the modules among values."""
+    members = {}
+    for module in values.values():
+        if not isinstance(module, ModuleType) or module.__name__ in _KNOWN_PACKAGES:
+            continue
+        for name in names:
+            if hasattr(module, name):
+                members[f"{module.__name__}.{name}"] = getattr(module, name)
+    return members
 
 
 def _names(code: CodeType) -> Iterator[str]:

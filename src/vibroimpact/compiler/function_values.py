@@ -23,9 +23,7 @@ LAW_FUNCTIONS = {
     "levels": "scalar_levels",
     "compressed": "scalar_compressed",
 }
-"""The functions of a contact law, in the order of `law_addresses`, with the attributes of its
-class that hold them.
-"""
+"""The functions of a contact law with the attributes of its class, in the order of addresses."""
 
 FRICTION_FUNCTIONS = {"slip_after": "scalar_slip_after", "friction": "scalar_friction"}
 """The same of a friction law without tangential compliance."""
@@ -38,57 +36,48 @@ MOST_COEFFICIENTS = 24
 _NUMBERS = count(1)
 
 _HELD: WeakValueDictionary[int, Any] = WeakValueDictionary()
-"""Laws without functions of floats, by the numbers by which they are called; no number is
-given twice.
-"""
+"""Laws that have only methods, by the numbers by which they are called; each number is new."""
 
 # laws under other memories that are kept, since a law is called many times under each
 _MOST_CHANGED = 256
 
 
 def force_at(address: Any) -> Any:
-    """Return the function value of a law's force at an address; for use in compiled functions."""
+    """Return the function value of a law's force at an address; for compiled functions."""
     return address
 
 
 def energies_at(address: Any) -> Any:
-    """Return the function value of a law's energies at an address; for use in compiled
-    functions.
-    """
+    """Return the function value of a law's energies at an address; for compiled functions."""
     return address
 
 
 def levels_at(address: Any) -> Any:
-    """Return the function value of a law's levels at an address; for use in compiled functions."""
+    """Return the function value of a law's levels at an address; for compiled functions."""
     return address
 
 
 def compressed_at(address: Any) -> Any:
-    """Return the function value of a law's change by compression at an address; for use
-    in compiled functions.
-    """
+    """Return the function value of a law's change by compression; for compiled functions."""
     return address
 
 
 def slip_after_at(address: Any) -> Any:
-    """Return the function value of what a friction law leaves of a slip, at an address; for use in
-    compiled functions.
-    """
+    """Return the function value of a friction law's slip at an address; for compiled functions."""
     return address
 
 
 def friction_at(address: Any) -> Any:
-    """Return the function value of a law's friction at an address; for use in compiled
-    functions.
-    """
+    """Return the function value of a law's friction at an address; for compiled functions."""
     return address
 
 
 def multiply_row(
     room: Any, values: Any, matrices: Any, matrix: Any, width: Any, columns: Any, product: Any
 ) -> None:
-    """Write the product of a row of an array with a matrix into another row; for use in compiled
-    functions.
+    """Write the product of a row of an array with a matrix into another row.
+
+    It is for compiled functions.
 
     Parameters
     ----------
@@ -128,23 +117,21 @@ def law_coefficients(law: Any) -> Floats:
 
 
 def interpreted_function(law_class: type[Any], kind: str) -> Callable[..., Any]:
-    """Return a function of a law as a Python function of floats and coefficients; `kind`: of
-    `ALL_FUNCTIONS`.
+    """Return a function of a law as a Python function of floats and coefficients.
 
-    Of a law that lacks any of its own it is one that calls its methods.
+    Of a law that lacks any of its own it is one that calls its methods. `kind` is of
+    `ALL_FUNCTIONS`.
     """
-    function: Callable[..., Any] = (
-        _OF_HELD[kind] if law_class.missing_functions() else getattr(law_class, ALL_FUNCTIONS[kind])
-    )
+    if law_class.missing_functions():
+        return _OF_HELD[kind]
+    function: Callable[..., Any] = getattr(law_class, ALL_FUNCTIONS[kind])
     return function
 
 
 def forces_of_held(
     delta: float, delta_dot: float, approach_speed: float, coefficients: Any
 ) -> tuple[float, float]:
-    """Return the forces of the law with the number and the memories that
-    `law_coefficients` returned.
-    """
+    """Return the forces of the law with the number and the memories of `law_coefficients`."""
     static, dissipative = _held(coefficients).forces(delta, delta_dot, approach_speed)
     return float(static), float(dissipative)
 
@@ -156,21 +143,23 @@ def energies_of_held(delta: float, coefficients: Any) -> tuple[float, float]:
 
 
 def levels_of_held(coefficients: Any) -> tuple[float, ...]:
-    """Return the levels of such a law; any compression may change a memory, and no more
-    than two breakpoints are known.
+    """Return the levels of such a law: of touch, release and memory, and two breakpoints.
+
+    Any compression may change a memory.
     """
     law = _held(coefficients)
     touch_level = float(law.touch_level)
+    release_level = float(law.release_level)
     memory_level = touch_level if law.memories() else np.inf
-    first, second = (*map(float, law.breakpoints), np.inf, np.inf)[:2]
-    return touch_level, float(law.release_level), memory_level, first, second
+    breakpoints = [*map(float, law.breakpoints), np.inf, np.inf]
+    return touch_level, release_level, memory_level, breakpoints[0], breakpoints[1]
 
 
 def compress_held(deepest: float, coefficients: Any, changed: Any) -> float:
-    """Write the memories of such a law after compression, and return the indentation beyond which
-    they may change again.
+    """Write the memories of such a law after compression.
 
-    It is the deepest one, since a law remembers its largest indentation.
+    The indentation beyond which they may change again is returned. It is the deepest one, since a
+    law remembers its largest indentation.
     """
     law = _held(coefficients).after_compression(deepest)
     for index, memory in enumerate(law.memories().values()):
@@ -181,9 +170,7 @@ def compress_held(deepest: float, coefficients: Any, changed: Any) -> float:
 def slip_after_of_held(
     slip: float, impulse: float, whole: float, mass: float, coefficients: Any
 ) -> float:
-    """Return what a friction law with the number that `law_coefficients` returned leaves of a
-    slip.
-    """
+    """Return what the friction law with the number of `law_coefficients` leaves of a slip."""
     law = _held(coefficients)
     arguments = (np.array([value]) for value in (slip, impulse, whole, mass))
     return float(law.slip_after(*arguments)[0])
@@ -195,9 +182,8 @@ def friction_of_held(slip: float, normal_force: float, coefficients: Any) -> flo
 
 
 def _number(law: Any) -> int:
-    """Return the number of a law; a copy of a law, which comes with the number of that,
-    gets its own.
-    """
+    """Return the number of a law."""
+    # a copy of a law comes with the number of the original, and gets its own
     number = int(vars(law).get("_number", 0))
     if _HELD.get(number) is not law:
         number = vars(law)["_number"] = next(_NUMBERS)
@@ -206,8 +192,10 @@ def _number(law: Any) -> int:
 
 
 def _held(coefficients: Any) -> Any:
+    """Return the law with the number and the memories in coefficients."""
     number = int(coefficients[0])
-    return _under(number, tuple(coefficients[1 : 1 + len(_memories(number))]))
+    memories = coefficients[1 : 1 + len(_memories(number))]
+    return _law_with_memories(number, tuple(memories))
 
 
 @lru_cache(maxsize=_MOST_CHANGED)
@@ -216,10 +204,8 @@ def _memories(number: int) -> tuple[str, ...]:
 
 
 @lru_cache(maxsize=_MOST_CHANGED)
-def _under(number: int, memories: tuple[float, ...]) -> Any:
-    """Return a law under other memories than its own; it lives on here, but its original
-    does not.
-    """
+def _law_with_memories(number: int, memories: tuple[float, ...]) -> Any:
+    """Return a law with other memories than its own; the cache keeps it, but not its original."""
     return _HELD[number].changed(dict(zip(_memories(number), memories, strict=True)))
 
 

@@ -1,4 +1,5 @@
 """Compiled functions: each is compiled, or taken from the disk, when it is first called.
+
 Loading this module loads numba.
 """
 
@@ -26,9 +27,7 @@ from vibroimpact.compiler.notice import say_how_long, say_trouble
 from vibroimpact.compiler.symbols import call_by_symbol, is_large
 
 _OPTIONS = {"error_model": "numpy"}
-"""Division by zero gives infinity, as in NumPy; no `fastmath`, so that sums do not depend
-on the compiler.
-"""
+"""Division by zero gives infinity; without `fastmath` sums do not depend on the compiler."""
 
 _SECONDS = 6e-4
 """Time to compile a byte of Python's code [s]."""
@@ -41,11 +40,10 @@ _REPLACED: dict[Any, Callable[..., Any]] = {}
 
 
 class CompiledFunction(CPUDispatcher):  # type: ignore[misc]
-    """A function with one signature, compiled when Python calls it, or when a function that calls
-    it is compiled.
+    """A function with one signature, compiled at its first call.
 
-    A function whose code is on the disk holds that of its callees too, so these are then neither
-    compiled nor loaded.
+    It is also compiled when a function that calls it is. A function whose code is on the disk holds
+    that of its callees too, so these are then neither compiled nor loaded.
 
     Parameters
     ----------
@@ -71,17 +69,15 @@ class CompiledFunction(CPUDispatcher):  # type: ignore[misc]
         nogil: bool = True,
         inner: bool = False,
     ) -> None:
-        wrappers = {"no_cfunc_wrapper": inner, "no_cpython_wrapper": inner}
-        super().__init__(
-            function,
-            targetoptions={
-                "nopython": True,
-                "boundscheck": None,
-                "nogil": nogil,
-                **wrappers,
-                **_OPTIONS,
-            },
-        )
+        options = {
+            "nopython": True,
+            "boundscheck": None,
+            "nogil": nogil,
+            "no_cfunc_wrapper": inner,
+            "no_cpython_wrapper": inner,
+            **_OPTIONS,
+        }
+        super().__init__(function, targetoptions=options)
         self._signature_of = signature
         self._is_inner = inner
         self._is_ready = False
@@ -116,8 +112,9 @@ class CompiledFunction(CPUDispatcher):  # type: ignore[misc]
             call_by_symbol(self, result)
 
     def _own_number(self) -> int:
-        """Return the number of this function, which is that of its code: other code finds
-        it by a name with this number in any process.
+        """Return the number of this function.
+
+        It is that of its code: code finds it by a name with this number in any process.
         """
         return self._cache.number if self.is_kept else randbits(_BITS)
 
@@ -129,9 +126,7 @@ class CompiledFunction(CPUDispatcher):  # type: ignore[misc]
 
     @property
     def is_kept(self) -> bool:
-        """Is the code kept on the disk? So it is unless it depends on something whose
-        content is not known.
-        """
+        """Is the code kept on the disk? Not if it depends on something of unknown content."""
         return isinstance(self._cache, CodeCache)
 
     def is_on_disk(self) -> bool:
@@ -147,9 +142,9 @@ class CompiledFunction(CPUDispatcher):  # type: ignore[misc]
         return bool(self._cache.has_code(self.targetctx))
 
     def _alone(self) -> Any:
-        return (
-            compiling_alone(self._cache.folder(self.targetctx)) if self.is_kept else nullcontext()
-        )
+        if self.is_kept:
+            return compiling_alone(self._cache.folder(self.targetctx))
+        return nullcontext()
 
     def address(self) -> int:
         """Return the address of the machine code, which is valid as long as this object exists."""
@@ -186,19 +181,16 @@ class CompiledFunction(CPUDispatcher):  # type: ignore[misc]
 
 
 def _compiled_named(module: str, name: str, inner: bool) -> Any:
-    """Return the compiled function with a name in a module, as Python or as compiled code
-    calls it.
-    """
+    """Return the compiled function with a name in a module; inner: as compiled code calls it."""
     function: Any = import_module(module)
-    for part in name.split("."):
-        function = getattr(function, part)
+    for attribute in name.split("."):
+        function = getattr(function, attribute)
     return function.inner if inner else function.compiled
 
 
 @contextmanager
 def _numbers_from(own: int) -> Iterator[None]:
-    """Let numba number a function as given, and those that are compiled with it from a random
-    number on.
+    """Let numba number a function as given, and those compiled with it from a random number on.
 
     It tells functions of one name apart by these numbers, which begin with 1 in each process. Two
     of one name (made by a function, such as the forces of two laws) that had one number in two
@@ -225,19 +217,25 @@ def _seconds() -> float:
 def _register() -> None:
     """Tell numba of the functions that were marked since the last time."""
     if not _REPLACED:
-        for kind in function_values.ALL_FUNCTIONS:
-            at = getattr(function_values, f"{kind}_at")
-            of_address = getattr(intrinsics, f"{kind}_of_address")
-            _REPLACED[at] = getattr(of_address, "_defn", at)
-            overload(at)(_inserting(of_address))
-        multiply = function_values.multiply_row
-        _REPLACED[multiply] = getattr(intrinsics.product_of_rows, "_defn", multiply)
-        overload(multiply)(_multiplying)
+        _register_intrinsics()
     for function, of_floats in SCALAR:
         if function in _REPLACED:
             continue
-        _REPLACED[function] = of_floats or function
-        overload(function, jit_options=_OPTIONS, strict=False)(_replacing(_REPLACED[function]))
+        body = of_floats or function
+        _REPLACED[function] = body
+        overload(function, jit_options=_OPTIONS, strict=False)(_replacing(body))
+
+
+def _register_intrinsics() -> None:
+    """Tell numba which functions it inserts as machine instructions."""
+    for kind in function_values.ALL_FUNCTIONS:
+        at_address = getattr(function_values, f"{kind}_at")
+        of_address = getattr(intrinsics, f"{kind}_of_address")
+        _REPLACED[at_address] = getattr(of_address, "_defn", at_address)
+        overload(at_address)(_inserting(of_address))
+    multiply = function_values.multiply_row
+    _REPLACED[multiply] = getattr(intrinsics.product_of_rows, "_defn", multiply)
+    overload(multiply)(_multiplying)
 
 
 def _inserting(of_address: Any) -> Callable[..., Any]:

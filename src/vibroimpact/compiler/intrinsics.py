@@ -37,6 +37,7 @@ friction_of_address = _function_of_address(types.friction)
 
 
 _LANES = 8  # doubles of a vector; a machine with shorter ones takes several
+_SHIFT = 3  # bits by which an integer is shifted to multiply or divide it by this
 
 
 @intrinsic  # type: ignore[untyped-decorator]
@@ -50,62 +51,71 @@ def product_of_rows(
     columns: Any,
     product: Any,
 ) -> Any:
-    """Write the product of a row of an array with a matrix into another row, as
-    `function_values.multiply_row` says.
+    """Write the product of a row of an array with a matrix into another row, as `multiply_row`.
+
+    For each eight columns the rows of the matrix are added, each times an element of the row.
     """
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        array, cube = (
-            context.make_array(kind)(context, builder, value)
-            for kind, value in zip(
-                (types.matrix, types.cube), (arguments[0], arguments[2]), strict=True
-            )
-        )
-        row_length = builder.extract_value(array.shape, 1)
-        rows, row_of_matrix = (
-            builder.extract_value(cube.shape, 1),
-            builder.extract_value(cube.shape, 2),
-        )
-        source = builder.gep(array.data, [builder.mul(arguments[1], row_length)])
-        target = builder.gep(array.data, [builder.mul(arguments[6], row_length)])
-        first = builder.gep(
-            cube.data, [builder.mul(arguments[3], builder.mul(rows, row_of_matrix))]
-        )
-        double, integer = ir.DoubleType(), ir.IntType(64)
-        lanes = ir.VectorType(double, _LANES)
-        nothing = ir.Constant(lanes, [0.0] * _LANES)
+        room, values, matrices, matrix, width, columns, product = arguments
+        rows = context.make_array(types.matrix)(context, builder, room)
+        cube = context.make_array(types.cube)(context, builder, matrices)
+        factors = _pointer_to_row(builder, rows, values)
+        target = _pointer_to_row(builder, rows, product)
+        weights = _pointer_to_matrix(builder, cube, matrix)
+        row_of_weights = builder.extract_value(cube.shape, 2)
+        integer = ir.IntType(64)
+        lanes = ir.VectorType(ir.DoubleType(), _LANES)
+        # two sums, so that an addition need not wait for the last one
         sums = [cgutils.alloca_once(builder, lanes) for _ in range(2)]
-        blocks, blocks_of_columns = (builder.lshr(number, integer(3)) for number in arguments[4:6])
-
-        def vector_at(pointer: Any) -> Any:
-            return builder.bitcast(pointer, lanes.as_pointer())
-
-        with cgutils.for_range(builder, blocks_of_columns, intp=integer) as block:
-            column = builder.shl(block.index, integer(3))
-            for one in sums:
-                builder.store(nothing, one)
-            with cgutils.for_range(builder, blocks, intp=integer) as rows_of_eight:
-                begin = builder.shl(rows_of_eight.index, integer(3))
+        row_blocks = builder.lshr(width, integer(_SHIFT))
+        column_blocks = builder.lshr(columns, integer(_SHIFT))
+        with cgutils.for_range(builder, column_blocks, intp=integer) as column_block:
+            column = builder.shl(column_block.index, integer(_SHIFT))
+            for partial_sum in sums:
+                builder.store(_zeros(), partial_sum)
+            with cgutils.for_range(builder, row_blocks, intp=integer) as row_block:
+                first_row = builder.shl(row_block.index, integer(_SHIFT))
                 for number in range(_LANES):
-                    row = builder.add(begin, integer(number))
-                    value = builder.load(builder.gep(source, [row]))
-                    alike = builder.insert_element(nothing, value, ir.IntType(32)(0))
-                    alike = builder.shuffle_vector(
-                        alike,
-                        nothing,
-                        ir.Constant(ir.VectorType(ir.IntType(32), _LANES), [0] * _LANES),
-                    )
-                    place = builder.gep(
-                        first, [builder.add(builder.mul(row, row_of_matrix), column)]
-                    )
-                    weights = builder.load(vector_at(place), align=8)
-                    one = sums[number % 2]
-                    builder.store(
-                        builder.fadd(builder.load(one), builder.fmul(alike, weights)), one
-                    )
-            whole = builder.fadd(builder.load(sums[0]), builder.load(sums[1]))
-            builder.store(whole, vector_at(builder.gep(target, [column])), align=8)
+                    row = builder.add(first_row, integer(number))
+                    factor = builder.load(builder.gep(factors, [row]))
+                    position = builder.add(builder.mul(row, row_of_weights), column)
+                    vector = builder.load(_pointer_to_vector(builder, weights, position), align=8)
+                    term = builder.fmul(_vector_of(builder, factor), vector)
+                    partial_sum = sums[number % 2]
+                    builder.store(builder.fadd(builder.load(partial_sum), term), partial_sum)
+            total = builder.fadd(builder.load(sums[0]), builder.load(sums[1]))
+            builder.store(total, _pointer_to_vector(builder, target, column), align=8)
         return context.get_dummy_value()
 
     numbers = (types.integer, types.integer, types.integer, types.integer)
     return types.void(types.matrix, types.integer, types.cube, *numbers), generate
+
+
+def _pointer_to_row(builder: Any, array: Any, row: Any) -> Any:
+    row_length = builder.extract_value(array.shape, 1)
+    return builder.gep(array.data, [builder.mul(row, row_length)])
+
+
+def _pointer_to_matrix(builder: Any, cube: Any, matrix: Any) -> Any:
+    rows = builder.extract_value(cube.shape, 1)
+    columns = builder.extract_value(cube.shape, 2)
+    return builder.gep(cube.data, [builder.mul(matrix, builder.mul(rows, columns))])
+
+
+def _pointer_to_vector(builder: Any, pointer: Any, position: Any) -> Any:
+    """Return the pointer to the doubles from a position on, as a vector."""
+    vector = ir.VectorType(ir.DoubleType(), _LANES)
+    return builder.bitcast(builder.gep(pointer, [position]), vector.as_pointer())
+
+
+def _vector_of(builder: Any, value: Any) -> Any:
+    """Return a vector whose elements are all one value."""
+    index = ir.IntType(32)
+    first = builder.insert_element(_zeros(), value, index(0))
+    mask = ir.Constant(ir.VectorType(index, _LANES), [0] * _LANES)
+    return builder.shuffle_vector(first, _zeros(), mask)
+
+
+def _zeros() -> Any:
+    return ir.Constant(ir.VectorType(ir.DoubleType(), _LANES), [0.0] * _LANES)

@@ -1,4 +1,5 @@
 """The compiled functions of contact laws, and calls of those that cannot be compiled.
+
 Loading this module loads numba.
 """
 
@@ -15,9 +16,7 @@ from vibroimpact.compiler.functions import CompiledFunction
 from vibroimpact.errors import SlowLawWarning
 
 _COMPILED: dict[Any, CompiledFunction] = {}
-"""Compiled functions by their Python functions; they are kept, since addresses of them
-are in use.
-"""
+"""Compiled functions by their Python functions; they are kept, as their addresses are in use."""
 
 _REASONS: dict[Any, str] = {}
 """Why a function is not compiled, by its Python function; "" if it is."""
@@ -27,27 +26,27 @@ _WARNED: set[type[Any]] = set()
 
 
 def compiled_law_function(law_class: type[Any], kind: str) -> CompiledFunction:
-    """Return a function of a law as a function value, compiled once a process; `kind`: of
-    `ALL_FUNCTIONS`.
+    """Return a function of a law as a function value, compiled once a process.
+
+    `kind` is of `ALL_FUNCTIONS`.
     """
     source = interpreted_function(law_class, kind)
     if source not in _COMPILED:
         missing = law_class.missing_functions()
         reason = f"it has no {_listed(missing)}" if missing else _why_not_compiled(source, kind)
         if reason:
-            _COMPILED[source] = CompiledFunction(
-                _CALLING[kind](source), _signature(kind), nogil=False
-            )
-            _COMPILED[source].ready()
+            calling = CompiledFunction(_CALLING[kind](source), _signature(kind), nogil=False)
+            calling.ready()
+            _COMPILED[source] = calling
         _REASONS[source] = reason
     if _REASONS[source] and law_class not in _WARNED:
         _WARNED.add(law_class)
         name = getattr(law_class, "name", law_class.__name__)
-        said = (
+        message = (
             f"the law {name} is not compiled, and its force takes microseconds in place of "
             f"nanoseconds: {_REASONS[source]}"
         )
-        warnings.warn(SlowLawWarning(said), stacklevel=4)
+        warnings.warn(SlowLawWarning(message), stacklevel=4)
     return _COMPILED[source]
 
 
@@ -110,18 +109,18 @@ def _calling_compressed(source: Callable[..., Any]) -> Callable[..., Any]:
 
 def _calling_slip_after(source: Callable[..., Any]) -> Callable[..., Any]:
     def slip_after(slip, impulse, whole, mass, coefficients):  # type: ignore[no-untyped-def]
-        with objmode(left="float64"):
-            left = source(slip, impulse, whole, mass, coefficients)
-        return left  # noqa: RET504
+        with objmode(remaining_slip="float64"):
+            remaining_slip = source(slip, impulse, whole, mass, coefficients)
+        return remaining_slip  # noqa: RET504
 
     return slip_after
 
 
 def _calling_friction(source: Callable[..., Any]) -> Callable[..., Any]:
     def friction(slip, normal_force, coefficients):  # type: ignore[no-untyped-def]
-        with objmode(force="float64"):
-            force = source(slip, normal_force, coefficients)
-        return force  # noqa: RET504
+        with objmode(friction_force="float64"):
+            friction_force = source(slip, normal_force, coefficients)
+        return friction_force  # noqa: RET504
 
     return friction
 
@@ -137,12 +136,14 @@ _CALLING = {
 
 
 def _listed(names: list[str]) -> str:
-    quoted = [f"`{name}`" for name in names]
-    return quoted[0] if len(quoted) == 1 else f"{', '.join(quoted[:-1])} and {quoted[-1]}"
+    *first, last = [f"`{name}`" for name in names]
+    return f"{', '.join(first)} and {last}" if first else last
 
 
 def _first_reason(error: Exception) -> str:
     """Return the first line of numba's message that says something of the function."""
-    lines = [line.strip() for line in str(error).splitlines()]
-    said = [line for line in lines if line and not line.startswith("Failed in")]
-    return said[0] if said else type(error).__name__
+    for line in str(error).splitlines():
+        reason = line.strip()
+        if reason and not reason.startswith("Failed in"):
+            return reason
+    return type(error).__name__

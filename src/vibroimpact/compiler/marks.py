@@ -8,9 +8,7 @@ from typing import Any, TypeVar
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 SCALAR: list[tuple[Callable[..., Any], Callable[..., Any] | None]] = []
-"""The functions that `scalar` marks, each with the one that compiled code calls in its
-place, if any.
-"""
+"""The functions that `scalar` marks, with the one that compiled code calls instead, if any."""
 
 DEFERRED: list[Any] = []
 """The functions that `compiled` marks: each is compiled when it is first called."""
@@ -28,9 +26,7 @@ def scalar(function: Function) -> Function:
 
 
 def scalar_as(of_floats: Callable[..., Any]) -> Callable[[Function], Function]:
-    """Mark a function as `scalar` does, with another body for floats, which may branch
-    where that for arrays can't.
-    """
+    """Mark a function as `scalar` does, with another body for floats, which may branch."""
 
     def mark(function: Function) -> Function:
         SCALAR.append((function, of_floats))

@@ -18,8 +18,9 @@ _LISTENER: ContextVar[Hear | None] = ContextVar("_LISTENER", default=None)
 
 @contextmanager
 def heard_by(hear: Hear) -> Iterator[None]:
-    """Tell a function, too, that the solver is being compiled, while the block lasts and
-    in the threads that it starts with its context.
+    """Tell a function, too, that the solver is being compiled, within a block.
+
+    It hears of the threads that are started with the context of the block.
     """
     token = _LISTENER.set(hear)
     try:
@@ -29,8 +30,9 @@ def heard_by(hear: Hear) -> Iterator[None]:
 
 
 def say_how_long(estimate: Callable[[], float]) -> None:
-    """Say that the solver is being compiled, and about how long that takes, if it takes long: in a
-    terminal once, to a listener each time.
+    """Say that the solver is being compiled, and about how long that takes, if it takes long.
+
+    It is said in a terminal once, and to a listener each time.
 
     Parameters
     ----------
@@ -44,10 +46,8 @@ def say_how_long(estimate: Callable[[], float]) -> None:
     seconds = estimate()
     if seconds <= _LONG:
         return
-    sentence = (
-        "Compiling the solver for this machine, once; about "
-        f"{_ROUNDED * max(1, round(seconds / _ROUNDED))} s."
-    )
+    rounded = _ROUNDED * max(1, round(seconds / _ROUNDED))
+    sentence = f"Compiling the solver for this machine, once; about {rounded} s."
     if hear is not None:
         hear(sentence)
     if prints:

@@ -47,8 +47,9 @@ def called_by_symbol(library: Any) -> list[tuple[str, Any]]:
 
 
 def are_linked(called: list[tuple[str, Any]]) -> bool:
-    """Make functions ready that code calls by their symbols; are they now where the
-    linker finds them? If not, it would end the process.
+    """Make functions ready that code calls by their symbols; does the linker find them?
+
+    If it does not, it would end the process.
     """
     for _, function in called:
         function.ready()

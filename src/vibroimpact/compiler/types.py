@@ -23,33 +23,33 @@ complexes = types.complex128[::1]
 pair = types.UniTuple(real, 2)
 
 force = types.FunctionType(pair(real, real, real, vector))
-"""The force of a contact law: indentation, its rate, approach speed and coefficients give
-static and dissipative force.
+"""Of a contact law: the static and the dissipative force.
+
+The arguments are indentation, its rate, approach speed and coefficients.
 """
 
 energies = types.FunctionType(pair(real, vector))
-"""Of a contact law: indentation and coefficients give elastic energy and plastic work."""
+"""Of a contact law: elastic energy and plastic work, from indentation and coefficients."""
 
 levels = types.FunctionType(types.UniTuple(real, 5)(vector))
-"""Of a contact law: coefficients give the indentations at touch, release, change of
-memory, and two breakpoints.
-"""
+"""Of a contact law: indentations at touch, release, change of memory, and two breakpoints."""
 
 compressed = types.FunctionType(real(real, vector, vector))
-"""Of a contact law: what a deepest indentation changes in the coefficients is written into a copy
-of them, the last argument.
+"""Of a contact law: its coefficients after a deepest indentation.
 
-It returns the indentation beyond which compression changes the memory again.
+They are written into a copy of them, the last argument. It returns the indentation beyond which
+compression changes the memory again.
 """
 
 slip_after = types.FunctionType(real(real, real, real, real, vector))
-"""Of a friction law: slip without friction, normal impulse so far and as a whole, effective mass
-and coefficients give the slip.
+"""Of a friction law: the slip.
+
+The arguments are slip without friction, normal impulse so far and as a whole, effective mass and
+coefficients.
 """
 
 friction = types.FunctionType(real(real, real, vector))
-"""Of a friction law: slip, normal force and coefficients give the friction force against the slip.
-"""
+"""Of a friction law: the friction force against the slip, from it, normal force, coefficients."""
 
 
 def tuple(*members: types.Type) -> types.Type:
@@ -58,21 +58,21 @@ def tuple(*members: types.Type) -> types.Type:
 
 
 def of(kind: type) -> types.Type:
-    """Return the type of a named tuple whose members are annotated with names of types,
-    as `Vector`, or of other named tuples.
+    """Return the type of a named tuple.
+
+    Its members are annotated with names of types, as `Vector`, or of other named tuples.
     """
     module = sys.modules[kind.__module__]
     members = [
         _member(annotation.__forward_arg__, module) for annotation in kind.__annotations__.values()
     ]
-    alike = len(set(members)) == 1
-    return (
-        types.NamedUniTuple(members[0], len(members), kind)
-        if alike
-        else types.NamedTuple(members, kind)
-    )
+    if len(set(members)) == 1:
+        return types.NamedUniTuple(members[0], len(members), kind)
+    return types.NamedTuple(members, kind)
 
 
 def _member(name: str, module: ModuleType) -> types.Type:
-    found = globals().get(name.lower())
-    return found if isinstance(found, types.Type) else of(getattr(module, name))
+    member_type = globals().get(name.lower())
+    if isinstance(member_type, types.Type):
+        return member_type
+    return of(getattr(module, name))

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from vibroimpact.arrays import Indices
+from vibroimpact.arrays import Floats, Indices
 
 
 class Multiple(NamedTuple):
@@ -111,13 +111,18 @@ def multiple(unit: str, values: ArrayLike) -> Multiple:
     >>> [multiple(unit, [7850.0]).unit for unit in ("m/s^2", "m/s2", "kg/m^3", "N/m^1.5")]
     ['m/s²', 'm/s²', 'kg/m³', 'N/m¹·⁵']
     """
-    choices, size = _MULTIPLES.get(unit.replace("^", "")), largest(values)
-    if choices is None:
-        return Multiple(re.sub(r"\^([\d.]+)", lambda power: _superscript(power[1]), unit), 1.0)
-    if size == 0.0:
-        return next(choice for choice in choices if choice.size == 1.0)
-    # 0.9995 is printed as 1.000 with four digits
-    return next((choice for choice in choices if size >= 0.9995 * choice.size), choices[-1])
+    multiples = _MULTIPLES.get(unit.replace("^", ""))
+    if multiples is None:
+        raised = re.sub(r"\^([\d.]+)", lambda power: _superscript(power[1]), unit)
+        return Multiple(raised, 1.0)
+    magnitude = largest(values)
+    if magnitude == 0.0:
+        return next(candidate for candidate in multiples if candidate.size == 1.0)
+    for candidate in multiples:
+        # 0.9995 is printed as 1.000 with four digits
+        if magnitude >= 0.9995 * candidate.size:
+            return candidate
+    return multiples[-1]
 
 
 def digits(value: float, significant: int = 4) -> str:
@@ -134,16 +139,23 @@ def digits(value: float, significant: int = 4) -> str:
         return MISSING
     if value == 0.0:
         return "0"
-    mantissa, exponent = f"{value:.{significant - 1}e}".split("e")
-    power = int(exponent)
-    if not -4 <= power <= 7:
-        return f"{mantissa}·10{_superscript(str(power))}".replace("-", _MINUS)
-    return fixed(value, max(0, significant - 1 - power))
+    exponent = _exponent(value, significant)
+    if exponent not in _PLAIN_EXPONENTS:
+        return _with_power_of_ten(value, significant)
+    return fixed(value, max(0, significant - 1 - exponent))
 
 
 def certain(shown: str, value: float, figures: int) -> str:
-    """Return a number in at most `figures` significant figures: the text `shown`, or a shorter one;
-    a question mark for none.
+    """Return the text of a number with its certain figures only, or a question mark if it has none.
+
+    Parameters
+    ----------
+    shown : str
+        The number in all digits that would be printed.
+    value : float
+        The number.
+    figures : int
+        How many of its significant figures are certain.
 
     Examples
     --------
@@ -157,10 +169,11 @@ def certain(shown: str, value: float, figures: int) -> str:
         return shown
     if figures < 1:
         return "?"
-    mantissa, exponent = f"{value:.{figures - 1}e}".split("e")
-    if -4 <= (power := int(exponent)) < figures:
-        return fixed(value, figures - 1 - power)
-    return f"{mantissa}·10{_superscript(str(power))}".replace("-", _MINUS)
+    exponent = _exponent(value, figures)
+    # 9709 in two figures is not 9700, whose zeros look certain
+    if not -4 <= exponent < figures:
+        return _with_power_of_ten(value, figures)
+    return fixed(value, figures - 1 - exponent)
 
 
 ALL_FIGURES = 17
@@ -168,8 +181,7 @@ ALL_FIGURES = 17
 
 
 def certain_figures(change: ArrayLike) -> Indices:
-    """Return the number of certain significant figures, from the relative change of each number;
-    the last may be off by three.
+    """Return how many significant figures of each number are certain; the last may be off by three.
 
     Parameters
     ----------
@@ -182,16 +194,17 @@ def certain_figures(change: ArrayLike) -> Indices:
     >>> certain_figures([0.0, 1e-9, 0.003, 0.12, 0.5]).tolist()
     [17, 9, 3, 1, 0]
     """
+    relative = np.nan_to_num(np.asarray(change, dtype=float), nan=np.inf)
     with np.errstate(divide="ignore", invalid="ignore"):
-        figures = np.floor(
-            0.5 - np.log10(np.nan_to_num(np.asarray(change, dtype=float), nan=np.inf))
-        )
+        figures = np.floor(0.5 - np.log10(relative))
     return np.asarray(np.clip(figures, 0, ALL_FIGURES), dtype=np.intp)
 
 
-# least significant digits of the smallest number of a column; largest number of decimals added for
-# it
-_LEAST, _MORE = 3, 2
+_LEAST_DIGITS = 3
+"""Significant digits that the smallest number of a column has at least."""
+
+_ADDED_DECIMALS = 2
+"""Decimals that a column gets for its smallest number at most."""
 
 
 def column_texts(values: ArrayLike, significant: int = 5) -> list[str]:
@@ -216,17 +229,24 @@ def column_texts(values: ArrayLike, significant: int = 5) -> list[str]:
     ['1200', '0.01230']
     """
     numbers = np.asarray(values, dtype=float)
-    sizes = np.abs(numbers[np.isfinite(numbers) & (numbers != 0.0)])
-    if not sizes.size:
-        return [digits(float(value), significant) for value in numbers]
-    top, bottom = (
-        int(f"{size:.{significant - 1}e}".split("e")[1]) for size in (sizes.max(), sizes.min())
-    )
-    usual = max(0, significant - 1 - top)
-    decimals = max(usual, min(_LEAST, significant) - 1 - bottom)
-    if not -4 <= top <= 7 or decimals > usual + _MORE:
-        return [digits(float(value), significant) for value in numbers]
-    return [fixed(float(value), decimals) for value in numbers]
+    decimals = _column_decimals(numbers, significant)
+    if decimals is None:
+        return [digits(float(number), significant) for number in numbers]
+    return [fixed(float(number), decimals) for number in numbers]
+
+
+def _column_decimals(numbers: Floats, significant: int) -> int | None:
+    """Return the decimals of all numbers of a column; None if each needs digits of its own."""
+    magnitudes = np.abs(numbers[np.isfinite(numbers) & (numbers != 0.0)])
+    if not magnitudes.size:
+        return None
+    highest = _exponent(magnitudes.max(), significant)
+    lowest = _exponent(magnitudes.min(), significant)
+    usual = max(0, significant - 1 - highest)
+    decimals = max(usual, min(_LEAST_DIGITS, significant) - 1 - lowest)
+    if highest not in _PLAIN_EXPONENTS or decimals > usual + _ADDED_DECIMALS:
+        return None
+    return decimals
 
 
 def known_text(value: float, spread: float, most: int = 6) -> str:
@@ -249,17 +269,16 @@ def known_text(value: float, spread: float, most: int = 6) -> str:
     """
     if not (math.isfinite(value) and math.isfinite(spread) and spread > 0.0):
         return digits(value, most)
-    places = 1 - int(f"{spread:.1e}".split("e")[1])
-    figures = places + 1 + (int(f"{value:.1e}".split("e")[1]) if value else 0)
+    decimals = 1 - _exponent(spread, 2)
+    figures = decimals + 1 + _exponent(value, 2)
     if figures >= most:
         return digits(value, most)
-    if figures < 1:
-        return fixed(0.0 if places < 0 else value, max(0, places))
-    return (
-        digits(round(value, places), figures)
-        if places > 0 or abs(value) >= 1e7
-        else fixed(round(value, places), 0)
-    )
+    if figures < 1:  # the uncertainty is larger than the number
+        return fixed(value, decimals) if decimals >= 0 else fixed(0.0, 0)
+    rounded = round(value, decimals)
+    if decimals > 0 or abs(value) >= 1e7:
+        return digits(rounded, figures)
+    return fixed(rounded, 0)
 
 
 def known_texts(values: ArrayLike, spreads: ArrayLike, most: int = 6) -> list[str]:
@@ -306,6 +325,20 @@ def brief(value: float, unit: str) -> str:
     shown = f"{value / best.size:.4g}"
     number = digits(value / best.size) if "e" in shown else shown.replace("-", _MINUS)
     return f"{number}\u00a0{best.unit}".rstrip("\u00a0")
+
+
+_PLAIN_EXPONENTS = range(-4, 8)
+"""Powers of ten of the numbers that are written without one."""
+
+
+def _exponent(value: float, significant: int) -> int:
+    """Return the power of ten of a number that is rounded to significant digits; 0 of zero."""
+    return int(f"{value:.{significant - 1}e}".partition("e")[2])
+
+
+def _with_power_of_ten(value: float, significant: int) -> str:
+    mantissa, exponent = f"{value:.{significant - 1}e}".split("e")
+    return f"{mantissa}·10{_superscript(str(int(exponent)))}".replace("-", _MINUS)
 
 
 def _superscript(power: str) -> str:

@@ -12,16 +12,19 @@ _LONGEST = 80  # characters of a quantity
 
 
 def number_and_unit(text: str) -> tuple[float, str] | None:
-    """Return the number and the unit of a text, "" for no unit, neither of which is checked; None
-    if it does not begin with a number.
+    """Return the number and the unit of a text; None if it does not begin with a number.
+
+    The unit is "" if there is none. Neither is checked.
 
     Examples
     --------
     >>> number_and_unit("25 mm"), number_and_unit("0.3"), number_and_unit("mm")
     ((25.0, 'mm'), (0.3, ''), None)
     """
-    match = _QUANTITY.fullmatch(text) if len(text) <= _LONGEST else None
-    if match is None or has_comma(text):
+    if len(text) > _LONGEST or has_comma(text):
+        return None
+    match = _QUANTITY.fullmatch(text)
+    if match is None:
         return None
     return float(match[1]), (match[2] or "").strip()
 
@@ -52,19 +55,26 @@ def comma_remedy(text: str, unit: str | None) -> str:
     >>> comma_remedy("1,5", "m"), comma_remedy("1,234,567 mm", "m")
     ('write a point: "1.5 m"', 'leave the commas out: "1234567 mm"')
     """
-    pointed, joined = text.replace(",", ".", 1).strip(), text.replace(",", "").strip()
-    with_point, without = number_and_unit(pointed), number_and_unit(joined)
-    groups = _THOUSANDS.match(text) is not None
-    if with_point is not None and "," not in with_point[1]:
-        thousands = ", or leave the comma out if it separates thousands" if groups else ""
-        return f"write a point: {_rewritten(pointed, *with_point, unit)}{thousands}"
-    if without is not None and groups:
-        return f"leave the commas out: {_rewritten(joined, *without, unit)}"
+    may_be_thousands = _THOUSANDS.match(text) is not None
+    with_point = text.replace(",", ".", 1).strip()
+    quantity = number_and_unit(with_point)
+    if quantity is not None and "," not in quantity[1]:
+        remedy = f"write a point: {_as_wanted(with_point, quantity, unit)}"
+        if may_be_thousands:
+            remedy += ", or leave the comma out if it separates thousands"
+        return remedy
+    without_commas = text.replace(",", "").strip()
+    quantity = number_and_unit(without_commas)
+    if quantity is not None and may_be_thousands:
+        return f"leave the commas out: {_as_wanted(without_commas, quantity, unit)}"
     return "write one number, with a point before its decimals"
 
 
-def _rewritten(text: str, number: float, given: str, wanted: str | None) -> str:
-    """Return a text with a number as it may be given where a unit is wanted."""
-    if wanted == "":
+def _as_wanted(text: str, quantity: tuple[float, str], wanted_unit: str | None) -> str:
+    """Return the text of a quantity as it may be given where a unit is wanted."""
+    number, unit = quantity
+    if wanted_unit == "":
         return f"{number:.15g}"
-    return f'"{text}"' if given else f'"{text} {wanted or "UNIT"}"'
+    if unit:
+        return f'"{text}"'
+    return f'"{text} {wanted_unit or "UNIT"}"'

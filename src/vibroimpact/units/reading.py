@@ -140,7 +140,7 @@ def to_si(value: float | str, unit: str = "") -> float:
     try:
         return _finite(float(value), value)
     except OverflowError:
-        raise InputError(f"{_long(value)} is too large for a number") from None
+        raise InputError(f"{_first_digits(value)} is too large for a number") from None
 
 
 def parse_quantity(text: str) -> tuple[float, str]:
@@ -156,12 +156,12 @@ def parse_quantity(text: str) -> tuple[float, str]:
     >>> parse_quantity("179.75 N s/m")
     (179.75, 'N s/m')
     """
-    parts = _split(text)
-    if parts is None or not parts[1]:
+    number, unit = _number_and_unit(text) or (0.0, "")
+    if not unit:
         raise InputError(
             f'{quoted(text, 80)} is not a number with a unit, such as "5.115e8 N/m^1.5"'
         )
-    return _finite(parts[0], text), parts[1]
+    return _finite(number, text), unit
 
 
 def convert_units(value: float, unit: str, to: str) -> float:
@@ -192,34 +192,38 @@ def convert_units(value: float, unit: str, to: str) -> float:
     >>> round(convert_units(179.75, "N s/m", "N s/mm"), 5)
     0.17975
     """
-    have, want = _known_unit(unit), _known_unit(to)
+    source = _known_unit(unit)
+    target = _known_unit(to)
     number = _finite(to_si(value), value)
-    if have.dimensionality != want.dimensionality:
-        have, want = _by_gravity(unit, to) or (have, want)
-    if have.dimensionality != want.dimensionality:
-        both = " and ".join(
-            f"{quoted(name)} is {_dimension_words(one)}" for name, one in ((unit, have), (to, want))
+    if source.dimensionality != target.dimensionality:
+        source, target = _by_gravity(unit, to) or (source, target)
+    if source.dimensionality != target.dimensionality:
+        raise InputError(
+            f"{quoted(unit)} is {_dimension_words(source)} and {quoted(to)} is "
+            f"{_dimension_words(target)}; one can't be converted to the other"
         )
-        raise InputError(f"{both}; one can't be converted to the other")
     try:
-        found = float(_registry().Quantity(number, have).to(want).magnitude)
+        converted = float(_registry().Quantity(number, source).to(target).magnitude)
     except OverflowError:
-        found = math.inf
-    return _finite(found, f"{value:g} {unit} in {to}")
+        converted = math.inf
+    return _finite(converted, f"{value:g} {unit} in {to}")
 
 
 def _by_gravity(unit: str, to: str) -> tuple[pint.Unit, pint.Unit] | None:
     """Return two units of one dimension if "g" is standard gravity in one of them, or None."""
-    for one, other in ((by_gravity(spelled(unit)), to), (unit, by_gravity(spelled(to)))):
-        have, want = _known_unit(one), _known_unit(other)
-        if have.dimensionality == want.dimensionality:
-            return have, want
+    spellings = [(by_gravity(spelled(unit)), to), (unit, by_gravity(spelled(to)))]
+    for source_text, target_text in spellings:
+        source = _known_unit(source_text)
+        target = _known_unit(target_text)
+        if source.dimensionality == target.dimensionality:
+            return source, target
     return None
 
 
 def dimension_of(unit: str) -> dict[str, float]:
-    """Return the exponents of "force", "length" and "time" in a unit; of "mass" instead of "force"
-    if the unit has no time.
+    """Return the exponents of "force", "length" and "time" in a unit.
+
+    A unit without time has "mass" in place of "force".
 
     Raises
     ------
@@ -236,27 +240,37 @@ def dimension_of(unit: str) -> dict[str, float]:
     return _dimension(_known_unit(unit))
 
 
+_MECHANICAL = ("force", "mass", "length", "time")
+"""The dimensions that come first, in this order."""
+
+
 def _dimension(unit: pint.Unit) -> dict[str, float]:
-    powers = {
-        str(name).strip("[]"): float(str(power)) for name, power in unit.dimensionality.items()
+    exponents = {
+        str(name).strip("[]"): float(str(exponent))
+        for name, exponent in unit.dimensionality.items()
     }
-    mass = powers.get("mass", 0.0)
-    if mass and powers.get("time", 0.0):
-        # a unit with mass and time is expressed by force, since not every program has mass length /
-        # time^2 as its unit of force
-        del powers["mass"]
-        powers |= {
-            "force": mass,
-            "length": powers.get("length", 0.0) - mass,
-            "time": powers["time"] + 2.0 * mass,
-        }
-    order = ("force", "mass", "length", "time")
-    powers = {name: round(power, 9) for name, power in powers.items() if abs(power) > 1e-9}
-    return dict(
-        sorted(
-            powers.items(), key=lambda one: order.index(one[0]) if one[0] in order else len(order)
-        )
-    )
+    if exponents.get("mass") and exponents.get("time"):
+        exponents = _with_force(exponents)
+    exponents = {
+        name: round(exponent, 9) for name, exponent in exponents.items() if abs(exponent) > 1e-9
+    }
+    mechanical = [name for name in _MECHANICAL if name in exponents]
+    non_mechanical = [name for name in exponents if name not in _MECHANICAL]
+    return {name: exponents[name] for name in (*mechanical, *non_mechanical)}
+
+
+def _with_force(exponents: Mapping[str, float]) -> dict[str, float]:
+    """Return a dimension with force in place of mass.
+
+    Not every program has mass length / time^2 as its unit of force.
+    """
+    mass = exponents["mass"]
+    without_mass = {name: exponent for name, exponent in exponents.items() if name != "mass"}
+    return without_mass | {
+        "force": mass,
+        "length": exponents.get("length", 0.0) - mass,
+        "time": exponents["time"] + 2.0 * mass,
+    }
 
 
 def unit_text(powers: Iterable[tuple[str, float]]) -> str:
@@ -267,16 +281,14 @@ def unit_text(powers: Iterable[tuple[str, float]]) -> str:
     >>> unit_text([("N", 1.0), ("mm", -1.5)]), unit_text([("N", 1.0), ("s", 1.0), ("mm", -1.0)])
     ('N/mm^1.5', 'N s/mm')
     """
-    given = list(powers)
-    above, below = (
-        [_power(name, abs(power)) for name, power in given if power * side > 0.0]
-        for side in (1, -1)
-    )
-    return "/".join([" ".join(above) or "1", *below])
+    factors = list(powers)
+    numerator = [_power(name, exponent) for name, exponent in factors if exponent > 0.0]
+    denominator = [_power(name, -exponent) for name, exponent in factors if exponent < 0.0]
+    return "/".join([" ".join(numerator) or "1", *denominator])
 
 
-def _power(name: str, power: float) -> str:
-    return name if power == 1.0 else f"{name}^{power:g}"
+def _power(name: str, exponent: float) -> str:
+    return name if exponent == 1.0 else f"{name}^{exponent:g}"
 
 
 def _dimension_words(unit: pint.Unit) -> str:
@@ -287,21 +299,21 @@ def _dimension_words(unit: pint.Unit) -> str:
     dimension = unit_text(_dimension(unit).items())
     if not kinds:
         return f"of the dimension {dimension}"
-    named = _either(kinds)
-    return named if kinds == [dimension] else f"{named} ({dimension})"
+    if kinds == [dimension]:
+        return _either(kinds)
+    return f"{_either(kinds)} ({dimension})"
 
 
 def _kinds_of(dimension: Mapping[str, Any]) -> list[str]:
-    """Return the kinds of quantity that have a dimension: a stiffness and a work of
-    adhesion have the same.
-    """
+    """Return the kinds of quantity of a dimension: stiffness and work of adhesion have the same."""
     registry = _registry()
-    dimensional = (
-        (registry.parse_units(name), kind)
-        for name, kind in _KIND.items()
-        if name not in _WITHOUT_DIMENSION
-    )
-    return [kind for known, kind in dimensional if known.dimensionality == dimension]
+    kinds = []
+    for unit, kind in _KIND.items():
+        if unit in _WITHOUT_DIMENSION:
+            continue
+        if registry.parse_units(unit).dimensionality == dimension:
+            kinds.append(kind)
+    return kinds
 
 
 def _either(kinds: Iterable[str]) -> str:
@@ -311,7 +323,7 @@ def _either(kinds: Iterable[str]) -> str:
 def _known_unit(text: str) -> pint.Unit:
     try:
         unit = _parse_unit(text)
-        # pint makes it at the first use, and has none for products of decibels
+        # pint computes it at the first use, and fails for products of decibels
         _ = unit.dimensionality
         return unit
     except Exception as error:  # pint raises many kinds for a unit that it can't read
@@ -322,94 +334,97 @@ def _known_unit(text: str) -> pint.Unit:
 
 
 def _parse(text: str, unit: str) -> float:
-    parts = _split(text, unit)
-    if parts is None:
+    quantity = _number_and_unit(text, unit)
+    if quantity is None:
         raise InputError(f"{quoted(text, 80)} is not {_wanted(unit)}")
-    number, given = parts
+    number, given_unit = quantity
     if not unit:
-        if given:
-            digits = f"{_finite(number * _plain_factor(given), text):.15g}"
-            raise InputError(
-                f"{quoted(text, 80)} has a unit, but a plain number is wanted: write {digits}"
-            )
-        return number
-    if not given:
+        return _plain_number(number, given_unit, text)
+    if not given_unit:
         digits = f"{_finite(number, text):.15g}"
         raise InputError(
             f"{quoted(text, 80)} has no unit: write {digits} (it is then in {unit}) or "
             f'"{digits} {unit}"'
         )
-    return number * _factor(given, unit, text)
+    return number * _factor(given_unit, unit, text)
+
+
+def _plain_number(number: float, unit: str, text: str) -> float:
+    """Return a number that has no unit; of one with a unit the message says what to write."""
+    if unit:
+        digits = f"{_finite(number * _plain_factor(unit), text):.15g}"
+        raise InputError(
+            f"{quoted(text, 80)} has a unit, but a plain number is wanted: write {digits}"
+        )
+    return number
 
 
 def _plain_factor(unit: str) -> float:
-    """Return what a unit without a dimension is as a plain number, such as a hundredth
-    for %; 1 of another unit, or of an unknown one.
+    """Return what a unit without a dimension is as a plain number, such as a hundredth for %.
+
+    It is 1 of another unit, and of an unknown one.
     """
-    known = plain_factor(unit)
-    if known is not None:
-        return known
+    factor = plain_factor(unit)
+    if factor is not None:
+        return factor
     try:
-        have = _known_unit(unit)
-        return (
-            1.0 if have.dimensionality else float(_registry().Quantity(1.0, have).to("").magnitude)
-        )
+        known_unit = _known_unit(unit)
+        if known_unit.dimensionality:
+            return 1.0
+        return float(_registry().Quantity(1.0, known_unit).to("").magnitude)
     except InputError:
         return 1.0
 
 
-def _split(text: str, unit: str | None = None) -> tuple[float, str] | None:
-    """Return number and unit of a text, "" for no unit; None if it does not begin with a number.
+def _number_and_unit(text: str, wanted_unit: str | None = None) -> tuple[float, str] | None:
+    """Return what `number_and_unit` does; a comma in the number is an error.
 
-    The wanted unit is for messages: "" if none is wanted, None if any is.
+    The wanted unit is for the message: "" if none is wanted, None if any is.
     """
-    parts = number_and_unit(text)
-    if parts is None and has_comma(text):
+    quantity = number_and_unit(text)
+    if quantity is None and has_comma(text):
         raise InputError(
-            f"{quoted(text, 80)} has a comma in its number; {comma_remedy(text, unit)}"
+            f"{quoted(text, 80)} has a comma in its number; {comma_remedy(text, wanted_unit)}"
         )
-    return parts
+    return quantity
 
 
 def _parse_unit(text: str) -> pint.Unit:
     """Return a unit; raises ValueError, or any error of pint for a unit that it can't read."""
-    plain = spelled(text)
-    if not is_unit(plain):
+    unit = spelled(text)
+    if not is_unit(unit):
         raise ValueError(text)
-    return _registry().parse_units(plain)
+    return _registry().parse_units(unit)
 
 
 def _factor(given: str, unit: str, text: str) -> float:
     """Return the conversion factor from `given` to `unit`."""
-    plain = spelled(given)
-    if plain == unit:
+    given_unit = spelled(given)
+    if given_unit == unit:
         return 1.0
-    if unit in _PREFIXED and plain[1:] == unit and plain[0] in _PREFIXES:
-        return _PREFIXES[plain[0]]
-    return _converted(given, unit, text)
+    if unit in _PREFIXED and given_unit[1:] == unit and given_unit[0] in _PREFIXES:
+        return _PREFIXES[given_unit[0]]
+    return _pint_factor(given, unit, text)
 
 
 @lru_cache(maxsize=1000)
-def _converted(given: str, unit: str, text: str) -> float:
+def _pint_factor(given: str, unit: str, text: str) -> float:
     """Return the conversion factor from `given` to `unit` by pint."""
     import pint
 
     registry = _registry()
     try:
-        have, want = registry.Quantity(1.0, _parse_unit(given)), registry.parse_units(unit)
+        source = registry.Quantity(1.0, _parse_unit(given))
+        target = registry.parse_units(unit)
         # of an acceleration, g is standard gravity, and not the gram
-        if have.dimensionality != want.dimensionality:
-            other = registry.Quantity(1.0, _parse_unit(by_gravity(spelled(given))))
-            have = other if other.dimensionality == want.dimensionality else have
-        return float(have.to(want).magnitude)
+        if source.dimensionality != target.dimensionality:
+            with_gravity = registry.Quantity(1.0, _parse_unit(by_gravity(spelled(given))))
+            if with_gravity.dimensionality == target.dimensionality:
+                source = with_gravity
+        return float(source.to(target).magnitude)
     except pint.DimensionalityError:
-        kinds = (
-            _kinds_of(have.dimensionality)
-            if have.dimensionality
-            else ["number without a dimension"]
-        )
         raise InputError(
-            f"{quoted(text, 80)} is {_either(kinds) or 'another kind of quantity'}; "
+            f"{quoted(text, 80)} is {_kinds_in_words(source.dimensionality)}; "
             f"expected {_wanted(unit)}"
         ) from None
     except Exception as error:  # pint raises many kinds for a unit that it can't read
@@ -419,11 +434,15 @@ def _converted(given: str, unit: str, text: str) -> float:
         ) from error
 
 
-def _long(number: float) -> str:
-    """Return the first digits of an integer, which may have more digits than Python
-    converts to text.
-    """
-    try:
+def _kinds_in_words(dimension: Mapping[str, Any]) -> str:
+    if not dimension:
+        return "a number without a dimension"
+    return _either(_kinds_of(dimension)) or "another kind of quantity"
+
+
+def _first_digits(number: float) -> str:
+    """Return the first digits of an integer that is too large for a float."""
+    try:  # Python converts no more than some thousand digits to text
         return f"{str(number)[:20]}..."
     except ValueError:
         return "a number of thousands of digits"

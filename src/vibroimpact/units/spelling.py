@@ -1,6 +1,4 @@
-"""Spellings of units: as instruments, languages and this program's own tables write them,
-brought to the one that pint reads.
-"""
+"""Spellings of units, which instruments, languages and tables write in many ways."""
 
 from __future__ import annotations
 
@@ -39,9 +37,7 @@ _WORDS = {
     **dict.fromkeys(("meter", "meters", "metre", "metres"), "m"),
     **dict.fromkeys(("pascal", "pascals"), "Pa"),
 }
-"""Names of units, which oscilloscopes and LabVIEW write with and without a capital
-letter, and in the plural.
-"""
+"""Symbols of units by their names, as oscilloscopes and LabVIEW write them, in lower case."""
 
 _PLAIN = {
     **dict.fromkeys(("", "1", "-", "none"), 1.0),
@@ -68,8 +64,9 @@ _PLAIN = {
 
 @lru_cache(maxsize=1000)
 def spelled(text: str) -> str:
-    """Return a unit in the spelling that is read: powers after "^", "u" for micro, "·" between
-    factors; unknown words are kept.
+    """Return a unit in the spelling that pint reads.
+
+    Powers follow "^", micro is "u", and "·" stands between factors. Unknown words are kept.
 
     Examples
     --------
@@ -81,18 +78,22 @@ def spelled(text: str) -> str:
     >>> spelled("Volts")
     'V'
     """
-    if (word := _WORDS.get(text.strip().lower())) is not None:
-        return word
-    raised = _RAISED.sub(
-        lambda power: "^" + power[0].translate(_LOWERED).removeprefix("+"), text.strip()
-    )
-    plain = _JOINED.sub(r"\1 s", " ".join(raised.translate(_SIGNS).split()))
-    return _POWER.sub(r"^\1", _POINT.sub("·", _STANDARD_GRAVITY.sub(r"\1g0", plain)))
+    text = text.strip()
+    symbol = _WORDS.get(text.lower())
+    if symbol is not None:
+        return symbol
+    text = _RAISED.sub(lambda power: "^" + power[0].translate(_LOWERED).removeprefix("+"), text)
+    text = " ".join(text.translate(_SIGNS).split())
+    text = _JOINED.sub(r"\1 s", text)
+    text = _STANDARD_GRAVITY.sub(r"\1g0", text)
+    text = _POINT.sub("·", text)
+    return _POWER.sub(r"^\1", text)
 
 
 def by_gravity(text: str) -> str:
-    """Return a unit in which g, mg, ug and G are standard gravity, 9.80665 m/s^2, and not the gram,
-    its parts and the gauss.
+    """Return a unit in which g, mg, ug and G are standard gravity, 9.80665 m/s^2.
+
+    Elsewhere they are the gram, its parts and the gauss.
 
     Examples
     --------
@@ -103,13 +104,12 @@ def by_gravity(text: str) -> str:
 
 
 def plain_factor(text: str) -> float | None:
-    """Return the factor of a unit of plain numbers, such as strain or arbitrary units; None if it
-    is none.
+    """Return the factor of a unit of plain numbers, such as strain; None of any other unit.
 
     Examples
     --------
     >>> plain_factor("a.u."), plain_factor("µm/m"), plain_factor("%"), plain_factor("m")
     (1.0, 1e-06, 0.01, None)
     """
-    word = " ".join(text.translate(_SIGNS).split())
-    return _PLAIN.get(word, _PLAIN.get(word.lower()))
+    unit = " ".join(text.translate(_SIGNS).split())
+    return _PLAIN.get(unit, _PLAIN.get(unit.lower()))

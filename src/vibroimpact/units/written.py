@@ -1,11 +1,9 @@
-"""Numbers as they were written: with the standard deviation that is given with them, or
-that their digits leave open.
-"""
+"""Numbers with a standard deviation, which is written with them or left open by their digits."""
 
 from __future__ import annotations
 
 import re
-from typing import Any
+from typing import Any, TypeGuard
 
 from vibroimpact.errors import InputError
 from vibroimpact.quoting import quoted
@@ -13,10 +11,10 @@ from vibroimpact.units.quantity_text import number_and_unit
 from vibroimpact.units.reading import to_si
 
 _PLUS_MINUS = re.compile(r"\s*(?:\+/?[-\u2212]|±)\s*")
-_HALF_STEP = 12.0**-0.5
-"""Standard deviation of a number that is anywhere within half a step of what is written,
-in steps.
-"""
+_ROUNDING = 12.0**-0.5
+"""Standard deviation of a rounded number, in units of its last digit."""
+
+_DIGITS = re.compile(r"\s*[+-]?([\d.]+)(?:[eE]([+-]?\d+))?")
 
 
 class Written(float):
@@ -56,12 +54,15 @@ class Written(float):
         why: str = "",
     ) -> Written:
         """Return the number."""
-        made = super().__new__(cls, value)
-        made.deviation, made.text, made.stated, made.why = deviation, text, stated, why
-        return made
+        number = super().__new__(cls, value)
+        number.deviation = deviation
+        number.text = text
+        number.stated = stated
+        number.why = why
+        return number
 
 
-def has_deviation(value: Any) -> bool:
+def has_deviation(value: Any) -> TypeGuard[str]:
     """Return whether a value is a text with a standard deviation, such as "0.6 m +- 5 mm"."""
     return isinstance(value, str) and _PLUS_MINUS.search(value) is not None
 
@@ -74,7 +75,7 @@ def without_deviation(text: str) -> str:
     >>> without_deviation("0.6 m +- 5 mm"), without_deviation("0.600 ± 0.005 m")
     ('0.6 m', '0.600 m')
     """
-    return _parts(text)[0]
+    return _number_and_deviation(text)[0]
 
 
 def read_written(value: float | str, unit: str = "") -> Written:
@@ -110,53 +111,60 @@ def read_written(value: float | str, unit: str = "") -> Written:
     expected a length (a number in m, or a \
 string such as "25 mm")
     """
-    if not has_deviation(value):
-        number = to_si(value, unit)
-        text = value.strip() if isinstance(value, str) else f"{value:.15g} {unit}".rstrip()
-        return Written(number, _HALF_STEP * _last_place(value, number), text, stated=False)
-    assert isinstance(value, str)
-    number, deviation = to_si(without_deviation(value), unit), _parts(value)[1]
-    part = number_and_unit(deviation)
-    try:
-        spread = (
-            0.01 * part[0] * abs(number)
-            if part is not None and part[1] == "%"
-            else to_si(deviation, unit)
-        )
-    except InputError as error:
-        raise InputError(f"the standard deviation in {quoted(value, 80)}: {error}") from None
-    if spread < 0.0:
-        raise InputError(
-            f"the standard deviation in {quoted(value, 80)} is negative; it must be at least 0"
-        )
-    return Written(number, spread, value.strip())
+    if has_deviation(value):
+        number_text, deviation_text = _number_and_deviation(value)
+        number = to_si(number_text, unit)
+        try:
+            deviation = _deviation_in_si(deviation_text, number, unit)
+        except InputError as error:
+            raise InputError(f"the standard deviation in {quoted(value, 80)}: {error}") from None
+        if deviation < 0.0:
+            raise InputError(
+                f"the standard deviation in {quoted(value, 80)} is negative; it must be at least 0"
+            )
+        return Written(number, deviation, value.strip())
+    number = to_si(value, unit)
+    deviation = _ROUNDING * _last_digit(value, number)
+    text = value.strip() if isinstance(value, str) else f"{value:.15g} {unit}".rstrip()
+    return Written(number, deviation, text, stated=False)
 
 
-def _parts(text: str) -> tuple[str, str]:
-    """Return number and standard deviation as texts with their units; one that has none
-    has that of the other.
+def _number_and_deviation(text: str) -> tuple[str, str]:
+    """Return number and standard deviation as texts; one without a unit gets that of the other."""
+    number_text, deviation_text = _PLUS_MINUS.split(text.strip(), maxsplit=1)
+    number = number_and_unit(number_text)
+    deviation = number_and_unit(deviation_text)
+    if number is None or deviation is None:
+        return number_text, deviation_text
+    number_unit = number[1]
+    deviation_unit = deviation[1]
+    if not deviation_unit:
+        return number_text, f"{deviation_text} {number_unit}".rstrip()
+    if not number_unit and deviation_unit != "%":
+        return f"{number_text} {deviation_unit}", deviation_text
+    return number_text, deviation_text
+
+
+def _deviation_in_si(text: str, number: float, unit: str) -> float:
+    """Return a standard deviation, which may be a percentage of the number, in SI."""
+    quantity = number_and_unit(text)
+    if quantity is not None and quantity[1] == "%":
+        return 0.01 * quantity[0] * abs(number)
+    return to_si(text, unit)
+
+
+def _last_digit(value: float | str, number: float) -> float:
+    """Return one unit of the last digit of a value as it is written, in SI.
+
+    The value is `number` in SI.
     """
-    first, deviation = _PLUS_MINUS.split(text.strip(), maxsplit=1)
-    of_first, of_deviation = number_and_unit(first), number_and_unit(deviation)
-    if of_first is None or of_deviation is None:
-        return first, deviation
-    if not of_deviation[1]:
-        return first, f"{deviation} {of_first[1]}".rstrip()
-    return (
-        (first, deviation)
-        if of_first[1] or of_deviation[1] == "%"
-        else (f"{first} {of_deviation[1]}", deviation)
-    )
-
-
-def _last_place(value: float | str, number: float) -> float:
-    """Return one unit of the last digit of a number as it is written, in SI."""
-    parts = number_and_unit(value) if isinstance(value, str) else None
-    written = re.match(
-        r"\s*[+-]?([\d.]+)(?:[eE]([+-]?\d+))?",
-        value if isinstance(value, str) else f"{float(value)!r}".removesuffix(".0"),
-    )
-    if written is None:
+    text = value if isinstance(value, str) else f"{float(value)!r}".removesuffix(".0")
+    digits = _DIGITS.match(text)
+    if digits is None:
         return 0.0
-    step = 10.0 ** (int(written[2] or 0) - len(written[1].partition(".")[2]))
-    return step if parts is None or not parts[0] else step * abs(number / parts[0])
+    decimals = len(digits[1].partition(".")[2])
+    unit_of_last_digit = 10.0 ** (int(digits[2] or 0) - decimals)
+    quantity = number_and_unit(value) if isinstance(value, str) else None
+    if quantity is None or quantity[0] == 0.0:
+        return unit_of_last_digit
+    return unit_of_last_digit * abs(number / quantity[0])

@@ -44,7 +44,7 @@ def test_what_the_library_does_not_have_can_be_given_by_numbers(name: str) -> No
 
 
 def test_every_material_is_found_by_its_own_name_and_no_other_name_is_two_materials() -> None:
-    from vibroimpact.materials import _known_by, _library_file, _plain
+    from vibroimpact.materials import _library_file, _names_in_library, _plain
 
     assert all(vi.find_material(name).name == name for name in vi.materials.material_library())
     others = [
@@ -54,4 +54,4 @@ def test_every_material_is_found_by_its_own_name_and_no_other_name_is_two_materi
     ]
     assert len(others) == len(set(others))
     assert not {_plain(name) for name in vi.materials.material_library()} & set(others)
-    assert set(_known_by().values()) == set(vi.materials.material_library())
+    assert set(_names_in_library().values()) == set(vi.materials.material_library())

@@ -29,7 +29,7 @@ from vibroimpact.cli.case_text import shipped_cases_table
 from vibroimpact.cli.doctor import diagnose, diagnosis_rows
 from vibroimpact.cli.feature_text import feature_list, table_summary
 from vibroimpact.cli.material_text import material_library_table, material_sheet
-from vibroimpact.cli.unit_table import converted, unit_table
+from vibroimpact.cli.unit_table import unit_conversion, unit_table
 from vibroimpact.exporting.export_format import find_export_format
 from vibroimpact.exporting.text import export_summary, format_table
 from vibroimpact.law_comparison.comparison import compare_laws
@@ -123,7 +123,7 @@ def commands(tmp_path_factory: pytest.TempPathFactory, variable: vi.Response) ->
         "materials": lambda _: material_library_table(),
         "materials NAME": lambda _: material_sheet("granite"),
         "units": lambda _: unit_table(5.115e8, "N/m^1.5"),
-        "units --to": lambda _: converted(3.0, "N/µm", "N/m"),
+        "units --to": lambda _: unit_conversion(3.0, "N/µm", "N/m"),
         "doctor": lambda _: versions_table(
             [row for row in diagnosis_rows(diagnose()) if row[0] not in CHANGING]
         ),

@@ -7,18 +7,18 @@ import sys
 
 import pytest
 
-from vibroimpact.units.reading import _EXAMPLE, _PREFIXED, _PREFIXES, _converted, to_si
+from vibroimpact.units.reading import _EXAMPLE, _PREFIXED, _PREFIXES, _pint_factor, to_si
 
 
 @pytest.mark.parametrize("unit", _PREFIXED)
 @pytest.mark.parametrize("prefix", _PREFIXES)
 def test_the_factors_are_those_of_pint(prefix: str, unit: str) -> None:
-    assert to_si(f"1 {prefix}{unit}", unit) == _converted(f"{prefix}{unit}", unit, "")
+    assert to_si(f"1 {prefix}{unit}", unit) == _pint_factor(f"{prefix}{unit}", unit, "")
 
 
 @pytest.mark.parametrize("unit", _EXAMPLE)
 def test_a_unit_is_one_of_itself(unit: str) -> None:
-    assert to_si(f"1 {unit}", unit) == 1.0 == _converted(unit, unit, "")
+    assert to_si(f"1 {unit}", unit) == 1.0 == _pint_factor(unit, unit, "")
 
 
 def test_a_prefix_is_that_of_the_unit_that_is_wanted() -> None:
