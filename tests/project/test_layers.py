@@ -21,19 +21,20 @@ LAYERS = [
     {"compiled"},
     {"units"},
     {"materials"},
+    # how anything is shown
+    {"charts"},
+    {"report"},
     # the physics
     {"contact"},
     {"structures"},
     {"bodies"},
     {"dynamics"},
     {"laws", "friction", "sensors"},
-    # what comes in, what came out, and how it is shown
+    # what comes in, and what came out
     {"meshes", "measurements"},
     {"cases"},
     {"results"},
     {"signals"},
-    {"charts"},
-    {"report"},
     # what people do, each whole
     {"modes"},
     {"runs"},

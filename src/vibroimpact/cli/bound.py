@@ -64,7 +64,7 @@ def bound(
     """
     from vibroimpact.bayes_error.bound import bound_of
     from vibroimpact.bayes_error.observations import Channel
-    from vibroimpact.results.folder import check_free
+    from vibroimpact.files.result_folder import check_free
     from vibroimpact.studies.read_sweep import load_sweep
     from vibroimpact.studies.study import read_study
 

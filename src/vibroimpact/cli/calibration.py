@@ -93,7 +93,7 @@ def calibrate(
     between bounces; a table has them: speed [m/s], restitution and, for means, count.
     """
     from vibroimpact.calibration.impact_table import holds_restitutions
-    from vibroimpact.results.folder import check_free
+    from vibroimpact.files.result_folder import check_free
 
     target = Path(f"{stem(case)}-calibrated") if output is None else output
     given = {"--channel": channel, "--gravity": gravity, "--height": height, "--contact": contact}

@@ -129,8 +129,8 @@ def _run(
     from vibroimpact.cases.costs import describe_costs
     from vibroimpact.cases.reader import load_case, prefix_errors
     from vibroimpact.dynamics.simulate import simulate
+    from vibroimpact.files.result_folder import check_free, new_folder
     from vibroimpact.report.progress import patient_progress
-    from vibroimpact.results.folder import check_free, new_folder
     from vibroimpact.results.summary import summary_of
     from vibroimpact.runs.page import write_report
     from vibroimpact.runs.save import write_data
@@ -218,12 +218,12 @@ def modes(
     from vibroimpact.cases.elastic.modes import compute_modes
     from vibroimpact.cases.reader import load_case, prefix_errors
     from vibroimpact.cli.measured_modes import measured_modes, modes_beside_table
+    from vibroimpact.files.result_folder import check_free
     from vibroimpact.measurements.universal_file import is_universal
     from vibroimpact.modes.document import modes_document
     from vibroimpact.modes.folder import save_modes
     from vibroimpact.modes.text import measured_summary, modes_summary
     from vibroimpact.report.progress import patient_progress
-    from vibroimpact.results.folder import check_free
 
     target = Path(f"{stem(case)}-modes") if output is None else output
     if Path(case).is_file() and is_universal(case):

@@ -121,9 +121,9 @@ def identify(
     deviations.
     """
     from vibroimpact.cases.reader import load_case
+    from vibroimpact.files.result_folder import check_free
     from vibroimpact.identification.identify import identify as identify_impact
     from vibroimpact.identification.setup import SetupErrors
-    from vibroimpact.results.folder import check_free
     from vibroimpact.signals.read_records import read_records
 
     plate_case = load_case(case, settings_of(changes))

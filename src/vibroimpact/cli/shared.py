@@ -188,7 +188,7 @@ def show_folder(
     as_json: bool,
 ) -> None:
     """Print what a folder with a report holds, as `show` does, and that it was written."""
-    from vibroimpact.results.folder import REPORT
+    from vibroimpact.files.result_folder import REPORT
 
     show(lambda: {"folder": str(folder), **document()}, *tables, as_json=as_json)
     say(f"wrote {folder / REPORT}", err=as_json)

@@ -13,6 +13,7 @@ from vibroimpact.cases.build import resolved_case
 from vibroimpact.cases.case import Case
 from vibroimpact.cases.elastic.modes import BodyModes
 from vibroimpact.charts.figures_folder import write_figures
+from vibroimpact.files.result_folder import CASE, REPORT, new_folder, write_case, write_summary
 from vibroimpact.meshes.write_abaqus import write_abaqus
 from vibroimpact.meshes.write_nastran import write_nastran
 from vibroimpact.meshes.write_vtu import write_vtu
@@ -27,7 +28,6 @@ from vibroimpact.modes.document import (
 from vibroimpact.modes.measured_table import MeasuredTable
 from vibroimpact.modes.page import modes_page
 from vibroimpact.results.csv_files import write_csv
-from vibroimpact.results.folder import CASE, REPORT, new_folder, write_case, write_summary
 
 _SHAPES_WRITTEN = 50  # limits the size of the file for ParaView
 

@@ -7,9 +7,9 @@ from os import PathLike
 from pathlib import Path
 
 from vibroimpact.charts.figures_folder import write_figures
+from vibroimpact.files.result_folder import REPORT, new_folder, write_files, write_summary
 from vibroimpact.report.page_of_report import page_of_report
 from vibroimpact.report.report import Report
-from vibroimpact.results.folder import REPORT, new_folder, write_summary
 
 
 def save_report(
@@ -47,10 +47,7 @@ def save_report(
     ['report.html', 'summary.json']
     """
     with new_folder(directory, force=force) as folder:
-        for name, write in report.files.items():
-            path = folder / name
-            path.parent.mkdir(exist_ok=True)
-            write(path)
+        write_files(report.files, folder)
         write_summary(report.summary, folder)
         write_figures(report.charts, folder, figures)
         (folder / REPORT).write_text(page_of_report(report), encoding="utf-8")

@@ -10,9 +10,9 @@ import tomli_w
 
 from vibroimpact.charts.made import made_charts, made_scene
 from vibroimpact.dynamics.energy import CLOSURE_LIMIT
+from vibroimpact.files.result_folder import REPORT
 from vibroimpact.report.page import render_page
 from vibroimpact.resolved_case import ResolvedCase
-from vibroimpact.results.folder import REPORT
 from vibroimpact.results.result import Result
 from vibroimpact.runs.below import level_below
 from vibroimpact.runs.captions import left_out, scene_caption, sensors_left_out

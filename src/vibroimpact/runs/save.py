@@ -6,7 +6,8 @@ from os import PathLike
 from pathlib import Path
 
 from vibroimpact.dynamics.response import Response
-from vibroimpact.results.folder import new_folder, write_result
+from vibroimpact.files.result_folder import new_folder
+from vibroimpact.results.folder import write_result
 from vibroimpact.results.result import Result, result_of
 from vibroimpact.runs.page import write_report
 from vibroimpact.runs.paraview import write_paraview

@@ -22,6 +22,7 @@ from vibroimpact.files.atomic_write import write_into
 from vibroimpact.files.check_sums import CHECK_SUMS, check_file, file_digest, read_sealed, sealed
 from vibroimpact.files.json_reading import read_json_table
 from vibroimpact.files.recover import recover
+from vibroimpact.files.result_folder import SUMMARY, new_folder
 from vibroimpact.paper.report.outline import (
     PARTS,
     VALUE_COLUMNS,
@@ -34,7 +35,6 @@ from vibroimpact.paper.report_section import Kind, Verdict
 from vibroimpact.paper.runs import Runs
 from vibroimpact.report.page import replace_report_files
 from vibroimpact.results.csv_files import write_csv
-from vibroimpact.results.folder import SUMMARY, new_folder
 
 _PARTS = "parts"
 
