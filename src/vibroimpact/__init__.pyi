@@ -34,6 +34,7 @@ from .calibration.tunables import modal_damping as modal_damping
 from .cases.case import Case as Case
 from .cases.case import case_schema as case_schema
 from .cases.elastic.modes import BodyModes as BodyModes
+from .cases.elastic.modes import Modes as Modes
 from .cases.elastic.modes import compute_modes as compute_modes
 from .cases.reader import load_case as load_case
 from .cases.reader import read_case as read_case
@@ -93,8 +94,6 @@ from .meshes.mesh_file import read_mesh as read_mesh
 from .meshes.write_abaqus import write_abaqus as write_abaqus
 from .meshes.write_nastran import write_nastran as write_nastran
 from .meshes.write_vtu import write_vtu as write_vtu
-from .modes.charts import mode_charts as mode_charts
-from .modes.folder import save_modes as save_modes
 from .paper.report.folder import reproduce_paper as reproduce_paper
 from .recognition.apply import Recognised as Recognised
 from .recognition.apply import apply_recogniser as apply_recogniser
@@ -109,10 +108,6 @@ from .regenerate import remake_report as remake_report
 from .results.folder import read_result as read_result
 from .results.result import Result as Result
 from .results.result import result_of as result_of
-from .runs.charts import run_charts as run_charts
-from .runs.notebook import plot_result as plot_result
-from .runs.notebook import result_html as result_html
-from .runs.save import save_result as save_result
 from .signals.bounces.find import Bounces as Bounces
 from .signals.bounces.find import find_bounces as find_bounces
 from .signals.decay.find import DecayMode as DecayMode

@@ -8,15 +8,15 @@ from functools import partial
 from os import PathLike
 from pathlib import Path
 
-from vibroimpact.charts.figures_folder import FIGURES
 from vibroimpact.charts.files import check_formats, save_charts
 from vibroimpact.errors import InputError
 from vibroimpact.files.new_folders import made_folder
 from vibroimpact.files.recover import recover
+from vibroimpact.files.result_folder import FIGURES
 from vibroimpact.report.page import replace_report_files
+from vibroimpact.report.save_report import write_figures
 from vibroimpact.results.folder import read_result
 from vibroimpact.results.result import Result
-from vibroimpact.runs.figures import write_figures
 
 
 def save_figures(
@@ -57,9 +57,7 @@ def save_figures(
     >>> import tempfile
     >>> import vibroimpact as vi
     >>> with tempfile.TemporaryDirectory() as place:
-    ...     folder = vi.save_result(
-    ...         vi.simulate(vi.load_case("paper:type1-theory")), f"{place}/theory"
-    ...     )
+    ...     folder = vi.simulate(vi.load_case("paper:type1-theory")).save(f"{place}/theory")
     ...     sorted(file.name for file in save_figures(folder, ["svg"]).iterdir())[:3]
     ['acceleration.svg', 'energy.svg', 'force.svg']
     """
@@ -104,7 +102,8 @@ def _writer_of(
             save_charts(charts, place, formats, progress)
 
         return write
-    return partial(write_figures, _result_in(folder), formats=formats, progress=progress)
+    report = _result_in(folder).report
+    return partial(write_figures, report, formats=formats, progress=progress)
 
 
 def _result_in(folder: Path) -> Result:

@@ -8,8 +8,8 @@ from pathlib import Path
 
 from vibroimpact.files.recover import recover
 from vibroimpact.report.page import replace_report_files
+from vibroimpact.report.save_report import write_page
 from vibroimpact.results.folder import read_result
-from vibroimpact.runs.page import write_report
 
 
 def remake_report(directory: str | PathLike[str]) -> Path:
@@ -28,9 +28,7 @@ def remake_report(directory: str | PathLike[str]) -> Path:
     >>> from tempfile import TemporaryDirectory
     >>> import vibroimpact as vi
     >>> with TemporaryDirectory() as folder:
-    ...     place = vi.save_result(
-    ...         vi.simulate(vi.load_case("paper:type1-theory")), f"{folder}/theory"
-    ...     )
+    ...     place = vi.simulate(vi.load_case("paper:type1-theory")).save(f"{folder}/theory")
     ...     vi.remake_report(place).name
     'theory'
     """
@@ -49,6 +47,6 @@ def remake_report(directory: str | PathLike[str]) -> Path:
     if is_reproduction(folder):
         write_reproduction_report(folder)
         return folder
-    result = read_result(directory)
-    replace_report_files(folder, partial(write_report, result))
+    report = read_result(directory).report
+    replace_report_files(folder, partial(write_page, report))
     return folder

@@ -78,10 +78,8 @@ def use_result(folder: Path) -> None:
 
 @FEW
 def test_results(few: int, tmp_path: Path) -> None:
-    vi.save_result(
-        vi.simulate(vi.read_case({**TABLE, "run": {"impacts": 1, "duration": "20 ms"}})),
-        tmp_path / "out",
-    )
+    case = vi.read_case({**TABLE, "run": {"impacts": 1, "duration": "20 ms"}})
+    vi.simulate(case).save(tmp_path / "out")
     no_failures(
         use_result,
         tmp_path / "out",

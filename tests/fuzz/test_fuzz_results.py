@@ -26,11 +26,11 @@ from vibroimpact.dynamics.sensors.sensor import Sensor
 from vibroimpact.exporting.load_drop import load_drop
 from vibroimpact.paper.report.folder import read_parts, reproduce_paper
 from vibroimpact.results.deflection import Deflection
-from vibroimpact.results.folder import write_result
 from vibroimpact.results.result import Result, result_of
 from vibroimpact.structures.store import load_entry, save_entry
 from vibroimpact.studies.chunk_file import ChunkResult, chunk_path, read_chunk, write_chunk
 from vibroimpact.studies.ledger import Span, make_ledger, open_ledger
+from written_results import write_result
 
 
 @pytest.fixture(autouse=True)

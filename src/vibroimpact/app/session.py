@@ -20,8 +20,9 @@ from vibroimpact.errors import ComputationError, InputError, choices
 from vibroimpact.files.hdf5 import short_reason
 from vibroimpact.files.plain_names import identifier, plain_names
 from vibroimpact.quoting import quoted
+from vibroimpact.report.page_of_report import page_of_report
 from vibroimpact.results.csv_files import signal_csv
-from vibroimpact.runs.page import run_page
+from vibroimpact.runs.report import report_of
 
 Send = Callable[[bytes], Awaitable[None]]
 """Function that brings a message to the window."""
@@ -235,7 +236,7 @@ def _files(kind: str, state: State | None) -> dict[str, Any]:
                 {
                     "name": f"{identifier(result.name, 'A-Za-z0-9', 'drop', '-')}.html",
                     "kind": "text/html",
-                    "text": run_page(result),
+                    "text": page_of_report(report_of(result)),
                 }
             ]
         }

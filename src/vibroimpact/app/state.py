@@ -91,9 +91,9 @@ def _document(
         "status": result.status,
         "doubts": result.doubts if detail == "full" else [],
         "impacts": {
-            "headers": impacts.headers,
-            "rows": [*impacts.head, *impacts.tail],
-            "left_out": impacts.left_out,
+            "headers": impacts.headings,
+            "rows": impacts.rows,
+            "left_out": 0 if impacts.gap is None else impacts.gap.left_out,
         },
         "ledger": {"unit": unit, "rows": [[row.title, row.energy, row.part] for row in ledger]},
         "charts": [drawn(chart, plotly_chart) for chart in made_charts(seen)],

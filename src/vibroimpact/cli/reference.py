@@ -208,7 +208,7 @@ def doctor(
 ) -> None:
     """Show versions and what is kept on disk, and test this program."""
     from vibroimpact.cli.doctor import diagnose, diagnosis_rows, first_rebound_error
-    from vibroimpact.runs.text import versions_table
+    from vibroimpact.report.terminal_table import facts
 
     if clear_store:
         from vibroimpact.compiler.code_store import clear_code
@@ -226,7 +226,7 @@ def doctor(
     found = diagnose()
     show(
         lambda: {**found, "first_rebound_error": first_rebound_error()},
-        lambda: versions_table(diagnosis_rows(found)),
+        lambda: facts(diagnosis_rows(found)),
         as_json=as_json,
     )
     error = first_rebound_error()

@@ -186,12 +186,17 @@ def show_folder(
     document: Callable[[], Mapping[str, Any]],
     *tables: Callable[[], RenderableType],
     as_json: bool,
+    beside: str = "",
 ) -> None:
-    """Print what a folder with a report holds, as `show` does, and that it was written."""
+    """Print what a folder with a report holds, as `show` does, and that it was written.
+
+    `beside` names what else was written.
+    """
     from vibroimpact.files.result_folder import REPORT
 
     show(lambda: {"folder": str(folder), **document()}, *tables, as_json=as_json)
-    say(f"wrote {folder / REPORT}", err=as_json)
+    also = f", and {beside} beside it" if beside else ""
+    say(f"wrote {folder / REPORT}{also}", err=as_json)
 
 
 def save_and_show(
@@ -218,18 +223,30 @@ def save_and_show(
 
 
 def write_and_show(
-    report: Report, target: Path, *, force: bool, figures: bool = False, as_json: bool
+    report: Report,
+    target: Path,
+    *,
+    force: bool,
+    figures: bool = False,
+    as_json: bool,
+    beside: str = "",
 ) -> None:
     """Write the folder of a report, and print it; or its data as JSON.
 
-    `save_and_show` has the other parameters.
+    `save_and_show` and `show_folder` have the other parameters.
     """
     from vibroimpact.report.save_report import save_report
     from vibroimpact.report.terminal_report import terminal_report
 
     with exit_on_interrupt():
         folder = save_report(report, target, force=force, figures=("png",) if figures else ())
-    show_folder(folder, lambda: report.document, lambda: terminal_report(report), as_json=as_json)
+    show_folder(
+        folder,
+        lambda: report.document,
+        lambda: terminal_report(report),
+        as_json=as_json,
+        beside=beside,
+    )
 
 
 @contextmanager

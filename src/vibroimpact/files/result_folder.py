@@ -19,7 +19,11 @@ from vibroimpact.files.check_sums import CHECK_SUMS, file_digest, sealed
 from vibroimpact.files.new_folders import made_folder
 from vibroimpact.files.recover import recover
 
-SUMMARY, CASE, REPORT = "summary.json", "case.toml", "report.html"
+SUMMARY = "summary.json"
+CASE = "case.toml"
+REPORT = "report.html"
+FIGURES = "figures"
+"""Name of the folder of the charts as files."""
 
 LONGEST_FOLDER_NAME = 200
 """In bytes; most file systems allow 255. This leaves room for what is appended, such as

@@ -41,7 +41,7 @@ class Reported:
     @property
     def charts(self) -> dict[str, Chart]:
         """The charts of the report, by name."""
-        return {chart.name: chart for chart in self.report.charts}
+        return {chart.name: chart for chart in self.report.all_charts}
 
     @property
     def tables(self) -> list[Table]:
@@ -84,8 +84,13 @@ class Reported:
 
         return save_report(self.report, directory, force=force, figures=figures)
 
-    def plot(self, name: str = "") -> go.Figure:
-        """Return a chart of the report as a figure of plotly; the first one by default.
+    def plot(self, name: str | None = None) -> go.Figure:
+        """Return a chart of the report as a figure of plotly, by its name.
+
+        Parameters
+        ----------
+        name : str, optional
+            Name of the chart; by default the main one.
 
         Raises
         ------
@@ -95,6 +100,12 @@ class Reported:
         from vibroimpact.charts.notebook import plotly_figure
 
         charts = self.charts
-        if name and name not in charts:
-            raise InputError(f"there is no chart {quoted(name)}; there are {choices(charts, name)}")
-        return plotly_figure(charts[name or next(iter(charts))])
+        if name is None:
+            name = self.report.main_chart or next(iter(charts))
+        if name in charts:
+            return plotly_figure(charts[name])
+        further = self.report.further_charts
+        if name in further:
+            return plotly_figure(further[name]())
+        known = choices([*charts, *further], str(name))
+        raise InputError(f"there is no chart {quoted(name)}; there are {known}")

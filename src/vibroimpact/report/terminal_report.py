@@ -2,15 +2,33 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
 from itertools import groupby
 
 from rich.columns import Columns
-from rich.console import Group, RenderableType
+from rich.console import Console, ConsoleOptions, Group, RenderableType, RenderResult
 from rich.text import Text
 
-from vibroimpact.report.report import Block, Code, Facts, Note, Paragraph, Report, Section, Table
-from vibroimpact.report.terminal_table import TerminalColumn, TerminalTable, facts, numbers
+from vibroimpact.report.report import (
+    Block,
+    Code,
+    Column,
+    Explanation,
+    Facts,
+    Note,
+    Paragraph,
+    Report,
+    Section,
+    Table,
+)
+from vibroimpact.report.terminal_table import (
+    TerminalColumn,
+    TerminalTable,
+    facts,
+    numbers,
+    with_gap,
+)
 
 
 def terminal_report(report: Report) -> RenderableType:
@@ -38,16 +56,18 @@ def terminal_report(report: Report) -> RenderableType:
     if report.answer:
         lines.append(Text(report.answer))
     lines.extend(Text(sentence) for sentence in report.sentences)
+    is_first = True
     for section in report.sections:
-        blocks = list(_section_lines(section))
+        blocks = [] if section.medium == "page" else list(_section_lines(section))
         if not blocks:
             continue
         # the table below the answer needs no heading
-        if not (section is report.sections[0] and isinstance(section.blocks[0], Table)):
+        if not (is_first and isinstance(section.blocks[0], Table)):
             lines.append(Text())
             lines.append(Text(section.title, style="bold"))
         lines.extend(blocks)
-    lines.extend(warning_lines(report.warnings))
+        is_first = False
+    lines.extend(warning_lines(report.all_warnings))
     return Group(*lines)
 
 
@@ -69,17 +89,10 @@ def _has_title(block: Block) -> bool:
 def block_lines(block: Block) -> Iterator[RenderableType]:
     """Yield what the terminal shows of a block."""
     if isinstance(block, Table):
-        if block.title:
-            yield Text(block.title, style="bold")
-        yield TerminalTable(
-            [
-                TerminalColumn(column.heading, column.cells, text=True)
-                if column.is_text
-                else numbers(column.heading, column.unit, column.cells)
-                for column in block.columns
-            ],
-            bold=block.bold,
-        )
+        table = block.short or block
+        if table.title:
+            yield Text(table.title, style="bold")
+        yield _FittedTable(table) if table.expendable else _terminal_table(table, table.columns)
     elif isinstance(block, Facts):
         yield facts(block.rows, indent=1)
     elif isinstance(block, Paragraph):
@@ -88,6 +101,48 @@ def block_lines(block: Block) -> Iterator[RenderableType]:
         yield Text(f"{block.lead}\n{block.text}")
     elif isinstance(block, Note):
         yield Text(f" {block.text}", style="dim")
+    elif isinstance(block, Explanation) and block.short:
+        yield Text(f" {block.short}", style="dim")
+
+
+@dataclass(frozen=True)
+class _FittedTable:
+    """A table without the columns that do not fit, and the notes on those that do."""
+
+    table: Table
+
+    def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
+        """Yield the table, and its notes."""
+        table = self.table
+        columns = list(table.columns)
+        for heading in table.expendable:
+            # the row of a gap is not wider than the cells beside it
+            if TerminalTable(_terminal_columns(columns)).width <= options.max_width:
+                break
+            columns = [column for column in columns if column.heading != heading]
+        yield _terminal_table(table, columns)
+        notes = [column.note for column in columns if column.note]
+        if len(columns) < len(table.columns):
+            notes.append(f"A wider terminal shows more columns; {table.file} has all, in SI units.")
+        for note in notes:
+            yield Text(f" {note}", style="dim")
+
+
+def _terminal_table(table: Table, columns: Sequence[Column]) -> TerminalTable:
+    """Return columns of a table for the terminal, with its gap."""
+    shown = _terminal_columns(columns)
+    if table.gap is not None:
+        shown = with_gap(shown, table.gap.row)
+    return TerminalTable(shown, bold=table.bold)
+
+
+def _terminal_columns(columns: Iterable[Column]) -> list[TerminalColumn]:
+    return [
+        TerminalColumn(column.heading, column.cells, text=True)
+        if column.is_text
+        else numbers(column.heading, column.unit, column.cells)
+        for column in columns
+    ]
 
 
 def warning_lines(warnings: Iterable[str]) -> list[RenderableType]:

@@ -36,16 +36,15 @@ from vibroimpact.files.result_folder import (
     CASE,
     SUMMARY,
     write_case,
-    write_files,
-    write_summary,
 )
 from vibroimpact.files.toml_reading import read_toml
 from vibroimpact.resolved_case import ResolvedCase
 from vibroimpact.results.csv_files import write_impacts, write_signal_files
 from vibroimpact.results.netcdf import read_groups, write_groups
 from vibroimpact.results.result import Result
-from vibroimpact.results.summary import check_case, check_types, summary_of
+from vibroimpact.results.summary import check_case, check_types
 
+IMPACTS = "impacts.csv"
 NETCDF = "result.nc"
 CHECKED_FILES = (CASE, NETCDF)
 """Files of the result folder whose checksums its summary records."""
@@ -92,16 +91,10 @@ def result_files(result: Result) -> dict[str, Callable[[Path], object]]:
     # a problem defined in Python has no case; its provenance holds its representation
     if result.case:
         files[CASE] = partial(write_case, result.case)
-    files["impacts.csv"] = partial(write_impacts, result.impacts)
+    files[IMPACTS] = partial(write_impacts, result.impacts)
     files[NETCDF] = partial(write_groups, result)
     files["sensors"] = partial(write_signal_files, result.signals)
     return files
-
-
-def write_result(result: Result, directory: Path) -> None:
-    """Write the data files of a result and their summary into an existing folder."""
-    write_files(result_files(result), directory)
-    write_summary(summary_of(result), directory, CHECKED_FILES)
 
 
 def read_result(directory: str | PathLike[str]) -> Result:

@@ -35,14 +35,13 @@ from vibroimpact.exporting.export_format import find_export_format
 from vibroimpact.exporting.text import export_summary, format_table
 from vibroimpact.law_comparison.comparison import compare_laws
 from vibroimpact.law_sheets.sheet import law_sheet, law_table
-from vibroimpact.modes.text import modes_summary
 from vibroimpact.paper.report.page import kind_summary, verdict_table
 from vibroimpact.paper.report_section import Verdict
 from vibroimpact.report.console import TerminalConsole
 from vibroimpact.report.terminal_report import terminal_report
+from vibroimpact.report.terminal_table import facts
 from vibroimpact.results.result import result_of
 from vibroimpact.runs.case_explained import case_explained
-from vibroimpact.runs.text import result_summary, versions_table
 from vibroimpact.studies.compute_study import compute_study
 from vibroimpact.studies.explain_sweep import explain_sweep
 from vibroimpact.studies.read_sweep import read_sweep
@@ -98,13 +97,13 @@ def commands(tmp_path_factory: pytest.TempPathFactory, variable: vi.Response) ->
     recognition = vi.recognise(knocks, folds=2, seeds=1)
     recognised = vi.apply_recogniser(recognition.recogniser, knocks)
     return {
-        "run": lambda width: result_summary(rigid, width),
-        "run, elastic": lambda width: result_summary(rung, width),
+        "run": lambda width: terminal_report(rigid.report),
+        "run, elastic": lambda width: terminal_report(rung.report),
         "check": lambda _: case_explained(elastic),
         "check, study": lambda _: explain_sweep(sweep),
         "compare": lambda _: terminal_report(compared.report),
         "calibrate": lambda _: terminal_report(report_of(case, calibrated)),
-        "modes": lambda _: modes_summary(elastic, modes),
+        "modes": lambda _: terminal_report(modes.report),
         "sweep": lambda width: study_summary(study, width),
         "dataset": lambda _: explain_sweep(population),
         "bound": lambda _: terminal_report(bound_of(population).report),
@@ -123,7 +122,7 @@ def commands(tmp_path_factory: pytest.TempPathFactory, variable: vi.Response) ->
         "materials NAME": lambda _: material_sheet("granite"),
         "units": lambda _: unit_table(5.115e8, "N/m^1.5"),
         "units --to": lambda _: converted(3.0, "N/µm", "N/m"),
-        "doctor": lambda _: versions_table(
+        "doctor": lambda _: facts(
             [row for row in diagnosis_rows(diagnose()) if row[0] not in CHANGING]
         ),
     }

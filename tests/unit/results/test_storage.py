@@ -235,7 +235,7 @@ def test_a_failure_leaves_nothing_and_loses_nothing(
     def breaks(*_: object) -> None:
         raise OSError("no space left on device")
 
-    monkeypatch.setattr("vibroimpact.runs.save.write_report", breaks)
+    monkeypatch.setattr("vibroimpact.report.save_report.write_page", breaks)
     for name in ("new", "out"):
         with pytest.raises(OSError, match="no space"):
             theory.save(tmp_path / name, force=True)

@@ -11,7 +11,7 @@ from pathlib import Path
 
 from PIL import Image
 
-from vibroimpact.charts.figures_folder import FIGURES
+from vibroimpact.files.result_folder import FIGURES
 
 _IMAGES = "images/reproduction"
 

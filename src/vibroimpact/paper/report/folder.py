@@ -13,7 +13,6 @@ from pathlib import Path
 from typing import Any
 
 from vibroimpact._version import __version__
-from vibroimpact.charts.figures_folder import FIGURES
 from vibroimpact.charts.made import drawn
 from vibroimpact.charts.pack import pack, unpack
 from vibroimpact.charts.plotly import plotly_chart
@@ -22,7 +21,7 @@ from vibroimpact.files.atomic_write import write_into
 from vibroimpact.files.check_sums import CHECK_SUMS, check_file, file_digest, read_sealed, sealed
 from vibroimpact.files.json_reading import read_json_table
 from vibroimpact.files.recover import recover
-from vibroimpact.files.result_folder import SUMMARY, new_folder
+from vibroimpact.files.result_folder import FIGURES, SUMMARY, new_folder
 from vibroimpact.paper.report.outline import (
     PARTS,
     VALUE_COLUMNS,

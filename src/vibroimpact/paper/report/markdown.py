@@ -8,7 +8,7 @@ import re
 from collections.abc import Iterable, Sequence
 
 from vibroimpact.charts.chart import Chart
-from vibroimpact.charts.figures_folder import FIGURES
+from vibroimpact.files.result_folder import FIGURES
 from vibroimpact.paper.printed import PrintedValue
 from vibroimpact.paper.report_section import ComparedValue, ReportSection
 from vibroimpact.report.markdown_table import markdown_table

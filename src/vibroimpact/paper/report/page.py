@@ -13,7 +13,7 @@ from rich.console import Group
 from rich.text import Text
 
 from vibroimpact._version import __version__
-from vibroimpact.charts.figures_folder import FIGURES
+from vibroimpact.files.result_folder import FIGURES
 from vibroimpact.paper.printed import PAPER
 from vibroimpact.paper.report.markdown import table
 from vibroimpact.paper.report.outline import CHAPTERS, PARTS
