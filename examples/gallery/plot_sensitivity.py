@@ -45,8 +45,10 @@ case = {
 with TemporaryDirectory() as folder:
     charts = {
         chart.name: chart
-        for chart in vi.study_charts(
-            vi.read_study(vi.run_sweep(vi.read_sweep(case), Path(folder, "tolerances")))
+        for chart in vi.studies.study_charts(
+            vi.studies.load_study(
+                vi.studies.run_sweep(vi.studies.sweep_of(case), Path(folder, "tolerances"))
+            )
         )
     }
 
@@ -89,5 +91,5 @@ for name, share in zip(
 # All results
 # -----------
 plt.style.use("vibroimpact.charts.print")
-vi.matplotlib_figure(chart, plt.figure())
+vi.charts.matplotlib_figure(chart, plt.figure())
 plt.show()

@@ -15,7 +15,7 @@ from vibroimpact.files.recover import recover
 from vibroimpact.files.result_folder import FIGURES
 from vibroimpact.report.page import replace_report_files
 from vibroimpact.report.save_report import write_figures
-from vibroimpact.results.folder import read_result
+from vibroimpact.results.folder import load_result
 from vibroimpact.results.result import Result
 
 
@@ -94,9 +94,9 @@ def _writer_of(
 
     if is_study(folder):
         from vibroimpact.studies.report.charts import study_charts
-        from vibroimpact.studies.study import read_study
+        from vibroimpact.studies.study import load_study
 
-        charts = study_charts(read_study(folder))
+        charts = study_charts(load_study(folder))
 
         def write(place: Path) -> None:
             save_charts(charts, place, formats, progress)
@@ -111,7 +111,7 @@ def _result_in(folder: Path) -> Result:
     figures already.
     """
     try:
-        return read_result(folder)
+        return load_result(folder)
     except InputError:
         from vibroimpact.paper.report.folder import is_reproduction
 

@@ -9,7 +9,7 @@ from pathlib import Path
 from vibroimpact.files.recover import recover
 from vibroimpact.report.page import replace_report_files
 from vibroimpact.report.save_report import write_page
-from vibroimpact.results.folder import read_result
+from vibroimpact.results.folder import load_result
 
 
 def remake_report(directory: str | PathLike[str]) -> Path:
@@ -34,19 +34,19 @@ def remake_report(directory: str | PathLike[str]) -> Path:
     """
     # imported here, since a run does not need them
     from vibroimpact.studies.report.page import write_study_report
-    from vibroimpact.studies.study import read_study
+    from vibroimpact.studies.study import load_study
     from vibroimpact.studies.study_folder import is_study
 
     folder = Path(directory)
     recover(folder)
     if is_study(folder):
-        write_study_report(read_study(folder), folder)
+        write_study_report(load_study(folder), folder)
         return folder
     from vibroimpact.paper.report.folder import is_reproduction, write_reproduction_report
 
     if is_reproduction(folder):
         write_reproduction_report(folder)
         return folder
-    report = read_result(directory).report
+    report = load_result(directory).report
     replace_report_files(folder, partial(write_page, report))
     return folder

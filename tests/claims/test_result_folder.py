@@ -66,7 +66,7 @@ def test_the_format_of_results(folder: Path) -> None:
 
 
 def test_figures_for_print(folder: Path, tmp_path: Path) -> None:
-    vi.save_charts([vi.read_result(folder).charts["force"]], tmp_path)
+    vi.charts.save_charts([vi.load_result(folder).charts["force"]], tmp_path)
     with Image.open(tmp_path / "force.png") as picture:
         dots = np.array(picture.info["dpi"])
         says(PAGE, "PNG files have {} dots per inch", dots[0])

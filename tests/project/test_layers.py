@@ -29,7 +29,7 @@ LAYERS = [
     {"structures"},
     {"bodies"},
     {"dynamics"},
-    {"laws", "friction", "sensors"},
+    {"friction", "sensors"},
     # what comes in, and what came out
     {"meshes", "measurements"},
     {"cases"},
@@ -39,7 +39,7 @@ LAYERS = [
     {"modes"},
     {"runs"},
     {"law_comparison", "calibration", "studies", "law_sheets", "identification"},
-    {"bayes_error", "test_analysis"},
+    {"bayes_error", "laws", "test_analysis"},
     {"recognition"},
     {"exporting", "paper"},
     {"regenerate", "figures"},
@@ -49,12 +49,9 @@ LAYERS = [
 ]
 LEVEL = {name: level for level, names in enumerate(LAYERS) for name in names}
 
-# response.save(...), .plot(...) and what a notebook shows ask the package's front, which knows the
-# writers and charts: the doors upwards
-DOORS = {
-    (file, "vibroimpact")
-    for file in ("dynamics/response.py", "results/result.py", "studies/study.py")
-}
+# study.plot(...) and what a notebook shows ask the package's front, which knows the charts: the door
+# upwards
+DOORS = {("studies/study.py", "vibroimpact")}
 
 # a room that people work in may have a section of the case, which is part of the case file and lies
 # beside the work that it asks for

@@ -134,7 +134,7 @@ def folder(tmp_path: Path, tiny_models: Path) -> Path:
         header="time [s],hammer [N],a1 [g],a2 [g]",
         comments="",
     )
-    vi.simulate(vi.read_case(TABLE)).save(work / "run")
+    vi.simulate(vi.case_of(TABLE)).save(work / "run")
     return work
 
 

@@ -216,12 +216,12 @@ def _run_sweep(
         At the next safe point, once `stopped` returns True.
     """
     from vibroimpact.report.progress import counting_progress, patient_progress
-    from vibroimpact.studies.read_sweep import load_sweep
     from vibroimpact.studies.report.document import study_document
     from vibroimpact.studies.report.text import study_summary
     from vibroimpact.studies.run_sweep import run_sweep
-    from vibroimpact.studies.study import read_study
+    from vibroimpact.studies.study import load_study
     from vibroimpact.studies.study_folder import has_study
+    from vibroimpact.studies.sweep_file import load_sweep
     from vibroimpact.studies.unit_slips import sweep_slips
 
     size = quantity_in("--memory", memory, "byte")
@@ -263,7 +263,7 @@ def _run_sweep(
             modes_progress=modes_progress,
             tell=note,
         )
-    done = read_study(folder)
+    done = load_study(folder)
     show(
         lambda: {"folder": str(folder), **study_document(done)},
         lambda: study_summary(done, screen.width),

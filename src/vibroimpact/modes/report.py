@@ -53,7 +53,7 @@ def report_of(modes: Modes, measured: MeasuredTable | None = None) -> Report:
     Examples
     --------
     >>> import vibroimpact as vi
-    >>> case = vi.read_case(
+    >>> case = vi.case_of(
     ...     {
     ...         "sphere": {
     ...             "radius": "25 mm",

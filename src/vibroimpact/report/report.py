@@ -407,8 +407,8 @@ def table_of(
     Examples
     --------
     >>> table = table_of(["Law", ("Force", "N")], [["hertz", "20"], ["tsuji", "19"]])
-    >>> table.columns[1]
-    Column(heading='Force', cells=('20', '19'), unit='N', is_text=False)
+    >>> table.headings, table.rows
+    ([('Law', ''), ('Force', 'N')], [['hertz', '20'], ['tsuji', '19']])
     """
     columns = []
     for number, heading in enumerate(headings):

@@ -97,7 +97,7 @@ def result_files(result: Result) -> dict[str, Callable[[Path], object]]:
     return files
 
 
-def read_result(directory: str | PathLike[str]) -> Result:
+def load_result(directory: str | PathLike[str]) -> Result:
     """Read a result folder and verify the checksums of its files.
 
     Parameters
@@ -125,7 +125,7 @@ def read_result(directory: str | PathLike[str]) -> Result:
     >>> import vibroimpact as vi
     >>> with TemporaryDirectory() as folder:
     ...     place = vi.simulate(vi.load_case("paper:type1-theory")).save(f"{folder}/theory")
-    ...     vi.read_result(place).impacts["rebound_height_m"].round(4).tolist()
+    ...     vi.load_result(place).impacts["rebound_height_m"].round(4).tolist()
     [2.4111, 1.4572, 0.8846, 0.5409, 0.3346]
     """
     folder = Path(directory)

@@ -91,9 +91,9 @@ class Study:
     >>> from tempfile import TemporaryDirectory
     >>> import vibroimpact as vi
     >>> case = vi.load_case("paper:type1-theory").to_problem().source
-    >>> sweep = vi.read_sweep({**case, "sweep": {"over": {"drop.height": ["1 m", "2 m"]}}})
+    >>> sweep = vi.studies.sweep_of({**case, "sweep": {"over": {"drop.height": ["1 m", "2 m"]}}})
     >>> with TemporaryDirectory() as folder:
-    ...     study = vi.read_study(vi.run_sweep(sweep, f"{folder}/heights"))
+    ...     study = vi.studies.load_study(vi.studies.run_sweep(sweep, f"{folder}/heights"))
     ...     study.dimensions, study.values("largest_force_N").round(1).tolist()
     ({'drop.height': 2}, [4406.8, 6730.2])
     """
@@ -157,16 +157,16 @@ class Study:
         # an import upwards, as in Response.save: tables and charts lie above the study
         import vibroimpact
 
-        return vibroimpact.study_html(self)
+        return vibroimpact.studies.study_html(self)
 
     def plot(self, name: str = "") -> go.Figure:
-        """Return a chart as a figure of plotly, by its name; see `vibroimpact.plot_study`.
+        """Return a chart as a figure of plotly, by its name; see `vibroimpact.studies.plot_study`.
 
         By default it is the first chart.
         """
         import vibroimpact
 
-        return vibroimpact.plot_study(self, name)
+        return vibroimpact.studies.plot_study(self, name)
 
     def times(self, sensor: str) -> Floats:
         """Return the time of each sample in the signal of a sensor [s].
@@ -217,7 +217,7 @@ def study_doubts(dataset: Path) -> list[StudyDoubt]:
     return sorted(doubts, key=lambda doubt: -doubt.drops)
 
 
-def read_study(directory: str | PathLike[str]) -> Study:
+def load_study(directory: str | PathLike[str]) -> Study:
     """Return a completed study from its folder; the variables are read later.
 
     Parameters
@@ -235,9 +235,11 @@ def read_study(directory: str | PathLike[str]) -> Study:
     >>> from tempfile import TemporaryDirectory
     >>> import vibroimpact as vi
     >>> case = vi.load_case("paper:type1-theory").to_problem().source
-    >>> sweep = vi.read_sweep({**case, "sweep": {"over": {"contact.restitution": [0.5, 0.7]}}})
+    >>> sweep = vi.studies.sweep_of(
+    ...     {**case, "sweep": {"over": {"contact.restitution": [0.5, 0.7]}}}
+    ... )
     >>> with TemporaryDirectory() as folder:
-    ...     study = vi.read_study(vi.run_sweep(sweep, f"{folder}/restitutions"))
+    ...     study = vi.studies.load_study(vi.studies.run_sweep(sweep, f"{folder}/restitutions"))
     ...     study.size, study.coordinates["contact.restitution"].tolist()
     (2, [0.5, 0.7])
     """

@@ -64,7 +64,7 @@ class BodyModes:
     Examples
     --------
     >>> import vibroimpact as vi
-    >>> case = vi.read_case(
+    >>> case = vi.case_of(
     ...     {
     ...         "sphere": {
     ...             "radius": "25 mm",
@@ -107,7 +107,7 @@ class Modes(Reported, Mapping[str, BodyModes], reported_in="vibroimpact.modes.re
     Examples
     --------
     >>> import vibroimpact as vi
-    >>> case = vi.read_case(
+    >>> case = vi.case_of(
     ...     {
     ...         "sphere": {
     ...             "radius": "25 mm",
@@ -164,7 +164,7 @@ def compute_modes(
     Examples
     --------
     >>> import vibroimpact as vi
-    >>> case = vi.read_case(
+    >>> case = vi.case_of(
     ...     {
     ...         "sphere": {
     ...             "radius": "25 mm",

@@ -67,7 +67,9 @@ def study_charts(
     ...     "sweep": {"over": {"drop.height": [1.0, 2.0]}},
     ... }
     >>> with tempfile.TemporaryDirectory() as place:
-    ...     study = vi.read_study(vi.run_sweep(vi.read_sweep(case), f"{place}/heights"))
+    ...     study = vi.studies.load_study(
+    ...         vi.studies.run_sweep(vi.studies.sweep_of(case), f"{place}/heights")
+    ...     )
     ...     [chart.name for chart in study_charts(study)]
     ['curves', 'restitution']
     """

@@ -48,9 +48,13 @@ def plot_study(study: Study, name: str = "") -> go.Figure:
     >>> from tempfile import TemporaryDirectory
     >>> import vibroimpact as vi
     >>> case = vi.load_case("paper:type1-theory").to_problem().source
-    >>> sweep = vi.read_sweep({**case, "sweep": {"over": {"drop.height": ["1 m", "2 m", "4 m"]}}})
+    >>> sweep = vi.studies.sweep_of(
+    ...     {**case, "sweep": {"over": {"drop.height": ["1 m", "2 m", "4 m"]}}}
+    ... )
     >>> with TemporaryDirectory() as folder:
-    ...     vi.plot_study(vi.read_study(vi.run_sweep(sweep, f"{folder}/heights"))).layout.title.text
+    ...     vi.studies.plot_study(
+    ...         vi.studies.load_study(vi.studies.run_sweep(sweep, f"{folder}/heights"))
+    ...     ).layout.title.text
     'Over the drop height'
     """
     charts = {chart.name: chart for chart in study_charts(study)}
@@ -78,9 +82,11 @@ def study_html(study: Study) -> str:
     >>> from tempfile import TemporaryDirectory
     >>> import vibroimpact as vi
     >>> case = vi.load_case("paper:type1-theory").to_problem().source
-    >>> sweep = vi.read_sweep({**case, "sweep": {"over": {"drop.height": ["1 m", "2 m"]}}})
+    >>> sweep = vi.studies.sweep_of({**case, "sweep": {"over": {"drop.height": ["1 m", "2 m"]}}})
     >>> with TemporaryDirectory() as folder:
-    ...     html = vi.study_html(vi.read_study(vi.run_sweep(sweep, f"{folder}/heights")))
+    ...     html = vi.studies.study_html(
+    ...         vi.studies.load_study(vi.studies.run_sweep(sweep, f"{folder}/heights"))
+    ...     )
     >>> "drop.height" in html, "<script" in html
     (True, False)
     """

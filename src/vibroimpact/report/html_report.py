@@ -11,7 +11,7 @@ from vibroimpact.report.html_table import html_table
 from vibroimpact.report.report import Paragraph, Report, Section, Table
 
 
-def report_html(report: Report) -> str:
+def html_report(report: Report) -> str:
     """Return title, answer, first tables and warnings of a report as HTML.
 
     Parameters
@@ -21,7 +21,7 @@ def report_html(report: Report) -> str:
 
     Examples
     --------
-    >>> print(report_html(Report("Two balls", (), {}, answer="They collide.")))
+    >>> print(html_report(Report("Two balls", (), {}, answer="They collide.")))
     <p><strong>Two balls</strong><br>They collide.</p>
     """
     head = Markup("<p><strong>{}</strong><br>{}</p>")
