@@ -6,8 +6,6 @@ from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 
-import tomli_w
-
 from vibroimpact.cases.build import resolved_case
 from vibroimpact.cases.elastic.modes import BodyModes, Modes
 from vibroimpact.charts.chart import Chart
@@ -26,9 +24,9 @@ from vibroimpact.modes.measured_table import MeasuredTable
 from vibroimpact.modes.mesh_files import mesh_files
 from vibroimpact.modes.scene import mode_scene
 from vibroimpact.modes.tables import body_facts, mode_table
+from vibroimpact.report.case_text import case_text
 from vibroimpact.report.report import (
     Block,
-    Code,
     Explanation,
     Facts,
     Figure,
@@ -135,8 +133,7 @@ def _motion(modes: Modes) -> list[Section]:
 
 def _case(modes: Modes) -> Section:
     """Return the case as text."""
-    lead = "The case with all defaults filled in; plain numbers are in SI units."
-    text = Code("case", lead, tomli_w.dumps(resolved_case(modes.case)))
+    text = case_text(resolved_case(modes.case))
     return Section("case", "Case", (text,), after_charts=True, medium="page")
 
 

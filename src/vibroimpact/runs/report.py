@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import partial
-from typing import Any
-
-import tomli_w
 
 from vibroimpact.charts.chart import Chart
 from vibroimpact.charts.made import made_charts, made_scene
 from vibroimpact.dynamics.energy import CLOSURE_LIMIT, closure_in_words
+from vibroimpact.report.case_text import case_text
 from vibroimpact.report.report import (
     Block,
-    Code,
     Explanation,
     Facts,
     Figure,
@@ -36,8 +34,6 @@ from vibroimpact.runs.sensor_charts import sensor_chart
 from vibroimpact.runs.setup import setup_chart, setup_rows
 from vibroimpact.runs.tables import energy_lost_sentence, energy_table, impact_table
 from vibroimpact.units.display import MISSING, digits, text
-
-CASE_LEAD = "The case with all defaults filled in; plain numbers are in SI units."
 
 
 def report_of(result: Result) -> Report:
@@ -140,20 +136,21 @@ def _deformation(result: Result) -> Section:
 
 
 def _motion(result: Result, maps: Chart | None) -> Section:
-    """Return the plate in motion, or the chart that says why it can't be drawn."""
+    """Return the plate in motion; where it can't be drawn, why, and the maps of its deflection."""
     data, lost = made_scene(partial(scene_of, result))
-    block: Block
-    if data is None:
-        block = Figure(lost[0], has_title=False)
-    else:
-        block = Scene(
+    blocks: list[Block] = [Figure(chart, has_title=False) for chart in lost]
+    if data is None and maps is not None:
+        blocks.append(Figure(maps))
+    if data is not None:
+        scene = Scene(
             data,
             label="Plate and ball",
             caption=scene_caption(result),
             still=maps,
             animation=partial(_animation, result),
         )
-    return Section("motion", "Plate in motion", (block,), medium="page")
+        blocks.append(scene)
+    return Section("motion", "Plate in motion", blocks, medium="page")
 
 
 def _animation(result: Result) -> bytes:
@@ -171,12 +168,7 @@ def _case(result: Result) -> Section:
     return Section("case", "Case", (block,), after_charts=True, medium="page")
 
 
-def case_text(case: Any) -> Code:
-    """Return a resolved case as the text of a page."""
-    return Code("case", CASE_LEAD, tomli_w.dumps(case))
-
-
-def _charts_of_sensors(result: Result) -> dict[str, Any]:
+def _charts_of_sensors(result: Result) -> dict[str, Callable[[], Chart]]:
     """Return what makes the chart of each sensor, also of those that the page does not draw."""
     if not len(result.impacts["time_s"]):
         return {}
