@@ -68,7 +68,10 @@ def report_of(modes: Modes, measured: MeasuredTable | None = None) -> Report:
     ['case.toml', 'modes.csv', 'sphere.bdf', 'sphere.inp', 'sphere.vtu']
     """
     charts = {chart.name: chart for chart in mode_charts(modes)}
-    sections = [_body(name, body, charts[f"{name}_modes"]) for name, body in modes.items()]
+    sections = []
+    for name, body in modes.items():
+        sections.append(_body(name, body))
+        sections.append(_shapes(name, charts[f"{name}_modes"]))
     if measured is not None:
         sections.append(_measured(measured))
     sections.extend(_motion(modes))
@@ -87,8 +90,8 @@ def report_of(modes: Modes, measured: MeasuredTable | None = None) -> Report:
     )
 
 
-def _body(name: str, body: BodyModes, chart: Chart) -> Section:
-    """Return the facts of a body, its frequencies and its shapes."""
+def _body(name: str, body: BodyModes) -> Section:
+    """Return the facts of a body, and its frequencies."""
     table = mode_table(body)
     error = '"Within" is the estimated error of a frequency. '
     has_errors = any(column.heading == "within" for column in table.columns)
@@ -97,8 +100,14 @@ def _body(name: str, body: BodyModes, chart: Chart) -> Section:
         f"{error if has_errors else ''}The shape at the contact is that of a mode of unit modal "
         f"mass. All modes are in modes.csv{points}."
     )
-    blocks = (Warnings(body.doubts), Facts(body_facts(body)), table, meaning, Figure(chart))
+    blocks = (Warnings(body.doubts), Facts(body_facts(body)), table, meaning)
     return Section(name, name.capitalize(), blocks)
+
+
+def _shapes(name: str, chart: Chart) -> Section:
+    """Return the first shapes of a body."""
+    figure = Figure(chart, has_title=False)
+    return Section(f"shapes-of-{name}", chart.title, (figure,), medium="page")
 
 
 def _measured(measured: MeasuredTable) -> Section:
