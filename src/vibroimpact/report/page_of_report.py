@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from vibroimpact._version import __version__
 from vibroimpact.report.page import render_page
 from vibroimpact.report.report import Report
 
@@ -21,10 +20,5 @@ def page_of_report(report: Report) -> str:
     >>> '<p class="status">They collide.</p>' in page
     True
     """
-    return render_page(
-        __package__,
-        report.charts,
-        name=report.title,
-        report=report,
-        version=__version__,
-    )
+    title = report.title[:1].upper() + report.title[1:]
+    return render_page(__package__, report.charts, name=title, report=report)

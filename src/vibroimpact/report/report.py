@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, ClassVar
 
+from vibroimpact._version import __version__
 from vibroimpact.charts.chart import Chart
 
 
@@ -27,12 +28,22 @@ class Column:
         Unit of the cells; empty if there is none.
     is_text : bool
         Texts, aligned on the left; otherwise numbers.
+    wraps : bool
+        Long texts, which the page breaks into lines.
+    tones : sequence of str
+        How each cell is coloured on the page: "good", "fair", "soft", "bad", or "" for none; by
+        default no cell is.
+    least_width : int
+        Width of a terminal [characters] below which the column is left out.
     """
 
     heading: str
     cells: Sequence[str]
     unit: str = ""
     is_text: bool = False
+    wraps: bool = False
+    tones: Sequence[str] = ()
+    least_width: int = 0
 
 
 @dataclass(frozen=True)
@@ -74,12 +85,39 @@ class Paragraph:
 
 
 @dataclass(frozen=True)
+class Heading:
+    """A heading within a section."""
+
+    kind: ClassVar[str] = "heading"
+
+    text: str
+
+
+@dataclass(frozen=True)
+class Figure:
+    """The place of a chart within a section of the page, by its name."""
+
+    kind: ClassVar[str] = "figure"
+
+    name: str
+
+
+@dataclass(frozen=True)
 class Note:
-    """Sentences on how a table is read."""
+    """Sentences on how a table is read, or on what went wrong.
+
+    Parameters
+    ----------
+    text : str
+        The sentences.
+    is_warning : bool
+        Whether the terminal sets them apart as a warning.
+    """
 
     kind: ClassVar[str] = "note"
 
     text: str
+    is_warning: bool = False
 
 
 @dataclass(frozen=True)
@@ -115,7 +153,7 @@ class Code:
     is_short: bool = False
 
 
-Block = Table | Facts | Paragraph | Note | Explanation | Code
+Block = Table | Facts | Paragraph | Heading | Figure | Note | Explanation | Code
 
 
 @dataclass(frozen=True)
@@ -127,7 +165,7 @@ class Section:
     name : str
         Plain name, to which the contents link.
     title : str
-        The heading.
+        The heading; without one it is not in the contents.
     blocks : sequence of Block
         What it consists of.
     after_charts : bool
@@ -138,6 +176,11 @@ class Section:
     title: str
     blocks: Sequence[Block]
     after_charts: bool = False
+
+    @property
+    def figures(self) -> list[str]:
+        """Names of the charts that have their place in it."""
+        return [block.name for block in self.blocks if isinstance(block, Figure)]
 
 
 @dataclass(frozen=True)
@@ -153,7 +196,7 @@ class Report:
     summary : mapping
         Content of `summary.json` in the folder; in SI.
     charts : sequence of Chart
-        The charts.
+        The charts; those without a place in a section follow the sections.
     files : mapping of str to callable
         Further files of the folder by their names, each with the function that writes it to a path.
     answer : str
@@ -166,6 +209,21 @@ class Report:
         What it was made from, in words that follow the version of the program.
     data : mapping, optional
         What `--json` prints; by default the summary.
+    in_short : sequence of Section
+        What a terminal shows in place of the sections, where these are too long for it.
+    opening : sequence of Block
+        What precedes the contents of the page.
+    is_failure : bool
+        Whether the answer is that there is no result.
+    warnings_note : str
+        How the warnings are read.
+    charts_note : str
+        How the charts are read.
+    commands : str
+        Where the commands are run that end the labels of points in charts, such as "In the study's
+        folder"; empty if they end with none.
+    version : str
+        Version of the program that computed the finding.
     """
 
     title: str
@@ -178,6 +236,13 @@ class Report:
     warnings: Sequence[str] = ()
     provenance: str = ""
     data: Mapping[str, Any] | None = None
+    in_short: Sequence[Section] = ()
+    opening: Sequence[Block] = ()
+    is_failure: bool = False
+    warnings_note: str = ""
+    charts_note: str = ""
+    commands: str = ""
+    version: str = __version__
 
     @property
     def document(self) -> dict[str, Any]:
@@ -228,8 +293,9 @@ def table_of(
     Examples
     --------
     >>> table = table_of(["Law", ("Force", "N")], [["hertz", "20"], ["tsuji", "19"]])
-    >>> table.columns[1]
-    Column(heading='Force', cells=('20', '19'), unit='N', is_text=False)
+    >>> force = table.columns[1]
+    >>> force.heading, force.unit, force.cells
+    ('Force', 'N', ('20', '19'))
     """
     columns = []
     for number, heading in enumerate(headings):

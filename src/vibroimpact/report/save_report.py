@@ -47,11 +47,24 @@ def save_report(
     ['report.html', 'summary.json']
     """
     with new_folder(directory, force=force) as folder:
-        for name, write in report.files.items():
-            path = folder / name
-            path.parent.mkdir(exist_ok=True)
-            write(path)
+        write_report(report, folder)
         write_summary(report.summary, folder)
         write_figures(report.charts, folder, figures)
-        (folder / REPORT).write_text(page_of_report(report), encoding="utf-8")
     return Path(directory)
+
+
+def write_report(report: Report, folder: Path) -> None:
+    """Write the page of a report, and its further files, into an existing folder.
+
+    Parameters
+    ----------
+    report : Report
+        The report.
+    folder : pathlib.Path
+        The existing folder.
+    """
+    for name, write in report.files.items():
+        path = folder / name
+        path.parent.mkdir(exist_ok=True)
+        write(path)
+    (folder / REPORT).write_text(page_of_report(report), encoding="utf-8")

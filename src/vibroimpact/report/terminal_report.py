@@ -9,7 +9,17 @@ from rich.columns import Columns
 from rich.console import Group, RenderableType
 from rich.text import Text
 
-from vibroimpact.report.report import Block, Code, Facts, Note, Paragraph, Report, Section, Table
+from vibroimpact.report.report import (
+    Block,
+    Code,
+    Facts,
+    Heading,
+    Note,
+    Paragraph,
+    Report,
+    Section,
+    Table,
+)
 from vibroimpact.report.terminal_table import TerminalColumn, TerminalTable, facts, numbers
 
 
@@ -19,7 +29,8 @@ def terminal_report(report: Report) -> RenderableType:
     Parameters
     ----------
     report : Report
-        The report; charts, explanations and texts to copy are on its page alone.
+        The report; charts, explanations and texts to copy are on its page alone, and so are its
+        sections if it has shorter ones.
 
     Examples
     --------
@@ -38,17 +49,26 @@ def terminal_report(report: Report) -> RenderableType:
     if report.answer:
         lines.append(Text(report.answer))
     lines.extend(Text(sentence) for sentence in report.sentences)
-    for section in report.sections:
+    sections = report.in_short or report.sections
+    for section in sections:
         blocks = list(_section_lines(section))
         if not blocks:
             continue
-        # the table below the answer needs no heading
-        if not (section is report.sections[0] and isinstance(section.blocks[0], Table)):
-            lines.append(Text())
-            lines.append(Text(section.title, style="bold"))
+        lines.extend(_heading_lines(section, is_first=section is sections[0]))
         lines.extend(blocks)
     lines.extend(warning_lines(report.warnings))
+    if report.warnings and report.warnings_note:
+        lines.append(Text(report.warnings_note, style="dim"))
     return Group(*lines)
+
+
+def _heading_lines(section: Section, *, is_first: bool) -> Iterator[Text]:
+    """Yield what sets a section apart; the table below the answer needs no heading."""
+    has_heading = section.title and not (is_first and isinstance(section.blocks[0], Table))
+    if has_heading or not is_first:
+        yield Text()
+    if has_heading:
+        yield Text(section.title, style="bold")
 
 
 def _section_lines(section: Section) -> Iterator[RenderableType]:
@@ -73,7 +93,9 @@ def block_lines(block: Block) -> Iterator[RenderableType]:
             yield Text(block.title, style="bold")
         yield TerminalTable(
             [
-                TerminalColumn(column.heading, column.cells, text=True)
+                TerminalColumn(
+                    column.heading, column.cells, text=True, least_width=column.least_width
+                )
                 if column.is_text
                 else numbers(column.heading, column.unit, column.cells)
                 for column in block.columns
@@ -82,12 +104,14 @@ def block_lines(block: Block) -> Iterator[RenderableType]:
         )
     elif isinstance(block, Facts):
         yield facts(block.rows, indent=1)
+    elif isinstance(block, Heading):
+        yield Text(block.text, style="bold")
     elif isinstance(block, Paragraph):
         yield Text(block.text)
     elif isinstance(block, Code) and block.is_short:
         yield Text(f"{block.lead}\n{block.text}")
     elif isinstance(block, Note):
-        yield Text(f" {block.text}", style="dim")
+        yield Text(f" {block.text}", style="yellow" if block.is_warning else "dim")
 
 
 def warning_lines(warnings: Iterable[str]) -> list[RenderableType]:

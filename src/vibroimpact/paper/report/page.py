@@ -13,12 +13,13 @@ from rich.console import Group
 from rich.text import Text
 
 from vibroimpact._version import __version__
+from vibroimpact.charts.chart import stored_chart
 from vibroimpact.charts.figures_folder import FIGURES
 from vibroimpact.paper.printed import PAPER
 from vibroimpact.paper.report.markdown import table
 from vibroimpact.paper.report.outline import CHAPTERS, PARTS
 from vibroimpact.paper.report_section import Kind, Verdict
-from vibroimpact.report.page import render_drawn_page
+from vibroimpact.report.page import render_page
 from vibroimpact.report.terminal_table import TerminalColumn, TerminalTable
 from vibroimpact.units.display import digits
 
@@ -255,7 +256,8 @@ def report_html(text: str, charts: Sequence[dict[str, Any]]) -> str:
         pieces.append((before, image["name"]))
         done = image.end()
     pieces.append(((chapters + rest)[done:], ""))
-    return render_drawn_page(__package__, charts, name=TITLE, opening=opening, pieces=pieces)
+    stored = [stored_chart(chart) for chart in charts]
+    return render_page(__package__, stored, name=TITLE, opening=opening, pieces=pieces)
 
 
 def kind_summary(parts: Mapping[str, Mapping[str, Any]]) -> Group:
