@@ -43,12 +43,8 @@ case = {
     "sweep": {"design": "saltelli", "samples": 1024, "over": over},
 }
 with TemporaryDirectory() as folder:
-    charts = {
-        chart.name: chart
-        for chart in vi.study_charts(
-            vi.read_study(vi.run_sweep(vi.read_sweep(case), Path(folder, "tolerances")))
-        )
-    }
+    study = vi.read_study(vi.run_sweep(vi.read_sweep(case), Path(folder, "tolerances")))
+    charts = study.charts
 
 # %%
 # Total indices of the largest force

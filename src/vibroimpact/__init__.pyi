@@ -140,9 +140,6 @@ from .structures.mesh import Mesh as Mesh
 from .structures.modal_model import ModalBasis as ModalBasis
 from .studies.read_sweep import load_sweep as load_sweep
 from .studies.read_sweep import read_sweep as read_sweep
-from .studies.report.charts import study_charts as study_charts
-from .studies.report.notebook import plot_study as plot_study
-from .studies.report.notebook import study_html as study_html
 from .studies.run_sweep import run_sweep as run_sweep
 from .studies.study import Study as Study
 from .studies.study import read_study as read_study

@@ -95,10 +95,9 @@ def _writer_of(
     from vibroimpact.studies.study_folder import is_study
 
     if is_study(folder):
-        from vibroimpact.studies.report.charts import study_charts
         from vibroimpact.studies.study import read_study
 
-        charts = study_charts(read_study(folder))
+        charts = read_study(folder).report.charts
 
         def write(place: Path) -> None:
             save_charts(charts, place, formats, progress)

@@ -50,10 +50,7 @@ LEVEL = {name: level for level, names in enumerate(LAYERS) for name in names}
 
 # response.save(...), .plot(...) and what a notebook shows ask the package's front, which knows the
 # writers and charts: the doors upwards
-DOORS = {
-    (file, "vibroimpact")
-    for file in ("dynamics/response.py", "results/result.py", "studies/study.py")
-}
+DOORS = {(file, "vibroimpact") for file in ("dynamics/response.py", "results/result.py")}
 
 # a room that people work in may have a section of the case, which is part of the case file and lies
 # beside the work that it asks for

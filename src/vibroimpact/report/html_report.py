@@ -21,7 +21,8 @@ def html_report(report: Report) -> str:
     <table><thead><tr></tr></thead><tbody><tr><td>radius</td><td>10 mm</td></tr></tbody></table>
     """
     head = Markup("<p><strong>{}</strong><br>{}</p>").format(visible(report.title), report.answer)
-    tables = [_html_block(block) for section in report.sections for block in section.blocks]
+    sections = [section for section in report.sections if section.medium != "terminal"]
+    tables = [_html_block(block) for section in sections for block in section.blocks]
     return str(Markup("\n").join([head, *filter(None, tables)]))
 
 

@@ -21,4 +21,4 @@ def page_of_report(report: Report) -> str:
     True
     """
     title = report.title[:1].upper() + report.title[1:]
-    return render_page(__package__, report.charts, name=title, report=report)
+    return render_page(__package__, report.all_charts, name=title, report=report)

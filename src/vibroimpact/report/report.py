@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Literal
 
 from vibroimpact._version import __version__
 from vibroimpact.charts.chart import Chart
@@ -95,11 +95,11 @@ class Heading:
 
 @dataclass(frozen=True)
 class Figure:
-    """The place of a chart within a section of the page, by its name."""
+    """A chart within a section of the page."""
 
     kind: ClassVar[str] = "figure"
 
-    name: str
+    chart: Chart
 
 
 @dataclass(frozen=True)
@@ -170,17 +170,20 @@ class Section:
         What it consists of.
     after_charts : bool
         Whether it follows the charts.
+    medium : str
+        Where it is shown: on the "page", in the "terminal", or in "both".
     """
 
     name: str
     title: str
     blocks: Sequence[Block]
     after_charts: bool = False
+    medium: Literal["page", "terminal", "both"] = "both"
 
     @property
-    def figures(self) -> list[str]:
-        """Names of the charts that have their place in it."""
-        return [block.name for block in self.blocks if isinstance(block, Figure)]
+    def charts(self) -> list[Chart]:
+        """The charts within it."""
+        return [block.chart for block in self.blocks if isinstance(block, Figure)]
 
 
 @dataclass(frozen=True)
@@ -196,7 +199,7 @@ class Report:
     summary : mapping
         Content of `summary.json` in the folder; in SI.
     charts : sequence of Chart
-        The charts; those without a place in a section follow the sections.
+        The charts that follow the sections.
     files : mapping of str to callable
         Further files of the folder by their names, each with the function that writes it to a path.
     answer : str
@@ -209,15 +212,13 @@ class Report:
         What it was made from, in words that follow the version of the program.
     data : mapping, optional
         What `--json` prints; by default the summary.
-    in_short : sequence of Section
-        What a terminal shows in place of the sections, where these are too long for it.
     opening : sequence of Block
         What precedes the contents of the page.
-    is_failure : bool
+    has_failed : bool
         Whether the answer is that there is no result.
     warnings_note : str
         How the warnings are read.
-    charts_note : str
+    above_charts : str
         How the charts are read.
     commands : str
         Where the commands are run that end the labels of points in charts, such as "In the study's
@@ -236,11 +237,10 @@ class Report:
     warnings: Sequence[str] = ()
     provenance: str = ""
     data: Mapping[str, Any] | None = None
-    in_short: Sequence[Section] = ()
     opening: Sequence[Block] = ()
-    is_failure: bool = False
+    has_failed: bool = False
     warnings_note: str = ""
-    charts_note: str = ""
+    above_charts: str = ""
     commands: str = ""
     version: str = __version__
 
@@ -248,6 +248,11 @@ class Report:
     def document(self) -> dict[str, Any]:
         """What `--json` prints."""
         return dict(self.summary if self.data is None else self.data)
+
+    @property
+    def all_charts(self) -> list[Chart]:
+        """The charts within the sections, and those that follow them."""
+        return [*(chart for section in self.sections for chart in section.charts), *self.charts]
 
 
 _MOST_ROWS = 50

@@ -41,14 +41,17 @@ class WithReport:
     @property
     def charts(self) -> dict[str, Chart]:
         """The charts of the report, by name."""
-        return {chart.name: chart for chart in self.report.charts}
+        return {chart.name: chart for chart in self.report.all_charts}
 
     @property
     def tables(self) -> list[Table]:
-        """The tables of the report."""
-        sections = self.report.sections
+        """The tables of the report; not those that are shortened for terminals."""
         return [
-            block for section in sections for block in section.blocks if isinstance(block, Table)
+            block
+            for section in self.report.sections
+            if section.medium != "terminal"
+            for block in section.blocks
+            if isinstance(block, Table)
         ]
 
     @property

@@ -49,7 +49,7 @@ def save_report(
     with new_folder(directory, force=force) as folder:
         write_report(report, folder)
         write_summary(report.summary, folder)
-        write_figures(report.charts, folder, figures)
+        write_figures(report.all_charts, folder, figures)
     return Path(directory)
 
 

@@ -29,8 +29,7 @@ def terminal_report(report: Report) -> RenderableType:
     Parameters
     ----------
     report : Report
-        The report; charts, explanations and texts to copy are on its page alone, and so are its
-        sections if it has shorter ones.
+        The report; charts, explanations and texts to copy are on its page alone.
 
     Examples
     --------
@@ -49,7 +48,7 @@ def terminal_report(report: Report) -> RenderableType:
     if report.answer:
         lines.append(Text(report.answer))
     lines.extend(Text(sentence) for sentence in report.sentences)
-    sections = report.in_short or report.sections
+    sections = [section for section in report.sections if section.medium != "page"]
     for section in sections:
         blocks = list(_section_lines(section))
         if not blocks:

@@ -46,7 +46,6 @@ from vibroimpact.runs.text import result_summary, versions_table
 from vibroimpact.studies.compute_study import compute_study
 from vibroimpact.studies.explain_sweep import explain_sweep
 from vibroimpact.studies.read_sweep import read_sweep
-from vibroimpact.studies.report.text import study_summary
 
 _NUMBER = re.compile(
     r"(?<![\w.])[-\u2212+]?\d+(?:\.\d+)?(?:·10[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+|e[-+]?\d+)?(?![\w.]*\d)"
@@ -105,7 +104,7 @@ def commands(tmp_path_factory: pytest.TempPathFactory, variable: vi.Response) ->
         "compare": lambda _: terminal_report(compared.report),
         "calibrate": lambda _: terminal_report(report_of(case, calibrated)),
         "modes": lambda _: modes_summary(elastic, modes),
-        "sweep": lambda width: study_summary(study, width),
+        "sweep": lambda _: terminal_report(study.report),
         "dataset": lambda _: explain_sweep(population),
         "bound": lambda _: terminal_report(bound_of(population).report),
         "export": lambda _: format_table(),
