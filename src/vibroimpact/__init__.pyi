@@ -96,6 +96,8 @@ from .meshes.write_vtu import write_vtu as write_vtu
 from .modes.charts import mode_charts as mode_charts
 from .modes.folder import save_modes as save_modes
 from .paper.report.folder import reproduce_paper as reproduce_paper
+from .paper.report.reproduction import Reproduction as Reproduction
+from .paper.report.reproduction import load_reproduction as load_reproduction
 from .recognition.apply import Recognised as Recognised
 from .recognition.apply import apply_recogniser as apply_recogniser
 from .recognition.labelled_signals import LabelledSignals as LabelledSignals

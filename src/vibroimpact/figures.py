@@ -113,7 +113,7 @@ def _result_in(folder: Path) -> Result:
     try:
         return read_result(folder)
     except InputError:
-        from vibroimpact.paper.report.folder import is_reproduction
+        from vibroimpact.paper.report.reproduction import is_reproduction
 
         if is_reproduction(folder):
             raise InputError(

@@ -44,7 +44,8 @@ def remake_report(directory: str | PathLike[str]) -> Path:
     if is_study(folder):
         write_study_report(read_study(folder))
         return folder
-    from vibroimpact.paper.report.folder import is_reproduction, write_reproduction_report
+    from vibroimpact.paper.report.folder import write_reproduction_report
+    from vibroimpact.paper.report.reproduction import is_reproduction
 
     if is_reproduction(folder):
         write_reproduction_report(folder)
