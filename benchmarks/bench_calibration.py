@@ -41,18 +41,18 @@ def measured(**more: object) -> object:
         "contact": {"law": "adams-impact"},
         "calibrate": {"target": HEIGHTS, "degree": 1, **more},
     }
-    return vi.calibrate_case(vi.read_calibration(table))
+    return vi.calibration.calibrate_case(vi.calibration.calibration_of(table))
 
 
 def main() -> None:
     """Print a row each."""
-    vi.calibrate(MODEL, THEORY)  # imports
+    vi.calibration.calibrate(MODEL, THEORY)  # imports
     rows = {
-        "the paper's five impacts": lambda: vi.calibrate(MODEL, THEORY),
-        "200 speeds from 0.5 to 10 m/s": lambda: vi.calibrate(
+        "the paper's five impacts": lambda: vi.calibration.calibrate(MODEL, THEORY),
+        "200 speeds from 0.5 to 10 m/s": lambda: vi.calibration.calibrate(
             MODEL, THEORY, speeds=np.linspace(0.5, 10.0, 200)
         ),
-        "rebound and force, weighted": lambda: vi.calibrate(
+        "rebound and force, weighted": lambda: vi.calibration.calibrate(
             MODEL, THEORY, weights={"separation_speed": 1.0, "max_force": 0.5}
         ),
         "four measured heights": measured,

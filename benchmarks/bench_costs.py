@@ -65,7 +65,7 @@ def measure(name: str) -> None:
     import vibroimpact as vi
     from vibroimpact.cases.costs import describe_costs
 
-    case = vi.read_case(CASES[name])
+    case = vi.case_of(CASES[name])
     told = describe_costs(case)
     begun = time.process_time()
     with tempfile.TemporaryDirectory() as folder:

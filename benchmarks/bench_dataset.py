@@ -68,7 +68,7 @@ def main() -> None:
     # empty: every plate is new
     os.environ["VIBROIMPACT_STORE"] = tempfile.mkdtemp(prefix="bench-dataset-")
     for name in ("signals:coal-gangue", "signals:river-plate"):
-        sweep = vi.load_sweep(name)
+        sweep = vi.studies.load_sweep(name)
         assert sweep.population is not None
         assert sweep.window is not None
         on_a_plate = sweep.population.falls_per_plate

@@ -32,7 +32,7 @@ def ringing(random: np.random.Generator) -> np.ndarray:
 def seconds(signals: np.ndarray, names: list[str] | None = None) -> float:
     """Return the CPU time of a table [s]."""
     begin = time.process_time()
-    vi.feature_table(signals, RATE, names)
+    vi.signals.feature_table(signals, RATE, names)
     return time.process_time() - begin
 
 
@@ -44,7 +44,7 @@ def main() -> None:
     }.items():
         whole = seconds(signals)
         print(
-            f"{what}: {len(vi.features())} features of {SIGNALS:,} signals of {SAMPLES:,} "
+            f"{what}: {len(vi.signals.signal_features())} features of {SIGNALS:,} signals of {SAMPLES:,} "
             f"samples in {whole:.1f} s of CPU, "
             f"{1e3 * whole / SIGNALS:.2f} ms each; {WANTED:,} would take "
             f"{whole * WANTED / SIGNALS / 60.0:.1f} min on one core"

@@ -43,8 +43,8 @@ def calibrated_rows(rows: int, folder: Path) -> None:
     lines = [f"{fast:.6f},{value:.6f}\n" for fast, value in zip(speed, restitution, strict=True)]
     (folder / "table.csv").write_text("approach_speed_m_s,restitution\n" + "".join(lines))
     target = {"target": {"file": str(folder / "table.csv")}, "model": "hunt-crossley"}
-    what = vi.read_calibration({**RIGID, "calibrate": target})
-    vi.save_calibration(what.case, vi.calibrate_case(what), folder / "found")
+    what = vi.calibration.calibration_of({**RIGID, "calibrate": target})
+    vi.calibration.calibrate_case(what).save(folder / "found")
 
 
 def friction_rows(rows: int, folder: Path) -> None:
@@ -67,8 +67,8 @@ def friction_rows(rows: int, folder: Path) -> None:
     }
     section = {"parameter": ["friction.coefficient"], "target": {"file": str(folder / "table.csv")}}
     case = {**RIGID, "contact": contact, "drop": {"speed": 3.0, "angle": 0.5}, "calibrate": section}
-    what = vi.read_calibration(case)
-    vi.save_calibration(what.case, vi.calibrate_case(what), folder / "found")
+    what = vi.calibration.calibration_of(case)
+    vi.calibration.calibrate_case(what).save(folder / "found")
 
 
 def wave_samples(samples: int, folder: Path) -> None:
@@ -80,7 +80,9 @@ def wave_samples(samples: int, folder: Path) -> None:
         48000,
         (9000 * np.random.default_rng(1).standard_normal(samples)).clip(-30000, 30000).astype("i2"),
     )
-    vi.record_table(vi.read_records(folder / "sound.wav"), ["rms", "kurtosis", "spectral_centroid"])
+    vi.signals.record_table(
+        vi.signals.load_records(folder / "sound.wav"), ["rms", "kurtosis", "spectral_centroid"]
+    )
 
 
 def impacts(number: int, folder: Path) -> None:
@@ -90,13 +92,13 @@ def impacts(number: int, folder: Path) -> None:
         "contact": {"law": "hunt-crossley", "restitution": 0.999},
         "run": {"impacts": number, "rest_speed": 1e-9},
     }
-    vi.save_result(vi.simulate(vi.read_case(case)), folder / "drop")
+    vi.save_result(vi.simulate(vi.case_of(case)), folder / "drop")
 
 
 def modes(number: int, folder: Path) -> None:
     """Modes of a plate on one mesh."""
     plate = {**PLATE, "modes": number, "mesh": {"element_size": 0.02}}
-    vi.simulate(vi.read_case({**RIGID, "plate": plate, "drop": {"speed": 1.0}}))
+    vi.simulate(vi.case_of({**RIGID, "plate": plate, "drop": {"speed": 1.0}}))
 
 
 def duration(milliseconds: int, folder: Path) -> None:
@@ -109,7 +111,7 @@ def duration(milliseconds: int, folder: Path) -> None:
         "run": {"duration": 1e-3 * milliseconds},
         "sensors": [sensor],
     }
-    vi.simulate(vi.read_case(case)).signals()
+    vi.simulate(vi.case_of(case)).signals()
 
 
 def sensors(number: int, folder: Path) -> None:
@@ -125,7 +127,7 @@ def sensors(number: int, folder: Path) -> None:
         "run": {"duration": 0.2},
         "sensors": every,
     }
-    vi.simulate(vi.read_case(case)).signals()
+    vi.simulate(vi.case_of(case)).signals()
 
 
 MEASURED: dict[str, tuple[Callable[[int, Path], None], tuple[int, ...]]] = {

@@ -50,9 +50,9 @@ def main() -> None:
         "tsuji": {"restitution": 0.7, "effective_mass": 0.03},
     }
     for name, parameters in laws.items():
-        law = vi.find_contact_law(name)(stiffness=1.333e8, **parameters)
+        law = vi.laws.find_contact_law(name)(stiffness=1.333e8, **parameters)
         for friction in ("mdr", "mindlin", "coulomb"):
-            rubs = vi.find_friction_law(friction)(
+            rubs = vi.friction.find_friction_law(friction)(
                 coefficient=0.3, **({} if friction == "coulomb" else pair)
             )
             times = []

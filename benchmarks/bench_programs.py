@@ -99,7 +99,7 @@ class Row(NamedTuple):
 _GROWTH, _NEXT = "## Growth", "**Next:**"
 
 
-def coefficients(law: vi.ContactLaw) -> tuple[float, float]:
+def coefficients(law: vi.laws.ContactLaw) -> tuple[float, float]:
     """Return K [N/m^1.5] and c [N s/m^1.25] of Tsuji's law, whose force is K x^1.5 + c x^0.25 v."""
     return float(law.forces(1.0, 0.0, 1.0)[0]), float(law.forces(1.0, 1.0, 1.0)[1])
 
@@ -250,7 +250,7 @@ def has(module: str) -> bool:
 
 def one_drop(runs: int, folder: Path) -> list[Row]:
     """Return the rows of one drop with five impacts."""
-    case = vi.read_case(CASE)
+    case = vi.case_of(CASE)
     problem = case.to_problem()
     drop = (
         float(problem.sphere.mass),
@@ -265,7 +265,7 @@ def one_drop(runs: int, folder: Path) -> list[Row]:
 
     rows = []
     for tolerance in (1e-9, 1e-6):
-        stated = vi.read_case(
+        stated = vi.case_of(
             {**CASE, "run": {"impacts": IMPACTS, "tolerance": tolerance}}
         ).to_problem()
         found = float(vi.simulate(stated).impacts["rebound_height_m"][4])
@@ -287,7 +287,7 @@ def one_drop(runs: int, folder: Path) -> list[Row]:
     if has("lammps"):
         (deck,) = (
             path
-            for path in vi.export_result(exported, "lammps", folder / "lammps")
+            for path in vi.exporting.export_result(exported, "lammps", folder / "lammps")
             if path.suffix == ".in"
         )
         for steps in (100, 1000, 20_000):
@@ -300,7 +300,7 @@ def one_drop(runs: int, folder: Path) -> list[Row]:
     if has("exudyn"):
         (model,) = (
             path
-            for path in vi.export_result(exported, "exudyn", folder / "exudyn")
+            for path in vi.exporting.export_result(exported, "exudyn", folder / "exudyn")
             if path.suffix == ".py"
         )
         found, took = zip(
@@ -312,7 +312,7 @@ def one_drop(runs: int, folder: Path) -> list[Row]:
 
 def many_drops(runs: int) -> tuple[list[Row], float]:
     """Return the rows of many drops with one impact, and what numba takes to compile [s]."""
-    case = vi.read_case({**CASE, "run": {"impacts": 1}})
+    case = vi.case_of({**CASE, "run": {"impacts": 1}})
     problem = case.to_problem()
     law, mass, radius = (
         problem.law_of(0),

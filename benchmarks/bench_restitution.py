@@ -38,9 +38,9 @@ def cpu_seconds(call: Callable[[], object], repeats: int) -> float:
     return float(np.median(times))
 
 
-def random_law(name: str) -> vi.ContactLaw:
+def random_law(name: str) -> vi.laws.ContactLaw:
     """Return a law with random parameters, one a drop."""
-    law = vi.find_contact_law(name)
+    law = vi.laws.find_contact_law(name)
     given = (
         {"restitution": RANDOM.uniform(0.3, 1.0, NUMBER)}
         if "restitution" in law.__dataclass_fields__
@@ -57,16 +57,16 @@ def random_law(name: str) -> vi.ContactLaw:
 def main() -> None:
     """Print a row a law."""
     print(f"achieved restitution of {NUMBER:,} random drops, CPU time on one core")
-    for name in vi.contact_laws():
+    for name in vi.laws.contact_laws():
         law = random_law(name)
         if law.closed_form_restitution(MASS, SPEED) is None:
             seconds, way = (
-                cpu_seconds(lambda law=law: vi.achieved_restitution(law, MASS, SPEED), 1),
+                cpu_seconds(lambda law=law: vi.laws.achieved_restitution(law, MASS, SPEED), 1),
                 "integrated",
             )
         else:
             seconds, way = (
-                cpu_seconds(lambda law=law: vi.achieved_restitution(law, MASS, SPEED), 3),
+                cpu_seconds(lambda law=law: vi.laws.achieved_restitution(law, MASS, SPEED), 3),
                 "closed form",
             )
         print(f"  {name:24} {way:12} {seconds:8.3f} s   {1e6 * seconds / NUMBER:7.2f} us a drop")

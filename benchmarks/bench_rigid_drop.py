@@ -85,7 +85,7 @@ def main() -> None:
     for name in ("theory", "constant", "variable"):
         problem = vi.load_case(f"paper:type1-{name}").to_problem()
         exact = vi.simulate(
-            vi.read_case({**problem.source, "run": {"impacts": 5, "tolerance": 1e-13}})
+            vi.case_of({**problem.source, "run": {"impacts": 5, "tolerance": 1e-13}})
         ).impacts["separation_speed_m_s"][4]
         ours, theirs = (
             cpu_ms(lambda p=problem: vi.simulate(p)),

@@ -72,8 +72,8 @@ OVER_ELASTIC: dict[str, Any] = {
 }
 
 
-def drawn(case: dict[str, Any], over: dict[str, Any], samples: int, *keep: str) -> vi.Sweep:
-    return vi.read_sweep(
+def drawn(case: dict[str, Any], over: dict[str, Any], samples: int, *keep: str) -> vi.studies.Sweep:
+    return vi.studies.sweep_of(
         {
             **case,
             "sweep": {
@@ -103,7 +103,7 @@ def peak_mib() -> tuple[float, float]:
     return own, others
 
 
-def whole(name: str, sweep: vi.Sweep, workers: int) -> None:
+def whole(name: str, sweep: vi.studies.Sweep, workers: int) -> None:
     """Run a study into a folder, and say what it took."""
     begin, cpu, done_at = time.perf_counter(), cpu_seconds(), 0.0
 
@@ -113,7 +113,9 @@ def whole(name: str, sweep: vi.Sweep, workers: int) -> None:
             done_at = time.perf_counter() - begin
 
     with tempfile.TemporaryDirectory() as folder:
-        path = vi.run_sweep(sweep, Path(folder, "study"), workers=workers, progress=progress)
+        path = vi.studies.run_sweep(
+            sweep, Path(folder, "study"), workers=workers, progress=progress
+        )
         size = sum(file.stat().st_size for file in path.rglob("*") if file.is_file()) / 2**20
     own, others = peak_mib()
     took = time.perf_counter() - begin
@@ -126,7 +128,7 @@ def whole(name: str, sweep: vi.Sweep, workers: int) -> None:
     )
 
 
-def seconds_of(start: Workers, sweep: vi.Sweep, chunk: int) -> float:
+def seconds_of(start: Workers, sweep: vi.studies.Sweep, chunk: int) -> float:
     """Wall-clock time of the chunks of a study [s], from those after the first quarter:
     then all workers have begun.
     """
@@ -148,7 +150,7 @@ def seconds_of(start: Workers, sweep: vi.Sweep, chunk: int) -> float:
     return (ends[-1] - ends[quarter - 1]) / (len(chunks) - quarter) * len(chunks)
 
 
-def scaling(name: str, sweep: vi.Sweep, chunk: int, entries: dict[str, bytes]) -> None:
+def scaling(name: str, sweep: vi.studies.Sweep, chunk: int, entries: dict[str, bytes]) -> None:
     """Print one process, two, and a Dask cluster of two, three times each."""
     setup = partial(receive, entries)
     ways: dict[str, Workers] = {

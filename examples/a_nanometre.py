@@ -27,7 +27,7 @@ case = {
     "contact": {"law": "lankarani-nikravesh", "restitution": 0.8},
     "run": {"impacts": 6},
 }
-problem = vi.read_case(case).to_problem()
+problem = vi.case_of(case).to_problem()
 first, second = (vi.simulate(replace(problem, height=height)) for height in (1.0, 1.0 + 1e-9))
 
 number, predicted = first.impacts["impact"], 1e-9 * first.impacts["sensitivity"]

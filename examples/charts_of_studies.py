@@ -42,8 +42,10 @@ DRAWN = {"study-curves": "curves", "study-drops": "first_rebound_height_m"}
 
 for name, sweep in STUDIES.items():
     with TemporaryDirectory() as folder:
-        study = vi.read_study(
-            vi.run_sweep(vi.read_sweep({**CASE, "sweep": sweep}), Path(folder, "study"))
+        study = vi.studies.load_study(
+            vi.studies.run_sweep(
+                vi.studies.sweep_of({**CASE, "sweep": sweep}), Path(folder, "study")
+            )
         )
         chart = study.charts[DRAWN[name]]
     (file,) = save_charts([replace(chart, name=name)], Path())

@@ -35,11 +35,11 @@ DRAWN = {
 }
 
 
-def measured() -> tuple[vi.Record, vi.Record]:
+def measured() -> tuple[vi.signals.Record, vi.signals.Record]:
     """The records of the acceleration and of the force."""
     damping = {"frequencies": [400, 1000, 2000, 4500], "ratios": [0.012, 0.006, 0.004, 0.003]}
     built = {**DRAWN["plate"], "size": ["400 mm", "300 mm", "11.76 mm"], "damping": damping}
-    response = vi.simulate(vi.read_case({**DRAWN, "plate": built}))
+    response = vi.simulate(vi.case_of({**DRAWN, "plate": built}))
     value = response.signals()["a1"].value
     time = np.arange(len(value) * FINE) / (RATE * FINE)
     duration = float(response.impacts["duration_s"][0])
@@ -50,11 +50,13 @@ def measured() -> tuple[vi.Record, vi.Record]:
     value, force = (np.concatenate([np.zeros(quiet), part]) for part in (value, force))
     value += 0.003 * np.abs(value).max() * random.standard_normal(len(value))
     force += 0.001 * force.max() * random.standard_normal(len(force))
-    return vi.Record("a1", value, RATE, "m/s2"), vi.Record("hammer", force, RATE, "N")
+    return vi.signals.Record("a1", value, RATE, "m/s2"), vi.signals.Record(
+        "hammer", force, RATE, "N"
+    )
 
 
 acceleration, hammer = measured()
-found = vi.correlate(vi.read_case(DRAWN), [acceleration], force=hammer)
+found = vi.test_analysis.correlate(vi.case_of(DRAWN), [acceleration], force=hammer)
 print(f"as drawn: residual {100.0 * found.relative_residual[0]:.0f} %, FRAC {found.frac[0]:.3f}")
 pairs = [pair for pair in found.modes if pair.damping_measured]
 for pair in pairs:
@@ -64,7 +66,7 @@ for pair in pairs:
         f"ratio {mode.damping_ratio.value:.5f}"
     )
 chart = found.charts["responses"]
-vi.save_charts([replace(chart, name="hammer-responses")], Path(), ["png"])
+vi.charts.save_charts([replace(chart, name="hammer-responses")], Path(), ["png"])
 
 # frequencies 2 % low in all modes are those of a plate 2 % thinner; the damping is the measured one
 damping = {
@@ -72,7 +74,9 @@ damping = {
     "ratios": [pair.measured.damping_ratio.value for pair in pairs],
 }
 thinner = {**DRAWN["plate"], "size": ["400 mm", "300 mm", "11.76 mm"], "damping": damping}
-again = vi.correlate(vi.read_case({**DRAWN, "plate": thinner}), [acceleration], force=hammer)
+again = vi.test_analysis.correlate(
+    vi.case_of({**DRAWN, "plate": thinner}), [acceleration], force=hammer
+)
 print(
     "thinner, with the measured damping: residual "
     f"{100.0 * again.relative_residual[0]:.1f} %, FRAC {again.frac[0]:.4f}"

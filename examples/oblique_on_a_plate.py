@@ -32,7 +32,7 @@ case = {
 figure, axes = plt.subplots(figsize=(7.5, 3.6), layout="constrained")
 for coefficient, colour in ((0.0, "#6b6b6b"), (0.3, "#b3400e")):
     friction = {"friction": {"law": "mdr", "coefficient": coefficient}}
-    response = vi.simulate(vi.read_case({**case, "contact": {**case["contact"], **friction}}))
+    response = vi.simulate(vi.case_of({**case, "contact": {**case["contact"], **friction}}))
     row = {name: values[0] for name, values in response.impacts.items()}
     signal = response.signals()["beside"]
     time = np.arange(len(signal.value)) / signal.sensor.rate

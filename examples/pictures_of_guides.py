@@ -60,7 +60,7 @@ CHAINS = {
 
 def case_with(table: dict[str, Any], **changes: dict[str, Any]) -> vi.Case:
     """Return a case with other keys in its sections."""
-    return vi.read_case(
+    return vi.case_of(
         {
             **table,
             **{section: {**table.get(section, {}), **keys} for section, keys in changes.items()},
@@ -82,11 +82,11 @@ def saved(figure: plt.Figure, name: str) -> None:
 
 
 @cache
-def found_for_adams() -> tuple[vi.Calibration, vi.Response]:
+def found_for_adams() -> tuple[vi.calibration.Calibration, vi.Response]:
     """Return the damping of the ball in Adams, and the drop with it."""
-    question = vi.read_calibration(ADAMS)
-    found = vi.calibrate_case(question)
-    return found, vi.simulate(vi.calibrated_case(question.case, found))
+    question = vi.calibration.calibration_of(ADAMS)
+    found = vi.calibration.calibrate_case(question)
+    return found, vi.simulate(found.calibrated_case)
 
 
 def adams() -> None:
@@ -111,7 +111,9 @@ def adams() -> None:
     }
     figure, axes = plt.subplots(figsize=(7.2, 3.4), layout="constrained")
     for label, (law, colour) in laws.items():
-        achieved = [float(vi.achieved_restitution(law, mass=mass, speed=speed)) for speed in speeds]
+        achieved = [
+            float(vi.laws.achieved_restitution(law, mass=mass, speed=speed)) for speed in speeds
+        ]
         axes.semilogx(speeds, achieved, color=colour, label=label)
         print(
             f"adams: {label}: {np.interp(row['approach_speed_m_s'], speeds, achieved):.3f} "
@@ -146,10 +148,12 @@ LAWS = (
 
 def restitution_of(name: str, asked: float) -> float:
     """Return the restitution that a law achieves for a restitution parameter."""
-    law = vi.find_contact_law(name)
+    law = vi.laws.find_contact_law(name)
     more = {"effective_mass": 0.1} if "effective_mass" in law.__dataclass_fields__ else {}
     return float(
-        vi.achieved_restitution(law(stiffness=1e8, restitution=asked, **more), mass=0.1, speed=1.0)
+        vi.laws.achieved_restitution(
+            law(stiffness=1e8, restitution=asked, **more), mass=0.1, speed=1.0
+        )
     )
 
 
@@ -176,7 +180,7 @@ def restitution() -> None:
 @cache
 def on_rigid_plate() -> vi.Response:
     """Return the impact of the nylon ball on a rigid plate."""
-    return vi.simulate(vi.read_case({**THICKNESS, "plate": {"material": "steel"}}))
+    return vi.simulate(vi.case_of({**THICKNESS, "plate": {"material": "steel"}}))
 
 
 @cache
@@ -196,7 +200,7 @@ def zener(thickness: float) -> float:
     """
     rigid, steel = on_rigid_plate(), vi.find_material("steel")
     row, mass = first_impact(rigid), float(rigid.problem.sphere.mass)
-    stiffness = float(vi.read_case(THICKNESS).to_problem().laws[0].stiffness)
+    stiffness = float(vi.case_of(THICKNESS).to_problem().laws[0].stiffness)
     bending = (
         steel.youngs_modulus * (1e-3 * thickness) ** 3 / (12.0 * (1.0 - steel.poissons_ratio**2))
     )
@@ -248,7 +252,7 @@ def measured_by_chains(law: str = SENSORS["contact"]["law"]) -> vi.Response:
     """
     position = SENSORS["sensors"][0]["position"]
     sensors = [{"name": name, "position": position, **chain} for name, (chain, _) in CHAINS.items()]
-    return vi.simulate(vi.read_case({**SENSORS, "contact": {"law": law}, "sensors": sensors}))
+    return vi.simulate(vi.case_of({**SENSORS, "contact": {"law": law}, "sensors": sensors}))
 
 
 def accelerometer() -> None:
@@ -280,7 +284,7 @@ def accelerometer() -> None:
 
 def coal() -> None:
     """Draw what one impact of coal and of gangue shows mainly: impulse and contact time."""
-    found = vi.bound_of(vi.load_sweep("signals:coal-gangue", 1000))
+    found = vi.bayes_error.bound_of(vi.studies.load_sweep("signals:coal-gangue", 1000))
     figure, axes = plt.subplots(figsize=(6.6, 4.0), layout="constrained")
     for name, colour in (("coal", "#222222"), ("gangue", RED)):
         these = found.falls.classes == name
@@ -308,7 +312,7 @@ def river() -> None:
                     0.5e-3 * size,
                     {"speed": speed, "position": list(place)},
                 )
-                heard[row, column] = vi.simulate(vi.read_case(table)).signals()["geophone"].largest
+                heard[row, column] = vi.simulate(vi.case_of(table)).signals()["geophone"].largest
         axes.fill_between(sizes, heard.min(axis=1), heard.max(axis=1), color=colour, alpha=0.15)
         axes.loglog(
             sizes,
@@ -341,8 +345,8 @@ def treatments() -> None:
     """
     rigid = {**TREATED, "plate": {"material": "steel"}}
     cases = {
-        "rigid": vi.read_case(rigid),
-        "rigid, finite_sphere": vi.read_case(
+        "rigid": vi.case_of(rigid),
+        "rigid, finite_sphere": vi.case_of(
             {**rigid, "contact": {**TREATED["contact"], "finite_sphere": True}}
         ),
     }

@@ -139,7 +139,7 @@ def draw(figure: plt.Figure, number: int) -> None:
     )
 
 
-response = vi.simulate(vi.read_case(CASE))
+response = vi.simulate(vi.case_of(CASE))
 touch = float(response.impacts["time_s"][0])
 times = np.linspace(-BEFORE, AFTER, FRAMES)
 model = response.problem.models["plate"]

@@ -18,7 +18,7 @@ class Heard(NamedTuple):
     and the last.
     """
 
-    record: vi.Record
+    record: vi.signals.Record
     touches: np.ndarray
     restitution: np.ndarray
 
@@ -65,11 +65,11 @@ def heard(
         [-1.0, 1.0], clicks
     ) * random.uniform(0.5, 2.0, clicks)
     return Heard(
-        vi.Record("microphone", value, rate, "Pa"), times, np.full(touches - 2, restitution)
+        vi.signals.Record("microphone", value, rate, "Pa"), times, np.full(touches - 2, restitution)
     )
 
 
-def music(seed: int, duration: float = 5.0) -> vi.Record:
+def music(seed: int, duration: float = 5.0) -> vi.signals.Record:
     """Plucked notes, at random times or in a rhythm."""
     random = np.random.default_rng(seed)
     value = random.normal(scale=0.02, size=int(duration * RATE))
@@ -85,4 +85,4 @@ def music(seed: int, duration: float = 5.0) -> vi.Record:
             2.0 * np.pi * random.choice([440.0, 880.0, 1320.0, 2200.0]) * time
         )
         value[first : first + len(time)] += random.uniform(0.2, 1.0) * tone
-    return vi.Record("microphone", value, RATE, "Pa")
+    return vi.signals.Record("microphone", value, RATE, "Pa")

@@ -116,7 +116,7 @@ def random_held_drop(seed: int) -> vi.Problem:
         },
         "run": {"duration": 1.0},
     }
-    return replace(vi.read_case(case).to_problem(), laws=(_law(seed, ball, plate, radius),))
+    return replace(vi.case_of(case).to_problem(), laws=(_law(seed, ball, plate, radius),))
 
 
 def _material(of: tuple[float, float, float]) -> dict[str, float]:

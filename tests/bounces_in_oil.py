@@ -45,7 +45,7 @@ def computed_restitution(speed: float) -> float:
         vi.Material(density=SPHERE_DENSITY, youngs_modulus=2.1e11, poissons_ratio=0.3),
     )
     law, oil = (
-        vi.find_contact_law("newton")(restitution=DRY_RESTITUTION),
+        vi.laws.find_contact_law("newton")(restitution=DRY_RESTITUTION),
         vi.Liquid(density=OIL_DENSITY, viscosity=VISCOSITY),
     )
     drop = vi.Problem(
@@ -72,7 +72,7 @@ def fall_in(stokes: int, liquid: vi.Liquid | None) -> tuple[np.ndarray, np.ndarr
     stated = {
         "sphere": sphere,
         "plate": rigid_plate(),
-        "laws": (vi.find_contact_law("newton")(restitution=DRY_RESTITUTION),),
+        "laws": (vi.laws.find_contact_law("newton")(restitution=DRY_RESTITUTION),),
     }
 
     def heights(begin: np.ndarray) -> np.ndarray:

@@ -35,9 +35,9 @@ def variable() -> vi.Response:
 
 
 @pytest.fixture(scope="session")
-def damping() -> vi.Calibration:
+def damping() -> vi.calibration.Calibration:
     """The damping that the paper calibrates."""
-    return vi.calibrate_case(vi.load_calibration("paper:calibration"))
+    return vi.calibration.calibrate_case(vi.calibration.load_calibration("paper:calibration"))
 
 
 @pytest.fixture(scope="session")

@@ -49,7 +49,7 @@ def _sphere() -> Any:
 
 
 def _elastic(**changes: object) -> vi.Problem:
-    return vi.read_case(
+    return vi.case_of(
         plain_case(plate={**SMALL, "model": "elastic"}, run={"impacts": 2}, **changes)
     ).to_problem()
 
@@ -90,7 +90,7 @@ def plain_drops() -> dict[str, Callable[[], vi.Problem]]:
         "bricks": lambda: _elastic(plate__element="solid", plate__mesh={"element_size": "10 mm"}),
         "attachment mode": lambda: _elastic(plate__attachment_mode=True),
         "craig-bampton": lambda: _elastic(plate__reduction="craig-bampton"),
-        "finite sphere": lambda: vi.read_case(plain_case(contact__finite_sphere=True)).to_problem(),
+        "finite sphere": lambda: vi.case_of(plain_case(contact__finite_sphere=True)).to_problem(),
         "dent": lambda: drop_on(Thornton.example(PAIR), speed=5.0, impacts=4),
         "fresh dents": lambda: drop_on(
             Thornton.example(PAIR), speed=5.0, impacts=4, same_spot=False

@@ -55,7 +55,7 @@ def surrounded_drops() -> dict[str, Made]:
     }
 
 
-def friction_of(name: str, **parameters: float) -> vi.FrictionLaw:
+def friction_of(name: str, **parameters: float) -> vi.friction.FrictionLaw:
     """Return a friction law of the paper's pair, with a coefficient of 0.2 unless said
     otherwise.
     """
@@ -255,7 +255,7 @@ def _watched_drops() -> dict[str, Made]:
         case = plain_case(
             plate=plate, sensors=[sensor], drop={"speed": 1.0}, run={"duration": 2e-3}
         )
-        made[f"watched by: {name}"] = lambda case=case: vi.read_case(case).to_problem()
+        made[f"watched by: {name}"] = lambda case=case: vi.case_of(case).to_problem()
     return made
 
 

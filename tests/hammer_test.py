@@ -42,7 +42,7 @@ Array = NDArray[np.float64]
 
 def a_case(**plate: Any) -> vi.Case:
     """The case, with another plate."""
-    return vi.read_case({**TABLE, "plate": {**PLATE, **plate}})
+    return vi.case_of({**TABLE, "plate": {**PLATE, **plate}})
 
 
 @cache
@@ -114,7 +114,7 @@ def knocked_case(
     frequencies the larger and softer it is.
     """
     steel = {"density": 7850.0, "youngs_modulus": modulus, "poissons_ratio": 0.3}
-    return vi.read_case(
+    return vi.case_of(
         {
             **TABLE,
             "sphere": {"radius": radius, "material": material},

@@ -48,7 +48,7 @@ def a_case(modes: int = 140, **changed: Any) -> vi.Case:
             {"name": name, "position": list(place), "rate": RATE} for name, place in SENSORS.items()
         ],
     }
-    return vi.read_case({**table, **changed})
+    return vi.case_of({**table, **changed})
 
 
 @cache

@@ -151,12 +151,12 @@ MADE: dict[str, Callable[[], vi.Problem]] = {
     "made in Python": lambda: vi.Problem(
         sphere=vi.Body(mass=0.1, contact_offset=0.02),
         plate=vi.rigid_plate(),
-        laws=(vi.find_contact_law("hertz")(stiffness=1e8),),
+        laws=(vi.laws.find_contact_law("hertz")(stiffness=1e8),),
         height=0.5,
         impacts=2,
     ),
     "modes made in Python": lambda: drop_on(
-        vi.find_contact_law("hertz")(stiffness=5e8),
+        vi.laws.find_contact_law("hertz")(stiffness=5e8),
         random_modes(3, 10, 150.0, 15e3, 1.2, 0.02),
         impacts=2,
     ),
@@ -176,20 +176,20 @@ def run_of(name: str) -> Result:
 
 
 def _result(case: dict) -> Result:
-    return result_of(vi.simulate(vi.read_case(case)))
+    return result_of(vi.simulate(vi.case_of(case)))
 
 
 def held(name: str) -> Result:
     """Return a result whose case has the supports of a name; what was computed is that of
     a clamped plate.
     """
-    return replace(run_of("sensors"), case=resolved_case(vi.read_case(elastic(SUPPORTS[name]))))
+    return replace(run_of("sensors"), case=resolved_case(vi.case_of(elastic(SUPPORTS[name]))))
 
 
 def _brought(folder: Path) -> dict:
     mesh = box_mesh((0.3, 0.2, 0.02), (6, 4, 1), "hex20")
     left = (mesh.nodes[:, 0] < mesh.nodes[:, 0].min() + 1e-9).nonzero()[0]
-    vi.write_abaqus(vi.Mesh(mesh.nodes, mesh.blocks, {"root": left}), folder / "plate.inp")
+    vi.meshes.write_abaqus(vi.Mesh(mesh.nodes, mesh.blocks, {"root": left}), folder / "plate.inp")
     plate = {
         "material": "steel",
         "model": "elastic",

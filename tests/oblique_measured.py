@@ -35,7 +35,7 @@ def problem_of(friction: str, **parameters: Any) -> vi.Problem:
         ball.mass,
         effective_shear_modulus=effective_shear_modulus(ALUMINA, GLASS),
     )
-    law = vi.find_contact_law("lankarani-nikravesh").for_pair(pair, restitution=RESTITUTION)
+    law = vi.laws.find_contact_law("lankarani-nikravesh").for_pair(pair, restitution=RESTITUTION)
     oblique = vi.Oblique(
         velocity=(SPEED * np.sin(ANGLES), 0.0),
         friction=find_friction_law(friction).for_pair(pair, coefficient=FRICTION, **parameters),
@@ -59,7 +59,7 @@ def tangential_restitution(friction: str, **parameters: Any) -> Floats:
     return found
 
 
-def fitted_friction(friction: str, rows: slice, *more: str) -> vi.FrictionCalibration:
+def fitted_friction(friction: str, rows: slice, *more: str) -> vi.calibration.FrictionCalibration:
     """Return the coefficient of friction, and more parameters, that fit the measured
     restitutions of some of the angles.
     """
@@ -70,9 +70,9 @@ def fitted_friction(friction: str, rows: slice, *more: str) -> vi.FrictionCalibr
         {name: np.ones(len(angles)) for name in wanted},
         tuple("abcdefgh"[: len(angles)]),
     )
-    impacts = vi.ObliqueImpacts(
+    impacts = vi.calibration.ObliqueImpacts(
         replace(seen, deviations_known=False), SPEED * np.sin(angles), np.zeros(len(angles)), wanted
     )
-    return vi.calibrate_friction(
+    return vi.calibration.calibrate_friction(
         problem_of(friction).take(0), impacts, ["friction.coefficient", *more]
     )

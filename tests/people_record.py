@@ -15,7 +15,7 @@ import numpy as np
 import vibroimpact as vi
 from support import plain_case
 from vibroimpact.calibration.bounce_record import impacts_in_bounces
-from vibroimpact.calibration.calibrate_case import calibrate_case, read_calibration
+from vibroimpact.calibration.calibrate_case import calibrate_case, calibration_of
 from vibroimpact.calibration.calibration import Calibration
 from vibroimpact.calibration.force_record import impacts_in_force
 from vibroimpact.calibration.noise import scaled, standard_deviations
@@ -98,7 +98,7 @@ def evaluated(record: Made) -> Calibration:
         contact={"law": "newton", "restitution": 0.5},
     )
     return calibrate_case(
-        read_calibration({**case, "calibrate": {"target": target, "degree": 0, "air": False}})
+        calibration_of({**case, "calibrate": {"target": target, "degree": 0, "air": False}})
     )
 
 
@@ -137,7 +137,7 @@ def _seen(record: Made) -> Observations:
         return impacts_in_force(
             record.time, record.value, mass=mass, gravity=GRAVITY, first_speed=first_speed
         )
-    heard = find_bounces(vi.Record("microphone", record.value, 48e3, "V"), CONTACT)
+    heard = find_bounces(vi.signals.Record("microphone", record.value, 48e3, "V"), CONTACT)
     return impacts_in_bounces(heard, gravity=GRAVITY, first_speed=first_speed)
 
 
@@ -217,7 +217,7 @@ def _forces(law: str, value: float) -> tuple[vi.Response, np.ndarray, np.ndarray
         contact={"law": law, _LAWS[law][0]: value},
         run={"impacts": 5},
     )
-    response = vi.simulate(vi.read_case(case))
+    response = vi.simulate(vi.case_of(case))
     touches, lasting = response.impacts["time_s"], response.impacts["duration_s"]
     fine = [
         np.linspace(touch, touch + duration, 1001)

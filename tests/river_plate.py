@@ -37,5 +37,5 @@ def amplitudes(
     found = []
     for place in PLACES:
         table["drop"]["position"] = list(place)
-        found.append(vi.simulate(vi.read_case(table)).signals()["geophone"].largest)
+        found.append(vi.simulate(vi.case_of(table)).signals()["geophone"].largest)
     return np.array(found)

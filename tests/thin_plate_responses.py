@@ -196,4 +196,4 @@ def with_records(
 
 def a_case(**plate: Any) -> vi.Case:
     """The case, with another plate."""
-    return vi.read_case({**TABLE, "plate": {**TABLE["plate"], **plate}})
+    return vi.case_of({**TABLE, "plate": {**TABLE["plate"], **plate}})

@@ -30,7 +30,7 @@ def write_tiny_models(folder: Path) -> Path:
     with h5py.File(folder / "data" / "dataset.nc", "a") as file:
         file["time_a1"].attrs["units"] = "s"
         file["signal_a1"].dims[1].attach_scale(file["time_a1"])
-    signals = vi.read_labelled_signals(folder / "data")
+    signals = vi.recognition.load_labelled_signals(folder / "data")
     features = features_of(signals)
     assert signals.classes is not None
     for classifier in all_classifiers():
@@ -50,7 +50,7 @@ def write_tiny_models(folder: Path) -> Path:
 
 
 def card_of(
-    signals: vi.LabelledSignals, features: tuple[str, ...], classifier: str
+    signals: vi.recognition.LabelledSignals, features: tuple[str, ...], classifier: str
 ) -> dict[str, Any]:
     """Return the card of a model."""
     draws = np.random.default_rng(0)

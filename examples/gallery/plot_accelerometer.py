@@ -42,7 +42,7 @@ case = {
     "run": {"impacts": 1, "duration": "4 ms"},
     "sensors": [{"name": "a1", "position": ["-50 mm", "10 mm"], "rate": "50 kHz"}],
 }
-response = vi.simulate(vi.read_case(case))
+response = vi.simulate(vi.case_of(case))
 bare = response.problem.sensors[0]
 
 

@@ -64,7 +64,7 @@ sticks = np.sqrt(
 )
 for one, limit in zip(radii, sticks, strict=True):
     mass, jkr, _ = laws_of(one)
-    restitution = vi.achieved_restitution(jkr, mass, np.array([0.98, 1.02, 3.0]) * limit)
+    restitution = vi.laws.achieved_restitution(jkr, mass, np.array([0.98, 1.02, 3.0]) * limit)
     assert restitution[0] == 0.0 < restitution[1]
     assert abs(restitution[2] - np.sqrt(1.0 - 1.0 / 9.0)) < 2e-3
 
@@ -103,13 +103,13 @@ for one, colour in zip(
     mass, jkr, krijt = laws_of(one)
     right.semilogx(
         speeds,
-        vi.achieved_restitution(jkr, mass, speeds),
+        vi.laws.achieved_restitution(jkr, mass, speeds),
         color=colour,
         linewidth=1.8,
         label=f"{2e6 * one:g} µm",
     )
     right.semilogx(
-        speeds, vi.achieved_restitution(krijt, mass, speeds), ":", color=colour, linewidth=1.4
+        speeds, vi.laws.achieved_restitution(krijt, mass, speeds), ":", color=colour, linewidth=1.4
     )
 right.set(
     xlabel="Approach speed [m/s]",

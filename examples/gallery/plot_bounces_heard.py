@@ -12,7 +12,7 @@ clicks, and the restitution is estimated with its intervals.
 # ------------------
 # Nine impacts of a ball with a restitution of 0.85, each a short decaying vibration, in noise of
 # the same mean power, with hum and three clicks. A file is read by
-# ``vi.one_record("bounces.wav")``.
+# ``vi.signals.one_record("bounces.wav")``.
 import matplotlib.pyplot as plt
 import numpy as np
 
@@ -34,13 +34,13 @@ sound += np.sqrt(np.mean(sound**2)) * random.standard_normal(len(time)) + 0.05 *
     2.0 * np.pi * 50.0 * time
 )
 sound[random.integers(0, len(time), 3)] += 1.0
-record = vi.Record("telephone", sound, rate, "Pa")
+record = vi.signals.Record("telephone", sound, rate, "Pa")
 
 # %%
 # Detection and restitution
 # -------------------------
-bounces = vi.find_bounces(record)
-rebounds = vi.rebounds_of(bounces, gravity=gravity)
+bounces = vi.signals.find_bounces(record)
+rebounds = vi.calibration.rebounds_of(bounces, gravity=gravity)
 print(
     f"dropped from about {100.0 * rebounds.drop_height:.1f} cm, restitution "
     f"{rebounds.laws[0].coefficients[0]:.5f}"
@@ -55,7 +55,7 @@ assert len(bounces.others) == 3  # the clicks
 # %%
 # Restitution against speed, with intervals, and three fits: the chart of the report.
 record_chart, restitution_chart = rebounds.report.charts
-vi.plotly_figure(restitution_chart)
+vi.charts.plotly_figure(restitution_chart)
 
 # %%
 # Record and estimates

@@ -20,7 +20,7 @@ import numpy as np
 
 import vibroimpact as vi
 
-bound = vi.bound_of(vi.load_sweep("signals:coal-gangue", samples=2048))
+bound = vi.bayes_error.bound_of(vi.studies.load_sweep("signals:coal-gangue", samples=2048))
 for name, error in bound.errors.items():
     exact = bound.without_scatter[name]
     print(

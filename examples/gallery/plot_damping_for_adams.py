@@ -30,8 +30,8 @@ case = {
         "degree": 1,
     },
 }
-question = vi.read_calibration(case)
-found = vi.calibrate_case(question)
+question = vi.calibration.calibration_of(case)
+found = vi.calibration.calibrate_case(question)
 
 # %%
 # Values for the dialog
@@ -39,7 +39,7 @@ found = vi.calibrate_case(question)
 # The conversion of a stiffness from N/m\ :sup:`1.5` to N/mm\ :sup:`1.5` is not a factor of 1000:
 # the unit of length is raised to the exponent.
 law = found.problem.laws[0]
-stiffness = vi.convert_units(float(law.stiffness), "N/m^1.5", "N/mm^1.5")
+stiffness = vi.units.convert_units(float(law.stiffness), "N/m^1.5", "N/mm^1.5")
 print(f"Stiffness          {stiffness:.0f} N/mm^{law.exponent}")
 print(f"Force exponent     {law.exponent}")
 print(f"Penetration depth  {1e3 * law.full_damping_penetration:g} mm")
@@ -61,7 +61,7 @@ assert np.all((found.intervals[:, 0] < printed) & (printed < found.intervals[:, 
 # Check and chart
 # ---------------
 # The calibrated case runs as any other, and reproduces the rebound heights within 2 mm.
-response = vi.simulate(vi.calibrated_case(question.case, found))
+response = vi.simulate(found.calibrated_case)
 assert np.allclose(
     response.impacts["rebound_height_m"][:4], [2.411, 1.457, 0.885, 0.541], atol=2e-3
 )

@@ -37,7 +37,7 @@ for ratio, restitution in {
     100: 0.374299,
     1000: 0.210701,
 }.items():
-    assert abs(vi.achieved_restitution(thornton, mass, ratio * yields) - restitution) < 1e-6
+    assert abs(vi.laws.achieved_restitution(thornton, mass, ratio * yields) - restitution) < 1e-6
 
 # %%
 # Force-indentation hysteresis
@@ -96,7 +96,7 @@ for name, law in {
     left.plot(1e6 * indentation, 1e-3 * force, color=colours[name], linewidth=1.8, label=name)
     left.fill(1e6 * indentation, 1e-3 * force, color=colours[name], alpha=0.07)
     right.semilogx(
-        speeds, vi.achieved_restitution(law, mass, speeds), color=colours[name], linewidth=1.8
+        speeds, vi.laws.achieved_restitution(law, mass, speeds), color=colours[name], linewidth=1.8
     )
 right.semilogx(
     speeds[20:], 1.18499 * (yields / speeds[20:]) ** 0.25, "--", color="#00204d", linewidth=0.9

@@ -28,9 +28,9 @@ case = {
     "run": {"impacts": 1},
 }
 rigid = vi.simulate(
-    vi.read_case({**case, "sphere": {**sphere, "model": "rigid", "modes": None}})
+    vi.case_of({**case, "sphere": {**sphere, "model": "rigid", "modes": None}})
 ).impacts["max_force_N"][0]
-elastic = vi.simulate(vi.read_case(case)).impacts["max_force_N"][0]
+elastic = vi.simulate(vi.case_of(case)).impacts["max_force_N"][0]
 print(f"rigid sphere {rigid:.0f} N, elastic {elastic:.0f} N, finite elements 12166 N")
 assert abs(elastic / 12166.0 - 1.0) < 0.005
 assert abs(rigid / 12166.0 - 0.926) < 0.002
@@ -49,7 +49,7 @@ plate = {
 }
 plate["supports"] = {"type": "patches", "spacing": ["458.4 mm", "360 mm"], "radius": "20 mm"}
 response = vi.simulate(
-    vi.read_case({**case, "plate": plate, "run": {"impacts": 1, "duration": "4 ms"}})
+    vi.case_of({**case, "plate": plate, "run": {"impacts": 1, "duration": "4 ms"}})
 )
 assert abs(response.energy["closure_relative"]) < 1e-6
 assert response.impacts["max_force_N"][0] < elastic  # the plate gives way

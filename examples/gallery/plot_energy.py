@@ -29,7 +29,7 @@ case = {
     "contact": {"law": "hunt-crossley", "restitution": 0.9},
     "run": {"impacts": 6, "duration": "1.2 s"},
 }
-response = vi.simulate(vi.read_case(case))
+response = vi.simulate(vi.case_of(case))
 response
 
 # %%

@@ -27,13 +27,13 @@ case = {
     "contact": {"law": "adams-impact", "damping_max": 40, "full_damping_penetration": "0.01 mm"},
     "run": {"impacts": 4},
 }
-response = vi.simulate(vi.read_case(case))
+response = vi.simulate(vi.case_of(case))
 texts = {}
 with TemporaryDirectory() as folder:
     result = Path(folder, "drop")
     vi.save_result(response, result)
     for program in ("adams", "lammps", "yade", "mujoco", "exudyn"):
-        for file in vi.export_result(result, program):
+        for file in vi.exporting.export_result(result, program):
             texts[file.name] = file.read_text()
 print({name: f"{len(text.splitlines())} lines" for name, text in texts.items()})
 

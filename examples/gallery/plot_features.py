@@ -51,19 +51,19 @@ def struck(diameter):
             }
         ],
     }
-    return vi.simulate(vi.read_case(case)).signals()["geophone"].value[: int(pause * rate)]
+    return vi.simulate(vi.case_of(case)).signals()["geophone"].value[: int(pause * rate)]
 
 
 random = np.random.default_rng(1)
 value = np.concatenate([np.zeros(200), *(struck(one) for one in diameters)])
-record = vi.Record("geophone", value + 1e-4 * random.standard_normal(len(value)), rate, "V")
+record = vi.signals.Record("geophone", value + 1e-4 * random.standard_normal(len(value)), rate, "V")
 
 # %%
 # Packets
 # -------
 # A packet begins where the envelope reaches a threshold, and ends where it falls below the
 # threshold for longer than the dead time.
-packets = vi.find_packets(record, threshold=0.02, dead_time=5e-3)
+packets = vi.signals.find_packets(record, threshold=0.02, dead_time=5e-3)
 assert len(packets.onset) == len(diameters)
 assert np.abs(packets.onset / rate - (0.02 + pause * np.arange(len(diameters)))).max() < 3e-3
 
@@ -73,7 +73,7 @@ assert np.abs(packets.onset / rate - (0.02 + pause * np.arange(len(diameters))))
 # The table has a row for each packet and a column for each feature. At a given speed the impulse of
 # a grain is proportional to its mass, and so is the response of the plate as long as the contact is
 # shorter than its periods.
-table = vi.record_table(vi.packet_records(record, threshold=0.02))
+table = vi.signals.record_table(vi.signals.packet_records(record, threshold=0.02))
 peak = table["peak"]
 power = np.polyfit(np.log(diameters), np.log(peak), 1)[0]
 print(f"{len(table.names)} features; the peak grows with the power {power:.2f} of the diameter")

@@ -47,7 +47,7 @@ fallen = {
     },
     "run": {"impacts": 1, "duration": truth["speed"] / 9.80665 + 8e-3},
 }
-response = vi.simulate(vi.read_case(fallen))
+response = vi.simulate(vi.case_of(fallen))
 random, records = np.random.default_rng(2), []
 for name, signal in response.signals().items():
     noise = (
@@ -55,12 +55,12 @@ for name, signal in response.signals().items():
         * np.sqrt(np.mean(signal.value[-150:] ** 2))
         * random.standard_normal(len(signal.value))
     )
-    records.append(vi.Record(name, signal.value + noise, rate, "m/s2"))
+    records.append(vi.signals.Record(name, signal.value + noise, rate, "m/s2"))
 
 # %%
 # Estimates
 # ---------
-found = vi.identify(vi.read_case(case), records)
+found = vi.identification.identify(vi.case_of(case), records)
 for name, key in (
     ("radius_m", "radius"),
     ("speed_m_s", "speed"),
@@ -77,7 +77,7 @@ assert abs(found.estimates["max_force_N"].value / response.impacts["max_force_N"
 # %%
 # The records and the fit, as in the report.
 charts = found.charts
-vi.plotly_figure(charts["records"])
+vi.charts.plotly_figure(charts["records"])
 
 # %%
 # Position and force

@@ -64,7 +64,7 @@ case = {
         },
     ],
 }
-response = vi.simulate(vi.read_case(case))
+response = vi.simulate(vi.case_of(case))
 signals = response.signals()
 
 # %%

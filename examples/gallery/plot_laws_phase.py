@@ -36,7 +36,7 @@ properties = {
     "jackson-green-marghitu": {"yield_strength": "6 MPa"},
 }
 speed, paths, bounced = 0.3, {}, {}
-for name in vi.contact_laws():
+for name in vi.laws.contact_laws():
     case = {
         "sphere": {"radius": "10 um", "material": polymer},
         "plate": {"material": polymer},
@@ -44,7 +44,7 @@ for name in vi.contact_laws():
         "contact": {"law": name, **properties.get(name, damped)},
         "run": {"impacts": 1},
     }
-    response = vi.simulate(vi.read_case(case))
+    response = vi.simulate(vi.case_of(case))
     bounced[name] = response.impacts["restitution_achieved"][0]
     time = np.linspace(0.0, response.impacts["duration_s"][0], 400)
     history = response.at(time)

@@ -55,7 +55,7 @@ case = {
 def tangential_restitution(law, degrees):
     """Return the tangential restitution with a friction law."""
     contact = {**case["contact"], "friction": {"law": law, "coefficient": friction}}
-    problem = vi.read_case({**case, "contact": contact}).to_problem()
+    problem = vi.case_of({**case, "contact": contact}).to_problem()
     along, down = speed * np.sin(np.radians(degrees)), speed * np.cos(np.radians(degrees))
     batch = replace(problem, speed=down, oblique=replace(problem.oblique, velocity=(along, 0.0)))
     return vi.tabulate(batch).impacts["tangential_restitution"][:, 0]

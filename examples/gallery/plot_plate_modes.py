@@ -32,7 +32,7 @@ case = {
     "drop": {"height": 1.0},
     "contact": {"law": "hertz"},
 }
-computed = vi.compute_modes(vi.read_case(case))["plate"].basis.frequencies
+computed = vi.compute_modes(vi.case_of(case))["plate"].basis.frequencies
 
 rigidity = steel.youngs_modulus * thickness**3 / 12.0 / (1.0 - steel.poissons_ratio**2)
 waves = np.arange(1, 8)
@@ -53,7 +53,7 @@ plate = {
     "supports": {"type": "patches", "spacing": ["458.4 mm", "360 mm"], "radius": "20 mm"},
 }
 del plate["mesh"]
-modes = vi.compute_modes(vi.read_case({**case, "plate": plate}))
+modes = vi.compute_modes(vi.case_of({**case, "plate": plate}))
 assert np.allclose(modes["plate"].basis.frequencies[:2], [171.3, 268.8], rtol=5e-3)
 
 # %%
@@ -61,5 +61,5 @@ assert np.allclose(modes["plate"].basis.frequencies[:2], [171.3, 268.8], rtol=5e
 # ----------------------------
 # The chart of the report, drawn by matplotlib into a given figure.
 (chart,) = vi.mode_charts(modes)
-vi.matplotlib_figure(chart, plt.figure())
+vi.charts.matplotlib_figure(chart, plt.figure())
 plt.show()

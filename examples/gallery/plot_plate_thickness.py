@@ -71,7 +71,7 @@ def dropped(thickness):
         "contact": {"law": "hertz"},
         "run": {"impacts": 1},
     }
-    return vi.simulate(vi.read_case(case)).impacts["restitution_achieved"][0]
+    return vi.simulate(vi.case_of(case)).impacts["restitution_achieved"][0]
 
 
 thicknesses = np.array([0.007, 0.009, 0.013, 0.02])

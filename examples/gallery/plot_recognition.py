@@ -52,9 +52,9 @@ signal += (
 )
 signal += 1e-3 * random.standard_normal(signal.shape)
 
-knocks = vi.LabelledSignals(
+knocks = vi.recognition.LabelledSignals(
     "knocks",
-    {"a1": vi.SensorSignals(signal.astype(np.float32), rate, "V")},
+    {"a1": vi.recognition.SensorSignals(signal.astype(np.float32), rate, "V")},
     classes,
     ("coal", "gangue"),
     groups={"rock": rock},
@@ -65,7 +65,7 @@ knocks = vi.LabelledSignals(
 # %%
 # Grouped and random splits
 # -------------------------
-found = vi.recognise(knocks, folds=3, seeds=1, workers=1)
+found = vi.recognition.recognise(knocks, folds=3, seeds=1, workers=1)
 classifiers = (
     "logistic regression",
     "random forest",
@@ -84,7 +84,7 @@ for name in classifiers:
 # Charts of the result show the confusion matrix, the effect of noise, the calibration and the
 # importance of features; this one shows the errors of all classifiers.
 charts = found.charts
-vi.plotly_figure(charts["scores"])
+vi.charts.plotly_figure(charts["scores"])
 
 # %%
 # Optimistic bias of a random split

@@ -28,8 +28,10 @@ laws = {
 }
 mass, speed, stiffness = 0.0903, 3.0, 5.115e8
 achieved = {
-    name: vi.achieved_restitution(
-        vi.find_contact_law(name)(stiffness=stiffness, restitution=asked), mass=mass, speed=speed
+    name: vi.laws.achieved_restitution(
+        vi.laws.find_contact_law(name)(stiffness=stiffness, restitution=asked),
+        mass=mass,
+        speed=speed,
     )
     for name in laws
 }
@@ -39,7 +41,7 @@ achieved = {
 # speed of 6.629838 m/s for a sphere with an approach speed of 10 m/s, for Hunt and Crossley's law
 # with a restitution of 0.5.
 hunt = vi.laws.HuntCrossley(stiffness=1e6, exponent=1.0, restitution=0.5)
-assert abs(vi.achieved_restitution(hunt, mass=1.0, speed=10.0) - 0.6629838) < 1e-4
+assert abs(vi.laws.achieved_restitution(hunt, mass=1.0, speed=10.0) - 0.6629838) < 1e-4
 
 # %%
 # Parameter for a required restitution
@@ -48,13 +50,13 @@ assert abs(vi.achieved_restitution(hunt, mass=1.0, speed=10.0) - 0.6629838) < 1e
 wanted = 0.7
 typed = {}
 for name in laws:
-    law = vi.law_achieving(
-        vi.find_contact_law(name)(stiffness=stiffness, restitution=0.5),
+    law = vi.laws.law_achieving(
+        vi.laws.find_contact_law(name)(stiffness=stiffness, restitution=0.5),
         wanted,
         mass=mass,
         speed=speed,
     )
-    assert abs(vi.integrated_restitution(law, mass, speed) - wanted) < 1e-6
+    assert abs(vi.laws.integrated_restitution(law, mass, speed) - wanted) < 1e-6
     typed[name] = float(law.restitution)
 typed
 

@@ -33,7 +33,7 @@ def thrown(coefficient, spin=0.0):
         },
         "run": {"duration": "2.5 s"},
     }
-    return vi.simulate(vi.read_case(case))
+    return vi.simulate(vi.case_of(case))
 
 
 coefficients = (0.03, 0.05, 0.08, 0.16)

@@ -43,7 +43,9 @@ case = {
     "sweep": {"design": "saltelli", "samples": 1024, "over": over},
 }
 with TemporaryDirectory() as folder:
-    study = vi.read_study(vi.run_sweep(vi.read_sweep(case), Path(folder, "tolerances")))
+    study = vi.studies.load_study(
+        vi.studies.run_sweep(vi.studies.sweep_of(case), Path(folder, "tolerances"))
+    )
     charts = study.charts
 
 # %%
@@ -85,5 +87,5 @@ for name, share in zip(
 # All results
 # -----------
 plt.style.use("vibroimpact.charts.print")
-vi.matplotlib_figure(chart, plt.figure())
+vi.charts.matplotlib_figure(chart, plt.figure())
 plt.show()

@@ -33,7 +33,9 @@ case = {
     },
 }
 with TemporaryDirectory() as folder:
-    study = vi.read_study(vi.run_sweep(vi.read_sweep(case), Path(folder, "rocks")))
+    study = vi.studies.load_study(
+        vi.studies.run_sweep(vi.studies.sweep_of(case), Path(folder, "rocks"))
+    )
     radius, height = study.coordinates["sphere.radius"], study.coordinates["drop.height"]
     force, indentation = study.values("largest_force_N"), study.values("largest_indentation_m")
     overload = study.values("limit_plate_strength")

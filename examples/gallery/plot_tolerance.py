@@ -29,10 +29,10 @@ laws = {
 tolerances = np.geomspace(1e-6, 1e-13, 15)
 errors = {}
 for name, values in laws.items():
-    law = vi.find_contact_law(name)(**values)
+    law = vi.laws.find_contact_law(name)(**values)
     exact = law.closed_form_restitution(mass, speed)
     found = [
-        vi.integrated_restitution(law, mass, speed, tolerance=float(one)) for one in tolerances
+        vi.laws.integrated_restitution(law, mass, speed, tolerance=float(one)) for one in tolerances
     ]
     errors[name] = np.abs(np.array(found) / exact - 1.0).clip(1e-16)
     assert np.all(errors[name] < np.maximum(tolerances, 1e-13))

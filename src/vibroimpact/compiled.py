@@ -129,7 +129,7 @@ def law_addresses(law_class: type[Any]) -> Any:
     ... def static_force(addresses, delta, coefficients):
     ...     force = force_at(addresses[0])
     ...     return force(delta, 0.0, 1.0, coefficients)[0]
-    >>> law = vi.find_contact_law("hunt-crossley")(stiffness=2.0, restitution=0.5)
+    >>> law = vi.laws.find_contact_law("hunt-crossley")(stiffness=2.0, restitution=0.5)
     >>> static_force(law_addresses(type(law)), 4.0, law_coefficients(law))
     16.0
     """

@@ -92,7 +92,7 @@ class InputError(VibroimpactError, ValueError):
     --------
     >>> import vibroimpact as vi
     >>> try:
-    ...     vi.to_si("2 mm", "kg")
+    ...     vi.units.to_si("2 mm", "kg")
     ... except vi.InputError as error:
     ...     print(error)
     "2 mm" is a length; expected a mass (a number in kg, or a string such as "90 g")

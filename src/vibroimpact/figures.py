@@ -14,7 +14,7 @@ from vibroimpact.errors import InputError
 from vibroimpact.files.new_folders import made_folder
 from vibroimpact.files.recover import recover
 from vibroimpact.report.page import replace_report_files
-from vibroimpact.results.folder import read_result
+from vibroimpact.results.folder import load_result
 from vibroimpact.results.result import Result
 from vibroimpact.runs.figures import write_figures
 
@@ -95,9 +95,9 @@ def _writer_of(
     from vibroimpact.studies.study_folder import is_study
 
     if is_study(folder):
-        from vibroimpact.studies.study import read_study
+        from vibroimpact.studies.study import load_study
 
-        charts = read_study(folder).report.charts
+        charts = load_study(folder).report.charts
 
         def write(place: Path) -> None:
             save_charts(charts, place, formats, progress)
@@ -111,7 +111,7 @@ def _result_in(folder: Path) -> Result:
     figures already.
     """
     try:
-        return read_result(folder)
+        return load_result(folder)
     except InputError:
         from vibroimpact.paper.report.reproduction import is_reproduction
 

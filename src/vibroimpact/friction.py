@@ -1,4 +1,4 @@
-"""The friction laws by their names, with those of other packages.
+"""Friction laws by the names of their classes, with those of other packages.
 
 >>> import vibroimpact as vi
 >>> vi.friction.Coulomb(coefficient=0.3).coefficient
@@ -8,8 +8,10 @@
 from __future__ import annotations
 
 from vibroimpact.contact.friction.law import FrictionLaw
-from vibroimpact.contact.registry import friction_laws
+from vibroimpact.contact.registry import find_friction_law, friction_laws
 from vibroimpact.registry import class_named
+
+__all__ = ["FrictionLaw", "find_friction_law", "friction_laws"]
 
 
 def __getattr__(name: str) -> type[FrictionLaw]:
@@ -17,4 +19,4 @@ def __getattr__(name: str) -> type[FrictionLaw]:
 
 
 def __dir__() -> list[str]:
-    return sorted(law.__name__ for law in friction_laws().values())
+    return sorted([*__all__, *(law.__name__ for law in friction_laws().values())])

@@ -1,5 +1,6 @@
-"""The contact laws of this package, for type checkers."""
+"""The contact laws of this package, and what is done with laws, for type checkers."""
 
+from vibroimpact.contact.law import ContactLaw as ContactLaw
 from vibroimpact.contact.laws.adams_impact import AdamsImpact as AdamsImpact
 from vibroimpact.contact.laws.adams_poisson import AdamsPoisson as AdamsPoisson
 from vibroimpact.contact.laws.anagnostopoulos import Anagnostopoulos as Anagnostopoulos
@@ -29,3 +30,14 @@ from vibroimpact.contact.laws.thornton import Thornton as Thornton
 from vibroimpact.contact.laws.tsuji import Tsuji as Tsuji
 from vibroimpact.contact.laws.walton_braun import WaltonBraun as WaltonBraun
 from vibroimpact.contact.laws.zhiying_qishao import ZhiyingQishao as ZhiyingQishao
+from vibroimpact.contact.quasi_static import QuasiStatic as QuasiStatic
+from vibroimpact.contact.registry import contact_laws as contact_laws
+from vibroimpact.contact.registry import find_contact_law as find_contact_law
+from vibroimpact.contact.speed_function import SpeedFunction as SpeedFunction
+from vibroimpact.contact.speed_function import SpeedTable as SpeedTable
+from vibroimpact.dynamics.restitution import achieved_restitution as achieved_restitution
+from vibroimpact.dynamics.restitution import integrated_restitution as integrated_restitution
+from vibroimpact.dynamics.restitution import law_achieving as law_achieving
+from vibroimpact.law_comparison.comparison import Comparison as Comparison
+from vibroimpact.law_comparison.comparison import compare_laws as compare_laws
+from vibroimpact.law_sheets.curves import law_chart as law_chart

@@ -1,4 +1,11 @@
-"""Isotropic linear-elastic materials, and the material library of the package."""
+"""Isotropic linear-elastic materials, and the material library of the package.
+
+The materials of the library are attributes, too, with underscores for hyphens:
+
+>>> import vibroimpact as vi
+>>> vi.materials.rock_paper.youngs_modulus
+2260000000.0
+"""
 
 from __future__ import annotations
 
@@ -15,6 +22,8 @@ import numpy as np
 from vibroimpact.errors import InputError, did_you_mean
 from vibroimpact.quoting import quoted
 from vibroimpact.ranges import Range
+
+__all__ = ["RIGID", "Material", "find_material", "material_library"]
 
 _RANGES = {
     "density": Range(above=0),
@@ -176,3 +185,16 @@ def find_material(name: str) -> Material:
             f"lists them, {remedy}.{_meant(name)}"
         )
     return library[name]
+
+
+def __getattr__(name: str) -> Material:
+    library = material_library()
+    listed = name.replace("_", "-")
+    if listed not in library:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return library[listed]
+
+
+def __dir__() -> list[str]:
+    names = [name.replace("-", "_") for name in material_library()]
+    return sorted([*__all__, *names])

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from vibroimpact.files.recover import recover
 from vibroimpact.report.page import replace_report_files
-from vibroimpact.results.folder import read_result
+from vibroimpact.results.folder import load_result
 from vibroimpact.runs.page import write_report
 
 
@@ -36,13 +36,13 @@ def remake_report(directory: str | PathLike[str]) -> Path:
     """
     # imported here, since a run does not need them
     from vibroimpact.studies.report.write_report import write_study_report
-    from vibroimpact.studies.study import read_study
+    from vibroimpact.studies.study import load_study
     from vibroimpact.studies.study_folder import is_study
 
     folder = Path(directory)
     recover(folder)
     if is_study(folder):
-        write_study_report(read_study(folder))
+        write_study_report(load_study(folder))
         return folder
     from vibroimpact.paper.report.folder import write_reproduction_report
     from vibroimpact.paper.report.reproduction import is_reproduction
@@ -50,6 +50,6 @@ def remake_report(directory: str | PathLike[str]) -> Path:
     if is_reproduction(folder):
         write_reproduction_report(folder)
         return folder
-    result = read_result(directory)
+    result = load_result(directory)
     replace_report_files(folder, partial(write_report, result))
     return folder

@@ -11,6 +11,7 @@ from vibroimpact.dynamics.sensors.instruments.force_sensor import ForceSensor
 from vibroimpact.dynamics.sensors.instruments.geophone import Geophone
 from vibroimpact.dynamics.sensors.instruments.microphone import Microphone
 from vibroimpact.dynamics.sensors.instruments.strain_gauge import StrainGauge
+from vibroimpact.dynamics.sensors.recording import Signal
 from vibroimpact.dynamics.sensors.sensor import Sensor
 
 __all__ = [
@@ -21,5 +22,6 @@ __all__ = [
     "Geophone",
     "Microphone",
     "Sensor",
+    "Signal",
     "StrainGauge",
 ]

@@ -181,7 +181,7 @@ def test_what_is_said_of_hertz() -> None:
         )
         off.append(
             100.0
-            * (float(vi.simulate(vi.read_case(case)).impacts["max_force_N"][0]) / reference - 1.0)
+            * (float(vi.simulate(vi.case_of(case)).impacts["max_force_N"][0]) / reference - 1.0)
         )
     says(TRUST, "the force is {} % too small at {}, and {} % too large with", -off[0], part, off[1])
 
@@ -214,7 +214,7 @@ def test_what_is_said_of_a_wrong_modulus() -> None:
             contact={"law": "hertz"},
             run={"impacts": 1},
         )
-        impacts = vi.simulate(vi.read_case(case)).impacts
+        impacts = vi.simulate(vi.case_of(case)).impacts
         found.append([float(impacts[name][0]) for name in ("max_force_N", "duration_s")])
     force, time = 100.0 * (np.divide(*reversed(found)) - 1.0)
     says(

@@ -48,7 +48,7 @@ def case_of(folder: Path, text: str, **changes: Any) -> vi.Case:
 def test_defaults_of_the_drop(tmp_path: Path, blocks: list[str]) -> None:
     problem, newton = (
         case_of(tmp_path, blocks[0].replace("gravity = 9.8\n", "")).to_problem(),
-        vi.find_contact_law("newton"),
+        vi.laws.find_contact_law("newton"),
     )
     says(PAGE, "| {} by default; 0 is allowed", problem.gravity)
     says(PAGE, "at the end of a contact: {} by default", problem.tolerance)
@@ -127,7 +127,7 @@ def test_range_of_the_tolerance(
 
 
 def test_defaults_of_instruments() -> None:
-    sensor = vi.Sensor("a", filter="butterworth")
+    sensor = vi.sensors.Sensor("a", filter="butterworth")
     says(
         PAGE,
         "corner frequency of a Butterworth filter: {} of the rate",

@@ -32,7 +32,7 @@ def drop(modes: int | None, finite_sphere: bool = False) -> vi.Response:
     case: dict[str, Any] = tomllib.loads(block[1])
     case["plate"] = RIGID if modes is None else case["plate"] | {"modes": modes}
     case["contact"]["finite_sphere"] = finite_sphere
-    return vi.simulate(vi.read_case(case))
+    return vi.simulate(vi.case_of(case))
 
 
 def first(response: vi.Response, column: str) -> float:
@@ -112,7 +112,7 @@ def test_laws_that_dent() -> None:
     """
     denting = [
         name
-        for name, law in vi.contact_laws().items()
+        for name, law in vi.laws.contact_laws().items()
         if issubclass(law, CompliantLaw) and law.lasting
     ]
     assert f"# laws that leave a dent: {', '.join(denting)}" in TEXT
@@ -123,14 +123,14 @@ def test_laws_that_dent() -> None:
 def test_restitutions_that_fall_with_the_speed() -> None:
     speed = np.array([1e5, 1e6])
 
-    def power(law: vi.ContactLaw, loss: bool = False) -> float:
-        found = vi.achieved_restitution(law, 0.01, speed if not loss else 1e-11 * speed)
+    def power(law: vi.laws.ContactLaw, loss: bool = False) -> float:
+        found = vi.laws.achieved_restitution(law, 0.01, speed if not loss else 1e-11 * speed)
         found = 1.0 - found if loss else found
         return float(np.log10(found[1] / found[0]))
 
-    viscous = vi.find_contact_law("kuwabara-kono")(stiffness=1e8, dissipation_time=1e-6)
+    viscous = vi.laws.find_contact_law("kuwabara-kono")(stiffness=1e8, dissipation_time=1e-6)
     assert power(viscous, loss=True) == pytest.approx(1 / 5, abs=0.01)
-    plastic = vi.find_contact_law("thornton")(
+    plastic = vi.laws.find_contact_law("thornton")(
         effective_modulus=1e11, effective_radius=0.01, yield_pressure=1e9
     )
     assert power(plastic) == pytest.approx(-1 / 4, abs=0.01)

@@ -58,7 +58,7 @@ def test_contact_times_of_coal_and_gangue() -> None:
             "contact": {"law": "hertz"},
         }
         times[name] = 1e6 * float(
-            vi.simulate(vi.read_case({**case, "run": {"impacts": 1}})).impacts["duration_s"][0]
+            vi.simulate(vi.case_of({**case, "run": {"impacts": 1}})).impacts["duration_s"][0]
         )
     says(
         GUIDE,
@@ -75,7 +75,7 @@ def test_contact_times_of_coal_and_gangue() -> None:
 @pytest.fixture(scope="module")
 def whole() -> Bound:
     """The bound that the command computes by default."""
-    return vi.bound_of(vi.load_sweep("signals:coal-gangue", 20_000))
+    return vi.bayes_error.bound_of(vi.studies.load_sweep("signals:coal-gangue", 20_000))
 
 
 def per_cent(error: BayesError) -> tuple[float, float]:
@@ -158,7 +158,7 @@ def over_bandwidth(bound: Bound, ratio: float) -> tuple[float, float]:
 
 @pytest.mark.slow
 def test_the_printed_table_of_bounds() -> None:
-    bound = vi.bound_of(vi.load_sweep("signals:coal-gangue", 5000))
+    bound = vi.bayes_error.bound_of(vi.studies.load_sweep("signals:coal-gangue", 5000))
     text = page_text(BOUNDS)
     for name in ("impulse", "contact time", "one impact", "one impact, place unknown"):
         assert (
@@ -204,14 +204,14 @@ def with_moduli(coal: tuple[float, float] | None, gangue: tuple[float, float]) -
     """Return falls of the shipped population with other log-normal moduli, by mean and
     standard deviation [GPa].
     """
-    table = vi.load_sweep("signals:coal-gangue").whole_table
+    table = vi.studies.load_sweep("signals:coal-gangue").whole_table
     table["sweep"]["samples"] = 20_000
     for name, given in (("coal", coal), ("gangue", gangue)):
         if given is not None:
             mean, deviation = (1e9 * part for part in given)
             drawn = {"distribution": "lognormal", "mean": mean, "standard_deviation": deviation}
             table["sweep"]["classes"][name]["over"]["sphere.material.youngs_modulus"] = drawn
-    return falls_of_sweep(vi.read_sweep(table))
+    return falls_of_sweep(vi.studies.sweep_of(table))
 
 
 def between(values: Any) -> tuple[float, float]:
@@ -312,7 +312,7 @@ def test_an_almost_exact_bound_excludes_nothing() -> None:
 
 
 def test_peak_pressures() -> None:
-    falls = falls_of_sweep(vi.load_sweep("signals:coal-gangue", 4096))
+    falls = falls_of_sweep(vi.studies.load_sweep("signals:coal-gangue", 4096))
     force = falls.impulse / falls.duration * float(hertz_pulse(np.array([0.5]))[0])
     effective = 1.0 / ((1.0 - 0.28**2) / falls.modulus + (1.0 - 0.3**2) / 210e9)
     pressure = (6.0 * force * effective**2 / (np.pi**3 * falls.radius**2)) ** (1.0 / 3.0)
@@ -329,8 +329,10 @@ def test_peak_pressures() -> None:
 
 @pytest.mark.slow
 def test_the_demonstration_with_64_falls(tmp_path: Path) -> None:
-    folder = vi.run_sweep(vi.load_sweep("signals:coal-gangue", 64), tmp_path / "falls")
-    found = vi.recognise(folder, seeds=1, folds=2, workers=1)
+    folder = vi.studies.run_sweep(
+        vi.studies.load_sweep("signals:coal-gangue", 64), tmp_path / "falls"
+    )
+    found = vi.recognition.recognise(folder, seeds=1, folds=2, workers=1)
     best = found.scores[found.best].balanced_accuracy
     says(
         GUIDE,

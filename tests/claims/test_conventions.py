@@ -19,8 +19,8 @@ def test_factors_of_conversion() -> None:
 
 
 def test_standard_gravity() -> None:
-    says(PAGE, "; standard gravity, {} m/s^2: `g`, `gn`", vi.to_si("1 gn", "m/s^2"))
+    says(PAGE, "; standard gravity, {} m/s^2: `g`, `gn`", vi.units.to_si("1 gn", "m/s^2"))
 
 
 def factor(unit: str, to: str) -> float:
-    return 1.0 / vi.convert_units(1.0, unit, to)
+    return 1.0 / vi.units.convert_units(1.0, unit, to)

@@ -43,7 +43,7 @@ def on_a_rigid_plane(modes: int = 0, finite: bool = False) -> tuple[float, float
         {"model": "elastic", "modes": modes} if modes else {}
     )
     contact = {"law": "hertz"} | ({"finite_sphere": True} if finite else {})
-    impacts = vi.simulate(vi.read_case({**case, "sphere": sphere, "contact": contact})).impacts
+    impacts = vi.simulate(vi.case_of({**case, "sphere": sphere, "contact": contact})).impacts
     return (
         float(impacts["max_force_N"][0]),
         1e6 * float(impacts["duration_s"][0]),
@@ -119,7 +119,7 @@ def test_two_drops_a_nanometre_apart() -> None:
     assert apart[4:].min() > 0.05
     says(PAGE, "(how much depends on rounding) and by more than {} % from the fifth on", 5.0)
     case = {**shown["case"], "plate": {**shown["case"]["plate"], "damping": 0.01}}
-    problem = vi.read_case(case).to_problem()
+    problem = vi.case_of(case).to_problem()
     first, second = (
         vi.simulate(replace(problem, height=height)).impacts["max_force_N"]
         for height in (1.0, 1.0 + 1e-9)
@@ -142,7 +142,7 @@ def test_sensitivity_of_a_rigid_drop() -> None:
 
     def force(height: float) -> float:
         case = plain_case(drop={"height": height}, contact={"law": "hertz"}, run={"impacts": 1})
-        return float(vi.simulate(vi.read_case(case)).impacts["max_force_N"][0])
+        return float(vi.simulate(vi.case_of(case)).impacts["max_force_N"][0])
 
     low, high = 4.0, 4.04
     says(

@@ -30,7 +30,7 @@ def first(response: vi.Response, column: str) -> float:
 
 def run(**changes: dict[str, Any]) -> vi.Response:
     return vi.simulate(
-        vi.read_case({**CASE, **{name: {**CASE[name], **keys} for name, keys in changes.items()}})
+        vi.case_of({**CASE, **{name: {**CASE[name], **keys} for name, keys in changes.items()}})
     )
 
 
@@ -89,7 +89,7 @@ def test_a_plate_that_yields() -> None:
     demand = float(numbers_of(Conditions(result.case, result._drop_summary))["plate_strength"])
     assert 1.0 / demand == pytest.approx(0.25, abs=0.01)  # a quarter of the pressure
     case = {**CASE, "plate": {**CASE["plate"], "material": ALUMINIUM}, "contact": {"law": "meyer"}}
-    dented = vi.simulate(vi.read_case(case))
+    dented = vi.simulate(vi.case_of(case))
     says(
         PAGE,
         "it gives {} kN and a restitution of {} where the run below has {} kN and {},",

@@ -52,18 +52,18 @@ def test_the_ball() -> None:
     )
 
 
-def achieved(law: vi.ContactLaw, response: vi.Response) -> list[float]:
+def achieved(law: vi.laws.ContactLaw, response: vi.Response) -> list[float]:
     """The restitution of the ball over the speeds of the figure."""
     mass = float(response.problem.sphere.mass)
     return [
-        float(vi.achieved_restitution(law, mass=mass, speed=speed))
+        float(vi.laws.achieved_restitution(law, mass=mass, speed=speed))
         for speed in (0.1, 0.3, 0.767, 3.0, 10.0)
     ]
 
 
 def test_the_defaults_of_the_dialog() -> None:
     pictures = example("pictures_of_guides")
-    defaults = vi.find_contact_law("adams-impact")(**pictures.DIALOG)
+    defaults = vi.laws.find_contact_law("adams-impact")(**pictures.DIALOG)
     law, (_, response) = pictures.DIALOG, pictures.found_for_adams()
     says(
         PAGE,
@@ -73,7 +73,7 @@ def test_the_defaults_of_the_dialog() -> None:
         1e-3 * law["damping_max"],
         1e3 * law["full_damping_penetration"],
         float(
-            vi.achieved_restitution(
+            vi.laws.achieved_restitution(
                 defaults,
                 mass=float(response.problem.sphere.mass),
                 speed=first(response, "approach_speed_m_s"),
@@ -81,7 +81,7 @@ def test_the_defaults_of_the_dialog() -> None:
         ),
     )
     faster = float(
-        vi.achieved_restitution(defaults, mass=float(response.problem.sphere.mass), speed=3.0)
+        vi.laws.achieved_restitution(defaults, mass=float(response.problem.sphere.mass), speed=3.0)
     )
     says(PAGE, "and of {} at 3 m/s", faster)
     says(
@@ -89,14 +89,16 @@ def test_the_defaults_of_the_dialog() -> None:
         "with the dialog's defaults below {} everywhere",
         round(max(achieved(defaults, response)) + 0.05, 1),
     )
-    part = float(vi.achieved_restitution(defaults, mass=1.0, speed=1.0))
+    part = float(vi.laws.achieved_restitution(defaults, mass=1.0, speed=1.0))
     says(PAGE, "a mass of 1 kg has {} at 1 m/s", part)
     says(PAGE, "speed=1.0) # {}", part)
 
 
 @cache
-def rock() -> vi.Calibration:
-    return vi.calibrate(vi.load_case("paper:type1-constant"), vi.load_case("paper:type1-theory"))
+def rock() -> vi.calibration.Calibration:
+    return vi.calibration.calibrate(
+        vi.load_case("paper:type1-constant"), vi.load_case("paper:type1-theory")
+    )
 
 
 def off(column: str, way: str) -> list[float]:
@@ -123,12 +125,12 @@ def test_the_rock() -> None:
     says(
         PAGE,
         '"N/mm^1.5") # {}',
-        vi.convert_units(float(rock().problem.laws[0].stiffness), "N/m^1.5", "N/mm^1.5"),
+        vi.units.convert_units(float(rock().problem.laws[0].stiffness), "N/m^1.5", "N/mm^1.5"),
     )
 
 
 def test_steel_that_yields() -> None:
-    yields = vi.simulate(vi.read_case({**MILD, "contact": {"law": "meyer"}}))
+    yields = vi.simulate(vi.case_of({**MILD, "contact": {"law": "meyer"}}))
     says(
         PAGE,
         "gives a restitution of {} there and {} kN",
@@ -140,9 +142,9 @@ def test_steel_that_yields() -> None:
         "contact": {"law": "adams-impact"},
         "calibrate": {"target": {"rebound_heights": ["0.337 m"]}},
     }
-    question = vi.read_calibration(table)
-    found = vi.calibrate_case(question)
-    response = vi.simulate(vi.calibrated_case(question.case, found))
+    question = vi.calibration.calibration_of(table)
+    found = vi.calibration.calibrate_case(question)
+    response = vi.simulate(found.calibrated_case)
     assert any("yields under Hertz's peak pressure" in doubt for doubt in found.doubts)
     says(
         PAGE,

@@ -36,10 +36,10 @@ def test_program_of_the_page() -> None:
     law = names_of_page(PAGE)["law"]
     says(
         PAGE,
-        "vi.achieved_restitution(law, mass=0.1, speed=1.0) # {}",
-        float(vi.achieved_restitution(law, mass=0.1, speed=1.0)),
+        "vi.laws.achieved_restitution(law, mass=0.1, speed=1.0) # {}",
+        float(vi.laws.achieved_restitution(law, mass=0.1, speed=1.0)),
     )
-    asked = vi.law_achieving(law, 0.7, mass=0.1, speed=1.0)
+    asked = vi.laws.law_achieving(law, 0.7, mass=0.1, speed=1.0)
     says(PAGE, "# {} achieves 0.7", float(asked.restitution))
 
 
@@ -47,7 +47,9 @@ def test_steps() -> None:
     names = names_of_page(PAGE)
 
     def errors(asked: float) -> list[float]:
-        law = vi.find_contact_law("tsuji")(stiffness=1e8, restitution=asked, effective_mass=0.1)
+        law = vi.laws.find_contact_law("tsuji")(
+            stiffness=1e8, restitution=asked, effective_mass=0.1
+        )
         return [
             names["restitution_in_steps"](law, 0.1, 1.0, steps) - asked
             for steps in (10, 20, 50, 100)
@@ -67,7 +69,7 @@ def test_dashpots() -> None:
     """Of the sizes and speeds of the table; it scales as the page says."""
     names = names_of_page(PAGE)
     mass, speed = names["mass"] * names["each"], names["speed"] * names["each"]
-    damping = vi.law_achieving(names["dashpot"], 0.9, mass=mass, speed=speed).damping_max
+    damping = vi.laws.law_achieving(names["dashpot"], 0.9, mass=mass, speed=speed).damping_max
     says(PAGE, "| radius | {} m/s | {} m/s | {} m/s | {} m/s |", *names["speed"][0])
     says(PAGE, "| 0.5 mm | {} | {} | {} | {} |", *damping[0])
     says(PAGE, "| 1 mm | {} | {} | {} | {} |", *damping[1])
@@ -80,10 +82,10 @@ def test_dashpots() -> None:
 def test_viscoelastic_grains() -> None:
     names = names_of_page(PAGE)
     mass, speed = names["mass"] * names["each"], names["speed"] * names["each"]
-    law = vi.find_contact_law("kuwabara-kono")(
+    law = vi.laws.find_contact_law("kuwabara-kono")(
         stiffness=names["dashpot"].stiffness, dissipation_time=0.2e-6
     )
-    found = vi.achieved_restitution(law, mass=mass, speed=speed)
+    found = vi.laws.achieved_restitution(law, mass=mass, speed=speed)
     assert (found.min(), found.max()) == (found[0, -1], found[-1, 0])
     says(
         PAGE,
@@ -92,7 +94,7 @@ def test_viscoelastic_grains() -> None:
         found[0, -1],
         found[-1, 0],
     )
-    hertz = vi.find_contact_law("hertz")(stiffness=float(law.stiffness[0, -1]))
+    hertz = vi.laws.find_contact_law("hertz")(stiffness=float(law.stiffness[0, -1]))
     body = vi.Body(mass=float(mass[0, -1]), contact_offset=1e-3)
     alone = vi.Problem(
         sphere=body, plate=vi.rigid_plate(), laws=(hertz,), speed=1.0, gravity=0.0, impacts=1
@@ -120,6 +122,6 @@ def test_glass_is_within_its_strength() -> None:
 def test_exported_line(tmp_path: Path) -> None:
     """The line that the page shows is in the exported file."""
     vi.simulate(vi.load_case("paper:type1-constant")).save(tmp_path / "run")
-    (script,) = vi.export_result(tmp_path / "run", "lammps", tmp_path / "rock.in")
+    (script,) = vi.exporting.export_result(tmp_path / "run", "lammps", tmp_path / "rock.in")
     shown = " ".join(blocks(PAGE, "text")[0].removesuffix("...\n").split())
     assert shown in " ".join(script.read_text(encoding="utf-8").split())

@@ -112,7 +112,7 @@ def test_program_of_the_page() -> None:
     )
     says(PAGE, 'material=vi.find_material("steel")) # {}', rock)
     assert rock == pytest.approx(0.75, abs=0.02)  # a quarter of the speed
-    drop = vi.read_case(PICTURES.THICKNESS).to_problem()
+    drop = vi.case_of(PICTURES.THICKNESS).to_problem()
     mass, stiffness = float(drop.sphere.mass), float(drop.laws[0].stiffness)
     thickness = np.arange(20, 60)
     speed = PICTURES.first_impact(PICTURES.on_rigid_plate())["approach_speed_m_s"]
@@ -135,7 +135,7 @@ def test_granite_dents_and_cracks() -> None:
         "contact": {"law": "tsuji", "restitution": 0.8},
         "run": {"impacts": 1},
     }
-    found = limits_of(vi.simulate(vi.read_case(granite)))
+    found = limits_of(vi.simulate(vi.case_of(granite)))
     says(
         PAGE,
         "from 1 m on a rigid plate the pressure is {} times that of first yield of the steel",

@@ -39,7 +39,7 @@ def test_chains() -> None:
     says(PAGE, "no resonance, {} kHz | {} |", 1e-3 * slow.sensor.rate, slow.largest)
     # a twelfth of the amplitude
     assert motion.largest / slow.largest == pytest.approx(12.0, abs=0.5)
-    case = vi.read_case(PICTURES.SENSORS)
+    case = vi.case_of(PICTURES.SENSORS)
     apart = np.subtract(case.sensors[0].position, case.drop.position)
     says(PAGE, "one position {} mm from it", 1e3 * float(np.hypot(*apart)))
     impact = PICTURES.first_impact(response)
@@ -70,7 +70,7 @@ def test_without_yielding() -> None:
 
 @pytest.mark.slow
 def test_the_case_of_the_page() -> None:
-    response = vi.simulate(vi.read_case(PICTURES.SENSORS))
+    response = vi.simulate(vi.case_of(PICTURES.SENSORS))
     assert not vi.result_of(response).doubts
     wide = response.signals()["wide"]
     says(PAGE, "reads {3} m/s² at most, and {3} m/s² reach its input", wide.largest, wide.peak)
@@ -78,7 +78,7 @@ def test_the_case_of_the_page() -> None:
 
 def test_spectrum_of_hertz() -> None:
     body = vi.Body(mass=0.1, contact_offset=0.01)
-    law = vi.find_contact_law("hertz")(stiffness=1e8)
+    law = vi.laws.find_contact_law("hertz")(stiffness=1e8)
     response = vi.simulate(
         vi.Problem(
             sphere=body, plate=vi.rigid_plate(), laws=(law,), speed=1.0, gravity=0.0, impacts=1

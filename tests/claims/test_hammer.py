@@ -93,8 +93,10 @@ def test_noise_of_the_force() -> None:
     noise = force.max() * np.random.default_rng(3).standard_normal(len(force))
 
     def residual(measured: np.ndarray) -> float:
-        found = vi.correlate(
-            a_case(damping=0.008), records(value), force=vi.Record("hammer", measured, RATE, "N")
+        found = vi.test_analysis.correlate(
+            a_case(damping=0.008),
+            records(value),
+            force=vi.signals.Record("hammer", measured, RATE, "N"),
         )
         return 100.0 * float(found.relative_residual[0])
 

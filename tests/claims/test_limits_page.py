@@ -132,7 +132,7 @@ def force(part: float, *, corrected: bool) -> float:
     case = plain_case(
         **bodies, drop={"speed": speed, "gravity": 0.0}, contact=contact, run={"impacts": 1}
     )
-    return float(vi.simulate(vi.read_case(case)).impacts["max_force_N"][0])
+    return float(vi.simulate(vi.case_of(case)).impacts["max_force_N"][0])
 
 
 def test_the_finite_sphere() -> None:

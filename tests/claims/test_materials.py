@@ -6,7 +6,7 @@ import vibroimpact as vi
 
 
 def test_values_of_an_exercise_are_marked_as_such() -> None:
-    library = vi.material_library()
+    library = vi.materials.material_library()
     given = {
         name
         for name, material in library.items()

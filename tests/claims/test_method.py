@@ -81,7 +81,7 @@ def lost_in_contact(case: dict) -> float:
     """Return the part of the speed that drag would take in a contact, at the speed of
     approach throughout.
     """
-    read = vi.read_case(case)
+    read = vi.case_of(case)
     row = {name: float(column[0]) for name, column in vi.simulate(read).impacts.items()}
     speed, sphere = row["approach_speed_m_s"], read.to_problem().sphere
     density = float(sphere.mass) / (4.0 / 3.0 * np.pi * float(sphere.contact_offset) ** 3)
@@ -130,7 +130,7 @@ def test_liquids() -> None:
         900.0,
         0.1,
     )
-    glass = vi.read_case(
+    glass = vi.case_of(
         plain_case(
             sphere={
                 "radius": 0.005,

@@ -50,8 +50,8 @@ def force_error(drop: Drop) -> float:
 
 
 def test_the_defaults_of_adams() -> None:
-    steel = vi.material_library()["steel"]
-    impact = vi.find_contact_law("adams-impact")
+    steel = vi.materials.material_library()["steel"]
+    impact = vi.laws.find_contact_law("adams-impact")
     defaults = impact(
         stiffness=1e5 * 1000**2.2, exponent=2.2, damping_max=10e3, full_damping_penetration=1e-4
     )
@@ -61,7 +61,7 @@ def test_the_defaults_of_adams() -> None:
         "With the defaults of *Impact* a {} mm steel ball at {} m/s has a [restitution of {}]",
         40.0,
         3.0,
-        vi.achieved_restitution(defaults, mass=mass, speed=3.0),
+        vi.laws.achieved_restitution(defaults, mass=mass, speed=3.0),
     )
 
 
@@ -111,14 +111,14 @@ def test_units_of_adams() -> None:
         EXPORT,
         "({} N/m^1.5 is {} N/mm^1.5)",
         stiffness,
-        vi.convert_units(stiffness, "N/m^1.5", "N/mm^1.5"),
+        vi.units.convert_units(stiffness, "N/m^1.5", "N/mm^1.5"),
     )
     says(
         EXPORT,
         "A stiffness in N/m^n is therefore divided by {}^n",
-        vi.convert_units(1.0, "m", "mm"),
+        vi.units.convert_units(1.0, "m", "mm"),
     )
-    says(EXPORT, "a damping in N s/m by {}", 1.0 / vi.convert_units(1.0, "N*s/m", "N*s/mm"))
+    says(EXPORT, "a damping in N s/m by {}", 1.0 / vi.units.convert_units(1.0, "N*s/m", "N*s/mm"))
 
 
 def test_samples_of_a_universal_file() -> None:
@@ -139,7 +139,7 @@ def test_names() -> None:
 
 
 def test_frames_of_a_drop_with_many_impacts() -> None:
-    case = vi.read_case(
+    case = vi.case_of(
         {
             "sphere": {"radius": "25 mm", "material": "rock-paper"},
             "plate": {"material": "steel-paper", "size": ["520 mm", "420 mm", "8 mm"]},

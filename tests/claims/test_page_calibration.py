@@ -38,9 +38,9 @@ PAGE = "docs/calibration.md"
 
 
 @cache
-def paper() -> vi.Calibration:
-    found = vi.calibrate_case(vi.load_calibration("paper:calibration"))
-    assert isinstance(found, vi.Calibration)
+def paper() -> vi.calibration.Calibration:
+    found = vi.calibration.calibrate_case(vi.calibration.load_calibration("paper:calibration"))
+    assert isinstance(found, vi.calibration.Calibration)
     return found
 
 
@@ -92,7 +92,7 @@ def test_drifting_forces() -> None:
     drifts = module_at("tests/unit/calibration/test_force_drift.py")
     contact = {"law": "adams-impact", "damping_max": 200.0}
     response = vi.simulate(
-        vi.read_case(plain_case(contact=contact, drop={"height": 1.0}, run={"impacts": 3}))
+        vi.case_of(plain_case(contact=contact, drop={"height": 1.0}, run={"impacts": 3}))
     )
     begin, duration = float(response.impacts["time_s"][0]), float(response.impacts["duration_s"][0])
     time = np.arange(begin - 6.0 * duration, begin + 12.0 * duration, 1e-7)
@@ -178,7 +178,7 @@ def test_intervals_of_bounces() -> None:
     for seed in range(100):
         condition = bounces.CONDITIONS[seed // 5 % 5]
         made = heard(seed, *bounces.BALLS[seed % 5], **condition)
-        found = vi.find_bounces(made.record)
+        found = vi.signals.find_bounces(made.record)
         off += (found.restitution - made.restitution[: len(found.restitution)]).tolist()
         wide += (bounces.SAID * np.sqrt(np.diag(found.covariance))).tolist()
         level += [condition["decibels"]] * len(found.restitution)
@@ -205,11 +205,11 @@ def test_flights_in_air() -> None:
         if "air" in table.get("calibrate", {})
     )
 
-    def first(**changes: Any) -> tuple[float, vi.Calibration]:
-        found = vi.calibrate_case(
-            vi.read_calibration({**case, "calibrate": {**case["calibrate"], **changes}})
+    def first(**changes: Any) -> tuple[float, vi.calibration.Calibration]:
+        found = vi.calibration.calibrate_case(
+            vi.calibration.calibration_of({**case, "calibrate": {**case["calibrate"], **changes}})
         )
-        assert isinstance(found, vi.Calibration)
+        assert isinstance(found, vi.calibration.Calibration)
         return float(found.outcomes["separation_speed"][0] / found.observations.speeds[0]), found
 
     in_air, found = first()
@@ -230,9 +230,9 @@ def test_flights_in_air() -> None:
 
 
 def test_the_penetration_of_the_paper() -> None:
-    what = vi.load_calibration("paper:full-damping-penetration")
-    found = vi.calibrate_case(what)
-    assert isinstance(found, vi.Calibration)
+    what = vi.calibration.load_calibration("paper:full-damping-penetration")
+    found = vi.calibration.calibrate_case(what)
+    assert isinstance(found, vi.calibration.Calibration)
     radius, gravity = what.case.sphere.radius, what.case.drop.gravity
     given, wanted = (float(one["separation_speed"][0]) for one in (found.as_given, found.outcomes))
     heights = [radius + speed**2 / (2.0 * gravity) for speed in (given, wanted)]
@@ -246,7 +246,9 @@ def test_the_penetration_of_the_paper() -> None:
 
 
 @cache
-def fitted(friction: str, steep: bool, *more: str) -> tuple[vi.FrictionCalibration, float]:
+def fitted(
+    friction: str, steep: bool, *more: str
+) -> tuple[vi.calibration.FrictionCalibration, float]:
     """The fit to the measured impacts, all or the steep ones, and the mean error of the
     tangential restitution.
     """
@@ -311,15 +313,15 @@ def test_typed_inputs() -> None:
     says(PAGE, "for `--contact` of a record of bounces | {} ms", 1e3 * BRIEF.deviation)
     flight = 2.0 * 0.82 * np.sqrt(2.0 * 0.6 / EARTH)
     time = np.append(0.0, np.cumsum(flight * 0.82 ** np.arange(5)))
-    touches = vi.Bounces(
-        vi.Record("microphone", np.zeros(48000), 48e3, "Pa"),
+    touches = vi.signals.Bounces(
+        vi.signals.Record("microphone", np.zeros(48000), 48e3, "Pa"),
         time,
         np.full(6, 1e-6),
         np.ones(6),
         np.zeros(0),
         (),
     )
-    found = vi.rebounds_of(touches, height="0.6 m")
+    found = vi.calibration.rebounds_of(touches, height="0.6 m")
     says(
         PAGE,
         "with the height typed as 0.6 m is {} ({} to {})",

@@ -26,7 +26,7 @@ def test_defaults() -> None:
         "shunt)" in text
     )
     says(PAGE, "or {} kg/m^3)", vi.sensors.Microphone().air_density)
-    (case,) = (vi.read_case(tomllib.loads(block)) for block in blocks(PAGE, "toml"))
+    (case,) = (vi.case_of(tomllib.loads(block)) for block in blocks(PAGE, "toml"))
     microphone = case.sensors[1].microphone
     assert microphone is not None
     says(PAGE, "({} m/s) of air at {} C", microphone.speed_of_sound, 20.0)

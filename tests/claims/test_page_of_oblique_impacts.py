@@ -38,7 +38,7 @@ def alumina_on_glass(friction: str) -> vi.Problem:
         },
         "run": {"impacts": 1},
     }
-    return vi.read_case(case).to_problem()
+    return vi.case_of(case).to_problem()
 
 
 @cache
@@ -75,7 +75,7 @@ def test_ball_whose_spin_a_moment_stops() -> None:
         "contact": {"law": "hertz", "friction": friction},
         "run": {"impacts": 1},
     }
-    rigid = vi.read_case(case).to_problem()
+    rigid = vi.case_of(case).to_problem()
     returns = [
         1e3 * float(vi.simulate(problem).impacts["separation_velocity_x_m_s"][0])
         for problem in (rigid, replace(rigid, local_element=(1e18, 1e6)))
@@ -177,7 +177,7 @@ def test_what_limits_the_motion_along_an_elastic_plate() -> None:
             }
             usual, exact = (
                 vi.simulate(
-                    vi.read_case(
+                    vi.case_of(
                         {
                             "schema_version": 1,
                             **case,

@@ -18,7 +18,7 @@ from vibroimpact.contact.pair import ContactPair
 PAGE = "docs/laws.md"
 LAWS = {
     name: law
-    for name, law in vi.contact_laws().items()
+    for name, law in vi.laws.contact_laws().items()
     if law.__module__.startswith("vibroimpact.")
 }
 CHANGED = [name for name, law in LAWS.items() if law.departure]
@@ -106,7 +106,7 @@ def achieved(name: str, asked: float) -> float:
         .example(ContactPair(2.4e9, 0.025, 0.09, 8e7, 0.28))
         .changed({"restitution": asked})
     )
-    return float(vi.achieved_restitution(law, 0.09, 1.0))
+    return float(vi.laws.achieved_restitution(law, 0.09, 1.0))
 
 
 @pytest.mark.parametrize(

@@ -66,10 +66,10 @@ def test_a_rigid_drop_that_rebounds_as_an_elastic_one(tmp_path: Path) -> None:
         "run": {"impacts": 5},
     }
     (tmp_path / "rigid.toml").write_text(tomli_w.dumps(rigid), encoding="utf-8")
-    asked = vi.load_calibration(tmp_path / "rigid.toml")
-    found = vi.calibrate_case(asked)
-    vi.save_calibration(vi.calibrated_case(asked.case, found), found, tmp_path / "found")
-    (file,) = vi.export_result(tmp_path / "found", "lammps", tmp_path / "found.in")
+    asked = vi.calibration.load_calibration(tmp_path / "rigid.toml")
+    found = vi.calibration.calibrate_case(asked)
+    found.save(tmp_path / "found")
+    (file,) = vi.exporting.export_result(tmp_path / "found", "lammps", tmp_path / "found.in")
     printed = subprocess.run(
         [*command, file.name], cwd=tmp_path, capture_output=True, text=True, check=True
     ).stdout

@@ -24,7 +24,7 @@ PAGE = "docs/recognition.md"
 
 @pytest.mark.slow
 def test_the_example_of_a_random_split(tmp_path: Path) -> None:
-    found = vi.recognise(
+    found = vi.recognition.recognise(
         write_knocks(tmp_path / "data", rocks=40, falls=15, tone=0.5), folds=4, seeds=1, workers=1
     )
     says(PAGE, "{} simulated impacts of {} rocks", sum(found.counts), found.groups)
@@ -74,7 +74,7 @@ def test_settings_and_population() -> None:
         100.0 * (1.0 - _DIFFERENT),
     )
     says(PAGE, "white noise from {} to {} dB", max(LEVELS), min(LEVELS))
-    sweep = vi.load_sweep("signals:coal-gangue").whole_table["sweep"]
+    sweep = vi.studies.load_sweep("signals:coal-gangue").whole_table["sweep"]
     classes = {name: one["over"] for name, one in sweep["classes"].items()}
 
     def mean(name: str, key: str) -> float:

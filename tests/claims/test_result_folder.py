@@ -70,8 +70,8 @@ def test_the_format_of_results(folder: Path) -> None:
 
 
 def test_figures_for_print(folder: Path, tmp_path: Path) -> None:
-    vi.save_charts(
-        [next(chart for chart in vi.run_charts(vi.read_result(folder)) if chart.name == "force")],
+    vi.charts.save_charts(
+        [next(chart for chart in vi.run_charts(vi.load_result(folder)) if chart.name == "force")],
         tmp_path,
     )
     with Image.open(tmp_path / "force.png") as picture:

@@ -111,7 +111,7 @@ def test_water_takes_a_hundredth_of_the_rebound() -> None:
             {"impacts": 1},
         )
         table["sphere"]["radius"], table["contact"]["liquid"] = 0.005, liquid
-        achieved.append(float(vi.simulate(vi.read_case(table)).impacts["restitution_achieved"][0]))
+        achieved.append(float(vi.simulate(vi.case_of(table)).impacts["restitution_achieved"][0]))
     says(
         PAGE,
         "a quartz grain of 10 mm at 1 m/s is lower by {} %",
@@ -128,6 +128,8 @@ def test_the_packets_of_one_grain() -> None:
         "plate.modes": 30,
     }
     signal = vi.simulate(vi.load_case("signals:river-plate", one_grain)).signals()["geophone"]
-    packets = vi.find_packets(vi.Record("geophone", signal.value, signal.sensor.rate, "V"))
+    packets = vi.signals.find_packets(
+        vi.signals.Record("geophone", signal.value, signal.sensor.rate, "V")
+    )
     says(PAGE, "one packet with {} impulses above the threshold", packets.impulses[0])
     says(PAGE, "signal.largest # {} V", signal.largest)

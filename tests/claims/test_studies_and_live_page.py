@@ -41,7 +41,9 @@ def test_sizes_of_studies() -> None:
 
 
 def test_doubts_of_a_study(tmp_path: Path) -> None:
-    study = vi.read_study(vi.run_sweep(vi.load_sweep("paper:sweep"), tmp_path / "sizes"))
+    study = vi.studies.load_study(
+        vi.studies.run_sweep(vi.studies.load_sweep("paper:sweep"), tmp_path / "sizes")
+    )
     (shown,) = re.findall(r"^Doubt: (.+)\.$", (ROOT / STUDIES).read_text(encoding="utf-8"), re.M)
     assert shown in [doubt.replace("\N{NO-BREAK SPACE}", " ") for doubt in doubt_sentences(study)]
 

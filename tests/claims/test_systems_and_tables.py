@@ -13,7 +13,7 @@ SHAKEN = "docs/shaken.md"
 
 
 def test_newtons_cradle() -> None:
-    law = vi.find_contact_law("hertz")(stiffness=1e9)
+    law = vi.laws.find_contact_law("hertz")(stiffness=1e9)
     balls = {
         f"{number}": vi.MovingBody(mass=0.1, velocity=(float(number == 0), 0.0, 0.0))
         for number in range(5)

@@ -78,7 +78,7 @@ def drop(setting: Setting, **changes: Any) -> vi.Problem:
     if setting.friction is not None:
         friction = None
         if setting.friction != "none":
-            friction = vi.find_friction_law(setting.friction)(
+            friction = vi.friction.find_friction_law(setting.friction)(
                 coefficient=0.2, rolling_coefficient=setting.rolling, **MODULI
             )
         oblique = vi.Oblique(velocity=(0.4, 0.1), spin=(3.0, -20.0, 0.0), friction=friction)

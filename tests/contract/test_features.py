@@ -16,7 +16,7 @@ from vibroimpact.signals.feature import Family, Feature
 from vibroimpact.signals.feature_table import features_at_rest
 from vibroimpact.signals.reasons import Reason
 
-FEATURES = vi.features()
+FEATURES = vi.signals.signal_features()
 RATE, SAMPLES = 10e3, 512
 TIME = np.arange(SAMPLES) / RATE
 COUNTS = {"packets", "impulses"}
@@ -38,10 +38,10 @@ def ringing(seed: int = 0) -> np.ndarray:
     return signal
 
 
-def described(values: np.ndarray, rate: float = RATE, **settings: float) -> vi.FeatureTable:
+def described(values: np.ndarray, rate: float = RATE, **settings: float) -> vi.signals.FeatureTable:
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        table = vi.feature_table(values, rate, **settings)
+        table = vi.signals.feature_table(values, rate, **settings)
     # a number, or a reason that is a sentence
     assert np.array_equal(np.isfinite(table.values), table.reasons == Reason.NONE)
     assert not np.isinf(table.values).any()
@@ -264,7 +264,7 @@ def test_a_threshold_that_is_given_is_that_of_the_signal() -> None:
 
 def test_progress_is_told() -> None:
     told: list[tuple[int, int]] = []
-    vi.feature_table(
+    vi.signals.feature_table(
         np.ones((5, 2**14)), RATE, ["rms"], progress=lambda done, of: told.append((done, of))
     )
     assert told == [(2, 5), (4, 5), (5, 5)]
@@ -272,8 +272,8 @@ def test_progress_is_told() -> None:
 
 def test_chosen_features_are_those_of_all() -> None:
     every, some = (
-        vi.feature_table(ringing()[None], RATE),
-        vi.feature_table(ringing()[None], RATE, ["kurtosis", "peak"], unit="V"),
+        vi.signals.feature_table(ringing()[None], RATE),
+        vi.signals.feature_table(ringing()[None], RATE, ["kurtosis", "peak"], unit="V"),
     )
     assert some.names == ("kurtosis", "peak")
     assert some.units == ("1", "V")
@@ -302,7 +302,7 @@ def test_chosen_features_are_those_of_all() -> None:
 )
 def test_what_is_not_allowed_is_said(values: object, settings: dict, message: str) -> None:
     with pytest.raises(vi.InputError, match=re.escape(message)):
-        vi.feature_table(values, **{"rate": 1.0, **settings})
+        vi.signals.feature_table(values, **{"rate": 1.0, **settings})
 
 
 def first_sample(block: Block) -> np.ndarray:
@@ -336,7 +336,7 @@ def _own_features() -> object:
 @pytest.mark.usefixtures("_own_features")
 def test_features_are_brought_by_an_entry_point(monkeypatch: pytest.MonkeyPatch) -> None:
     bring(monkeypatch, f"{__name__}:FOREIGN")
-    assert vi.feature_table([[3.0, 1.0]], 1.0, ["first_sample"], unit="N")[
+    assert vi.signals.feature_table([[3.0, 1.0]], 1.0, ["first_sample"], unit="N")[
         "first_sample"
     ].tolist() == [3.0]
 
@@ -355,4 +355,4 @@ def test_a_broken_entry_point_is_named(
 ) -> None:
     bring(monkeypatch, value)
     with pytest.raises(vi.InputError, match=message):
-        vi.features()
+        vi.signals.signal_features()

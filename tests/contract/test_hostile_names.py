@@ -163,13 +163,13 @@ def test_a_name_does_nothing_in_a_mesh(ending: str, tmp_path: Path) -> None:
     for place, name in enumerate(name for name in NAMES if one_line(name)):
         file = tmp_path / f"{place}.{ending}"
         sets = replace(mesh, node_sets={name: np.arange(4)}, element_sets={})
-        (vi.write_abaqus if ending == "inp" else vi.write_nastran)(
+        (vi.meshes.write_abaqus if ending == "inp" else vi.meshes.write_nastran)(
             sets, file, replace(STEEL, name=name)
         )
         text = file.read_bytes().decode()
         assert all(line.isprintable() for line in text.split("\n")), repr(name)
         assert max(map(len, text.split("\n"))) <= 200
-        found = vi.read_mesh(file)
+        found = vi.meshes.load_mesh(file)
         np.testing.assert_allclose(found.nodes, mesh.nodes, rtol=0.0, atol=1e-15)
         assert [block.connectivity.tolist() for block in found.blocks] == [
             block.connectivity.tolist() for block in mesh.blocks

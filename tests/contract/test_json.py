@@ -123,7 +123,7 @@ def test_features_are_their_table(printed: Printed) -> None:
     Path("tap.csv").write_text("\n".join(["time_s,geophone_V", *lines]), encoding="utf-8")
     document = printed("features", "tap.csv", "-o", "table.csv")
     assert in_all_columns(document["signals"]) == rows(".", "table.csv")
-    assert list(printed("features", "--list")["features"]) == list(vi.features())
+    assert list(printed("features", "--list")["features"]) == list(vi.signals.signal_features())
 
 
 def test_a_run_is_its_summary(printed: Printed) -> None:
@@ -276,7 +276,7 @@ def test_a_study_is_its_tables(printed: Printed) -> None:
     assert document["study"] == {**summary("out")["study"], "failed": "0"}
     assert in_all_columns(document["percentiles"]) == rows("out", "percentiles.csv")
     assert in_all_columns(document["sensitivity"]) == rows("out", "sensitivity.csv")
-    study = vi.read_study("out")
+    study = vi.studies.load_study("out")
     assert [
         (one["limit"], int(one["drops"]), float(one["number"])) for one in document["limits"]
     ] == [(one.limit, one.drops, one.number) for one in study.doubts]
@@ -306,9 +306,9 @@ def test_cases_are_those_that_can_be_loaded(printed: Printed) -> None:
 
 def test_laws_give_the_numbers_of_their_parameters(printed: Printed) -> None:
     laws = printed("laws", numbers=True)["laws"]
-    assert list(laws) == list(vi.contact_laws())
+    assert list(laws) == list(vi.laws.contact_laws())
     assert laws["flores"] == printed("laws", "flores", numbers=True)
-    for name, law in vi.contact_laws().items():
+    for name, law in vi.laws.contact_laws().items():
         parameters = {one["name"]: one for one in (*laws[name]["parameters"], *laws[name]["state"])}
         assert parameters.keys() == {item.name for item in fields(law)}
         for item in fields(law):
@@ -324,7 +324,7 @@ def test_a_picture_of_a_law_is_told_of_elsewhere(printed: Printed) -> None:
 
 def test_materials_are_those_of_the_library(printed: Printed) -> None:
     materials = printed("materials", numbers=True)["materials"]
-    assert list(materials) == list(vi.material_library())
+    assert list(materials) == list(vi.materials.material_library())
     steel = printed("materials", "steel", numbers=True)
     assert steel == materials["steel"]
     assert vi.Material(**steel) == vi.find_material("steel")
@@ -333,14 +333,17 @@ def test_materials_are_those_of_the_library(printed: Printed) -> None:
 
 def test_units_are_whole_numbers_of_the_machine(printed: Printed) -> None:
     document = printed("units", "5.115e8", "N/m^1.5", "--to", "N/mm^1.5", numbers=True)
-    number = vi.convert_units(5.115e8, "N/m^1.5", "N/mm^1.5")
+    number = vi.units.convert_units(5.115e8, "N/m^1.5", "N/mm^1.5")
     assert document == {
         "number": 5.115e8,
         "unit": "N/m^1.5",
         "converted": [{"number": number, "unit": "N/mm^1.5"}],
     }
     systems = printed("units", "-5", "N/m", numbers=True)["converted"]
-    assert [one["number"] for one in systems[:2]] == [-5.0, vi.convert_units(-5.0, "N/m", "N/mm")]
+    assert [one["number"] for one in systems[:2]] == [
+        -5.0,
+        vi.units.convert_units(-5.0, "N/m", "N/mm"),
+    ]
 
 
 def test_doubts_are_those_of_the_run(printed: Printed) -> None:

@@ -37,7 +37,7 @@ def parameters(law: type[ContactLaw]) -> dict[str, float]:
 
 
 def case_of(law: type[ContactLaw], **more: object) -> vi.Case:
-    return vi.read_case(plain_case(contact={"law": law.name, **parameters(law)}, **more))
+    return vi.case_of(plain_case(contact={"law": law.name, **parameters(law)}, **more))
 
 
 def made(law: type[ContactLaw]) -> ContactLaw:
@@ -142,9 +142,9 @@ def test_achieving_is_the_inverse(law: type[ContactLaw]) -> None:
     one = made(law)
     if one.free_parameter is None:
         with pytest.raises(vi.InputError, match="no loss parameter"):
-            vi.law_achieving(one, 0.5, mass=0.09, speed=3.0)
+            vi.laws.law_achieving(one, 0.5, mass=0.09, speed=3.0)
         return
-    found = vi.law_achieving(one, np.array([0.75, 0.9]), mass=0.09, speed=3.0)
+    found = vi.laws.law_achieving(one, np.array([0.75, 0.9]), mass=0.09, speed=3.0)
     np.testing.assert_allclose(
         integrated_restitution(found, 0.09, 3.0), [0.75, 0.9], rtol=0, atol=1e-9
     )
@@ -189,7 +189,7 @@ def test_restitution_and_ledger(law: type[ContactLaw]) -> None:
 @pytest.mark.parametrize("law", LAWS, ids=lambda law: law.name)
 def test_round_trip_through_a_case(law: type[ContactLaw]) -> None:
     case = case_of(law)
-    again = vi.read_case(resolved_case(case))
+    again = vi.case_of(resolved_case(case))
     assert resolved_case(again) == resolved_case(case)
     assert again.to_problem().laws == case.to_problem().laws
 
@@ -197,7 +197,7 @@ def test_round_trip_through_a_case(law: type[ContactLaw]) -> None:
 @pytest.mark.parametrize("law", LAWS, ids=lambda law: law.name)
 def test_a_list_is_one_value_an_impact(law: type[ContactLaw]) -> None:
     key, value = next(iter((parameters(law) or {"stiffness": 2e6}).items()))
-    case = vi.read_case(
+    case = vi.case_of(
         plain_case(contact={"law": law.name, **parameters(law), key: [value, 0.9 * value]})
     )
     laws = case.to_problem().laws

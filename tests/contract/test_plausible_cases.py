@@ -16,13 +16,13 @@ import pytest
 
 import vibroimpact as vi
 from support import one_in
-from vibroimpact.calibration.calibrate_case import read_calibration
+from vibroimpact.calibration.calibrate_case import calibration_of
 from vibroimpact.cases.build import resolved_case
 from vibroimpact.cases.pair import contact_pair
 from vibroimpact.cases.reader import load_table, shipped_cases
 from vibroimpact.cases.wrong_units.detect import slips, swept_slips
 from vibroimpact.cases.wrong_units.hertz_estimate import HertzEstimate
-from vibroimpact.studies.read_sweep import read_sweep
+from vibroimpact.studies.sweep_file import sweep_of
 
 ROOT = Path(__file__).parents[2]
 
@@ -55,12 +55,10 @@ def written_in(source: str) -> Iterator[dict[str, Any]]:
 def said_of(table: dict[str, Any]) -> list[str]:
     """What is taken for a slip in a case, and in the values of a study."""
     alone = {key: value for key, value in table.items() if key != "sweep"}
-    case, given, *_ = (
-        read_calibration(alone) if "calibrate" in alone else (vi.read_case(alone), True)
-    )
+    case, given, *_ = calibration_of(alone) if "calibrate" in alone else (vi.case_of(alone), True)
     found = slips(resolved_case(case), () if given else ("contact.damping_max",))
     if "sweep" in table:
-        study = read_sweep(table)
+        study = sweep_of(table)
         found += swept_slips(resolved_case(study.case), study.plan.columns)
     return found
 
@@ -94,7 +92,7 @@ def test_every_material_size_and_height(plate: str) -> None:
     """Beads of 1 mm and boulders of 2 m, foils and slabs, dropped from 1 mm to 100 m
     above the surface.
     """
-    materials: list[Any] = [*vi.material_library(), RUBBER, FOAM, DIAMOND, SOIL]
+    materials: list[Any] = [*vi.materials.material_library(), RUBBER, FOAM, DIAMOND, SOIL]
     sizes = {"slab": (0.0005, 0.025, 1.0, 2.0), "coupon": (0.0005, 0.025)}.get(
         plate, (0.0005, 0.025, 0.3)
     )
@@ -109,15 +107,15 @@ def test_every_material_size_and_height(plate: str) -> None:
             "contact": {"law": "lankarani-nikravesh", "restitution": 0.7},
             "run": {"impacts": 3},
         }
-        assert slips(resolved_case(vi.read_case(table))) == [], table
+        assert slips(resolved_case(vi.case_of(table))) == [], table
         table["sphere"]["material"], table["plate"]["material"] = (
             table["plate"]["material"],
             material,
         )
-        assert slips(resolved_case(vi.read_case(table))) == [], table
+        assert slips(resolved_case(vi.case_of(table))) == [], table
 
 
-@pytest.mark.parametrize("law", vi.contact_laws())
+@pytest.mark.parametrize("law", vi.laws.contact_laws())
 def test_every_law_as_its_figures_have_it(law: str) -> None:
     """A ball of 25 mm that falls a metre; soft springs, which save steps, and what is
     made softer on purpose are no slips.
@@ -129,17 +127,17 @@ def test_every_law_as_its_figures_have_it(law: str) -> None:
         "contact": {"law": "hertz"},
         "run": {"impacts": 1},
     }
-    example = vi.contact_laws()[law].example(contact_pair(vi.read_case(table)))
+    example = vi.laws.contact_laws()[law].example(contact_pair(vi.case_of(table)))
     values = {
         name: value
         for name, value in vars(example).items()
         if value is not None and not example.__dataclass_fields__[name].metadata["memory"]
     }
     table["contact"] = {"law": law, **values}
-    assert slips(resolved_case(vi.read_case(table))) == []
+    assert slips(resolved_case(vi.case_of(table))) == []
     if "stiffness" in values:
         table["contact"]["stiffness"] = values["stiffness"] / 20.0
-        assert slips(resolved_case(vi.read_case(table))) == []
+        assert slips(resolved_case(vi.case_of(table))) == []
 
 
 def test_adams_damping_from_nearly_none_to_critical() -> None:
@@ -155,10 +153,10 @@ def test_adams_damping_from_nearly_none_to_critical() -> None:
             },
             "run": {"impacts": 1},
         }
-        facts = HertzEstimate(resolved_case(vi.read_case(table)))
+        facts = HertzEstimate(resolved_case(vi.case_of(table)))
         for part in (1e-3, 0.05, 1.0, 5.0):
             table["contact"] |= {
                 "damping_max": part * facts.critical_damping,
                 "full_damping_penetration": 0.1 * facts.depth,
             }
-            assert slips(resolved_case(vi.read_case(table))) == []
+            assert slips(resolved_case(vi.case_of(table))) == []

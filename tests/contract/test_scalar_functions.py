@@ -54,7 +54,7 @@ def example(law: type[CompliantLaw]) -> CompliantLaw:
         for item in dataclasses.fields(law)
         if item.metadata["example"] is not None
     }
-    made = vi.read_case(plain_case(contact={"law": law.name, **typical})).to_problem().laws[0]
+    made = vi.case_of(plain_case(contact={"law": law.name, **typical})).to_problem().laws[0]
     assert isinstance(made, CompliantLaw)
     return made
 
@@ -304,7 +304,7 @@ def test_a_friction_law_of_methods_is_followed(name: str) -> None:
             vi.Problem(
                 sphere=vi.Body(mass=0.03, contact_offset=0.01),
                 plate=vi.rigid_plate(),
-                laws=(vi.find_contact_law(name)(**number),),
+                laws=(vi.laws.find_contact_law(name)(**number),),
                 speed=1.0,
                 impacts=2,
                 oblique=vi.Oblique(

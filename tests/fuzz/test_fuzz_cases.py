@@ -43,14 +43,14 @@ def check(data: bytes, folder: Path) -> vi.Case:
     write_files(folder)
     table = prefix_errors(file, lambda: load_table(file))
     if "calibrate" in table:
-        vi.load_calibration(file)
+        vi.calibration.load_calibration(file)
     if "sweep" not in table:
         case = vi.load_case(file)
         prefix_errors(file, lambda: check_drop(case))
         prefix_errors(file, lambda: check_target(case.calibrate))
         shown(prefix_errors(file, lambda: case_explained(case)))
         return case
-    study = prefix_errors(file, lambda: vi.read_sweep(table))
+    study = prefix_errors(file, lambda: vi.studies.sweep_of(table))
     shown(explain_sweep(study))
     shown(prefix_errors(file, lambda: case_explained(study.case, study.axes)))
     return study.case

@@ -17,7 +17,7 @@ from vibroimpact.cases.costs import describe_costs
 
 
 def run_unless_told(table: Table) -> None:
-    case = vi.read_case(table)
+    case = vi.case_of(table)
     if not describe_costs(case):
         vi.simulate(case)
 

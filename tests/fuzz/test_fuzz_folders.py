@@ -22,8 +22,7 @@ from hammer_test import TABLE
 from hostile_runs import failures, number, seed
 from support import plain_case
 from vibroimpact.bayes_error.falls import falls_of_study
-from vibroimpact.calibration.calibrate_case import calibrate_case, read_calibration
-from vibroimpact.calibration.save_calibration import save_calibration
+from vibroimpact.calibration.calibrate_case import calibrate_case, calibration_of
 from vibroimpact.exporting.load_drop import load_drop
 from vibroimpact.paper.report.folder import reproduce_paper
 from vibroimpact.studies.ledger import LEDGER
@@ -78,7 +77,7 @@ def use_result(folder: Path) -> None:
 @FEW
 def test_results(few: int, tmp_path: Path) -> None:
     vi.save_result(
-        vi.simulate(vi.read_case({**TABLE, "run": {"impacts": 1, "duration": "20 ms"}})),
+        vi.simulate(vi.case_of({**TABLE, "run": {"impacts": 1, "duration": "20 ms"}})),
         tmp_path / "out",
     )
     no_failures(
@@ -91,14 +90,14 @@ def test_results(few: int, tmp_path: Path) -> None:
 
 
 def use_study(folder: Path) -> None:
-    study = vi.read_study(folder)
+    study = vi.studies.load_study(folder)
     assert study.report.answer
     for name in study.shapes:
         study.values(name)
 
 
 def bound_study(folder: Path) -> None:
-    falls_of_study(vi.read_study(folder))
+    falls_of_study(vi.studies.load_study(folder))
 
 
 @pytest.fixture(scope="module")
@@ -110,7 +109,9 @@ def studies(tmp_path_factory: pytest.TempPathFactory) -> Path:
         "contact.restitution": [0.3, 0.5],
         "plate.material": ["steel", "aluminium"],
     }
-    vi.run_sweep(vi.read_sweep({**plain_case(), "sweep": {"over": over}}), place / "rigid")
+    vi.studies.run_sweep(
+        vi.studies.sweep_of({**plain_case(), "sweep": {"over": over}}), place / "rigid"
+    )
     of_class = {"over": {"contact.restitution": {"from": 0.4, "to": 0.6}}}
     sweep = {
         "design": "population",
@@ -120,7 +121,7 @@ def studies(tmp_path_factory: pytest.TempPathFactory) -> Path:
         "over": {"drop.height": {"from": "0.8 m", "to": "1 m"}},
         "classes": {"coal": of_class, "gangue": of_class},
     }
-    vi.run_sweep(vi.read_sweep({**plain_case(), "sweep": sweep}), place / "classes")
+    vi.studies.run_sweep(vi.studies.sweep_of({**plain_case(), "sweep": sweep}), place / "classes")
     return place
 
 
@@ -132,13 +133,13 @@ def test_studies(few: int, studies: Path) -> None:
     no_failures(bound_study, studies / "classes", ["study.nc"], 6 * few, 54)
 
 
-def resume(sweep: vi.Sweep, folder: Path) -> None:
-    vi.run_sweep(sweep, folder, resume=True)
+def resume(sweep: vi.studies.Sweep, folder: Path) -> None:
+    vi.studies.run_sweep(sweep, folder, resume=True)
 
 
 @FEW
 def test_ledgers(few: int, tmp_path: Path) -> None:
-    sweep = vi.read_sweep(
+    sweep = vi.studies.sweep_of(
         {**plain_case(), "sweep": {"over": {"drop.height": ["1 m", "2 m", "3 m"]}}}
     )
 
@@ -146,7 +147,7 @@ def test_ledgers(few: int, tmp_path: Path) -> None:
         raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        vi.run_sweep(sweep, tmp_path / "out", progress=stop)
+        vi.studies.run_sweep(sweep, tmp_path / "out", progress=stop)
     chunks = [f"chunks/{file.name}" for file in (tmp_path / "out" / "chunks").iterdir()]
     no_failures(
         partial(resume, sweep),
@@ -164,8 +165,8 @@ def test_calibrations(few: int, tmp_path: Path) -> None:
         run={"impacts": 2},
         calibrate={"target": {"restitution": 0.6}},
     )
-    what = read_calibration(case)
-    folder = save_calibration(what.case, calibrate_case(what), tmp_path / "out")
+    what = calibration_of(case)
+    folder = calibrate_case(what).save(tmp_path / "out")
     no_failures(
         load_drop, folder, ["calibration.json", "calibration.json", "case.toml"], 6 * few, 56
     )

@@ -14,7 +14,7 @@ import pytest
 import vibroimpact as vi
 from hostile_runs import failures, number, seed
 from vibroimpact.meshes.geometry import mesh_geometry
-from vibroimpact.meshes.mesh_file import read_mesh
+from vibroimpact.meshes.mesh_file import load_mesh
 
 pytest.importorskip("gmsh", exc_type=ImportError)
 
@@ -72,7 +72,7 @@ def damaged(data: bytes, choose: random.Random) -> bytes:
 def read_of(folder: Path, data: bytes) -> None:
     file = folder / "box.step"
     file.write_bytes(data)
-    assert read_mesh(file, size=0.1).number_of_elements > 0
+    assert load_mesh(file, size=0.1).number_of_elements > 0
 
 
 def test_a_truncated_geometry(step: bytes, tmp_path: Path) -> None:

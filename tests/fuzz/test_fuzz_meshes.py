@@ -15,7 +15,7 @@ import pytest
 import vibroimpact as vi
 from hostile_runs import failures, number, seed
 from support import plain_case
-from vibroimpact.meshes.mesh_file import read_mesh
+from vibroimpact.meshes.mesh_file import load_mesh
 from vibroimpact.runs.case_explained import case_explained
 
 NASTRAN = """\
@@ -339,7 +339,7 @@ def test_seeds_are_good(suffix: str, tmp_path: Path) -> None:
     for text in SEEDS[suffix]:
         file = tmp_path / f"mesh{suffix}"
         file.write_text(text)
-        assert read_mesh(file).number_of_elements == (1 if suffix == ".msh" else 2)
+        assert load_mesh(file).number_of_elements == (1 if suffix == ".msh" else 2)
 
 
 class Given(NamedTuple):
@@ -357,7 +357,7 @@ def at_work(folder: Path) -> Callable[[Given], None]:
     def work(given: Given) -> None:
         file = folder / f"mesh{given.suffix}"
         file.write_bytes(given.data)
-        mesh = read_mesh(file)
+        mesh = load_mesh(file)
         assert np.isfinite(mesh.nodes).all()
         assert all(block.connectivity.max() < len(mesh.nodes) for block in mesh.blocks)
         assert all(members.max() < len(mesh.nodes) for members in mesh.node_sets.values())
@@ -371,7 +371,7 @@ def at_work(folder: Path) -> Callable[[Given], None]:
             "supports": "free",
             "modes": 2,
         }
-        case = vi.read_case(plain_case(plate=plate, drop={"speed": 1.0, "position": [0.2, 0.2]}))
+        case = vi.case_of(plain_case(plate=plate, drop={"speed": 1.0, "position": [0.2, 0.2]}))
         case_explained(case)
         vi.compute_modes(case)
 

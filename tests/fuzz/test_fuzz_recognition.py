@@ -30,8 +30,8 @@ from vibroimpact.recognition.signal_features import features_of
 
 
 @cache
-def read_once(dataset: Path) -> vi.LabelledSignals:
-    return vi.read_labelled_signals(dataset)
+def read_once(dataset: Path) -> vi.recognition.LabelledSignals:
+    return vi.recognition.load_labelled_signals(dataset)
 
 
 def read_dataset(use: Callable[[Path], None], made: Path, hostile: Hostile) -> None:
@@ -50,13 +50,13 @@ def read_dataset(use: Callable[[Path], None], made: Path, hostile: Hostile) -> N
 
 def hear(dataset: Path) -> None:
     """Read its signals as any records."""
-    for record in vi.read_records(dataset):
+    for record in vi.signals.load_records(dataset):
         assert np.isfinite(record.rate)
 
 
 def prepare(dataset: Path) -> None:
     """Do what `recognise` does before it trains."""
-    signals = vi.read_labelled_signals(dataset).of_present_classes()
+    signals = vi.recognition.load_labelled_signals(dataset).of_present_classes()
     check_signals(signals, "rock", 3)
     features_of(signals)
 
@@ -67,7 +67,7 @@ def apply_model(made: Path, damage: Callable[[Path, Hostile], None], hostile: Ho
     shutil.rmtree(copy, ignore_errors=True)
     shutil.copytree(made / CLASSIFIERS[hostile.seed % len(CLASSIFIERS)], copy)
     damage(copy, hostile)
-    found = vi.apply_recogniser(copy, read_once(made / "data"))
+    found = vi.recognition.apply_recogniser(copy, read_once(made / "data"))
     found.save(made / "applied", force=True)
     assert np.isfinite(found.probabilities).all(), "a probability is not a number"
     assert (found.probabilities >= 0.0).all(), "a probability is negative"

@@ -173,7 +173,9 @@ def test_damaged_records(
 
     def read(content: bytes) -> None:
         (tmp_path / name).write_bytes(content)
-        vi.record_table(vi.read_records(tmp_path / name), ["rms", "peak", "clipped_part"])
+        vi.signals.record_table(
+            vi.signals.load_records(tmp_path / name), ["rms", "peak", "clipped_part"]
+        )
 
     whole = [make(choose) for _ in range(hostile_runs.number(few))]
     files = [

@@ -136,7 +136,7 @@ def no_failures(read: Callable[[Path], Any], folder: Path, files: list[str], few
 
 def a_result() -> Result:
     """A result that has all that one may have."""
-    result, draw = result_of(vi.simulate(vi.read_case(plain_case()))), np.random.default_rng(1)
+    result, draw = result_of(vi.simulate(vi.case_of(plain_case()))), np.random.default_rng(1)
     sensors = [
         Signal(Sensor(name, "acceleration", (0.0, 0.0, 1.0), 5e4), draw.normal(size=size), 0.1)
         for name, size in (("a1", 700), ("zero", 300))
@@ -170,7 +170,7 @@ def a_result() -> Result:
 
 
 def read_all_of_a_result(folder: Path) -> Any:
-    result = vi.read_result(folder)
+    result = vi.load_result(folder)
     return [
         result.case, result.impacts, result.history, result.energy, result.status, result.provenance, result.deformation, result.truncation,
         result.peaks, result.signals, result.deflection,
@@ -189,7 +189,7 @@ def test_results(tmp_path: Path) -> None:
 
 
 def read_all_of_a_study(folder: Path) -> Any:
-    study = vi.read_study(folder)
+    study = vi.studies.load_study(folder)
     values = [study.values(name) for name in study.shapes]
     return [
         replace(study, path=Path()),
@@ -205,8 +205,10 @@ def test_studies(tmp_path: Path) -> None:
         "contact.restitution": [0.3, 0.5, 0.9],
         "plate.material": ["steel", "aluminium"],
     }
-    sweep = vi.read_sweep({**plain_case(), "sweep": {"over": over}})
-    no_failures(read_all_of_a_study, vi.run_sweep(sweep, tmp_path / "out"), ["study.nc"], 12)
+    sweep = vi.studies.sweep_of({**plain_case(), "sweep": {"over": over}})
+    no_failures(
+        read_all_of_a_study, vi.studies.run_sweep(sweep, tmp_path / "out"), ["study.nc"], 12
+    )
 
 
 def read_calibration(folder: Path) -> Any:
@@ -216,18 +218,15 @@ def read_calibration(folder: Path) -> Any:
 
 @pytest.fixture(scope="module")
 def calibration(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    from vibroimpact.calibration.calibrate_case import calibrate_case, read_calibration
-    from vibroimpact.calibration.save_calibration import save_calibration
+    from vibroimpact.calibration.calibrate_case import calibrate_case, calibration_of
 
     case = plain_case(
         contact={"law": "adams-impact", "damping_max": 100.0},
         run={"impacts": 2},
         calibrate={"target": {"restitution": 0.6}},
     )
-    what = read_calibration(case)
-    return save_calibration(
-        what.case, calibrate_case(what), tmp_path_factory.mktemp("calibrations") / "out"
-    )
+    what = calibration_of(case)
+    return calibrate_case(what).save(tmp_path_factory.mktemp("calibrations") / "out")
 
 
 def test_calibrations(calibration: Path) -> None:

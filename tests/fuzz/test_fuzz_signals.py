@@ -52,7 +52,7 @@ def test_hostile_signals(lengths: int) -> None:
         settings = {"dead_time": float(random.choice([0.0, 5e-3, 1e9]))}
         if random.random() < 0.5:
             settings["threshold"] = float(10.0 ** random.choice([-300, -3, 0, 300]))
-        table = vi.feature_table(
+        table = vi.signals.feature_table(
             signals, float(10.0 ** random.choice([-300, 0, 4, 6, 300])), **settings
         )
         assert np.array_equal(np.isfinite(table.values), table.reasons == Reason.NONE)

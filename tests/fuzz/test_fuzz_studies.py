@@ -16,7 +16,7 @@ from vibroimpact.studies.explain_sweep import explain_sweep
 
 
 def compute_a_few(table: Table) -> None:
-    study = vi.read_sweep(table)
+    study = vi.studies.sweep_of(table)
     shown(explain_sweep(study))
     shown(case_explained(study.case))
     if study.deforms:

@@ -18,11 +18,11 @@ import pyuff
 import vibroimpact as vi
 from hostile_runs import failures, number, seed
 from support import plain_case
-from vibroimpact.calibration.calibrate_case import read_calibration
+from vibroimpact.calibration.calibrate_case import calibration_of
 from vibroimpact.calibration.targets import target_of
 from vibroimpact.cases.build import problem_of
 from vibroimpact.measurements.table_file import read_table_file
-from vibroimpact.studies.read_sweep import read_sweep
+from vibroimpact.studies.sweep_file import sweep_of
 
 HEIGHTS = "impact,rebound_height [mm]\n1,310\n2,190\n3,130\n"
 IMPACTS = "approach_speed_m_s,restitution,restitution_standard_deviation\n1,0.7,0.01\n2,0.65,0.02\n3,0.6,0.02\n"
@@ -128,7 +128,7 @@ def scaled(cell: bytes, factor: float) -> bytes:
 def observed(file: Path) -> None:
     """Take what a file tells as the target of a calibration, up to where the fit begins."""
     section = {"target": str(file)}
-    case = read_calibration(
+    case = calibration_of(
         plain_case(contact={"law": "adams-impact", "damping_max": 100.0}, calibrate=section)
     ).case
     assert case.calibrate is not None
@@ -138,7 +138,7 @@ def observed(file: Path) -> None:
 def swept(file: Path) -> None:
     """Take columns of a file as what a study runs over."""
     over = {"sphere": {"radius": {"file": str(file), "column": "radius [mm]", "weights": "share"}}}
-    sweep = read_sweep(plain_case(sweep={"design": "latin-hypercube", "samples": 8, "over": over}))
+    sweep = sweep_of(plain_case(sweep={"design": "latin-hypercube", "samples": 8, "over": over}))
     _ = sweep.plan.points(0, 8)
 
 

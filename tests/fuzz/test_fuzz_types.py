@@ -129,7 +129,7 @@ def test_all_values_of_other_kinds(population: Callable[[int], int], tmp_path: P
 
 
 def calibrate(changed: Substitution) -> None:
-    vi.calibrate_case(vi.read_calibration(changed.table))
+    vi.calibration.calibrate_case(vi.calibration.calibration_of(changed.table))
 
 
 @pytest.mark.slow

@@ -48,7 +48,7 @@ def compiled() -> None:
     given to show a drop.
     """
     for table in (RIGID, ELASTIC):
-        vi.simulate(vi.read_case(table).to_problem())
+        vi.simulate(vi.case_of(table).to_problem())
 
 
 @pytest.fixture(scope="module")

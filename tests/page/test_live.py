@@ -376,7 +376,7 @@ def test_shipped_cases(page: Page, server: Server) -> None:
     until(page, "() => vibroimpact.live.state.last.name.includes('variable')")
     settle(page)
     assert select.input_value() == "paper:type1-variable"
-    assert shown(page) == resolved_case(vi.read_case(tomllib.loads(toml(page))))
+    assert shown(page) == resolved_case(vi.case_of(tomllib.loads(toml(page))))
     type_value(page, "drop.height", 3)
     assert select.input_value() == ""
     # the same one can be chosen again
@@ -670,7 +670,7 @@ def test_downloads_are_what_the_library_writes(
     report.wait_for_selector("html[data-ready=true]")
     assert_history_is_drawn(report, result, result.history)
     assert (
-        resolved_case(vi.read_case(tomllib.loads(report.locator("#case-text").text_content())))
+        resolved_case(vi.case_of(tomllib.loads(report.locator("#case-text").text_content())))
         == result.case
     )
 

@@ -117,7 +117,7 @@ def report(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], tuple[Re
                 vi.simulate(
                     vi.load_case(CASES[name])
                     if isinstance(CASES[name], str)
-                    else vi.read_case(CASES[name])
+                    else vi.case_of(CASES[name])
                 )
             )
             path = folder / f"{name}.html"
@@ -559,7 +559,7 @@ def test_case_can_be_copied(new_page: MakePage, report: Any) -> None:
         "Selected: press Ctrl+C": "() => getSelection().toString()",
     }
     copied = page.evaluate(found[button.text_content()])
-    assert vi.read_case(tomllib.loads(copied)) == vi.read_case(result.case)
+    assert vi.case_of(tomllib.loads(copied)) == vi.case_of(result.case)
 
 
 def test_hostile_texts_are_shown_as_they_are(page: Page, report: Any) -> None:

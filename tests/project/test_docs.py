@@ -290,7 +290,7 @@ def write_recorded_impacts(folder: Path) -> None:
         {"time [s]": np.arange(len(force)) / hammer_test.RATE, "force [N]": force, **taps},
     )
     frequency = np.arange(200.0, 3000.0)
-    of_case = vi.responses_of_case(hammer_test.a_case(), frequency)
+    of_case = vi.test_analysis.responses_of_case(hammer_test.a_case(), frequency)
     by_pyuff(
         folder / "responses.uff",
         *(
@@ -378,7 +378,7 @@ def test_documented_cases_are_valid() -> None:
     for page in PAGES:
         for block in blocks(page, "toml"):
             try:
-                case = vi.read_case(tomllib.loads(block))
+                case = vi.case_of(tomllib.loads(block))
             except vi.InputError as error:
                 pytest.fail(f"{name_of(page)}: {error}\n{block}")
             assert case.sphere.radius > 0
@@ -477,10 +477,13 @@ def test_every_case_key_is_documented() -> None:
 
 
 def test_public_names_are_documented() -> None:
-    for name in vi.__all__:
-        if name == "__version__":
-            continue
-        thing = getattr(vi, name)
+    tops = [getattr(vi, name) for name in vi.__all__ if name != "__version__"]
+    modules = [thing for thing in tops if inspect.ismodule(thing)]
+    inner = [
+        getattr(module, name) for module in modules for name in module.__all__ if not name.isupper()
+    ]
+    for thing in [*(thing for thing in tops if not inspect.ismodule(thing)), *inner]:
+        name = thing.__name__
         text = inspect.getdoc(thing) or ""
         assert len(text) > 20, name
         parameters = list(inspect.signature(thing).parameters) if inspect.isfunction(thing) else []
@@ -491,7 +494,7 @@ def test_public_names_are_documented() -> None:
 
 
 def test_materials_have_a_source_for_each_number() -> None:
-    library = vi.material_library()
+    library = vi.materials.material_library()
     assert len(library) >= 30
     for name, material in library.items():
         assert material.description, name

@@ -15,8 +15,8 @@ PAGE = Path(__file__).parents[2] / "docs" / "signals.md"
 def test_the_table_is_not_stale() -> None:
     text = PAGE.read_text(encoding="utf-8")
     assert feature_page(text) == text, "docs/signals.md is stale: make docs"
-    assert all(f"\n| `{name}` |" in text for name in vi.features())
-    assert f"All {len(vi.features())} take" in text
+    assert all(f"\n| `{name}` |" in text for name in vi.signals.signal_features())
+    assert f"All {len(vi.signals.signal_features())} take" in text
     with pytest.raises(vi.InputError, match="must stand around the table"):
         feature_page("no markers")
 

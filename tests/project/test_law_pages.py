@@ -14,7 +14,9 @@ from vibroimpact.law_sheets.pages import law_pages, write_law_pages
 
 DOCS = Path(__file__).parents[2] / "docs"
 LAWS = [
-    name for name, law in vi.contact_laws().items() if law.__module__.startswith("vibroimpact.")
+    name
+    for name, law in vi.laws.contact_laws().items()
+    if law.__module__.startswith("vibroimpact.")
 ]
 
 

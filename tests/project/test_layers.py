@@ -26,7 +26,7 @@ LAYERS = [
     {"structures"},
     {"bodies"},
     {"dynamics"},
-    {"laws", "friction", "sensors"},
+    {"friction", "sensors"},
     # what comes in, what came out, and how it is shown
     {"meshes", "measurements"},
     {"cases"},
@@ -38,7 +38,7 @@ LAYERS = [
     {"modes"},
     {"runs"},
     {"law_comparison", "calibration", "studies", "law_sheets", "identification"},
-    {"bayes_error", "test_analysis"},
+    {"bayes_error", "laws", "test_analysis"},
     {"recognition"},
     {"exporting", "paper"},
     {"regenerate", "figures"},

@@ -8,7 +8,9 @@ import inspect
 import re
 import sys
 from collections import Counter
+from operator import attrgetter
 from pathlib import Path
+from types import ModuleType
 
 import pytest
 
@@ -16,8 +18,15 @@ import vibroimpact as vi
 
 ROOT = Path(__file__).parents[2]
 DOCS = ROOT / "docs"
-MODULES = ("friction", "laws", "sensors")
+MODULES = [name for name in vi.__all__ if isinstance(getattr(vi, name), ModuleType)]
 NAMES = [name for name in vi.__all__ if name not in (*MODULES, "__version__")]
+NAMES_IN_MODULES = [
+    f"{module}.{name}"
+    for module in MODULES
+    for name in getattr(vi, module).__all__
+    # constants have no page, and what the top has is listed there
+    if name.upper() != name and name not in NAMES
+]
 
 sys.path.insert(0, str(DOCS / "_extensions"))
 from page_faults import page_faults, read_pages  # noqa: E402
@@ -32,9 +41,13 @@ def test_every_public_name_stands_in_one_group_of_the_reference() -> None:
     for title, block in groups:
         assert f":caption: {title}\n" in block
     grouped = Counter(
-        name for _, block in groups for name in re.findall(r"^   (\w+)$", block, flags=re.M)
+        name for _, block in groups for name in re.findall(r"^   ([\w.]+)$", block, flags=re.M)
     )
-    assert grouped == Counter(NAMES)
+    assert grouped == Counter([*NAMES, *NAMES_IN_MODULES])
+
+
+def test_about_fifty_names_are_at_the_top() -> None:
+    assert len(NAMES) <= 50
 
 
 def test_type_checkers_know_the_laws() -> None:
@@ -46,13 +59,22 @@ def test_type_checkers_know_the_laws() -> None:
             assert getattr(module, name).__name__ == name
 
 
+def test_materials_are_attributes_by_their_names() -> None:
+    for name, material in vi.materials.material_library().items():
+        assert getattr(vi.materials, name.replace("-", "_")) is material
+    with pytest.raises(AttributeError, match="has no attribute 'unobtainium'"):
+        _ = vi.materials.unobtainium
+
+
 def test_a_law_that_is_not_there_is_no_attribute() -> None:
     with pytest.raises(AttributeError, match="has no attribute 'Herz'"):
         _ = vi.laws.Herz
 
 
 def test_every_public_name_has_an_example() -> None:
-    texts = {name: inspect.getdoc(getattr(vi, name)) or "" for name in NAMES}
+    texts = {
+        name: inspect.getdoc(attrgetter(name)(vi)) or "" for name in [*NAMES, *NAMES_IN_MODULES]
+    }
     assert [
         name
         for name, text in texts.items()

@@ -44,7 +44,7 @@ PRINTED_FIT = [138.93525, 6.00288, -0.15582]
 SPEEDS = [8.8266641, 6.8386265, 5.2982339, 4.1046840, 3.1798731]  # m/s
 
 
-def test_dampings(agrees: Agrees, damping: vi.Calibration) -> None:
+def test_dampings(agrees: Agrees, damping: vi.calibration.Calibration) -> None:
     assert damping.observations.speeds == pytest.approx(SPEEDS, rel=1e-7)
     case = "damping coefficient of each impact, recomputed"
     agrees(
@@ -61,7 +61,7 @@ def test_dampings(agrees: Agrees, damping: vi.Calibration) -> None:
     )
 
 
-def test_function_of_the_speed(agrees: Agrees, damping: vi.Calibration) -> None:
+def test_function_of_the_speed(agrees: Agrees, damping: vi.calibration.Calibration) -> None:
     agrees(
         "damping as a quadratic function of the approach speed",
         "polynomial coefficients",
@@ -72,7 +72,9 @@ def test_function_of_the_speed(agrees: Agrees, damping: vi.Calibration) -> None:
     )
 
 
-def test_the_printed_ones_stand_beside_it(agrees: Agrees, damping: vi.Calibration) -> None:
+def test_the_printed_ones_stand_beside_it(
+    agrees: Agrees, damping: vi.calibration.Calibration
+) -> None:
     assert damping.given.tolist() == PRINTED
     agrees(
         "damping coefficient of each impact, printed",
@@ -82,19 +84,19 @@ def test_the_printed_ones_stand_beside_it(agrees: Agrees, damping: vi.Calibratio
         unit="N s/m",
         relative=1.1e-3,
     )
-    printed = vi.SpeedFunction(tuple(PRINTED_FIT), 3.0, 9.0)
+    printed = vi.laws.SpeedFunction(tuple(PRINTED_FIT), 3.0, 9.0)
     # N s/m, the hand's precision
     assert printed(damping.observations.speeds) == pytest.approx(damping.values, abs=0.22)
 
 
 def test_the_theory_is_the_default_target() -> None:
     """A case under another law than IMPACT is what IMPACT is calibrated to."""
-    found = vi.calibrate_case(vi.load_calibration("paper:type1-theory"))
+    found = vi.calibration.calibrate_case(vi.calibration.load_calibration("paper:type1-theory"))
     assert found.values == pytest.approx(EXACT, rel=1e-5)
     assert np.isnan(found.given).all()
 
 
-def test_what_is_still_wrong(damping: vi.Calibration) -> None:
+def test_what_is_still_wrong(damping: vi.calibration.Calibration) -> None:
     """With each rebound right, compression and force are as far off as PAPER's table 2
     has them computed for variable damping.
     """
@@ -115,7 +117,9 @@ def test_printed_penetration_does_not_go_with_the_printed_rebound(agrees: Agrees
     """Of 1e-5 m, as printed, and 1e-4 m, Adams' default, only the latter gives 2.41132 m
     with the printed damping.
     """
-    found = vi.calibrate_case(vi.load_calibration("paper:full-damping-penetration"))
+    found = vi.calibration.calibrate_case(
+        vi.calibration.load_calibration("paper:full-damping-penetration")
+    )
     assert found.given.tolist() == [1e-5]
     height = 0.025 + found.as_given["separation_speed"][0] ** 2 / (2.0 * 9.8)
     assert height == pytest.approx(2.3613, abs=5e-5)
@@ -148,7 +152,7 @@ def test_the_two_printed_errors_of_constant_damping_tell_the_same_penetration(
     heights = {}
     for penetration in (1e-5, 1e-4):
         case["contact"]["full_damping_penetration"] = penetration
-        heights[penetration] = vi.simulate(vi.read_case(case)).impacts["rebound_height_m"][-1]
+        heights[penetration] = vi.simulate(vi.case_of(case)).impacts["rebound_height_m"][-1]
     agrees(
         "constant damping, fourth impact",
         "rebound height, from its printed relative error",

@@ -87,7 +87,7 @@ def shipped(name: str, **plate: Any) -> vi.Problem:
     )
     case.pop("sensors", None)
     case["plate"].update(plate)
-    return vi.read_case({**case, "run": {"impacts": 1}}).to_problem()
+    return vi.case_of({**case, "run": {"impacts": 1}}).to_problem()
 
 
 @cache
@@ -193,7 +193,7 @@ def test_superposed_is_what_a_multibody_program_gives() -> None:
         (files("vibroimpact") / "cases" / "library" / "paper" / "type2-superposed.toml").read_text()
     )
     case["sphere"]["modes"] = 20
-    response = vi.simulate(vi.read_case({**case, "run": {"impacts": 1}}))
+    response = vi.simulate(vi.case_of({**case, "run": {"impacts": 1}}))
     assert response.energy["sphere_damping_J"] > 0.01 * response.energy["input_J"]  # critical
     assert response.impacts["max_force_N"][0] > 2.0 * FORCE
     height = 0.025 + response.impacts["separation_speed_m_s"][0] ** 2 / (2.0 * 9.8)

@@ -52,7 +52,7 @@ COLUMNS = {
     "rebound_height": "rebound_height_m",
 }
 QUANTITIES = {"duration": "contact duration", "largest_force": "maximum contact force"}
-HYSTERETIC = [law for law in vi.contact_laws().values() if issubclass(law, HystereticLaw)]
+HYSTERETIC = [law for law in vi.laws.contact_laws().values() if issubclass(law, HystereticLaw)]
 
 
 def drop_of(
@@ -230,7 +230,7 @@ def test_hysteretic_laws(agrees: Agrees, read, law: type[HystereticLaw]) -> None
 
 @pytest.mark.parametrize("read", READERS)
 def test_a_restitution_for_each_impact(agrees: Agrees, read) -> None:
-    lankarani = vi.find_contact_law("lankarani-nikravesh")
+    lankarani = vi.laws.find_contact_law("lankarani-nikravesh")
     drop = drop_of(tuple(lankarani(stiffness=K, restitution=e) for e in (0.7, 0.8, 0.9)), impacts=4)
     same(
         agrees,
@@ -291,7 +291,7 @@ def test_what_cannot_be_written_is_refused() -> None:
     drop = drop_of(impact())
     refused = [
         (
-            replace(drop, laws=(vi.find_contact_law("newton")(restitution=0.7),)),
+            replace(drop, laws=(vi.laws.find_contact_law("newton")(restitution=0.7),)),
             "adams-impact, hertz and the laws with hysteretic damping",
         ),
         (replace(drop, laws=(impact(), impact(exponent=1.6))), "nothing else"),
@@ -452,7 +452,7 @@ def test_the_oracles_functions(text: str, value: float) -> None:
 @pytest.mark.parametrize("coefficient", [0.05, 0.4])
 def test_oblique_drops(agrees: Agrees, read, coefficient: float) -> None:
     """That slip throughout, and that roll at last; on an inclined plate."""
-    coulomb = vi.find_friction_law("coulomb")(coefficient=coefficient)
+    coulomb = vi.friction.find_friction_law("coulomb")(coefficient=coefficient)
     oblique = vi.Oblique(
         velocity=(0.6, 0.0), spin=(0.0, -16.0, 5.0), gravity=(0.5, 0.0), friction=coulomb
     )
@@ -485,7 +485,7 @@ def test_friction_that_stands_for_another() -> None:
         "effective_shear_modulus": 2e9,
         "effective_radius": RADIUS,
     }
-    mdr = vi.find_friction_law("mdr")(coefficient=0.3, **moduli)
+    mdr = vi.friction.find_friction_law("mdr")(coefficient=0.3, **moduli)
     drop = drop_of(
         impact(),
         start={"height": 0.5},
@@ -495,7 +495,7 @@ def test_friction_that_stands_for_another() -> None:
     for format in adams_solver.FORMAT, adams_view.FORMAT:
         assert "its coulomb stands for it" in " ".join(format.notes(drop))
         assert any(b"0.3 * MAX(SFORCE(" in content for content in format.write(drop).values())
-    rigid = vi.Oblique(friction=vi.find_friction_law("rigid")(coefficient=0.3))
+    rigid = vi.Oblique(friction=vi.friction.find_friction_law("rigid")(coefficient=0.3))
     with pytest.raises(InputError, match="rigid can't be written for Adams; coulomb, mdr"):
         adams_solver.write(drop_of(impact(), start={"height": 0.5}, impacts=1, oblique=rigid))
 
@@ -513,7 +513,7 @@ def test_friction_that_stands_for_another() -> None:
 )
 def test_the_parser_refuses_broken_friction(right: str, wrong: str, words: str) -> None:
     oblique = vi.Oblique(
-        velocity=(0.6, 0.0), friction=vi.find_friction_law("coulomb")(coefficient=0.3)
+        velocity=(0.6, 0.0), friction=vi.friction.find_friction_law("coulomb")(coefficient=0.3)
     )
     text = adams_solver.write(drop_of(impact(), start={"height": 0.5}, impacts=1, oblique=oblique))[
         "a_drop.adm"

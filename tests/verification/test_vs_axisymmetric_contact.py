@@ -50,7 +50,7 @@ def problem(
     case = plain_case(
         plate={"material": "rigid"}, drop={"speed": SPEED, "gravity": 9.8}, run={"impacts": 1}
     )
-    return vi.read_case(
+    return vi.case_of(
         {**case, "sphere": sphere, "contact": {"law": "hertz", "local_compliance": treatment}}
     ).to_problem()
 

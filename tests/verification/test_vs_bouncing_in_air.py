@@ -14,7 +14,7 @@ import vibroimpact as vi
 from agreement import Against, Agrees
 from oracles.bouncing_in_air import Bounces, bounces, clift_gauvin, schiller_naumann
 from support import plain_case
-from vibroimpact.calibration.calibrate_case import calibrate_case, read_calibration
+from vibroimpact.calibration.calibrate_case import calibrate_case, calibration_of
 from vibroimpact.calibration.calibration import Calibration
 from vibroimpact.calibration.fluid_flights import FluidFlights
 
@@ -52,7 +52,7 @@ def evaluated(target: object, air: bool | None, **changes: object) -> Calibratio
         contact={"law": "newton", "restitution": 0.5},
         **changes,
     )
-    return calibrate_case(read_calibration({**table, "calibrate": section}))
+    return calibrate_case(calibration_of({**table, "calibrate": section}))
 
 
 def written(path: Path, columns: dict[str, np.ndarray]) -> str:

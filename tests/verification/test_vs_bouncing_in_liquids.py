@@ -79,7 +79,7 @@ RADIUS, OIL = 0.003, vi.Liquid(density=935.0, viscosity=0.01)
 
 
 def drops(law: str, speeds: np.ndarray, **options: object) -> vi.Response:
-    found = vi.find_contact_law(law)
+    found = vi.laws.find_contact_law(law)
     pair = {"stiffness": 1e9, "restitution": 0.9}
     more = {"effective_mass": rigid_sphere(RADIUS, QUARTZ).mass}
     law_of = found(
@@ -172,7 +172,7 @@ def fall(density: float, radius: float, medium: Medium, **how: object) -> vi.Pro
     return vi.Problem(
         sphere=ball,
         plate=rigid_plate(),
-        laws=(vi.find_contact_law("newton")(restitution=0.8),),
+        laws=(vi.laws.find_contact_law("newton")(restitution=0.8),),
         liquid=liquid,
         **how,
     )

@@ -19,7 +19,7 @@ from agreement import Against, Agrees
 from support import one_in, plain_case
 from vibrating import STIFFNESS, drop_on, random_modes
 from vibroimpact.calibration.calibrate import calibrate
-from vibroimpact.calibration.calibrate_case import calibrate_case, calibrated_case, read_calibration
+from vibroimpact.calibration.calibrate_case import calibrate_case, calibration_of
 from vibroimpact.calibration.matchable import MATCHABLE
 from vibroimpact.calibration.observations import from_table
 from vibroimpact.calibration.tunables import modal_damping
@@ -98,9 +98,9 @@ def random_case(law: str, seed: int) -> dict:
 
 
 def check_round_trip(agrees: Agrees, table: dict) -> None:
-    what = read_calibration(table)
+    what = calibration_of(table)
     found = calibrate_case(what)
-    achieved = vi.simulate(calibrated_case(what.case, found)).impacts["restitution_achieved"]
+    achieved = vi.simulate(found.calibrated_case).impacts["restitution_achieved"]
     wanted = table["calibrate"]["target"]["restitution"]
     assert len(achieved) == table["run"]["impacts"]
     agrees(
@@ -145,7 +145,7 @@ def test_the_calibrated_case_bounces_as_the_target_does(agrees: Agrees, name: st
     from vibroimpact.calibration.calibrate_case import load_calibration
 
     what = load_calibration(name)
-    run = vi.simulate(calibrated_case(what.case, calibrate_case(what))).impacts
+    run = vi.simulate(calibrate_case(what).calibrated_case).impacts
     theory = vi.simulate(vi.load_case("paper:type1-theory")).impacts
     for column, quantity, unit in (
         ("approach_speed_m_s", "approach speed", "m/s"),
@@ -164,11 +164,9 @@ def test_the_calibrated_case_bounces_as_the_target_does(agrees: Agrees, name: st
 
 def calibrated_run(**changes: object) -> tuple[dict, dict]:
     """The impacts of the calibrated case, and those of the target where that is a law."""
-    what = read_calibration(plain_case(**changes))
+    what = calibration_of(plain_case(**changes))
     found = calibrate_case(what)
-    return vi.simulate(calibrated_case(what.case, found)).impacts, dict(
-        found.drops.get("target", {})
-    )
+    return vi.simulate(found.calibrated_case).impacts, dict(found.drops.get("target", {}))
 
 
 def test_a_target_with_another_restitution_at_each_impact(agrees: Agrees) -> None:
@@ -232,10 +230,10 @@ def test_other_parameters_to_other_outcomes(
     given = {"hertz": {}, "lankarani-nikravesh": {"restitution": 0.8}}[law]
     truth = {"stiffness": 3e8, "exponent": 1.6}[parameter]
     case = plain_case(contact={"law": law, **given, parameter: truth}, run={"impacts": 1})
-    wanted = float(vi.simulate(vi.read_case(case)).impacts[MATCHABLE[outcome][0]][0])
+    wanted = float(vi.simulate(vi.case_of(case)).impacts[MATCHABLE[outcome][0]][0])
     contact = {"law": law, **given, **({"stiffness": 1e9} if parameter == "stiffness" else {})}
     target = {"target": {outcome: wanted}, "match": outcome, "parameter": parameter}
-    what = read_calibration(plain_case(contact=contact, calibrate=target, run={"impacts": 1}))
+    what = calibration_of(plain_case(contact=contact, calibrate=target, run={"impacts": 1}))
     found = calibrate_case(what)
     if parameter == "stiffness":
         agrees(
@@ -279,7 +277,7 @@ def test_restitutions_near_the_ends(agrees: Agrees, restitution: float) -> None:
 def test_several_outcomes_are_as_near_as_they_can_be() -> None:
     """No other damping has a lower weighted sum of squares, by runs of the drop on both sides."""
     weights = {"separation_speed": 1.0, "max_force": 0.3}
-    what = read_calibration(
+    what = calibration_of(
         plain_case(
             contact={"law": "adams-impact"},
             run={"impacts": 1},
@@ -318,7 +316,7 @@ def test_the_full_damping_penetration_that_gives_the_printed_height() -> None:
     what = load_calibration("paper:full-damping-penetration")
     found = calibrate_case(what)
     assert found.values[0] == pytest.approx(1e-4, rel=5e-3)
-    run = vi.simulate(calibrated_case(what.case, found)).impacts
+    run = vi.simulate(found.calibrated_case).impacts
     assert run["rebound_height_m"][0] == pytest.approx(2.41132, rel=1e-8)
 
 

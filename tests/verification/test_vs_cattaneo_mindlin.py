@@ -44,7 +44,12 @@ DRIVE = 15.0 / 8.0 * 3.5 * 2.0 * (1.0 - NU) / (2.0 - NU)
 
 
 def impact(
-    psi: Floats, law: vi.ContactLaw, *, mass: float = 0.02, radius: float = 0.01, spin: float = 0.0
+    psi: Floats,
+    law: vi.laws.ContactLaw,
+    *,
+    mass: float = 0.02,
+    radius: float = 0.01,
+    spin: float = 0.0,
 ) -> vi.Response:
     """Return the impacts of spheres of the plate's material, by psi1 = [2 (1 - nu) / (mu
     (2 - nu))] v_t / v_n.
@@ -90,7 +95,7 @@ def slip_before(response: vi.Response, radius: float = 0.01) -> Floats:
     )
 
 
-HERTZ = vi.find_contact_law("hertz")(stiffness=4.0 / 3.0 * 1e9 * 0.1)
+HERTZ = vi.laws.find_contact_law("hertz")(stiffness=4.0 / 3.0 * 1e9 * 0.1)
 
 
 def test_gross_sliding_is_exact(agrees: Agrees) -> None:
@@ -116,7 +121,7 @@ def test_gross_sliding_takes_the_coefficient_of_the_whole_normal_impulse(
     """Chung and Ooi's test 6 in closed form: kappa = 7/2 mu (1 + e) v_n / v_s, where it
     is below 1.
     """
-    law = vi.find_contact_law("flores")(stiffness=1e8, restitution=restitution)
+    law = vi.laws.find_contact_law("flores")(stiffness=1e8, restitution=restitution)
     found = impact(np.array([15.0, 30.0]), law)
     achieved = found.impacts["restitution_achieved"][:, 0]
     kappa = (

@@ -140,7 +140,7 @@ def test_1_from_a_case(agrees: Agrees) -> None:
     """A sphere that comes at 20 m/s on one that flies free: the same seen from that one,
     which is the plate's place.
     """
-    case = vi.read_case(
+    case = vi.case_of(
         {
             "sphere": {"radius": 0.01, "material": "glass-chung-ooi"},
             "plate": {"radius": 0.01, "material": "glass-chung-ooi", "supports": "free"},
@@ -218,7 +218,7 @@ def test_2_as_it_is_meant(agrees: Agrees) -> None:
 
 
 def test_2_aluminium_sphere_on_a_rigid_wall(agrees: Agrees) -> None:
-    case = vi.read_case(
+    case = vi.case_of(
         {
             "sphere": {"radius": 0.1, "material": "aluminium-chung-ooi"},
             "plate": {"material": "rigid"},
@@ -301,7 +301,9 @@ def test_5_spin_of_a_sphere_that_hits_at_an_angle(
     slip, spin = np.array(FINITE_ELEMENTS_5).T
     oblique = vi.Oblique(
         velocity=(slip * friction * speed, 0.0),
-        friction=vi.find_friction_law(law)(coefficient=friction, effective_radius=radius, **moduli),
+        friction=vi.friction.find_friction_law(law)(
+            coefficient=friction, effective_radius=radius, **moduli
+        ),
     )
     hertz = Hertz(stiffness=hertz_stiffness(moduli["effective_modulus"], radius))
     problem = vi.Problem(
@@ -350,7 +352,7 @@ def test_7_equal_spheres_with_opposite_spins(
         sphere=vi.rigid_sphere(radius, metal),
         plate=vi.rigid_plate(),
         laws=(
-            vi.find_contact_law("gonthier")(
+            vi.laws.find_contact_law("gonthier")(
                 stiffness=hertz_stiffness(moduli["effective_modulus"], radius), restitution=0.5
             ),
         ),
@@ -360,7 +362,7 @@ def test_7_equal_spheres_with_opposite_spins(
         oblique=vi.Oblique(
             velocity=(radius * spin, 0.0),
             spin=(0.0, spin, 0.0),
-            friction=vi.find_friction_law(law)(coefficient=0.4, **pair),
+            friction=vi.friction.find_friction_law(law)(coefficient=0.4, **pair),
         ),
     )
     row = {name: values[:, 0] for name, values in vi.tabulate(problem).impacts.items()}
@@ -425,7 +427,7 @@ def test_8_a_spinning_sphere_on_a_larger_one(agrees: Agrees, law: str, sticking:
         "effective_shear_modulus": effective_shear_modulus(small, large),
     }
     curved = 1.0 / (1.0 / radius + 1.0 / 0.5)
-    damped = vi.find_contact_law("gonthier")(
+    damped = vi.laws.find_contact_law("gonthier")(
         stiffness=hertz_stiffness(moduli["effective_modulus"], curved), restitution=0.5
     )
     kappa, beta = np.array(FIGURE_8).T
@@ -439,7 +441,7 @@ def test_8_a_spinning_sphere_on_a_larger_one(agrees: Agrees, law: str, sticking:
         impacts=1,
         oblique=vi.Oblique(
             spin=(0.0, -slip / radius, 0.0),
-            friction=vi.find_friction_law(law)(
+            friction=vi.friction.find_friction_law(law)(
                 coefficient=friction, effective_radius=curved, **moduli
             ),
         ),

@@ -142,7 +142,7 @@ def test_a_sandwich_beam_from_a_deck(agrees: Agrees, tmp_path: Path) -> None:
     rho A), with EI and rho A of the layers.
     """
     made = box_mesh((1.0, 0.02, 0.012), (40, 1, 3))
-    vi.write_nastran(
+    vi.meshes.write_nastran(
         of_two(made, STEEL, ALUMINIUM, lambda at: np.abs(at[:, 2]) < 0.002),
         tmp_path / "beam.bdf",
         STEEL,
@@ -156,7 +156,7 @@ def test_a_sandwich_beam_from_a_deck(agrees: Agrees, tmp_path: Path) -> None:
         | {"modes": 8, "mesh": str(tmp_path / "beam.bdf")},
         drop={"speed": 1.0, "gravity": 0.0},
     )
-    found = vi.compute_modes(vi.read_case(case))["plate"]
+    found = vi.compute_modes(vi.case_of(case))["plate"]
     per_length = 0.02 * (0.008 * 7850 + 0.004 * 2700)
     rigidity = 0.02 / 12 * (70e9 * 0.004**3 + 210e9 * (0.012**3 - 0.004**3))
     theirs = 4.730041**2 / (2 * math.pi) * math.sqrt(rigidity / per_length)

@@ -35,7 +35,7 @@ def test_the_pulse_is_that_of_a_simulated_impact(agrees: Agrees) -> None:
     problem = vi.Problem(
         sphere=vi.Body(mass=0.1, contact_offset=0.02),
         plate=vi.rigid_plate(),
-        laws=(vi.find_contact_law("hertz")(stiffness=1e9),),
+        laws=(vi.laws.find_contact_law("hertz")(stiffness=1e9),),
         speed=3.0,
         gravity=0.0,
         impacts=1,
@@ -171,7 +171,7 @@ def test_coal_rings_like_gangue_of_twice_its_size(agrees: Agrees) -> None:
             },
         },
     }
-    falls = falls_of_sweep(vi.read_sweep(table))
+    falls = falls_of_sweep(vi.studies.sweep_of(table))
     for name, radius, known in (
         ("coal", 0.025, 261e-6),
         ("gangue", 0.025, 145e-6),

@@ -54,7 +54,7 @@ def exact(factor: float) -> float:
 @pytest.mark.parametrize("name", ACHIEVED)
 def test_the_printed_restitutions(agrees: Agrees, name: str, exponent: float) -> None:
     for asked, expected in zip(ASKED, ACHIEVED[name], strict=True):
-        law = vi.find_contact_law(name)(stiffness=1e7, restitution=asked, exponent=exponent)
+        law = vi.laws.find_contact_law(name)(stiffness=1e7, restitution=asked, exponent=exponent)
         ball = vi.Body(mass=0.3, contact_offset=0.1)
         row = vi.simulate(
             vi.Problem(
@@ -85,9 +85,9 @@ def test_the_printed_restitutions(agrees: Agrees, name: str, exponent: float) ->
 @pytest.mark.parametrize("name", FACTORS)
 def test_the_laws_without_a_printed_restitution(agrees: Agrees, name: str) -> None:
     for asked in ASKED:
-        law = vi.find_contact_law(name)(stiffness=1e7, restitution=asked)
+        law = vi.laws.find_contact_law(name)(stiffness=1e7, restitution=asked)
         assert law.damping_factor == pytest.approx(FACTORS[name](asked), rel=1e-14)
-        found = vi.integrated_restitution(law, 0.3, 2.0)
+        found = vi.laws.integrated_restitution(law, 0.3, 2.0)
         agrees(
             f"law {name}, six nominal coefficients of restitution",
             "coefficient of restitution",
@@ -100,8 +100,11 @@ def test_the_laws_without_a_printed_restitution(agrees: Agrees, name: str) -> No
 @pytest.mark.parametrize("wanted", EXACT)
 def test_the_factor_that_achieves_a_restitution_exactly(agrees: Agrees, wanted: float) -> None:
     assert hysteretic_restitution(EXACT[wanted]) == pytest.approx(wanted, abs=1e-6)
-    law = vi.law_achieving(
-        vi.find_contact_law("flores")(stiffness=1e7, restitution=0.5), wanted, mass=0.3, speed=2.0
+    law = vi.laws.law_achieving(
+        vi.laws.find_contact_law("flores")(stiffness=1e7, restitution=0.5),
+        wanted,
+        mass=0.3,
+        speed=2.0,
     )
     agrees(
         "damping for six prescribed coefficients of restitution",

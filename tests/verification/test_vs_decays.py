@@ -42,7 +42,9 @@ def test_intervals_hold_the_truth(agrees: Agrees, population: Callable[..., int]
         )
         value = (sizes * tones).sum(axis=0)
         value += 0.01 * np.sqrt(np.mean(value**2)) * random.standard_normal(SAMPLES)
-        found = vi.modes_in_decay([vi.Record("a", value, RATE, "m/s2")], (200.0, 5000.0))
+        found = vi.signals.modes_in_decay(
+            [vi.signals.Record("a", value, RATE, "m/s2")], (200.0, 5000.0)
+        )
         invented += len(found) - 5
         for frequency, ratio in zip(FREQUENCIES, RATIOS, strict=True):
             mode = min(found, key=lambda one: abs(one.frequency.value - frequency))

@@ -93,7 +93,7 @@ def test_the_papers_drop_and_a_pebble_are_doubted() -> None:
     )
     assert "1.2 % slower" in paper
     pebble = {"density": 1250, "youngs_modulus": 2e9, "poissons_ratio": 0.3}
-    case = vi.read_case(
+    case = vi.case_of(
         plain_case(
             sphere={"radius": 0.002, "material": pebble}, drop={"height": 4.0}, run={"impacts": 1}
         )
@@ -104,5 +104,5 @@ def test_the_papers_drop_and_a_pebble_are_doubted() -> None:
 
 
 def test_a_speed_is_no_fall() -> None:
-    case = vi.read_case(plain_case(drop={"speed": 8.8}))
+    case = vi.case_of(plain_case(drop={"speed": 8.8}))
     assert not any("air" in doubt for doubt in result_of(vi.simulate(case)).doubts)

@@ -57,7 +57,7 @@ def struck(part: float, **contact: object) -> dict:
 
 
 def force_of(case: dict) -> float:
-    return float(vi.simulate(vi.read_case(case)).impacts["max_force_N"][0])
+    return float(vi.simulate(vi.case_of(case)).impacts["max_force_N"][0])
 
 
 @pytest.mark.slow

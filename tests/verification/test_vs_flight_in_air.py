@@ -12,7 +12,7 @@ import vibroimpact as vi
 from agreement import Against, Agrees
 from oracles.bouncing_in_air import DENSITY, VISCOSITY, bounces, clift_gauvin
 from support import plain_case
-from vibroimpact.calibration.calibrate_case import calibrate_case, read_calibration
+from vibroimpact.calibration.calibrate_case import calibrate_case, calibration_of
 
 AGAINST = Against(
     "flight with constant drag coefficient and with Stokes drag, closed form",
@@ -40,7 +40,7 @@ def drop(
     ball = vi.Body(
         mass=4.0 / 3.0 * np.pi * np.asarray(radius) ** 3 * density, contact_offset=radius
     )
-    law = vi.find_contact_law("newton")(restitution=0.8)
+    law = vi.laws.find_contact_law("newton")(restitution=0.8)
     return vi.Problem(
         sphere=ball,
         plate=vi.rigid_plate(),
@@ -323,16 +323,16 @@ def test_calibration_and_simulation_fly_through_the_same_air() -> None:
         contact={"law": "newton", "restitution": 0.8},
         run={"impacts": 4},
     )
-    heights = vi.simulate(vi.read_case(table)).impacts["rebound_height_m"].tolist()
+    heights = vi.simulate(vi.case_of(table)).impacts["rebound_height_m"].tolist()
     found = calibrate_case(
-        read_calibration(
+        calibration_of(
             {**table, "calibrate": {"target": {"rebound_heights": heights}, "degree": 0}}
         )
     )
     np.testing.assert_allclose(found.values, 0.8, rtol=1e-6)
     with pytest.raises(vi.InputError, match=r"drop\.air"):
         calibrate_case(
-            read_calibration(
+            calibration_of(
                 {**table, "calibrate": {"target": {"rebound_heights": heights}, "air": False}}
             )
         )
@@ -347,12 +347,12 @@ def test_a_law_is_matched_along_a_drop_through_air() -> None:
     )
     table["contact"] = {"law": "hunt-crossley", "restitution": 0.8}
     found = calibrate_case(
-        read_calibration(
+        calibration_of(
             {**table, "calibrate": {"target": {"restitution": 0.7}, "model": "hunt-crossley"}}
         )
     )
     newton = vi.simulate(
-        vi.read_case({**table, "contact": {"law": "newton", "restitution": 0.7}})
+        vi.case_of({**table, "contact": {"law": "newton", "restitution": 0.7}})
     ).impacts
     for name in ("time_s", "approach_speed_m_s"):
         np.testing.assert_allclose(found.drops["target"][name], newton[name], rtol=1e-12)

@@ -52,7 +52,7 @@ def bending_modes(seed: int, number: int = 12, *, size: float = 0.5) -> ModalBas
 
 
 def drop(plate: ModalBasis, friction: Any, **oblique: Any) -> vi.Problem:
-    law = vi.find_contact_law("hertz")(stiffness=STIFFNESS)
+    law = vi.laws.find_contact_law("hertz")(stiffness=STIFFNESS)
     return vi.Problem(
         sphere=vi.Body(mass=MASS, contact_offset=RADIUS),
         plate=vi.Body(mass=np.inf, contact_offset=0.0, modes=plate),
@@ -66,7 +66,7 @@ def drop(plate: ModalBasis, friction: Any, **oblique: Any) -> vi.Problem:
 
 
 def friction(name: str, coefficient: float) -> Any:
-    return vi.find_friction_law(name)(
+    return vi.friction.find_friction_law(name)(
         coefficient=coefficient,
         effective_modulus=MODULUS,
         effective_shear_modulus=SHEAR,
@@ -315,7 +315,7 @@ def test_momentum_of_a_free_plate_that_moments_turn(
     """Momentum and angular momentum of sphere and plate together stay, to 1e-9, with
     rolling resistance and twisting friction.
     """
-    case = vi.read_case(
+    case = vi.case_of(
         {
             "sphere": {"radius": 0.02, "material": "steel"},
             "plate": {
@@ -394,7 +394,7 @@ def test_momentum_of_a_free_plate(agrees: Agrees, place: tuple[float, float], la
     """An oblique drop beside the centre of a free plate: momentum and angular momentum of
     both together stay, to 1e-9.
     """
-    case = vi.read_case(
+    case = vi.case_of(
         {
             "sphere": {"radius": 0.02, "material": "steel"},
             "plate": {
@@ -510,7 +510,7 @@ def test_random_drops_close_their_ledger_and_gain_nothing(rolling: float) -> Non
             velocity=tuple(random.normal(size=2) * 10 ** random.uniform(-3.0, 1.0)),
             spin=tuple(random.normal(size=3) * 10 ** random.uniform(0.0, 2.0)),
         )
-        law = vi.find_contact_law("hunt-crossley")(
+        law = vi.laws.find_contact_law("hunt-crossley")(
             stiffness=STIFFNESS, restitution=float(random.uniform(0.1, 1.0))
         )
         response = vi.simulate(

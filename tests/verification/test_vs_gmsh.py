@@ -12,7 +12,7 @@ import pytest
 from agreement import Against, Agrees
 from vibroimpact.errors import InputError
 from vibroimpact.meshes.geometry import mesh_geometry
-from vibroimpact.meshes.mesh_file import read_mesh
+from vibroimpact.meshes.mesh_file import load_mesh
 from vibroimpact.structures.geometry import check_mesh, mass_properties
 from vibroimpact.structures.mesh import Mesh
 
@@ -118,7 +118,7 @@ def test_files_of_gmsh(
         files.append(tmp_path / f"{fields}.bdf")
         gmsh.write(str(files[-1]))
     exact, tolerance = EXACT[shape]
-    meshes = [read_mesh(file) for file in files]
+    meshes = [load_mesh(file) for file in files]
     for file, mesh in zip(files, meshes, strict=True):
         assert [block.kind for block in mesh.blocks] == [kind]
         agrees(
@@ -144,7 +144,7 @@ def test_a_binary_file(model: None, tmp_path: Path) -> None:
     gmsh.option.setNumber("Mesh.Binary", 1)
     gmsh.write(str(tmp_path / "mesh.msh"))
     with pytest.raises(InputError, match="this is a binary file; save the mesh as ASCII"):
-        read_mesh(tmp_path / "mesh.msh")
+        load_mesh(tmp_path / "mesh.msh")
 
 
 def test_prisms(model: None, tmp_path: Path) -> None:
@@ -157,7 +157,7 @@ def test_prisms(model: None, tmp_path: Path) -> None:
         gmsh.model.mesh.setOrder(order)
         for suffix in ("msh", "inp", "bdf"):
             gmsh.write(str(tmp_path / f"mesh.{suffix}"))
-            mesh = read_mesh(tmp_path / f"mesh.{suffix}")
+            mesh = load_mesh(tmp_path / f"mesh.{suffix}")
             assert [block.kind for block in mesh.blocks] == [kind]
             check_mesh(mesh)
             found = mass_properties(mesh, 1.0)
@@ -185,7 +185,7 @@ def test_pyramids(order: int, incomplete: bool, kind: str, model: None, tmp_path
     for version in (2.2, 4.1):
         gmsh.option.setNumber("Mesh.MshFileVersion", version)
         gmsh.write(str(tmp_path / "mesh.msh"))
-        mesh = read_mesh(tmp_path / "mesh.msh")
+        mesh = load_mesh(tmp_path / "mesh.msh")
         (block,) = mesh.blocks
         assert block.kind == kind
         check_mesh(mesh)
@@ -219,7 +219,7 @@ def test_geometry_is_in_metres(
         gmsh.model.getEntities(),
     )
     capfd.readouterr()
-    for mesh in (read_mesh(step, size=0.01), read_mesh(brep, unit_in_metres=1e-3, size=0.01)):
+    for mesh in (load_mesh(step, size=0.01), load_mesh(brep, unit_in_metres=1e-3, size=0.01)):
         assert [block.kind for block in mesh.blocks] == ["tet10"]
         agrees(
             "sphere from a STEP or BREP file",
@@ -264,10 +264,10 @@ def test_size_and_order(model: None, tmp_path: Path) -> None:
 def test_wrong_geometries(model: None, tmp_path: Path) -> None:
     write_geometry(tmp_path / "two.step", 100.0)
     with pytest.raises(InputError, match="it holds 2 solids; it must hold one"):
-        read_mesh(tmp_path / "two.step")
+        load_mesh(tmp_path / "two.step")
     (tmp_path / "no.step").write_text("this is not STEP\n")
     with pytest.raises(InputError, match="the geometry can't be meshed"):
-        read_mesh(tmp_path / "no.step")
+        load_mesh(tmp_path / "no.step")
 
 
 @pytest.mark.parametrize(
@@ -278,7 +278,7 @@ def test_without_gmsh(reason: str, tmp_path: Path, monkeypatch: pytest.MonkeyPat
     (tmp_path / "ball.step").write_text("ISO-10303-21;\n")
     monkeypatch.setattr(sys, "path", [str(tmp_path), *sys.path])
     with pytest.raises(InputError) as raised:
-        read_mesh(tmp_path / "ball.step")
+        load_mesh(tmp_path / "ball.step")
     assert "needs Gmsh, which can't be loaded" in str(raised.value)
     assert reason.split("'")[1] in str(raised.value)
     remedy = (

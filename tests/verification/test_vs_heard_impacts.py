@@ -31,7 +31,7 @@ def test_restitutions_of_a_simulated_record(
     agrees: Agrees, restitution: float, impacts: int, tmp_path: Path
 ) -> None:
     """A steel ball on a clamped steel plate that rings: with 20 dB of noise too."""
-    case = vi.read_case(
+    case = vi.case_of(
         plain_case(
             sphere={"radius": "5 mm", "material": "steel"},
             plate={
@@ -50,16 +50,17 @@ def test_restitutions_of_a_simulated_record(
     )
     response = vi.simulate(case)
     folder = vi.save_result(response, tmp_path / "drop")
-    (file,) = vi.export_result(folder, "wav", tmp_path / "sound")
-    record = vi.one_record(file)
+    (file,) = vi.exporting.export_result(folder, "wav", tmp_path / "sound")
+    record = vi.signals.one_record(file)
     assert (record.rate, record.unit) == (RATE, "m/s2")
     true = response.impacts["restitution_achieved"]
     for noise in (0.0, 0.1):
         value = record.value + noise * np.sqrt(np.mean(record.value**2)) * np.random.default_rng(
             impacts
         ).standard_normal(len(record.value))
-        found = vi.rebounds_of(
-            vi.find_bounces(vi.Record("plate", value, RATE, record.unit)), height=0.295
+        found = vi.calibration.rebounds_of(
+            vi.signals.find_bounces(vi.signals.Record("plate", value, RATE, record.unit)),
+            height=0.295,
         )
         number = len(found.restitution)
         assert number >= 4

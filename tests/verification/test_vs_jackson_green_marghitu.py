@@ -89,14 +89,14 @@ def test_elastic_plastic_laws_beside_it(agrees: Agrees) -> None:
     agrees(
         f"`thornton` with the hardness as yield pressure, {case}",
         "coefficient of restitution",
-        vi.achieved_restitution(thornton, MASS, speed),
+        vi.laws.achieved_restitution(thornton, MASS, speed),
         fit,
         absolute=0.01,
     )
     agrees(
         f"`storakers` without hardening, {case}",
         "coefficient of restitution",
-        vi.achieved_restitution(PLASTIC, MASS, speed),
+        vi.laws.achieved_restitution(PLASTIC, MASS, speed),
         fit,
         absolute=0.04,
     )

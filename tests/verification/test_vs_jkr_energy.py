@@ -67,7 +67,7 @@ def test_the_restitution_that_is_lost(agrees: Agrees) -> None:
     case = plain_case(
         **bodies, drop={"speed": 0.1, "gravity": 0.0}, contact=law, run={"impacts": 1}
     )
-    lost = 1 - float(vi.simulate(vi.read_case(case)).impacts["restitution_achieved"][0])
+    lost = 1 - float(vi.simulate(vi.case_of(case)).impacts["restitution_achieved"][0])
     mass = 4 / 3 * math.pi * RADIUS**3 * 2500
     speed = float(sticking_speed(RADIUS, MODULUS, mass))
     agrees(

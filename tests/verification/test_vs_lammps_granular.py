@@ -39,8 +39,8 @@ RADIUS, DENSITY, GRAVITY = 0.0025, 7000.0, 9.81
 MASS = 4.0 / 3.0 * np.pi * RADIUS**3 * DENSITY
 MODULUS, SHEAR_MODULUS = 5e7, 4e7
 CONTACT = {
-    "newton": vi.find_contact_law("newton")(restitution=0.6),
-    "hunt-crossley": vi.find_contact_law("hunt-crossley")(
+    "newton": vi.laws.find_contact_law("newton")(restitution=0.6),
+    "hunt-crossley": vi.laws.find_contact_law("hunt-crossley")(
         stiffness=4.0 / 3.0 * MODULUS * np.sqrt(RADIUS), restitution=0.6
     ),
 }
@@ -54,7 +54,9 @@ def friction(name: str, mu: float, rolling: float = 0.0) -> Any:
         "effective_radius": RADIUS,
     }
     moduli = {} if name in ("coulomb", "rigid") else pair
-    return vi.find_friction_law(name)(coefficient=mu, rolling_coefficient=rolling, **moduli)
+    return vi.friction.find_friction_law(name)(
+        coefficient=mu, rolling_coefficient=rolling, **moduli
+    )
 
 
 def impact(law: Any, speed: float, along: float, spin: float = 0.0) -> dict[str, Floats]:
@@ -92,7 +94,7 @@ def lain(
         friction=law,
     )
     dead, ball = (
-        vi.find_contact_law("newton")(restitution=0.0),
+        vi.laws.find_contact_law("newton")(restitution=0.0),
         vi.Body(mass=MASS, contact_offset=RADIUS),
     )
     values: dict[str, Any] = {

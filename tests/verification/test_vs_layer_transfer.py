@@ -118,7 +118,7 @@ def test_modes_and_what_they_lack(agrees: Agrees) -> None:
         ],
     }
     case["plate"] |= {"modes": 80}  # type: ignore[operator]
-    basis = coupling_of(vi.read_case(case)).modes["plate"]
+    basis = coupling_of(vi.case_of(case)).modes["plate"]
     for apart in (0.0, 2.0, 5.0):
         carried = float(
             (basis.contact * basis.points[str(apart)][:, 2] / basis.angular_frequencies**2).sum()

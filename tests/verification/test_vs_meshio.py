@@ -147,7 +147,7 @@ def test_plates(tmp_path: Path) -> None:
 
 def test_a_mesh_of_meshio(agrees: Agrees, tmp_path: Path) -> None:
     """What meshio writes is read: two tetrahedra in each of its formats."""
-    from vibroimpact.meshes.mesh_file import read_mesh
+    from vibroimpact.meshes.mesh_file import load_mesh
 
     points = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 1, 1]])
     tets = np.array([[0, 1, 2, 3], [1, 2, 3, 4]])
@@ -159,7 +159,7 @@ def test_a_mesh_of_meshio(agrees: Agrees, tmp_path: Path) -> None:
     ]:
         file = tmp_path / f"mesh.{suffix}"
         meshio.Mesh(points, [("tetra", tets)]).write(file, **options)
-        read = read_mesh(file)
+        read = load_mesh(file)
         found = measures("tet4", read.nodes, read.blocks[0].connectivity)[0]
         agrees(
             "two tetrahedra, files written by meshio",

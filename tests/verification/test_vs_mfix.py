@@ -35,7 +35,7 @@ def response() -> vi.Response:
         "contact": {"law": "linear-spring-dashpot", "stiffness": 1e4, "restitution": 0.9},
         "run": {"impacts": 1},
     }
-    return vi.simulate(vi.read_case(case))
+    return vi.simulate(vi.case_of(case))
 
 
 def test_positions(agrees: Agrees, response: vi.Response) -> None:
@@ -116,7 +116,7 @@ def test_closed_form_to_the_tolerance(agrees: Agrees) -> None:
             "contact": {"law": "linear-spring-dashpot", "stiffness": 1e4, "restitution": asked},
             "run": {"impacts": 1},
         }
-        found = vi.simulate(vi.read_case(case)).impacts["restitution_achieved"]
+        found = vi.simulate(vi.case_of(case)).impacts["restitution_achieved"]
         agrees(
             "linear spring-dashpot law without gravity",
             "coefficient of restitution",

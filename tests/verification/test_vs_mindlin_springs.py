@@ -54,11 +54,11 @@ def slip_by_small_steps(law: str, steps: int = 20_000) -> float:
 @pytest.mark.parametrize("name", ["mindlin", "mindlin-rescale", "mindlin-force"])
 def test_slip_after(agrees: Agrees, name: str) -> None:
     """The contact slips, sticks and is turned back."""
-    law = vi.find_friction_law(name)(coefficient=COEFFICIENT, **PAIR)
+    law = vi.friction.find_friction_law(name)(coefficient=COEFFICIENT, **PAIR)
     problem = vi.Problem(
         sphere=vi.Body(mass=MASS, contact_offset=RADIUS),
         plate=vi.rigid_plate(),
-        laws=(vi.find_contact_law("hertz")(stiffness=STIFFNESS),),
+        laws=(vi.laws.find_contact_law("hertz")(stiffness=STIFFNESS),),
         speed=SPEED,
         gravity=0.0,
         impacts=1,
@@ -118,7 +118,7 @@ def test_friction_begins_with_zero_where_the_normal_force_jumps(agrees: Agrees, 
     """A dashpot pushes at once at touch. Friction does not: it was up to its bound there,
     before this was seen.
     """
-    normal = vi.find_contact_law("linear-spring-dashpot")(
+    normal = vi.laws.find_contact_law("linear-spring-dashpot")(
         stiffness=STIFFNESS_OF_SPRING, restitution=0.5, effective_mass=MASS
     )
     problem = vi.Problem(
@@ -130,7 +130,7 @@ def test_friction_begins_with_zero_where_the_normal_force_jumps(agrees: Agrees, 
         impacts=1,
         oblique=vi.Oblique(
             velocity=(SLIP, 0.0),
-            friction=vi.find_friction_law(name)(coefficient=COEFFICIENT, **PAIR),
+            friction=vi.friction.find_friction_law(name)(coefficient=COEFFICIENT, **PAIR),
         ),
     )
     impacts = vi.simulate(problem).impacts

@@ -52,7 +52,7 @@ def problem(
     )
     if sphere:
         case["sphere"].update(model="elastic", modes=sphere)
-    return vi.read_case({**case, "plate": plate}).to_problem()
+    return vi.case_of({**case, "plate": plate}).to_problem()
 
 
 def carried(modes: ModalBasis) -> float:

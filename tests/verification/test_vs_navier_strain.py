@@ -157,7 +157,7 @@ def response_with(frequency: float) -> vi.Response:
             for name, more in gauges.items()
         ],
     }
-    return vi.simulate(vi.read_case(case))
+    return vi.simulate(vi.case_of(case))
 
 
 @pytest.fixture(scope="module")

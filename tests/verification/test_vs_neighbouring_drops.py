@@ -222,7 +222,7 @@ def test_a_nanometre() -> None:
         "contact": {"law": "lankarani-nikravesh", "restitution": 0.8},
         "run": {"impacts": 4},
     }
-    problem = vi.read_case(case).to_problem()
+    problem = vi.case_of(case).to_problem()
     first, second = (
         vi.simulate(replace(problem, height=height)).impacts for height in (1.0, 1.0 + 1e-9)
     )

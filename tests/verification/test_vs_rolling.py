@@ -68,7 +68,7 @@ def after(
         np.array(velocity, dtype=float)[:, None],
         np.array(spin, dtype=float)[:, None],
     )
-    law = vi.find_friction_law("coulomb")(coefficient=mu, rolling_coefficient=rolling)
+    law = vi.friction.find_friction_law("coulomb")(coefficient=mu, rolling_coefficient=rolling)
     state, friction, _ = lie(ball, start, law, GRAVITY * np.cos(angle) * one, np.array([[time]]))
     return state, friction
 
@@ -202,7 +202,7 @@ def test_across_an_incline_against_an_integration(agrees: Agrees, mu: float, ang
 
 
 def resting(**changes: Any) -> vi.Response:
-    law = vi.find_contact_law("hunt-crossley")(stiffness=1e8, restitution=0.1)
+    law = vi.laws.find_contact_law("hunt-crossley")(stiffness=1e8, restitution=0.1)
     values: dict[str, Any] = {
         "laws": (law,),
         "height": 0.05,
@@ -219,7 +219,7 @@ def resting(**changes: Any) -> vi.Response:
 
 
 def test_a_run_goes_on_rolling_until_its_duration() -> None:
-    friction = vi.find_friction_law("coulomb")(coefficient=0.2)
+    friction = vi.friction.find_friction_law("coulomb")(coefficient=0.2)
     response = resting(
         oblique=vi.Oblique(velocity=(0.7, 0.0), gravity=(0.5, 0.0), friction=friction)
     )
@@ -250,7 +250,7 @@ def test_a_run_goes_on_rolling_until_its_duration() -> None:
 
 
 def test_a_sphere_rolls_off_the_edge() -> None:
-    friction = vi.find_friction_law("coulomb")(coefficient=0.2)
+    friction = vi.friction.find_friction_law("coulomb")(coefficient=0.2)
     response = resting(oblique=vi.Oblique(velocity=(0.7, 0.0), friction=friction, size=(2.0, 1.0)))
     assert response.end_time[0] < 3.0
     assert response.at([float(response.end_time[0])])["position_x_m"][0] == pytest.approx(
@@ -263,7 +263,7 @@ class OnSlope(NamedTuple):
 
     ball: Sphere
     start: State
-    law: vi.FrictionLaw
+    law: vi.friction.FrictionLaw
     pressing: Floats
     until: float
 
@@ -285,7 +285,7 @@ def on_slope(
 ) -> OnSlope:
     one, law = (
         np.ones(1),
-        vi.find_friction_law("coulomb")(coefficient=mu, rolling_coefficient=rolling),
+        vi.friction.find_friction_law("coulomb")(coefficient=mu, rolling_coefficient=rolling),
     )
     ball = Sphere(
         MASS * one,
@@ -480,7 +480,7 @@ def test_rolling_resistance_against_an_integration(
 
 
 def test_a_run_comes_to_rest_by_rolling_resistance() -> None:
-    friction = vi.find_friction_law("coulomb")(coefficient=0.2, rolling_coefficient=0.05)
+    friction = vi.friction.find_friction_law("coulomb")(coefficient=0.2, rolling_coefficient=0.05)
     response = resting(oblique=vi.Oblique(velocity=(0.7, 0.0), friction=friction))
     assert response.energy["closure_relative"] < 1e-12
     assert response.energy["kinetic_J"] == pytest.approx(0.0, abs=1e-15)
@@ -507,7 +507,7 @@ def test_a_run_comes_to_rest_by_rolling_resistance() -> None:
 
 
 def test_a_history_is_integrated_once(monkeypatch: pytest.MonkeyPatch) -> None:
-    friction = vi.find_friction_law("coulomb")(coefficient=0.3, rolling_coefficient=0.05)
+    friction = vi.friction.find_friction_law("coulomb")(coefficient=0.3, rolling_coefficient=0.05)
     response = resting(
         oblique=vi.Oblique(
             velocity=(0.3, 0.7), spin=(10.0, 0.0, 0.0), gravity=(0.9, 0.0), friction=friction
@@ -526,7 +526,9 @@ def test_a_history_is_integrated_once(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_rolling_resistance_decides_whether_it_reaches_the_edge() -> None:
     for rolling, falls in ((0.01, True), (0.05, False)):
-        friction = vi.find_friction_law("coulomb")(coefficient=0.2, rolling_coefficient=rolling)
+        friction = vi.friction.find_friction_law("coulomb")(
+            coefficient=0.2, rolling_coefficient=rolling
+        )
         response = resting(
             duration=10.0,
             oblique=vi.Oblique(velocity=(0.7, 0.0), friction=friction, size=(1.5, 1.0)),
@@ -546,7 +548,7 @@ def test_an_impact_resists_rolling(agrees: Agrees, friction: str) -> None:
     """
     pair = {"effective_modulus": 1e9, "effective_shear_modulus": 8e8, "effective_radius": RADIUS}
     mu, rolling = 0.3, 0.04
-    law = vi.find_friction_law(friction)(
+    law = vi.friction.find_friction_law(friction)(
         coefficient=mu,
         rolling_coefficient=rolling,
         **({} if friction in ("coulomb", "rigid") else pair),
@@ -635,7 +637,7 @@ def test_elastic_friction_and_a_moment_act_together(
     the first case became 21 instead of 29 rad/s.
     """
     ball = _BALL
-    law = vi.find_friction_law("mindlin")(
+    law = vi.friction.find_friction_law("mindlin")(
         coefficient=ball["friction"],
         rolling_coefficient=ball["rolling"],
         effective_modulus=ball["modulus"],
@@ -647,7 +649,7 @@ def test_elastic_friction_and_a_moment_act_together(
             sphere=vi.Body(mass=ball["mass"], contact_offset=ball["radius"]),
             plate=vi.rigid_plate(),
             laws=(
-                vi.find_contact_law("hertz")(
+                vi.laws.find_contact_law("hertz")(
                     stiffness=4.0 / 3.0 * ball["modulus"] * ball["radius"] ** 0.5
                 ),
             ),
@@ -691,7 +693,7 @@ def test_balls_of_the_guide(
         "contact": {"law": "hertz", "friction": friction},
         "run": {"impacts": 1},
     }
-    impacts = vi.simulate(vi.read_case(case).to_problem()).impacts
+    impacts = vi.simulate(vi.case_of(case).to_problem()).impacts
     assert impacts["separation_velocity_x_m_s"][0] == pytest.approx(after[0], abs=1.5e-4)
     assert impacts["spin_y_after_rad_s"][0] == pytest.approx(after[1], abs=0.06)
 
@@ -706,8 +708,8 @@ def test_a_batch_with_resisted_drops_is_its_drops() -> None:
     rolling = np.array([0.0, 0.02, 0.0, 0.3])
 
     def found(coefficient: Any, speed: Any) -> vi.Response:
-        law = vi.find_friction_law("mindlin")(rolling_coefficient=coefficient, **friction)
-        contact = vi.find_contact_law("hunt-crossley")(stiffness=1.5e10, restitution=0.7)
+        law = vi.friction.find_friction_law("mindlin")(rolling_coefficient=coefficient, **friction)
+        contact = vi.laws.find_contact_law("hunt-crossley")(stiffness=1.5e10, restitution=0.7)
         ball = vi.Body(mass=0.03, contact_offset=0.01)
         oblique = vi.Oblique(velocity=(speed, 0.1), spin=(0.0, 20.0, 5.0), friction=law)
         return vi.simulate(
@@ -748,7 +750,7 @@ def test_a_contact_with_an_area_resists_twisting(agrees: Agrees) -> None:
     moment = (
         3.0 * np.pi / 16.0 * 0.2 * weight * (3.0 * weight * RADIUS / (4.0 * 1e9)) ** (1.0 / 3.0)
     )
-    law = vi.find_friction_law("mdr")(coefficient=0.2, **pair)
+    law = vi.friction.find_friction_law("mdr")(coefficient=0.2, **pair)
     until = 3.0 * 0.4 * MASS * RADIUS**2 / moment
     for time, left in ((0.25 * until, 2.25), (until, 0.0), (3.0 * until, 0.0)):
         state, _, _ = lie(ball, start, law, GRAVITY * one, np.array([[time]]))
@@ -760,7 +762,7 @@ def test_a_contact_with_an_area_resists_twisting(agrees: Agrees) -> None:
             unit="rad/s",
             absolute=1e-12,
         )
-    point = vi.find_friction_law("coulomb")(coefficient=0.2)
+    point = vi.friction.find_friction_law("coulomb")(coefficient=0.2)
     state, _, _ = lie(ball, start, point, GRAVITY * one, np.ones((1, 1)))
     assert state.spin[2, 0] == 3.0
 
@@ -775,9 +777,11 @@ def test_gravity_across_the_slip_turns_the_friction_of_an_impact(
     """
     stiffness, gravity, speed, slip = 1.3e8, np.array([0.5, 3.0]), 1.0, 1.0
     pair = {"effective_modulus": 1e9, "effective_shear_modulus": 8e8, "effective_radius": RADIUS}
-    law = vi.find_friction_law(friction)(coefficient=mu, **({} if friction == "coulomb" else pair))
+    law = vi.friction.find_friction_law(friction)(
+        coefficient=mu, **({} if friction == "coulomb" else pair)
+    )
     oblique = vi.Oblique(velocity=(slip, 0.0), gravity=tuple(gravity), friction=law)
-    hertz = (vi.find_contact_law("hertz")(stiffness=stiffness),)
+    hertz = (vi.laws.find_contact_law("hertz")(stiffness=stiffness),)
     impacts = resting(
         laws=hertz, height=None, speed=speed, gravity=0.0, impacts=1, duration=None, oblique=oblique
     ).impacts
@@ -825,7 +829,7 @@ def test_a_slip_of_rounding_is_none() -> None:
     spin = np.array([[-0.7 / 0.02], [1.3 / 0.02], [0.0]]) * (1.0 + 1e-15)
     start, law = (
         State(np.zeros((2, 1)), velocity, spin),
-        vi.find_friction_law("coulomb")(coefficient=0.3),
+        vi.friction.find_friction_law("coulomb")(coefficient=0.3),
     )
     state, _, _ = lie(ball, start, law, 9.81 * one, np.array([[2.0]]))
     assert state.velocity[:, 0] == pytest.approx([1.3 + 2.0 * 5.0 / 7.0, 0.7], rel=1e-12)

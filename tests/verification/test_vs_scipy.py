@@ -33,7 +33,7 @@ PAIR = ContactPair(
     yield_strength=3e7,
     poissons_ratio=0.3,
 )
-LAWS = [law for law in vi.contact_laws().values() if issubclass(law, CompliantLaw)]
+LAWS = [law for law in vi.laws.contact_laws().values() if issubclass(law, CompliantLaw)]
 
 
 def leg(
@@ -78,7 +78,7 @@ def test_restitution(agrees: Agrees, law: type[CompliantLaw], speed: float) -> N
         return state[0] - float(after.release_level)
 
     _, final = leg(after, [deepest, -1e-12], speed, out)
-    found = vi.integrated_restitution(one, 0.09, speed)
+    found = vi.laws.integrated_restitution(one, 0.09, speed)
     agrees(
         "all laws with a contact force, approach speeds 0.3 and 6 m/s",
         "coefficient of restitution",

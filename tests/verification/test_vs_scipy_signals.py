@@ -51,7 +51,7 @@ def test_the_envelope_is_that_between_silences(random: np.random.Generator) -> N
 
 def test_the_moments(agrees: Agrees, random: np.random.Generator) -> None:
     signals = random.gamma(2.0, size=(6, 700))
-    table = vi.feature_table(signals, 1.0)
+    table = vi.signals.feature_table(signals, 1.0)
     agrees(
         "six random signals", "skewness", table["skewness"], skew(signals, axis=1), relative=1e-12
     )
@@ -122,7 +122,9 @@ def test_the_cepstrum(agrees: Agrees, random: np.random.Generator) -> None:
         for number in range(20)
     ]
     level = np.log([band @ power / power.sum() + 1e-10 for band in bands])
-    table = vi.feature_table(signal[None], 1.0, [f"cepstrum_{number}" for number in range(1, 9)])
+    table = vi.signals.feature_table(
+        signal[None], 1.0, [f"cepstrum_{number}" for number in range(1, 9)]
+    )
     agrees(
         "640 samples of white noise",
         "cepstral coefficients",

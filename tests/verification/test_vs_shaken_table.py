@@ -439,7 +439,7 @@ def test_a_hard_ball_on_a_table_in_air(agrees: Agrees) -> None:
         KuwabaraKono(stiffness=1e8, dissipation_time=1e-5),
     ],
 )
-def test_a_table_without_amplitude_is_a_plate_at_rest(law: vi.ContactLaw) -> None:
+def test_a_table_without_amplitude_is_a_plate_at_rest(law: vi.laws.ContactLaw) -> None:
     still = vi.PlateMotion(amplitude=0.0, frequency=25.0)
     body = vi.Body(mass=0.1, contact_offset=0.01)
     settings: dict[str, Any] = {"height": 0.05, "gravity": G, "impacts": 20}
@@ -460,7 +460,7 @@ def test_a_table_without_amplitude_is_a_plate_at_rest(law: vi.ContactLaw) -> Non
 @pytest.mark.parametrize(
     "law", [Newton(restitution=0.6), KuwabaraKono(stiffness=1e8, dissipation_time=1e-5)]
 )
-def test_a_table_that_hardly_moves_is_nearly_a_plate_at_rest(law: vi.ContactLaw) -> None:
+def test_a_table_that_hardly_moves_is_nearly_a_plate_at_rest(law: vi.laws.ContactLaw) -> None:
     nearly = vi.PlateMotion(amplitude=1e-15, frequency=25.0)
     body = vi.Body(mass=0.1, contact_offset=0.01)
     settings: dict[str, Any] = {"height": 0.05, "gravity": G, "impacts": 5}
@@ -556,13 +556,13 @@ def test_friction_turns_with_a_table_that_shakes_across_the_slip(agrees: Agrees)
     """A sphere rides and slides over many periods: friction points against the slip at
     every instant, as in SciPy's integration of it.
     """
-    friction = vi.find_friction_law("mindlin")(
+    friction = vi.friction.find_friction_law("mindlin")(
         coefficient=0.05,
         effective_modulus=4e10,
         effective_shear_modulus=3e10,
         effective_radius=0.02,
     )
-    law = vi.find_contact_law("linear-spring-dashpot")(
+    law = vi.laws.find_contact_law("linear-spring-dashpot")(
         stiffness=1e7, restitution=0.1, effective_mass=0.087
     )
     motion = vi.PlateMotion(amplitude=2e-5, frequency=400.0, direction=(0.0, 1.0, 0.0))

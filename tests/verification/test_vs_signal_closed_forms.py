@@ -33,7 +33,7 @@ UNITS = {
 
 
 def features_of(signal: np.ndarray, rate: float, **settings: float) -> dict[str, float]:
-    table = vi.feature_table(np.asarray(signal)[None], rate, **settings)
+    table = vi.signals.feature_table(np.asarray(signal)[None], rate, **settings)
     return dict(zip(table.names, table.values[0].tolist(), strict=True))
 
 
@@ -325,7 +325,9 @@ def test_white_noise() -> None:
     over the number of samples.
     """
     rate, samples, number = 1000.0, 4096, 300
-    table = vi.feature_table(np.random.default_rng(7).standard_normal((number, samples)), rate)
+    table = vi.signals.feature_table(
+        np.random.default_rng(7).standard_normal((number, samples)), rate
+    )
     frequencies = samples // 2
     exact = {
         "mean": 0.0,

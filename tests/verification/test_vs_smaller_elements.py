@@ -51,7 +51,7 @@ def drop(
         "contact": {"law": "hertz"},
         "run": {"impacts": 1},
     }
-    return vi.simulate(vi.read_case(case))
+    return vi.simulate(vi.case_of(case))
 
 
 @pytest.mark.slow

@@ -54,7 +54,7 @@ def drop(
         ],
         **more,
     }
-    return vi.simulate(vi.read_case(case))
+    return vi.simulate(vi.case_of(case))
 
 
 def lever(place: tuple[float, float]) -> Floats:

@@ -145,7 +145,7 @@ def test_restitution(agrees: Agrees, index: float, ratio: float) -> None:
     agrees(
         f"{case}, integrated",
         "coefficient of restitution",
-        vi.integrated_restitution(law, MASS, speed),
+        vi.laws.integrated_restitution(law, MASS, speed),
         expected,
         relative=1e-6,
     )

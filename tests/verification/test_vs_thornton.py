@@ -52,7 +52,7 @@ def test_restitution(agrees: Agrees, ratio: float) -> None:
     agrees(
         f"{case}, integrated",
         "coefficient of restitution",
-        vi.integrated_restitution(LAW, MASS, speed),
+        vi.laws.integrated_restitution(LAW, MASS, speed),
         EXPECTED[ratio],
         absolute=1e-6,
     )

@@ -108,7 +108,7 @@ def test_work_to_break_and_restitution(agrees: Agrees) -> None:
         absolute=2e-3,
     )
     np.testing.assert_allclose(
-        vi.integrated_restitution(LAW, MASS, speeds),
+        vi.laws.integrated_restitution(LAW, MASS, speeds),
         LAW.closed_form_restitution(MASS, speeds),
         atol=1e-8,
     )
@@ -171,7 +171,7 @@ def test_viscous_loss_against_an_integration_in_the_contact_radius(
         events=broken,
     )
     # what is left between there and the break: nearly no way, so nearly no work
-    found = vi.integrated_restitution(law, MASS, speed)
+    found = vi.laws.integrated_restitution(law, MASS, speed)
     agrees(
         "viscous dissipation, three dissipation times",
         "coefficient of restitution",

@@ -89,7 +89,7 @@ def program(side: float, plate: Elastic, radius: float, **more: Any) -> vi.Respo
         "contact": {"law": "hertz"},
         "run": {"impacts": 1},
     }
-    return vi.simulate(vi.read_case(case))
+    return vi.simulate(vi.case_of(case))
 
 
 def exact(side: float, plate: Elastic, radius: float, **more: Any) -> Impact:

@@ -40,7 +40,7 @@ def friction(name: str = "mdr", coefficient: float = 0.092, softer: float = 1.0)
         "effective_shear_modulus": SHEAR / softer,
         "effective_radius": RADIUS,
     }
-    return vi.find_friction_law(name)(coefficient=coefficient, **pair)
+    return vi.friction.find_friction_law(name)(coefficient=coefficient, **pair)
 
 
 def part_of(law: Any, force: Floats, used: Floats, slip: Floats, spin: Floats) -> Floats:
@@ -79,7 +79,7 @@ def impact(
     """Return the impact of a sphere that slides, onto a rigid plate or another one."""
     oblique = vi.Oblique(velocity=(slip, 0.0), spin=(0.0, 0.0, spin), friction=law)
     values: dict[str, Any] = {"speed": speed, "gravity": 0.0, "impacts": 1, "oblique": oblique}
-    hertz = (vi.find_contact_law("hertz")(stiffness=STIFFNESS),)
+    hertz = (vi.laws.find_contact_law("hertz")(stiffness=STIFFNESS),)
     return vi.simulate(
         vi.Problem(
             sphere=vi.Body(mass=MASS, contact_offset=RADIUS),

@@ -65,7 +65,7 @@ def drop_watched(mesh: dict[str, Any], *more: dict[str, Any]) -> vi.Response:
         "run": {"duration": DURATION},
         "sensors": [*sensors, *more],
     }
-    return vi.simulate(vi.read_case(case))
+    return vi.simulate(vi.case_of(case))
 
 
 @pytest.fixture(scope="module")

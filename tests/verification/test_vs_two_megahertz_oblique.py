@@ -54,7 +54,7 @@ def response() -> vi.Response:
         "run": {"duration": DURATION, "impacts": 2},
         "sensors": [{"name": "two", "position": list(AWAY)}],
     }
-    return vi.simulate(vi.read_case(case))
+    return vi.simulate(vi.case_of(case))
 
 
 @pytest.fixture(scope="module")
@@ -140,7 +140,7 @@ def test_accelerometers(
 
 def test_friction_is_heard(response: vi.Response) -> None:
     """Its moment is a part of the signal: without friction it is another one."""
-    case = vi.read_case({**response.problem.source, "contact": {"law": "hertz"}})  # type: ignore[dict-item]
+    case = vi.case_of({**response.problem.source, "contact": {"law": "hertz"}})  # type: ignore[dict-item]
     without = vi.simulate(case).signals(Sensor("two"))["two"].value
     value = response.signals(Sensor("two"))["two"].value
     part = slice(0, round(0.5e-3 * SAMPLES))

@@ -63,7 +63,7 @@ def response() -> vi.Response:
     motion = vi.PlateMotion(
         amplitude=amplitudes, frequency=FREQUENCIES, phase=PHASES, direction=DIRECTION
     )
-    return vi.simulate(replace(vi.read_case(case).to_problem(), motion=motion))
+    return vi.simulate(replace(vi.case_of(case).to_problem(), motion=motion))
 
 
 @pytest.fixture(scope="module")

@@ -28,7 +28,7 @@ def test_constant_restitution(agrees: Agrees) -> None:
     agrees(
         "constant coefficient of restitution",
         "coefficient of restitution",
-        vi.integrated_restitution(law, MASS, SPEEDS),
+        vi.laws.integrated_restitution(law, MASS, SPEEDS),
         0.6,
         relative=1e-10,
     )
@@ -41,7 +41,7 @@ def test_restitution_that_falls_with_the_speed(agrees: Agrees) -> None:
     agrees(
         "coefficient of restitution decreasing with the speed",
         "coefficient of restitution",
-        vi.integrated_restitution(law, MASS, SPEEDS),
+        vi.laws.integrated_restitution(law, MASS, SPEEDS),
         exact,
         relative=1e-10,
     )

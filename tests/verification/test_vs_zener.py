@@ -209,7 +209,7 @@ def kirchhoff(
         "run": {"impacts": 1},
     }
     inelasticity = mass / (8.0 * np.sqrt(rigidity * area) * (mass / stiffness) ** 0.4)
-    return vi.simulate(vi.read_case(case)), series, float(inelasticity)
+    return vi.simulate(vi.case_of(case)), series, float(inelasticity)
 
 
 @pytest.mark.slow

@@ -11,7 +11,7 @@ import tomli_w
 from vibroimpact.app.draft import draft_of, drafted
 from vibroimpact.app.messages import Detail
 from vibroimpact.app.served_cases import check_bounds, check_table
-from vibroimpact.cases.reader import read_case
+from vibroimpact.cases.reader import case_of
 from vibroimpact.charts.made import drawn, made_charts
 from vibroimpact.charts.plotly import plotly_chart
 from vibroimpact.dynamics.simulate import simulate
@@ -66,7 +66,7 @@ def state_of(
     'Stopped after 5 impacts, at the top of the last rebound, at 5.11709 s.'
     """
     check_table(table)
-    case = read_case(table)
+    case = case_of(table)
     check_bounds(case)
     problem = case.to_problem(lambda part: tell(MODES, part), lambda note: None)
     response = simulate(

@@ -69,7 +69,7 @@ class Bound(Reported, reported_in="vibroimpact.bayes_error.report"):
     Examples
     --------
     >>> import vibroimpact as vi
-    >>> bound = vi.bound_of(vi.load_sweep("signals:coal-gangue", samples=100))
+    >>> bound = vi.bayes_error.bound_of(vi.studies.load_sweep("signals:coal-gangue", samples=100))
     >>> float(bound.majority), bound.map.shape, list(bound.errors)[:3]
     (0.36, (6, 6), ['impulse', 'contact time', 'one impact'])
     """
@@ -119,7 +119,7 @@ def bound_of(
     Examples
     --------
     >>> import vibroimpact as vi
-    >>> bound = bound_of(vi.load_sweep("signals:coal-gangue", 1000))
+    >>> bound = bound_of(vi.studies.load_sweep("signals:coal-gangue", 1000))
     >>> bound.errors["contact time"].upper > 5 * bound.errors["one impact"].upper
     True
     """
@@ -202,7 +202,7 @@ def least_error(falls: Falls, seed: int = 0) -> float:
     Examples
     --------
     >>> import vibroimpact as vi
-    >>> least_error(falls_of_sweep(vi.load_sweep("signals:coal-gangue", 2000))) < 0.01
+    >>> least_error(falls_of_sweep(vi.studies.load_sweep("signals:coal-gangue", 2000))) < 0.01
     True
     """
     # the scatter of the time to the next impact is the default

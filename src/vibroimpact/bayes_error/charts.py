@@ -38,7 +38,7 @@ def bound_charts(bound: Bound) -> list[Chart]:
     >>> [
     ...     chart.name
     ...     for chart in bound_charts(
-    ...         vi.bound_of(vi.load_sweep("signals:coal-gangue", samples=256))
+    ...         vi.bayes_error.bound_of(vi.studies.load_sweep("signals:coal-gangue", samples=256))
     ...     )
     ... ]
     ['errors', 'impacts', 'sensors']

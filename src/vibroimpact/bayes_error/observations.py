@@ -43,7 +43,7 @@ class Channel:
     Examples
     --------
     >>> import vibroimpact as vi
-    >>> channel = vi.Channel(bandwidth=25e3, signal_to_noise=60.0)
+    >>> channel = vi.bayes_error.Channel(bandwidth=25e3, signal_to_noise=60.0)
     >>> channel.bandwidth, channel.gain, channel.place
     (25000.0, 0.02, 0.3)
     """

@@ -42,7 +42,9 @@ def report_of(bound: Bound) -> Report:
     Examples
     --------
     >>> import vibroimpact as vi
-    >>> report = report_of(vi.bound_of(vi.load_sweep("signals:coal-gangue", samples=100)))
+    >>> report = report_of(
+    ...     vi.bayes_error.bound_of(vi.studies.load_sweep("signals:coal-gangue", samples=100))
+    ... )
     >>> list(report.files), report.sections[0].title
     (['bound.csv', 'map.csv'], 'Classification error by measured quantities')
     """

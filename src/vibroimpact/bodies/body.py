@@ -38,7 +38,7 @@ class Body:
     >>> import vibroimpact as vi
     >>> ball = vi.Body(mass=0.09, contact_offset=0.025)
     >>> table = vi.Body(mass=float("inf"), contact_offset=0.0)
-    >>> law = vi.find_contact_law("newton")(restitution=0.5)
+    >>> law = vi.laws.find_contact_law("newton")(restitution=0.5)
     >>> vi.tabulate(vi.Problem(sphere=ball, plate=table, laws=(law,), height=1.0)).impacts[
     ...     "rebound_height_m"
     ... ].shape

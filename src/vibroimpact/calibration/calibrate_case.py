@@ -1,4 +1,4 @@
-"""Calibrate a case with a [calibrate] section, and return the case with the calibrated values."""
+"""Calibrate a case with a [calibrate] section."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import numpy as np
 
 from vibroimpact.calibration.calibrate import calibrate
 from vibroimpact.calibration.calibrated_drops import impact_count
-from vibroimpact.calibration.calibration import Calibration
+from vibroimpact.calibration.calibration import DAMPINGS, Calibration
 from vibroimpact.calibration.friction.calibrate import FrictionCalibration, calibrate_friction
 from vibroimpact.calibration.friction.measured import oblique_impacts_in_file
 from vibroimpact.calibration.friction.parameters import friction_parameters
@@ -21,11 +21,11 @@ from vibroimpact.calibration.section import FRICTION, CalibrateSection, FileTarg
 from vibroimpact.calibration.targets import target_of
 from vibroimpact.calibration.tunables import law_parameter, modal_damping
 from vibroimpact.calibration.typed_inputs import Moved, moved_inputs, typed_inputs
-from vibroimpact.cases.build import problem_of, resolved_case
+from vibroimpact.cases.build import problem_of
 from vibroimpact.cases.case import Case
 from vibroimpact.cases.fields.contact import read_contact
 from vibroimpact.cases.fields.local import LocalSection
-from vibroimpact.cases.reader import load_table, prefix_errors, read_case
+from vibroimpact.cases.reader import case_of, load_table, prefix_errors
 from vibroimpact.contact.friction.law import FrictionLaw
 from vibroimpact.contact.pair import ContactPair
 from vibroimpact.contact.registry import find_contact_law, friction_laws
@@ -47,7 +47,6 @@ _ANY_PAIR = ContactPair(1e9, 0.01, 0.01, 1e8, 0.3)
 """A pair of bodies with which the parameters of a law are tried."""
 
 _FRICTION_TARGET = "a table of measured oblique impacts; give its file"
-_DAMPINGS = ("sphere.damping", "plate.damping")
 
 
 class ToCalibrate(NamedTuple):
@@ -83,10 +82,10 @@ def load_calibration(
     >>> load_calibration("paper:calibration", {"calibrate.degree": 1}).case.calibrate.degree
     1
     """
-    return prefix_errors(source, lambda: read_calibration(load_table(source, changes)))
+    return prefix_errors(source, lambda: calibration_of(load_table(source, changes)))
 
 
-def read_calibration(table: Mapping[str, Any]) -> ToCalibrate:
+def calibration_of(table: Mapping[str, Any]) -> ToCalibrate:
     """Read a case to calibrate from a mapping with the structure of a TOML case file.
 
     Raises
@@ -98,7 +97,9 @@ def read_calibration(table: Mapping[str, Any]) -> ToCalibrate:
     --------
     >>> import vibroimpact as vi
     >>> case = vi.load_case("paper:type1-constant").to_problem().source
-    >>> what = vi.read_calibration({**case, "calibrate": {"target": {"restitution": 0.7}}})
+    >>> what = vi.calibration.calibration_of(
+    ...     {**case, "calibrate": {"target": {"restitution": 0.7}}}
+    ... )
     >>> what.case.contact.law, what.case.calibrate.target.restitution
     ('adams-impact', 0.7)
     """
@@ -108,7 +109,7 @@ def read_calibration(table: Mapping[str, Any]) -> ToCalibrate:
     contact: Any = whole.get("contact")
     readable = isinstance(section, dict) and isinstance(contact, dict)
     if not readable or not set(section) <= set(CalibrateSection.model_fields):
-        return ToCalibrate(read_case(whole), True)  # which reports what is wrong
+        return ToCalibrate(case_of(whole), True)  # which reports what is wrong
     model = section.pop("model", None)
     if isinstance(model, str):
         model = {"law": model}
@@ -128,7 +129,7 @@ def read_calibration(table: Mapping[str, Any]) -> ToCalibrate:
     whole["contact"] = started
     whole["calibrate"] = section
     try:
-        return ToCalibrate(read_case(whole), started is contact, law_at)
+        return ToCalibrate(case_of(whole), started is contact, law_at)
     except InputError as error:
         raise InputError.of_several(
             _under_written_key(fault, own_target, model is not None) for fault in error.faults
@@ -160,7 +161,7 @@ def calibrate_case(
     Parameters
     ----------
     what : ToCalibrate
-        The case, as read by `load_calibration` or `read_calibration`.
+        The case, as read by `load_calibration` or `calibration_of`.
     progress : callable, optional
         Called with the fraction done, in [0, 1].
     tell : callable, optional
@@ -202,7 +203,7 @@ def calibrate_case(
     tuned = names if isinstance(calibration, FrictionCalibration) else (calibration.parameter,)
     # computed values are not checked for slips of units
     not_checked = {*tuned, *(f"contact.{name}" for name in tuned)}
-    doubts = _doubts_of_a_run(case, calibration, not_checked)
+    doubts = _doubts_of_a_run(calibration, not_checked)
     return replace(calibration, doubts=(*doubts, *calibration.doubts))
 
 
@@ -224,48 +225,14 @@ def _check_contact_law(what: ToCalibrate, problem: Problem) -> None:
         )
 
 
-def calibrated_case(case: Case, found: Calibration | FrictionCalibration) -> Case:
-    """Return the case with the calibrated values.
-
-    There is one per impact for a law parameter, a single one for modal damping and friction.
-
-    Parameters
-    ----------
-    case : Case
-        The calibrated case.
-    found : Calibration or FrictionCalibration
-        Result of its calibration.
-
-    Examples
-    --------
-    >>> import vibroimpact as vi
-    >>> what = vi.load_calibration("paper:type1-theory")
-    >>> case = vi.calibrated_case(what.case, vi.calibrate_case(what))
-    >>> len(case.to_problem().laws), round(case.to_problem().laws[0].damping_max, 3)
-    (5, 179.79)
-    """
-    table: dict[str, Any] = {
-        key: value for key, value in resolved_case(case).items() if key != "calibrate"
-    }
-    if isinstance(found, FrictionCalibration):
-        friction_values = dict(zip(found.parameters.names, found.values.tolist(), strict=True))
-        friction = {**table["contact"]["friction"], **friction_values}
-        return read_case({**table, "contact": {**table["contact"], "friction": friction}})
-    values = found.impacts[1].tolist()
-    if found.parameter in _DAMPINGS:
-        body = found.parameter.partition(".")[0]
-        return read_case({**table, body: {**table[body], "damping": values[0]}})
-    return read_case({**table, "contact": {**table["contact"], found.parameter: values}})
-
-
 def _doubts_of_a_run(
-    case: Case, calibration: Calibration | FrictionCalibration, not_checked: Container[str]
+    calibration: Calibration | FrictionCalibration, not_checked: Container[str]
 ) -> list[str]:
     """Return the doubts that a run of the calibrated case states.
 
     What is matched to a rebound may still exceed a limit of the theory.
     """
-    problem = calibrated_case(case, calibration).to_problem()
+    problem = calibration.calibrated_case.to_problem()
     return result_of(simulate(problem)).doubts_but(not_checked)
 
 
@@ -410,6 +377,6 @@ def _with_coefficient(contact: dict[str, Any], names: tuple[str, ...]) -> dict[s
 
 
 def _tunable(problem: Problem, parameter: str | None) -> Tunable:
-    if parameter not in _DAMPINGS:
+    if parameter not in DAMPINGS:
         return law_parameter(problem, parameter)
     return modal_damping(problem, "sphere" if parameter == "sphere.damping" else "plate")

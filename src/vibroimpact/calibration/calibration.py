@@ -4,17 +4,25 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import Any
 
 from vibroimpact.arrays import Floats
 from vibroimpact.calibration.fitting import Fit
 from vibroimpact.calibration.observations import Observations
 from vibroimpact.calibration.overlay import Overlay
+from vibroimpact.cases.case import Case
+from vibroimpact.cases.reader import case_of
 from vibroimpact.dynamics.problem import Problem
+from vibroimpact.errors import InputError
 from vibroimpact.ranges import Range
+from vibroimpact.report.reported import Reported
+
+DAMPINGS = ("sphere.damping", "plate.damping")
+"""Modal dampings that can be calibrated, by their keys in a case."""
 
 
 @dataclass(frozen=True)
-class Calibration:
+class Calibration(Reported, reported_in="vibroimpact.calibration.report"):
     """The result of a calibration.
 
     Parameters
@@ -65,7 +73,7 @@ class Calibration:
     Examples
     --------
     >>> import vibroimpact as vi
-    >>> found = vi.calibrate(
+    >>> found = vi.calibration.calibrate(
     ...     vi.load_case("paper:type1-constant"), vi.load_case("paper:type1-theory")
     ... )
     >>> found.parameter, found.unit, found.values.round(1).tolist()
@@ -92,3 +100,50 @@ class Calibration:
     bootstrap: int
     overlays: tuple[Overlay, ...] = field(repr=False)
     doubts: tuple[str, ...]
+
+    @property
+    def calibrated_case(self) -> Case:
+        """The case with the calibrated values, ready to run.
+
+        There is one value per impact for a parameter of a law, and one for modal damping.
+
+        Raises
+        ------
+        InputError
+            If the drop was stated in Python, and has no case.
+
+        Examples
+        --------
+        >>> import vibroimpact as vi
+        >>> task = vi.calibration.load_calibration("paper:type1-theory")
+        >>> problem = vi.calibration.calibrate_case(task).calibrated_case.to_problem()
+        >>> len(problem.laws), round(problem.laws[0].damping_max, 3)
+        (5, 179.79)
+        """
+        table = sections_of_case(self.problem)
+        values = self.impacts[1].tolist()
+        if self.parameter in DAMPINGS:
+            body = self.parameter.partition(".")[0]
+            return case_of({**table, body: {**table[body], "damping": values[0]}})
+        return case_of({**table, "contact": {**table["contact"], self.parameter: values}})
+
+
+def sections_of_case(problem: Problem) -> dict[str, Any]:
+    """Return the sections of the case of a drop but [calibrate].
+
+    Raises
+    ------
+    InputError
+        If the drop was stated in Python, and has no case.
+    """
+    if not problem.source:
+        raise InputError(
+            "the drop was stated in Python and has no case; vi.load_case and vi.case_of return "
+            "one, which calibrate takes as well"
+        )
+    return {key: value for key, value in problem.source.items() if key != "calibrate"}
+
+
+def case_name(problem: Problem) -> str:
+    """Return the name of the case of a drop; empty if it has none."""
+    return problem.source["name"] if problem.source else ""

@@ -41,7 +41,7 @@ def calibration_charts(found: Calibration | FrictionCalibration) -> list[Chart]:
     Examples
     --------
     >>> import vibroimpact as vi
-    >>> found = vi.calibrate_case(vi.load_calibration("paper:type1-theory"))
+    >>> found = vi.calibration.calibrate_case(vi.calibration.load_calibration("paper:type1-theory"))
     >>> [chart.name for chart in calibration_charts(found)]
     ['parameter', 'differences']
     """

@@ -10,7 +10,7 @@ import numpy as np
 
 from vibroimpact._version import __version__
 from vibroimpact.calibration.adams_dialog import calibrated_dialog
-from vibroimpact.calibration.calibration import Calibration
+from vibroimpact.calibration.calibration import Calibration, case_name
 from vibroimpact.calibration.differences import (
     COMPARED,
     WAYS,
@@ -20,22 +20,18 @@ from vibroimpact.calibration.differences import (
 )
 from vibroimpact.calibration.inputs import inputs_document
 from vibroimpact.calibration.matchable import MATCHABLE
-from vibroimpact.cases.build import resolved_case
-from vibroimpact.cases.case import Case
 
 CALIBRATION = "calibration.json"
 _SHORT = {quantity.column: name for name, quantity in MATCHABLE.items()}
 
 
-def calibration_table(case: Case, found: Calibration) -> dict[str, Any]:
+def calibration_table(found: Calibration) -> dict[str, Any]:
     """Return the contents of `calibration.json`; None where there is no finite value.
 
     Parameters
     ----------
-    case : Case
-        The calibrated case.
     found : Calibration
-        Result of its calibration.
+        The calibration.
     """
     fit, (speeds, values) = found.fit, found.impacts
     curve = (
@@ -45,8 +41,8 @@ def calibration_table(case: Case, found: Calibration) -> dict[str, Any]:
     )
     return {
         "version": __version__,
-        "name": case.name,
-        "law": case.contact.law,
+        "name": case_name(found.problem),
+        "law": found.problem.laws[0].name,
         "parameter": found.parameter,
         "unit": found.unit,
         "match": dict(found.weights),
@@ -84,7 +80,7 @@ def calibration_table(case: Case, found: Calibration) -> dict[str, Any]:
         if found.observations.effects is None
         else inputs_document(found.observations.effects.inputs),
         "doubts": list(found.doubts),
-        "case": resolved_case(case),
+        "case": found.problem.source or None,
     }
 
 

@@ -102,7 +102,7 @@ class Observations:
     --------
     >>> import numpy as np
     >>> import vibroimpact as vi
-    >>> exact = vi.Observations(
+    >>> exact = vi.calibration.Observations(
     ...     speeds=np.array([8.8, 6.8]), wanted={"restitution": np.array([0.77, 0.78])}
     ... )
     >>> exact.measured, exact.which.tolist()

@@ -11,8 +11,7 @@ import tomli_w
 
 from vibroimpact._version import __version__
 from vibroimpact.calibration.adams_dialog import calibrated_dialog, dialog_note, dialog_table
-from vibroimpact.calibration.calibrate_case import calibrated_case
-from vibroimpact.calibration.calibration import Calibration
+from vibroimpact.calibration.calibration import Calibration, case_name
 from vibroimpact.calibration.charts import calibration_charts
 from vibroimpact.calibration.file_contents import (
     CALIBRATION,
@@ -39,34 +38,31 @@ from vibroimpact.calibration.law_report import (
     ways_words,
 )
 from vibroimpact.cases.build import resolved_case
-from vibroimpact.cases.case import Case
 from vibroimpact.files.check_sums import CHECK_SUMS, file_digest, sealed
 from vibroimpact.report.report import Block, Code, Explanation, Note, Report, Section
 from vibroimpact.results.csv_files import write_csv
 from vibroimpact.results.folder import CASE, write_case
 
 
-def report_of(case: Case, calibration: Calibration | FrictionCalibration) -> Report:
-    """Return the report of the calibration of a case.
+def report_of(calibration: Calibration | FrictionCalibration) -> Report:
+    """Return the report of a calibration.
 
-    The folder has `calibration.json`, `case.toml` (the case with the calibrated values, ready to
-    run), `matched.csv` and, of contact laws, `comparison.csv`.
+    The folder has `calibration.json`, `matched.csv`, of contact laws `comparison.csv`, and of a
+    case `case.toml`: the case with the calibrated values, ready to run.
 
     Parameters
     ----------
-    case : Case
-        The calibrated case.
     calibration : Calibration or FrictionCalibration
-        Result of its calibration.
+        The calibration.
     """
     if isinstance(calibration, FrictionCalibration):
-        return _friction_report(case, calibration)
-    return _law_report(case, calibration)
+        return _friction_report(calibration)
+    return _law_report(calibration)
 
 
-def _law_report(case: Case, calibration: Calibration) -> Report:
+def _law_report(calibration: Calibration) -> Report:
     """Return the report of the calibration of a parameter of a contact law."""
-    document = calibration_table(case, calibration)
+    document = calibration_table(calibration)
     comparison = comparison_rows(calibration)
     impacts: list[Block] = [values_table(calibration)]
     if dialog := calibrated_dialog(calibration):
@@ -80,10 +76,9 @@ def _law_report(case: Case, calibration: Calibration) -> Report:
         values = Explanation("All values are in comparison.csv.")
         sections.append(Section("wrong", "Remaining differences", [*tables, note, values]))
     return _report(
-        case,
         calibration,
         answer=function_words(calibration),
-        matched=f"With {case.contact.law}, {match_words(calibration)}.",
+        matched=f"With {calibration.problem.laws[0].name}, {match_words(calibration)}.",
         sentences=[*given_sentences(calibration), *fit_sentences(calibration)],
         sections=sections,
         parameter=calibration.parameter,
@@ -92,13 +87,12 @@ def _law_report(case: Case, calibration: Calibration) -> Report:
     )
 
 
-def _friction_report(case: Case, calibration: FrictionCalibration) -> Report:
+def _friction_report(calibration: FrictionCalibration) -> Report:
     """Return the report of a calibration of friction."""
-    document = friction_document(case, calibration)
+    document = friction_document(calibration)
     law = calibration.parameters.law.name
     impacts = Section("impacts", "Impact by impact", (friction_table(calibration),))
     return _report(
-        case,
         calibration,
         answer=friction_words(calibration),
         matched=f"With friction by {law}, {together_words(calibration)}.",
@@ -111,7 +105,6 @@ def _friction_report(case: Case, calibration: FrictionCalibration) -> Report:
 
 
 def _report(
-    case: Case,
     calibration: Calibration | FrictionCalibration,
     *,
     answer: str,
@@ -123,32 +116,36 @@ def _report(
     tables: Mapping[str, Sequence[Mapping[str, Any]]],
 ) -> Report:
     """Return a report with what calibrations of laws and of friction have in common."""
-    name = case.name or "a drop"
-    lead = "As it was given; the calibrated one is case.toml, beside this page."
-    code = Code("case", lead, tomli_w.dumps(resolved_case(case)))
-    calibrated = calibrated_case(case, calibration)
-    files: dict[str, Callable[[Path], object]] = {
-        CASE: partial(write_case, resolved_case(calibrated)),
-        CALIBRATION: partial(_write_calibration, document),
-    }
+    case = calibration.problem.source
+    name = case_name(calibration.problem)
+    title = name or "a drop"
+    sections = list(sections)
+    files: dict[str, Callable[[Path], object]] = {}
+    if case:
+        lead = "As it was given; the calibrated one is case.toml, beside this page."
+        code = Code("case", lead, tomli_w.dumps(case))
+        sections.append(Section("case", "Case", (code,), after_charts=True))
+        files[CASE] = partial(write_case, resolved_case(calibration.calibrated_case))
+    files[CALIBRATION] = partial(_write_calibration, document)
     for table, rows in tables.items():
         files[f"{table}.csv"] = partial(_write_rows, rows)
     return Report(
-        title=f"{name[:1].upper()}{name[1:]}, calibrated",
+        title=f"{title[:1].upper()}{title[1:]}, calibrated",
         answer=answer,
         sentences=[matched, *sentences],
-        sections=[*sections, Section("case", "Case", (code,), after_charts=True)],
+        sections=sections,
         charts=calibration_charts(calibration),
         warnings=calibration.doubts,
         files=files,
-        summary={"name": case.name, "version": __version__, "calibration": parameter},
+        summary={"name": name, "version": __version__, "calibration": parameter},
         data={**document, **tables},
     )
 
 
 def _write_calibration(document: Mapping[str, Any], path: Path) -> None:
-    """Write the calibration with the checksum of the case beside it, and its own."""
-    check_sums = {CASE: file_digest(path.parent / CASE)}
+    """Write the calibration with its checksum, and that of the case beside it if there is one."""
+    case = path.parent / CASE
+    check_sums = {CASE: file_digest(case)} if case.exists() else {}
     path.write_bytes(sealed({**document, CHECK_SUMS: check_sums}))
 
 

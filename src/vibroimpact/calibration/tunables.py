@@ -131,7 +131,7 @@ def modal_damping(problem: Problem, body: Literal["sphere", "plate"]) -> Tunable
     Examples
     --------
     >>> import vibroimpact as vi
-    >>> problem = vi.read_case(
+    >>> problem = vi.case_of(
     ...     {
     ...         "sphere": {
     ...             "radius": "25 mm",
@@ -145,7 +145,7 @@ def modal_damping(problem: Problem, body: Literal["sphere", "plate"]) -> Tunable
     ...         "contact": {"law": "hertz"},
     ...     }
     ... ).to_problem()
-    >>> vi.modal_damping(problem, "sphere").given.tolist()
+    >>> vi.calibration.modal_damping(problem, "sphere").given.tolist()
     [0.02]
     """
     modal_body = getattr(problem, body)

@@ -14,7 +14,7 @@ from vibroimpact.dynamics.problem import Problem
 class Case(CaseTable):
     """A case: the file, validated, in SI.
 
-    Read one with `load_case` or `read_case`; `to_problem` states it for the simulation.
+    Read one with `load_case` or `case_of`; `to_problem` states it for the simulation.
 
     Examples
     --------

@@ -174,7 +174,7 @@ def prefix_errors(source: str | PathLike[str], read: Callable[[], Read]) -> Read
         raise InputError.of_several(f"{name}: {fault}" for fault in error.faults) from None
 
 
-def read_case(table: Mapping[str, Any]) -> Case:
+def case_of(table: Mapping[str, Any]) -> Case:
     """Return the case of a mapping with the structure of a case file.
 
     Raises
@@ -184,7 +184,7 @@ def read_case(table: Mapping[str, Any]) -> Case:
 
     Examples
     --------
-    >>> case = read_case(
+    >>> case = case_of(
     ...     {
     ...         "sphere": {"radius": "25 mm", "material": "granite"},
     ...         "plate": {"material": "rigid"},

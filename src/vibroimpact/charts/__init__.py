@@ -1,3 +1,5 @@
-"""Charts: described once as data, drawn by plotly in pages and notebooks, and by
-matplotlib as files.
-"""
+"""Charts as data, drawn by plotly in pages and notebooks, and by matplotlib as files."""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -65,8 +65,8 @@ def bound(
     from vibroimpact.bayes_error.bound import bound_of
     from vibroimpact.bayes_error.observations import Channel
     from vibroimpact.results.folder import check_free
-    from vibroimpact.studies.read_sweep import load_sweep
-    from vibroimpact.studies.study import read_study
+    from vibroimpact.studies.study import load_study
+    from vibroimpact.studies.sweep_file import load_sweep
 
     target = Path(f"{stem(population)}-bound") if output is None else output
     check_free(target, force=force)
@@ -83,6 +83,6 @@ def bound(
     channel = Channel(bandwidth=band, signal_to_noise=signal_to_noise)
     with progress_of("Bayes error", as_json=as_json) as progress:
         is_study = Path(population).is_dir()
-        falls = read_study(population) if is_study else load_sweep(population, samples)
+        falls = load_study(population) if is_study else load_sweep(population, samples)
         bound = bound_of(falls, channel, progress=progress)
     save_and_show(bound, target, force=force, as_json=as_json)

@@ -23,7 +23,6 @@ from vibroimpact.cli.shared import (
     save_and_show,
     settings_of,
     stem,
-    write_and_show,
     written_in,
 )
 from vibroimpact.errors import InputError
@@ -134,24 +133,22 @@ def calibrate(
                 f"{option} goes with {kinds[0]} ({', '.join(kinds[1])}); a case has its own keys"
             )
     from vibroimpact.calibration.calibrate_case import calibrate_case, load_calibration
-    from vibroimpact.calibration.report import report_of
     from vibroimpact.cases.reader import prefix_errors
 
     what = load_calibration(case, settings_of(changes))
     check_free(target, force=force)
     with progress_of("calibrating", as_json=as_json) as progress:
         calibration = prefix_errors(case, lambda: calibrate_case(what, progress, note))
-    report = report_of(what.case, calibration)
-    write_and_show(report, target, force=force, figures=figures, as_json=as_json)
+    save_and_show(calibration, target, force=force, figures=figures, as_json=as_json)
 
 
 def _fit_table(
     file: Path, target: Path, columns: str | None, *, figures: bool, force: bool, as_json: bool
 ) -> None:
     """Fit the restitutions of a table over the approach speed, and print and write them."""
-    from vibroimpact.calibration.restitutions.restitutions import read_restitutions
+    from vibroimpact.calibration.restitutions.restitutions import load_restitutions
 
-    restitutions = read_restitutions(file, columns=columns)
+    restitutions = load_restitutions(file, columns=columns)
     save_and_show(restitutions, target, force=force, figures=figures, as_json=as_json)
 
 

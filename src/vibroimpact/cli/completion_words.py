@@ -19,7 +19,7 @@ from vibroimpact.contact.registry import contact_laws
 from vibroimpact.exporting.export_format import export_formats
 from vibroimpact.materials import RIGID, material_library
 from vibroimpact.paper.report.outline import PARTS
-from vibroimpact.signals.registry import features
+from vibroimpact.signals.registry import signal_features
 from vibroimpact.test_analysis.compared_kind import KINDS
 
 Schema = Mapping[str, Any]
@@ -57,7 +57,7 @@ def completion_words() -> dict[str, Any]:
         "materials": [*materials, RIGID.name],
         "formats": list(export_formats()),
         "parts": list(PARTS),
-        "features": list(features()),
+        "features": list(signal_features()),
         "compared": list(KINDS),
     }
 

@@ -108,7 +108,7 @@ def correlate(
     """
     from vibroimpact.cases.reader import load_case
     from vibroimpact.results.folder import check_free
-    from vibroimpact.signals.read_records import read_records
+    from vibroimpact.signals.record_files import load_records
     from vibroimpact.test_analysis.compared_kind import compared_kind
     from vibroimpact.test_analysis.correlate import correlate as correlate_records
 
@@ -128,7 +128,7 @@ def correlate(
             )
         correlation = _correlated_responses(test_case, records, hammer, band_ends, as_json=as_json)
     else:
-        measured = [record for path in records for record in read_records(path, columns)]
+        measured = [record for path in records for record in load_records(path, columns)]
         force_record = None if hammer is None else _force_among(measured, hammer)
         motions = [record for record in measured if record is not force_record]
         with progress_of("correlating", as_json=as_json) as progress:
@@ -153,10 +153,10 @@ def _correlated_responses(
     as_json: bool,
 ) -> ResponseCorrelation:
     """Return the comparison of measured frequency responses with those of a case."""
-    from vibroimpact.signals.reading.universal_responses import read_responses
+    from vibroimpact.signals.reading.universal_responses import load_responses
     from vibroimpact.test_analysis.responses.compare import correlate_responses
 
-    responses = [response for path in paths for response in read_responses(path)]
+    responses = [response for path in paths for response in load_responses(path)]
     with progress_of("correlating", as_json=as_json) as progress:
         return correlate_responses(
             case, responses, reference=reference, band=band, progress=progress

@@ -90,7 +90,7 @@ def check(case: CaseArgument, changes: Changes = None, as_json: Json = False) ->
     from vibroimpact.runs.case_document import case_document
     from vibroimpact.runs.case_explained import case_explained
     from vibroimpact.studies.explain_sweep import explain_sweep, sweep_document
-    from vibroimpact.studies.read_sweep import read_sweep
+    from vibroimpact.studies.sweep_file import sweep_of
 
     others = settings_of(changes)
     table = prefix_errors(case, lambda: load_table(case, others))
@@ -104,7 +104,7 @@ def check(case: CaseArgument, changes: Changes = None, as_json: Json = False) ->
             as_json=as_json,
         )
         return
-    study = prefix_errors(case, lambda: read_sweep(table))
+    study = prefix_errors(case, lambda: sweep_of(table))
     show(
         lambda: {
             "study": sweep_document(study),
@@ -135,7 +135,7 @@ def _run(
     from vibroimpact.runs.page import write_report
     from vibroimpact.runs.save import write_data
     from vibroimpact.runs.text import result_summary
-    from vibroimpact.studies.read_sweep import load_drop
+    from vibroimpact.studies.sweep_file import load_drop
 
     case = load_case(name, changes) if drop is None else load_drop(name, drop, changes)
     target = (

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from vibroimpact.errors import InputError
 from vibroimpact.report.markdown_table import markdown_table
-from vibroimpact.signals.registry import features
+from vibroimpact.signals.registry import signal_features
 
 BEGIN, END = "<!-- features: begin (written by make docs) -->", "<!-- features: end -->"
 """The marker lines before and after the table."""
@@ -40,7 +40,7 @@ def feature_page(page: str) -> str:
             f"`{_cell(one.equation)}`",
             one.source,
         )
-        for one in features().values()
+        for one in signal_features().values()
     )
     table = markdown_table(("feature", "unit", "what", "equation", "source"), rows)
     return f"{before}{BEGIN}\n{table}\n{END}{after}"

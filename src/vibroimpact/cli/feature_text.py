@@ -12,7 +12,7 @@ from rich.text import Text
 from vibroimpact.report.terminal_table import TerminalColumn, TerminalTable
 from vibroimpact.signals.reasons import Reason
 from vibroimpact.signals.record_table import RecordTable
-from vibroimpact.signals.registry import features
+from vibroimpact.signals.registry import signal_features
 from vibroimpact.units.display import digits
 
 _SIGNAL = "x"
@@ -21,7 +21,7 @@ _SIGNAL = "x"
 
 def feature_list() -> RenderableType:
     """Return the table of features."""
-    found = features().values()
+    found = signal_features().values()
     columns = (
         TerminalColumn("feature", [one.name for one in found], text=True),
         TerminalColumn("unit", [one.unit_for(_SIGNAL) for one in found], text=True),
@@ -51,7 +51,7 @@ def features_document() -> dict[str, Any]:
                 "offset_free": one.offset_free,
                 "least_samples": one.least,
             }
-            for one in features().values()
+            for one in signal_features().values()
         }
     }
 
@@ -100,7 +100,7 @@ def table_summary(table: RecordTable) -> RenderableType:
         cells.append(
             (
                 name,
-                features()[name].unit_for(unit),
+                signal_features()[name].unit_for(unit),
                 *(shown if len(table.records) > 1 else shown[:1]),
                 lacking,
             )

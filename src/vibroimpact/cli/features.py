@@ -167,11 +167,11 @@ def _records(
     from vibroimpact.signals.baseline import without_baseline
     from vibroimpact.signals.onset import from_onset
     from vibroimpact.signals.packets import packet_records
-    from vibroimpact.signals.read_records import read_records
+    from vibroimpact.signals.record_files import load_records
 
     told: set[str] = set()
     for path in paths:
-        for record in map(without_baseline, read_records(path, columns)):
+        for record in map(without_baseline, load_records(path, columns)):
             for doubt in record.named_doubts:
                 if doubt not in told and len(told) < _TOLD:
                     note(f"doubt: {doubt}")

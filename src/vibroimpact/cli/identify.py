@@ -124,7 +124,7 @@ def identify(
     from vibroimpact.identification.identify import identify as identify_impact
     from vibroimpact.identification.setup import SetupErrors
     from vibroimpact.results.folder import check_free
-    from vibroimpact.signals.read_records import read_records
+    from vibroimpact.signals.record_files import load_records
 
     plate_case = load_case(case, settings_of(changes))
     target = Path(f"{stem(case)}-identified") if output is None else output
@@ -140,7 +140,7 @@ def identify(
         modulus_error,
         resonance_error,
     )
-    measured = [record for path in records for record in read_records(path, columns)]
+    measured = [record for path in records for record in load_records(path, columns)]
     with progress_of("identifying", as_json=as_json) as progress:
         identification = identify_impact(
             plate_case,

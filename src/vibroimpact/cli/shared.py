@@ -24,7 +24,6 @@ from vibroimpact.quoting import visible
 if TYPE_CHECKING:
     from rich.console import Console, RenderableType
 
-    from vibroimpact.report.report import Report
     from vibroimpact.report.reported import Reported
     from vibroimpact.units.written import Written
 
@@ -212,23 +211,11 @@ def save_and_show(
     as_json : bool
         Whether the data are printed, and nothing else on standard output.
     """
-    with exit_on_interrupt():
-        report = finding.report
-    write_and_show(report, target, force=force, figures=figures, as_json=as_json)
-
-
-def write_and_show(
-    report: Report, target: Path, *, force: bool, figures: bool = False, as_json: bool
-) -> None:
-    """Write the folder of a report, and print it; or its data as JSON.
-
-    `save_and_show` has the other parameters.
-    """
-    from vibroimpact.report.save_report import save_report
     from vibroimpact.report.terminal_report import terminal_report
 
     with exit_on_interrupt():
-        folder = save_report(report, target, force=force, figures=("png",) if figures else ())
+        report = finding.report
+        folder = finding.save(target, force=force, figures=("png",) if figures else ())
     show_folder(folder, lambda: report.document, lambda: terminal_report(report), as_json=as_json)
 
 

@@ -218,10 +218,10 @@ def _run_sweep(
     from vibroimpact.report.progress import counting_progress, patient_progress
     from vibroimpact.report.terminal_report import terminal_report
     from vibroimpact.studies.compute_study import compute_study
-    from vibroimpact.studies.read_sweep import load_sweep
     from vibroimpact.studies.report.write_report import write_study_report
-    from vibroimpact.studies.study import read_study
+    from vibroimpact.studies.study import load_study
     from vibroimpact.studies.study_folder import has_study
+    from vibroimpact.studies.sweep_file import load_sweep
     from vibroimpact.studies.unit_slips import sweep_slips
 
     size = quantity_in("--memory", memory, "byte")
@@ -264,7 +264,7 @@ def _run_sweep(
             tell=note,
         )
         progress(found.size, found.size)
-        completed = read_study(folder)
+        completed = load_study(folder)
         write_study_report(completed)
     show(
         lambda: {"folder": str(folder), **completed.document},

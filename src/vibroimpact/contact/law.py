@@ -85,8 +85,8 @@ class ContactLaw(Parameters):
     Examples
     --------
     >>> import vibroimpact as vi
-    >>> law = vi.find_contact_law("hertz")(stiffness=1e9)
-    >>> isinstance(law, vi.ContactLaw), law.name, law.exponent
+    >>> law = vi.laws.find_contact_law("hertz")(stiffness=1e9)
+    >>> isinstance(law, vi.laws.ContactLaw), law.name, law.exponent
     (True, 'hertz', 1.5)
     """
 
@@ -134,7 +134,7 @@ class CompliantLaw(ContactLaw):
     not compiled.
 
     >>> import vibroimpact as vi
-    >>> law = vi.find_contact_law("hertz")(stiffness=2.0)
+    >>> law = vi.laws.find_contact_law("hertz")(stiffness=2.0)
     >>> law.coefficients
     (2.0, 1.5)
     >>> type(law).scalar_forces(4.0, 1.0, 1.0, law.coefficients) == law.forces(4.0, 1.0, 1.0)

@@ -127,7 +127,7 @@ def find_contact_law(name: str) -> type[ContactLaw]:
     Examples
     --------
     >>> import vibroimpact as vi
-    >>> law = vi.find_contact_law("flores")(stiffness=5e8, restitution=0.7)
+    >>> law = vi.laws.find_contact_law("flores")(stiffness=5e8, restitution=0.7)
     >>> law.name, law.restitution
     ('flores', 0.7)
     """

@@ -169,21 +169,42 @@ class Problem:
     def __post_init__(self) -> None:
         if isinstance(self.laws, ContactLaw):
             object.__setattr__(self, "laws", (self.laws,))
+        self._check_laws()
+        self._check_kinds_of_numbers()
+        self._check_bodies()
+        self._check_ranges()
+        self._check_start()
+        self._check_end()
+        self._check_elastic_bodies()
+        if self.oblique is not None:
+            self._check_oblique(self.oblique)
+        if self.air is not None:
+            self._check_air(self.air)
+        if self.liquid is not None:
+            self._check_liquid(self.liquid)
+        self._check_shape()
+
+    def _check_laws(self) -> None:
+        """Check that the laws are of one kind, and have the parameters that change with speed."""
         one_kind = (
             isinstance(self.laws, (tuple, list)) and len({type(law) for law in self.laws}) == 1
         )
         if not one_kind or not isinstance(self.laws[0], ContactLaw):
-            example = 'such as vi.find_contact_law("newton")(restitution=0.7)'
+            example = 'such as vi.laws.find_contact_law("newton")(restitution=0.7)'
             raise InputError(
                 f"laws must be one or more contact laws with their parameters, {example}, "
                 "all of one kind"
             )
+        parameters = {item.name for item in fields(self.laws[0])}
         for name in self.by_speed:
-            if name not in {item.name for item in fields(self.laws[0])}:
+            if name not in parameters:
                 raise InputError(
                     f"{self.laws[0].name} has no parameter {name} that could be a function "
                     "of the approach speed"
                 )
+
+    def _check_kinds_of_numbers(self) -> None:
+        """Check that numbers are numbers: arrays with one per drop, or one for all drops."""
         for name in ("height", "velocity", "speed", "gravity", "rest_speed"):
             value = getattr(self, name)
             if value is not None and np.asarray(value).dtype.kind not in "iuf":
@@ -200,41 +221,52 @@ class Problem:
                 )
         if (self.height is None) == (self.speed is None):
             raise InputError("give either height [m] or speed [m/s] of the drop, and not both")
-        if not (
-            np.all(np.isfinite(self.sphere.mass))
-            and np.all(np.isfinite(self.sphere.contact_offset))
-        ):
+
+    def _check_bodies(self) -> None:
+        """Check that the sphere can move, and that the plate is held."""
+        sphere_is_finite = np.all(np.isfinite(self.sphere.mass)) and np.all(
+            np.isfinite(self.sphere.contact_offset)
+        )
+        if not sphere_is_finite:
             raise InputError("the sphere's mass and radius must be finite")
         if np.any(np.isfinite(self.plate.mass)):
             raise InputError("the plate must be held fixed: a body with an infinite mass")
-        for name, least in (
-            ("height", -np.inf),
-            ("velocity", -np.inf),
-            ("speed", 0.0),
-            ("gravity", 0.0),
-            ("rest_speed", 0.0),
-        ):
+
+    def _check_ranges(self) -> None:
+        """Check that numbers are finite, and those of magnitudes not negative."""
+        least_values = {
+            "height": -np.inf,
+            "velocity": -np.inf,
+            "speed": 0.0,
+            "gravity": 0.0,
+            "rest_speed": 0.0,
+        }
+        for name, least in least_values.items():
             value = getattr(self, name)
             if value is not None and not np.all(np.isfinite(value) & (np.asarray(value) >= least)):
-                raise InputError(
-                    f"{name} must be finite{'' if np.isinf(least) else ' and not negative'}"
-                )
+                sign = "" if np.isinf(least) else " and not negative"
+                raise InputError(f"{name} must be finite{sign}")
+
+    def _check_start(self) -> None:
+        """Check that the sphere meets the plate: the speed at touch, or the height of the fall."""
         if self.speed is not None and not np.all(np.asarray(self.speed) > 0):
             raise InputError("speed must be greater than 0 m/s")
         if self.speed is not None and np.any(self.velocity):
             raise InputError(
                 "velocity is that at a height; with speed, at first touch, leave it out"
             )
-        if self.height is not None:
-            if not np.all(np.asarray(self.height) > self.sphere.contact_offset):
-                raise InputError(
-                    "height must be greater than the sphere's radius: it is the height of "
-                    "the centre above the plate's upper surface"
-                )
-            if not np.all(np.asarray(self.gravity) > 0):
-                raise InputError(
-                    "without gravity a sphere does not fall: give speed instead of height"
-                )
+        if self.height is None:
+            return
+        if not np.all(np.asarray(self.height) > self.sphere.contact_offset):
+            raise InputError(
+                "height must be greater than the sphere's radius: it is the height of "
+                "the centre above the plate's upper surface"
+            )
+        if not np.all(np.asarray(self.gravity) > 0):
+            raise InputError("without gravity a sphere does not fall: give speed instead of height")
+
+    def _check_end(self) -> None:
+        """Check the number of impacts and the duration that end the run, and the tolerance."""
         if self.impacts is not None and not (
             isinstance(self.impacts, Integral) and 1 <= self.impacts <= MOST_IMPACTS
         ):
@@ -242,6 +274,9 @@ class Problem:
         if self.duration is not None and not 0 < self.duration < np.inf:
             raise InputError("duration must be greater than 0 s and finite")
         check_tolerance(self.tolerance)
+
+    def _check_elastic_bodies(self) -> None:
+        """Check what bodies that deform, move or are free can do in a drop."""
         if self.local_element is not None and not all(
             0.0 < value < np.inf for value in self.local_element
         ):
@@ -249,61 +284,50 @@ class Problem:
                 "stiffness and damping of the local element must be greater than 0 and finite"
             )
         if self.plate.rigid is not None and np.any(np.asarray(self.gravity) > 0):
-            words = (
+            raise InputError(
                 "the supports let the plate fall or tilt: under gravity it falls away from "
-                "under the sphere"
+                "under the sphere; set gravity to 0, and give speed"
             )
-            raise InputError(f"{words}; set gravity to 0, and give speed")
         self._check_motion()
         if self.vibrates and isinstance(self.laws[0], InstantaneousLaw):
             raise InputError(
                 f"{self.laws[0].name} gives no force, and bodies that deform or are free "
                 "need one; take another law"
             )
-        if self.oblique is not None and not isinstance(self.oblique, Oblique):
-            raise InputError(f"oblique must be an Oblique, not {self.oblique!r}")
-        if self.oblique is not None and not np.all(np.asarray(self.sphere.contact_offset) > 0.0):
+
+    def _check_oblique(self, oblique: Oblique) -> None:
+        """Check the sphere and the laws of a drop with motion along the plate."""
+        if not isinstance(oblique, Oblique):
+            raise InputError(f"oblique must be an Oblique, not {oblique!r}")
+        if not np.all(np.asarray(self.sphere.contact_offset) > 0.0):
             raise InputError(
                 "a sphere that may turn needs a radius: its contact_offset, greater than 0 m"
             )
-        if (
-            self.oblique is not None
-            and self.sphere.inertia is not None
-            and np.any(np.asarray(self.oblique.inertia_ratio) != SOLID)
-        ):
+        if self.sphere.inertia is not None and np.any(np.asarray(oblique.inertia_ratio) != SOLID):
             raise InputError(
                 "the moment of inertia is given twice; leave out the inertia_ratio, or the "
                 "inertia of the sphere"
             )
-        if self.oblique is not None and self.vibrates:
-            self._check_surface_friction(self.oblique)
-        if (
-            self.oblique is not None
-            and isinstance(self.oblique.friction, CompliantFriction)
-            and isinstance(self.laws[0], InstantaneousLaw)
-        ):
-            words = (
-                f"{self.laws[0].name} gives no normal force for {self.oblique.friction.name} "
-                "to follow"
-            )
+        if self.vibrates:
+            self._check_surface_friction(oblique)
+        friction = oblique.friction
+        if isinstance(friction, CompliantFriction) and isinstance(self.laws[0], InstantaneousLaw):
             raise InputError(
-                f"{words}; take another contact law, or friction by the impulse, as of "
+                f"{self.laws[0].name} gives no normal force for {friction.name} "
+                "to follow; take another contact law, or friction by the impulse, as of "
                 "coulomb or rigid"
             )
-        if self.air is not None:
-            self._check_air(self.air)
-        if self.liquid is not None:
-            self._check_liquid(self.liquid)
+
+    def _check_shape(self) -> None:
+        """Check that the arrays of a batch agree in shape."""
         try:
-            _ = self.shape
+            shape = self.shape
         except ValueError:
             raise InputError(
                 "the arrays of a batch must agree in shape: one value a drop"
             ) from None
-        if len(self.shape) > 1 or 0 in self.shape:
-            raise InputError(
-                f"a batch has one axis with at least one drop, not the shape {self.shape}"
-            )
+        if len(shape) > 1 or 0 in shape:
+            raise InputError(f"a batch has one axis with at least one drop, not the shape {shape}")
 
     def _check_surface_friction(self, oblique: Oblique) -> None:
         """Check that bodies that deform can move along each other.

@@ -249,7 +249,7 @@ def _shape(law: ContactLaw, mass: Array, speed: Array) -> tuple[int, ...]:
     if not isinstance(law, ContactLaw):
         raise InputError(
             "law must be a contact law with its parameters, such as "
-            f'vi.find_contact_law("hertz")(stiffness=5e8), not {law!r}'
+            f'vi.laws.find_contact_law("hertz")(stiffness=5e8), not {law!r}'
         )
     for name, value, unit in (("mass", mass, "kg"), ("speed", speed, "m/s")):
         try:

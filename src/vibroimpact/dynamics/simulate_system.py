@@ -46,7 +46,7 @@ class BodyMotion:
     ...     "hitting": vi.MovingBody(mass=0.1, velocity=(0, 0, -1.0)),
     ... }
     >>> contact = vi.PointContact(
-    ...     above="hitting", below="hit", law=vi.find_contact_law("hertz")(stiffness=1e9)
+    ...     above="hitting", below="hit", law=vi.laws.find_contact_law("hertz")(stiffness=1e9)
     ... )
     >>> motion = vi.simulate_system(
     ...     vi.System(bodies=balls, contacts={"contact": contact}), duration=1e-3
@@ -94,7 +94,7 @@ class SystemResponse:
     ...     "hitting": vi.MovingBody(mass=0.1, velocity=(0, 0, -1.0)),
     ... }
     >>> contact = vi.PointContact(
-    ...     above="hitting", below="hit", law=vi.find_contact_law("hertz")(stiffness=1e9)
+    ...     above="hitting", below="hit", law=vi.laws.find_contact_law("hertz")(stiffness=1e9)
     ... )
     >>> response = vi.simulate_system(
     ...     vi.System(bodies=balls, contacts={"contact": contact}), duration=1e-3
@@ -265,7 +265,7 @@ def simulate_system(
     Examples
     --------
     >>> import vibroimpact as vi
-    >>> law = vi.find_contact_law("hertz")(stiffness=1e9)
+    >>> law = vi.laws.find_contact_law("hertz")(stiffness=1e9)
     >>> bodies = {
     ...     "ball": vi.MovingBody(mass=0.1, velocity=(0, 0, -1.0)),
     ...     "wall": vi.MovingBody(mass=float("inf")),

@@ -130,7 +130,7 @@ class PointContact:
     Examples
     --------
     >>> import vibroimpact as vi
-    >>> law = vi.find_contact_law("hertz")(stiffness=1e9)
+    >>> law = vi.laws.find_contact_law("hertz")(stiffness=1e9)
     >>> contact = vi.PointContact(above="ball", below="beam", law=law, point=(0.12, 0, 0), gap=1e-3)
     >>> contact.normal, contact.gap
     (array([0., 0., 1.]), 0.001)
@@ -153,7 +153,7 @@ class PointContact:
             if not isinstance(self.law, ContactLaw):
                 raise InputError(
                     "law must be a contact law with its parameters, such as "
-                    f'vi.find_contact_law("hertz")(stiffness=5e8), not {self.law!r}'
+                    f'vi.laws.find_contact_law("hertz")(stiffness=5e8), not {self.law!r}'
                 )
             raise InputError(
                 f"the law of a contact of a system must give a force, which {self.law!r} does not"
@@ -207,7 +207,7 @@ class System:
     Two equal balls: the one that is hit leaves with the speed of the other.
 
     >>> import vibroimpact as vi
-    >>> law = vi.find_contact_law("hertz")(stiffness=1e9)
+    >>> law = vi.laws.find_contact_law("hertz")(stiffness=1e9)
     >>> balls = {
     ...     "hit": vi.MovingBody(mass=0.1),
     ...     "hitting": vi.MovingBody(mass=0.1, velocity=(0, 0, -1.0)),

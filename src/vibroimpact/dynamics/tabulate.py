@@ -57,7 +57,7 @@ def tabulate(
     Examples
     --------
     >>> import vibroimpact as vi
-    >>> law = vi.find_contact_law("hunt-crossley")(stiffness=5e8, restitution=[0.5, 0.7, 0.9])
+    >>> law = vi.laws.find_contact_law("hunt-crossley")(stiffness=5e8, restitution=[0.5, 0.7, 0.9])
     >>> ball = vi.Body(mass=0.1, contact_offset=0.02)
     >>> table = tabulate(
     ...     vi.Problem(sphere=ball, plate=vi.rigid_plate(), laws=(law,), height=1.0, impacts=2)

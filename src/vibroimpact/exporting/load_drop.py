@@ -10,7 +10,7 @@ from vibroimpact.calibration.file_contents import CALIBRATION
 from vibroimpact.cases.case import Case
 from vibroimpact.cases.oblique import normal_motion_of, oblique_of
 from vibroimpact.cases.plate_motion import motion_of
-from vibroimpact.cases.reader import load_case, read_case
+from vibroimpact.cases.reader import case_of, load_case
 from vibroimpact.cases.rigid_problem import (
     by_speed_of,
     deforms,
@@ -25,7 +25,7 @@ from vibroimpact.exporting.drop import Drop
 from vibroimpact.files.check_sums import CHECK_SUMS, DamageError, check_file, read_sealed
 from vibroimpact.files.hdf5 import short_reason
 from vibroimpact.files.recover import recover
-from vibroimpact.results.folder import read_result
+from vibroimpact.results.folder import load_result
 from vibroimpact.results.result import Result, result_of
 
 
@@ -48,14 +48,14 @@ def load_drop(directory: str | PathLike[str]) -> Drop:
     recover(folder)
     if (folder / CALIBRATION).is_file():
         return _of_calibration(folder)
-    result = read_result(folder)
+    result = load_result(folder)
     if not result.case:
         raise InputError(
             f"{folder}: this run has no case.toml, as its problem was defined in Python; "
             "an export needs a case"
         )
     try:
-        return drop_of_result(result, read_case(result.case))
+        return drop_of_result(result, case_of(result.case))
     except InputError as error:
         raise InputError(f"{folder / 'case.toml'}: {error}") from None
 

@@ -8,16 +8,13 @@ at the end. What a process that died has left is cleared or completed by
 
 from __future__ import annotations
 
-import ctypes
 import os
-import sys
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from errno import EACCES, EISDIR, ELOOP
-from functools import cache, partial
+from functools import partial
 from os import PathLike
 from pathlib import Path
-from typing import Any
 
 from vibroimpact.errors import InputError
 from vibroimpact.files.working_files import (
@@ -34,9 +31,6 @@ from vibroimpact.files.working_files import (
 # subfolders of a working folder
 _PUT = "put"  # files to be moved to their destinations
 _GONE = "gone"  # empty files, named as those to be deleted
-
-_CURRENT_FOLDER = -100  # AT_FDCWD of Linux: relative paths start from the current directory
-_EXCHANGE = 2  # RENAME_EXCHANGE of renameat2(2)
 
 
 # one file
@@ -153,14 +147,11 @@ def atomic_folder(target: Path, check: Callable[[], None]) -> Iterator[Path]:
 
 
 def _put_in_place(working: Path, target: Path) -> None:
-    """Rename a folder to `target`, or exchange it with the existing one, which is then removed."""
+    """Rename a folder to `target`; an existing one has another name until then, and is removed."""
     if not os.path.lexists(target):
         working.rename(target)
         return
     _flush(working)  # before the old folder is removed
-    if exchange(working, target):
-        remove(working)
-        return
     # between the two renames nothing has the name `target`; if this process dies then, `recover`
     # restores the old folder
     old = working_path(target, OLD)
@@ -186,46 +177,6 @@ def _flush(folder: Path) -> None:
                 os.fsync(descriptor)
             finally:
                 os.close(descriptor)
-
-
-def exchange(first: Path, second: Path) -> bool:
-    """Exchange two names of a file system in one atomic step.
-
-    Returns
-    -------
-    bool
-        False, with nothing changed, if the system or the file system does not support it, or one of
-        the names does not exist.
-
-    Examples
-    --------
-    >>> exchange(Path("neither of these"), Path("is there"))
-    False
-    """
-    rename = _renameat2()
-    if rename is None:
-        return False
-    status = rename(
-        _CURRENT_FOLDER, os.fsencode(first), _CURRENT_FOLDER, os.fsencode(second), _EXCHANGE
-    )
-    return bool(status == 0)
-
-
-@cache
-def _renameat2() -> Any:
-    """Return `renameat2` of the C library; None if it has none."""
-    if not sys.platform.startswith("linux"):
-        return None
-    function = getattr(ctypes.CDLL(None), "renameat2", None)
-    if function is not None:
-        function.argtypes = (
-            ctypes.c_int,
-            ctypes.c_char_p,
-            ctypes.c_int,
-            ctypes.c_char_p,
-            ctypes.c_uint,
-        )
-    return function
 
 
 # several files into an existing folder

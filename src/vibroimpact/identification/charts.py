@@ -41,7 +41,7 @@ def identification_charts(found: Identification) -> list[Chart]:
     ...     "supports": "clamped",
     ...     "damping": 0.01,
     ... }
-    >>> case = vi.read_case(
+    >>> case = vi.case_of(
     ...     {
     ...         "sphere": {"radius": 0.02, "material": "rock-paper"},
     ...         "plate": plate,
@@ -51,10 +51,12 @@ def identification_charts(found: Identification) -> list[Chart]:
     ...         "sensors": [{"name": "a", "position": [0.1, 0.03], "rate": 20e3}],
     ...     }
     ... )
-    >>> records = [vi.Record("a", vi.simulate(case).signals()["a"].value, 20e3, "m/s2")]
+    >>> records = [vi.signals.Record("a", vi.simulate(case).signals()["a"].value, 20e3, "m/s2")]
     >>> [
     ...     chart.name
-    ...     for chart in identification_charts(vi.identify(case, records, place=(0.02, 0.01)))
+    ...     for chart in identification_charts(
+    ...         vi.identification.identify(case, records, place=(0.02, 0.01))
+    ...     )
     ... ]
     ['records', 'force']
     """

@@ -84,7 +84,7 @@ class Identification(Reported, reported_in="vibroimpact.identification.report"):
     ...     "supports": "clamped",
     ...     "damping": 0.01,
     ... }
-    >>> case = vi.read_case(
+    >>> case = vi.case_of(
     ...     {
     ...         "sphere": {"radius": 0.02, "material": "rock-paper"},
     ...         "plate": plate,
@@ -98,10 +98,10 @@ class Identification(Reported, reported_in="vibroimpact.identification.report"):
     ...     }
     ... )
     >>> records = [
-    ...     vi.Record(name, one.value, 20e3, "m/s2")
+    ...     vi.signals.Record(name, one.value, 20e3, "m/s2")
     ...     for name, one in vi.simulate(case).signals().items()
     ... ]
-    >>> found = vi.identify(case, records)
+    >>> found = vi.identification.identify(case, records)
     >>> round(found.estimates["radius_m"].value, 3), found.estimates["radius_m"].interval[0] < 0.02
     (0.02, True)
     """
@@ -180,7 +180,7 @@ def identify(
     ...     "supports": "clamped",
     ...     "damping": 0.01,
     ... }
-    >>> case = vi.read_case(
+    >>> case = vi.case_of(
     ...     {
     ...         "sphere": {"radius": 0.02, "material": "rock-paper"},
     ...         "plate": plate,
@@ -317,7 +317,7 @@ def identify_force(
     ...     "supports": "clamped",
     ...     "damping": 0.01,
     ... }
-    >>> case = vi.read_case(
+    >>> case = vi.case_of(
     ...     {
     ...         "sphere": {"radius": 0.02, "material": "rock-paper"},
     ...         "plate": plate,
@@ -328,8 +328,10 @@ def identify_force(
     ...     }
     ... )
     >>> response = vi.simulate(case)
-    >>> force = vi.identify_force(
-    ...     case, [vi.Record("a", response.signals()["a"].value, 20e3, "m/s2")], (0.02, 0.01)
+    >>> force = vi.identification.identify_force(
+    ...     case,
+    ...     [vi.signals.Record("a", response.signals()["a"].value, 20e3, "m/s2")],
+    ...     (0.02, 0.01),
     ... )
     >>> speeds = response.impacts["approach_speed_m_s"] + response.impacts["separation_speed_m_s"]
     >>> round(float(force.impulse[0] / (response.problem.sphere.mass * speeds[0])), 2)

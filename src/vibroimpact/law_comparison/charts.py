@@ -50,7 +50,7 @@ def comparison_charts(comparison: Comparison) -> list[Chart]:
     Examples
     --------
     >>> import vibroimpact as vi
-    >>> found = vi.compare_laws(vi.load_case("paper:type1-theory"), ["hertz", "newton"])
+    >>> found = vi.laws.compare_laws(vi.load_case("paper:type1-theory"), ["hertz", "newton"])
     >>> [chart.name for chart in comparison_charts(found)]
     ['position', 'force', 'force_indentation', 'restitution']
     """

@@ -42,7 +42,7 @@ class Comparison(Reported, reported_in="vibroimpact.law_comparison.report"):
     Examples
     --------
     >>> import vibroimpact as vi
-    >>> comparison = vi.compare_laws(vi.load_case("paper:type1-theory"), ["tsuji", "flores"])
+    >>> comparison = vi.laws.compare_laws(vi.load_case("paper:type1-theory"), ["tsuji", "flores"])
     >>> comparison.speeds.shape, {name: one.shape for name, one in comparison.restitutions.items()}
     ((61,), {'tsuji': (61,), 'flores': (61,)})
     """
@@ -89,7 +89,7 @@ def compare_laws(
     Examples
     --------
     >>> import vibroimpact as vi
-    >>> comparison = vi.compare_laws(
+    >>> comparison = vi.laws.compare_laws(
     ...     vi.load_case("paper:type1-theory"), ["hunt-crossley", "flores"]
     ... )
     >>> {

@@ -11,7 +11,7 @@ from vibroimpact.cases.case import Case
 from vibroimpact.cases.fields.contact import in_table
 from vibroimpact.cases.fields.local import LocalSection
 from vibroimpact.cases.pair import contact_pair
-from vibroimpact.cases.reader import read_case
+from vibroimpact.cases.reader import case_of
 from vibroimpact.cases.rigid_problem import contact_laws_of, touch_speed
 from vibroimpact.contact.law import ContactLaw, unit_of
 from vibroimpact.contact.registry import find_contact_law
@@ -110,7 +110,7 @@ def _case_under(
     beside = {key: of_case["contact"][key] for key in _BESIDE_THE_LAW if key in of_case["contact"]}
     table: dict[str, Any] = {**of_case, "name": named, "contact": {**contact, **beside}}
     try:
-        found = read_case(table)
+        found = case_of(table)
         tuned = contact_laws_of(found)[0].free_parameter
         # placeholders of other parameters are dropped, so that these are reported as missing
         if any(key != tuned for key in placeholders):
@@ -119,7 +119,7 @@ def _case_under(
                 for key, value in table["contact"].items()
                 if key not in placeholders or key == tuned
             }
-            found = read_case(table)
+            found = case_of(table)
         if achieving is None or tuned is None:
             return found
         if tuned in given or f"{law.name}.{tuned}" in given:
@@ -164,9 +164,7 @@ def _tuned(case: Case, table: Mapping[str, Any], parameter: str, achieving: floa
     """
     law, speed = contact_laws_of(case)[0], touch_speed(case)
     tuned = law_achieving(law, achieving, contact_pair(case).effective_mass, speed)
-    return read_case(
-        {**table, "contact": {**table["contact"], parameter: getattr(tuned, parameter)}}
-    )
+    return case_of({**table, "contact": {**table["contact"], parameter: getattr(tuned, parameter)}})
 
 
 def _check_given(given: Mapping[str, Any], laws: Mapping[str, type[ContactLaw]]) -> None:

@@ -38,7 +38,7 @@ def report_of(comparison: Comparison) -> Report:
     Examples
     --------
     >>> import vibroimpact as vi
-    >>> comparison = vi.compare_laws(vi.load_case("paper:type1-theory"), ["tsuji", "flores"])
+    >>> comparison = vi.laws.compare_laws(vi.load_case("paper:type1-theory"), ["tsuji", "flores"])
     >>> report = report_of(comparison)
     >>> report.title, list(report.files)
     ('One drop with 2 contact laws', ['comparison.csv', 'cases/tsuji.toml', 'cases/flores.toml'])

@@ -13,7 +13,7 @@ from vibroimpact.arrays import Floats
 from vibroimpact.bodies.body import Body
 from vibroimpact.bodies.rigid_bodies import rigid_plate
 from vibroimpact.cases.pair import contact_pair
-from vibroimpact.cases.reader import read_case
+from vibroimpact.cases.reader import case_of
 from vibroimpact.charts.axis import Axis
 from vibroimpact.charts.chart import Chart, Panel
 from vibroimpact.charts.marks import Level, Line, Mark, Points
@@ -158,7 +158,7 @@ def _example(law: type[ContactLaw]) -> _Example:
 
 def _pair_of(radius: float, sphere: str, plate: str) -> ContactPair:
     case = {"sphere": {"radius": radius, "material": sphere}, "plate": {"material": plate}}
-    return contact_pair(read_case({**case, "drop": {"speed": 1.0}, "contact": {"law": "hertz"}}))
+    return contact_pair(case_of({**case, "drop": {"speed": 1.0}, "contact": {"law": "hertz"}}))
 
 
 def _typical_speeds(law: type[ContactLaw], restitution: Floats) -> tuple[float, ...]:

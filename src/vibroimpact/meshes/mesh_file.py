@@ -29,7 +29,7 @@ READERS: Mapping[str, Callable[[str | PathLike[str]], Mesh]] = {
 }
 
 
-def read_mesh(
+def load_mesh(
     path: str | PathLike[str],
     unit_in_metres: float = 1.0,
     size: float | None = None,
@@ -62,7 +62,7 @@ def read_mesh(
 
     Examples
     --------
-    >>> read_mesh("plate.stl")
+    >>> load_mesh("plate.stl")
     Traceback (most recent call last):
     vibroimpact.errors.InputError: plate.stl: ".stl" is not read; a mesh must be .bdf, .dat, .nas,
     .fem, .inp, .msh, .step, .stp or .brep
@@ -80,7 +80,7 @@ def mesh_of_file(
 ) -> Mesh:
     """Return all parts of a mesh file, or of a meshed geometry, without materials.
 
-    Parameters and errors are those of `read_mesh`.
+    Parameters and errors are those of `load_mesh`.
     """
     path = Path(path)
     suffix = path.suffix.lower()

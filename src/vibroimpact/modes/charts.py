@@ -39,7 +39,7 @@ def mode_charts(modes: Mapping[str, BodyModes]) -> list[Chart]:
     Examples
     --------
     >>> import vibroimpact as vi
-    >>> case = vi.read_case(
+    >>> case = vi.case_of(
     ...     {
     ...         "sphere": {
     ...             "radius": "25 mm",

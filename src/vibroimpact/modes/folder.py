@@ -74,7 +74,7 @@ def save_modes(
     --------
     >>> from tempfile import TemporaryDirectory
     >>> import vibroimpact as vi
-    >>> case = vi.read_case(
+    >>> case = vi.case_of(
     ...     {
     ...         "sphere": {
     ...             "radius": "25 mm",

@@ -11,7 +11,7 @@ from typing import Literal
 import numpy as np
 
 from vibroimpact.arrays import Floats
-from vibroimpact.cases.reader import load_table, read_case
+from vibroimpact.cases.reader import case_of, load_table
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.simulate import simulate
 from vibroimpact.paper.implicit_euler import ENERGY_SHARES, PEAKS, unresolved_impact
@@ -85,7 +85,7 @@ def coarse(kind: int, modes: int) -> Problem:
         "modes": modes,
         "mesh": {"elements_across": _ELEMENTS_ACROSS, "kind": "hex20"},
     }
-    return read_case(table).to_problem()
+    return case_of(table).to_problem()
 
 
 @cache

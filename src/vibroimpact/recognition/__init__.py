@@ -1,3 +1,5 @@
-"""Recognition: classifiers of what fell on a plate, validated so that they can't fool
-themselves, saved and applied.
-"""
+"""Recognition of what fell on a plate: classifiers, validated against leaks, and applied."""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -11,9 +11,9 @@ import numpy as np
 from vibroimpact.arrays import Floats, Indices
 from vibroimpact.errors import InputError
 from vibroimpact.files.reading import with_path
+from vibroimpact.recognition.dataset_signals import load_labelled_signals
 from vibroimpact.recognition.fraction import Estimate
 from vibroimpact.recognition.labelled_signals import LabelledSignals
-from vibroimpact.recognition.read_dataset import read_labelled_signals
 from vibroimpact.recognition.recogniser import Recogniser, doubts_of_version, load_recogniser
 from vibroimpact.recognition.signal_features import baseline_doubts
 from vibroimpact.report.reported import Reported
@@ -47,7 +47,7 @@ class Recognised(Reported, reported_in="vibroimpact.recognition.applied_report")
     Examples
     --------
     >>> import vibroimpact as vi
-    >>> recognised = vi.apply_recogniser("recognised", "falls")
+    >>> recognised = vi.recognition.apply_recogniser("recognised", "falls")
     >>> recognised.class_names, recognised.probabilities.shape, recognised.accuracy > 0.5
     (('coal', 'gangue'), (96, 2), True)
     """
@@ -89,13 +89,13 @@ def apply_recogniser(
     Examples
     --------
     >>> import vibroimpact as vi
-    >>> recognised = vi.apply_recogniser("recognised", "falls")
+    >>> recognised = vi.recognition.apply_recogniser("recognised", "falls")
     >>> fractions = recognised.fractions.values()
     >>> recognised.class_names, round(sum(fraction.value for fraction in fractions), 6)
     (('coal', 'gangue'), 1.0)
     """
     recogniser = model if isinstance(model, Recogniser) else load_recogniser(model)
-    signals = dataset if isinstance(dataset, LabelledSignals) else read_labelled_signals(dataset)
+    signals = dataset if isinstance(dataset, LabelledSignals) else load_labelled_signals(dataset)
     try:
         probabilities = recogniser.probabilities(signals)
     except InputError as error:

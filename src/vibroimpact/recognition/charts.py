@@ -37,7 +37,10 @@ def recognition_charts(found: Recognition) -> list[Chart]:
     Examples
     --------
     >>> import vibroimpact as vi
-    >>> [chart.name for chart in recognition_charts(vi.recognise("falls", folds=2, seeds=1))][:2]
+    >>> [
+    ...     chart.name
+    ...     for chart in recognition_charts(vi.recognition.recognise("falls", folds=2, seeds=1))
+    ... ][:2]
     ['scores', 'confusion']
     """
     makers = {"scores": _scores_chart, "confusion": _confusion_chart}

@@ -73,7 +73,7 @@ class LabelledSignals:
     Examples
     --------
     >>> import vibroimpact as vi
-    >>> signals = vi.read_labelled_signals("falls")
+    >>> signals = vi.recognition.load_labelled_signals("falls")
     >>> len(signals), signals.class_names, signals.sensors["a1"].rate
     (96, ('coal', 'gangue'), 20000.0)
     """

@@ -26,6 +26,7 @@ from vibroimpact.recognition.classifiers import (
     fit_tuned,
 )
 from vibroimpact.recognition.cross_validation import Chosen, Validated, cross_validate
+from vibroimpact.recognition.dataset_signals import load_labelled_signals
 from vibroimpact.recognition.extra import needs_extra
 from vibroimpact.recognition.folds import default_folds
 from vibroimpact.recognition.fraction import Streams, draw_rates, try_streams
@@ -34,7 +35,6 @@ from vibroimpact.recognition.input_faults import check_signals
 from vibroimpact.recognition.jobs import Progress, silent
 from vibroimpact.recognition.labelled_signals import LabelledSignals
 from vibroimpact.recognition.onnx_runtime import silent_onnxruntime
-from vibroimpact.recognition.read_dataset import read_labelled_signals
 from vibroimpact.recognition.recogniser import Recogniser, graph_of
 from vibroimpact.recognition.recorder_leaks import recorder_leaks
 from vibroimpact.recognition.reliability import Reliable, reliability
@@ -105,7 +105,7 @@ class Recognition(Reported, reported_in="vibroimpact.recognition.report"):
     Examples
     --------
     >>> import vibroimpact as vi
-    >>> found = vi.recognise("falls", folds=2, seeds=1)
+    >>> found = vi.recognition.recognise("falls", folds=2, seeds=1)
     >>> sum(found.counts), found.confusion[found.best].shape
     (96, (2, 2))
     """
@@ -189,12 +189,12 @@ def recognise(
 
     See Also
     --------
-    vibroimpact.load_recogniser : loads a saved model, to apply it to other signals.
+    vibroimpact.recognition.load_recogniser : loads a saved model, to apply it to other signals.
 
     Examples
     --------
     >>> import vibroimpact as vi
-    >>> found = vi.recognise("falls", folds=2, seeds=1)
+    >>> found = vi.recognition.recognise("falls", folds=2, seeds=1)
     >>> score = found.scores[found.best].balanced_accuracy
     >>> bool(score.value > found.scores["majority"].balanced_accuracy.value)
     True
@@ -208,7 +208,7 @@ def recognise(
     if isinstance(dataset, LabelledSignals):
         signals = dataset.of_present_classes()
     else:
-        read = read_labelled_signals(dataset, most=most, group=group, seed=seed)
+        read = load_labelled_signals(dataset, most=most, group=group, seed=seed)
         signals = read.of_present_classes()
     doubts = check_signals(signals, group, folds) + baseline_doubts(signals)
     assert signals.classes is not None  # checked

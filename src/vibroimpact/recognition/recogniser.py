@@ -65,8 +65,8 @@ class Recogniser:
     Examples
     --------
     >>> import vibroimpact as vi
-    >>> model = vi.load_recogniser("recognised")
-    >>> model.class_names, model.probabilities(vi.read_labelled_signals("falls")).shape
+    >>> model = vi.recognition.load_recogniser("recognised")
+    >>> model.class_names, model.probabilities(vi.recognition.load_labelled_signals("falls")).shape
     (('coal', 'gangue'), (96, 2))
     """
 
@@ -261,7 +261,7 @@ def load_recogniser(directory: str | PathLike[str]) -> Recogniser:
     Examples
     --------
     >>> import vibroimpact as vi
-    >>> vi.load_recogniser("recognised").class_names
+    >>> vi.recognition.load_recogniser("recognised").class_names
     ('coal', 'gangue')
     """
     folder = Path(directory)

@@ -195,7 +195,7 @@ def write_result(result: Result, directory: Path) -> None:
     write_signal_files(result.signals, directory / "sensors")
 
 
-def read_result(directory: str | PathLike[str]) -> Result:
+def load_result(directory: str | PathLike[str]) -> Result:
     """Read a result folder and verify the checksums of its files.
 
     Parameters
@@ -225,7 +225,7 @@ def read_result(directory: str | PathLike[str]) -> Result:
     ...     place = vi.save_result(
     ...         vi.simulate(vi.load_case("paper:type1-theory")), f"{folder}/theory"
     ...     )
-    ...     vi.read_result(place).impacts["rebound_height_m"].round(4).tolist()
+    ...     vi.load_result(place).impacts["rebound_height_m"].round(4).tolist()
     [2.4111, 1.4572, 0.8846, 0.5409, 0.3346]
     """
     folder = Path(directory)

@@ -43,7 +43,7 @@ def save_result(response: Response, directory: str | PathLike[str], *, force: bo
     ...     folder = vi.save_result(
     ...         vi.simulate(vi.load_case("paper:type1-theory")), f"{place}/theory"
     ...     )
-    ...     len(vi.read_result(folder).impacts["impact"])
+    ...     len(vi.load_result(folder).impacts["impact"])
     5
     """
     with new_folder(directory, force=force) as folder:

@@ -1,1 +1,5 @@
-"""Signal processing of records, whatever their source: onset, packets, features."""
+"""Signal processing of records, whatever their source: onset, packets, features, modes."""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

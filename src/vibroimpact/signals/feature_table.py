@@ -18,7 +18,7 @@ from vibroimpact.signals.feature import Family, Feature
 from vibroimpact.signals.packets import DEAD_TIME, check_settings
 from vibroimpact.signals.reasons import Reason
 from vibroimpact.signals.record import checked_rate, real_numbers
-from vibroimpact.signals.registry import families, features, find_feature
+from vibroimpact.signals.registry import families, find_feature, signal_features
 
 _SAMPLES_AT_ONCE = 2**15
 """Samples of a block of signals: its arrays stay in the cache of a processor."""
@@ -46,7 +46,7 @@ class FeatureTable:
     --------
     >>> import numpy as np
     >>> import vibroimpact as vi
-    >>> table = vi.feature_table(
+    >>> table = vi.signals.feature_table(
     ...     np.sin(np.arange(200) / 3.0)[None], 1e3, ["rms", "decay_time"], unit="V"
     ... )
     >>> table.names, table.units, table["rms"].round(2).tolist()
@@ -131,7 +131,7 @@ def feature_table(
             "(signals, samples)"
         )
     check_settings(threshold, dead_time)
-    wanted = {name: find_feature(name) for name in (features() if names is None else names)}
+    wanted = {name: find_feature(name) for name in (signal_features() if names is None else names)}
     count, samples = signals.shape
     numbers, reasons = _empty_table(count, len(wanted))
     offset = np.zeros(count)

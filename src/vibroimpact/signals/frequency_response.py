@@ -92,8 +92,12 @@ class FrequencyResponse:
     >>> import vibroimpact as vi
     >>> frequency = np.array([90.0, 100.0, 110.0])
     >>> value = 1.0 / (100.0**2 - frequency**2 + 2j * 0.01 * 100.0 * frequency)
-    >>> response = vi.FrequencyResponse(
-    ...     vi.DegreeOfFreedom(("a1",)), vi.DegreeOfFreedom(("hammer",)), frequency, value, "m/N"
+    >>> response = vi.signals.FrequencyResponse(
+    ...     vi.signals.DegreeOfFreedom(("a1",)),
+    ...     vi.signals.DegreeOfFreedom(("hammer",)),
+    ...     frequency,
+    ...     value,
+    ...     "m/N",
     ... )
     >>> response.name, int(np.argmax(np.abs(response.value)))
     ('a1', 1)

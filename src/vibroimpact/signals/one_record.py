@@ -9,8 +9,8 @@ from vibroimpact.errors import InputError, did_you_mean
 from vibroimpact.files.reading import with_path
 from vibroimpact.measurements.header_cells import name_and_unit
 from vibroimpact.quoting import quoted
-from vibroimpact.signals.read_records import read_records
 from vibroimpact.signals.record import Record
+from vibroimpact.signals.record_files import load_records
 
 _MOST_LISTED = 10
 """Largest number of channels that a message names."""
@@ -24,11 +24,11 @@ def one_record(
     Parameters
     ----------
     path : path
-        The file, as `read_records` reads it.
+        The file, as `load_records` reads it.
     channel : str, optional
         Name of the channel, or the cell of a table's header that has it with its unit.
     columns : str, optional
-        The columns of a table, as `read_records` takes them.
+        The columns of a table, as `load_records` takes them.
 
     Raises
     ------
@@ -43,12 +43,12 @@ def one_record(
     >>> with TemporaryDirectory() as folder:
     ...     with open(f"{folder}/hammer.csv", "w") as file:
     ...         _ = file.write("time [ms],force [kN],plate (g)\\n0,1,0\\n1,2,5\\n")
-    ...     vi.one_record(f"{folder}/hammer.csv", "force").value.tolist()
+    ...     vi.signals.one_record(f"{folder}/hammer.csv", "force").value.tolist()
     [1000.0, 2000.0]
     """
     names: list[str] = []
     matching: list[Record] = []
-    for record in read_records(path, columns):
+    for record in load_records(path, columns):
         names.append(record.name)
         if channel is None or is_named(record, channel):
             matching.append(record)
@@ -73,7 +73,7 @@ def _several(path: str | PathLike[str], channel: str | None, columns: str | None
     """Return the message that there are several such channels."""
     matching = (
         record.name
-        for record in islice(read_records(path, columns), _MOST_LISTED + 1)
+        for record in islice(load_records(path, columns), _MOST_LISTED + 1)
         if channel is None or is_named(record, channel)
     )
     names = list(dict.fromkeys(matching))
@@ -94,7 +94,7 @@ def is_named(record: Record, channel: str) -> bool:
     --------
     >>> import vibroimpact as vi
     >>> [
-    ...     is_named(vi.Record("recording", [0.0, 1.0], 8e3, "1"), name)
+    ...     is_named(vi.signals.Record("recording", [0.0, 1.0], 8e3, "1"), name)
     ...     for name in ("recording", "Recording (a.u.)", "record")
     ... ]
     [True, True, False]

@@ -50,8 +50,10 @@ class Packets(NamedTuple):
     Examples
     --------
     >>> import vibroimpact as vi
-    >>> taps = vi.Record("geophone", [0.0, 9.0, -9.0] + 200 * [0.0] + [0.0, 4.0, -4.0], 10e3, "V")
-    >>> found = vi.find_packets(taps, threshold=2.0)
+    >>> taps = vi.signals.Record(
+    ...     "geophone", [0.0, 9.0, -9.0] + 200 * [0.0] + [0.0, 4.0, -4.0], 10e3, "V"
+    ... )
+    >>> found = vi.signals.find_packets(taps, threshold=2.0)
     >>> found.onset.tolist(), found.peak.round(1).tolist()
     ([1, 204], [9.0, 4.0])
     """

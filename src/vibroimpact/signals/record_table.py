@@ -19,7 +19,7 @@ from vibroimpact.signals.feature_table import features_at_rest
 from vibroimpact.signals.packets import DEAD_TIME, check_settings
 from vibroimpact.signals.reasons import Reason
 from vibroimpact.signals.record import Record
-from vibroimpact.signals.registry import features, find_feature
+from vibroimpact.signals.registry import find_feature, signal_features
 
 _SAMPLES_AT_ONCE = 2**20
 """Samples that are put together for one table."""
@@ -39,7 +39,8 @@ class RecordTable:
     names : tuple of str
         Names of the features.
     values : array, shape (records, features)
-        The values, in the units `features()[name].unit_for(record.unit)`; NaN where there is none.
+        The values, in the units `signal_features()[name].unit_for(record.unit)`; NaN where there is
+        none.
     reasons : array of int, shape (records, features)
         Why there is none, as members of `Reason`; 0 where there is one.
 
@@ -47,7 +48,9 @@ class RecordTable:
     --------
     >>> import numpy as np
     >>> import vibroimpact as vi
-    >>> table = vi.record_table([vi.Record("a", np.sin(np.arange(100)), 1e3, "V")], ["rms", "peak"])
+    >>> table = vi.signals.record_table(
+    ...     [vi.signals.Record("a", np.sin(np.arange(100)), 1e3, "V")], ["rms", "peak"]
+    ... )
     >>> table.names, table.values.round(2).tolist()
     (('rms', 'peak'), [[0.71, 1.0]])
     >>> table["peak"].round(2).tolist()
@@ -204,7 +207,7 @@ def record_table(
     >>> table.values.round(2).tolist(), table.lacking(1)
     ([[0.71, 1.5], [nan, nan]], 'there are no samples: all')
     """
-    wanted = {name: find_feature(name) for name in (features() if names is None else names)}
+    wanted = {name: find_feature(name) for name in (signal_features() if names is None else names)}
     check_settings(threshold, dead_time)
     rows: list[Record] = []
     values = [np.empty((0, len(wanted)))]

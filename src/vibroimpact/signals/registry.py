@@ -42,12 +42,12 @@ def families() -> tuple[Family, ...]:
     return all_families
 
 
-def features() -> Mapping[str, Feature]:
+def signal_features() -> Mapping[str, Feature]:
     """Return all features by name.
 
     Examples
     --------
-    >>> features()["rms"].equation
+    >>> signal_features()["rms"].equation
     'sqrt(mean(x^2))'
     """
     return {feature.name: feature for family in families() for feature in family.features}
@@ -66,7 +66,7 @@ def find_feature(name: str) -> Feature:
     >>> find_feature("kurtosis").unit
     '1'
     """
-    return find_named("feature", name, features(), "features --list")
+    return find_named("feature", name, signal_features(), "features --list")
 
 
 def _loaded(point: EntryPoint) -> Family:

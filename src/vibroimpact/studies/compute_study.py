@@ -126,7 +126,9 @@ def compute_study(
 def _check_settings(sweep: Any, workers: Any, memory: Any) -> None:
     """Check the arguments of `run_sweep`, which may come from a script."""
     if not isinstance(sweep, Sweep):
-        raise InputError(f"a study is wanted, as vi.load_sweep(...) reads it, not {sweep!r}")
+        raise InputError(
+            f"a study is wanted, as vi.studies.load_sweep(...) reads it, not {sweep!r}"
+        )
     if not isinstance(workers, int) or workers < 1:
         raise InputError(f"{workers!r} is not allowed; it must be a whole number from 1", "workers")
     if isinstance(memory, str) or not memory >= LEAST_MEMORY:

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from vibroimpact.studies.compute_study import MEMORY, compute_study
 from vibroimpact.studies.report.write_report import write_study_report
-from vibroimpact.studies.study import read_study
+from vibroimpact.studies.study import load_study
 from vibroimpact.studies.sweep import Sweep
 
 
@@ -33,7 +33,7 @@ def run_sweep(
     Parameters
     ----------
     sweep : Sweep
-        The study, from `load_sweep` or `read_sweep`.
+        The study, from `load_sweep` or `sweep_of`.
     directory : path
         The folder to create.
     resume : bool, default False
@@ -75,11 +75,11 @@ def run_sweep(
     >>> from tempfile import TemporaryDirectory
     >>> import vibroimpact as vi
     >>> case = vi.load_case("paper:type1-theory").to_problem().source
-    >>> study = vi.read_sweep({**case, "sweep": {"over": {"drop.height": ["1 m", "2 m"]}}})
+    >>> study = vi.studies.sweep_of({**case, "sweep": {"over": {"drop.height": ["1 m", "2 m"]}}})
     >>> with TemporaryDirectory() as folder:
-    ...     vi.read_study(vi.run_sweep(study, f"{folder}/heights")).values("largest_force_N").round(
-    ...         1
-    ...     ).tolist()
+    ...     vi.studies.load_study(vi.studies.run_sweep(study, f"{folder}/heights")).values(
+    ...         "largest_force_N"
+    ...     ).round(1).tolist()
     [4406.8, 6730.2]
     """
     folder = compute_study(
@@ -96,5 +96,5 @@ def run_sweep(
     )
     if progress is not None:
         progress(sweep.size, sweep.size)  # lets the callback interrupt before the report
-    write_study_report(read_study(folder))
+    write_study_report(load_study(folder))
     return folder

@@ -91,9 +91,9 @@ class Study(WithReport, reported_in="vibroimpact.studies.report.report"):
     >>> from tempfile import TemporaryDirectory
     >>> import vibroimpact as vi
     >>> case = vi.load_case("paper:type1-theory").to_problem().source
-    >>> sweep = vi.read_sweep({**case, "sweep": {"over": {"drop.height": ["1 m", "2 m"]}}})
+    >>> sweep = vi.studies.sweep_of({**case, "sweep": {"over": {"drop.height": ["1 m", "2 m"]}}})
     >>> with TemporaryDirectory() as folder:
-    ...     study = vi.read_study(vi.run_sweep(sweep, f"{folder}/heights"))
+    ...     study = vi.studies.load_study(vi.studies.run_sweep(sweep, f"{folder}/heights"))
     ...     study.dimensions, study.values("largest_force_N").round(1).tolist()
     ({'drop.height': 2}, [4406.8, 6730.2])
     """
@@ -202,7 +202,7 @@ def study_doubts(dataset: Path) -> list[StudyDoubt]:
     return sorted(doubts, key=lambda doubt: -doubt.drops)
 
 
-def read_study(directory: str | PathLike[str]) -> Study:
+def load_study(directory: str | PathLike[str]) -> Study:
     """Return a completed study from its folder; the variables are read later.
 
     Parameters
@@ -220,9 +220,11 @@ def read_study(directory: str | PathLike[str]) -> Study:
     >>> from tempfile import TemporaryDirectory
     >>> import vibroimpact as vi
     >>> case = vi.load_case("paper:type1-theory").to_problem().source
-    >>> sweep = vi.read_sweep({**case, "sweep": {"over": {"contact.restitution": [0.5, 0.7]}}})
+    >>> sweep = vi.studies.sweep_of(
+    ...     {**case, "sweep": {"over": {"contact.restitution": [0.5, 0.7]}}}
+    ... )
     >>> with TemporaryDirectory() as folder:
-    ...     study = vi.read_study(vi.run_sweep(sweep, f"{folder}/restitutions"))
+    ...     study = vi.studies.load_study(vi.studies.run_sweep(sweep, f"{folder}/restitutions"))
     ...     study.size, study.coordinates["contact.restitution"].tolist()
     (2, [0.5, 0.7])
     """

@@ -50,7 +50,7 @@ class Sweep:
     Examples
     --------
     >>> import vibroimpact as vi
-    >>> sweep = vi.load_sweep("signals:coal-gangue", samples=10)
+    >>> sweep = vi.studies.load_sweep("signals:coal-gangue", samples=10)
     >>> sweep.name, sweep.size, sweep.case_of(3).contact.law
     ('coal and gangue on a tail-beam plate', 10, 'tsuji')
     """

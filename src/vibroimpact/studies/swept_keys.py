@@ -15,7 +15,7 @@ from vibroimpact.cases.fields.contact import ContactSection
 from vibroimpact.cases.fields.liquid import LiquidTable
 from vibroimpact.cases.fields.section import read_table
 from vibroimpact.cases.keys import with_values
-from vibroimpact.cases.reader import read_case
+from vibroimpact.cases.reader import case_of
 from vibroimpact.studies.axes import Values
 
 _OF_THE_RUN = ("run.duration", "run.tolerance")  # the same for all drops of a batch
@@ -35,7 +35,7 @@ def case_at(table: Mapping[str, Any], values: Mapping[str, Any]) -> Case:
         key: value.item() if isinstance(value, np.generic) else value
         for key, value in values.items()
     }
-    return read_case(with_values(table, plain))
+    return case_of(with_values(table, plain))
 
 
 def is_array_key(key: str, values: Values) -> bool:

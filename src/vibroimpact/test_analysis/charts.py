@@ -44,7 +44,7 @@ def correlation_charts(found: Correlation) -> list[Chart]:
     ...     "supports": "clamped",
     ...     "damping": 0.01,
     ... }
-    >>> case = vi.read_case(
+    >>> case = vi.case_of(
     ...     {
     ...         "sphere": {"radius": 0.02, "material": "steel"},
     ...         "plate": plate,
@@ -54,8 +54,8 @@ def correlation_charts(found: Correlation) -> list[Chart]:
     ...         "sensors": [{"name": "a", "position": [0.1, 0.03], "rate": 20e3}],
     ...     }
     ... )
-    >>> record = vi.Record("a", vi.simulate(case).signals()["a"].value, 20e3, "m/s2")
-    >>> found = vi.correlate(case, [record], window=0.05)
+    >>> record = vi.signals.Record("a", vi.simulate(case).signals()["a"].value, 20e3, "m/s2")
+    >>> found = vi.test_analysis.correlate(case, [record], window=0.05)
     >>> [chart.name for chart in correlation_charts(found)]
     ['overlay', 'responses', 'frac', 'damping']
     """

@@ -110,7 +110,7 @@ class Correlation(Reported, reported_in="vibroimpact.test_analysis.report"):
     ...     "supports": "clamped",
     ...     "damping": 0.01,
     ... }
-    >>> case = vi.read_case(
+    >>> case = vi.case_of(
     ...     {
     ...         "sphere": {"radius": 0.02, "material": "steel"},
     ...         "plate": plate,
@@ -120,8 +120,8 @@ class Correlation(Reported, reported_in="vibroimpact.test_analysis.report"):
     ...         "sensors": [{"name": "a", "position": [0.1, 0.03], "rate": 20e3}],
     ...     }
     ... )
-    >>> record = vi.Record("a", vi.simulate(case).signals()["a"].value, 20e3, "m/s2")
-    >>> found = vi.correlate(case, [record], window=0.05)
+    >>> record = vi.signals.Record("a", vi.simulate(case).signals()["a"].value, 20e3, "m/s2")
+    >>> found = vi.test_analysis.correlate(case, [record], window=0.05)
     >>> found.sensors[0].name, round(float(found.frac[0]), 4)
     ('a', 1.0)
     """
@@ -228,7 +228,7 @@ def correlate(
     ...     "supports": "clamped",
     ...     "damping": 0.01,
     ... }
-    >>> case = vi.read_case(
+    >>> case = vi.case_of(
     ...     {
     ...         "sphere": {"radius": 0.02, "material": "steel"},
     ...         "plate": plate,

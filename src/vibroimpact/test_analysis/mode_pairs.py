@@ -61,7 +61,7 @@ class ModePair:
     Examples
     --------
     >>> import vibroimpact as vi
-    >>> pair = vi.ModePair(
+    >>> pair = vi.test_analysis.ModePair(
     ...     number=1,
     ...     frequency=420.0,
     ...     damping_ratio=0.01,

@@ -1,1 +1,5 @@
 """Quantities and units: parsing, conversion and formatting."""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

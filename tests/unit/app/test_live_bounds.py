@@ -46,7 +46,7 @@ def a_case(
         "drop": {"speed": 1.0},
         "contact": {"law": "hertz"},
     }
-    return vi.read_case({**table, **sections})
+    return vi.case_of({**table, **sections})
 
 
 @pytest.fixture
@@ -146,7 +146,7 @@ def test_a_contact_is_integrated_once(monkeypatch: pytest.MonkeyPatch) -> None:
 
     def counted(*arguments: Any) -> Any:
         integrated.append(arguments)
-        return vi.achieved_restitution(*arguments)
+        return vi.laws.achieved_restitution(*arguments)
 
     monkeypatch.setattr(costs, "achieved_restitution", counted)
     check_bounds(vi.load_case("paper:type1-variable", {"run.impacts": "all"}))

@@ -99,7 +99,7 @@ def test_a_case_comes_as_the_library_computes_it() -> None:
     )
     assert found["status"] == response.status
     assert line["y"] == pytest.approx(response.history()["position_m"], rel=1e-6, abs=1e-9)
-    assert vi.read_case(tomllib.loads(found["toml"])) == vi.load_case("paper:type1-theory")
+    assert vi.case_of(tomllib.loads(found["toml"])) == vi.load_case("paper:type1-theory")
 
 
 def test_only_the_charts_that_are_looked_at_are_made() -> None:

@@ -29,7 +29,7 @@ NAMES = {
 @pytest.mark.parametrize("name", NAMES)
 def test_another_name_leads_to_that_of_the_library(name: str) -> None:
     with pytest.raises(vi.InputError) as raised:
-        vi.read_case(plain_case(sphere__material=name))
+        vi.case_of(plain_case(sphere__material=name))
     assert str(raised.value).startswith(
         f'sphere.material: there is no material "{name}" in the library'
     )
@@ -46,12 +46,12 @@ def test_what_the_library_does_not_have_can_be_given_by_numbers(name: str) -> No
 def test_every_material_is_found_by_its_own_name_and_no_other_name_is_two_materials() -> None:
     from vibroimpact.materials import _known_by, _library_file, _plain
 
-    assert all(vi.find_material(name).name == name for name in vi.material_library())
+    assert all(vi.find_material(name).name == name for name in vi.materials.material_library())
     others = [
         _plain(other)
         for entry in _library_file().values()
         for other in entry.get("other_names", ())
     ]
     assert len(others) == len(set(others))
-    assert not {_plain(name) for name in vi.material_library()} & set(others)
-    assert set(_known_by().values()) == set(vi.material_library())
+    assert not {_plain(name) for name in vi.materials.material_library()} & set(others)
+    assert set(_known_by().values()) == set(vi.materials.material_library())

@@ -19,7 +19,7 @@ from vibroimpact.bayes_error.report import headline, scatter_sentences
 
 @pytest.fixture(scope="module")
 def bound() -> Bound:
-    return bound_of(vi.load_sweep("signals:coal-gangue", 4000))
+    return bound_of(vi.studies.load_sweep("signals:coal-gangue", 4000))
 
 
 @pytest.mark.slow
@@ -46,7 +46,7 @@ def test_what_is_measured_besides_never_raises_the_bound(samples: int) -> None:
     """Of few falls each further quantity leaves fewer that are alike; the time to the
     next impact raised the bound from 0 to 8 %.
     """
-    found = bound_of(vi.load_sweep("signals:coal-gangue", samples))
+    found = bound_of(vi.studies.load_sweep("signals:coal-gangue", samples))
     more_than = {
         "contact time": "one impact, place unknown",
         "impulse": "one impact",
@@ -64,7 +64,7 @@ def test_what_is_measured_besides_never_raises_the_bound(samples: int) -> None:
 
 def test_the_headline_of_few_falls_states_what_they_tell(bound: Bound) -> None:
     assert "falls are few" not in headline(bound)
-    few = headline(bound_of(vi.load_sweep("signals:coal-gangue", 64)))
+    few = headline(bound_of(vi.studies.load_sweep("signals:coal-gangue", 64)))
     assert few.endswith("64 falls are few: even an error of 0 may in truth be up to 4.6 % (95 %).")
 
 
@@ -72,7 +72,9 @@ def test_noise_and_a_narrow_band_cost(bound: Bound) -> None:
     assert bound.map[0, 0] > 5 * bound.map[-1, -1]
     assert (np.diff(bound.map.mean(axis=0)) < 0.01).all()  # quieter
     assert (np.diff(bound.map.mean(axis=1)) < 0.01).all()  # wider
-    deaf = bound_of(vi.load_sweep("signals:coal-gangue", 1000), Channel(signal_to_noise=-60.0))
+    deaf = bound_of(
+        vi.studies.load_sweep("signals:coal-gangue", 1000), Channel(signal_to_noise=-60.0)
+    )
     assert deaf.errors["contact time"].upper == pytest.approx(deaf.majority, abs=0.06)
 
 
@@ -90,7 +92,9 @@ def test_the_share_of_the_assumed_scatter(bound: Bound) -> None:
     assert all(
         without[name].lower <= without[name].upper <= error.upper for name, error in with_it.items()
     )
-    exact = bound_of(vi.load_sweep("signals:coal-gangue", 1000), Channel(gain=0.0, place=0.0))
+    exact = bound_of(
+        vi.studies.load_sweep("signals:coal-gangue", 1000), Channel(gain=0.0, place=0.0)
+    )
     assert exact.errors["one impact"] == exact.without_scatter["one impact"]
     assert (
         "Each error holds for classifiers that see only the quantities named, with this scatter."
@@ -99,7 +103,7 @@ def test_the_share_of_the_assumed_scatter(bound: Bound) -> None:
 
 
 def test_the_bound_of_a_computed_data_set(tmp_path: Path) -> None:
-    table = vi.load_sweep("signals:coal-gangue").whole_table
+    table = vi.studies.load_sweep("signals:coal-gangue").whole_table
     plate = {"size": [1.2, 0.8, 0.02], "material": "steel"}
     sweep = {**table["sweep"], "samples": 600, "keep": ["peaks"]}
     sweep.pop("window")
@@ -107,19 +111,19 @@ def test_the_bound_of_a_computed_data_set(tmp_path: Path) -> None:
         key: value for key, value in sweep["over"].items() if not key.startswith("plate.")
     }
     rigid = {**table, "plate": plate, "sensors": [], "run": {"impacts": 1}, "sweep": sweep}
-    stated = vi.read_sweep(rigid)
-    computed = vi.read_study(vi.run_sweep(stated, tmp_path / "falls"))
+    stated = vi.studies.sweep_of(rigid)
+    computed = vi.studies.load_study(vi.studies.run_sweep(stated, tmp_path / "falls"))
     of_study, of_sweep = bound_of(computed), bound_of(stated)
     assert of_study.errors == of_sweep.errors
     np.testing.assert_array_equal(of_study.falls.mass, of_sweep.falls.mass)
 
 
 def test_how_sensors_are_mounted_does_not_matter_to_a_bound() -> None:
-    table = vi.load_sweep("signals:coal-gangue", 100).whole_table
+    table = vi.studies.load_sweep("signals:coal-gangue", 100).whole_table
     over = {**table["sweep"]["over"], "sensors.a1.position.x": {"from": 0.27, "to": 0.29}}
-    mounted = vi.read_sweep({**table, "sweep": {**table["sweep"], "over": over}})
+    mounted = vi.studies.sweep_of({**table, "sweep": {**table["sweep"], "over": over}})
     np.testing.assert_array_equal(
-        falls_of_sweep(mounted).duration, falls_of_sweep(vi.read_sweep(table)).duration
+        falls_of_sweep(mounted).duration, falls_of_sweep(vi.studies.sweep_of(table)).duration
     )
 
 
@@ -147,4 +151,4 @@ def test_what_has_no_bound() -> None:
         vi.InputError,
         match=r"sweep.design: the study has no classes; a bound needs design = \"population\"",
     ):
-        bound_of(vi.load_sweep("paper:sweep"))
+        bound_of(vi.studies.load_sweep("paper:sweep"))

@@ -9,7 +9,7 @@ import pytest
 
 import vibroimpact as vi
 from support import plain_case
-from vibroimpact.calibration.calibrate_case import calibrate_case, read_calibration
+from vibroimpact.calibration.calibrate_case import calibrate_case, calibration_of
 from vibroimpact.calibration.calibration import Calibration
 
 CONTACT = {"law": "adams-impact", "damping_max": 200.0}
@@ -17,12 +17,12 @@ CONTACT = {"law": "adams-impact", "damping_max": 200.0}
 
 @pytest.fixture(scope="module")
 def response() -> vi.Response:
-    return vi.simulate(vi.read_case(plain_case(contact=CONTACT, run={"impacts": 3})))
+    return vi.simulate(vi.case_of(plain_case(contact=CONTACT, run={"impacts": 3})))
 
 
 def calibrated(file: Path) -> Calibration:
     return calibrate_case(
-        read_calibration(
+        calibration_of(
             plain_case(
                 contact={"law": "newton", "restitution": 0.5},
                 run={"impacts": 3},

@@ -18,7 +18,7 @@ import vibroimpact as vi
 from ball_records import RATE, burst, heard, music
 from support import plain_case
 from vibroimpact.calibration.bounces.speed_laws import speed_laws
-from vibroimpact.calibration.calibrate_case import calibrate_case, read_calibration
+from vibroimpact.calibration.calibrate_case import calibrate_case, calibration_of
 from vibroimpact.signals.bounces.chain import longest_chain
 
 SAID = 1.96
@@ -32,7 +32,7 @@ CONDITIONS = [
 BALLS = [(0.3, 5), (0.45, 6), (0.6, 7), (0.75, 8), (0.9, 9)]
 
 
-def place_of(found: vi.Bounces, touches: np.ndarray) -> int:
+def place_of(found: vi.signals.Bounces, touches: np.ndarray) -> int:
     """Return the touch that the first one found is; each of the others is the one after."""
     first = int(np.argmin(np.abs(touches - found.time[0])))
     np.testing.assert_allclose(found.time, touches[first : first + len(found.time)], atol=5e-4)
@@ -46,7 +46,7 @@ def test_intervals_hold_the_truth() -> None:
     for seed in range(100):
         ball, condition = BALLS[seed % 5], CONDITIONS[seed // 5 % 5]
         made = heard(seed, *ball, **condition)
-        found = vi.find_bounces(made.record)
+        found = vi.signals.find_bounces(made.record)
         first = place_of(found, made.touches)
         assert first == 0
         errors = found.restitution - made.restitution[: len(found.restitution)]
@@ -63,7 +63,7 @@ def test_intervals_hold_the_truth() -> None:
 @pytest.mark.parametrize("seed", range(6))
 def test_second_contacts_are_told(seed: int) -> None:
     made = heard(seed, *BALLS[seed % 5], decibels=15.0, doubles=2, clicks=2)
-    found = vi.find_bounces(made.record)
+    found = vi.signals.find_bounces(made.record)
     place_of(found, made.touches)
     errors = found.restitution - made.restitution[: len(found.restitution)]
     np.testing.assert_allclose(errors, 0.0, atol=2e-3)
@@ -79,7 +79,7 @@ def test_a_loud_second_contact_and_another_noise_are_told() -> None:
         + 3.0 * burst(made.record.time, made.touches[2] + 4e-3)
         + burst(made.record.time, 0.5)
     )
-    found = vi.find_bounces(vi.Record("microphone", value, RATE, "Pa"))
+    found = vi.signals.find_bounces(vi.signals.Record("microphone", value, RATE, "Pa"))
     place_of(found, made.touches)
     assert found.others.round(3).tolist() == [0.5, round(made.touches[2] + 4e-3, 3)]
     assert found.reasons == ("its time is not that of a bounce", "it is a second contact")
@@ -87,9 +87,9 @@ def test_a_loud_second_contact_and_another_noise_are_told() -> None:
 
 def test_scale_and_offset_and_start_do_not_matter() -> None:
     made = heard(2, 0.6, 6, decibels=20.0).record
-    found = vi.find_bounces(made)
-    moved = vi.find_bounces(
-        vi.Record(made.name, 3.0 - 1e-6 * made.value, made.rate, "V", start=7.0)
+    found = vi.signals.find_bounces(made)
+    moved = vi.signals.find_bounces(
+        vi.signals.Record(made.name, 3.0 - 1e-6 * made.value, made.rate, "V", start=7.0)
     )
     np.testing.assert_allclose(moved.time, found.time + 7.0, atol=1e-9)
     np.testing.assert_allclose(moved.restitution, found.restitution, rtol=1e-7)
@@ -99,7 +99,7 @@ def test_scale_and_offset_and_start_do_not_matter() -> None:
 @pytest.mark.parametrize("rate", [8e3, 10e3, 44_100.0, 192e3])
 def test_any_rate(rate: float) -> None:
     made = heard(3, 0.7, 6, decibels=25.0, rate=rate)
-    found = vi.find_bounces(made.record)
+    found = vi.signals.find_bounces(made.record)
     assert len(found.time) == 6
     np.testing.assert_allclose(found.restitution, made.restitution, atol=0.01)
 
@@ -108,8 +108,8 @@ def test_the_first_drop_and_the_last_bounces_may_be_missing() -> None:
     made = heard(4, 0.7, 8, decibels=20.0)
     inside = made.record.time > made.touches[1] - 0.1
     inside &= made.record.time < made.touches[6] - 0.01
-    found = vi.find_bounces(
-        vi.Record(
+    found = vi.signals.find_bounces(
+        vi.signals.Record(
             "microphone", made.record.value[inside], RATE, "Pa", start=made.record.time[inside][0]
         )
     )
@@ -119,19 +119,19 @@ def test_the_first_drop_and_the_last_bounces_may_be_missing() -> None:
 @pytest.mark.parametrize("seed", range(12))
 def test_music_is_refused(seed: int) -> None:
     with pytest.raises(vi.InputError, match="it holds no "):
-        vi.find_bounces(music(seed))
+        vi.signals.find_bounces(music(seed))
 
 
 @pytest.mark.parametrize("seed", range(6))
 def test_noise_is_refused(seed: int) -> None:
     value = np.random.default_rng(seed).standard_normal(96_000)
     with pytest.raises(vi.InputError, match=r"detected in it|holds no"):
-        vi.find_bounces(vi.Record("microphone", value, RATE, "Pa"))
+        vi.signals.find_bounces(vi.signals.Record("microphone", value, RATE, "Pa"))
 
 
-def record_of(*touches: float, duration: float = 1.0) -> vi.Record:
+def record_of(*touches: float, duration: float = 1.0) -> vi.signals.Record:
     time = np.arange(int(duration * RATE)) / RATE
-    return vi.Record(
+    return vi.signals.Record(
         "microphone", sum((burst(time, at) for at in touches), np.zeros_like(time)), RATE, "Pa"
     )
 
@@ -140,7 +140,7 @@ def record_of(*touches: float, duration: float = 1.0) -> vi.Record:
     ("record", "message"),
     [
         (record_of(), "it is silent: all samples are the same"),
-        (vi.Record("m", np.full(48_000, 3.0), RATE, "V"), "it is silent"),
+        (vi.signals.Record("m", np.full(48_000, 3.0), RATE, "V"), "it is silent"),
         (record_of(0.3), "one touch is detected in it, and a restitution needs three"),
         (record_of(0.3, 0.6), "two touches are detected in it"),
         (record_of(0.2, 0.4, 0.7), "the times between 3 touches do not decrease"),
@@ -154,35 +154,40 @@ def record_of(*touches: float, duration: float = 1.0) -> vi.Record:
             "of its 5 touches 4 at best have intervals that shrink as those of bounces, as "
             "some of as many",
         ),
-        (vi.Record("m", np.zeros(0), RATE, "V"), "it has no samples"),
+        (vi.signals.Record("m", np.zeros(0), RATE, "V"), "it has no samples"),
         (
-            vi.Record("m", np.arange(100.0), RATE, "V"),
+            vi.signals.Record("m", np.arange(100.0), RATE, "V"),
             "it is too short: it has 100 samples, and at 48000 Hz three touches take 288",
         ),
-        (vi.Record("m", np.array([0.0, np.nan]), RATE, "V"), "a sample is not a finite number"),
         (
-            vi.Record(
+            vi.signals.Record("m", np.array([0.0, np.nan]), RATE, "V"),
+            "a sample is not a finite number",
+        ),
+        (
+            vi.signals.Record(
                 "m", np.clip(20.0 * heard(0, 0.8, 8, hum=0.3).record.value, -1.0, 1.0), RATE, "V"
             ),
             "it is clipped: ",
         ),
     ],
 )
-def test_what_tells_no_restitution_is_refused(record: vi.Record, message: str) -> None:
+def test_what_tells_no_restitution_is_refused(record: vi.signals.Record, message: str) -> None:
     with pytest.raises(vi.InputError) as caught:
-        vi.find_bounces(record)
+        vi.signals.find_bounces(record)
     assert message in str(caught.value)
 
 
 def test_little_clipping_is_a_doubt() -> None:
     made = heard(0, 0.7, 7)
-    found = vi.find_bounces(vi.Record("m", made.record.value.clip(-0.8, 0.8), RATE, "V"))
+    found = vi.signals.find_bounces(
+        vi.signals.Record("m", made.record.value.clip(-0.8, 0.8), RATE, "V")
+    )
     np.testing.assert_allclose(found.restitution, made.restitution, atol=5e-4)
     assert "of the samples are clipped" in found.doubts[0]
 
 
 def test_three_touches_are_taken_with_a_doubt() -> None:
-    found = vi.find_bounces(record_of(0.2, 0.5, 0.65))
+    found = vi.signals.find_bounces(record_of(0.2, 0.5, 0.65))
     np.testing.assert_allclose(found.restitution, [0.5], atol=1e-5)
     assert found.doubts == (
         "the series has only three touches: they need not be bounces of one ball",
@@ -198,9 +203,9 @@ def test_hostile_records_are_read_or_refused(seed: int) -> None:
     value[random.random(len(value)) < random.random()] = 0.0
     if seed % 4 == 0:
         value = np.round(random.uniform(-3.0, 3.0, len(value)))
-    record = vi.Record("m", value, float(10.0 ** random.uniform(-3.0, 9.0)), "V")
+    record = vi.signals.Record("m", value, float(10.0 ** random.uniform(-3.0, 9.0)), "V")
     try:
-        found = vi.find_bounces(record)
+        found = vi.signals.find_bounces(record)
     except vi.InputError:
         return
     assert np.isfinite(found.restitution).all()
@@ -217,8 +222,8 @@ def test_the_chain_is_that_of_all_bounces() -> None:
 
 def test_speeds_are_those_of_the_flights() -> None:
     made = heard(5, 0.7, 7, decibels=30.0)
-    found = vi.rebounds_of(
-        vi.find_bounces(made.record),
+    found = vi.calibration.rebounds_of(
+        vi.signals.find_bounces(made.record),
         gravity=9.81,
         height=0.5 * (0.5 * 9.81 * 0.4 / 0.7) ** 2 / 9.81,
     )
@@ -228,30 +233,30 @@ def test_speeds_are_those_of_the_flights() -> None:
     np.testing.assert_allclose(found.approach_speed[1:], found.separation_speed[:-1], rtol=1e-12)
     np.testing.assert_allclose(found.restitution[:-1], 0.7, atol=1e-3)
     assert np.isnan(found.restitution[-1])
-    guessed = vi.rebounds_of(vi.find_bounces(made.record), gravity=9.81)
+    guessed = vi.calibration.rebounds_of(vi.signals.find_bounces(made.record), gravity=9.81)
     assert guessed.drop_height == pytest.approx(found.height, rel=1e-3)
     assert np.isnan(guessed.approach_speed[0])
 
 
 def test_a_height_that_is_not_that_of_the_first_touch() -> None:
-    bounces = vi.find_bounces(record_of(0.2, 0.5, 0.68, 0.788))
+    bounces = vi.signals.find_bounces(record_of(0.2, 0.5, 0.68, 0.788))
     with pytest.raises(vi.InputError, match=r"rises by 0\.1103 m, more than the height of 0\.1 m"):
-        vi.rebounds_of(bounces, height=0.1)
-    found = vi.rebounds_of(bounces, height=3.0)
+        vi.calibration.rebounds_of(bounces, height=0.1)
+    found = vi.calibration.rebounds_of(bounces, height=3.0)
     assert "left out of the fits" in found.doubts[-1]
     assert found.laws[0].coefficients[0] == pytest.approx(0.6, abs=1e-4)
     with pytest.raises(vi.InputError, match="the gravity is 0 m/s"):
-        vi.rebounds_of(bounces, gravity=0.0)
+        vi.calibration.rebounds_of(bounces, gravity=0.0)
 
 
 def test_a_contact_is_no_part_of_a_flight() -> None:
     touches = np.concatenate([[0.2], 0.2 + np.cumsum(0.3 * 0.6 ** np.arange(5) + 4e-3)])
-    found = vi.find_bounces(record_of(*touches), contact=4e-3)
+    found = vi.signals.find_bounces(record_of(*touches), contact=4e-3)
     np.testing.assert_allclose(found.restitution, 0.6, atol=1e-4)
-    too_large = vi.find_bounces(record_of(*touches)).restitution - 0.6
+    too_large = vi.signals.find_bounces(record_of(*touches)).restitution - 0.6
     np.testing.assert_allclose(too_large, 0.4 * 4e-3 / (np.diff(touches)[:-1]), atol=1e-4)
     with pytest.raises(vi.InputError, match="within the contact"):
-        vi.find_bounces(record_of(*touches), contact=0.5)
+        vi.signals.find_bounces(record_of(*touches), contact=0.5)
 
 
 @pytest.mark.slow
@@ -384,7 +389,7 @@ def calibrated(target: object, **changes: object):
         calibrate={"target": target, "degree": 0, "air": False},
         **changes,
     )
-    return calibrate_case(read_calibration(case))
+    return calibrate_case(calibration_of(case))
 
 
 def test_a_case_is_calibrated_to_what_is_heard(file: Path) -> None:

@@ -12,9 +12,7 @@ import vibroimpact as vi
 from support import plain_case
 from vibroimpact.calibration.adams_dialog import DIALOG_TITLE
 from vibroimpact.calibration.calibrate_case import ToCalibrate
-from vibroimpact.calibration.charts import calibration_charts
 from vibroimpact.calibration.differences import differences
-from vibroimpact.calibration.report import report_of
 from vibroimpact.charts.marks import Band, Line, Points
 from vibroimpact.exporting.load_drop import load_drop
 from vibroimpact.report.report import Report, Table
@@ -30,15 +28,15 @@ def dialogs(report: Report) -> list[Table]:
 
 
 def to_calibrate(section: dict, **changes: object) -> ToCalibrate:
-    return vi.read_calibration(
+    return vi.calibration.calibration_of(
         {**plain_case(**{"run": {"impacts": 5}, **PAPER, **changes}), "calibrate": section}
     )
 
 
-def calibrated(section: dict, **changes: object) -> tuple[vi.Calibration, vi.Response]:
+def calibrated(section: dict, **changes: object) -> tuple[vi.calibration.Calibration, vi.Response]:
     what = to_calibrate(section, **changes)
-    found = vi.calibrate_case(what)
-    return found, vi.simulate(vi.calibrated_case(what.case, found))
+    found = vi.calibration.calibrate_case(what)
+    return found, vi.simulate(found.calibrated_case)
 
 
 @pytest.mark.parametrize(
@@ -90,7 +88,7 @@ def test_of_two_dampings_with_the_same_force_the_smaller_counts() -> None:
     assert response.impacts["max_force_N"][0] == pytest.approx(8000.0, rel=1e-9)
     stronger = {"law": "adams-impact", "damping_max": 1e3}
     assert (
-        vi.simulate(vi.read_case(plain_case(**{**PAPER, "contact": stronger}))).impacts[
+        vi.simulate(vi.case_of(plain_case(**{**PAPER, "contact": stronger}))).impacts[
             "max_force_N"
         ][0]
         > 8000.0
@@ -107,7 +105,7 @@ def test_several_outcomes_are_met_as_nearly_as_one_number_can() -> None:
     def cost(value: float) -> float:
         contact = {"law": "adams-impact", "damping_max": value}
         impact = vi.simulate(
-            vi.read_case(plain_case(**{**PAPER, "contact": contact, "run": {"impacts": 1}}))
+            vi.case_of(plain_case(**{**PAPER, "contact": contact, "run": {"impacts": 1}}))
         ).impacts
         wanted = found.observations.wanted
         rebound = (
@@ -159,8 +157,10 @@ def test_a_jump_is_not_taken_for_a_solution() -> None:
         "run": {"impacts": 4},
     }
     with pytest.raises(vi.InputError, match="jumps over this one"):
-        vi.calibrate_case(
-            vi.read_calibration({**case, "calibrate": {"target": {"restitution": 0.2346}}})
+        vi.calibration.calibrate_case(
+            vi.calibration.calibration_of(
+                {**case, "calibrate": {"target": {"restitution": 0.2346}}}
+            )
         )
 
 
@@ -182,9 +182,8 @@ def test_a_run_takes_no_notice(tmp_path: Path) -> None:
     assert again.calibrate == case.calibrate
 
 
-def test_the_folder(damping: vi.Calibration, tmp_path: Path) -> None:
-    case = vi.load_case("paper:calibration")
-    folder = vi.save_calibration(case, damping, tmp_path / "calibrated", figures=("png",))
+def test_the_folder(damping: vi.calibration.Calibration, tmp_path: Path) -> None:
+    folder = damping.save(tmp_path / "calibrated", figures=("png",))
     table = json.loads((folder / "calibration.json").read_text())
     assert table["parameter"] == "damping_max"
     assert [row["impact"] for row in table["impacts"]] == [1, 2, 3, 4, 5]
@@ -202,12 +201,12 @@ def test_the_folder(damping: vi.Calibration, tmp_path: Path) -> None:
     assert drop.function is not None
     assert drop.function[1](5.0) == pytest.approx(damping.fit.function(5.0), rel=1e-15)
     with pytest.raises(vi.InputError, match="this is a calibration"):
-        vi.read_result(folder)
+        vi.load_result(folder)
     with pytest.raises(vi.InputError, match="is there already"):
-        vi.save_calibration(case, damping, folder)
+        damping.save(folder)
 
 
-def test_the_charts_hold_the_values(damping: vi.Calibration) -> None:
+def test_the_charts_hold_the_values(damping: vi.calibration.Calibration) -> None:
     """Each impact with its interval, the fit, and the remaining differences in per cent;
     the parameter in words.
     """
@@ -220,7 +219,7 @@ def test_the_charts_hold_the_values(damping: vi.Calibration) -> None:
             "degree": 1,
         }
     )
-    (chart,) = calibration_charts(found)
+    (chart,) = found.charts.values()
     (panel,) = chart.panels
     assert panel.y.label == "Largest damping C"
     assert "damping_max" in chart.caption
@@ -233,7 +232,7 @@ def test_the_charts_hold_the_values(damping: vi.Calibration) -> None:
     np.testing.assert_array_equal(points.y, found.values)
     assert found.intervals is not None
     np.testing.assert_array_equal(np.transpose([points.low, points.high]), found.intervals)
-    last = calibration_charts(damping)[-1]
+    last = list(damping.charts.values())[-1]
     assert [panel.title for panel in last.panels] == [
         "Largest indentation",
         "Largest force",
@@ -261,7 +260,7 @@ def test_the_damping_of_modes_is_found_again_and_is_no_function_of_the_law(tmp_p
         "damping": 0.3,
     }
     run = vi.simulate(
-        vi.read_case(plain_case(**{**PAPER, "sphere": sphere, "contact": {"law": "hertz"}}))
+        vi.case_of(plain_case(**{**PAPER, "sphere": sphere, "contact": {"law": "hertz"}}))
     ).impacts
     section = {
         "target": {"separation_speed": float(run["separation_speed_m_s"][0])},
@@ -271,9 +270,9 @@ def test_the_damping_of_modes_is_found_again_and_is_no_function_of_the_law(tmp_p
     what = to_calibrate(
         section, sphere={**sphere, "damping": 0.02}, contact={"law": "hertz"}, run={"impacts": 1}
     )
-    found = vi.calibrate_case(what)
+    found = vi.calibration.calibrate_case(what)
     assert found.values[0] == pytest.approx(0.3, rel=1e-5)
-    folder = vi.save_calibration(what.case, found, tmp_path / "calibrated")
+    folder = found.save(tmp_path / "calibrated")
     assert vi.load_case(folder / "case.toml").sphere.damping.ratio == pytest.approx(0.3, rel=1e-5)
     assert load_drop(folder).function is None
 
@@ -290,36 +289,38 @@ def test_what_has_no_influence_is_told() -> None:
     }
     section = {"target": {"separation_speed": 8.0}, "parameter": "sphere.damping"}
     with pytest.raises(vi.InputError, match=r"whatever sphere\.damping is|has no influence"):
-        vi.calibrate_case(
+        vi.calibration.calibrate_case(
             to_calibrate(section, sphere=sphere, contact={"law": "hertz"}, run={"impacts": 1})
         )
 
 
 def test_the_curve_is_exact(theory: vi.Response) -> None:
-    found = vi.calibrate(vi.load_case("paper:type1-constant"), vi.load_case("paper:type1-theory"))
+    found = vi.calibration.calibrate(
+        vi.load_case("paper:type1-constant"), vi.load_case("paper:type1-theory")
+    )
     assert found.curve is not None
     speeds, values = found.curve
     speed, value = speeds[20], values[20]
     contact = {"law": "adams-impact", "damping_max": float(value)}
     one = {"drop": {"speed": float(speed), "gravity": 9.8}, "run": {"impacts": 1}}
-    adams = vi.simulate(vi.read_case(plain_case(**{**one, "contact": contact}))).impacts[
+    adams = vi.simulate(vi.case_of(plain_case(**{**one, "contact": contact}))).impacts[
         "separation_speed_m_s"
     ]
     law = {"law": "lankarani-nikravesh", "restitution": 0.65}
-    wanted = vi.simulate(vi.read_case(plain_case(**{**one, "contact": law}))).impacts[
+    wanted = vi.simulate(vi.case_of(plain_case(**{**one, "contact": law}))).impacts[
         "separation_speed_m_s"
     ]
     assert adams == pytest.approx(wanted, rel=1e-9)
     assert np.all(np.diff(speeds) > 0.0)
 
 
-def test_the_dialog_of_adams_has_its_units(damping: vi.Calibration) -> None:
+def test_the_dialog_of_adams_has_its_units(damping: vi.calibration.Calibration) -> None:
     """Stiffness, exponent, damping and penetration in newtons, millimetres and seconds,
     as the exported force has them.
     """
     case = vi.load_case("paper:calibration")
     stiffness = float(case.to_problem().laws[0].stiffness)
-    (dialog,) = dialogs(report_of(case, damping))
+    (dialog,) = dialogs(damping.report)
     rows = list(zip(*(column.cells for column in dialog.columns), strict=True))
     assert [(column.heading, column.unit) for column in dialog.columns[1:]] == [
         ("Stiffness", "N/mm^n"),
@@ -330,7 +331,8 @@ def test_the_dialog_of_adams_has_its_units(damping: vi.Calibration) -> None:
     for row, value in zip(rows, damping.values, strict=True):
         shown = [float(cell) for cell in row[1:]]
         assert shown == pytest.approx(
-            [vi.convert_units(stiffness, "N/m^1.5", "N/mm^1.5"), 1.5, value / 1000.0, 0.1], rel=1e-5
+            [vi.units.convert_units(stiffness, "N/m^1.5", "N/mm^1.5"), 1.5, value / 1000.0, 0.1],
+            rel=1e-5,
         )
 
 
@@ -338,4 +340,4 @@ def test_the_dialog_is_that_of_adams_alone() -> None:
     what = to_calibrate(
         {"target": {"restitution": 0.7}}, contact={"law": "tsuji"}, run={"impacts": 2}
     )
-    assert dialogs(report_of(what.case, vi.calibrate_case(what))) == []
+    assert dialogs(vi.calibration.calibrate_case(what).report) == []

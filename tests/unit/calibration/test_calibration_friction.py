@@ -16,7 +16,6 @@ from scipy.stats import t as students_t
 
 import vibroimpact as vi
 from support import one_in
-from vibroimpact.calibration.charts import calibration_charts
 from vibroimpact.calibration.friction.friction_report import friction_sentences
 from vibroimpact.calibration.friction.parameters import ImpactModel
 from vibroimpact.charts.marks import Line, Points
@@ -52,7 +51,7 @@ def impacts(friction: dict[str, Any], angles: np.ndarray, **changes: Any) -> dic
         {"speed": SPEED, "angle": float(np.radians(angle)), "gravity": 0.0} for angle in angles
     ]
     tables = [
-        vi.simulate(vi.read_case(case(friction, **{**changes, "drop": drop}))) for drop in drops
+        vi.simulate(vi.case_of(case(friction, **{**changes, "drop": drop}))) for drop in drops
     ]
     return {
         name: np.array([table.impacts[name][0] for table in tables]) for name in tables[0].impacts
@@ -74,17 +73,17 @@ def table(folder: Path, angles: np.ndarray, **columns: Any) -> str:
 
 def calibrated(
     file: str, friction: dict[str, Any], parameter: Any = "friction.coefficient", **more: Any
-) -> vi.FrictionCalibration:
+) -> vi.calibration.FrictionCalibration:
     changes = {key: more.pop(key) for key in ("contact", "drop", "plate") if key in more}
-    found = vi.calibrate_case(
-        vi.read_calibration(
+    found = vi.calibration.calibrate_case(
+        vi.calibration.calibration_of(
             {
                 **case(friction, **changes),
                 "calibrate": {"target": file, "parameter": parameter, **more},
             }
         )
     )
-    assert isinstance(found, vi.FrictionCalibration)
+    assert isinstance(found, vi.calibration.FrictionCalibration)
     return found
 
 
@@ -389,14 +388,14 @@ def test_folder_page_and_charts(tmp_path: Path) -> None:
         "spin_y_after_standard_deviation [rad/s]": 5.0,
     }
     file = table(tmp_path, ALL, **columns, **deviations)
-    what = vi.read_calibration(
+    what = vi.calibration.calibration_of(
         {
             **case({"law": "coulomb"}),
             "calibrate": {"target": file, "parameter": "friction.coefficient"},
         }
     )
-    found = vi.calibrate_case(what)
-    folder = vi.save_calibration(what.case, found, tmp_path / "calibrated", figures=("png",))
+    found = vi.calibration.calibrate_case(what)
+    folder = found.save(tmp_path / "calibrated", figures=("png",))
     document = json.loads((folder / "calibration.json").read_text(encoding="utf-8"))
     (one,) = document["parameters"]
     assert one["parameter"] == "friction.coefficient"
@@ -412,7 +411,7 @@ def test_folder_page_and_charts(tmp_path: Path) -> None:
     )
     page = (folder / "report.html").read_text(encoding="utf-8")
     assert "friction.coefficient" in page
-    chart = calibration_charts(found)[0]
+    chart = next(iter(found.charts.values()))
     assert chart.name == "angle"
     assert [panel.y.label for panel in chart.panels] == [
         "Tangential restitution",
@@ -472,7 +471,9 @@ def test_faults_of_the_section(changes: dict[str, Any], words: str, tmp_path: Pa
         **changes,
     }
     with pytest.raises(vi.InputError) as refused:
-        vi.calibrate_case(vi.read_calibration({**case({"law": "coulomb"}), "calibrate": section}))
+        vi.calibration.calibrate_case(
+            vi.calibration.calibration_of({**case({"law": "coulomb"}), "calibrate": section})
+        )
     assert words in str(refused.value)
 
 
@@ -529,9 +530,11 @@ def test_faults_of_the_case(tmp_path: Path) -> None:
         "parameter": "friction.coefficient",
     }
     with pytest.raises(vi.InputError, match="the case has no friction"):
-        vi.calibrate_case(vi.read_calibration({**case({"law": "none"}), "calibrate": section}))
+        vi.calibration.calibrate_case(
+            vi.calibration.calibration_of({**case({"law": "none"}), "calibrate": section})
+        )
     with pytest.raises(vi.InputError, match=r"it is missing; friction\.coefficient is fitted to"):
-        vi.read_calibration(
+        vi.calibration.calibration_of(
             {**case({"law": "coulomb"}), "calibrate": {"parameter": "friction.coefficient"}}
         )
     contact = {
@@ -561,22 +564,24 @@ def test_faults_of_the_case(tmp_path: Path) -> None:
 @pytest.mark.parametrize(("law", "reached"), [("lankarani-nikravesh", False), ("flores", True)])
 def test_a_rebound_that_the_contact_law_does_not_reach(law: str, reached: bool) -> None:
     """Lankarani and Nikravesh's law has no restitution below 0.66."""
-    stated = vi.read_case(
+    stated = vi.case_of(
         case({"law": "coulomb", "coefficient": 0.1}, contact={"law": law, "restitution": 0.8})
     )
     along = {"separation_velocity_x": np.array([3.92, 4.93, 5.91])}
-    seen = vi.Observations(
+    seen = vi.calibration.Observations(
         speeds=np.full(3, 3.0),
         wanted=along,
         speed_noise=np.zeros((3, 3)),
         noise={name: 0.02 * np.eye(3) for name in along},
     )
-    measured = vi.ObliqueImpacts(
+    measured = vi.calibration.ObliqueImpacts(
         seen,
         np.array([5.0, 6.0, 7.0]),
         np.zeros(3),
         along,
         separation_speed=np.array([1.8, 1.8, 2.4]),
     )
-    doubts = " ".join(vi.calibrate_friction(stated, measured, ["friction.coefficient"]).doubts)
+    doubts = " ".join(
+        vi.calibration.calibrate_friction(stated, measured, ["friction.coefficient"]).doubts
+    )
     assert ("does not reach the normal rebound of 2 of 3 impacts" in doubts) is not reached

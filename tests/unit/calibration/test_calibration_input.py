@@ -12,7 +12,7 @@ import tomli_w
 
 import vibroimpact as vi
 from support import plain_case
-from vibroimpact.calibration.calibrate_case import calibrate_case, read_calibration
+from vibroimpact.calibration.calibrate_case import calibrate_case, calibration_of
 from vibroimpact.calibration.calibration import Calibration
 from vibroimpact.calibration.law_report import fit_sentences
 from vibroimpact.cli import main
@@ -26,7 +26,7 @@ SEVERAL = {"restitution": [0.7, 0.6, 0.5], "approach_speed": [1, 2, 3]}
 
 def calibrated(section: object, **changes: object) -> Calibration:
     return calibrate_case(
-        read_calibration(plain_case(**{"contact": ADAMS, "calibrate": section, **changes}))
+        calibration_of(plain_case(**{"contact": ADAMS, "calibrate": section, **changes}))
     )
 
 
@@ -265,7 +265,7 @@ def test_faults_of_the_case(changes: dict, words: str) -> None:
 
 def test_nothing_to_match_and_no_section() -> None:
     with pytest.raises(vi.InputError, match="there is no target"):
-        read_calibration(plain_case(contact={"law": "adams-impact", "damping_max": 100.0}))
+        calibration_of(plain_case(contact={"law": "adams-impact", "damping_max": 100.0}))
 
 
 # --- files

@@ -218,7 +218,7 @@ def nearly_elastic(random: np.random.Generator, damping: float) -> Observations:
 @pytest.mark.slow
 def test_at_the_end_of_the_range_it_bootstraps_by_itself() -> None:
     """First order ends at no damping, and is not believed there."""
-    problem = vi.read_case(
+    problem = vi.case_of(
         plain_case(contact={"law": "adams-impact", "damping_max": 5.0}, run={"impacts": 1})
     ).to_problem()
     seen = nearly_elastic(np.random.default_rng(2), 5.0)
@@ -274,7 +274,7 @@ def test_weighted_set_with_known_deviations() -> None:
     """Force and rebound of Adams' IMPACT, both noisy: the damping of each impact is as
     uncertain as it scatters.
     """
-    problem = vi.read_case(
+    problem = vi.case_of(
         plain_case(contact={"law": "adams-impact", "damping_max": 150.0}, run={"impacts": 1})
     ).to_problem()
     run, random = vi.simulate(problem).impacts, np.random.default_rng(6)
@@ -319,7 +319,7 @@ def test_weighted_set_with_known_deviations() -> None:
 @pytest.fixture(scope="module")
 def response() -> vi.Response:
     return vi.simulate(
-        vi.read_case(
+        vi.case_of(
             plain_case(
                 contact={"law": "adams-impact", "damping_max": 200.0},
                 drop={"height": 1.0},

@@ -26,7 +26,7 @@ Floats = np.ndarray
 @pytest.fixture(scope="module")
 def response() -> vi.Response:
     return vi.simulate(
-        vi.read_case(
+        vi.case_of(
             plain_case(
                 contact={"law": "adams-impact", "damping_max": 200.0},
                 drop={"height": 1.0},

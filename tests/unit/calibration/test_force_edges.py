@@ -27,7 +27,7 @@ Floats = np.ndarray
 def forces(law: str) -> tuple[vi.Response, Floats, Floats]:
     """Four impacts, and the force over time in steps of a 3000th of the contacts."""
     response = vi.simulate(
-        vi.read_case(plain_case(contact=LAWS[law], drop={"height": 1.0}, run={"impacts": 4}))
+        vi.case_of(plain_case(contact=LAWS[law], drop={"height": 1.0}, run={"impacts": 4}))
     )
     touches, lasting = response.impacts["time_s"], response.impacts["duration_s"]
     fine = [

@@ -11,7 +11,7 @@ import pytest
 
 import vibroimpact as vi
 from support import plain_case
-from vibroimpact.calibration.calibrate_case import calibrate_case, read_calibration
+from vibroimpact.calibration.calibrate_case import calibrate_case, calibration_of
 from vibroimpact.calibration.calibration import Calibration
 from vibroimpact.calibration.law_report import match_words
 
@@ -21,7 +21,7 @@ SPEEDS = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0]
 
 def calibrated(target: object, contact: object = NEWTON, **section: object) -> Calibration:
     return calibrate_case(
-        read_calibration(plain_case(contact=contact, calibrate={"target": target, **section}))
+        calibration_of(plain_case(contact=contact, calibrate={"target": target, **section}))
     )
 
 

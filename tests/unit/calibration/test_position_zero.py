@@ -15,7 +15,7 @@ import tomli_w
 
 import vibroimpact as vi
 from support import plain_case
-from vibroimpact.calibration.calibrate_case import calibrate_case, read_calibration
+from vibroimpact.calibration.calibrate_case import calibrate_case, calibration_of
 from vibroimpact.calibration.calibration import Calibration
 from vibroimpact.calibration.noise import scaled, standard_deviations
 from vibroimpact.calibration.observations import Observations
@@ -321,10 +321,10 @@ def calibrated(
         contact={"law": "newton", "restitution": 0.5},
         calibrate={"target": str(folder / "track.csv"), "degree": 0, "air": False},
     )
-    what = read_calibration(case)
+    what = calibration_of(case)
     found = calibrate_case(what)
     assert isinstance(found, Calibration)
-    place = vi.save_calibration(what.case, found, folder / "out")
+    place = found.save(folder / "out")
     return found, json.loads((place / "calibration.json").read_text())
 
 

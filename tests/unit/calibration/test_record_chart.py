@@ -9,12 +9,10 @@ import pytest
 
 import vibroimpact as vi
 from support import plain_case
-from vibroimpact.calibration.calibrate_case import calibrate_case, read_calibration
+from vibroimpact.calibration.calibrate_case import calibrate_case, calibration_of
 from vibroimpact.calibration.calibration import Calibration
-from vibroimpact.calibration.charts import calibration_charts
 from vibroimpact.calibration.overlay import Overlay
 from vibroimpact.calibration.record_chart import record_chart
-from vibroimpact.calibration.save_calibration import save_calibration
 from vibroimpact.charts.chart import Chart
 from vibroimpact.charts.marks import Line, Points
 from vibroimpact.charts.matplotlib import matplotlib_figure
@@ -25,7 +23,7 @@ CONTACT = {"law": "adams-impact", "damping_max": 200.0}
 
 @pytest.fixture(scope="module")
 def response() -> vi.Response:
-    return vi.simulate(vi.read_case(plain_case(contact=CONTACT, run={"impacts": 3})))
+    return vi.simulate(vi.case_of(plain_case(contact=CONTACT, run={"impacts": 3})))
 
 
 def found_in(
@@ -41,11 +39,11 @@ def found_in(
         run={"impacts": 3},
         calibrate={"target": str(file), "degree": 0, "air": False},
     )
-    return calibrate_case(read_calibration(table))
+    return calibrate_case(calibration_of(table))
 
 
 def chart_of(found: Calibration, name: str) -> Chart:
-    return next(chart for chart in calibration_charts(found) if chart.name == name)
+    return found.charts[name]
 
 
 def test_forces(response: vi.Response, tmp_path: Path) -> None:
@@ -57,8 +55,7 @@ def test_forces(response: vi.Response, tmp_path: Path) -> None:
         largest = response.impacts["max_force_N"][number]
         assert np.abs(one.measured[1] - simulated).max() < 0.06 * largest
         assert one.simulated[1].max() == pytest.approx(largest, rel=5e-3)
-    case = vi.read_case(plain_case(contact=CONTACT, run={"impacts": 3}))
-    folder = save_calibration(case, found, tmp_path / "out")
+    folder = found.save(tmp_path / "out")
     page = (folder / "report.html").read_text()
     assert 'data-chart="record"' in page
     assert all(
@@ -144,9 +141,9 @@ def test_no_record_no_picture() -> None:
         contact={"law": "newton", "restitution": 0.5},
         calibrate={"target": {"rebound_heights": [0.3]}, "air": False},
     )
-    found = calibrate_case(read_calibration(table))
+    found = calibrate_case(calibration_of(table))
     assert found.overlays == ()
-    assert [chart.name for chart in calibration_charts(found)] == ["parameter"]
+    assert list(found.charts) == ["parameter"]
 
 
 def test_a_law_without_a_force_has_none_to_draw(response: vi.Response, tmp_path: Path) -> None:
@@ -162,4 +159,4 @@ def test_a_law_without_a_force_has_none_to_draw(response: vi.Response, tmp_path:
         contact={"law": "newton", "restitution": 0.5},
         calibrate={"target": str(tmp_path / "f.csv"), "air": False},
     )
-    assert calibrate_case(read_calibration(table)).overlays == ()
+    assert calibrate_case(calibration_of(table)).overlays == ()

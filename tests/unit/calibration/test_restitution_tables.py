@@ -14,7 +14,7 @@ import pytest
 import vibroimpact as vi
 from support import plain_case
 from vibroimpact.calibration.bounces.speed_laws import speed_laws
-from vibroimpact.calibration.calibrate_case import calibrate_case, read_calibration
+from vibroimpact.calibration.calibrate_case import calibrate_case, calibration_of
 from vibroimpact.calibration.restitutions.report import noise_sentence
 from vibroimpact.cli import main
 
@@ -60,7 +60,7 @@ def test_the_fit_is_the_weighted_least_squares() -> None:
 
 
 def test_rounding_widens_the_intervals(tmp_path: Path) -> None:
-    found = vi.read_restitutions(table(tmp_path / "ev.csv"))
+    found = vi.calibration.load_restitutions(table(tmp_path / "ev.csv"))
     assert found.rounding == 0.01
     exact = speed_laws(SPEED, RESTITUTION, 1e-20 * np.eye(6), COUNT)[1]
     np.testing.assert_allclose(found.laws[1].coefficients, exact.coefficients, atol=1e-3)
@@ -77,8 +77,8 @@ def test_rounding_widens_the_intervals(tmp_path: Path) -> None:
 )
 def test_the_columns_as_people_name_them(header: str, tmp_path: Path) -> None:
     found, expected = (
-        vi.read_restitutions(table(tmp_path / "a.csv", header)),
-        vi.read_restitutions(table(tmp_path / "b.csv")),
+        vi.calibration.load_restitutions(table(tmp_path / "a.csv", header)),
+        vi.calibration.load_restitutions(table(tmp_path / "b.csv")),
     )
     for one, other in zip(found.laws, expected.laws, strict=True):
         np.testing.assert_array_equal(one.coefficients, other.coefficients)
@@ -87,7 +87,9 @@ def test_the_columns_as_people_name_them(header: str, tmp_path: Path) -> None:
 def test_separation_speeds_tell_the_restitution(tmp_path: Path) -> None:
     path = tmp_path / "ev.csv"
     path.write_text("speed [m/s];rebound speed [m/s]\n1;0,8\n2;1,5\n4;2,8\n", encoding="utf-8")
-    np.testing.assert_allclose(vi.read_restitutions(path).restitution, [0.8, 0.75, 0.7], rtol=1e-15)
+    np.testing.assert_allclose(
+        vi.calibration.load_restitutions(path).restitution, [0.8, 0.75, 0.7], rtol=1e-15
+    )
 
 
 def test_a_given_deviation_is_that_of_one_impact(tmp_path: Path) -> None:
@@ -95,7 +97,7 @@ def test_a_given_deviation_is_that_of_one_impact(tmp_path: Path) -> None:
     path.write_text(
         "speed_m_s,e,e_standard_deviation,count\n1,0.8,0.02,4\n2,0.75,0.02,16\n", encoding="utf-8"
     )
-    found = vi.read_restitutions(path)
+    found = vi.calibration.load_restitutions(path)
     np.testing.assert_allclose(found.deviation, [0.01, 0.005], rtol=1e-15)
     np.testing.assert_allclose(
         np.diff(found.intervals, axis=1)[:, 0], 2.0 * 1.959964 * found.deviation, rtol=1e-6
@@ -145,7 +147,7 @@ def test_the_command(
     )
     assert "Restitutions of ev.csv" in (folder / "report.html").read_text(encoding="utf-8")
     with pytest.raises(vi.InputError, match="restitutions of a table, not the result of a run"):
-        vi.read_result(folder)
+        vi.load_result(folder)
     assert outcome(monkeypatch, capsys, str(tmp_path / "ev.csv"))[0] == 2  # the folder is there
 
 
@@ -153,12 +155,12 @@ def test_what_the_intervals_are_from(tmp_path: Path) -> None:
     """One restitution has no scatter, and of separation speeds it is these that are rounded."""
     (tmp_path / "one.csv").write_text("v [m/s],e\n1,0.81\n", encoding="utf-8")
     assert "follow from the step of 0.01 to which the values are rounded" in noise_sentence(
-        vi.read_restitutions(tmp_path / "one.csv")
+        vi.calibration.load_restitutions(tmp_path / "one.csv")
     )
     (tmp_path / "speeds.csv").write_text(
         "v [m/s],separation_speed [m/s]\n1,0.81\n2,1.5\n", encoding="utf-8"
     )
-    told = noise_sentence(vi.read_restitutions(tmp_path / "speeds.csv"))
+    told = noise_sentence(vi.calibration.load_restitutions(tmp_path / "speeds.csv"))
     assert (
         "the scatter about each fit, and from the step of 0.01 m/s to which the separation "
         "speeds are rounded" in told
@@ -242,11 +244,11 @@ def test_a_record_with_times_is_still_one(
 def test_few_speeds_are_said_and_one_row_is_read(tmp_path: Path) -> None:
     path = tmp_path / "ev.csv"
     path.write_text("speed [m/s],e\n1,0.8\n", encoding="utf-8")
-    found = vi.read_restitutions(path)
+    found = vi.calibration.load_restitutions(path)
     assert [law.name for law in found.laws] == ["constant"]
     assert "only a constant is fitted" in found.doubts[0]
     path.write_text("speed [m/s],e\n1,0.8\n2,0.7\n2,0.71\n", encoding="utf-8")
-    found = vi.read_restitutions(path)
+    found = vi.calibration.load_restitutions(path)
     assert [law.name for law in found.laws] == ["constant", "linear", "power"]
     assert not found.doubts
 
@@ -262,7 +264,7 @@ def test_counts_weight_the_target_of_a_case(tmp_path: Path) -> None:
         calibrate = {"target": str(path), "degree": 1, "air": False}
         return np.array(
             calibrate_case(
-                read_calibration(plain_case(contact=contact, calibrate=calibrate))
+                calibration_of(plain_case(contact=contact, calibrate=calibrate))
             ).fit.function.coefficients
         )
 

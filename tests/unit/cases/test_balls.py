@@ -23,7 +23,6 @@ from oracles.bouncing_in_air import AIR, Medium, bounces
 from support import plain_case
 from vibroimpact.bayes_error.falls import falls_of_sweep
 from vibroimpact.bodies.ball import HOLLOW, SOLID, ball_volume, mean_density
-from vibroimpact.calibration.charts import calibration_charts
 from vibroimpact.cases.build import resolved_case
 from vibroimpact.cases.doubts import doubts
 from vibroimpact.cases.expected import expected_of
@@ -57,7 +56,7 @@ def table(**changes: Any) -> dict[str, Any]:
 
 def first(**changes: Any) -> dict[str, float]:
     """The first impact of a case."""
-    impacts = vi.simulate(vi.read_case(table(**changes))).impacts
+    impacts = vi.simulate(vi.case_of(table(**changes))).impacts
     return {name: float(values[0]) for name, values in impacts.items()}
 
 
@@ -72,7 +71,7 @@ def pair_of(given: dict[str, Any]) -> tuple[vi.Case, vi.Case]:
         "mass": ball_volume(given["sphere"]["radius"]) * LIGHT,
         "material": CELLULOID,
     }
-    return vi.read_case(given), vi.read_case(solid)
+    return vi.case_of(given), vi.case_of(solid)
 
 
 BENDING = {
@@ -118,7 +117,7 @@ def test_a_mass_counts_as_the_density_of_the_same_mass(name: str) -> None:
     assert expected_of(given) == expected
     assert doubts(resolved_case(given), expected) == doubts(resolved_case(solid), expected)
     assert float(found.impacts["max_force_N"][0]) < 0.5 * float(
-        vi.simulate(vi.read_case(without_mass(name))).impacts["max_force_N"][0]
+        vi.simulate(vi.case_of(without_mass(name))).impacts["max_force_N"][0]
     )
 
 
@@ -142,7 +141,7 @@ def test_density_times_volume_is_the_mass_without_one() -> None:
             "inertia": "solid",
         },
     }
-    known, found = (vi.simulate(vi.read_case(one)) for one in (solid, told))
+    known, found = (vi.simulate(vi.case_of(one)) for one in (solid, told))
     for key, values in known.impacts.items():
         np.testing.assert_array_equal(found.impacts[key], values, err_msg=key)
 
@@ -223,7 +222,7 @@ class TestRigidBodyImpact:
             sphere__inertia=inertia, plate__inclination=0.1, drop={"speed": 1e-3}, run={"duration": 0.4},
             contact={"law": "newton", "restitution": 0.01, "friction": {"law": "coulomb", "coefficient": 0.5}},
         )  # fmt: skip
-        ends = vi.simulate(vi.read_case(given)).at([0.2, 0.4])
+        ends = vi.simulate(vi.case_of(given)).at([0.2, 0.4])
         speed = np.diff(ends["velocity_x_m_s"])[0]
         assert speed == pytest.approx(9.80665 * np.sin(0.1) / (1.0 + ratio) * 0.2, rel=1e-9)
         along = 0.5 * MASS * ends["velocity_x_m_s"] ** 2
@@ -261,7 +260,7 @@ def test_a_table_tennis_ball_in_air(changes: dict[str, Any], medium: Medium) -> 
     """It falls and bounces as SciPy integrates it, with its mean density."""
     law = {"law": "newton", "restitution": 0.9}
     given = table(contact=law, **{**changes, "run__impacts": 3})
-    impacts = vi.simulate(vi.read_case(given)).impacts
+    impacts = vi.simulate(vi.case_of(given)).impacts
     # the film of a liquid takes from the restitution, by the speed
     achieved = dict(
         zip(impacts["approach_speed_m_s"].round(3), impacts["restitution_achieved"], strict=True)
@@ -285,7 +284,7 @@ def test_a_ball_that_floats_or_is_too_light_for_drag_alone() -> None:
         match=r"contact.liquid.density: the liquid has 12.* times the density of the sphere, "
         r"which floats",
     ):
-        vi.read_case(
+        vi.case_of(
             table(
                 drop={"height": 0.3}, contact={"law": "tsuji", "restitution": 0.8, "liquid": True}
             )
@@ -294,7 +293,7 @@ def test_a_ball_that_floats_or_is_too_light_for_drag_alone() -> None:
         vi.InputError,
         match=r"drop.air.density: the medium of the fall has 4.02 % of the density of the sphere",
     ):
-        vi.read_case(table(sphere__mass="1 g", drop={"height": 0.3, "air": True})).to_problem()
+        vi.case_of(table(sphere__mass="1 g", drop={"height": 0.3, "air": True})).to_problem()
 
 
 def test_a_study_over_mass_and_inertia() -> None:
@@ -308,9 +307,7 @@ def test_a_study_over_mass_and_inertia() -> None:
         "sphere.inertia: it is 1.458 times the mass and the squared radius"
     )
     for place in (1, 2):
-        known = vi.simulate(
-            vi.read_case(with_values(given, {"sphere.mass": masses[place]}))
-        ).impacts
+        known = vi.simulate(vi.case_of(with_values(given, {"sphere.mass": masses[place]}))).impacts
         for name in ("max_force_N", "separation_velocity_x_m_s", "spin_y_after_rad_s"):
             assert found.arrays[name][place, 0] == pytest.approx(known[name][0], rel=1e-8), name
     words = np.array(["solid", "hollow", 7e-7], dtype=object)
@@ -325,10 +322,10 @@ def test_inertia_as_a_swept_key() -> None:
         "sphere.inertia": ["solid", "hollow", "5 g cm^2"],
         "sphere.mass": {"from": "2 g", "to": "3 g", "number": 2},
     }
-    study = vi.read_sweep({**table(**OBLIQUE), "sweep": {"over": over}})
+    study = vi.studies.sweep_of({**table(**OBLIQUE), "sweep": {"over": over}})
     assert study.size == 6
     assert study.plan.columns["sphere.inertia"].tolist()[-1] == pytest.approx(5e-7)
-    ranged = vi.read_sweep(
+    ranged = vi.studies.sweep_of(
         {
             **table(**OBLIQUE),
             "sweep": {
@@ -340,7 +337,7 @@ def test_inertia_as_a_swept_key() -> None:
     with pytest.raises(
         vi.InputError, match=r"it must be .solid. or .hollow., or a moment of inertia"
     ):
-        vi.read_sweep(
+        vi.studies.sweep_of(
             {**table(**OBLIQUE), "sweep": {"over": {"sphere.inertia": ["solid", "holow"]}}}
         )
 
@@ -354,9 +351,9 @@ def test_the_slip_map_of_a_study_has_the_line_of_a_shell(tmp_path: Path) -> None
     given = table(
         sphere__inertia="hollow", drop=drop, contact__friction={"law": "mdr", "coefficient": 0.1}
     )
-    study = vi.read_study(
-        vi.run_sweep(
-            vi.read_sweep({**given, "sweep": {"over": {"drop.angle": [1.1, 1.2, 1.3]}}}),
+    study = vi.studies.load_study(
+        vi.studies.run_sweep(
+            vi.studies.sweep_of({**given, "sweep": {"over": {"drop.angle": [1.1, 1.2, 1.3]}}}),
             tmp_path / "study",
         )
     )
@@ -381,20 +378,20 @@ def test_the_slip_map_of_a_study_has_the_line_of_a_shell(tmp_path: Path) -> None
 
 class TestCaseFile:
     def test_the_resolved_case_gives_the_same(self) -> None:
-        case = vi.read_case(table(sphere__mass="2.7 g", sphere__inertia="7 g cm^2"))
+        case = vi.case_of(table(sphere__mass="2.7 g", sphere__inertia="7 g cm^2"))
         resolved = resolved_case(case)
         assert (resolved["sphere"]["mass"], resolved["sphere"]["inertia"]) == (
             MASS,
             pytest.approx(7e-7),
         )
-        assert resolved_case(vi.read_case(resolved)) == resolved
+        assert resolved_case(vi.case_of(resolved)) == resolved
         assert (
-            resolved_case(vi.read_case(table(sphere__inertia="hollow")))["sphere"]["inertia"]
+            resolved_case(vi.case_of(table(sphere__inertia="hollow")))["sphere"]["inertia"]
             == "hollow"
         )
 
     def test_without_them_nothing_is_added(self) -> None:
-        assert not {"mass", "inertia"} & set(resolved_case(vi.read_case(plain_case()))["sphere"])
+        assert not {"mass", "inertia"} & set(resolved_case(vi.case_of(plain_case()))["sphere"])
 
     @pytest.mark.parametrize(
         ("changes", "words"),
@@ -444,13 +441,13 @@ class TestCaseFile:
     )
     def test_messages(self, changes: dict[str, Any], words: str) -> None:
         with pytest.raises(vi.InputError) as error:
-            vi.read_case(table(**changes))
+            vi.case_of(table(**changes))
         assert str(error.value).startswith(words)
 
     def test_an_elastic_sphere_of_its_own_mass(self) -> None:
         """Rounded, as it is typed."""
         assert (
-            vi.read_case(
+            vi.case_of(
                 table(sphere__model="elastic", sphere__mass="46.9 g", sphere__inertia="solid")
             ).sphere.mass
             == 0.0469
@@ -480,7 +477,7 @@ class TestCaseFile:
         ],
     )
     def test_slips_of_units(self, key: str, value: float, words: str) -> None:
-        case = vi.read_case(table(**{f"sphere__{key}": value}))
+        case = vi.case_of(table(**{f"sphere__{key}": value}))
         (said,) = [
             one
             for one in doubts(resolved_case(case), expected_of(case))
@@ -522,7 +519,7 @@ class TestCaseFile:
         """How far the mean density is from that of the material, which is no doubt: it is
         what a hollow ball is.
         """
-        case = vi.read_case(table(**changes))
+        case = vi.case_of(table(**changes))
         written = StringIO()
         Console(file=written, width=300).print(case_explained(case))
         lines = [line.strip() for line in written.getvalue().splitlines()]
@@ -533,7 +530,7 @@ class TestCaseFile:
     def test_the_page_of_a_run_says_it(self) -> None:
         from vibroimpact.runs.setup import setup_rows
 
-        result = vi.result_of(vi.simulate(vi.read_case(table(sphere__inertia="hollow"))))
+        result = vi.result_of(vi.simulate(vi.case_of(table(sphere__inertia="hollow"))))
         assert (
             dict(setup_rows(result))["Sphere"]
             .replace("\xa0", " ")
@@ -544,9 +541,12 @@ class TestCaseFile:
 class TestPython:
     def test_a_batch(self) -> None:
         """Arrays of masses and moments of inertia, as one drop after the other."""
-        material, law = vi.Material(**CELLULOID), vi.find_contact_law("newton")(restitution=0.8)
+        material, law = (
+            vi.Material(**CELLULOID),
+            vi.laws.find_contact_law("newton")(restitution=0.8),
+        )
         oblique = vi.Oblique(
-            velocity=(0.5, 0.0), friction=vi.find_friction_law("coulomb")(coefficient=0.9)
+            velocity=(0.5, 0.0), friction=vi.friction.find_friction_law("coulomb")(coefficient=0.9)
         )
 
         def problem(mass: Any, inertia: Any) -> vi.Problem:
@@ -573,7 +573,7 @@ class TestPython:
 
     def test_inertia_is_given_once(self) -> None:
         ball = vi.rigid_sphere(RADIUS, vi.Material(**CELLULOID), inertia="hollow")
-        law = vi.find_contact_law("hertz")(stiffness=1e8)
+        law = vi.laws.find_contact_law("hertz")(stiffness=1e8)
         with pytest.raises(vi.InputError, match="the moment of inertia is given twice"):
             vi.Problem(
                 sphere=ball,
@@ -623,7 +623,7 @@ class TestExports:
         )
         if law:
             given["contact"]["friction"] = {"law": law, "coefficient": coefficient}
-        case = vi.read_case(given)
+        case = vi.case_of(given)
         return drop_of_result(vi.result_of(vi.simulate(case)), case)
 
     def test_mass_and_inertia(self) -> None:
@@ -718,14 +718,14 @@ class TestExports:
 
 class TestEstimates:
     def test_a_sphere_of_another_radius_has_the_mean_density(self) -> None:
-        sphere = vi.read_case(table(sphere__inertia="7 g cm^2")).sphere
+        sphere = vi.case_of(table(sphere__inertia="7 g cm^2")).sphere
         other = resized(sphere, 0.03)
         assert sphere_density(other) == pytest.approx(sphere_density(sphere), rel=1e-14)
         ratios = [
             ball_of(one).inertia / (ball_of(one).mass * one.radius**2) for one in (sphere, other)
         ]
         assert ratios[1] == pytest.approx(ratios[0])
-        plain = vi.read_case(plain_case()).sphere
+        plain = vi.case_of(plain_case()).sphere
         assert resized(plain, 0.03).mass is None
 
     @pytest.mark.parametrize("air", [None, True])
@@ -735,7 +735,9 @@ class TestEstimates:
         calibrate = {"target": target, **({} if air is None else {"air": air})}
         law = {"law": "hunt-crossley", "restitution": 0.9}
         found, known = (
-            vi.calibrate_case(vi.read_calibration({**resolved_case(case), "calibrate": calibrate}))
+            vi.calibration.calibrate_case(
+                vi.calibration.calibration_of({**resolved_case(case), "calibrate": calibrate})
+            )
             for case in pair_of(table(drop={"height": 0.305}, contact=law, run__impacts=3))
         )
         np.testing.assert_array_equal(found.values, known.values)
@@ -757,7 +759,9 @@ class TestEstimates:
             "target": str(tmp_path / "measured.csv"),
             "parameter": "friction.slip_restitution",
         }
-        found = vi.calibrate_case(vi.read_calibration({**given, "calibrate": calibrate}))
+        found = vi.calibration.calibrate_case(
+            vi.calibration.calibration_of({**given, "calibrate": calibrate})
+        )
         assert found.values == pytest.approx([beta], abs=1e-6)
 
     @pytest.mark.parametrize("measured", ["velocity", "spin"])
@@ -785,9 +789,11 @@ class TestEstimates:
             f"angle [deg],speed [m/s],{name}\n{rows}", encoding="utf-8"
         )
         calibrate = {"target": str(tmp_path / "measured.csv"), "parameter": "friction.coefficient"}
-        found = vi.calibrate_case(vi.read_calibration({**given, "calibrate": calibrate}))
-        assert isinstance(found, vi.FrictionCalibration)
-        chart = next(one for one in calibration_charts(found) if one.name == "slip_map")
+        found = vi.calibration.calibrate_case(
+            vi.calibration.calibration_of({**given, "calibrate": calibrate})
+        )
+        assert isinstance(found, vi.calibration.FrictionCalibration)
+        chart = found.charts["slip_map"]
         marks = next(
             mark
             for row in chart.rows
@@ -795,7 +801,7 @@ class TestEstimates:
             for mark in panel.marks
             if getattr(mark, "name", "") == "measured"
         )
-        pair = contact_pair(vi.read_case(given))
+        pair = contact_pair(vi.case_of(given))
         scale = (
             found.values[0] * float(pair.effective_modulus / pair.effective_shear_modulus) * normal
         )
@@ -815,7 +821,7 @@ class TestEstimates:
         }
         given = table(contact={"law": "tsuji", "restitution": 0.6})
         falls = falls_of_sweep(
-            vi.read_sweep(
+            vi.studies.sweep_of(
                 {
                     **given,
                     "sweep": {
@@ -865,12 +871,12 @@ def test_identification_has_the_mean_density() -> None:
     }
     solid = copy.deepcopy(given)
     solid["sphere"] = {"radius": RADIUS, "material": {**CELLULOID, "density": heavy}}
-    cases = [vi.read_case(one) for one in (given, solid)]
+    cases = [vi.case_of(one) for one in (given, solid)]
     records = [
-        vi.Record(name, one.value, 20e3, "m/s2")
+        vi.signals.Record(name, one.value, 20e3, "m/s2")
         for name, one in vi.simulate(cases[0]).signals().items()
     ]
-    found, known = (vi.identify(case, records).estimates for case in cases)
+    found, known = (vi.identification.identify(case, records).estimates for case in cases)
     assert found["mass_kg"].value == pytest.approx(given["sphere"]["mass"], rel=0.05)
     for name, estimate in known.items():
         assert found[name].value == pytest.approx(estimate.value, rel=1e-6), name

@@ -46,7 +46,7 @@ def computed(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, dict[str, 
     place = tmp_path_factory.mktemp("computed")
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("VIBROIMPACT_STORE", str(place))
-        return place, carried_modes(vi.read_case(TABLE))
+        return place, carried_modes(vi.case_of(TABLE))
 
 
 @pytest.fixture
@@ -81,9 +81,9 @@ def test_who_receives_computes_nothing(
         "vibroimpact.cases.elastic.coupling.mesh_compliance",
         lambda *_: pytest.fail("computed again"),
     )
-    there = vi.read_case(TABLE).to_problem()
+    there = vi.case_of(TABLE).to_problem()
     monkeypatch.setenv("VIBROIMPACT_STORE", str(computed[0]))
-    here = vi.read_case(TABLE).to_problem()
+    here = vi.case_of(TABLE).to_problem()
     for name in ("sphere", "plate"):
         np.testing.assert_array_equal(
             getattr(there, name).modes.contact, getattr(here, name).modes.contact

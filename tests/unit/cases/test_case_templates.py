@@ -27,7 +27,7 @@ def command(
 @pytest.mark.parametrize("name", ["paper:type1-theory", "paper:type2-identified", "paper:type3"])
 def test_a_template_is_its_source_with_comments(name: str) -> None:
     text = case_template(name, "mine")
-    assert vi.read_case(tomllib.loads(text)) == vi.load_case(name, {"name": "mine"})
+    assert vi.case_of(tomllib.loads(text)) == vi.load_case(name, {"name": "mine"})
 
 
 def test_each_key_stands_there_once_used_or_as_a_comment() -> None:
@@ -56,7 +56,7 @@ def test_defaults_in_comments_are_those_of_the_case() -> None:
         ):
             changed = text.replace(f"# {line}", line, 1)
             assert (
-                vi.read_case(tomllib.loads(changed)).to_problem().source
+                vi.case_of(tomllib.loads(changed)).to_problem().source
                 == vi.load_case("paper:type1-theory").to_problem().source
             ), line
 
@@ -150,7 +150,7 @@ def test_a_run_takes_them(
         "drop.height=1 m",
     ]
     assert command(monkeypatch, capsys, *arguments)[0] == 0
-    result = vi.read_result("out")
+    result = vi.load_result("out")
     assert len(result.impacts["impact"]) == 1
     assert result.case["drop"]["height"] == 1.0
 

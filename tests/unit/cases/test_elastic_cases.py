@@ -180,7 +180,7 @@ FAULTS: list[tuple[dict, str]] = [
 @pytest.mark.parametrize(("case", "message"), FAULTS, ids=[message[:50] for _, message in FAULTS])
 def test_wrong_elastic_case(case: dict, message: str) -> None:
     with pytest.raises(vi.InputError) as raised:
-        vi.read_case(case)
+        vi.case_of(case)
     assert message in str(raised.value)
 
 
@@ -224,7 +224,7 @@ FOUND_LATER: list[tuple[dict, str]] = [
 )
 def test_body_that_cannot_be_made(changes: dict, message: str) -> None:
     with pytest.raises(vi.InputError) as raised:
-        vi.compute_modes(vi.read_case(plate_case(**changes)))
+        vi.compute_modes(vi.case_of(plate_case(**changes)))
     assert message in str(raised.value)
 
 
@@ -236,7 +236,7 @@ def test_too_large_for_the_memory(monkeypatch: pytest.MonkeyPatch) -> None:
         r"are free",
     ):
         # a plate that no other test has left in memory
-        vi.compute_modes(vi.read_case(plate_case(modes=5, size=["520.7 mm", "420 mm", "8 mm"])))
+        vi.compute_modes(vi.case_of(plate_case(modes=5, size=["520.7 mm", "420 mm", "8 mm"])))
 
 
 @pytest.mark.parametrize(
@@ -251,7 +251,7 @@ def test_far_too_many_elements_are_refused_before_they_are_made(
     changes: dict, message: str
 ) -> None:
     with pytest.raises(vi.InputError, match=message):
-        meshes_of(vi.read_case(plate_case(**changes)))
+        meshes_of(vi.case_of(plate_case(**changes)))
 
 
 @pytest.mark.parametrize(
@@ -267,7 +267,7 @@ def test_far_too_many_elements_are_refused_before_they_are_made(
     ],
 )
 def test_what_is_probably_not_meant_is_doubted(changes: dict, doubt: str) -> None:
-    found = vi.compute_modes(vi.read_case(plate_case(**changes)))["plate"]
+    found = vi.compute_modes(vi.case_of(plate_case(**changes)))["plate"]
     assert any(doubt in one for one in found.doubts)
 
 
@@ -280,10 +280,10 @@ def test_a_graded_sphere_has_more_elements_or_is_doubted() -> None:
         "modes": 5,
         "mesh": {"grading": 4},
     }
-    shape = elastic_bodies(vi.read_case(plain_case(sphere=sphere)))["sphere"].recipe.shape
+    shape = elastic_bodies(vi.case_of(plain_case(sphere=sphere)))["sphere"].recipe.shape
     assert shape.elements_across == 16
     coarse = {**sphere, "mesh": {"grading": 4, "elements_across": 8}}
-    doubts = vi.compute_modes(vi.read_case(plain_case(sphere=coarse)))["sphere"].doubts
+    doubts = vi.compute_modes(vi.case_of(plain_case(sphere=coarse)))["sphere"].doubts
     assert "its elements are too large" in doubts[0]
 
 
@@ -328,9 +328,7 @@ def modules_of_a_drop(case: str, folder: Path) -> set[str]:
 )
 def test_a_finer_mesh_is_asked_for_as_the_mesh_was(mesh: dict[str, Any], remedy: str) -> None:
     """An element size was proposed to a mesh of a number of elements, which refuses one."""
-    (doubt,) = vi.compute_modes(vi.read_case(plate_case(element="solid", mesh=mesh)))[
-        "plate"
-    ].doubts
+    (doubt,) = vi.compute_modes(vi.case_of(plate_case(element="solid", mesh=mesh)))["plate"].doubts
     assert remedy in doubt
 
 
@@ -375,7 +373,7 @@ def test_the_words_of_a_case_are_those_of_the_structures() -> None:
 
 def test_rigid_bodies_have_no_modes() -> None:
     with pytest.raises(vi.InputError, match="no body of the case is elastic"):
-        vi.compute_modes(vi.read_case(plain_case()))
+        vi.compute_modes(vi.case_of(plain_case()))
 
 
 @pytest.mark.parametrize(
@@ -396,13 +394,13 @@ def test_rigid_bodies_have_no_modes() -> None:
     ],
 )
 def test_supports_and_back(supports: Any, number: int, kind: type | None) -> None:
-    case = vi.read_case(plate_case(supports=supports))
+    case = vi.case_of(plate_case(supports=supports))
     recipe = elastic_bodies(case)["plate"].recipe
     found = recipe.supports
     assert len(found) == number
     assert model_key(recipe) == model_key(replace(recipe))  # the modes have a place in the store
     assert kind is None or all(isinstance(support, kind) for support in found)
-    again = vi.read_case(resolved_case(case))
+    again = vi.case_of(resolved_case(case))
     assert elastic_bodies(again)["plate"] == elastic_bodies(case)["plate"]
     assert resolved_case(case)["plate"]["mesh"]["element_size"] > 0  # what was chosen is said
 
@@ -419,15 +417,15 @@ def test_supports_and_back(supports: Any, number: int, kind: type | None) -> Non
     ],
 )
 def test_damping_and_back(damping: Any) -> None:
-    case = vi.read_case(plate_case(damping=damping))
+    case = vi.case_of(plate_case(damping=damping))
     assert (
-        elastic_bodies(vi.read_case(resolved_case(case)))["plate"].damping
+        elastic_bodies(vi.case_of(resolved_case(case)))["plate"].damping
         == elastic_bodies(case)["plate"].damping
     )
 
 
 def test_as_many_elements_as_asked() -> None:
-    body = elastic_bodies(vi.read_case(plate_case(element="solid", mesh={"elements": 27304})))[
+    body = elastic_bodies(vi.case_of(plate_case(element="solid", mesh={"elements": 27304})))[
         "plate"
     ]
     mesh = body.recipe.shape.mesh(())
@@ -444,7 +442,10 @@ def test_named_sets_and_coordinates(tmp_path: Path) -> None:
     low = np.flatnonzero(np.abs(made.nodes[:, 0] + 260.0) < 1e-6)
     top = np.flatnonzero((np.abs(made.nodes[:, :2]).max(axis=1) < 1e-6) & (made.nodes[:, 2] > 0))
     mesh = vi.Mesh(made.nodes, made.blocks, {"WALL": low, "TOP": top})
-    for name, write in (("plate.bdf", vi.write_nastran), ("plate.inp", vi.write_abaqus)):
+    for name, write in (
+        ("plate.bdf", vi.meshes.write_nastran),
+        ("plate.inp", vi.meshes.write_abaqus),
+    ):
         write(mesh, tmp_path / name)
         brought = plate_case(
             supports={"type": "set", "name": "WALL"},
@@ -455,13 +456,13 @@ def test_named_sets_and_coordinates(tmp_path: Path) -> None:
             {"name": "here", "position": "TOP"},
             {"name": "below", "position": [0.1, 0.05], "face": "lower"},
         ]
-        there = vi.compute_modes(vi.read_case(brought))["plate"]
+        there = vi.compute_modes(vi.case_of(brought))["plate"]
         case = plate_case(
             supports={"type": "edge", "edge": "x-min", "condition": "clamped"},
             element="solid",
             mesh={"element_size": 0.0421, "splits": 0, "layers": 1},
         )
-        here = vi.compute_modes(vi.read_case(case))["plate"]
+        here = vi.compute_modes(vi.case_of(case))["plate"]
         assert here.model.mesh.number_of_elements == there.model.mesh.number_of_elements == 130
         np.testing.assert_allclose(there.basis.frequencies, here.basis.frequencies, rtol=1e-7)
         np.testing.assert_allclose(
@@ -472,9 +473,9 @@ def test_named_sets_and_coordinates(tmp_path: Path) -> None:
 
 
 def test_a_mesh_in_millimetres_by_mistake_is_doubted(tmp_path: Path) -> None:
-    vi.write_abaqus(box_mesh((520.0, 420.0, 8.0), (4, 3, 1)), tmp_path / "plate.inp")
+    vi.meshes.write_abaqus(box_mesh((520.0, 420.0, 8.0), (4, 3, 1)), tmp_path / "plate.inp")
     found = vi.compute_modes(
-        vi.read_case(plate_case(mesh=str(tmp_path / "plate.inp"), element=None))
+        vi.case_of(plate_case(mesh=str(tmp_path / "plate.inp"), element=None))
     )["plate"]
     (doubt,) = found.doubts
     assert "weighs 1.372e+10 kg, and what the case describes weighs 13.72 kg" in doubt
@@ -482,8 +483,8 @@ def test_a_mesh_in_millimetres_by_mistake_is_doubted(tmp_path: Path) -> None:
 
 
 def _brought(mesh: vi.Mesh, folder: Path, **changes: Any) -> vi.Case:
-    vi.write_abaqus(mesh, folder / "plate.inp")
-    return vi.read_case(plate_case(mesh=str(folder / "plate.inp"), **changes))
+    vi.meshes.write_abaqus(mesh, folder / "plate.inp")
+    return vi.case_of(plate_case(mesh=str(folder / "plate.inp"), **changes))
 
 
 def test_inverted_elements_are_refused(tmp_path: Path) -> None:
@@ -500,13 +501,13 @@ def test_inverted_elements_are_refused(tmp_path: Path) -> None:
 def test_a_contact_point_off_the_body_is_refused(tmp_path: Path) -> None:
     case = plate_case(mesh=str(tmp_path / "plate.inp"), size=None)
     case["drop"]["position"] = [0.3, 0.0]
-    vi.write_abaqus(box_mesh((0.52, 0.42, 0.008), (4, 3, 1)), tmp_path / "plate.inp")
+    vi.meshes.write_abaqus(box_mesh((0.52, 0.42, 0.008), (4, 3, 1)), tmp_path / "plate.inp")
     with pytest.raises(
         vi.InputError,
         match=r"drop.position: \(0.3, 0\) m is not on the body, which reaches from -0.26 to 0.26 "
         r"m along x",
     ):
-        vi.compute_modes(vi.read_case(case))
+        vi.compute_modes(vi.case_of(case))
 
 
 def test_a_plate_that_would_fall_is_doubted() -> None:
@@ -515,14 +516,14 @@ def test_a_plate_that_would_fall_is_doubted() -> None:
         ("clamped", True),
         ({"type": "edge", "edge": "x-min", "condition": "simply-supported"}, False),
     ):
-        found = vi.compute_modes(vi.read_case(plate_case(supports=supports, mesh=COARSE)))["plate"]
+        found = vi.compute_modes(vi.case_of(plate_case(supports=supports, mesh=COARSE)))["plate"]
         assert found.model.is_held_vertically is held
         assert bool(found.doubts) is not held
     springs = [
         {"type": "spring", "position": [x, y], "stiffness": 1e5}
         for x, y in ((-0.2, -0.1), (0.2, -0.1), (0.0, 0.15))
     ]
-    found = vi.compute_modes(vi.read_case(plate_case(supports=springs, mesh=COARSE)))["plate"]
+    found = vi.compute_modes(vi.case_of(plate_case(supports=springs, mesh=COARSE)))["plate"]
     assert found.model.is_held_vertically
     assert len(found.model.rigid_coefficients) == 3
 
@@ -600,11 +601,11 @@ def test_modes_command(
 @pytest.mark.slow
 def test_the_meshes_written_are_those_of_the_modes(tmp_path: Path) -> None:
     """A solid plate written for Nastran, and brought back, has the same frequencies."""
-    case = vi.read_case(plate_case(element="solid", mesh={"element_size": 0.2}))
+    case = vi.case_of(plate_case(element="solid", mesh={"element_size": 0.2}))
     modes = vi.compute_modes(case)
     vi.save_modes(case, modes, tmp_path / "out")
     for name in ("plate.bdf", "plate.inp"):
-        brought = vi.read_case(plate_case(mesh=str(tmp_path / "out" / name)))
+        brought = vi.case_of(plate_case(mesh=str(tmp_path / "out" / name)))
         again = vi.compute_modes(brought)["plate"]
         np.testing.assert_allclose(
             again.basis.frequencies, modes["plate"].basis.frequencies, rtol=1e-8
@@ -617,7 +618,9 @@ def test_relative_mesh_files_lie_beside_the_case(
     import tomli_w
 
     (tmp_path / "there").mkdir()
-    vi.write_abaqus(box_mesh((0.52, 0.42, 0.008), (4, 3, 1)), tmp_path / "there" / "plate.inp")
+    vi.meshes.write_abaqus(
+        box_mesh((0.52, 0.42, 0.008), (4, 3, 1)), tmp_path / "there" / "plate.inp"
+    )
     (tmp_path / "there" / "case.toml").write_text(tomli_w.dumps(plate_case(mesh="plate.inp")))
     monkeypatch.chdir(tmp_path)
     assert vi.load_case("there/case.toml").plate.mesh.file == str(tmp_path / "there" / "plate.inp")

@@ -15,7 +15,7 @@ import pytest
 
 import vibroimpact as vi
 from support import plain_case
-from vibroimpact.calibration.calibrate_case import calibrate_case, read_calibration
+from vibroimpact.calibration.calibrate_case import calibrate_case, calibration_of
 from vibroimpact.cases.build import problem_of, resolved_case
 from vibroimpact.cases.case import case_schema
 from vibroimpact.cases.rigid_problem import in_liquid
@@ -72,7 +72,7 @@ def case_of(setting: str, contact: dict[str, Any], **changes: Any) -> vi.Case:
         if setting == "in water"
         else {}
     )
-    return vi.read_case(plain_case(contact={**contact, **more}, **parts))
+    return vi.case_of(plain_case(contact={**contact, **more}, **parts))
 
 
 def test_newtons_is_the_recursion() -> None:
@@ -147,10 +147,10 @@ def test_a_study_takes_it(tmp_path: Path) -> None:
         plain_case(contact={"law": "tsuji", "restitution": TABLE}, run={"impacts": 2}),
         [0.3, 0.6, 30.0],
     )
-    sweep = vi.read_sweep({**table, "sweep": {"over": {"drop.height": heights}}})
-    study = vi.read_study(vi.run_sweep(sweep, tmp_path / "study"))
+    sweep = vi.studies.sweep_of({**table, "sweep": {"over": {"drop.height": heights}}})
+    study = vi.studies.load_study(vi.studies.run_sweep(sweep, tmp_path / "study"))
     alone = [
-        vi.simulate(vi.read_case({**table, "drop": {"height": height}})).impacts[
+        vi.simulate(vi.case_of({**table, "drop": {"height": height}})).impacts[
             "restitution_achieved"
         ]
         for height in heights
@@ -180,7 +180,7 @@ def test_speeds_with_units_and_on_the_command_line(
         "rigid",
         {"law": "newton", "restitution": {"speed": ["500 mm/s", "2 m/s"], "value": [0.9, 0.8]}},
     )
-    assert found.contact.parameters["restitution"] == vi.SpeedTable((0.5, 2.0), (0.9, 0.8))
+    assert found.contact.parameters["restitution"] == vi.laws.SpeedTable((0.5, 2.0), (0.9, 0.8))
     changed = '{ polynomial = [0.9, -0.02], from = "1 m/s", to = "12 m/s" }'
     monkeypatch.setattr(
         "sys.argv",
@@ -278,7 +278,7 @@ def test_as_a_target_and_as_a_law_that_is_compared() -> None:
     """IMPACT is calibrated to e(v) as it is to the restitutions of the impacts."""
     contact = {"law": "newton", "restitution": TABLE}
     found = calibrate_case(
-        read_calibration(plain_case(contact=contact, run={"impacts": 3}, calibrate={"degree": 1}))
+        calibration_of(plain_case(contact=contact, run={"impacts": 3}, calibrate={"degree": 1}))
     )
     assert found.parameter == "damping_max"
     achieved = found.observations.wanted["separation_speed"] / found.observations.speeds
@@ -286,7 +286,7 @@ def test_as_a_target_and_as_a_law_that_is_compared() -> None:
         achieved, np.interp(found.observations.speeds, SPEEDS, VALUES), rtol=1e-6
     )
     compared = compare_laws(
-        vi.read_case(plain_case(contact=contact, run={"impacts": 2})), ["newton", "tsuji"]
+        vi.case_of(plain_case(contact=contact, run={"impacts": 2})), ["newton", "tsuji"]
     )
     np.testing.assert_allclose(
         compared.results["tsuji"].impacts["restitution_asked"],
@@ -302,7 +302,7 @@ def test_a_function_is_no_start_of_a_calibration() -> None:
     with pytest.raises(
         vi.InputError, match=r"contact\.restitution: a calibration begins from numbers"
     ):
-        calibrate_case(read_calibration(table))
+        calibrate_case(calibration_of(table))
 
 
 def test_what_a_calibration_fits_is_run_as_a_case(
@@ -335,7 +335,7 @@ def test_the_fit_of_a_table_is_run_as_a_case(tmp_path: Path) -> None:
     (path := tmp_path / "ev.csv").write_text(
         "speed [m/s],e\n1,0.9\n2,0.85\n4,0.74\n6,0.65\n", encoding="utf-8"
     )
-    read = vi.read_restitutions(path)
+    read = vi.calibration.load_restitutions(path)
     assert read.function is not None
     case = case_of(
         "rigid", {"law": "newton", "restitution": read.function.table()}, drop={"speed": 5.0}

@@ -55,7 +55,7 @@ def test_check_and_schema_say_which() -> None:
         "modes": 5,
         "supports": "clamped",
     }
-    case = vi.read_case(plain_case(plate=plate, sensors=[sensor]))
+    case = vi.case_of(plain_case(plate=plate, sensors=[sensor]))
     assert case.sensors[0].accelerometer is not None
     assert case.sensors[0].accelerometer.range == pytest.approx(4903.325)
     written = StringIO()

@@ -49,18 +49,18 @@ def quiet(**changes: Any) -> dict[str, Any]:
 
 def told(case: dict[str, Any], **seen: float) -> list[str]:
     """What is doubted of a case, expected or with what is given."""
-    read = vi.read_case(case)
+    read = vi.case_of(case)
     expected = expected_of(read)
     return doubts(resolved_case(read), DropSummary(**{**vars(expected), **seen}))
 
 
 def test_there_is_nothing_to_doubt_of_a_calm_drop() -> None:
     assert told(quiet()) == []
-    assert result_of(vi.simulate(vi.read_case(quiet()))).doubts == []
+    assert result_of(vi.simulate(vi.case_of(quiet()))).doubts == []
 
 
 def number(case: dict[str, Any], name: str, **seen: float) -> float:
-    read = vi.read_case(case)
+    read = vi.case_of(case)
     return float(
         numbers_of(
             Conditions(resolved_case(read), DropSummary(**{**vars(expected_of(read)), **seen}))
@@ -238,7 +238,7 @@ def test_the_loss_by_drag_is_that_of_a_fall_in_air(
             plate={"material": STEEL, **plate},
             run={"impacts": 1},
         )
-        return float(vi.simulate(vi.read_case(case)).impacts["approach_speed_m_s"][0])
+        return float(vi.simulate(vi.case_of(case)).impacts["approach_speed_m_s"][0])
 
     case = quiet(sphere__radius=0.002, drop=drop, plate={"material": STEEL, **plate})
     assert number(case, "air_drag") == pytest.approx(1.0 - touches(air=True) / touches(), rel=0.03)
@@ -259,8 +259,8 @@ def test_a_ball_that_is_too_light_for_drag_alone_is_sent_into_air_as_a_liquid() 
         "takes a restitution" in doubt
     )
     with pytest.raises(vi.InputError, match=r"drop\.air\.density"):
-        vi.read_case(quiet(sphere__material=foam, drop={"height": 1.0, "air": True}))
-    vi.read_case(
+        vi.case_of(quiet(sphere__material=foam, drop={"height": 1.0, "air": True}))
+    vi.case_of(
         quiet(sphere__material=foam, contact={"law": "tsuji", "restitution": 0.6, "liquid": liquid})
     )
 
@@ -284,7 +284,7 @@ def test_a_flight_along_the_plate_is_as_fast_as_one_to_it() -> None:
 def test_an_edge_is_as_near_as_an_oblique_drop_flies_to_it() -> None:
     size = {"plate__size": [1.0, 1.0, 0.01]}
     case = quiet(drop={"height": 0.5, "position": [0.43, 0.0], "velocity": [0.2, 0.0, 0.0]}, **size)
-    landed = float(vi.simulate(vi.read_case(case)).impacts["position_x_m"][0])
+    landed = float(vi.simulate(vi.case_of(case)).impacts["position_x_m"][0])
     (doubt,) = (doubt for doubt in told(case) if "from the edge" in doubt)
     assert f"the first contact is about {0.5 - landed:.3g} m from the edge of the plate" in doubt
     assert not any(
@@ -345,7 +345,7 @@ def test_a_plate_that_stretches_is_doubted_with_how_much_stiffer_it_is() -> None
 
 
 def test_a_run_knows_how_far_its_plate_gives_way_and_a_check_expects_it() -> None:
-    case = vi.read_case(quiet(plate=ELASTIC, drop={"speed": 6.0}, run={"impacts": 1}))
+    case = vi.case_of(quiet(plate=ELASTIC, drop={"speed": 6.0}, run={"impacts": 1}))
     deflection = float(np.abs(vi.simulate(case).history()["plate_deflection_m"]).max())
     assert deflection > 0.2 * 0.005
     assert expected_of(case).deflection == pytest.approx(deflection, rel=0.5)
@@ -361,7 +361,7 @@ def test_near_an_edge_an_elastic_plate_asks_for_two_thicknesses() -> None:
     (doubt,) = (doubt for doubt in told(places[0.145]) if "edge" in doubt)
     assert "1 thicknesses" in doubt
     with pytest.raises(vi.InputError, match="lies outside the plate"):
-        vi.read_case(quiet(plate=ELASTIC, drop={"speed": 0.1, "position": [0.0, 0.16]}))
+        vi.case_of(quiet(plate=ELASTIC, drop={"speed": 0.1, "position": [0.0, 0.16]}))
 
 
 def strengths(sphere: dict[str, Any], plate: Any, **changes: Any) -> list[str]:
@@ -423,7 +423,7 @@ def test_laws_that_know_of_it_are_not_doubted() -> None:
 
 
 def test_materials_take_strengths_and_refuse_what_is_none() -> None:
-    case = vi.read_case(
+    case = vi.case_of(
         quiet(
             sphere__material={
                 **ROCK,
@@ -436,19 +436,19 @@ def test_materials_take_strengths_and_refuse_what_is_none() -> None:
         12e6,
         140e6,
     )
-    assert resolved_case(vi.read_case(resolved_case(case))) == resolved_case(case)
+    assert resolved_case(vi.case_of(resolved_case(case))) == resolved_case(case)
     with pytest.raises(
         vi.InputError,
         match=r"sphere\.material\.tensile_strength: -12 is not allowed; it must be greater than "
         r"0 Pa",
     ):
-        vi.read_case(quiet(sphere__material={**ROCK, "tensile_strength": -12}))
+        vi.case_of(quiet(sphere__material={**ROCK, "tensile_strength": -12}))
 
 
 # studies -----------------------------------------------------------------------------------------
 
 
-def kept(study: vi.Study, name: str) -> np.ndarray:
+def kept(study: vi.studies.Study, name: str) -> np.ndarray:
     return study.values(f"limit_{name}")
 
 
@@ -457,10 +457,10 @@ def test_a_study_holds_each_drop_to_each_limit_as_a_run_does(tmp_path: Path) -> 
         "sphere.radius": {"from": "1 mm", "to": "50 mm", "number": 3, "scale": "log"},
         "drop.height": ["0.2 m", "4 m"],
     }
-    sweep = vi.read_sweep(
+    sweep = vi.studies.sweep_of(
         study_table({"over": over}, plate__size=[0.1, 0.1, 0.01], drop__position=[0.0499, 0.0])
     )
-    study = vi.read_study(compute_study(sweep, tmp_path / "study"))
+    study = vi.studies.load_study(compute_study(sweep, tmp_path / "study"))
     flags = dict(zip(*told_flags(study), strict=True))
     for drop in range(sweep.size):
         result = result_of(vi.simulate(sweep.case_of(drop)))
@@ -475,7 +475,7 @@ def test_a_study_holds_each_drop_to_each_limit_as_a_run_does(tmp_path: Path) -> 
             assert kept(study, name)[place] == pytest.approx(float(value), rel=1e-5)
 
 
-def told_flags(study: vi.Study) -> tuple[list[str], list[int]]:
+def told_flags(study: vi.studies.Study) -> tuple[list[str], list[int]]:
     with h5py.File(study.path, "r") as file:
         attributes = file["doubts"].attrs
         return str(attributes["flag_meanings"]).split(), attributes["flag_masks"].tolist()
@@ -493,9 +493,9 @@ def sentence(result: Any, name: str) -> str:
 
 def test_a_study_says_how_many_drops_which_and_the_worst(tmp_path: Path) -> None:
     over = {"sphere.radius": ["2 mm", "25 mm", "50 mm"]}
-    study = vi.read_study(
-        vi.run_sweep(
-            vi.read_sweep(study_table({"over": over}, drop__height=4.0)), tmp_path / "study"
+    study = vi.studies.load_study(
+        vi.studies.run_sweep(
+            vi.studies.sweep_of(study_table({"over": over}, drop__height=4.0)), tmp_path / "study"
         )
     )
     drag = kept(study, "air_drag")
@@ -517,10 +517,10 @@ def test_a_study_says_how_many_drops_which_and_the_worst(tmp_path: Path) -> None
 
 
 def test_a_study_of_plates_keeps_how_far_they_give_way(tmp_path: Path) -> None:
-    sweep = vi.read_sweep(
+    sweep = vi.studies.sweep_of(
         {**quiet(plate=ELASTIC, run={"impacts": 1}), "sweep": {"over": {"drop.speed": [0.1, 6.0]}}}
     )
-    study = vi.read_study(compute_study(sweep, tmp_path / "study"))
+    study = vi.studies.load_study(compute_study(sweep, tmp_path / "study"))
     (deflection,) = (doubt for doubt in study.doubts if doubt.limit == "plate_deflection")
     assert (deflection.drops, deflection.worst) == (1, 1)
     history = vi.simulate(sweep.case_of(1)).history()["plate_deflection_m"]
@@ -556,14 +556,14 @@ def test_a_finite_sphere_is_refused_where_it_is_counted_already(
     changes: dict[str, Any], words: str
 ) -> None:
     with pytest.raises(vi.InputError, match=words):
-        vi.read_case(plain_case(**changes)).to_problem()
+        vi.case_of(plain_case(**changes)).to_problem()
 
 
 def test_a_finite_sphere_can_be_swept_and_leaves_nothing_to_doubt_of_it(tmp_path: Path) -> None:
-    sweep = vi.read_sweep(
+    sweep = vi.studies.sweep_of(
         study_table({"over": {"contact.finite_sphere": [False, True], "drop.height": [0.5, 1.0]}})
     )
-    study = vi.read_study(compute_study(sweep, tmp_path / "study"))
+    study = vi.studies.load_study(compute_study(sweep, tmp_path / "study"))
     force = study.values("largest_force_N")
     assert np.all(force[1] > 1.03 * force[0])
     assert np.isnan(kept(study, "finite_sphere")[1]).all()
@@ -576,10 +576,10 @@ def test_a_finite_sphere_can_be_swept_and_leaves_nothing_to_doubt_of_it(tmp_path
 def test_too_few_modes_are_doubted_in_studies_and_of_problems_made_in_python(
     tmp_path: Path,
 ) -> None:
-    sweep = vi.read_sweep(
+    sweep = vi.studies.sweep_of(
         {**quiet(plate=ELASTIC, run={"impacts": 1}), "sweep": {"over": {"plate.modes": [2, 120]}}}
     )
-    study = vi.read_study(compute_study(sweep, tmp_path / "study"))
+    study = vi.studies.load_study(compute_study(sweep, tmp_path / "study"))
     (few,) = (doubt for doubt in study.doubts if doubt.limit == "plate_modes")
     assert (few.drops, few.worst) == (1, 0)
     made = replace(sweep.case_of(0).to_problem(), source=None)
@@ -605,8 +605,8 @@ def test_a_visit_of_several_contacts_asks_for_the_modes_of_one() -> None:
 
 
 def test_a_comparison_says_once_what_is_so_under_every_law() -> None:
-    found = vi.compare_laws(
-        vi.read_case(plain_case(drop__height=4.0)), ["hertz", "flores"], {"restitution": 0.7}
+    found = vi.laws.compare_laws(
+        vi.case_of(plain_case(drop__height=4.0)), ["hertz", "flores"], {"restitution": 0.7}
     ).report.warnings
     assert sum("in air" in doubt for doubt in found) == 1
     assert any(doubt.startswith("every law: in air") for doubt in found)
@@ -632,7 +632,7 @@ def test_a_plate_that_moves_on_its_springs_does_not_bend() -> None:
     ball = {"radius": "40 mm", "material": STEEL}
     result = result_of(
         vi.simulate(
-            vi.read_case(
+            vi.case_of(
                 quiet(
                     sphere=ball,
                     plate=plate,
@@ -670,15 +670,16 @@ def test_a_heavy_sphere_bends_the_plate_most_long_after_it_touches(
         contact=contact,
         run={"impacts": 2},
     )
-    response = vi.simulate(vi.read_case(table))
+    response = vi.simulate(vi.case_of(table))
     largest = np.abs(response.history(columns=["plate_deflection_m"])["plate_deflection_m"]).max()
     assert largest == pytest.approx(0.01 * thicknesses, rel=2e-3)
     result = vi.result_of(response)
     assert result.peaks["plate"]["max_bending_m"] == pytest.approx(largest, rel=0.01)
     assert any("the plate deflects by" in doubt for doubt in result.doubts)
-    study = vi.read_study(
-        vi.run_sweep(
-            vi.read_sweep({**table, "sweep": {"over": {"drop.speed": [1.0]}}}), tmp_path / "study"
+    study = vi.studies.load_study(
+        vi.studies.run_sweep(
+            vi.studies.sweep_of({**table, "sweep": {"over": {"drop.speed": [1.0]}}}),
+            tmp_path / "study",
         )
     )
     assert float(study.values("limit_plate_deflection").squeeze()) == pytest.approx(

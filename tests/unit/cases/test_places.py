@@ -112,7 +112,7 @@ def test_what_lies_off_the_plate_is_refused_before_anything_is_computed(
     case: dict[str, Any], message: str
 ) -> None:
     with pytest.raises(vi.InputError) as raised:
-        vi.read_case(case)
+        vi.case_of(case)
     assert message in str(raised.value)
 
 
@@ -130,7 +130,7 @@ def test_what_is_let_through_can_be_held(supports: dict[str, Any]) -> None:
     """The rules here and those of the mesh are the same: at the edge of what is allowed a
     mesh is made and held.
     """
-    meshes_of(vi.read_case(plate(supports)))
+    meshes_of(vi.case_of(plate(supports)))
 
 
 WHICH: list[tuple[dict[str, Any], str]] = [
@@ -167,7 +167,7 @@ WHICH: list[tuple[dict[str, Any], str]] = [
 @pytest.mark.parametrize(("case", "message"), WHICH, ids=[message[:40] for _, message in WHICH])
 def test_nobody_has_to_count_from_0(case: dict[str, Any], message: str) -> None:
     with pytest.raises(vi.InputError) as raised:
-        vi.read_case(case)
+        vi.case_of(case)
     assert str(raised.value).startswith(message)
     assert len(str(raised.value).splitlines()) == 1
 
@@ -194,7 +194,7 @@ BROUGHT: list[tuple[dict[str, Any], str]] = [
 def test_a_mesh_that_is_brought_is_told_file_and_key(
     command: str, case: dict[str, Any], message: str, tmp_path: Path
 ) -> None:
-    vi.write_abaqus(box_mesh((0.52, 0.42, 0.008), (4, 3, 1)), tmp_path / "plate.inp")
+    vi.meshes.write_abaqus(box_mesh((0.52, 0.42, 0.008), (4, 3, 1)), tmp_path / "plate.inp")
     case["plate"] = {**case["plate"], "size": None, "mesh": "plate.inp"}
     del case["plate"]["size"]
     if case["plate"]["supports"] == "clamped":

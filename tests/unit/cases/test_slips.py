@@ -15,16 +15,16 @@ from typer.testing import CliRunner
 import vibroimpact as vi
 from studies import study_table
 from support import plain_case
-from vibroimpact.calibration.calibrate_case import calibrate_case, read_calibration
+from vibroimpact.calibration.calibrate_case import calibrate_case, calibration_of
 from vibroimpact.cases.build import resolved_case
 from vibroimpact.cases.wrong_units.detect import slips, swept_slips
 from vibroimpact.cases.wrong_units.hertz_estimate import HertzEstimate
 from vibroimpact.cli import app
 from vibroimpact.results.result import result_of
 from vibroimpact.studies.compute_study import compute_study
-from vibroimpact.studies.read_sweep import read_sweep
 from vibroimpact.studies.report.tables import doubt_sentences
-from vibroimpact.studies.study import read_study
+from vibroimpact.studies.study import load_study
+from vibroimpact.studies.sweep_file import sweep_of
 from vibroimpact.studies.unit_slips import axis_slips
 
 STEEL = {"density": 7850, "youngs_modulus": "210 GPa", "poissons_ratio": 0.3}
@@ -42,7 +42,7 @@ ELASTIC = {
 
 
 def told(**changes: Any) -> list[str]:
-    return slips(resolved_case(vi.read_case(plain_case(**changes))))
+    return slips(resolved_case(vi.case_of(plain_case(**changes))))
 
 
 def steel(**numbers: Any) -> dict[str, Any]:
@@ -168,7 +168,7 @@ def test_what_is_proposed_can_be_written_and_is_not_doubted(
         inside = inside[part][-1] if part == "sensors" else inside[part]
     place: Any = ("length", "width", "thickness").index(last) if isinstance(inside, list) else last
     inside[place] = [meant] if isinstance(inside[place], list) else meant
-    assert slips(resolved_case(vi.read_case(table))) == []
+    assert slips(resolved_case(vi.case_of(table))) == []
 
 
 def test_a_stiffness_is_held_to_that_of_hertz() -> None:
@@ -224,7 +224,7 @@ def test_several_sides_are_each_said() -> None:
 @pytest.mark.parametrize("key", ["drop.height", "contact.damping_max", "sphere.material.density"])
 def test_nothing_is_said_of_zero(key: str) -> None:
     assert (
-        swept_slips(resolved_case(vi.read_case(plain_case(contact=ADAMS))), {key: np.array([0.0])})
+        swept_slips(resolved_case(vi.case_of(plain_case(contact=ADAMS))), {key: np.array([0.0])})
         == []
     )
 
@@ -279,7 +279,7 @@ def test_any_number_can_be_looked_at(value: float) -> None:
             }
         },
     )
-    case = resolved_case(vi.read_case(table))
+    case = resolved_case(vi.case_of(table))
     places = numbers_in(case)
     assert len(places) > 30
     for inside, name in places:
@@ -298,13 +298,13 @@ def test_swept_values_are_said_once_with_how_many(tmp_path: Path) -> None:
         drop={"speed": 3.0},
         contact__stiffness=16176,
     )
-    study = read_sweep(table)
+    study = sweep_of(table)
     (said,) = axis_slips(study)
     assert (
         said == "sphere.radius: 2 of 3 values, such as 10 m, which is very large for a sphere; was "
         '10 mm meant? Write "10 mm"'
     )
-    found = doubt_sentences(read_study(compute_study(study, tmp_path / "out")))
+    found = doubt_sentences(load_study(compute_study(study, tmp_path / "out")))
     assert [one.partition(":")[0] for one in found[:2]] == ["contact.stiffness", "sphere.radius"]
 
 
@@ -327,7 +327,7 @@ def test_a_slip_at_the_first_point_is_not_said_twice(tmp_path: Path) -> None:
 def test_results_and_calibrations_tell_it_too() -> None:
     slip = "contact.stiffness: 16176 N/m^1.5 is"
     assert (
-        result_of(vi.simulate(vi.read_case(plain_case(contact__stiffness=16176))))
+        result_of(vi.simulate(vi.case_of(plain_case(contact__stiffness=16176))))
         .doubts[0]
         .startswith(slip)
     )
@@ -335,7 +335,7 @@ def test_results_and_calibrations_tell_it_too() -> None:
         contact={"law": "hunt-crossley", "restitution": 0.7, "stiffness": 16176},
         calibrate={"target": {"restitution": 0.7}},
     )
-    assert calibrate_case(read_calibration(table)).doubts[0].startswith(slip)
+    assert calibrate_case(calibration_of(table)).doubts[0].startswith(slip)
 
 
 @pytest.mark.parametrize(
@@ -354,7 +354,7 @@ def test_every_way_to_state_a_fall_has_an_estimate(
     case["drop"] = {**drop, "gravity": 10.0}
     case["sphere"]["radius"] = 0.025
     case["run"] = {"duration": 1.0}
-    resolved = resolved_case(vi.read_case(case))
+    resolved = resolved_case(vi.case_of(case))
     estimate = HertzEstimate(resolved)
     assert (estimate.speed, estimate.touch) == (pytest.approx(speed), pytest.approx(touch))
     assert slips(resolved) == []
@@ -374,7 +374,7 @@ def test_a_value_for_each_impact() -> None:
         {"law": "thornton", "yield_pressure": [4e8, 5e8]},
         {"law": "hertz", "stiffness": [2e10, 1.9e10]},
     ):
-        result = result_of(vi.simulate(vi.read_case({**steel, "contact": contact})))
+        result = result_of(vi.simulate(vi.case_of({**steel, "contact": contact})))
         assert not any("was " in doubt for doubt in result.doubts)
     twice = [HertzEstimate(result.case).stiffness] * 2
     derived = HertzEstimate(
@@ -389,5 +389,5 @@ def test_a_value_for_each_impact() -> None:
 @pytest.mark.parametrize("element", ["plate", "solid"])
 def test_what_is_chosen_by_default_is_never_doubted(size: list[float], element: str) -> None:
     mesh = {"element": element} if element == "solid" else {}
-    found = slips(resolved_case(vi.read_case(plain_case(plate={**ELASTIC, "size": size, **mesh}))))
+    found = slips(resolved_case(vi.case_of(plain_case(plate={**ELASTIC, "size": size, **mesh}))))
     assert not [doubt for doubt in found if not doubt.startswith("plate.size")]

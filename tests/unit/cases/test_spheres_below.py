@@ -29,7 +29,7 @@ def case_of(plate: dict[str, Any], **sections: dict[str, Any]) -> Any:
         "contact": {"law": "hunt-crossley", "restitution": 0.8},
         "run": {"impacts": 1, "tolerance": 1e-12},
     }
-    return vi.read_case(
+    return vi.case_of(
         {name: {**table.get(name, {}), **sections.get(name, {})} for name in {**table, **sections}}
     )
 
@@ -102,7 +102,7 @@ def _with_law(plate: dict[str, Any], law: dict[str, Any]) -> Any:
         "contact": law,
         "run": {"impacts": 1, "tolerance": 1e-12},
     }
-    return vi.read_case(table)
+    return vi.case_of(table)
 
 
 def test_a_heavy_one_stays_where_it_is() -> None:
@@ -120,7 +120,7 @@ def test_two_that_stick_fly_on_together() -> None:
         "drop": {"speed": 0.005, "gravity": 0.0},
         "contact": {"law": "jkr", "work_of_adhesion": 0.1},
     }
-    response = vi.simulate(vi.read_case(case))
+    response = vi.simulate(vi.case_of(case))
     assert response.outcomes == (vi.Outcome.STUCK,)
     mass = mass_of(1e-5, GLASS)
     for entry in ("kinetic_J", "plate_kinetic_J"):  # at half of the speed, each
@@ -141,7 +141,7 @@ def test_doubts_know_both_curvatures() -> None:
 def test_the_case_reads_back() -> None:
     for plate in ({"radius": 0.03}, {"radius": 0.03, "supports": "free"}):
         case = case_of(plate)
-        again = vi.read_case(resolved_case(case))
+        again = vi.case_of(resolved_case(case))
         assert again.plate.radius == 0.03
         assert again.plate.supports == plate.get("supports")
         assert contact_pair(again) == contact_pair(case)
@@ -155,9 +155,9 @@ def test_its_radius_can_be_swept(supports: dict[str, str], tmp_path: Path) -> No
         "sweep": {"over": {"plate.radius": radii}},
     }
     del table["contact"]["stiffness"]  # which is that of one radius
-    found = vi.read_study(compute_study(vi.read_sweep(table), tmp_path / "study")).values(
-        "max_force_N"
-    )
+    found = vi.studies.load_study(
+        compute_study(vi.studies.sweep_of(table), tmp_path / "study")
+    ).values("max_force_N")
     single = [
         vi.simulate(case_of({"radius": radius, **supports})).impacts["max_force_N"][0]
         for radius in radii

@@ -16,28 +16,29 @@ import vibroimpact as vi
 from ball_records import heard
 from support import plain_case
 from vibroimpact.calibration.bounces.report import impact_table, law_sentences
-from vibroimpact.calibration.calibrate_case import calibrate_case, calibrated_case, read_calibration
+from vibroimpact.calibration.calibrate_case import calibrate_case, calibration_of
 from vibroimpact.calibration.calibration import Calibration
 from vibroimpact.calibration.inputs import EARTH
-from vibroimpact.calibration.report import report_of
 from vibroimpact.cli import main
 from vibroimpact.units.display import known_text
 from vibroimpact.units.written import read_written
 
 GRAVITY = 9.80665
 TWO_SIDED = 1.959964
-RANDOM = vi.Record("microphone", np.zeros(48000), 48e3, "Pa")
+RANDOM = vi.signals.Record("microphone", np.zeros(48000), 48e3, "Pa")
 MATERIAL = {"density": 7800.0, "youngs_modulus": 200e9, "poissons_ratio": 0.3}
 EXACT = {"radius": "20 mm +- 0", "material": {**MATERIAL, "density": "7800 kg/m^3 +- 0"}}
 
 
 def bounced(
     restitution: float, height: float, gravity: float = GRAVITY, touches: int = 6
-) -> vi.Bounces:
+) -> vi.signals.Bounces:
     """Touches of a ball that falls from a height, known to a microsecond."""
     speed = np.sqrt(2.0 * gravity * height) * restitution ** np.arange(1, touches)
     time = np.concatenate([[0.0], np.cumsum(2.0 * speed / gravity)])
-    return vi.Bounces(RANDOM, time, np.full(touches, 1e-6), np.ones(touches), np.zeros(0), ())
+    return vi.signals.Bounces(
+        RANDOM, time, np.full(touches, 1e-6), np.ones(touches), np.zeros(0), ()
+    )
 
 
 @pytest.mark.parametrize(
@@ -81,7 +82,7 @@ def test_numbers_as_they_are_written(
 )
 def test_what_is_not_a_standard_deviation(changes: dict, message: str) -> None:
     with pytest.raises(vi.InputError, match=message) as refused:
-        vi.read_case(plain_case(**changes))
+        vi.case_of(plain_case(**changes))
     assert len(str(refused.value)) < 490
 
 
@@ -95,7 +96,7 @@ def test_the_height_is_in_the_interval_of_the_first_impact() -> None:
         ("0.60 m", 0.005 / 3.0**0.5),
         ("0.6 m", 0.05 / 3.0**0.5),
     ):
-        found = vi.rebounds_of(bounces, gravity="9.80665 m/s^2 +- 0", height=height)
+        found = vi.calibration.rebounds_of(bounces, gravity="9.80665 m/s^2 +- 0", height=height)
         assert found.deviation[0] == pytest.approx(0.5 * 0.82 * deviation / 0.6, rel=1e-4)
         assert found.deviation[1] < 1e-5
         assert found.approach_deviation[0] == pytest.approx(
@@ -104,12 +105,12 @@ def test_the_height_is_in_the_interval_of_the_first_impact() -> None:
         assert any(
             "the interval of impact 1 is mostly that of height" in doubt for doubt in found.doubts
         ) == ("+-" not in height)
-    exact = vi.rebounds_of(bounces, gravity=GRAVITY, height=0.6)
+    exact = vi.calibration.rebounds_of(bounces, gravity=GRAVITY, height=0.6)
     assert exact.deviation[0] < 1e-5
 
 
 def test_gravity_is_in_speeds_and_in_the_first_impact() -> None:
-    found = vi.rebounds_of(bounced(0.82, 0.6), height=0.6)
+    found = vi.calibration.rebounds_of(bounced(0.82, 0.6), height=0.6)
     relative = EARTH.deviation / EARTH
     assert found.separation_deviation[1] / found.separation_speed[1] == pytest.approx(
         relative, rel=1e-2
@@ -123,7 +124,7 @@ def test_a_contact_time_is_in_the_restitutions() -> None:
     - e) / T of it.
     """
     bounces = bounced(0.7, 0.5)
-    lasting = vi.Bounces(
+    lasting = vi.signals.Bounces(
         RANDOM,
         bounces.time,
         bounces.deviation,
@@ -133,7 +134,7 @@ def test_a_contact_time_is_in_the_restitutions() -> None:
         (),
         read_written("0 ms +- 0.5 ms", "s"),
     )
-    found = vi.rebounds_of(lasting)
+    found = vi.calibration.rebounds_of(lasting)
     assert found.deviation[1:-1] == pytest.approx(5e-4 * 0.3 / bounces.flight[:-1], rel=1e-2)
 
 
@@ -165,10 +166,10 @@ def test_intervals_hold_the_truth_with_inputs_that_are_off(law: int) -> None:
             0.0, 1e-5, len(flights) + 1
         )
         given = read_written("0.3 ms +- 0.05 ms", "s")
-        heard_touches = vi.Bounces(
+        heard_touches = vi.signals.Bounces(
             RANDOM, time, np.full(len(time), 1e-5), np.ones(len(time)), np.zeros(0), (), (), given
         )
-        found = vi.rebounds_of(
+        found = vi.calibration.rebounds_of(
             heard_touches, gravity="9.80665 m/s^2 +- 0.02 m/s^2", height="0.6 m +- 10 mm"
         )
         low, high = found.intervals[0]
@@ -186,11 +187,13 @@ def test_no_more_digits_than_the_interval_carries() -> None:
         "0.819860",
     ]
     assert [known_text(1988.56, spread) for spread in (80.0, 8.0)] == ["1989", "1988.6"]
-    found = vi.rebounds_of(bounced(0.82, 0.6), height="0.6 m")
+    found = vi.calibration.rebounds_of(bounced(0.82, 0.6), height="0.6 m")
     restitution, interval = impact_table(found).columns[4:]
     assert (restitution.cells[0], interval.cells[0]) == ("0.820", "0.781 to 0.859")
     assert restitution.cells[1] == "0.820000"
-    told = " ".join(law_sentences(vi.rebounds_of(bounced(0.82, 0.6, touches=3), height="0.60 m")))
+    told = " ".join(
+        law_sentences(vi.calibration.rebounds_of(bounced(0.82, 0.6, touches=3), height="0.60 m"))
+    )
     for value, low, high in re.findall(r"([\d.]+) \(([\d.]+) to ([\d.]+)\)", told):
         assert 10.0 ** -len(value.partition(".")[2]) >= 0.005 * (float(high) - float(low))
 
@@ -230,7 +233,7 @@ def calibrated(
         "drop": drop or {},
         "calibrate": {"target": target, "air": False, "degree": 0, **more},
     }
-    return calibrate_case(read_calibration(table))
+    return calibrate_case(calibration_of(table))
 
 
 HEIGHTS = {"rebound_heights": ["0.4 m"], "standard_deviation": "1 um"}
@@ -313,7 +316,7 @@ def test_a_material_by_its_name_has_a_stated_default() -> None:
     target = {"separation_speed": 1.4, "relative_deviation": 1e-6}
     table["drop"]["gravity"] = "9.80665 m/s^2 +- 0"
     found = calibrate_case(
-        read_calibration(
+        calibration_of(
             {**table, "calibrate": {"target": target, "parameter": "damping", "air": False}}
         )
     )
@@ -389,7 +392,7 @@ def test_friction_says_that_it_leaves_them_out(tmp_path: Path) -> None:
         run={"impacts": 1},
     )
     section = {"target": str(tmp_path / "o.csv"), "parameter": "friction.coefficient"}
-    found = calibrate_case(read_calibration({**table, "calibrate": section}))
+    found = calibrate_case(calibration_of({**table, "calibrate": section}))
     assert any(
         doubt == "the standard deviation of sphere.radius is no part of these intervals"
         for doubt in found.doubts
@@ -400,14 +403,12 @@ def test_a_report_states_the_inputs() -> None:
     table = plain_case(
         contact={"law": "newton", "restitution": 0.5}, sphere=EXACT, drop={"height": "1 m"}
     )
-    what = read_calibration({**table, "calibrate": {"target": HEIGHTS, "air": False, "degree": 0}})
+    what = calibration_of({**table, "calibrate": {"target": HEIGHTS, "air": False, "degree": 0}})
     calibration = calibrate_case(what)
-    report = report_of(what.case, calibration)
+    report = calibration.report
     assert [one["name"] for one in report.document["inputs"]] == ["drop.height", "drop.gravity"]
     assert any("drop.height 1" in sentence for sentence in report.sentences)
     (value,) = report.sections[0].blocks[0].columns[2].cells
     assert len(value.partition(".")[2]) <= 3
     # a run does not need them, and what is written has the numbers alone
-    assert (
-        vi.read_case(calibrated_case(what.case, calibration).to_problem().source).drop.height == 1.0
-    )
+    assert vi.case_of(calibration.calibrated_case.to_problem().source).drop.height == 1.0

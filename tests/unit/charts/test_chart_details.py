@@ -50,7 +50,7 @@ def struck() -> Result:
         run={"impacts": 1},
         sensors=sensors,
     )
-    return result_of(vi.simulate(vi.read_case(case)))
+    return result_of(vi.simulate(vi.case_of(case)))
 
 
 def words_of(chart: Chart) -> list[str]:

@@ -39,7 +39,7 @@ def small() -> Iterator[None]:
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     place = tmp_path_factory.mktemp("results") / "rigid"
-    vi.simulate(vi.read_case(plain_case(run={"impacts": 2}))).save(place)
+    vi.simulate(vi.case_of(plain_case(run={"impacts": 2}))).save(place)
     return place
 
 
@@ -144,7 +144,7 @@ def test_a_run_writes_them_when_it_is_asked(
 
 @pytest.mark.slow
 def test_those_of_a_run_are_those_of_its_folder(tmp_path: Path) -> None:
-    response = vi.simulate(vi.read_case(elastic(sensors=[sensor("a 1")])))
+    response = vi.simulate(vi.case_of(elastic(sensors=[sensor("a 1")])))
     response.save(tmp_path / "out")
     (tmp_path / "figures").mkdir()
     write_figures(result_of(response), tmp_path / "figures")

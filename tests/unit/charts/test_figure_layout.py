@@ -81,7 +81,7 @@ def test_pictures_are_to_scale() -> None:
         "contact": {"law": "hertz"},
         "run": {"impacts": 1},
     }
-    chart = setup_chart(result_of(vi.simulate(vi.read_case(case))))
+    chart = setup_chart(result_of(vi.simulate(vi.case_of(case))))
     frames = frames_of(chart)
     for panel in chart.panels:
         assert frames[panel.x].size == frames[panel.y].size

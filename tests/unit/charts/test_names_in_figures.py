@@ -55,7 +55,7 @@ def response() -> vi.Response:
         for place, name in enumerate(IN_A_CASE)
     ]
     return vi.simulate(
-        vi.read_case(plain_case(plate=plate, sensors=sensors, run={"impacts": 1, "duration": 0.33}))
+        vi.case_of(plain_case(plate=plate, sensors=sensors, run={"impacts": 1, "duration": 0.33}))
     )
 
 
@@ -77,7 +77,7 @@ def result(response: vi.Response) -> Result:
 
 @pytest.mark.slow
 def test_the_folder_holds_a_picture_and_a_table_of_each(folder: Path) -> None:
-    assert list(vi.read_result(folder).signals) == IN_A_CASE  # as they were given
+    assert list(vi.load_result(folder).signals) == IN_A_CASE  # as they were given
     for place, ending in (("sensors", ".csv"), ("figures", ".png"), ("figures", ".svg")):
         begins = "" if place == "sensors" else "sensor_"
         files = [

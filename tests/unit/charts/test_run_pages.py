@@ -225,7 +225,7 @@ def test_a_very_long_run_is_drawn_whole_with_its_first_contacts_in_full(
         "contact": {"law": "hertz"},
         "run": {"impacts": 60},
     }
-    result = vi.result_of(vi.simulate(vi.read_case(case)))
+    result = vi.result_of(vi.simulate(vi.case_of(case)))
     monkeypatch.setattr(chart_data, "MOST_POINTS", 6000)
     assert len(result.history["time_s"]) > 6000
     drawn = chart_data.drawn_history(result)

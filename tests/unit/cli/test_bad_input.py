@@ -222,7 +222,7 @@ def test_wrong_case(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     with pytest.raises(vi.InputError) as raised:
-        vi.read_case(plain_case(**changes))
+        vi.case_of(plain_case(**changes))
     assert message in str(raised.value)
     file = tmp_path / "case.toml"
     file.write_text(tomli_w.dumps(plain_case(**changes)))
@@ -236,7 +236,7 @@ def test_wrong_case(
 
 def test_every_fault_of_a_case_is_named_at_once() -> None:
     with pytest.raises(vi.InputError) as raised:
-        vi.read_case(plain_case(sphere__radius=-1, drop__gravity="x", foo=1))
+        vi.case_of(plain_case(sphere__radius=-1, drop__gravity="x", foo=1))
     assert len(str(raised.value).splitlines()) == 3
 
 
@@ -301,7 +301,7 @@ def test_a_misspelt_key_is_not_reported_as_missing_too() -> None:
     table = plain_case()
     table["sphere"]["raduis"] = table["sphere"].pop("radius")
     with pytest.raises(vi.InputError) as raised:
-        vi.read_case(table)
+        vi.case_of(table)
     assert len(str(raised.value).splitlines()) == 1
     assert 'Did you mean "radius"?' in str(raised.value)
 

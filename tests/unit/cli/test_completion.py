@@ -20,8 +20,8 @@ from vibroimpact.cli.completion import VARIABLE, WORDS, complete_case, joined
 from vibroimpact.cli.completion_words import completion_words
 from vibroimpact.studies.design import designs
 
-LAWS = list(vi.contact_laws())
-MATERIALS = list(vi.material_library())
+LAWS = list(vi.laws.contact_laws())
+MATERIALS = list(vi.materials.material_library())
 
 
 def completed(
@@ -226,7 +226,7 @@ def test_keys_are_those_that_a_case_takes() -> None:
         "run.impacts",
     } <= keys.keys()
     contact = (
-        {item for law in vi.contact_laws().values() for item in law.__dataclass_fields__}
+        {item for law in vi.laws.contact_laws().values() for item in law.__dataclass_fields__}
         | LocalSection.model_fields.keys()
         | {"law", "friction"}
     )

@@ -48,7 +48,7 @@ def test_a_table_is_written(call, taps: Path, tmp_path: Path) -> None:
     assert (status, err) == (0, "")
     assert "wrote" in out
     left, right = rows_of(tmp_path / "table.csv")
-    expected = vi.feature_table([next(vi.read_records(taps)).value], 8000.0)
+    expected = vi.signals.feature_table([next(vi.signals.load_records(taps)).value], 8000.0)
     assert (left["channel"], left["signal"], left["unit"], left["file"]) == (
         "taps 1",
         "1",
@@ -67,8 +67,9 @@ def test_a_table_is_written(call, taps: Path, tmp_path: Path) -> None:
     header = list(left)
     assert [left[name] for name in header[-3:-1]] == ["0.0", "0.0"]
     assert [
-        name.startswith(one) for name, one in zip(header[6:-3], vi.features(), strict=True)
-    ] == len(vi.features()) * [True]
+        name.startswith(one)
+        for name, one in zip(header[6:-3], vi.signals.signal_features(), strict=True)
+    ] == len(vi.signals.signal_features()) * [True]
 
 
 def test_an_existing_file_stays(call, taps: Path, tmp_path: Path) -> None:
@@ -139,9 +140,9 @@ def test_windows_begin_at_the_onset(call, taps: Path, tmp_path: Path) -> None:
 def test_the_list(call) -> None:
     status, out, _ = call("--list")
     assert status == 0
-    assert all(f" {name} " in out for name in vi.features())
+    assert all(f" {name} " in out for name in vi.signals.signal_features())
     listed = json.loads(call("--list", "--json")[1])["features"]
-    assert listed.keys() == vi.features().keys()
+    assert listed.keys() == vi.signals.signal_features().keys()
     assert listed["energy"]["unit"] == "x^2 s"
     assert listed["kurtosis"]["offset_free"] is True
 

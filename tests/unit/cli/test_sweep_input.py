@@ -232,7 +232,7 @@ FAULTS: list[tuple[object, str]] = [
 @pytest.mark.parametrize(("sweep", "words"), FAULTS)
 def test_what_is_wrong_is_told(sweep: object, words: str) -> None:
     with pytest.raises(vi.InputError) as caught:
-        vi.read_sweep(study_table(sweep))
+        vi.studies.sweep_of(study_table(sweep))
     assert words in str(caught.value)
     assert len(str(caught.value).splitlines()) == 1, "one fault, one line"
 
@@ -241,12 +241,12 @@ def test_a_case_without_a_sweep_is_told_what_is_missing() -> None:
     with pytest.raises(
         vi.InputError, match=r"sweep: it is missing; it specifies the swept keys and their values"
     ):
-        vi.load_sweep("paper:type1-theory")
+        vi.studies.load_sweep("paper:type1-theory")
 
 
 def test_a_case_that_is_wrong_everywhere_is_told_once() -> None:
     with pytest.raises(vi.InputError, match=r"^plate.material: this key is missing"):
-        vi.read_sweep(study_table(plate={}))
+        vi.studies.sweep_of(study_table(plate={}))
 
 
 @pytest.mark.parametrize(
@@ -264,7 +264,7 @@ def test_a_file_of_values_that_is_wrong_is_told(tmp_path: Path, text: str, words
     (tmp_path / "sieve.csv").write_text(text, encoding="utf-8")
     file = study_file(tmp_path, over(sphere__radius={"file": "sieve.csv", "column": "radius"}))
     with pytest.raises(vi.InputError, match=r'sweep.over."sphere.radius".file') as caught:
-        vi.load_sweep(file)
+        vi.studies.load_sweep(file)
     assert words in str(caught.value)
 
 

@@ -23,7 +23,6 @@ from studies import study_table
 from support import one_in, plain_case
 from vibroimpact.bayes_error.bound import bound_of
 from vibroimpact.calibration.calibrate import calibrate
-from vibroimpact.calibration.report import report_of
 from vibroimpact.cases.elastic.modes import compute_modes
 from vibroimpact.cli import app, main
 from vibroimpact.cli.case_text import shipped_cases_table
@@ -46,7 +45,7 @@ from vibroimpact.runs.case_explained import case_explained
 from vibroimpact.runs.text import result_summary, versions_table
 from vibroimpact.studies.compute_study import compute_study
 from vibroimpact.studies.explain_sweep import explain_sweep
-from vibroimpact.studies.read_sweep import read_sweep
+from vibroimpact.studies.sweep_file import sweep_of
 
 _NUMBER = re.compile(
     r"(?<![\w.])[-\u2212+]?\d+(?:\.\d+)?(?:·10[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+|e[-+]?\d+)?(?![\w.]*\d)"
@@ -77,7 +76,7 @@ ELASTIC = plain_case(
 def commands(tmp_path_factory: pytest.TempPathFactory, variable: vi.Response) -> Printed:
     """What each command prints, by its name, for a terminal of a width."""
     folder = tmp_path_factory.mktemp("terminals")
-    elastic, rigid = vi.read_case(ELASTIC), result_of(variable)
+    elastic, rigid = vi.case_of(ELASTIC), result_of(variable)
     rung = result_of(vi.simulate(elastic))
     modes = compute_modes(elastic)
     compared = compare_laws(
@@ -85,25 +84,27 @@ def commands(tmp_path_factory: pytest.TempPathFactory, variable: vi.Response) ->
     )
     case = vi.load_case("paper:type1-constant")
     calibrated = calibrate(case, vi.load_case("paper:type1-theory"))
-    sweep = read_sweep(study_table())
-    study = vi.read_study(compute_study(sweep, folder / "study"))
-    population = vi.load_sweep("signals:coal-gangue", 400)
+    sweep = sweep_of(study_table())
+    study = vi.studies.load_study(compute_study(sweep, folder / "study"))
+    population = vi.studies.load_sweep("signals:coal-gangue", 400)
     drop = told_case("paper:type1-variable")
     signals = [
-        vi.Record(name, signal.value, signal.sensor.rate, signal.sensor.unit)
+        vi.signals.Record(name, signal.value, signal.sensor.rate, signal.sensor.unit)
         for name, signal in rung.signals.items()
     ]
-    table = vi.record_table([*signals, vi.Record("silence", [0.0] * 100, 20e3, "V")])
+    table = vi.signals.record_table(
+        [*signals, vi.signals.Record("silence", [0.0] * 100, 20e3, "V")]
+    )
     knocks = write_knocks(folder / "knocks", rocks=8, falls=6)
-    recognition = vi.recognise(knocks, folds=2, seeds=1)
-    recognised = vi.apply_recogniser(recognition.recogniser, knocks)
+    recognition = vi.recognition.recognise(knocks, folds=2, seeds=1)
+    recognised = vi.recognition.apply_recogniser(recognition.recogniser, knocks)
     return {
         "run": lambda width: result_summary(rigid, width),
         "run, elastic": lambda width: result_summary(rung, width),
         "check": lambda _: case_explained(elastic),
         "check, study": lambda _: explain_sweep(sweep),
         "compare": lambda _: terminal_report(compared.report),
-        "calibrate": lambda _: terminal_report(report_of(case, calibrated)),
+        "calibrate": lambda _: terminal_report(calibrated.report),
         "modes": lambda _: modes_summary(elastic, modes),
         "sweep": lambda _: terminal_report(study.report),
         "dataset": lambda _: explain_sweep(population),

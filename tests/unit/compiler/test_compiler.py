@@ -168,7 +168,7 @@ def work_of_law(steps: int, address: Any, coefficients: np.ndarray) -> float:
     return work(steps, force_at(address), coefficients)
 
 
-def work_of_arrays(law: vi.ContactLaw) -> float:
+def work_of_arrays(law: vi.laws.ContactLaw) -> float:
     static, dissipative = law.forces(1e-4 * np.arange(10), np.ones(10), 2.0 * np.ones(10))  # type: ignore[attr-defined]
     return float(np.sum(static + dissipative))
 
@@ -189,7 +189,7 @@ def largest_of(values: np.ndarray) -> float:
     [HuntCrossley(stiffness=1e9, restitution=0.6), Hertz(stiffness=1e9)],
     ids=lambda law: law.name,
 )
-def test_a_law_is_called_by_value_and_by_address(law: vi.ContactLaw) -> None:
+def test_a_law_is_called_by_value_and_by_address(law: vi.laws.ContactLaw) -> None:
     expected = pytest.approx(work_of_arrays(law), rel=1e-14)
     assert work(10, law_function(type(law)), law_coefficients(law)) == expected
     assert work_of_law(10, law_addresses(type(law))[0], law_coefficients(law)) == expected
@@ -227,7 +227,7 @@ class NotCompilable(Hertz):
 @pytest.mark.parametrize(
     "law", [OfArrays(stiffness=1e9), NotCompilable(stiffness=1e9)], ids=lambda law: law.name
 )
-def test_a_law_that_is_not_compiled_is_called_and_says_so_once(law: vi.ContactLaw) -> None:
+def test_a_law_that_is_not_compiled_is_called_and_says_so_once(law: vi.laws.ContactLaw) -> None:
     with pytest.warns(
         vi.errors.SlowLawWarning,
         match=f"the law {law.name} is not compiled, and its force takes microseconds",

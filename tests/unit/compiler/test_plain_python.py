@@ -51,7 +51,7 @@ def numbers() -> dict[str, dict[str, list[float]]]:
         "effective_radius": 0.025,
     }
     for name, rolling in itertools.product(("mdr", "mindlin", "mindlin-rescale"), (0.0, 0.02)):
-        friction = vi.find_friction_law(name)(
+        friction = vi.friction.find_friction_law(name)(
             coefficient=0.2, rolling_coefficient=rolling, **moduli
         )
         oblique = vi.Oblique(velocity=(0.6, 0.1), spin=(0.0, -20.0, 5.0), friction=friction)

@@ -63,7 +63,7 @@ def bring(monkeypatch: pytest.MonkeyPatch, *values: str) -> dict:
 def test_a_law_is_brought_by_an_entry_point(monkeypatch: pytest.MonkeyPatch) -> None:
     laws = bring(monkeypatch, f"{__name__}:Foreign")
     assert laws["foreign"] is Foreign
-    assert len(laws) == len(vi.contact_laws()) + 1
+    assert len(laws) == len(vi.laws.contact_laws()) + 1
 
 
 def test_parameters_are_documented_from_their_declarations() -> None:

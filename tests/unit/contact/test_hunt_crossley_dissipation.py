@@ -85,7 +85,7 @@ def test_the_restitution_falls_with_the_speed() -> None:
     all speeds by D = d v.
     """
     speed = np.array([1e-4, 0.5, 5.0, 50.0])
-    found = vi.achieved_restitution(LAW, mass=0.3, speed=speed)
+    found = vi.laws.achieved_restitution(LAW, mass=0.3, speed=speed)
     assert (1.0 - found[0]) / speed[0] == pytest.approx(LAW.dissipation / 1.5, rel=1e-5)
     np.testing.assert_allclose(found, integrated_restitution(LAW, 0.3, speed), rtol=1e-9)
     for one, at in zip(found, speed, strict=True):
@@ -94,20 +94,20 @@ def test_the_restitution_falls_with_the_speed() -> None:
             if at < 10.0
             else None
         )
-        assert same is None or vi.achieved_restitution(same, mass=0.3, speed=at) == pytest.approx(
-            one, rel=1e-12
-        )
+        assert same is None or vi.laws.achieved_restitution(
+            same, mass=0.3, speed=at
+        ) == pytest.approx(one, rel=1e-12)
 
 
 def test_the_dissipation_that_achieves_a_restitution() -> None:
-    tuned = vi.law_achieving(LAW, 0.6, mass=0.3, speed=2.0)
+    tuned = vi.laws.law_achieving(LAW, 0.6, mass=0.3, speed=2.0)
     assert (tuned.restitution, tuned.free_parameter) == (None, "dissipation")
-    assert vi.achieved_restitution(tuned, mass=0.3, speed=2.0) == pytest.approx(0.6, rel=1e-9)
+    assert vi.laws.achieved_restitution(tuned, mass=0.3, speed=2.0) == pytest.approx(0.6, rel=1e-9)
 
 
 def test_in_a_case() -> None:
     found = vi.simulate(
-        vi.read_case(
+        vi.case_of(
             plain_case(
                 contact={"law": "hunt-crossley", "dissipation": "0.08 s/m"}, run={"impacts": 4}
             )
@@ -118,10 +118,8 @@ def test_in_a_case() -> None:
     assert np.isnan(found["restitution_asked"]).all()
     without_gravity = LAW.closed_form_restitution(1.0, found["approach_speed_m_s"])
     np.testing.assert_allclose(e, without_gravity, rtol=1e-3)
-    again = vi.read_case(
-        resolved_case(
-            vi.read_case(plain_case(contact={"law": "hunt-crossley", "dissipation": 0.08}))
-        )
+    again = vi.case_of(
+        resolved_case(vi.case_of(plain_case(contact={"law": "hunt-crossley", "dissipation": 0.08})))
     )
     assert again.contact.parameters["dissipation"] == 0.08
 
@@ -137,23 +135,23 @@ def test_in_a_case() -> None:
 )
 def test_what_is_refused(contact: dict[str, object], words: str) -> None:
     with pytest.raises(vi.InputError, match=words):
-        vi.simulate(vi.read_case(plain_case(contact={"law": "hunt-crossley", **contact})))
+        vi.simulate(vi.case_of(plain_case(contact={"law": "hunt-crossley", **contact})))
 
 
 def test_compared_at_a_restitution() -> None:
     """Where a case has no restitution, that of the other laws is tuned; its own
     dissipation is, under the same law.
     """
-    case = vi.read_case(
+    case = vi.case_of(
         plain_case(contact={"law": "hunt-crossley", "dissipation": 0.08}, run={"impacts": 1})
     )
-    compared = vi.compare_laws(case, ["hunt-crossley", "flores", "hertz"], achieving=0.7)
+    compared = vi.laws.compare_laws(case, ["hunt-crossley", "flores", "hertz"], achieving=0.7)
     for name in ("hunt-crossley", "flores"):
         assert compared.results[name].impacts["restitution_achieved"][0] == pytest.approx(
             0.7, abs=1e-3
         )
-    of_hertz = vi.read_case(plain_case(contact={"law": "hertz"}, run={"impacts": 1}))
-    compared = vi.compare_laws(of_hertz, ["hunt-crossley", "hertz"], achieving=0.7)
+    of_hertz = vi.case_of(plain_case(contact={"law": "hertz"}, run={"impacts": 1}))
+    compared = vi.laws.compare_laws(of_hertz, ["hunt-crossley", "hertz"], achieving=0.7)
     assert compared.results["hunt-crossley"].impacts["restitution_achieved"][0] == pytest.approx(
         0.7, abs=1e-3
     )
@@ -206,6 +204,8 @@ def test_others_say_that_the_restitution_is_that_of_the_first_impact() -> None:
     drop = told(LAW)
     assert any("stays the same" in note for note in lammps.FORMAT.notes(drop))
     text = next(iter(lammps.FORMAT.write(drop).values())).decode()
-    first = float(vi.achieved_restitution(LAW, MASS, float(drop.impacts["approach_speed_m_s"][0])))
+    first = float(
+        vi.laws.achieved_restitution(LAW, MASS, float(drop.impacts["approach_speed_m_s"][0]))
+    )
     assert f"vector [{first!r}" in text
     assert matlab.FORMAT.write(drop)

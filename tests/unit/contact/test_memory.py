@@ -17,7 +17,7 @@ from vibroimpact.contact.roots import find_root
 NUMBER = 200
 
 
-def random_laws(random: np.random.Generator) -> list[vi.ContactLaw]:
+def random_laws(random: np.random.Generator) -> list[vi.laws.ContactLaw]:
     modulus, radius = 10 ** random.uniform(6, 11, NUMBER), 10 ** random.uniform(-3, -1, NUMBER)
     strength = modulus * 10 ** random.uniform(-5, -2, NUMBER)
     return [

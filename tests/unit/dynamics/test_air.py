@@ -28,9 +28,9 @@ def case(air: Any = True, **changes: Any) -> dict:
 
 def test_no_air_is_a_vacuum() -> None:
     table = case(False)
-    without = vi.simulate(vi.read_case(table))
+    without = vi.simulate(vi.case_of(table))
     del table["drop"]["air"]
-    again = vi.simulate(vi.read_case(table))
+    again = vi.simulate(vi.case_of(table))
     assert all(type(bounce.flight) is Flight for bounce in without.bounces or ())
     assert "air_J" not in without.energy
     for name, values in again.impacts.items():
@@ -41,11 +41,11 @@ def test_thin_air_tends_to_a_vacuum() -> None:
     """What the air takes goes with its density, and with it the time and the speed of
     every impact.
     """
-    vacuum = vi.simulate(vi.read_case(case(False))).impacts
+    vacuum = vi.simulate(vi.case_of(case(False))).impacts
     off = []
     for density in (1e-4, 1e-6):
         found = vi.simulate(
-            vi.read_case(case({"density": density, "drag_coefficient": 0.44}))
+            vi.case_of(case({"density": density, "drag_coefficient": 0.44}))
         ).impacts
         off.append(found["approach_speed_m_s"] - vacuum["approach_speed_m_s"])
     np.testing.assert_allclose(off[0], 100.0 * off[1], rtol=2e-4)
@@ -60,7 +60,7 @@ def test_histories_keep_energy_and_show_the_drag(
 ) -> None:
     table = case(contact={"law": law, "restitution": 0.8}, run=run)
     table["drop"] |= drop
-    response = vi.simulate(vi.read_case(table))
+    response = vi.simulate(vi.case_of(table))
     assert response.energy["closure_relative"] < 1e-12
     history = response.history()
     entries = [values for name, values in history.items() if name.endswith("_J")]
@@ -81,7 +81,7 @@ def test_a_batch_is_its_drops() -> None:
     """Spheres of 0.1 to 50 mm at once, in air of several densities, obliquely."""
     radius, density = np.geomspace(1e-4, 0.05, 6), np.linspace(0.5, 1.5, 6)
     ball = vi.Body(mass=4.0 / 3.0 * np.pi * radius**3 * 2600.0, contact_offset=radius)
-    law = vi.find_contact_law("newton")(restitution=0.7)
+    law = vi.laws.find_contact_law("newton")(restitution=0.7)
     oblique = vi.Oblique(velocity=(np.linspace(0.0, 2.0, 6), 1.0), gravity=(1.0, 0.0))
     stated = vi.Problem(
         sphere=ball,
@@ -117,8 +117,8 @@ def test_without_gravity_air_stops_what_leaves() -> None:
         **case(contact={"law": "newton", "restitution": 0.5}),
         "drop": {"speed": 2.0, "gravity": 0.0, "air": True},
     }
-    assert "never comes back" in vi.simulate(vi.read_case({**table, "run": {"impacts": 3}})).status
-    response = vi.simulate(vi.read_case({**table, "run": {"duration": 1e6}}))
+    assert "never comes back" in vi.simulate(vi.case_of({**table, "run": {"impacts": 3}})).status
+    response = vi.simulate(vi.case_of({**table, "run": {"duration": 1e6}}))
     assert response.energy["closure_relative"] < 1e-12
     assert 0.0 <= float(response.energy["kinetic_J"]) < 1e-20
     assert float(response.energy["air_J"]) == pytest.approx(
@@ -132,7 +132,7 @@ def test_a_resolved_case_is_the_same_case(tmp_path: Path) -> None:
         ({"density": "0.9 kg/m^3", "viscosity": "17 uPa s"}, {"density": 0.9, "viscosity": 17e-6}),
         ({"drag_coefficient": 0.5}, {"density": 1.2, "drag_coefficient": 0.5}),
     ):
-        response = vi.simulate(vi.read_case(case(air)))
+        response = vi.simulate(vi.case_of(case(air)))
         response.save(tmp_path / "found", force=True)
         again = vi.load_case(tmp_path / "found" / "case.toml")
         assert again.drop.air is not None
@@ -147,12 +147,14 @@ def test_studies_sweep_air(air: Any, tmp_path: Path) -> None:
     """The densities are one batch, whether the case has air or not."""
     table = case(air)
     over = {"drop.air.density": [0.6, 2.4], "sphere.radius": [0.01, 0.02]}
-    study = vi.read_study(
-        vi.run_sweep(vi.read_sweep({**table, "sweep": {"over": over}}), tmp_path / "study")
+    study = vi.studies.load_study(
+        vi.studies.run_sweep(
+            vi.studies.sweep_of({**table, "sweep": {"over": over}}), tmp_path / "study"
+        )
     )
     for place in ((0, 1), (1, 0)):
         values = {key: options[at] for at, (key, options) in zip(place, over.items(), strict=True)}
-        alone = vi.tabulate(vi.read_case(with_values(table, values)))
+        alone = vi.tabulate(vi.case_of(with_values(table, values)))
         for name in ("approach_speed_m_s", "air_lost_J"):
             np.testing.assert_allclose(study.values(name, *place), alone.impacts[name], rtol=1e-10)
 
@@ -182,11 +184,11 @@ def test_bad_input_is_told_in_one_sentence(changes: dict[str, Any], words: str) 
         section, key = path.split("__")
         table[section][key] = value
     with pytest.raises(vi.InputError, match=words):
-        vi.read_case(table)
+        vi.case_of(table)
 
 
 def test_python_is_told_as_well() -> None:
-    law = vi.find_contact_law("newton")(restitution=0.8)
+    law = vi.laws.find_contact_law("newton")(restitution=0.8)
     with pytest.raises(
         vi.InputError, match="viscosity of air must be a finite number greater than 0"
     ):
@@ -200,11 +202,11 @@ def test_python_is_told_as_well() -> None:
 
 
 def test_data_is_exported_with_air_and_programs_get_none(tmp_path: Path) -> None:
-    vi.simulate(vi.read_case(case(run={"impacts": 1}))).save(tmp_path / "found")
-    vi.export_result(tmp_path / "found", "csv", tmp_path / "data")
+    vi.simulate(vi.case_of(case(run={"impacts": 1}))).save(tmp_path / "found")
+    vi.exporting.export_result(tmp_path / "found", "csv", tmp_path / "data")
     assert "air_lost_J" in (tmp_path / "data" / "impacts.csv").read_text(encoding="utf-8")
     with pytest.raises(vi.InputError, match=r"drop\.air.*vacuum"):
-        vi.export_result(tmp_path / "found", "lammps", tmp_path / "out")
+        vi.exporting.export_result(tmp_path / "found", "lammps", tmp_path / "out")
 
 
 @pytest.mark.parametrize("size", [1e-9, 0.4])
@@ -217,7 +219,7 @@ def test_bodies_that_vibrate_in_air(size: float, more: dict[str, Any]) -> None:
     """Modes that hardly move leave the numbers of rigid bodies; others the balance of
     energy, with what air takes.
     """
-    law = vi.find_contact_law("hunt-crossley")(stiffness=5e8, restitution=0.7)
+    law = vi.laws.find_contact_law("hunt-crossley")(stiffness=5e8, restitution=0.7)
     ball, drop = (
         vi.Body(mass=0.02, contact_offset=0.02),
         {"height": 2.0, "impacts": 3, "air": vi.Air()},
@@ -254,7 +256,7 @@ def test_falls_through_air_onto_a_plate_that_rings() -> None:
     """The second touch of a sphere that air slows down, against an integration of sphere
     and mode between the contacts by SciPy.
     """
-    law = vi.find_contact_law("hertz")(stiffness=5e8)
+    law = vi.laws.find_contact_law("hertz")(stiffness=5e8)
     ball = vi.Body(mass=0.02, contact_offset=0.02)
     modes = ModalBasis(
         np.array([180.0]), np.array([1e-4]), np.array([1.2]), np.zeros((1, 3)), mass=1.0

@@ -44,8 +44,8 @@ def test_a_ball_that_yields_rubs_on_a_plate() -> None:
         "contact": {"law": "thornton", "friction": {"law": "mdr", "coefficient": 0.2}},
         "run": {"impacts": 1},
     }
-    sliding = vi.simulate(vi.read_case(case)).impacts["separation_speed_m_s"]
+    sliding = vi.simulate(vi.case_of(case)).impacts["separation_speed_m_s"]
     del case["contact"]["friction"]
     assert sliding == pytest.approx(
-        vi.simulate(vi.read_case(case)).impacts["separation_speed_m_s"], rel=1e-8
+        vi.simulate(vi.case_of(case)).impacts["separation_speed_m_s"], rel=1e-8
     )

@@ -118,7 +118,7 @@ def contact(**keys: Any) -> dict[str, Any]:
 )
 def test_what_does_not_fit_is_named(changes: dict[str, Any], message: str) -> None:
     with pytest.raises(vi.InputError, match=message):
-        vi.simulate(vi.read_case(case(**changes)))
+        vi.simulate(vi.case_of(case(**changes)))
 
 
 def test_an_elastic_sphere_has_no_local_element_as_well() -> None:
@@ -129,7 +129,7 @@ def test_an_elastic_sphere_has_no_local_element_as_well() -> None:
         r"the sphere",
     ):
         vi.simulate(
-            vi.read_case(case(sphere, **contact(local_compliance="identified", measured=MEASURED)))
+            vi.case_of(case(sphere, **contact(local_compliance="identified", measured=MEASURED)))
         )
 
 
@@ -163,7 +163,7 @@ def test_a_rebound_that_no_local_element_gives_is_refused_with_what_it_can(
         "measured": {"max_force": 1000.0, "restitution": restitution},
     }
     with pytest.raises(vi.InputError, match=rf"contact\.measured: {message}"):
-        vi.read_case(rigid).to_problem()
+        vi.case_of(rigid).to_problem()
 
 
 def test_a_basis_that_leaves_nothing_of_the_law_is_refused() -> None:
@@ -173,7 +173,7 @@ def test_a_basis_that_leaves_nothing_of_the_law_is_refused() -> None:
         match=r"sphere\.attachment_mode: the modes of the sphere carry .* not be unique; leave "
         r"this out",
     ):
-        vi.read_case(case(sphere, RIGID)).to_problem()
+        vi.case_of(case(sphere, RIGID)).to_problem()
 
 
 def test_a_correction_that_leaves_nothing_of_a_stiff_law_is_refused_without_a_word_of_modes() -> (
@@ -186,7 +186,7 @@ def test_a_correction_that_leaves_nothing_of_a_stiff_law_is_refused_without_a_wo
         match=r"contact\.finite_sphere: .* the law is much stiffer than Hertz's contact; leave "
         r"this out",
     ) as refused:
-        vi.read_case(stiff).to_problem()
+        vi.case_of(stiff).to_problem()
     assert "modes" not in str(refused.value)
 
 
@@ -200,11 +200,11 @@ def test_a_correction_that_leaves_nothing_of_a_stiff_law_is_refused_without_a_wo
 )
 def test_shipped_cases_come_back_from_their_resolved_form(name: str) -> None:
     shipped = vi.load_case(name)
-    assert resolved_case(vi.read_case(resolved_case(shipped))) == resolved_case(shipped)
+    assert resolved_case(vi.case_of(resolved_case(shipped))) == resolved_case(shipped)
 
 
 def test_consistent_bodies_tell_what_was_done() -> None:
-    problem = vi.read_case(
+    problem = vi.case_of(
         case({"model": "elastic", "modes": 10, "damping": 0.01, **COARSE})
     ).to_problem()
     assert problem.facts["treatment"] == "consistent"
@@ -219,7 +219,7 @@ def test_consistent_bodies_tell_what_was_done() -> None:
 
 
 def test_superposed_bodies_have_nothing_taken_out() -> None:
-    problem = vi.read_case(
+    problem = vi.case_of(
         case({"model": "elastic", "modes": 10, **COARSE}, **contact(local_compliance="superposed"))
     ).to_problem()
     assert not problem.quasi_static
@@ -230,7 +230,7 @@ def test_too_few_modes_and_an_overdriven_accelerometer_are_doubted() -> None:
     from vibroimpact.results.result import result_of
 
     sensor = {**SENSOR, "rate": "1 kHz", "accelerometer": {"range": 1e-3}}
-    found = result_of(vi.simulate(vi.read_case(case(plate={"modes": 3}, sensors=[sensor])))).doubts
+    found = result_of(vi.simulate(vi.case_of(case(plate={"modes": 3}, sensors=[sensor])))).doubts
     few, driven, *_ = (doubt for doubt in found if "modes" in doubt or "accelerometer" in doubt)
     assert few.startswith("the modes of the plate end at ")
     assert "max_frequency" in few
@@ -246,7 +246,7 @@ def test_an_unknown_key_of_an_accelerometer_is_named_with_the_others() -> None:
         match=r'unknown key "nois"; .* takes resonance, damping_ratio, range, noise, resolution, '
         r'seed, sensitivity\. Did you mean "noise"',
     ):
-        vi.read_case(case(sensors=[{**SENSOR, "accelerometer": {"nois": 0.5}}]))
+        vi.case_of(case(sensors=[{**SENSOR, "accelerometer": {"nois": 0.5}}]))
 
 
 @pytest.mark.parametrize(
@@ -274,31 +274,31 @@ def test_an_unknown_key_of_an_accelerometer_is_named_with_the_others() -> None:
 )
 def test_a_filter_that_does_not_exist_is_explained(given: dict[str, Any], said: str) -> None:
     with pytest.raises(vi.InputError, match=said):
-        vi.read_case(case(sensors=[{**SENSOR, **given}]))
+        vi.case_of(case(sensors=[{**SENSOR, **given}]))
 
 
 def test_the_resolved_case_has_the_filter() -> None:
     (sensor,) = (
-        vi.read_case(case(sensors=[{**SENSOR, "filter": "butterworth", "corner": "15 kHz"}]))
+        vi.case_of(case(sensors=[{**SENSOR, "filter": "butterworth", "corner": "15 kHz"}]))
         .to_problem()
         .source["sensors"]
     )  # type: ignore[index]
     assert (sensor["filter"], sensor["corner"]) == ("butterworth", 15e3)
-    (sensor,) = vi.read_case(case(sensors=[SENSOR])).to_problem().source["sensors"]  # type: ignore[index]
+    (sensor,) = vi.case_of(case(sensors=[SENSOR])).to_problem().source["sensors"]  # type: ignore[index]
     assert sensor["filter"] == "sigma-delta"
 
 
 def test_superposed_points_move_with_their_modes_alone() -> None:
     given = {"sensors": [SENSOR]}
-    assert set(vi.read_case(case(**given)).to_problem().plate.modes.residuals) == {SENSOR["name"]}  # type: ignore[union-attr]
-    superposed = vi.read_case(case(**given, **contact(local_compliance="superposed"))).to_problem()
+    assert set(vi.case_of(case(**given)).to_problem().plate.modes.residuals) == {SENSOR["name"]}  # type: ignore[union-attr]
+    superposed = vi.case_of(case(**given, **contact(local_compliance="superposed"))).to_problem()
     assert superposed.plate.modes is not None
     assert not superposed.plate.modes.residuals
 
 
 def test_samples_of_sensors_of_several_rates_are_counted_each() -> None:
     sensors = [{**SENSOR, "rate": "1 GHz"}, {**SENSOR, "name": "a2", "rate": "1 kHz"}]
-    response = vi.simulate(vi.read_case(case(sensors=sensors)))
+    response = vi.simulate(vi.case_of(case(sensors=sensors)))
     with pytest.raises(
         vi.InputError,
         match=re.escape(
@@ -312,4 +312,4 @@ def test_a_microphone_is_not_told_to_take_another_filter() -> None:
     with pytest.raises(
         vi.InputError, match=r'the filter "sigma-delta" takes no corner; leave it out$'
     ):
-        vi.Sensor("m1", quantity="pressure", instrument=vi.sensors.Microphone(), corner=1e3)
+        vi.sensors.Sensor("m1", quantity="pressure", instrument=vi.sensors.Microphone(), corner=1e3)

@@ -35,7 +35,7 @@ def case(**sensor: Any) -> vi.Case:
         "modes": 10,
         "supports": "clamped",
     }
-    return vi.read_case(
+    return vi.case_of(
         {
             "sphere": {"radius": "25 mm", "material": "rock-paper"},
             "plate": plate,
@@ -203,7 +203,7 @@ def test_the_resolved_case_is_the_same_case(sensor: dict[str, Any]) -> None:
         case(**{key: value for key, value in resolved.items() if key != "name"}).sensors
         == given.sensors
     )
-    (again,) = vi.read_case(dict(resolved_case(given))).sensors
+    (again,) = vi.case_of(dict(resolved_case(given))).sensors
     assert again.sensor() == given.sensors[0].sensor()
 
 
@@ -216,7 +216,7 @@ def test_standard_gravity_in_a_sensitivity() -> None:
 
 def test_a_converter_that_clips_or_reads_nothing_is_doubted() -> None:
     sensor = {"name": "a1", "position": [0.1, 0.05], "converter": {"range": 1.0, "bits": 8}}
-    signal = Signal(vi.Sensor("a1", "voltage"), np.array([0.0, 0.5, 127 / 128, -1.0]))
+    signal = Signal(vi.sensors.Sensor("a1", "voltage"), np.array([0.0, 0.5, 127 / 128, -1.0]))
     (clipped,) = sensor_doubts({"sensors": [sensor]}, {"a1": signal}, 1e4, 1e-4)  # type: ignore[list-item]
     assert 'the converter of sensor "a1" clips 2 of 4 samples at its range of 1.000' in clipped
     (silent,) = sensor_doubts(
@@ -229,7 +229,7 @@ def test_solid_elements_have_the_motion_through_the_thickness_near_the_contact()
     steel = {"density": 7850.0, "youngs_modulus": 2.1e11, "poissons_ratio": 0.3}
     plate = {"model": "elastic", "size": [0.3, 0.2, 0.02], "material": steel}
     sensor = {"name": "a1", "position": [0.0, 0.01]}
-    signal = Signal(vi.Sensor("a1", rate=50e3), np.ones(4), uncertainty=0.001)
+    signal = Signal(vi.sensors.Sensor("a1", rate=50e3), np.ones(4), uncertainty=0.001)
     for element, words in (
         ("plate", "0.5 thicknesses from the contact, the motion through the thickness"),
         ("solid", ""),
@@ -246,7 +246,7 @@ def test_solid_elements_have_the_motion_through_the_thickness_near_the_contact()
 
 def test_every_quantity_has_a_type_in_universal_files_and_a_header() -> None:
     assert _QUANTITIES.keys() == UNITS.keys()
-    assert signal_csv(Signal(vi.Sensor("a1", "voltage"), np.zeros(1))).startswith(
+    assert signal_csv(Signal(vi.sensors.Sensor("a1", "voltage"), np.zeros(1))).startswith(
         "time_s,voltage_V\n"
     )
 
@@ -268,9 +268,9 @@ def test_a_run_with_instruments_is_told_and_read_back(tmp_path: Path) -> None:
         {"name": "m", "position": [0.0, 0.0], "microphone": MICROPHONE},
         {"name": "r", "position": [-0.26, 0.0], "instrument": "force"},
     ]
-    response = vi.simulate(vi.read_case(whole))
+    response = vi.simulate(vi.case_of(whole))
     response.save(tmp_path / "run")
-    again = vi.read_result(tmp_path / "run")
+    again = vi.load_result(tmp_path / "run")
     assert {
         name: (one.sensor.quantity, one.sensor.unit) for name, one in again.signals.items()
     } == {
@@ -306,7 +306,7 @@ def test_a_run_with_instruments_is_told_and_read_back(tmp_path: Path) -> None:
 def case_text_of(table: dict[str, Any]) -> str:
     """What `check` says of a case, without line breaks."""
     console = Console(width=400, file=StringIO())
-    console.print(case_explained(vi.read_case(table)))
+    console.print(case_explained(vi.case_of(table)))
     return " ".join(console.file.getvalue().split())  # type: ignore[attr-defined]
 
 
@@ -325,7 +325,7 @@ def test_what_is_for_plates_at_rest(sensor: dict[str, Any], name: str) -> None:
         match=rf'"a1"\.instrument: {name} is for plates whose supports are at rest; leave out '
         r"the sensor",
     ):
-        vi.simulate(vi.read_case(shaken))
+        vi.simulate(vi.case_of(shaken))
 
 
 def test_low_sound_of_a_plate_in_no_baffle_is_doubted() -> None:
@@ -334,7 +334,7 @@ def test_low_sound_of_a_plate_in_no_baffle_is_doubted() -> None:
     time = np.arange(5000) / 50e3
     low, high = (np.sin(2.0 * np.pi * frequency * time) for frequency in (300.0, 2000.0))
     said = sensor_doubts(
-        resolved, {"a1": Signal(vi.Sensor("a1", "pressure"), low + high, 0.0)}, 1e3, 1e-3
+        resolved, {"a1": Signal(vi.sensors.Sensor("a1", "pressure"), low + high, 0.0)}, 1e3, 1e-3
     )
     assert len(said) == 1
     assert (
@@ -342,7 +342,10 @@ def test_low_sound_of_a_plate_in_no_baffle_is_doubted() -> None:
         in said[0]
     )
     assert not sensor_doubts(
-        resolved, {"a1": Signal(vi.Sensor("a1", "pressure"), 0.1 * low + high, 0.0)}, 1e3, 1e-3
+        resolved,
+        {"a1": Signal(vi.sensors.Sensor("a1", "pressure"), 0.1 * low + high, 0.0)},
+        1e3,
+        1e-3,
     )
 
 
@@ -350,13 +353,15 @@ def test_microphones_of_the_plates_modes_are_needed() -> None:
     response = vi.simulate(case(microphone=MICROPHONE, rate="10 kHz"))
     microphone = vi.sensors.Microphone()
     with pytest.raises(vi.InputError, match='have no paths of sound to a microphone "other"'):
-        response.signals(vi.Sensor("other", "pressure", instrument=microphone))
+        response.signals(vi.sensors.Sensor("other", "pressure", instrument=microphone))
     with pytest.raises(
         vi.InputError,
         match="are valid for 10000 samples per second at most; ask for a lower rate than 20000 Hz",
     ):
-        response.signals(vi.Sensor("a1", "pressure", rate=20e3, instrument=microphone))
-    slower = response.signals(vi.Sensor("a1", "pressure", rate=5e3, instrument=microphone))["a1"]
+        response.signals(vi.sensors.Sensor("a1", "pressure", rate=20e3, instrument=microphone))
+    slower = response.signals(vi.sensors.Sensor("a1", "pressure", rate=5e3, instrument=microphone))[
+        "a1"
+    ]
     assert slower.largest > 0.0
 
 
@@ -365,7 +370,7 @@ def test_a_free_plate_sounds_as_a_whole_too() -> None:
     case_of_free = dict(resolved_case(case(microphone={"distance": 50.0})))
     case_of_free["plate"] = {**case_of_free["plate"], "supports": "free"}
     case_of_free["drop"] = {"speed": 1.0, "gravity": 0.0}
-    plate = vi.simulate(vi.read_case(case_of_free)).problem.plate
+    plate = vi.simulate(vi.case_of(case_of_free)).problem.plate
     assert plate.rigid is not None
     heard = plate.rigid.sounds["a1"].weights.sum(axis=1)
     rise = plate.rigid.participation[:, 2] / plate.rigid.mass

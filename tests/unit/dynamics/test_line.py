@@ -53,7 +53,8 @@ def test_a_step_has_order_8(variable: int) -> None:
     and Nikravesh's force is damped.
     """
     recorded = contact(
-        vi.find_contact_law("lankarani-nikravesh")(stiffness=1.0, restitution=0.5), gravity=1e-3
+        vi.laws.find_contact_law("lankarani-nikravesh")(stiffness=1.0, restitution=0.5),
+        gravity=1e-3,
     )
     line, stages = line_under(recorded.law, recorded.manner), np.empty((4, 13))
 
@@ -81,7 +82,7 @@ def test_a_step_has_order_8(variable: int) -> None:
 @pytest.mark.parametrize("name", LAWS)
 @pytest.mark.parametrize("speed", [0.01, 5.0])
 def test_the_tolerance_is_kept(name: str, speed: float) -> None:
-    law = vi.find_contact_law(name).example(PAIR)
+    law = vi.laws.find_contact_law(name).example(PAIR)
     exact = contact(law, speed, tolerance=1e-13).contact
     for tolerance in (1e-6, 1e-9, 1e-11):
         found = contact(law, speed, tolerance=tolerance).contact
@@ -99,7 +100,7 @@ def test_the_tolerance_is_kept(name: str, speed: float) -> None:
 @pytest.mark.parametrize("name", LAWS)
 def test_motion_between_events_obeys_the_equation_of_motion(name: str) -> None:
     """By differences, at times of all parts of the contact, in any order."""
-    law = vi.find_contact_law(name).example(PAIR)
+    law = vi.laws.find_contact_law(name).example(PAIR)
     recorded = contact(law, 2.0)
     span = recorded.contact.end.time
     times = np.random.default_rng(1).permutation(span * np.linspace(0.05, 0.95, 37))
@@ -136,7 +137,7 @@ def test_motion_between_events_obeys_the_equation_of_motion(name: str) -> None:
     "name", ["hunt-crossley", "kuwabara-kono", "krijt", "adams-poisson", "linear-spring-dashpot"]
 )
 def test_the_moment_of_capture_depends_on_no_step(name: str) -> None:
-    law = vi.find_contact_law(name).example(PAIR)
+    law = vi.laws.find_contact_law(name).example(PAIR)
     found = [contact(law, 1e-3, tolerance=tolerance).contact for tolerance in (1e-8, 1e-10, 1e-12)]
     assert {one.outcome for one in found} == {CAPTURED}
     np.testing.assert_allclose([one.end.time for one in found], found[-1].end.time, rtol=1e-6)
@@ -146,7 +147,7 @@ def test_a_force_that_hardly_lets_go_takes_more_steps() -> None:
     """Of a restitution of 1e-3 the bodies creep apart a thousand times more slowly than
     they came.
     """
-    law = vi.find_contact_law("hunt-crossley")(stiffness=1e9, dissipation=200.0)
+    law = vi.laws.find_contact_law("hunt-crossley")(stiffness=1e9, dissipation=200.0)
     recorded = contact(law, 1.0, gravity=0.0, tolerance=1e-9)
     exact = contact(law, 1.0, gravity=0.0, tolerance=1e-12)
     assert recorded.contact.end.rate == pytest.approx(exact.contact.end.rate, rel=1e-6)
@@ -154,7 +155,7 @@ def test_a_force_that_hardly_lets_go_takes_more_steps() -> None:
     assert (
         recorded.steps.written[0]
         > 1.5
-        * contact(vi.find_contact_law("hertz")(stiffness=1e9), tolerance=1e-9).steps.written[0]
+        * contact(vi.laws.find_contact_law("hertz")(stiffness=1e9), tolerance=1e-9).steps.written[0]
     )
 
 
@@ -164,7 +165,7 @@ def test_creep_is_followed_in_implicit_steps() -> None:
     """
     stiffness, damping, mass, gravity, speed = 50.0, 1e3, 0.1, 9.8, 1.0
     recorded = contact(
-        vi.find_contact_law("linear-spring-dashpot")(stiffness=stiffness, damping=damping),
+        vi.laws.find_contact_law("linear-spring-dashpot")(stiffness=stiffness, damping=damping),
         speed,
         tolerance=1e-9,
     )
@@ -190,7 +191,7 @@ def test_creep_is_followed_in_implicit_steps() -> None:
 
 def test_a_single_drop_is_that_of_a_batch() -> None:
     """Which is solved in the phase plane, by other mathematics."""
-    law = vi.find_contact_law("lankarani-nikravesh")(stiffness=1e9, restitution=0.7)
+    law = vi.laws.find_contact_law("lankarani-nikravesh")(stiffness=1e9, restitution=0.7)
     ball = vi.Body(mass=0.1, contact_offset=0.02)
     stated = vi.Problem(sphere=ball, plate=vi.rigid_plate(), laws=(law,), height=1.0, impacts=4)
     alone = vi.simulate(stated).impacts

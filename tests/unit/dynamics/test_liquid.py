@@ -10,7 +10,7 @@ import pytest
 
 import vibroimpact as vi
 from support import plain_case
-from vibroimpact.calibration.calibrate_case import calibrate_case, read_calibration
+from vibroimpact.calibration.calibrate_case import calibrate_case, calibration_of
 from vibroimpact.cases.build import resolved_case
 from vibroimpact.cases.conditions import Conditions
 from vibroimpact.cases.expected import expected_of
@@ -29,17 +29,17 @@ def wet(liquid: Any = True, **changes: Any) -> dict[str, Any]:
 
 
 def test_water_is_the_liquid_by_default_and_the_case_comes_back() -> None:
-    case = vi.read_case(wet())
+    case = vi.case_of(wet())
     assert case.contact.local.liquid is not None
     assert case.contact.local.liquid.model_dump() == {"density": 998.2, "viscosity": 1.002e-3}
-    again = vi.read_case(resolved_case(case))
+    again = vi.case_of(resolved_case(case))
     assert again.contact.local == case.contact.local
-    assert vi.read_case(wet(False)).contact.local.liquid is None
-    assert "liquid" not in resolved_case(vi.read_case(wet(False)))["contact"]
+    assert vi.case_of(wet(False)).contact.local.liquid is None
+    assert "liquid" not in resolved_case(vi.case_of(wet(False)))["contact"]
 
 
 def test_a_check_tells_what_is_left_and_a_run_achieves_it() -> None:
-    case = vi.read_case(wet({"viscosity": "0.3 Pa s"}))
+    case = vi.case_of(wet({"viscosity": "0.3 Pa s"}))
     told = case_document(case)["first_impact"]
     first = {name: values[0] for name, values in vi.simulate(case).impacts.items()}
     assert first["restitution_asked"] == pytest.approx(told["restitution_asked"], rel=1e-12)
@@ -51,16 +51,16 @@ def test_a_check_tells_what_is_left_and_a_run_achieves_it() -> None:
 
 def test_a_check_tells_what_to_ask_in_air() -> None:
     contact = {"law": "hunt-crossley", "restitution": 0.8, "liquid": {"viscosity": "0.1 Pa s"}}
-    told = case_document(vi.read_case(wet(contact=contact)))["first_impact"]
+    told = case_document(vi.case_of(wet(contact=contact)))["first_impact"]
     again = case_document(
-        vi.read_case(wet(contact={**contact, "restitution": told["restitution_to_ask"]}))
+        vi.case_of(wet(contact={**contact, "restitution": told["restitution_to_ask"]}))
     )["first_impact"]
     assert told["restitution_achieved"] > told["restitution_asked"] + 0.02
     assert again["restitution_achieved"] == pytest.approx(told["restitution_asked"], rel=1e-6)
 
 
 def test_the_ledger_and_the_history_know_of_it() -> None:
-    response = vi.simulate(vi.read_case(wet({"viscosity": "0.3 Pa s"}, run={"impacts": 3})))
+    response = vi.simulate(vi.case_of(wet({"viscosity": "0.3 Pa s"}, run={"impacts": 3})))
     assert response.energy["closure_relative"] < 1e-9
     lost = response.impacts["energy_lost_J"].sum()
     assert response.history()["contact_dissipated_J"].max() == pytest.approx(lost, rel=1e-6)
@@ -86,7 +86,7 @@ def test_a_sphere_that_falls_in_it_does_not_fall_in_a_vacuum(number: str | None)
     """10 mm of glass in water: 0.70 m/s, not the 4.42 m/s of a fall of 1 m in a vacuum; a
     check tells it as well.
     """
-    case = vi.read_case(wet(sphere=GLASS, drop={"height": number or 1.0}, run={"impacts": 1}))
+    case = vi.case_of(wet(sphere=GLASS, drop={"height": number or 1.0}, run={"impacts": 1}))
     response = vi.simulate(case)
     assert response.impacts["approach_speed_m_s"][0] == pytest.approx(0.7025, abs=1e-4)
     assert case_document(case)["first_impact"]["approach_speed_m_s"] == pytest.approx(
@@ -117,7 +117,7 @@ def test_histories_keep_energy_with_what_the_liquid_takes(changes: dict[str, Any
     if "angle" in changes.get("drop", {}):
         contact["friction"] = FRICTION
     drop = {"sphere": GLASS, "drop": {"height": 0.2}, "contact": contact, "run": {"impacts": 3}}
-    response = vi.simulate(vi.read_case(wet(**{**drop, **changes})))
+    response = vi.simulate(vi.case_of(wet(**{**drop, **changes})))
     assert response.energy["closure_relative"] < 1e-9
     history = response.history()
     entries = [
@@ -142,7 +142,7 @@ def test_histories_keep_energy_with_what_the_liquid_takes(changes: dict[str, Any
 
 def test_at_rest_it_presses_with_its_weight_less_buoyancy() -> None:
     response = vi.simulate(
-        vi.read_case(wet(sphere=GLASS, drop={"height": 0.1}, run={"impacts": "all"}))
+        vi.case_of(wet(sphere=GLASS, drop={"height": 0.1}, run={"impacts": "all"}))
     )
     assert response.outcomes[0].at_rest
     history = response.history(columns=["force_N"])
@@ -157,14 +157,14 @@ def test_a_heavy_liquid_bears_the_sphere() -> None:
         match=r"contact\.liquid\.density: .* 5\.414 times the density of the sphere, which "
         r"floats in it",
     ):
-        vi.read_case(wet(mercury, sphere=GLASS))
+        vi.case_of(wet(mercury, sphere=GLASS))
     response = vi.simulate(
-        vi.read_case(
+        vi.case_of(
             wet(mercury, sphere=GLASS, drop={"speed": 1.0, "gravity": 0.0}, run={"impacts": 1})
         )
     )
     assert response.impacts["restitution_asked"][0] == pytest.approx(0.8, rel=1e-2)
-    problem = vi.read_case(wet(sphere=GLASS)).to_problem()
+    problem = vi.case_of(wet(sphere=GLASS)).to_problem()
     parts = {"sphere": problem.sphere, "plate": problem.plate, "laws": problem.laws, "speed": 1.0}
     with pytest.raises(vi.InputError, match="floats in it"):
         vi.Problem(**parts, liquid=vi.Liquid(density=3000.0))  # type: ignore[arg-type]
@@ -180,12 +180,12 @@ def test_a_law_is_calibrated_along_a_drop_in_it() -> None:
         run={"impacts": 4},
     )
     found = calibrate_case(
-        read_calibration(
+        calibration_of(
             {**table, "calibrate": {"target": {"restitution": 0.7}, "model": "hunt-crossley"}}
         )
     )
     newton = vi.simulate(
-        vi.read_case({**table, "contact": {"law": "newton", "restitution": 0.7, "liquid": True}})
+        vi.case_of({**table, "contact": {"law": "newton", "restitution": 0.7, "liquid": True}})
     ).impacts
     for drop, tolerance in (("target", 1e-9), ("variable", 3e-4)):
         np.testing.assert_allclose(
@@ -200,21 +200,21 @@ def test_rebound_heights_measured_in_it_give_the_restitution_back() -> None:
         contact={"law": "newton", "restitution": 0.8, "liquid": True},
         run={"impacts": 4},
     )
-    heights = vi.simulate(vi.read_case(table)).impacts["rebound_height_m"].tolist()
+    heights = vi.simulate(vi.case_of(table)).impacts["rebound_height_m"].tolist()
     measured = {**table, "calibrate": {"target": {"rebound_heights": heights}, "degree": 0}}
-    found = calibrate_case(read_calibration(measured))
+    found = calibrate_case(calibration_of(measured))
     np.testing.assert_allclose(found.values, 0.8, rtol=1e-6)
     assert "buoyancy, drag and added mass of the liquid" in found.observations.notes[0]
     with pytest.raises(vi.InputError, match=r"flies through a liquid, as given by contact\.liquid"):
         calibrate_case(
-            read_calibration({**table, "calibrate": {**measured["calibrate"], "air": True}})
+            calibration_of({**table, "calibrate": {**measured["calibrate"], "air": True}})
         )
 
 
 def test_an_elastic_plate_is_hit_in_it() -> None:
     impacts = {
         viscosity: vi.simulate(
-            vi.read_case(wet({"viscosity": viscosity}, plate=PLATE, run={"impacts": 1}))
+            vi.case_of(wet({"viscosity": viscosity}, plate=PLATE, run={"impacts": 1}))
         ).impacts
         for viscosity in (1e-9, 0.5)
     }
@@ -254,17 +254,19 @@ def test_an_elastic_plate_is_hit_in_it() -> None:
 )
 def test_what_is_not_known_is_refused(change: dict[str, Any], words: str) -> None:
     with pytest.raises(vi.InputError, match=words):
-        vi.read_case(wet(**change))
+        vi.case_of(wet(**change))
 
 
 def test_problems_check_their_liquid() -> None:
-    problem = vi.read_case(wet()).to_problem()
+    problem = vi.case_of(wet()).to_problem()
     parts = {"sphere": problem.sphere, "plate": problem.plate, "speed": 1.0}
     with pytest.raises(vi.InputError, match="liquid must be a Liquid"):
         vi.Problem(**parts, laws=problem.laws, liquid=1.0)  # type: ignore[arg-type]
     with pytest.raises(vi.InputError, match="hertz takes no restitution"):
-        vi.Problem(**parts, laws=(vi.find_contact_law("hertz")(stiffness=1e9),), liquid=vi.Liquid())
-    damped = vi.find_contact_law("linear-spring-dashpot")(stiffness=1e6, damping=10.0)
+        vi.Problem(
+            **parts, laws=(vi.laws.find_contact_law("hertz")(stiffness=1e9),), liquid=vi.Liquid()
+        )
+    damped = vi.laws.find_contact_law("linear-spring-dashpot")(stiffness=1e6, damping=10.0)
     with pytest.raises(
         vi.InputError,
         match=r"is given without a restitution, .*; give it one in place of damping, or take "
@@ -282,8 +284,8 @@ def test_studies_sweep_it_as_arrays(tmp_path: Path) -> None:
         "contact.liquid.viscosity": ["1 mPa s", "100 mPa s", "10 Pa s"],
         "drop.speed": [1.0, 2.0],
     }
-    sweep = vi.read_sweep({**wet(run={"impacts": 1}), "sweep": {"over": over}})
-    study = vi.read_study(vi.run_sweep(sweep, tmp_path / "study"))
+    sweep = vi.studies.sweep_of({**wet(run={"impacts": 1}), "sweep": {"over": over}})
+    study = vi.studies.load_study(vi.studies.run_sweep(sweep, tmp_path / "study"))
     singly = [
         float(vi.simulate(sweep.case_of(drop)).impacts["restitution_achieved"][0])
         for drop in range(6)
@@ -300,18 +302,18 @@ def test_studies_sweep_it_as_arrays(tmp_path: Path) -> None:
 
 def test_too_slow_an_impact_is_doubted() -> None:
     def number(viscosity: str) -> float:
-        case = vi.read_case(wet({"viscosity": viscosity}))
+        case = vi.case_of(wet({"viscosity": viscosity}))
         return float(numbers_of(Conditions(resolved_case(case), expected_of(case)))["no_rebound"])
 
     assert number("0.5 Pa s") < 1.0 < number("2 Pa s")
     assert any(
         "spheres were seen to stay on the wall" in doubt
-        for doubt in case_document(vi.read_case(wet({"viscosity": "2 Pa s"})))["doubts"]
+        for doubt in case_document(vi.case_of(wet({"viscosity": "2 Pa s"})))["doubts"]
     )
 
 
 def test_programs_do_not_get_it(tmp_path: Path) -> None:
-    vi.simulate(vi.read_case(wet(drop={"height": 0.5}))).save(tmp_path / "run")
+    vi.simulate(vi.case_of(wet(drop={"height": 0.5}))).save(tmp_path / "run")
     with pytest.raises(vi.InputError, match="programs get contacts without a liquid"):
         as_rigid(drop_in_folder(tmp_path / "run"))
 

@@ -55,7 +55,7 @@ def test_a_case_says_how_well_its_element_is_known() -> None:
             "measured": {"max_force": FORCE, "rebound_height": REBOUND, "relative_deviation": 0.01},
         },
     }
-    facts = vi.read_case(case).to_problem().facts
+    facts = vi.case_of(case).to_problem().facts
     problem = vi.load_case("paper:type1-constant").to_problem()
     element = (facts["local_stiffness_N_m"], facts["local_damping_N_s_m"])
     of_speed = 0.01 * REBOUND * 9.8 / separation_speed(problem, element)  # g dh = v dv
@@ -83,7 +83,7 @@ def test_contacts_that_end_a_step_at_the_penetration_depth_go_on_from_it(heights
             contact={"law": "adams-impact", "damping_max": [180.0, 120.0, 60.0, 20.0], **element},
             run={"impacts": 4},
         )
-        assert len(vi.simulate(vi.read_case(case)).impacts["time_s"]) == 4
+        assert len(vi.simulate(vi.case_of(case)).impacts["time_s"]) == 4
 
 
 @pytest.mark.slow  # soft elements ring for long

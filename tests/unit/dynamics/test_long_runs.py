@@ -19,7 +19,7 @@ from vibroimpact.results import fine_history
 BALL = vi.Body(mass=0.09, contact_offset=0.025)
 
 
-def drop(impacts: int, law: vi.ContactLaw | None = None) -> vi.Problem:
+def drop(impacts: int, law: vi.laws.ContactLaw | None = None) -> vi.Problem:
     law = law or LankaraniNikravesh(stiffness=5e8, restitution=0.9999)
     return vi.Problem(sphere=BALL, plate=vi.rigid_plate(), laws=(law,), height=1.0, impacts=impacts)
 

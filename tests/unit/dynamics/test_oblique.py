@@ -24,23 +24,25 @@ RADIUS, MASS = 0.01, 0.02
 PAIR = {"effective_modulus": 1e9, "effective_shear_modulus": 0.8e9, "effective_radius": RADIUS}
 FRICTION = {
     "none": None,
-    "mdr": vi.find_friction_law("mdr")(coefficient=0.3, **PAIR),
-    "mindlin": vi.find_friction_law("mindlin")(coefficient=0.3, **PAIR),
-    "mindlin-rescale": vi.find_friction_law("mindlin-rescale")(coefficient=0.3, **PAIR),
-    "mindlin-force": vi.find_friction_law("mindlin-force")(coefficient=0.3, **PAIR),
-    "coulomb": vi.find_friction_law("coulomb")(coefficient=0.3),
-    "rigid": vi.find_friction_law("rigid")(coefficient=0.3, slip_restitution=0.4),
+    "mdr": vi.friction.find_friction_law("mdr")(coefficient=0.3, **PAIR),
+    "mindlin": vi.friction.find_friction_law("mindlin")(coefficient=0.3, **PAIR),
+    "mindlin-rescale": vi.friction.find_friction_law("mindlin-rescale")(coefficient=0.3, **PAIR),
+    "mindlin-force": vi.friction.find_friction_law("mindlin-force")(coefficient=0.3, **PAIR),
+    "coulomb": vi.friction.find_friction_law("coulomb")(coefficient=0.3),
+    "rigid": vi.friction.find_friction_law("rigid")(coefficient=0.3, slip_restitution=0.4),
 }
 WITH_ROLLING = {
     **FRICTION,
-    "rolls": vi.find_friction_law("mdr")(coefficient=0.3, rolling_coefficient=0.1, **PAIR),
+    "rolls": vi.friction.find_friction_law("mdr")(coefficient=0.3, rolling_coefficient=0.1, **PAIR),
 }
 LAWS = {
-    "hertz": vi.find_contact_law("hertz")(stiffness=1.3e8),
-    "hunt-crossley": vi.find_contact_law("hunt-crossley")(stiffness=1.3e8, restitution=0.7),
-    "tsuji": vi.find_contact_law("tsuji")(stiffness=1.3e8, restitution=0.7, effective_mass=MASS),
-    "adams-impact": vi.find_contact_law("adams-impact")(stiffness=1.3e8, damping_max=20.0),
-    "thornton": vi.find_contact_law("thornton")(
+    "hertz": vi.laws.find_contact_law("hertz")(stiffness=1.3e8),
+    "hunt-crossley": vi.laws.find_contact_law("hunt-crossley")(stiffness=1.3e8, restitution=0.7),
+    "tsuji": vi.laws.find_contact_law("tsuji")(
+        stiffness=1.3e8, restitution=0.7, effective_mass=MASS
+    ),
+    "adams-impact": vi.laws.find_contact_law("adams-impact")(stiffness=1.3e8, damping_max=20.0),
+    "thornton": vi.laws.find_contact_law("thornton")(
         effective_modulus=1e9, effective_radius=RADIUS, yield_pressure=2e7
     ),
 }
@@ -103,12 +105,12 @@ def test_random_impacts_lose_in_microslip_and_in_gross_slip() -> None:
         "effective_shear_modulus": 1e9 * random.uniform(0.3, 1.2, number),
         "effective_radius": RADIUS,
     }
-    friction = vi.find_friction_law("mdr")(
+    friction = vi.friction.find_friction_law("mdr")(
         coefficient=10.0 ** random.uniform(-2.0, 1.0, number), **pair
     )
     slip = 10.0 ** random.uniform(-3.0, 1.3, number)
     oblique = vi.Oblique(velocity=(slip, 0.0), friction=friction)
-    law = vi.find_contact_law("hunt-crossley")(
+    law = vi.laws.find_contact_law("hunt-crossley")(
         stiffness=1.3e8, restitution=random.uniform(0.1, 1.0, number)
     )
     found = vi.tabulate(
@@ -245,7 +247,7 @@ def test_coulomb_ends_in_rolling() -> None:
     just suffices stops.
     """
     oblique = vi.Oblique(
-        velocity=(0.7, 0.0), friction=vi.find_friction_law("coulomb")(coefficient=10.0)
+        velocity=(0.7, 0.0), friction=vi.friction.find_friction_law("coulomb")(coefficient=10.0)
     )
     impacts = vi.tabulate(problem(oblique=oblique, gravity=0.0, impacts=1)).impacts
     assert impacts["tangential_restitution"][0] == pytest.approx(5.0 / 7.0, abs=1e-14)
@@ -361,7 +363,7 @@ def test_an_oblique_drop_is_what_it_is_alone(law: str, friction: str) -> None:
         "linear-spring-dashpot": {"stiffness": 2e6, "restitution": 0.7, "effective_mass": MASS},
         "walton-braun": {"stiffness": 1e6, "restitution": 0.6},
     }
-    normal = LAWS[law] if law in LAWS else vi.find_contact_law(law)(**others[law])
+    normal = LAWS[law] if law in LAWS else vi.laws.find_contact_law(law)(**others[law])
     oblique = vi.Oblique(
         velocity=(np.linspace(0.05, 6.0, size), 0.2),
         spin=(10.0, -30.0, 50.0),
@@ -415,7 +417,7 @@ def test_spins_are_bounded_whatever_the_moduli(law: str, friction: str) -> None:
     random = np.random.default_rng(11)
     normal = {
         "hunt-crossley": LAWS["hunt-crossley"],
-        "linear-spring-dashpot": vi.find_contact_law("linear-spring-dashpot")(
+        "linear-spring-dashpot": vi.laws.find_contact_law("linear-spring-dashpot")(
             stiffness=2e6, restitution=0.7, effective_mass=MASS
         ),
     }
@@ -425,7 +427,9 @@ def test_spins_are_bounded_whatever_the_moduli(law: str, friction: str) -> None:
         "effective_shear_modulus": moduli[1],
         "effective_radius": RADIUS,
     }
-    rubs = vi.find_friction_law(friction)(coefficient=10 ** random.uniform(-2.0, 0.7, size), **pair)
+    rubs = vi.friction.find_friction_law(friction)(
+        coefficient=10 ** random.uniform(-2.0, 0.7, size), **pair
+    )
     slip, speed = random.uniform(0.0, 3.0, size), random.uniform(0.3, 10.0, size)
     drops = vi.Problem(
         sphere=vi.Body(mass=MASS, contact_offset=RADIUS),
@@ -454,13 +458,13 @@ def energies_of_random_impacts(
             "effective_modulus": 10 ** random.uniform(7, 11, size),
             "effective_shear_modulus": 10 ** random.uniform(7, 11, size),
         }
-        friction = vi.find_friction_law("mdr")(
+        friction = vi.friction.find_friction_law("mdr")(
             coefficient=10 ** random.uniform(-3, 1, size),
             rolling_coefficient=rolling,
             effective_radius=RADIUS,
             **pair,
         )
-        law = vi.find_contact_law("hunt-crossley")(
+        law = vi.laws.find_contact_law("hunt-crossley")(
             stiffness=4.0 / 3.0 * pair["effective_modulus"] * 0.1,
             restitution=random.uniform(0.0, 1.0, size),
         )
@@ -513,7 +517,7 @@ def test_an_inclined_plate_pulls_along_x() -> None:
         "drop": {"height": "110 mm"},
         "contact": {"law": "newton", "restitution": 0.5},
     }
-    response = vi.simulate(vi.read_case(case))
+    response = vi.simulate(vi.case_of(case))
     touch = float(response.impacts["time_s"][0])
     gravity = 9.80665
     assert touch == pytest.approx(np.sqrt(2.0 * 0.1 / (gravity * np.cos(np.radians(20.0)))))
@@ -545,7 +549,7 @@ def test_a_history_has_both_sides_of_an_impulse(restitution: float) -> None:
     sphere lies on with what the last impulse left.
     """
     law, oblique = (
-        vi.find_contact_law("newton")(restitution=restitution),
+        vi.laws.find_contact_law("newton")(restitution=restitution),
         vi.Oblique(velocity=([1.0, 2.0], 0.4), friction=FRICTION["rigid"]),
     )
     batch = vi.simulate(replace(problem(oblique=oblique, impacts=None), laws=(law,), duration=0.6))
@@ -570,7 +574,7 @@ def test_a_history_has_both_sides_of_an_impulse(restitution: float) -> None:
 
 def test_a_sphere_falls_off_the_edge() -> None:
     response = vi.simulate(
-        vi.read_case({**CASE, "drop": {"velocity": [5.0, 0, -3.0], "position": ["900 mm", 0]}})
+        vi.case_of({**CASE, "drop": {"velocity": [5.0, 0, -3.0], "position": ["900 mm", 0]}})
     )
     assert response.outcomes == (vi.Outcome.FELL,)
     assert response.status.startswith("The sphere falls off the edge of the plate after 1 impact, ")
@@ -597,23 +601,23 @@ def test_a_flight_over_the_uphill_edge_and_back() -> None:
 
 
 def test_angle_speed_and_velocity_say_the_same() -> None:
-    one = vi.simulate(vi.read_case(CASE))
+    one = vi.simulate(vi.case_of(CASE))
     drop = {
         "velocity": [3.0 * np.sin(np.radians(30)), 0.0, -3.0 * np.cos(np.radians(30))],
         "position": ["-300 mm", 0],
     }
-    other = vi.simulate(vi.read_case({**CASE, "drop": drop}))
+    other = vi.simulate(vi.case_of({**CASE, "drop": drop}))
     for name, values in one.impacts.items():
         np.testing.assert_allclose(other.impacts[name], values, rtol=1e-9, atol=1e-12)
 
 
 def test_a_resolved_case_is_the_same_case(tmp_path: Path) -> None:
     response = vi.simulate(
-        vi.read_case({**CASE, "drop": {**CASE["drop"], "spin": [0, "100 rad/s", 5]}})
+        vi.case_of({**CASE, "drop": {**CASE["drop"], "spin": [0, "100 rad/s", 5]}})
     )
     response.save(tmp_path / "run")
     again = vi.simulate(vi.load_case(tmp_path / "run" / "case.toml"))
-    result = vi.read_result(tmp_path / "run")
+    result = vi.load_result(tmp_path / "run")
     for name, values in response.impacts.items():
         np.testing.assert_array_equal(again.impacts[name], values)
         np.testing.assert_allclose(result.impacts[name], values, rtol=1e-15)
@@ -628,13 +632,15 @@ def test_studies_sweep_angles_friction_and_spin(tmp_path: Path) -> None:
         "contact.friction.coefficient": [0.1, 0.3],
         "drop.spin.y": ["-50 rad/s", "50 rad/s"],
     }
-    study = vi.read_study(
-        vi.run_sweep(vi.read_sweep({**CASE, "sweep": {"over": over}}), tmp_path / "study")
+    study = vi.studies.load_study(
+        vi.studies.run_sweep(
+            vi.studies.sweep_of({**CASE, "sweep": {"over": over}}), tmp_path / "study"
+        )
     )
     assert study.size == 8
     for place in ((0, 1, 0), (1, 0, 1)):
         values = {key: options[at] for at, (key, options) in zip(place, over.items(), strict=True)}
-        alone = vi.tabulate(vi.read_case(with_values(CASE, values)))
+        alone = vi.tabulate(vi.case_of(with_values(CASE, values)))
         np.testing.assert_allclose(
             study.values("tangential_restitution", *place),
             alone.impacts["tangential_restitution"],
@@ -727,14 +733,14 @@ FAULTS: list[tuple[dict[str, Any], str]] = [
 @pytest.mark.parametrize(("changes", "words"), FAULTS)
 def test_bad_input_is_told_in_one_sentence(changes: dict[str, Any], words: str) -> None:
     with pytest.raises(vi.InputError) as told:
-        vi.read_case({**CASE, **changes}).to_problem()
+        vi.case_of({**CASE, **changes}).to_problem()
     assert str(told.value).startswith(words)
 
 
 def test_sliding_is_bounded_also_where_gravity_turns_it() -> None:
     """A coefficient of zero leaves the motion as it is, whichever way gravity pulls."""
     for friction in ("coulomb", "rigid", "mdr"):
-        law = vi.find_friction_law(friction)(
+        law = vi.friction.find_friction_law(friction)(
             coefficient=0.0, **({} if friction in ("coulomb", "rigid") else PAIR)
         )
         found = vi.tabulate(
@@ -781,8 +787,8 @@ def test_a_dent_is_left_behind() -> None:
 def test_sliding_takes_the_coefficient_of_the_normal_impulse(law: str) -> None:
     """Also where the normal force has a kink or a jump."""
     others = {
-        "walton-braun": vi.find_contact_law("walton-braun")(stiffness=1e6, restitution=0.6),
-        "adams-poisson": vi.find_contact_law("adams-poisson")(penalty=1e6, restitution=0.6),
+        "walton-braun": vi.laws.find_contact_law("walton-braun")(stiffness=1e6, restitution=0.6),
+        "adams-poisson": vi.laws.find_contact_law("adams-poisson")(penalty=1e6, restitution=0.6),
     }
     laws = LAWS | others
     ball, plate = vi.Body(mass=MASS, contact_offset=RADIUS), vi.rigid_plate()
@@ -833,7 +839,7 @@ def test_more_steps_change_little(law: str, friction: str, monkeypatch: pytest.M
     of the grid, and where its parts meet.
     """
     laws = LAWS | {
-        "walton-braun": vi.find_contact_law("walton-braun")(stiffness=1e6, restitution=0.6)
+        "walton-braun": vi.laws.find_contact_law("walton-braun")(stiffness=1e6, restitution=0.6)
     }
     slip = np.linspace(0.05, 6.0, 400)
     oblique = vi.Oblique(velocity=(slip, 0.0), friction=FRICTION[friction])
@@ -860,7 +866,7 @@ def test_a_force_that_ends_and_begins_again_is_followed(friction: str) -> None:
     """
     rng = np.random.default_rng(0)
     speed, angle = rng.uniform(1.0, 5.0, 1000), rng.uniform(0.0, 1.3, 1000)
-    law = vi.find_contact_law("tsuji")(stiffness=1.333e8, restitution=0.7, effective_mass=0.03)
+    law = vi.laws.find_contact_law("tsuji")(stiffness=1.333e8, restitution=0.7, effective_mass=0.03)
     drops = vi.Problem(
         sphere=vi.Body(mass=rng.uniform(0.01, 0.1, 1000), contact_offset=RADIUS),
         plate=vi.rigid_plate(),
@@ -896,7 +902,7 @@ def test_python_is_told_as_well() -> None:
     newton = {
         "sphere": vi.Body(mass=MASS, contact_offset=RADIUS),
         "plate": vi.rigid_plate(),
-        "laws": vi.find_contact_law("newton")(restitution=0.5),
+        "laws": vi.laws.find_contact_law("newton")(restitution=0.5),
     }
     with pytest.raises(vi.InputError, match="newton gives no normal force for mdr to follow"):
         vi.Problem(**newton, speed=1.0, oblique=vi.Oblique(friction=FRICTION["mdr"]))
@@ -924,7 +930,7 @@ def on_elastic(**changes: Any) -> dict[str, Any]:
 
 
 def case_of(**changes: Any) -> vi.Case:
-    return vi.read_case(on_elastic(**changes))
+    return vi.case_of(on_elastic(**changes))
 
 
 @pytest.mark.parametrize("spin", [30.0, 100.0])
@@ -972,7 +978,7 @@ def test_an_oblique_drop_on_a_plate_that_vibrates(tmp_path: Path) -> None:
     )
     assert response.energy["closure_relative"] < 1e-9
     response.save(tmp_path / "run")
-    result = vi.read_result(tmp_path / "run")
+    result = vi.load_result(tmp_path / "run")
     np.testing.assert_allclose(
         result.impacts["tangential_restitution"],
         response.impacts["tangential_restitution"],
@@ -1017,9 +1023,9 @@ def test_falling_off_the_edge_of_a_plate_that_vibrates() -> None:
 
 def test_studies_of_oblique_drops_on_a_plate_that_vibrates(tmp_path: Path) -> None:
     over = {"drop.angle": ["0 deg", "40 deg"]}
-    study = vi.read_study(
-        vi.run_sweep(
-            vi.read_sweep({**on_elastic(run={"impacts": 1}), "sweep": {"over": over}}),
+    study = vi.studies.load_study(
+        vi.studies.run_sweep(
+            vi.studies.sweep_of({**on_elastic(run={"impacts": 1}), "sweep": {"over": over}}),
             tmp_path / "study",
         )
     )
@@ -1034,8 +1040,10 @@ def test_a_statement_names_what_it_takes() -> None:
         vi.InputError,
         match=r'such as vi\.find_friction_law\("coulomb"\)\(coefficient=0\.3\), not <class',
     ):
-        vi.Oblique(friction=vi.find_friction_law("coulomb"))  # type: ignore[arg-type]
-    assert vi.Oblique(friction=vi.find_friction_law("coulomb")(coefficient=0.3)).shape == ()
+        vi.Oblique(friction=vi.friction.find_friction_law("coulomb"))  # type: ignore[arg-type]
+    assert (
+        vi.Oblique(friction=vi.friction.find_friction_law("coulomb")(coefficient=0.3)).shape == ()
+    )
     assert vi.Oblique(size=np.array([0.5, 0.4])).shape == ()  # type: ignore[arg-type]
     with pytest.raises(
         vi.InputError,

@@ -146,7 +146,7 @@ def test_many_random_drops(case: dict) -> None:
 
 
 def check(case: dict) -> None:
-    response = vi.simulate(vi.read_case(case))
+    response = vi.simulate(vi.case_of(case))
     rigid = case["contact"]["law"] in ("newton", "jackson-green-marghitu")
     row = response.impacts
     for name in IMPACT_COLUMNS:

@@ -196,7 +196,7 @@ def test_codes_in_files_stay() -> None:
 def test_a_sensor_on_a_plate_that_carries_the_sphere() -> None:
     """It reads what the history says, under the contact, before rest and after."""
     plate = SPRUNG
-    sensor = vi.Sensor(name="a", rate=1e4, quantity="displacement", filter="none")
+    sensor = vi.sensors.Sensor(name="a", rate=1e4, quantity="displacement", filter="none")
     response = vi.simulate(
         drop_on(LOSSY, plate, height=0.2, impacts=None, duration=2.0, sensors=(sensor,))
     )

@@ -18,26 +18,26 @@ from vibroimpact.contact.laws.kuwabara_kono import KuwabaraKono
 from vibroimpact.contact.laws.lankarani_nikravesh import LankaraniNikravesh
 from vibroimpact.contact.pair import ContactPair
 
-TUNABLE = [law for law in vi.contact_laws().values() if law.name != "hertz"]
+TUNABLE = [law for law in vi.laws.contact_laws().values() if law.name != "hertz"]
 
 
 def test_shapes_are_those_of_the_arguments_together() -> None:
     law = LankaraniNikravesh(stiffness=5e8, restitution=np.array([0.5, 0.7, 0.9]))
-    assert np.shape(vi.achieved_restitution(law, 0.09, 3.0)) == (3,)
-    assert np.shape(vi.achieved_restitution(law, np.full((2, 1), 0.09), 3.0)) == (2, 3)
-    assert np.shape(vi.integrated_restitution(law, np.full((2, 1), 0.09), 3.0)) == (2, 3)
+    assert np.shape(vi.laws.achieved_restitution(law, 0.09, 3.0)) == (3,)
+    assert np.shape(vi.laws.achieved_restitution(law, np.full((2, 1), 0.09), 3.0)) == (2, 3)
+    assert np.shape(vi.laws.integrated_restitution(law, np.full((2, 1), 0.09), 3.0)) == (2, 3)
     one = LankaraniNikravesh(stiffness=5e8, restitution=0.5)
-    assert np.ndim(vi.achieved_restitution(one, 0.09, 3.0)) == 0
-    assert isinstance(vi.law_achieving(one, 0.8, 0.09, 3.0).restitution, float)
+    assert np.ndim(vi.laws.achieved_restitution(one, 0.09, 3.0)) == 0
+    assert isinstance(vi.laws.law_achieving(one, 0.8, 0.09, 3.0).restitution, float)
 
 
 def test_many_drops_are_integrated_in_pieces_with_the_same_result() -> None:
     speeds = np.geomspace(0.1, 10.0, 2500)
     law = AdamsImpact(stiffness=5e8, damping_max=np.linspace(50.0, 200.0, 2500))
-    whole = vi.achieved_restitution(law, 0.09, speeds)
+    whole = vi.laws.achieved_restitution(law, 0.09, speeds)
     for index in (0, 1234, 2499):
         assert whole[index] == pytest.approx(
-            vi.achieved_restitution(law.take(index), 0.09, speeds[index]), rel=1e-9
+            vi.laws.achieved_restitution(law.take(index), 0.09, speeds[index]), rel=1e-9
         )
 
 
@@ -47,21 +47,23 @@ def test_what_can_not_be_achieved_is_named() -> None:
         vi.InputError,
         match=r"lankarani-nikravesh reaches restitutions from 0\.663 to 1 at 3 m/s, not 0\.5",
     ):
-        vi.law_achieving(law, 0.5, mass=0.09, speed=3.0)
-    adhesive = vi.find_contact_law("krijt")(
+        vi.laws.law_achieving(law, 0.5, mass=0.09, speed=3.0)
+    adhesive = vi.laws.find_contact_law("krijt")(
         effective_modulus=1e9, effective_radius=1e-3, work_of_adhesion=0.1, dissipation_time=1e-6
     )
     with pytest.raises(
         vi.InputError, match=r"krijt reaches restitutions up to 0\.9999\d+ at 3 m/s, not 1$"
     ):
-        vi.law_achieving(adhesive, 1.0, mass=0.09, speed=3.0)
+        vi.laws.law_achieving(adhesive, 1.0, mass=0.09, speed=3.0)
     with pytest.raises(vi.InputError, match=r"not 0\.5"):
-        vi.law_achieving(law, np.array([0.9, 0.5]), mass=0.09, speed=3.0)
+        vi.laws.law_achieving(law, np.array([0.9, 0.5]), mass=0.09, speed=3.0)
     with pytest.raises(
         vi.InputError, match=r"hertz has no loss parameter; it achieves 1, not 0\.5"
     ):
-        vi.law_achieving(Hertz(stiffness=5e8), 0.5, mass=0.09, speed=3.0)
-    assert vi.law_achieving(Hertz(stiffness=5e8), 1.0, mass=0.09, speed=3.0) == Hertz(stiffness=5e8)
+        vi.laws.law_achieving(Hertz(stiffness=5e8), 0.5, mass=0.09, speed=3.0)
+    assert vi.laws.law_achieving(Hertz(stiffness=5e8), 1.0, mass=0.09, speed=3.0) == Hertz(
+        stiffness=5e8
+    )
 
 
 def test_a_few_drops_have_the_restitution_of_many() -> None:
@@ -69,22 +71,22 @@ def test_a_few_drops_have_the_restitution_of_many() -> None:
     not come out, as under much damping.
     """
     speeds = np.array([1e-4, 0.01, 0.5, 3.0])
-    laws: tuple[vi.ContactLaw, ...] = (
+    laws: tuple[vi.laws.ContactLaw, ...] = (
         AdamsImpact(stiffness=5e8, damping_max=170.0, full_damping_penetration=1e-4),
         AdamsImpact(stiffness=5e8, damping_max=1e5, full_damping_penetration=1e-6),
         Flores(stiffness=5e8, restitution=0.7),
         LankaraniNikravesh(stiffness=5e8, restitution=0.01),
     )
     for law in laws:
-        few = vi.integrated_restitution(law, 0.09, speeds)
-        many = vi.integrated_restitution(law, 0.09, np.tile(speeds, 3))
+        few = vi.laws.integrated_restitution(law, 0.09, speeds)
+        many = vi.laws.integrated_restitution(law, 0.09, np.tile(speeds, 3))
         np.testing.assert_allclose(np.tile(few, 3), many, rtol=1e-12)
 
 
 @pytest.mark.parametrize("wanted", [-0.1, 1.1, np.nan])
 def test_impossible_restitution(wanted: float) -> None:
     with pytest.raises(vi.InputError, match="restitution"):
-        vi.law_achieving(Flores(stiffness=5e8, restitution=0.7), wanted, mass=0.09, speed=3.0)
+        vi.laws.law_achieving(Flores(stiffness=5e8, restitution=0.7), wanted, mass=0.09, speed=3.0)
 
 
 @pytest.mark.parametrize(
@@ -93,51 +95,53 @@ def test_impossible_restitution(wanted: float) -> None:
 )
 def test_impossible_mass_or_speed(mass: float, speed: float, key: str) -> None:
     law = Flores(stiffness=5e8, restitution=0.7)
-    for call in (vi.achieved_restitution, vi.integrated_restitution):
+    for call in (vi.laws.achieved_restitution, vi.laws.integrated_restitution):
         with pytest.raises(vi.InputError, match=key):
             call(law, mass, speed)
     with pytest.raises(vi.InputError, match="agree in shape"):
-        vi.achieved_restitution(law, np.ones(2), np.ones(3))
+        vi.laws.achieved_restitution(law, np.ones(2), np.ones(3))
 
 
 def test_the_ends_of_the_range() -> None:
     assert (
-        vi.law_achieving(
+        vi.laws.law_achieving(
             LankaraniNikravesh(stiffness=5e8, restitution=0.7), 1.0, 0.09, 3.0
         ).restitution
         == 1.0
     )
     assert (
-        vi.law_achieving(AdamsImpact(stiffness=5e8, damping_max=100.0), 1.0, 0.09, 3.0).damping_max
+        vi.laws.law_achieving(
+            AdamsImpact(stiffness=5e8, damping_max=100.0), 1.0, 0.09, 3.0
+        ).damping_max
         == 0.0
     )
-    stuck = vi.law_achieving(
+    stuck = vi.laws.law_achieving(
         JKR(effective_modulus=3e8, effective_radius=2e-4, work_of_adhesion=0.3), 0.0, 5e-8, 0.1
     )
-    assert vi.achieved_restitution(stuck, 5e-8, 0.1) == 0.0
+    assert vi.laws.achieved_restitution(stuck, 5e-8, 0.1) == 0.0
 
 
 def test_a_parameter_for_each_speed() -> None:
     speeds = np.array([2.0, 4.0, 8.0])
-    law = vi.law_achieving(
+    law = vi.laws.law_achieving(
         KuwabaraKono(stiffness=5e8, dissipation_time=1e-6), 0.7, mass=0.09, speed=speeds
     )
     assert law.dissipation_time.shape == (3,)
-    np.testing.assert_allclose(vi.integrated_restitution(law, 0.09, speeds), 0.7, atol=1e-10)
+    np.testing.assert_allclose(vi.laws.integrated_restitution(law, 0.09, speeds), 0.7, atol=1e-10)
 
 
 @pytest.mark.parametrize("tolerance", [1e-1, 1e-14, np.nan])
 def test_tolerances_out_of_range_are_refused(tolerance: float) -> None:
     with pytest.raises(vi.InputError, match="tolerance must lie between 1e-13 and 1e-6"):
-        vi.integrated_restitution(
+        vi.laws.integrated_restitution(
             AdamsImpact(stiffness=1e6, damping_max=0.1), 1e-3, 1.0, tolerance=tolerance
         )
 
 
 def test_a_pull_between_two_nodes_is_cut() -> None:
     law = AdamsImpact(stiffness=1129e3, damping_max=np.linspace(0.15, 0.19, 2000))
-    exact = vi.integrated_restitution(law, 5.57e-4, 5.06, tolerance=1e-13)
-    assert np.abs(vi.integrated_restitution(law, 5.57e-4, 5.06) - exact).max() < 1e-9
+    exact = vi.laws.integrated_restitution(law, 5.57e-4, 5.06, tolerance=1e-13)
+    assert np.abs(vi.laws.integrated_restitution(law, 5.57e-4, 5.06) - exact).max() < 1e-9
 
 
 wishes = given(
@@ -153,10 +157,10 @@ wishes = given(
 @example(
     AdamsImpact, 0.9340729747981871, -3.2543028886997925, 0.7045442911229172, 7.095838841638937
 )
-@example(vi.find_contact_law("krijt"), 0.5, -5.0, -1.5, 7.0)
+@example(vi.laws.find_contact_law("krijt"), 0.5, -5.0, -1.5, 7.0)
 @wishes
 def test_round_trip(
-    law: type[vi.ContactLaw], wanted: float, mass: float, speed: float, modulus: float
+    law: type[vi.laws.ContactLaw], wanted: float, mass: float, speed: float, modulus: float
 ) -> None:
     check_round_trip(law, wanted, mass, speed, modulus)
 
@@ -165,25 +169,27 @@ def test_round_trip(
 @settings(max_examples=200, deadline=None)
 @wishes
 def test_many_round_trips(
-    law: type[vi.ContactLaw], wanted: float, mass: float, speed: float, modulus: float
+    law: type[vi.laws.ContactLaw], wanted: float, mass: float, speed: float, modulus: float
 ) -> None:
     check_round_trip(law, wanted, mass, speed, modulus)
 
 
 def check_round_trip(
-    law: type[vi.ContactLaw], wanted: float, mass: float, speed: float, modulus: float
+    law: type[vi.laws.ContactLaw], wanted: float, mass: float, speed: float, modulus: float
 ) -> None:
     radius = (10**mass / 6000.0) ** (1 / 3)
     pair = ContactPair(
         10**modulus, radius, 10**mass, yield_strength=2e-3 * 10**modulus, poissons_ratio=0.3
     )
     try:
-        tuned = vi.law_achieving(law.example(pair), wanted, 10**mass, 10**speed)
+        tuned = vi.laws.law_achieving(law.example(pair), wanted, 10**mass, 10**speed)
     except vi.InputError as error:
         # some can't go so low, and one that sticks can't come so high
         assert re.search(r"reaches restitutions (from|up to) ", str(error))  # noqa: PT017
         return
-    assert vi.integrated_restitution(tuned, 10**mass, 10**speed) == pytest.approx(wanted, abs=1e-8)
+    assert vi.laws.integrated_restitution(tuned, 10**mass, 10**speed) == pytest.approx(
+        wanted, abs=1e-8
+    )
 
 
 @pytest.mark.parametrize(
@@ -201,4 +207,4 @@ def test_what_a_pair_can_not_give_is_asked_for_with_its_cause(
     )
     given = {"restitution": 0.5} if law == "tsuji" else {}
     with pytest.raises(vi.InputError, match=rf"^{key}: it must be given, since {words}$"):
-        vi.find_contact_law(law).for_pair(pair, **given)
+        vi.laws.find_contact_law(law).for_pair(pair, **given)

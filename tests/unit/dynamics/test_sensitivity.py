@@ -114,7 +114,7 @@ def test_only_what_has_no_damping_is_asked_for_it(
         "damping": damping,
     }
     case = resolved_case(
-        vi.read_case(
+        vi.case_of(
             plain_case(
                 sphere__model=sphere, plate={key: value for key, value in plate.items() if value}
             )
@@ -130,7 +130,7 @@ def test_only_what_has_no_damping_is_asked_for_it(
 
 
 def test_the_study_is_over_what_the_case_gives() -> None:
-    case = resolved_case(vi.read_case(plain_case(drop={"speed": 1.0})))
+    case = resolved_case(vi.case_of(plain_case(drop={"speed": 1.0})))
     (found,) = (
         doubt
         for doubt in doubts(case, DropSummary(changes=np.array([1e-9, 0.5])))

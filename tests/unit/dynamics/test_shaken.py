@@ -46,7 +46,7 @@ SPRINGS = [
 ]
 
 
-def problem(law: vi.ContactLaw = SOFT, **changes: Any) -> vi.Problem:
+def problem(law: vi.laws.ContactLaw = SOFT, **changes: Any) -> vi.Problem:
     start = {} if "speed" in changes else {"height": 0.05}
     values: dict[str, Any] = {
         "motion": vi.PlateMotion(amplitude=2e-3, frequency=25.0),
@@ -60,7 +60,7 @@ def problem(law: vi.ContactLaw = SOFT, **changes: Any) -> vi.Problem:
 
 
 def case(**values: Any) -> vi.Problem:
-    return vi.read_case(with_values(CASE, values)).to_problem()
+    return vi.case_of(with_values(CASE, values)).to_problem()
 
 
 # statements
@@ -89,7 +89,11 @@ def test_refused_motions(values: dict[str, Any], words: str) -> None:
     [
         ({"motion": 25.0}, "must be a PlateMotion"),
         (
-            {"oblique": vi.Oblique(friction=vi.find_friction_law("coulomb")(coefficient=0.3))},
+            {
+                "oblique": vi.Oblique(
+                    friction=vi.friction.find_friction_law("coulomb")(coefficient=0.3)
+                )
+            },
             "no tangential compliance",
         ),
         (
@@ -138,7 +142,7 @@ def test_only_the_part_along_the_normal_matters_without_friction() -> None:
 
 
 @pytest.mark.parametrize("law", [SOFT, Newton(restitution=0.7)], ids=["soft", "hard"])
-def test_a_batch_is_its_drops(law: vi.ContactLaw) -> None:
+def test_a_batch_is_its_drops(law: vi.laws.ContactLaw) -> None:
     heights = np.array([0.03, 0.05, 0.07])
     batch, alone = (
         vi.simulate(problem(law, height=heights)),
@@ -158,7 +162,7 @@ def test_a_batch_is_its_drops(law: vi.ContactLaw) -> None:
     "law", [SOFT, Newton(restitution=0.4), Newton(restitution=0.0)], ids=["soft", "hard", "plastic"]
 )
 @pytest.mark.parametrize("strength", [0.7, 1.4, 4.0])
-def test_the_ledger_closes_at_every_moment(law: vi.ContactLaw, strength: float) -> None:
+def test_the_ledger_closes_at_every_moment(law: vi.laws.ContactLaw, strength: float) -> None:
     motion = vi.PlateMotion(amplitude=strength * 9.8 / (50.0 * np.pi) ** 2, frequency=25.0)
     response = vi.simulate(problem(law, motion=motion, impacts=None, duration=0.6))
     history = response.history()
@@ -172,7 +176,7 @@ def test_the_ledger_closes_at_every_moment(law: vi.ContactLaw, strength: float) 
 
 def test_a_soft_sphere_comes_to_rest_on_a_plate_that_moves() -> None:
     motion = vi.PlateMotion(amplitude=2e-4, frequency=25.0)
-    law = vi.find_contact_law("lankarani-nikravesh")(stiffness=1e7, restitution=0.5)
+    law = vi.laws.find_contact_law("lankarani-nikravesh")(stiffness=1e7, restitution=0.5)
     response = vi.simulate(problem(law, motion=motion, impacts=None, duration=1.5))
     assert response.outcomes == (vi.Outcome.CAPTURED,)
     later = response.at(np.linspace(1.4, 1.5, 11))
@@ -208,7 +212,7 @@ def test_a_hard_ball_rides_on_a_tabulated_motion(tmp_path: Path) -> None:
     time = np.linspace(0.0, 2.0, 2001)
     table = written(tmp_path, time, 2e-4 * np.sin(50.0 * np.pi * time))
     hard = {"contact": {"law": "newton", "restitution": 0.3}, "run": {}}
-    response = vi.simulate(vi.read_case(with_values(table, hard)))
+    response = vi.simulate(vi.case_of(with_values(table, hard)))
     assert response.outcomes == (vi.Outcome.REST_SPEED,)
     assert response.end_time[0] == pytest.approx(2.0)
     assert response.energy["closure_relative"] <= 1e-9
@@ -309,12 +313,12 @@ def test_a_table_of_a_harmonic_motion_shakes_as_it_does(tmp_path: Path, law: str
     time = np.linspace(0.0, 2.0, 2001)
     table = written(tmp_path, time, 2e-3 * np.sin(50.0 * np.pi * time))
     found = vi.simulate(
-        vi.read_case(
+        vi.case_of(
             with_values(table, {"contact": {"law": law, "restitution": 0.8}, "run.impacts": 4})
         )
     )
     expected = vi.simulate(
-        vi.read_case(with_values(CASE, {"contact": {"law": law, "restitution": 0.8}}))
+        vi.case_of(with_values(CASE, {"contact": {"law": law, "restitution": 0.8}}))
     )
     assert found.impacts["time_s"] == pytest.approx(expected.impacts["time_s"], rel=2e-6)
     assert found.energy["closure_relative"] <= 1e-9
@@ -329,7 +333,7 @@ def test_accelerations_are_integrated(tmp_path: Path) -> None:
         "time_s,acceleration_m_s2",
         1.0,
     )
-    motion = vi.read_case(table).to_problem().motion
+    motion = vi.case_of(table).to_problem().motion
     assert motion is not None
     assert motion.at(time)[0] == pytest.approx(2e-3 * np.cos(50.0 * np.pi * time), abs=1e-5)
 
@@ -337,12 +341,12 @@ def test_accelerations_are_integrated(tmp_path: Path) -> None:
 def test_a_run_ends_with_its_table(tmp_path: Path) -> None:
     time = np.linspace(0.0, 0.5, 501)
     table = written(tmp_path, time, deck(time))
-    assert vi.read_case(table).to_problem().duration == pytest.approx(0.5)
-    assert vi.simulate(vi.read_case(table)).end_time[0] >= 0.5
+    assert vi.case_of(table).to_problem().duration == pytest.approx(0.5)
+    assert vi.simulate(vi.case_of(table)).end_time[0] >= 0.5
     with pytest.raises(
         vi.InputError, match=r"run\.duration: the motion of the plate ends at 0\.5 s"
     ):
-        vi.read_case(with_values(table, {"run.duration": 0.6}))
+        vi.case_of(with_values(table, {"run.duration": 0.6}))
 
 
 @pytest.mark.parametrize(
@@ -370,7 +374,7 @@ def test_a_run_ends_with_its_table(tmp_path: Path) -> None:
 def test_bad_tables(tmp_path: Path, spoil: Any, words: str) -> None:
     time = np.linspace(0.0, 0.5, 501)
     with pytest.raises(vi.InputError, match=words):
-        vi.read_case(written(tmp_path, *spoil(time, deck(time))))
+        vi.case_of(written(tmp_path, *spoil(time, deck(time))))
 
 
 def period(count: int, length: float = 0.2) -> tuple[np.ndarray, np.ndarray]:
@@ -392,7 +396,7 @@ def test_a_period_repeats(tmp_path: Path, count: int, quantity: str) -> None:
         table = written(tmp_path, time, felt, "time [s],acceleration [m/s^2]", 1.0)
     else:
         table = written(tmp_path, time, moved)
-    found = vi.read_case(
+    found = vi.case_of(
         with_values(table, {"plate.motion.repeat": True, "run.duration": "3 s"})
     ).to_problem()
     assert found.motion is not None
@@ -403,8 +407,7 @@ def test_a_period_repeats(tmp_path: Path, count: int, quantity: str) -> None:
     named = found.source
     assert named is not None
     assert (
-        vi.read_case(named).to_problem().motion.at(later).tolist()
-        == found.motion.at(later).tolist()
+        vi.case_of(named).to_problem().motion.at(later).tolist() == found.motion.at(later).tolist()
     )  # type: ignore[union-attr]
 
 
@@ -412,9 +415,9 @@ def test_a_period_of_a_harmonic_motion_shakes_as_it_does(tmp_path: Path) -> None
     time = np.arange(64) / 25.0 / 64.0
     table = written(tmp_path, time, 2e-3 * np.sin(50.0 * np.pi * time))
     found = vi.simulate(
-        vi.read_case(with_values(table, {"plate.motion.repeat": True, "run.impacts": 4}))
+        vi.case_of(with_values(table, {"plate.motion.repeat": True, "run.impacts": 4}))
     )
-    expected = vi.simulate(vi.read_case(CASE))
+    expected = vi.simulate(vi.case_of(CASE))
     assert found.impacts["time_s"] == pytest.approx(expected.impacts["time_s"], rel=1e-9)
 
 
@@ -434,7 +437,7 @@ def test_a_period_of_a_harmonic_motion_shakes_as_it_does(tmp_path: Path) -> None
 def test_a_period_that_does_not_close(tmp_path: Path, spoil: Any, words: str) -> None:
     table = written(tmp_path, *spoil(*period(200)))
     with pytest.raises(vi.InputError, match=words):
-        vi.read_case(with_values(table, {"plate.motion.repeat": True, "run.duration": "1 s"}))
+        vi.case_of(with_values(table, {"plate.motion.repeat": True, "run.duration": "1 s"}))
 
 
 def test_a_measured_period_closes_within_its_noise(tmp_path: Path) -> None:
@@ -443,26 +446,26 @@ def test_a_measured_period_closes_within_its_noise(tmp_path: Path) -> None:
     table = with_values(
         written(tmp_path, time, noisy), {"plate.motion.repeat": True, "run.duration": "1 s"}
     )
-    motion = vi.read_case(table).to_problem().motion
+    motion = vi.case_of(table).to_problem().motion
     assert motion is not None
     assert motion.at(time + 0.6)[0] + noisy.mean() == pytest.approx(noisy, abs=1e-9)
 
 
 def test_a_repeated_motion_needs_a_duration(tmp_path: Path) -> None:
     with pytest.raises(vi.InputError, match="give the duration of the run"):
-        vi.read_case(with_values(written(tmp_path, *period(200)), {"plate.motion.repeat": True}))
+        vi.case_of(with_values(written(tmp_path, *period(200)), {"plate.motion.repeat": True}))
 
 
 def test_tables_without_their_columns(tmp_path: Path) -> None:
     time = np.linspace(0.0, 0.5, 501)
     with pytest.raises(vi.InputError, match="there is no column displacement"):
-        vi.read_case(written(tmp_path, time, deck(time), "time [s],height [mm]"))
+        vi.case_of(written(tmp_path, time, deck(time), "time [s],height [mm]"))
     with pytest.raises(vi.InputError, match="there is no column time"):
-        vi.read_case(written(tmp_path, time, deck(time), "when [s],displacement [mm]"))
+        vi.case_of(written(tmp_path, time, deck(time), "when [s],displacement [mm]"))
     with pytest.raises(vi.InputError, match="unit is missing"):
-        vi.read_case(written(tmp_path, time, deck(time), "time [s],displacement"))
+        vi.case_of(written(tmp_path, time, deck(time), "time [s],displacement"))
     with pytest.raises(vi.InputError, match=r"plate\.motion\.file"):
-        vi.read_case(with_values(CASE, {"plate.motion": {"file": str(tmp_path / "none.csv")}}))
+        vi.case_of(with_values(CASE, {"plate.motion": {"file": str(tmp_path / "none.csv")}}))
 
 
 # cases
@@ -495,7 +498,7 @@ def test_refused_cases(values: dict[str, Any], words: str) -> None:
 
 
 def test_a_case_says_its_motion_again() -> None:
-    read = vi.read_case(
+    read = vi.case_of(
         with_values(
             CASE,
             {
@@ -512,7 +515,7 @@ def test_a_case_says_its_motion_again() -> None:
     assert motion is not None
     assert motion.direction == pytest.approx((0.0, 0.6, 0.8))
     assert motion.phase == pytest.approx([0.5 * np.pi])
-    again = vi.read_case(read.to_problem().source).to_problem()
+    again = vi.case_of(read.to_problem().source).to_problem()
     assert (
         vi.simulate(again).impacts["time_s"].tolist()
         == vi.simulate(read).impacts["time_s"].tolist()
@@ -520,9 +523,9 @@ def test_a_case_says_its_motion_again() -> None:
 
 
 def test_a_result_is_written_read_and_drawn(tmp_path: Path) -> None:
-    response = vi.simulate(vi.read_case(CASE))
+    response = vi.simulate(vi.case_of(CASE))
     response.save(tmp_path / "run")
-    result = vi.read_result(tmp_path / "run")
+    result = vi.load_result(tmp_path / "run")
     assert result.impacts["plate_velocity_m_s"] == pytest.approx(
         response.impacts["plate_velocity_m_s"]
     )
@@ -537,8 +540,8 @@ def test_studies_over_amplitude_and_frequency(tmp_path: Path) -> None:
             "plate.motion.frequency": ["20 Hz", "25 Hz"],
         }
     }
-    vi.run_sweep(vi.read_sweep({**CASE, "sweep": sweep}), tmp_path / "study")
-    study = vi.read_study(tmp_path / "study")
+    vi.studies.run_sweep(vi.studies.sweep_of({**CASE, "sweep": sweep}), tmp_path / "study")
+    study = vi.studies.load_study(tmp_path / "study")
     alone = case(**{"plate.motion.amplitude": "1 mm", "plate.motion.frequency": "25 Hz"})
     assert study.values("time_s", 1, 1) == pytest.approx(
         vi.simulate(alone).impacts["time_s"], rel=1e-9
@@ -583,9 +586,9 @@ def test_a_sensor_on_a_rigid_table_reads_its_motion(
         "contact": {"law": law, "restitution": 0.8},
         "sensors": [slanting, along],
     }
-    response = vi.simulate(vi.read_case(with_values(CASE, values)))
+    response = vi.simulate(vi.case_of(with_values(CASE, values)))
     response.save(tmp_path / "run")
-    result = vi.read_result(tmp_path / "run")
+    result = vi.load_result(tmp_path / "run")
     omega = 50.0 * np.pi
     gain = 0.64 / (1.0 - (25.0 / 60.0) ** 2 + 0.6j * 25.0 / 60.0)
     corner, passed = 2.0 * np.pi * 200.0, 1.0 + 0.0j
@@ -687,9 +690,11 @@ def sliding_sphere(
         "gravity": changes.pop("gravity_along", (0.0, 0.0)),
     }
     oblique = vi.Oblique(
-        velocity=velocity, friction=vi.find_friction_law(law)(coefficient=0.3, **pair), **along
+        velocity=velocity,
+        friction=vi.friction.find_friction_law(law)(coefficient=0.3, **pair),
+        **along,
     )
-    normal = vi.find_contact_law("hunt-crossley")(stiffness=1.3e8, restitution=0.7)
+    normal = vi.laws.find_contact_law("hunt-crossley")(stiffness=1.3e8, restitution=0.7)
     return vi.simulate(
         problem(
             normal, **{"speed": 2.0, "impacts": 1, "motion": motion, "oblique": oblique, **changes}
@@ -764,7 +769,7 @@ def test_a_ball_that_rolls_on_a_table_moves_with_two_sevenths_of_its_velocity() 
     rolls on; within its tangential deformation.
     """
     pair = {"effective_modulus": 1e7, "effective_shear_modulus": 0.8e7, "effective_radius": 0.01}
-    friction = vi.find_friction_law("mdr")(coefficient=0.5, **pair)
+    friction = vi.friction.find_friction_law("mdr")(coefficient=0.5, **pair)
     sideways = vi.PlateMotion(amplitude=2e-3, frequency=5.0, direction=(1.0, 0.0, 0.0))
     law = KuwabaraKono(stiffness=4.0 / 3.0 * 1e6, dissipation_time=1e-3)
     drop = {
@@ -796,7 +801,7 @@ def test_a_billiard_on_a_table_that_moves_along_itself_too(
     """Every impact of 1,000 reverses the slip over the table as Walton has it, and the
     ledger closes.
     """
-    friction = vi.find_friction_law(law)(
+    friction = vi.friction.find_friction_law(law)(
         coefficient=most, **({"slip_restitution": kept} if law == "rigid" else {})
     )
     oblique = vi.Oblique(velocity=(0.3, 0.1), spin=(10.0, -30.0, 5.0), friction=friction)
@@ -826,7 +831,7 @@ def test_a_billiard_on_a_table_that_moves_along_itself_too(
 
 
 def test_a_hard_ball_under_friction_is_followed_until_it_rides() -> None:
-    friction = vi.find_friction_law("rigid")(coefficient=0.2)
+    friction = vi.friction.find_friction_law("rigid")(coefficient=0.2)
     sideways = vi.PlateMotion(amplitude=1e-4, frequency=25.0, direction=(1.0, 0.0, 0.0))
     oblique = vi.Oblique(velocity=(0.3, 0.1), friction=friction)
     response = vi.simulate(
@@ -1013,7 +1018,7 @@ def test_the_place_of_an_impact_on_a_plate_that_moves_along_itself(law: str) -> 
         "motion": {"amplitude": "4 mm", "frequency": "7 Hz", "direction": [1, 0, 0]},
         "size": [1.0, 1.0, 0.02],
     }
-    impacts = vi.simulate(vi.read_case(table)).impacts
+    impacts = vi.simulate(vi.case_of(table)).impacts
     moved = 4e-3 * np.sin(2.0 * np.pi * 7.0 * impacts["time_s"])
     assert np.abs(moved).max() > 1e-3
     assert impacts["place_on_plate_x_m"] == pytest.approx(
@@ -1062,8 +1067,8 @@ def test_an_elastic_plate_that_drifts_is_one_at_rest_to_an_observer_who_drifts(
     unshaken = with_values(oblique, still)
     del unshaken["plate"]["motion"]
     seen, found = (
-        vi.simulate(vi.read_case(unshaken)),
-        vi.simulate(vi.read_case(with_values(oblique, moving))),
+        vi.simulate(vi.case_of(unshaken)),
+        vi.simulate(vi.case_of(with_values(oblique, moving))),
     )
     assert len(found.impacts["time_s"]) >= 2
     for name in ("time_s", "separation_speed_m_s"):
@@ -1133,7 +1138,7 @@ def test_a_sphere_falls_off_a_plate_that_moves_away() -> None:
 @pytest.mark.parametrize("law", ["newton", "lankarani-nikravesh"])
 def test_charts_of_a_shaken_plate(law: str) -> None:
     result = vi.result_of(
-        vi.simulate(vi.read_case(with_values(CASE, {"contact": {"law": law, "restitution": 0.8}})))
+        vi.simulate(vi.case_of(with_values(CASE, {"contact": {"law": law, "restitution": 0.8}})))
     )
     position = next(chart for chart in run_charts(result) if chart.name == "position")
     (ball, surface) = (mark for mark in position.rows[0][0].marks if isinstance(mark, Line))
@@ -1156,6 +1161,6 @@ def test_charts_of_a_shaken_plate(law: str) -> None:
 
 def test_no_law_is_calibrated_on_a_plate_that_moves() -> None:
     with pytest.raises(vi.InputError, match=r"plate\.motion: only impacts on a plate at rest"):
-        vi.calibrate_case(
-            vi.read_calibration({**CASE, "calibrate": {"target": {"restitution": 0.7}}})
+        vi.calibration.calibrate_case(
+            vi.calibration.calibration_of({**CASE, "calibrate": {"target": {"restitution": 0.7}}})
         )

@@ -298,8 +298,8 @@ def test_times_outside_the_run_are_refused(theory: vi.Response) -> None:
 
 @pytest.mark.parametrize("tolerance", [1e-6, 1e-9, 1e-12])
 def test_tolerance_is_kept(tolerance: float) -> None:
-    row = vi.simulate(vi.read_case(plain_case(run={"impacts": 3, "tolerance": tolerance}))).impacts
-    exact = vi.simulate(vi.read_case(plain_case(run={"impacts": 3, "tolerance": 1e-13}))).impacts
+    row = vi.simulate(vi.case_of(plain_case(run={"impacts": 3, "tolerance": tolerance}))).impacts
+    exact = vi.simulate(vi.case_of(plain_case(run={"impacts": 3, "tolerance": 1e-13}))).impacts
     np.testing.assert_allclose(
         row["separation_speed_m_s"], exact["separation_speed_m_s"], rtol=tolerance
     )

@@ -294,7 +294,7 @@ def test_contacts_that_turn_or_part_at_once() -> None:
             {"stiffness": 1.92e6, "damping_max": 43.9, "full_damping_penetration": 3.66e-6},
         ),
     ):
-        kind = vi.find_contact_law(name)
+        kind = vi.laws.find_contact_law(name)
         law = kind(**more) if set(more) <= set(kind.__dataclass_fields__) else kind.example(PAIR)
         names, ball = ("x", "y"), vi.MovingBody(mass=0.0112, velocity=(0.0, 0.0, -1.0))
         contacts = {one: vi.PointContact(above=one, below="wall", law=law) for one in names}
@@ -314,7 +314,7 @@ def test_contacts_that_turn_or_part_at_once() -> None:
 @pytest.mark.slow
 def test_a_ball_does_not_fall_through_its_dent() -> None:
     """Which the next impact does not find again: it parts within it, and comes back into it."""
-    law = vi.find_contact_law("walton-braun")(stiffness=1e6, restitution=0.3)
+    law = vi.laws.find_contact_law("walton-braun")(stiffness=1e6, restitution=0.3)
     ball = vi.MovingBody(mass=0.1, velocity=(0.0, 0.0, -0.1))
     contact = vi.PointContact(above="ball", below="wall", law=law)
     response = vi.simulate_system(
@@ -344,7 +344,7 @@ def test_bodies_that_fall_alike_meet_as_in_free_space(speed: float, gap: float) 
 @pytest.mark.parametrize("part", [0.3, 0.6, 0.95])
 def test_a_run_may_end_within_a_contact(name: str, part: float) -> None:
     """While it loads, unloads or recoils without a force."""
-    law = vi.find_contact_law(name).example(PAIR)
+    law = vi.laws.find_contact_law(name).example(PAIR)
     ball = vi.MovingBody(mass=0.09, velocity=(0.0, 0.0, -3.0))
     system = vi.System(
         bodies={"ball": ball, "wall": WALL},

@@ -148,7 +148,7 @@ def test_most_drops_need_nothing_else(name: str, request: pytest.FixtureRequest)
     ball, pair = balls(60, 5)
     height = ball.contact_offset + np.geomspace(0.1, 3.0, 60)
     stated = problem(
-        sphere=ball, laws=(vi.find_contact_law(name).example(pair),), height=height, impacts=3
+        sphere=ball, laws=(vi.laws.find_contact_law(name).example(pair),), height=height, impacts=3
     )
     assert_agrees(vi.tabulate(stated), vi.simulate(replace(stated, tolerance=1e-12)), 1e-9)
     request.getfixturevalue("collocation_only")
@@ -163,7 +163,7 @@ def test_a_drop_is_what_it_is_alone(name: str) -> None:
     neighbours, to the last digit.
     """
     ball, pair = balls(30, 7)
-    law = vi.find_contact_law(name).example(pair)
+    law = vi.laws.find_contact_law(name).example(pair)
     height = ball.contact_offset + np.geomspace(1e-4, 3.0, 30)
     stated = problem(sphere=ball, laws=(law,), height=height, impacts=3)
     together = vi.tabulate(stated)
@@ -189,7 +189,7 @@ def test_a_drop_is_what_it_is_alone(name: str) -> None:
 @pytest.mark.parametrize("height", [0.03, 1.5])
 def test_histories_are_those_of_a_single_drop(name: str, height: float) -> None:
     pair = ContactPair(2.4e9, 0.02, 0.1, 8e7, 0.3)
-    stated = problem(laws=(vi.find_contact_law(name).example(pair),), height=height, impacts=2)
+    stated = problem(laws=(vi.laws.find_contact_law(name).example(pair),), height=height, impacts=2)
     found, exact = (
         vi.simulate(replace(stated, height=np.full(2, height))).drop(0),
         vi.simulate(replace(stated, tolerance=1e-13)),
@@ -219,7 +219,7 @@ def test_histories_are_those_of_a_single_drop(name: str, height: float) -> None:
 )
 def test_a_drop_has_its_history_in_a_batch_of_which_some_are_followed(name: str) -> None:
     ball, pair = balls(12, 6)
-    law = vi.find_contact_law(name).example(pair)
+    law = vi.laws.find_contact_law(name).example(pair)
     if name == "flores":
         law = law.changed({"restitution": np.linspace(0.02, 1.0, 12)})
     if name == "adams-impact":
@@ -255,7 +255,7 @@ def test_a_drop_has_its_history_in_a_batch_of_which_some_are_followed(name: str)
 @pytest.mark.parametrize("name", sorted(SMOOTH - {"linear-spring-dashpot"}))
 def test_restitution_is_that_of_the_closed_form(name: str) -> None:
     ball, pair = balls(40, 2)
-    law = vi.find_contact_law(name).example(pair)
+    law = vi.laws.find_contact_law(name).example(pair)
     if any(item.name == "restitution" for item in fields(law)):
         law = law.changed({"restitution": np.linspace(0.4, 1.0, 40)})
     stated = problem(
@@ -295,7 +295,7 @@ def test_corners(stiffness: float, exponent: float | str) -> None:
 
 @pytest.mark.parametrize("restitution", [0.05, 0.2, 0.5])
 def test_heavy_damping(restitution: float) -> None:
-    law = vi.find_contact_law("flores")(
+    law = vi.laws.find_contact_law("flores")(
         stiffness=np.geomspace(1e6, 1e11, 9), restitution=restitution
     )
     stated = problem(
@@ -309,7 +309,7 @@ def test_heavy_damping(restitution: float) -> None:
 
 @pytest.mark.parametrize("ratio", [1e-3, 0.01, 0.3, 1.26])
 def test_the_peak_of_a_dashpot_is_found(ratio: float) -> None:
-    law = vi.find_contact_law("linear-spring-dashpot")(
+    law = vi.laws.find_contact_law("linear-spring-dashpot")(
         stiffness=1e6, damping=2.0 * ratio * np.sqrt(1e6 * 0.1)
     )
     stated = problem(laws=(law,), height=None, speed=2.0, impacts=1)
@@ -332,7 +332,9 @@ def test_below_the_tightest_tolerance_it_is_simulate() -> None:
 
 
 def test_to_rest_captured_and_in_blocks(monkeypatch: pytest.MonkeyPatch) -> None:
-    law = vi.find_contact_law("flores")(stiffness=1e7, restitution=np.tile([0.3, 0.6, 0.05], 4))
+    law = vi.laws.find_contact_law("flores")(
+        stiffness=1e7, restitution=np.tile([0.3, 0.6, 0.05], 4)
+    )
     ball = vi.Body(mass=np.full(12, 0.1), contact_offset=0.02)
     stated = problem(
         sphere=ball, laws=(law,), height=0.02 + np.geomspace(1e-6, 1.0, 12), impacts=None
@@ -360,9 +362,11 @@ def test_to_rest_captured_and_in_blocks(monkeypatch: pytest.MonkeyPatch) -> None
 @pytest.mark.parametrize("oblique", [False, True])
 def test_threads_change_no_digit(oblique: bool) -> None:
     ball, pair = balls(40, 8)
-    law = vi.find_contact_law("flores").example(pair)
+    law = vi.laws.find_contact_law("flores").example(pair)
     along = (
-        vi.Oblique(velocity=(0.5, 0.0), friction=vi.find_friction_law("coulomb")(coefficient=0.2))
+        vi.Oblique(
+            velocity=(0.5, 0.0), friction=vi.friction.find_friction_law("coulomb")(coefficient=0.2)
+        )
         if oblique
         else None
     )

@@ -304,7 +304,7 @@ def test_a_foil_is_integrated_to_any_tolerance() -> None:
     speeds = []
     for tolerance in (1e-8, 1e-10, 1e-12):
         case["run"]["tolerance"] = tolerance
-        speeds.append(vi.simulate(vi.read_case(case)).impacts["separation_speed_m_s"])
+        speeds.append(vi.simulate(vi.case_of(case)).impacts["separation_speed_m_s"])
     np.testing.assert_allclose(speeds[:2], [speeds[2]] * 2, rtol=1e-7)
 
 

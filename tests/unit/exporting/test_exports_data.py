@@ -98,7 +98,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
         patch.setenv("VIBROIMPACT_STORE", str(tmp_path_factory.mktemp("store")))
         path = tmp_path_factory.mktemp("results") / "elastic"
         path.mkdir()
-        write_result(result_of(vi.simulate(vi.read_case(ELASTIC))), path)
+        write_result(result_of(vi.simulate(vi.case_of(ELASTIC))), path)
         yield path
 
 
@@ -114,12 +114,12 @@ def rigid(variable: vi.Response) -> Drop:
 
 @pytest.fixture(scope="module")
 def oblique_response() -> vi.Response:
-    return vi.simulate(vi.read_case(OBLIQUE))
+    return vi.simulate(vi.case_of(OBLIQUE))
 
 
 @pytest.fixture(scope="module")
 def oblique(oblique_response: vi.Response) -> Drop:
-    return drop_of_result(result_of(oblique_response), vi.read_case(OBLIQUE))
+    return drop_of_result(result_of(oblique_response), vi.case_of(OBLIQUE))
 
 
 @pytest.fixture
@@ -153,7 +153,7 @@ def outcome(
 
 
 def test_a_result_folder_is_a_drop(elastic: Drop, folder: Path) -> None:
-    result, case = vi.read_result(folder), vi.read_case(ELASTIC)
+    result, case = vi.load_result(folder), vi.case_of(ELASTIC)
     assert (elastic.name, elastic.radius, elastic.height, elastic.speed) == (
         "elastic",
         0.025,
@@ -389,7 +389,7 @@ def test_an_oblique_drop_has_its_motion_along_the_plate(oblique: Drop) -> None:
 
 
 def test_a_rising_sphere_rises_in_what_is_exported() -> None:
-    case = vi.read_case(plain_case(drop={"height": 0.5, "velocity": [0, 0, 1.5]}))
+    case = vi.case_of(plain_case(drop={"height": 0.5, "velocity": [0, 0, 1.5]}))
     drop = drop_of_result(result_of(vi.simulate(case)), case)
     assert (drop.height, drop.speed, drop.oblique) == (0.5, -1.5, None)
 
@@ -501,7 +501,7 @@ def test_a_step_that_has_more_digits_than_the_format_is_told(rigid: Drop) -> Non
 
 
 def test_a_history_that_can_not_be_sampled_is_left_out(rigid: Drop) -> None:
-    case = vi.read_case(plain_case(contact={"law": "newton", "restitution": 0.7}))
+    case = vi.case_of(plain_case(contact={"law": "newton", "restitution": 0.7}))
     instant = drop_of_result(result_of(vi.simulate(case)), case)
     with pytest.raises(
         vi.InputError,
@@ -679,7 +679,7 @@ def shaken(
         ),
         "motion": motion,
     }
-    case = vi.read_case(
+    case = vi.case_of(
         {**ELASTIC, "plate": plate, "drop": {"height": "40 mm"}, "run": {"duration": 0.2}}
     )
     with pytest.MonkeyPatch.context() as patch:
@@ -752,14 +752,14 @@ def test_holes_and_plates_without_a_size(elastic: Drop, rigid: Drop, tmp_path: P
 
 
 def test_an_export_lies_beside_and_replaces_nothing(result_folder: Path, tmp_path: Path) -> None:
-    written = vi.export_result(result_folder, "csv")
+    written = vi.exporting.export_result(result_folder, "csv")
     assert written == [tmp_path / "drop-csv" / name for name in ("impacts.csv", "history.csv")]
     (tmp_path / "drop-csv" / "mine.txt").write_text("mine")
     (tmp_path / "drop-csv" / "impacts.csv").write_text("changed")
     with pytest.raises(vi.InputError, match=r"impacts\.csv: the file is there already"):
-        vi.export_result(result_folder, "csv")
+        vi.exporting.export_result(result_folder, "csv")
     assert (tmp_path / "drop-csv" / "impacts.csv").read_text() == "changed"
-    vi.export_result(result_folder, "csv", force=True)
+    vi.exporting.export_result(result_folder, "csv", force=True)
     assert (tmp_path / "drop-csv" / "impacts.csv").read_bytes() == (
         result_folder / "impacts.csv"
     ).read_bytes()
@@ -768,20 +768,21 @@ def test_an_export_lies_beside_and_replaces_nothing(result_folder: Path, tmp_pat
 
 
 def test_one_file_may_be_given_a_name(result_folder: Path, tmp_path: Path) -> None:
-    assert vi.export_result(result_folder, "mat", tmp_path / "new" / "a.mat") == [
+    assert vi.exporting.export_result(result_folder, "mat", tmp_path / "new" / "a.mat") == [
         tmp_path / "new" / "a.mat"
     ]
     assert loadmat(tmp_path / "new" / "a.mat")["impacts"].size
     with pytest.raises(vi.InputError, match=r"there are 2 files to write .* name a folder"):
-        vi.export_result(result_folder, "csv", tmp_path / "a.csv")
-    (one,) = vi.export_result(result_folder, "mat", tmp_path / "folder")
+        vi.exporting.export_result(result_folder, "csv", tmp_path / "a.csv")
+    (one,) = vi.exporting.export_result(result_folder, "mat", tmp_path / "folder")
     assert one.parent == tmp_path / "folder"
     assert (
-        vi.export_result(result_folder, "csv", tmp_path / "run.2")[0]
+        vi.exporting.export_result(result_folder, "csv", tmp_path / "run.2")[0]
         == tmp_path / "run.2" / "impacts.csv"
     )
     assert (
-        vi.export_result(result_folder, "mat", tmp_path / "run.2")[0].parent == tmp_path / "run.2"
+        vi.exporting.export_result(result_folder, "mat", tmp_path / "run.2")[0].parent
+        == tmp_path / "run.2"
     )
 
 
@@ -801,7 +802,7 @@ def test_nothing_is_half_written(
         with pytest.raises(
             vi.InputError, match="the files can't be written: No space left on device"
         ):
-            vi.export_result(result_folder, "csv", output)
+            vi.exporting.export_result(result_folder, "csv", output)
     assert sorted(path.name for path in tmp_path.iterdir()) == ["drop", "there"]
     assert not list((tmp_path / "there").iterdir())
 
@@ -809,10 +810,10 @@ def test_nothing_is_half_written(
 def test_places_that_can_not_be_written_to(result_folder: Path, tmp_path: Path) -> None:
     (tmp_path / "file").write_text("a file")
     with pytest.raises(vi.InputError, match="can't be written"):
-        vi.export_result(result_folder, "csv", tmp_path / "file")
+        vi.exporting.export_result(result_folder, "csv", tmp_path / "file")
     (tmp_path / "folder" / "impacts.csv").mkdir(parents=True)
     with pytest.raises(vi.InputError, match="this is a folder"):
-        vi.export_result(result_folder, "csv", tmp_path / "folder", force=True)
+        vi.exporting.export_result(result_folder, "csv", tmp_path / "folder", force=True)
 
 
 def test_a_name_of_dots_goes_beside_the_folder_itself(
@@ -835,7 +836,7 @@ def test_the_command(
     for arguments in ((), ("--formats",), ("drop",)):
         status, printed = outcome(monkeypatch, capsys, "export", *arguments)
         assert status == 0
-        assert all(name in printed for name in vi.export_formats())
+        assert all(name in printed for name in vi.exporting.export_formats())
     _, printed = outcome(monkeypatch, capsys, "export", "drop", "--to", "vtu")
     assert "and 212 more files in drop-vtu" in printed
 

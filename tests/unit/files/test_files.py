@@ -15,10 +15,10 @@ import pytest
 import vibroimpact as vi
 from hostile_runs import attack
 from support import plain_case
-from vibroimpact.calibration.calibrate_case import read_calibration
+from vibroimpact.calibration.calibrate_case import calibration_of
 from vibroimpact.files.reading import FileKind, beginning, input_file_digest, read_bytes, read_text
 from vibroimpact.measurements.table_file import read_table_file
-from vibroimpact.meshes.mesh_file import read_mesh
+from vibroimpact.meshes.mesh_file import load_mesh
 from vibroimpact.meshes.text_files import MESH
 
 KIND = FileKind("a note is a text file", 1_000_000, "write less")
@@ -37,19 +37,19 @@ def elastic(mesh: str) -> dict:
 
 
 def calibrated(target: str) -> object:
-    return vi.calibrate_case(
-        read_calibration(plain_case(contact={"law": "adams-impact"}, calibrate={"target": target}))
+    return vi.calibration.calibrate_case(
+        calibration_of(plain_case(contact={"law": "adams-impact"}, calibrate={"target": target}))
     )
 
 
 READERS: dict[str, tuple[str, Callable[[str], object]]] = {
     "case": (".toml", vi.load_case),
     "table": (".csv", lambda name: read_table_file(name, {"time": "s"})),
-    "nastran": (".bdf", read_mesh),
-    "abaqus": (".inp", read_mesh),
-    "gmsh": (".msh", read_mesh),
-    "geometry": (".step", read_mesh),
-    "mesh of a case": (".inp", lambda name: vi.compute_modes(vi.read_case(elastic(name)))),
+    "nastran": (".bdf", load_mesh),
+    "abaqus": (".inp", load_mesh),
+    "gmsh": (".msh", load_mesh),
+    "geometry": (".step", load_mesh),
+    "mesh of a case": (".inp", lambda name: vi.compute_modes(vi.case_of(elastic(name)))),
     "target": (".csv", calibrated),
 }
 

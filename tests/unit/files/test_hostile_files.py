@@ -12,11 +12,11 @@ import pytest
 import vibroimpact as vi
 from hostile_runs import attack
 from support import plain_case
-from vibroimpact.calibration.calibrate_case import read_calibration
+from vibroimpact.calibration.calibrate_case import calibration_of
 from vibroimpact.cases.elastic.meshes import meshes_of
 from vibroimpact.measurements.header_cells import name_and_unit
 from vibroimpact.measurements.table_file import read_table_file
-from vibroimpact.meshes.mesh_file import read_mesh
+from vibroimpact.meshes.mesh_file import load_mesh
 from vibroimpact.meshes.selection import Selection
 from vibroimpact.runs.case_explained import case_explained
 from vibroimpact.structures.lattice import box_mesh
@@ -73,7 +73,7 @@ def test_ranges_that_overlap_cost_no_more_than_one() -> None:
 def test_sets_that_grow_without_bound(text: str, message: str, tmp_path: Path) -> None:
     file = tmp_path / "mesh.inp"
     file.write_text(text)
-    (outcome,) = attack(read_mesh, [file])
+    (outcome,) = attack(load_mesh, [file])
     assert outcome.kind == "refused", outcome
     assert message in outcome.text
 
@@ -93,13 +93,13 @@ def test_an_entity_of_many_groups(tmp_path: Path) -> None:
         vi.InputError,
         match=r"mesh.msh:6: the entity belongs to 20000 groups; it may belong to at most 100",
     ):
-        read_mesh(file)
+        load_mesh(file)
 
 
 def test_a_plate_that_is_a_mesh_needs_no_size_to_be_explained(tmp_path: Path) -> None:
     """`check` looks for the edges of the plate, and a mesh says nothing of them."""
     file = tmp_path / "plate.inp"
-    vi.write_abaqus(box_mesh((0.52, 0.42, 0.008), (4, 3, 1)), file)
+    vi.meshes.write_abaqus(box_mesh((0.52, 0.42, 0.008), (4, 3, 1)), file)
     plate = {
         "material": "steel",
         "model": "elastic",
@@ -107,7 +107,7 @@ def test_a_plate_that_is_a_mesh_needs_no_size_to_be_explained(tmp_path: Path) ->
         "supports": "free",
         "modes": 2,
     }
-    case_explained(vi.read_case(plain_case(plate=plate)))
+    case_explained(vi.case_of(plain_case(plate=plate)))
 
 
 def test_faces_without_area_are_told_without_a_warning(tmp_path: Path) -> None:
@@ -122,7 +122,7 @@ def test_faces_without_area_are_told_without_a_warning(tmp_path: Path) -> None:
         "supports": "free",
         "modes": 2,
     }
-    case = vi.read_case(plain_case(plate=plate, drop={"speed": 1.0, "position": [0.2, 0.2]}))
+    case = vi.case_of(plain_case(plate=plate, drop={"speed": 1.0, "position": [0.2, 0.2]}))
     for use in (case_explained, vi.compute_modes):
         with pytest.raises(vi.InputError, match=r"1 of \d \w+ elements are inverted or folded"):
             use(case)
@@ -207,7 +207,7 @@ def test_a_record_of_one_moment(tmp_path: Path) -> None:
     with pytest.raises(
         vi.InputError, match="all samples have the same time; a record needs at least two times"
     ):
-        vi.calibrate_case(read_calibration(case))
+        vi.calibration.calibrate_case(calibration_of(case))
 
 
 def test_a_brought_mesh_without_volume_is_refused_at_check(tmp_path: Path) -> None:
@@ -223,7 +223,7 @@ def test_a_brought_mesh_without_volume_is_refused_at_check(tmp_path: Path) -> No
         "supports": "free",
         "modes": 2,
     }
-    case = vi.read_case(plain_case(plate=plate, drop={"speed": 1.0, "position": [0.2, 0.2]}))
+    case = vi.case_of(plain_case(plate=plate, drop={"speed": 1.0, "position": [0.2, 0.2]}))
     with pytest.raises(
         vi.InputError,
         match=r"plate: 1 of 1 \w+ elements are inverted or folded \(their volume is not positive "

@@ -99,30 +99,30 @@ class Scene:
 
 
 def older(folder: Path) -> None:
-    vi.simulate(vi.read_case({**BOUNCE, "drop": {"height": 1.0}})).save(folder / "out")
+    vi.simulate(vi.case_of({**BOUNCE, "drop": {"height": 1.0}})).save(folder / "out")
 
 
 def with_an_older_report(folder: Path) -> None:
-    vi.simulate(vi.read_case(BOUNCE)).save(folder / "out")
+    vi.simulate(vi.case_of(BOUNCE)).save(folder / "out")
     (folder / "out" / "report.html").write_text("older")
 
 
 def with_older_figures(folder: Path) -> None:
-    vi.simulate(vi.read_case(BOUNCE)).save(folder / "out")
+    vi.simulate(vi.case_of(BOUNCE)).save(folder / "out")
     (folder / "out" / "figures").mkdir()
     for file in ("position.png", "velocity.png"):
         (folder / "out" / "figures" / file).write_text("older")
 
 
 def exported(folder: Path) -> None:
-    vi.simulate(vi.read_case(BOUNCE)).save(folder / "drop")
+    vi.simulate(vi.case_of(BOUNCE)).save(folder / "drop")
     (folder / "out").mkdir()
     (folder / "out" / "impacts.csv").write_text("older")
     (folder / "out" / "notes.txt").write_text("mine")
 
 
 def a_drop(folder: Path) -> None:
-    vi.simulate(vi.read_case(BOUNCE)).save(folder / "drop")
+    vi.simulate(vi.case_of(BOUNCE)).save(folder / "drop")
 
 
 def a_picture(folder: Path) -> None:
@@ -130,8 +130,8 @@ def a_picture(folder: Path) -> None:
 
 
 def a_study(folder: Path) -> None:
-    vi.run_sweep(
-        vi.read_sweep({**BOUNCE, "sweep": {"over": {"drop.height": ["1 m", "4 m"]}}}),
+    vi.studies.run_sweep(
+        vi.studies.sweep_of({**BOUNCE, "sweep": {"over": {"drop.height": ["1 m", "4 m"]}}}),
         folder / "out",
     )
 

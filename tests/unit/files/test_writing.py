@@ -10,11 +10,9 @@ from pathlib import Path
 import pytest
 
 import vibroimpact as vi
-from vibroimpact.files import atomic_write
 from vibroimpact.files.atomic_write import (
     atomic_file,
     atomic_folder,
-    exchange,
     write_file,
     write_into,
 )
@@ -39,32 +37,16 @@ def leaves(folder: Path) -> dict[str, str]:
     }
 
 
-@pytest.mark.parametrize("can_exchange", [True, False])
-def test_a_folder_takes_the_place_of_another(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, can_exchange: bool
-) -> None:
-    if not can_exchange:
-        monkeypatch.setattr(atomic_write, "exchange", lambda first, second: False)
+def test_a_folder_takes_the_place_of_another(tmp_path: Path) -> None:
     for text in ("one", "two"):
         make(tmp_path / "out", text)
         assert leaves(tmp_path) == {"out/a.txt": text}
-
-
-@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="renameat2 is of Linux")
-def test_names_are_exchanged(tmp_path: Path) -> None:
-    (tmp_path / "a").mkdir()
-    (tmp_path / "a" / "x").write_text("x")
-    (tmp_path / "b").write_text("b")
-    if not exchange(tmp_path / "a", tmp_path / "b"):
-        pytest.skip("this file system can't")
-    assert leaves(tmp_path) == {"a": "b", "b/x": "x"}
 
 
 def test_two_renames_that_fail_half_way_are_undone(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     make(tmp_path / "out", "old")
-    monkeypatch.setattr(atomic_write, "exchange", lambda first, second: False)
     rename, calls = Path.rename, []
 
     def second_fails(self: Path, target: Path) -> Path:
@@ -233,7 +215,7 @@ def test_no_folder_is_left_where_nothing_could_be_written(
     writes = [
         lambda place: vi.save_figures(folder, ["png"], place),
         lambda place: vi.save_result(response, place),
-        lambda place: vi.export_result(folder, "csv", place),
+        lambda place: vi.exporting.export_result(folder, "csv", place),
     ]
     for number, write in enumerate(writes):
         with pytest.raises((OSError, vi.InputError), match="No space left on device"):

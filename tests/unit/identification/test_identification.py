@@ -62,12 +62,12 @@ ON_AXIS = [{"name": "a", "position": [0.1, 0.0], "rate": 20e3}]
 
 
 def small(**changed: Any) -> vi.Case:
-    return vi.read_case({**SMALL, **changed})
+    return vi.case_of({**SMALL, **changed})
 
 
-def its_records(case: vi.Case) -> list[vi.Record]:
+def its_records(case: vi.Case) -> list[vi.signals.Record]:
     return [
-        vi.Record(name, one.value, one.sensor.rate, one.sensor.unit)
+        vi.signals.Record(name, one.value, one.sensor.rate, one.sensor.unit)
         for name, one in vi.simulate(case).signals().items()
     ]
 
@@ -245,7 +245,9 @@ def test_a_force_of_no_contact_law_is_found_from_one_sensor_at_a_known_place() -
     answers = model.heard(["b"]).at(shapes_of(there), compliances_of(there, ["b"]))
     (value,) = sampled_responses(answers, RATE, touch + time, force * (time[1] - time[0]), 300)
     noise = 0.01 * value[52:].std() * np.random.default_rng(5).standard_normal(300)
-    found = vi.identify_force(a_case(), [vi.Record("b", value + noise, RATE, "m/s2")], place)
+    found = vi.identification.identify_force(
+        a_case(), [vi.signals.Record("b", value + noise, RATE, "m/s2")], place
+    )
     assert found.peak[0] == pytest.approx(force.max(), rel=0.05)
     assert found.impulse[0] == pytest.approx(np.trapezoid(force, time), rel=0.02)
 
@@ -253,7 +255,7 @@ def test_a_force_of_no_contact_law_is_found_from_one_sensor_at_a_known_place() -
 @pytest.mark.slow
 def test_a_plate_of_another_thickness_is_doubted_without_noise_too() -> None:
     thicker = small(plate={**SMALL["plate"], "size": [0.3, 0.3, 0.025]})
-    doubts = vi.identify(small(), its_records(thicker)).doubts
+    doubts = vi.identification.identify(small(), its_records(thicker)).doubts
     assert any(
         "% of the rms value of a record, and the records do not show the noise before first touch"
         in doubt
@@ -263,7 +265,7 @@ def test_a_plate_of_another_thickness_is_doubted_without_noise_too() -> None:
 
 @pytest.mark.slow
 def test_a_sphere_that_hardly_leaves_the_plate_is_found_from_a_start_that_touches_again() -> None:
-    case = vi.read_case(
+    case = vi.case_of(
         {
             "sphere": {"radius": 0.03, "material": "granite"},
             "plate": {
@@ -287,7 +289,7 @@ def test_a_sphere_that_hardly_leaves_the_plate_is_found_from_a_start_that_touche
             ],
         }
     )
-    found = vi.identify(case, its_records(case)).estimates
+    found = vi.identification.identify(case, its_records(case)).estimates
     expected = {"radius_m": 0.03, "speed_m_s": 4.36175, "place_x_m": 0.05, "place_y_m": 0.03}
     assert {name: found[name].value for name in expected} == pytest.approx(expected, rel=1e-3)
 
@@ -323,14 +325,14 @@ def test_the_origin_of_a_mesh_may_be_a_corner_of_the_plate(tmp_path: Path) -> No
         drop={"speed": 2.0, "gravity": 0.0, "position": [0.17, 0.13]},
         sensors=[{"name": name, "position": place, "rate": 20e3} for name, place in places.items()],
     )
-    found = vi.identify(case, its_records(case)).estimates
+    found = vi.identification.identify(case, its_records(case)).estimates
     assert (found["place_x_m"].value, found["place_y_m"].value) == pytest.approx(
         (0.17, 0.13), abs=1e-4
     )
     with pytest.raises(
         vi.InputError, match=r"x must be from 0\.03 to 0\.27 m, and y from 0\.03 to 0\.21 m"
     ):
-        vi.identify(case, its_records(case), place=(-0.1, 0.1))
+        vi.identification.identify(case, its_records(case), place=(-0.1, 0.1))
 
 
 def test_the_frequency_that_is_asked_for_ends_the_doubt() -> None:
@@ -343,7 +345,7 @@ def test_the_frequency_that_is_asked_for_ends_the_doubt() -> None:
         )
         return [
             one
-            for one in vi.identify(case, its_records(case)).doubts
+            for one in vi.identification.identify(case, its_records(case)).doubts
             if "the modes of the plate end at" in one
         ]
 
@@ -356,7 +358,9 @@ def test_the_frequency_that_is_asked_for_ends_the_doubt() -> None:
 @pytest.mark.slow
 def test_too_few_modes_are_told() -> None:
     radius, speed, place = 0.02, 3.0, (0.06, 0.04)
-    found = vi.identify(a_case(60), records_of(an_impact(radius, speed, place), 40.0, seed=1))
+    found = vi.identification.identify(
+        a_case(60), records_of(an_impact(radius, speed, place), 40.0, seed=1)
+    )
     assert any("the modes of the plate end at" in doubt for doubt in found.doubts)
     assert any("times the noise before first touch" in doubt for doubt in found.doubts)
     told = found.estimates
@@ -374,7 +378,7 @@ def test_places_that_sensors_do_not_tell_apart_are_named() -> None:
             {"name": "b", "position": [-0.06, 0.0], "rate": 20e3},
         ]
     )
-    found = vi.identify(case, its_records(case))
+    found = vi.identification.identify(case, its_records(case))
     (doubt,) = (one for one in found.doubts if "explains the records about as well" in one)
     x, y = map(float, re.findall(r"-?\d+\.\d", doubt))
     # of a pulse, before the contact is fitted
@@ -385,7 +389,7 @@ def test_places_that_sensors_do_not_tell_apart_are_named() -> None:
 @pytest.mark.slow
 def test_a_place_that_is_known_is_kept() -> None:
     case = small()
-    found = vi.identify(case, its_records(case), place=(0.02, 0.01))
+    found = vi.identification.identify(case, its_records(case), place=(0.02, 0.01))
     assert found.estimates["place_x_m"].value == 0.02
     assert found.estimates["place_x_m"].deviation == 0.0
     assert found.estimates["radius_m"].value == pytest.approx(0.02, rel=1e-3)
@@ -420,7 +424,7 @@ def test_a_place_that_is_known_is_kept() -> None:
 def test_records_that_are_refused(change: Any, words: str) -> None:
     first, *others = its_records(small())
     with pytest.raises(vi.InputError, match=words.replace(".", r"\.")):
-        vi.identify(small(), [change(first), *others])
+        vi.identification.identify(small(), [change(first), *others])
 
 
 def test_a_column_of_a_table_is_named_after_its_sensor() -> None:
@@ -428,7 +432,9 @@ def test_a_column_of_a_table_is_named_after_its_sensor() -> None:
     with pytest.raises(
         vi.InputError, match=r'named after its sensor and has its unit, such as "a \[m/s2\]"'
     ):
-        vi.identify(small(), [replace(record, name="acceleration", source="one/a.csv")])
+        vi.identification.identify(
+            small(), [replace(record, name="acceleration", source="one/a.csv")]
+        )
 
 
 @pytest.mark.parametrize(
@@ -467,7 +473,7 @@ def test_a_column_of_a_table_is_named_after_its_sensor() -> None:
 )
 def test_cases_that_are_refused(changed: dict[str, Any], words: str) -> None:
     with pytest.raises(vi.InputError, match=words):
-        vi.identify(small(**changed), its_records(small()))
+        vi.identification.identify(small(**changed), its_records(small()))
 
 
 @pytest.mark.slow
@@ -483,7 +489,7 @@ def test_sampling_that_is_too_slow_is_told_with_the_number() -> None:
         match="hear up to 900 Hz, enough for contacts of 556 us or longer; sample faster than at "
         "2000 Hz",
     ):
-        vi.identify(case, its_records(case), window=0.05)
+        vi.identification.identify(case, its_records(case), window=0.05)
 
 
 @pytest.mark.parametrize(
@@ -500,7 +506,7 @@ def test_sampling_that_is_too_slow_is_told_with_the_number() -> None:
 )
 def test_options_that_are_refused(options: dict[str, Any], words: str) -> None:
     with pytest.raises(vi.InputError, match=words):
-        vi.identify(small(), its_records(small()), **options)
+        vi.identification.identify(small(), its_records(small()), **options)
 
 
 def test_the_command(command: Callable[..., tuple[int, str, str]]) -> None:

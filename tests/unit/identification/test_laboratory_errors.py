@@ -43,7 +43,7 @@ def a_case(
     accelerometers.
     """
     places = {**SENSORS, **(moved or {})}
-    return vi.read_case(
+    return vi.case_of(
         {
             "sphere": {"radius": 0.02, "material": "rock-paper"},
             "plate": {**PLATE, **(plate or {})},
@@ -86,7 +86,7 @@ def changed(name: str, change: Callable[[np.ndarray], np.ndarray]) -> list[Recor
     ]
 
 
-def assert_found(found: vi.Identification, relative: float = 0.01) -> None:
+def assert_found(found: vi.identification.Identification, relative: float = 0.01) -> None:
     """Size, speed, place and both forces are those of the run."""
     expected = {
         "radius_m": 0.02,
@@ -156,7 +156,7 @@ def test_a_sensor_that_is_moved_has_the_shapes_of_its_new_place() -> None:
 )
 def test_errors_that_are_refused(errors: dict[str, float], words: str) -> None:
     with pytest.raises(vi.InputError, match=words):
-        vi.SetupErrors(**errors)
+        vi.identification.SetupErrors(**errors)
 
 
 def test_clipped_samples_are_those_cut_and_not_those_round() -> None:
@@ -171,7 +171,7 @@ def test_clipped_samples_are_those_cut_and_not_those_round() -> None:
 
 @pytest.mark.slow
 def test_records_without_fault_are_not_doubted() -> None:
-    found = vi.identify(a_case(), measured())
+    found = vi.identification.identify(a_case(), measured())
     assert_found(found)
     assert not found.doubts
     assert "sensitivities of the sensors" in found.certain
@@ -179,7 +179,7 @@ def test_records_without_fault_are_not_doubted() -> None:
 
 @pytest.mark.slow
 def test_a_clipped_record_is_named_and_used_without_what_is_cut() -> None:
-    found = vi.identify(
+    found = vi.identification.identify(
         a_case(),
         changed(
             "a", lambda value: value.clip(-0.5 * np.abs(value).max(), 0.5 * np.abs(value).max())
@@ -192,7 +192,7 @@ def test_a_clipped_record_is_named_and_used_without_what_is_cut() -> None:
 
 @pytest.mark.slow
 def test_an_inverted_sensor_is_named_and_turned() -> None:
-    found = vi.identify(a_case(), changed("b", np.negative))
+    found = vi.identification.identify(a_case(), changed("b", np.negative))
     assert_found(found)
     (doubt,) = found.doubts
     assert 'the record "b" is inverted' in doubt
@@ -200,7 +200,7 @@ def test_an_inverted_sensor_is_named_and_turned() -> None:
 
 @pytest.mark.slow
 def test_an_offset_before_first_touch_is_removed() -> None:
-    found = vi.identify(
+    found = vi.identification.identify(
         a_case(),
         [replace(one, value=one.value + 0.1 * np.abs(one.value).max()) for one in measured()],
     )
@@ -228,7 +228,7 @@ CAUSES = {
 @pytest.mark.parametrize("cause", CAUSES)
 def test_a_wrong_set_up_is_named_and_its_remedy_helps(cause: str) -> None:
     case, records, words, remedy = CAUSES[cause]
-    found = vi.identify(case, records())
+    found = vi.identification.identify(case, records())
     (doubt,) = (one for one in found.doubts if "times the noise before first touch" in one)
     assert words in doubt
     assert remedy in doubt
@@ -237,7 +237,9 @@ def test_a_wrong_set_up_is_named_and_its_remedy_helps(cause: str) -> None:
         "gain": {"gain": 0.1},
         "thickness": {"thickness": 0.01},
     }[cause]
-    better = vi.identify(case, records(), errors=vi.SetupErrors(**errors))
+    better = vi.identification.identify(
+        case, records(), errors=vi.identification.SetupErrors(**errors)
+    )
     assert not better.doubts
     truth = {
         "radius_m": 0.02,
@@ -254,7 +256,7 @@ def test_a_wrong_set_up_is_named_and_its_remedy_helps(cause: str) -> None:
 
 @pytest.mark.slow
 def test_the_error_that_a_doubt_asks_for_is_allowed() -> None:
-    found = vi.identify(a_case(), changed("c", lambda value: 1.6 * value))
+    found = vi.identification.identify(a_case(), changed("c", lambda value: 1.6 * value))
     assert any(doubt.endswith("state --gain-error 0.3") for doubt in found.doubts)
 
 
@@ -262,14 +264,14 @@ def test_the_error_that_a_doubt_asks_for_is_allowed() -> None:
 def test_a_force_that_contradicts_the_contact_is_withheld(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    found = vi.identify(a_case(), measured())
+    found = vi.identification.identify(a_case(), measured())
     assert found.force is not None
     assert contradiction(found.sphere, found.force) == ""
     wild = replace(
         found.force, found=replace(found.force.found, force=2.0 * found.force.found.force)
     )
     monkeypatch.setattr("vibroimpact.identification.identify.force_behind", lambda *_: wild)
-    withheld = vi.identify(a_case(), measured())
+    withheld = vi.identification.identify(a_case(), measured())
     assert withheld.force is None
     assert not any(name.startswith("recovered") for name in withheld.estimates)
     assert "contradicts the" in withheld.doubts[-1]
@@ -299,7 +301,7 @@ def test_records_of_a_run_of_the_same_plate_give_its_numbers(
         "identify", "case.toml", "run", "-o", "found", "--place", "20 mm, 10 mm", "--json"
     )
     assert code == 0
-    told, force = json.loads(out), float(vi.read_result("run").impacts["max_force_N"][0])
+    told, force = json.loads(out), float(vi.load_result("run").impacts["max_force_N"][0])
     largest = told["estimates"]["max_force_N"]
     assert largest["low"] <= force <= largest["high"]
     assert largest["value"] == pytest.approx(force, rel=1e-4)

@@ -22,11 +22,11 @@ from vibroimpact.law_comparison.charts import comparison_charts, spread_labels
 from vibroimpact.law_comparison.comparison import compare_laws
 from vibroimpact.law_comparison.laws import cases_under
 
-CASE = vi.read_case(plain_case())
+CASE = vi.case_of(plain_case())
 
 
 def test_parameters_of_the_same_name_and_unit_are_taken_from_the_case() -> None:
-    case = vi.read_case(
+    case = vi.case_of(
         plain_case(contact={"law": "hunt-crossley", "restitution": 0.6, "stiffness": 3e8})
     )
     under = cases_under(case, ["flores", "hunt-crossley", "tsuji"])
@@ -97,15 +97,15 @@ def test_what_is_refused(
 
 
 def test_all_laws_tuned_to_one_restitution() -> None:
-    names = [name for name in vi.contact_laws() if name not in ("hertz", "jkr", "krijt")]
+    names = [name for name in vi.laws.contact_laws() if name not in ("hertz", "jkr", "krijt")]
     linear = [
         name
         for name in names
         if name in ("linear-spring-dashpot", "anagnostopoulos", "walton-braun")
     ]
     others = [name for name in names if name not in linear]
-    comparison = vi.compare_laws(CASE, others, {"penalty": 2e6}, achieving=0.8)
-    linear_comparison = vi.compare_laws(CASE, linear, {"stiffness": 2e6}, achieving=0.8)
+    comparison = vi.laws.compare_laws(CASE, others, {"penalty": 2e6}, achieving=0.8)
+    linear_comparison = vi.laws.compare_laws(CASE, linear, {"stiffness": 2e6}, achieving=0.8)
     for one in (*comparison.results.values(), *linear_comparison.results.values()):
         # gravity acts in the contact too
         assert one.impacts["restitution_achieved"][0] == pytest.approx(0.8, abs=3e-3)
@@ -130,7 +130,7 @@ def test_the_charts_hold_the_results() -> None:
         "lee-wang",
         "hu-guo",
     ]
-    comparison = vi.compare_laws(
+    comparison = vi.laws.compare_laws(
         vi.load_case("paper:type1-theory"),
         names,
         {"restitution": 0.65, "adams-impact.damping_max": 180},
@@ -170,8 +170,8 @@ def test_the_charts_hold_the_results() -> None:
 
 
 def test_a_sphere_that_rests_stays_there_until_the_longest_run_ends() -> None:
-    case = vi.read_case(plain_case(run={"impacts": 40, "duration": 3.0}))
-    found = vi.compare_laws(case, ["newton", "hertz"], {"restitution": 0.1})
+    case = vi.case_of(plain_case(run={"impacts": 40, "duration": 3.0}))
+    found = vi.laws.compare_laws(case, ["newton", "hertz"], {"restitution": 0.1})
     resting, bouncing = lines(comparison_charts(found)[0]).values()
     assert found.results["newton"].status.startswith("At rest")
     assert resting.x[-1] == bouncing.x[-1]
@@ -287,7 +287,7 @@ def test_friction_and_a_liquid_stay_under_each_law() -> None:
         "contact": {"law": "tsuji", "restitution": 0.7, "liquid": liquid},
         "run": {"impacts": 1},
     }
-    wet = vi.compare_laws(vi.read_case(table), ["tsuji", "newton"])
+    wet = vi.laws.compare_laws(vi.case_of(table), ["tsuji", "newton"])
     for name, result in wet.results.items():
         speed, achieved = (
             float(result.impacts[column][0])
@@ -301,5 +301,5 @@ def test_friction_and_a_liquid_stay_under_each_law() -> None:
         "plate": {"material": "steel", "inclination": "20 deg"},
         "contact": {"law": "tsuji", "restitution": 0.7, "friction": friction},
     }
-    rough = vi.compare_laws(vi.read_case(table), ["tsuji", "newton"])
+    rough = vi.laws.compare_laws(vi.case_of(table), ["tsuji", "newton"])
     assert all(result.energy["friction_J"] > 0.0 for result in rough.results.values())

@@ -20,7 +20,7 @@ from vibroimpact.law_sheets.curves import law_chart
 from vibroimpact.law_sheets.sheet import law_sheet, law_table
 from vibroimpact.law_sheets.text import law_text, short_source
 
-LAWS = vi.contact_laws()
+LAWS = vi.laws.contact_laws()
 
 
 def printed(what: object, width: int) -> str:

@@ -42,13 +42,13 @@ def written(folder: Path, one: Instrument) -> Path:
     return path
 
 
-def channel(path: Path, name: str, columns: str | None = None) -> vi.Record:
-    return next(record for record in vi.read_records(path, columns) if record.name == name)
+def channel(path: Path, name: str, columns: str | None = None) -> vi.signals.Record:
+    return next(record for record in vi.signals.load_records(path, columns) if record.name == name)
 
 
-def read(folder: Path, text: str, columns: str | None = None) -> list[vi.Record]:
+def read(folder: Path, text: str, columns: str | None = None) -> list[vi.signals.Record]:
     (folder / "record.csv").write_text(text, encoding="utf-8")
-    return list(vi.read_records(folder / "record.csv", columns))
+    return list(vi.signals.load_records(folder / "record.csv", columns))
 
 
 def refused(folder: Path, text: str, columns: str | None = None) -> str:
@@ -79,9 +79,9 @@ def test_the_phone(tmp_path: Path) -> None:
     record = channel(written(tmp_path, phone), "linear_acceleration_x")
     assert record.rate == pytest.approx(400.0, rel=1e-3)
     assert "jitter" in record.doubts[0]
-    assert vi.feature_table([record.value], record.rate)["peak_frequency"][0] == pytest.approx(
-        40.0, abs=4.0
-    )
+    assert vi.signals.feature_table([record.value], record.rate)["peak_frequency"][
+        0
+    ] == pytest.approx(40.0, abs=4.0)
 
 
 def test_the_track_of_a_video_calibrates_a_case(tmp_path: Path) -> None:
@@ -95,7 +95,7 @@ def test_the_track_of_a_video_calibrates_a_case(tmp_path: Path) -> None:
     case = plain_case(
         sphere=sphere, drop={"speed": SPEED, "gravity": 9.80665}, contact=contact, calibrate=section
     )
-    found = vi.calibrate_case(vi.read_calibration(case))
+    found = vi.calibration.calibrate_case(vi.calibration.calibration_of(case))
     assert found.values == pytest.approx(RESTITUTION, abs=2e-3)
     assert (
         "position: 2 of its samples have no number, the first in line 43: the record is "
@@ -161,9 +161,9 @@ def lvm(
     return text.replace(".0", f"{decimal}0").encode()
 
 
-def lvm_records(folder: Path, data: bytes) -> dict[str, vi.Record]:
+def lvm_records(folder: Path, data: bytes) -> dict[str, vi.signals.Record]:
     (folder / "record.lvm").write_bytes(data)
-    return {record.name: record for record in vi.read_records(folder / "record.lvm")}
+    return {record.name: record for record in vi.signals.load_records(folder / "record.lvm")}
 
 
 def lvm_rows(columns: str) -> str:
@@ -225,7 +225,9 @@ def test_what_labview_leaves_open(tmp_path: Path) -> None:
 
 
 def test_a_channel_of_labview_without_unit_is_a_plain_number(tmp_path: Path) -> None:
-    records = {record.name: record for record in vi.read_records(written(tmp_path, labview()))}
+    records = {
+        record.name: record for record in vi.signals.load_records(written(tmp_path, labview()))
+    }
     assert (records["untitled"].unit, records["untitled"].rate, len(records["untitled"].value)) == (
         "1",
         1.0,
@@ -387,7 +389,7 @@ def test_a_table_of_impacts_takes_none(tmp_path: Path) -> None:
         vi.InputError,
         match='line 3, column "restitution": the cell is empty; fill it in, or leave out the line',
     ):
-        vi.read_restitutions(tmp_path / "ev.csv")
+        vi.calibration.load_restitutions(tmp_path / "ev.csv")
 
 
 # several rates, and times that are doubled
@@ -468,9 +470,9 @@ def test_a_record_for_a_case_with_its_own_times(tmp_path: Path) -> None:
     case = plain_case(
         sphere=sphere, drop={"speed": SPEED, "gravity": 9.80665}, contact=contact, calibrate=section
     )
-    assert vi.calibrate_case(vi.read_calibration(case)).values == pytest.approx(
-        RESTITUTION, abs=2e-3
-    )
+    assert vi.calibration.calibrate_case(
+        vi.calibration.calibration_of(case)
+    ).values == pytest.approx(RESTITUTION, abs=2e-3)
 
 
 # columns that are stated
@@ -601,10 +603,10 @@ def test_the_keys_of_a_case(tmp_path: Path) -> None:
         match=r'plate\.motion\.file.*give --columns "time=s,force=N", .* \(in a case the key '
         r"columns\)",
     ):
-        vi.read_case(plain_case(plate__motion={"file": str(tmp_path / "bare.csv")})).to_problem()
+        vi.case_of(plain_case(plate__motion={"file": str(tmp_path / "bare.csv")})).to_problem()
     (tmp_path / "named.csv").write_text(f"time [s],displacement [mm]\n{BARE}")
     stated, named = (
-        vi.read_case(plain_case(plate__motion=motion)).to_problem().motion
+        vi.case_of(plain_case(plate__motion=motion)).to_problem().motion
         for motion in (
             {"file": str(tmp_path / "bare.csv"), "columns": columns},
             {"file": str(tmp_path / "named.csv")},
@@ -614,7 +616,7 @@ def test_the_keys_of_a_case(tmp_path: Path) -> None:
     assert named is not None
     assert stated.at(TIME[:900])[0] == pytest.approx(named.at(TIME[:900])[0], abs=1e-12)
     with pytest.raises(vi.InputError, match=r"plate\.motion\.columns: only a file has columns"):
-        vi.read_case(
+        vi.case_of(
             plain_case(plate__motion={"amplitude": 1e-3, "frequency": 20.0, "columns": columns})
         )
     (tmp_path / "sieve.csv").write_text("12,0.5\n15,0.5\n")
@@ -626,17 +628,17 @@ def test_the_keys_of_a_case(tmp_path: Path) -> None:
             "weights": "share",
         }
     }
-    (axis,) = vi.read_sweep(plain_case(sweep={"over": over})).axes.values()
+    (axis,) = vi.studies.sweep_of(plain_case(sweep={"over": over})).axes.values()
     assert axis.levels().tolist() == [0.012, 0.015]
     (tmp_path / "drop.uff").write_text("    -1\n   164\n    -1\n")
     section = {"target": {"file": str(tmp_path / "drop.uff"), "columns": columns}}
-    what = vi.read_calibration(
+    what = vi.calibration.calibration_of(
         plain_case(calibrate=section, contact={"law": "newton", "restitution": 0.5})
     )
     with pytest.raises(
         vi.InputError, match=r"target\.columns: a universal file has functions, and no columns"
     ):
-        vi.calibrate_case(what)
+        vi.calibration.calibrate_case(what)
 
 
 def test_a_table_file_with_stated_columns(tmp_path: Path) -> None:
@@ -718,7 +720,7 @@ def test_what_was_done_to_a_record_is_a_doubt_of_its_calibration(tmp_path: Path)
     case = plain_case(
         sphere=sphere, drop={"speed": SPEED, "gravity": 9.80665}, contact=contact, calibrate=section
     )
-    found = vi.calibrate_case(vi.read_calibration(case))
+    found = vi.calibration.calibrate_case(vi.calibration.calibration_of(case))
     assert found.values == pytest.approx(RESTITUTION, abs=2e-3)
     doubts = " ".join(found.doubts)
     assert "line 1 has the byte FC, which is not UTF-8" in doubts

@@ -16,7 +16,7 @@ from support import plain_case
 
 
 def calibrated(case: dict[str, Any]) -> None:
-    vi.calibrate_case(vi.read_calibration(case))
+    vi.calibration.calibrate_case(vi.calibration.calibration_of(case))
 
 
 @pytest.mark.slow
@@ -66,8 +66,8 @@ def test_friction_from_a_table_of_many_rows(
     )
 
     def calibrated_and_saved(case: dict[str, Any]) -> None:
-        what = vi.read_calibration(case)
-        vi.save_calibration(what.case, vi.calibrate_case(what), tmp_path / "found")
+        what = vi.calibration.calibration_of(case)
+        vi.calibration.calibrate_case(what).save(tmp_path / "found")
 
     section = {
         "parameter": ["friction.coefficient"],

@@ -87,7 +87,7 @@ def test_tables_at_random_are_read_right(tens: int, tmp_path: Path) -> None:
     for seed in range(10 * tens, 10 * tens + 10):
         made = table_at_random(seed)
         (tmp_path / "table.csv").write_bytes(made.data)
-        (record,) = vi.read_records(tmp_path / "table.csv")
+        (record,) = vi.signals.load_records(tmp_path / "table.csv")
         assert record.rate == pytest.approx(made.rate, rel=1e-6), seed
         assert record.start == pytest.approx(made.start, abs=1e-9), seed
         np.testing.assert_allclose(

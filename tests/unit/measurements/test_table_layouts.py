@@ -15,9 +15,9 @@ import vibroimpact as vi
 FORCE = np.array([0.0, 1.5, -2.25, 3.0])
 
 
-def read(path: Path, text: str, encoding: str = "utf-8") -> vi.Record:
+def read(path: Path, text: str, encoding: str = "utf-8") -> vi.signals.Record:
     path.write_bytes(text.encode(encoding))
-    (record,) = vi.read_records(path)
+    (record,) = vi.signals.load_records(path)
     return record
 
 
@@ -68,7 +68,7 @@ def test_tables_of_numpy(delimiter: str, decimal: str, tmp_path: Path) -> None:
         header=delimiter.join(["time [s]", "force [N]"]),
     )
     path.write_text(path.read_text().replace(".", decimal))
-    (record,) = vi.read_records(path)
+    (record,) = vi.signals.load_records(path)
     np.testing.assert_allclose(record.value, FORCE)
 
 
@@ -90,7 +90,7 @@ def test_latin_1_is_read_and_told_by_its_byte(
 def test_bytes_that_are_no_text_are_refused(text: bytes, tmp_path: Path) -> None:
     (tmp_path / "way.csv").write_bytes(text)
     with pytest.raises(vi.InputError, match=r"way\.csv"):
-        list(vi.read_records(tmp_path / "way.csv"))
+        list(vi.signals.load_records(tmp_path / "way.csv"))
 
 
 @pytest.mark.parametrize(

@@ -19,7 +19,7 @@ QUANTITIES, PLACES = (
 
 
 @cache
-def signals(modes: int, kind: str, rate: float) -> dict[str, vi.Signal]:
+def signals(modes: int, kind: str, rate: float) -> dict[str, vi.sensors.Signal]:
     """Signals of six sensors beside a contact of 0.08 ms, at the centre of a steel plate."""
     each = [
         {"name": f"{one} {name}", "quantity": one, "position": at}
@@ -40,7 +40,7 @@ def signals(modes: int, kind: str, rate: float) -> dict[str, vi.Signal]:
         run={"duration": 0.004},
         sensors=[{"filter": kind, "rate": rate, **one} for one in each],
     )
-    return dict(vi.simulate(vi.read_case(table)).signals())
+    return dict(vi.simulate(vi.case_of(table)).signals())
 
 
 @pytest.mark.parametrize(("kind", "rate"), [("none", 2e5), ("sigma-delta", 2e6)])

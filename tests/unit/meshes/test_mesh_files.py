@@ -11,7 +11,7 @@ from support import one_in
 from vibroimpact.errors import InputError
 from vibroimpact.materials import RIGID, Material
 from vibroimpact.meshes.geometry import mesh_geometry
-from vibroimpact.meshes.mesh_file import read_mesh
+from vibroimpact.meshes.mesh_file import load_mesh
 from vibroimpact.meshes.nastran_cards import nastran_real
 from vibroimpact.meshes.read_abaqus import read_abaqus
 from vibroimpact.meshes.read_gmsh import read_gmsh
@@ -102,7 +102,7 @@ def plate() -> Mesh:
 def read_text(text: str | bytes, name: str, folder: Path) -> Mesh:
     file = folder / name
     file.write_bytes(text if isinstance(text, bytes) else text.encode())
-    return read_mesh(file)
+    return load_mesh(file)
 
 
 def as_written(mesh: Mesh) -> Mesh:
@@ -237,16 +237,16 @@ def test_kinds_together(tmp_path: Path) -> None:
     )
     write_abaqus(both, tmp_path / "mesh.inp")
     write_nastran(both, tmp_path / "mesh.bdf")
-    for back in (read_mesh(tmp_path / "mesh.inp"), read_mesh(tmp_path / "mesh.bdf")):
+    for back in (load_mesh(tmp_path / "mesh.inp"), load_mesh(tmp_path / "mesh.bdf")):
         assert [block.kind for block in back.blocks] == ["tet10", "hex20"]
         np.testing.assert_allclose(measures(back), measures(tets) + measures(bricks), rtol=1e-12)
-    assert read_mesh(tmp_path / "mesh.inp").element_sets["mix"].tolist() == [1, 4]
+    assert load_mesh(tmp_path / "mesh.inp").element_sets["mix"].tolist() == [1, 4]
 
 
 def test_unit(tmp_path: Path) -> None:
     mesh = curved("tet10")
     write_abaqus(mesh, tmp_path / "mesh.INP")
-    in_millimetres = read_mesh(tmp_path / "mesh.INP", unit_in_metres=1e-3)
+    in_millimetres = load_mesh(tmp_path / "mesh.INP", unit_in_metres=1e-3)
     assert measures(in_millimetres)[0] == pytest.approx(1e-9 * measures(mesh)[0], rel=1e-12)
 
 
@@ -487,7 +487,7 @@ def test_large_files_are_read(write: str, tmp_path: Path) -> None:
         file.write_text(gmsh_text(mesh, GMSH_ORDER["hex8"]))
     else:
         (write_nastran if write == "bdf" else write_abaqus)(mesh, file)
-    assert read_mesh(file).number_of_elements == n**3
+    assert load_mesh(file).number_of_elements == n**3
 
 
 def test_written_plates(tmp_path: Path) -> None:
@@ -837,19 +837,19 @@ def test_wrong_paths(tmp_path: Path) -> None:
         ("no.step", "there is no such file"),
     ]:
         with pytest.raises(InputError, match=message):
-            read_mesh(tmp_path / name)
+            load_mesh(tmp_path / name)
     with pytest.raises(
         InputError, match="unit_in_metres: 0 m is not allowed; it must be greater than 0 and finite"
     ):
-        read_mesh("mesh.bdf", unit_in_metres=0)
+        load_mesh("mesh.bdf", unit_in_metres=0)
     with pytest.raises(InputError, match="the file is a mesh already"):
-        read_mesh("mesh.bdf", size=1)
+        load_mesh("mesh.bdf", size=1)
     with pytest.raises(InputError, match="size: -1 m is not allowed; it must be greater than 0"):
-        read_mesh("mesh.step", size=-1)
+        load_mesh("mesh.step", size=-1)
     with pytest.raises(InputError, match="order: 3 is not allowed; it must be 1 or 2"):
         mesh_geometry("mesh.step", order=3)
     with pytest.raises(InputError, match="a STEP file states its own unit; leave this out"):
-        read_mesh("mesh.stp", unit_in_metres=1e-3)
+        load_mesh("mesh.stp", unit_in_metres=1e-3)
 
 
 def test_what_can_not_be_written(tmp_path: Path) -> None:
@@ -882,8 +882,8 @@ def test_names_and_titles_can_not_break_a_file(tmp_path: Path) -> None:
     write_nastran(wild, tmp_path / "mesh.bdf", title="one\nBEGIN BULK\ntwo")
     write_abaqus(wild, tmp_path / "mesh.inp")
     write_vtu(wild, tmp_path / "mesh.vtu", {'<&"\n': np.zeros(17)})
-    assert list(read_mesh(tmp_path / "mesh.bdf").node_sets) == ['a *NODE "1", 2']
-    assert list(read_mesh(tmp_path / "mesh.inp").node_sets) == ["a *NODE '1', $2"]
+    assert list(load_mesh(tmp_path / "mesh.bdf").node_sets) == ['a *NODE "1", 2']
+    assert list(load_mesh(tmp_path / "mesh.inp").node_sets) == ["a *NODE '1', $2"]
 
 
 def test_readers_take_texts_as_paths(tmp_path: Path) -> None:
@@ -895,7 +895,7 @@ def test_a_node_given_again_in_an_included_file_names_that_file(tmp_path: Path) 
     (tmp_path / "more.bdf").write_text("GRID,1,,2.\n")
     (tmp_path / "mesh.bdf").write_text("INCLUDE 'more.bdf'\n" + TETRA)
     with pytest.raises(InputError) as raised:
-        read_mesh(tmp_path / "mesh.bdf")
+        load_mesh(tmp_path / "mesh.bdf")
     assert (
         f"mesh.bdf:2: node 1 was given other coordinates in line 1 of {tmp_path / 'more.bdf'}"
         in str(raised.value)

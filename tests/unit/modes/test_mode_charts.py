@@ -35,7 +35,7 @@ def plate_case(**changes: Any) -> vi.Case:
         "modes": 6,
         "supports": "simply-supported",
     }
-    return vi.read_case(plain_case(plate={**plate, **changes.pop("plate", {})}, **changes))
+    return vi.case_of(plain_case(plate={**plate, **changes.pop("plate", {})}, **changes))
 
 
 def marks(panel: Panel, kind: type) -> list[Any]:
@@ -161,7 +161,7 @@ def sphere() -> tuple[dict[str, vi.BodyModes], Chart]:
         "modes": 12,
         "mesh": {"elements_across": 4},
     }
-    modes = vi.compute_modes(vi.read_case(plain_case(sphere=body)))
+    modes = vi.compute_modes(vi.case_of(plain_case(sphere=body)))
     (chart,) = mode_charts(modes)
     return modes, chart
 
@@ -217,7 +217,7 @@ def test_a_sphere_alone_has_a_page_without_a_plate_in_motion(
     sphere: tuple[dict[str, vi.BodyModes], Chart],
 ) -> None:
     modes, chart = sphere
-    case = vi.read_case(
+    case = vi.case_of(
         plain_case(
             name="<script>alert(1)</script>", sphere={"radius": 0.025, "material": "rock-paper"}
         )

@@ -60,7 +60,8 @@ BASELINES = {
 def test_bursts_are_told_through_a_baseline(kind: str, noise: float) -> None:
     value = bouncing() + noise * np.random.default_rng(1).standard_normal(len(TIME))
     clean, shifted = (
-        vi.feature_table([one], RATE, unit="m/s2") for one in (value, value + BASELINES[kind])
+        vi.signals.feature_table([one], RATE, unit="m/s2")
+        for one in (value, value + BASELINES[kind])
     )
     assert clean.offset.tolist() == clean.drift.tolist() == [0.0]
     assert shifted["packets"][0] == 6.0
@@ -74,14 +75,14 @@ def test_bursts_are_told_through_a_baseline(kind: str, noise: float) -> None:
 @pytest.mark.parametrize("kind", BASELINES)
 def test_a_window_cuts_the_piece_from_the_first_touch_on(kind: str) -> None:
     record = Record("plate", bouncing() + BASELINES[kind], RATE, "m/s2")
-    clean = vi.from_onset(Record("plate", bouncing(), RATE, "m/s2"), 0.02, before=1e-3)
-    found = vi.from_onset(record, 0.02, before=1e-3)
-    assert vi.onset_time(record) == pytest.approx(0.10005, abs=1e-4)
+    clean = vi.signals.from_onset(Record("plate", bouncing(), RATE, "m/s2"), 0.02, before=1e-3)
+    found = vi.signals.from_onset(record, 0.02, before=1e-3)
+    assert vi.signals.onset_time(record) == pytest.approx(0.10005, abs=1e-4)
     assert found.start == clean.start
     np.testing.assert_allclose(found.value, clean.value, atol=0.01)
     # the row of a window tells what was removed from its record, and nothing is removed from it
     # again
-    table = vi.record_table([found], ["peak"])
+    table = vi.signals.record_table([found], ["peak"])
     assert table.offset[0] == pytest.approx(BASELINES[kind].mean(), abs=0.01)
     assert table["peak"][0] == pytest.approx(np.abs(clean.value).max(), abs=0.01)
 
@@ -89,15 +90,16 @@ def test_a_window_cuts_the_piece_from_the_first_touch_on(kind: str) -> None:
 def test_packets_are_pieces_of_the_record_without_its_baseline() -> None:
     record = Record("plate", bouncing() + BASELINES["ramp"], RATE, "m/s2")
     clean, found = (
-        vi.packet_records(one) for one in (Record("plate", bouncing(), RATE, "m/s2"), record)
+        vi.signals.packet_records(one)
+        for one in (Record("plate", bouncing(), RATE, "m/s2"), record)
     )
     assert [one.start for one in found] == [one.start for one in clean]
     np.testing.assert_allclose(
-        vi.record_table(found, ["peak"])["peak"],
-        vi.record_table(clean, ["peak"])["peak"],
+        vi.signals.record_table(found, ["peak"])["peak"],
+        vi.signals.record_table(clean, ["peak"])["peak"],
         atol=0.01,
     )
-    assert len(vi.find_packets(record, threshold=20.0).onset) == 6
+    assert len(vi.signals.find_packets(record, threshold=20.0).onset) == 6
 
 
 PART = np.arange(2000) / 2000
@@ -202,10 +204,10 @@ def test_tones_rest_at_zero() -> None:
 
 def test_a_clipped_record_that_drifts_is_seen_to_be_clipped() -> None:
     value = np.clip(bouncing() + BASELINES["ramp"], -60.0, 60.0)
-    assert vi.feature_table([value], RATE, ["clipped_part"])["clipped_part"][0] > 1e-4
+    assert vi.signals.feature_table([value], RATE, ["clipped_part"])["clipped_part"][0] > 1e-4
     # a force that rests below zero is not at an end of a converter's range there
     force = 100.0 * np.sin(np.pi * ((TIME - 0.5) / 0.01).clip(0.0, 1.0))
-    assert vi.feature_table([force - 5.0], RATE, ["clipped_part"])["clipped_part"][0] == 0.0
+    assert vi.signals.feature_table([force - 5.0], RATE, ["clipped_part"])["clipped_part"][0] == 0.0
 
 
 def written(path: Path, **channels: np.ndarray) -> Path:
@@ -251,7 +253,8 @@ def test_the_command_tells_what_it_removed(
 
 def test_bounces_of_a_microphone_with_an_offset() -> None:
     clean, shifted = (
-        vi.find_bounces(Record("microphone", bouncing() + one, RATE, "Pa")) for one in (0.0, 30.0)
+        vi.signals.find_bounces(Record("microphone", bouncing() + one, RATE, "Pa"))
+        for one in (0.0, 30.0)
     )
     np.testing.assert_allclose(shifted.restitution, clean.restitution, atol=1e-6)
     np.testing.assert_allclose(shifted.peak, clean.peak, atol=1e-3)
@@ -293,7 +296,10 @@ def test_a_correlation_through_offsets_and_drifts() -> None:
         replace(one, value=one.value + shift)
         for one, shift in zip(clean, (*baselines, 20.0), strict=True)
     ]
-    found = [vi.correlate(hammered_case(), heard[:2], force=heard[2]) for heard in (clean, shifted)]
+    found = [
+        vi.test_analysis.correlate(hammered_case(), heard[:2], force=heard[2])
+        for heard in (clean, shifted)
+    ]
     assert found[1].hits == 2
     np.testing.assert_allclose(found[1].frac, found[0].frac, atol=5e-4)
     assert found[1].removed["hammer"].offset == pytest.approx(20.0, abs=0.1)

@@ -188,7 +188,7 @@ def test_parts_of_many_rocks_are_as_they_were() -> None:
 
 def test_eight_rocks_are_not_refused(tmp_path: Path) -> None:
     """They were: "coal is in 4 rocks, too few for 5 folds"."""
-    signals = vi.read_labelled_signals(
+    signals = vi.recognition.load_labelled_signals(
         write_knocks(tmp_path / "data", rocks=8, falls=4, samples=128)
     )
     check_signals(signals, "rock")
@@ -235,14 +235,14 @@ def test_of_ten_rocks_a_leak_is_always_found() -> None:
 
 
 @pytest.fixture(scope="module")
-def few(tmp_path_factory: pytest.TempPathFactory) -> vi.Recognition:
+def few(tmp_path_factory: pytest.TempPathFactory) -> vi.recognition.Recognition:
     place = write_knocks(
         tmp_path_factory.mktemp("few") / "data", rocks=6, falls=3, samples=128, plates=1
     )
-    return vi.recognise(place, seeds=1, workers=1)
+    return vi.recognition.recognise(place, seeds=1, workers=1)
 
 
-def test_what_few_rocks_can_not_tell_is_said(few: vi.Recognition) -> None:
+def test_what_few_rocks_can_not_tell_is_said(few: vi.recognition.Recognition) -> None:
     assert few.folds == 3
     told = list(sentences(few))
     error: Any = few.scores[few.best].error
@@ -262,7 +262,7 @@ def test_what_few_rocks_can_not_tell_is_said(few: vi.Recognition) -> None:
     )
 
 
-def test_scores_of_few_rocks_have_no_decimals(few: vi.Recognition) -> None:
+def test_scores_of_few_rocks_have_no_decimals(few: vi.recognition.Recognition) -> None:
     assert coarse(few.scores[few.best].error)
     assert not any("." in cell for row in score_cells(few) for cell in row[1:-1])
 

@@ -31,8 +31,8 @@ def model(tiny_models: Path) -> Path:
 
 
 @pytest.fixture(scope="module")
-def signals(tiny_models: Path) -> vi.LabelledSignals:
-    return vi.read_labelled_signals(tiny_models / "data")
+def signals(tiny_models: Path) -> vi.recognition.LabelledSignals:
+    return vi.recognition.load_labelled_signals(tiny_models / "data")
 
 
 # data sets
@@ -68,7 +68,7 @@ def test_what_a_person_may_write_wrongly_is_named(
     with h5py.File(place / "dataset.nc", "a") as file:
         change(file)
     with pytest.raises(vi.InputError, match=f"dataset.nc: .*{message}") as raised:
-        vi.read_labelled_signals(place)
+        vi.recognition.load_labelled_signals(place)
     assert len(str(raised.value)) < 500
 
 
@@ -86,7 +86,7 @@ def test_a_study_is_verified_before_it_is_opened(tmp_path: Path) -> None:
         vi.InputError,
         match=r"dataset\.nc: the file is damaged, or was changed after it was written",
     ):
-        vi.read_labelled_signals(place)
+        vi.recognition.load_labelled_signals(place)
 
 
 def test_a_file_on_which_hdf5_hangs_is_refused(
@@ -98,7 +98,7 @@ def test_a_file_on_which_hdf5_hangs_is_refused(
         vi.InputError,
         match=r"HDF5 did not get through the file within 0\.001 s: it is damaged, or its disk",
     ):
-        vi.read_labelled_signals(write_knocks(tmp_path / "data", **TINY))
+        vi.recognition.load_labelled_signals(write_knocks(tmp_path / "data", **TINY))
 
 
 # cards
@@ -128,7 +128,7 @@ def test_a_card_of_wrong_types_is_refused(
 ) -> None:
     place = change_card(model, tmp_path, **change)
     with pytest.raises(vi.InputError, match=f"card.json: {message}") as raised:
-        vi.load_recogniser(place)
+        vi.recognition.load_recogniser(place)
     assert len(str(raised.value)) < 500
 
 
@@ -150,18 +150,18 @@ def test_json_is_bounded(text: bytes, message: str, model: Path, tmp_path: Path)
     place = change_card(model, tmp_path)
     (place / "card.json").write_bytes(text)
     with pytest.raises(vi.InputError, match=f"card.json: .*{message}"):
-        vi.load_recogniser(place)
+        vi.recognition.load_recogniser(place)
 
 
 # graphs
 
 
-def with_graph(model: Path, change: Callable[[Any], Any]) -> vi.Recogniser:
+def with_graph(model: Path, change: Callable[[Any], Any]) -> vi.recognition.Recogniser:
     """The saved model with another graph."""
-    known = vi.load_recogniser(model)
+    known = vi.recognition.load_recogniser(model)
     model = onnx.load_model_from_string(known.graph)
     change(model)
-    return vi.Recogniser(known.card, model.SerializeToString())
+    return vi.recognition.Recogniser(known.card, model.SerializeToString())
 
 
 def with_probabilities(factor: float) -> Callable[[Any], None]:
@@ -239,10 +239,13 @@ def without_features(model: Any) -> None:
     ],
 )
 def test_a_graph_is_checked_before_it_runs(
-    change: Callable[[Any], None], message: str, model: Path, signals: vi.LabelledSignals
+    change: Callable[[Any], None],
+    message: str,
+    model: Path,
+    signals: vi.recognition.LabelledSignals,
 ) -> None:
     with pytest.raises(vi.InputError, match=message) as raised:
-        vi.apply_recogniser(with_graph(model, change), signals)
+        vi.recognition.apply_recogniser(with_graph(model, change), signals)
     assert len(str(raised.value)) < 500
 
 

@@ -52,19 +52,19 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="module")
-def found(folder: Path) -> vi.Recognition:
-    return vi.recognise(folder, folds=3, seeds=2)
+def found(folder: Path) -> vi.recognition.Recognition:
+    return vi.recognition.recognise(folder, folds=3, seeds=2)
 
 
 @pytest.fixture(scope="module")
-def saved(found: vi.Recognition, tmp_path_factory: pytest.TempPathFactory) -> Path:
+def saved(found: vi.recognition.Recognition, tmp_path_factory: pytest.TempPathFactory) -> Path:
     return found.save(tmp_path_factory.mktemp("recognised") / "out")
 
 
 def refused(tmp_path: Path, change: Callable[[dict[str, Any]], None], **settings: Any) -> str:
     """Return the message with which a data set is refused."""
     group = settings.pop("group", "rock")
-    signals = vi.read_labelled_signals(
+    signals = vi.recognition.load_labelled_signals(
         write_knocks(tmp_path / "data", change, **{**SMALL, **settings})
     )
     with pytest.raises(vi.InputError) as raised:
@@ -77,7 +77,7 @@ def refused(tmp_path: Path, change: Callable[[dict[str, Any]], None], **settings
 
 
 def test_a_data_set_is_read(folder: Path) -> None:
-    signals = vi.read_labelled_signals(folder)
+    signals = vi.recognition.load_labelled_signals(folder)
     assert len(signals) == 96
     assert signals.class_names == ("coal", "gangue")
     assert signals.bayes_error == pytest.approx(BAYES_ERROR)
@@ -91,8 +91,8 @@ def test_a_data_set_is_read(folder: Path) -> None:
 
 def test_of_a_large_data_set_whole_groups_are_drawn(folder: Path) -> None:
     whole, part = (
-        vi.read_labelled_signals(folder),
-        vi.read_labelled_signals(folder / "dataset.nc", most=40, seed=3),
+        vi.recognition.load_labelled_signals(folder),
+        vi.recognition.load_labelled_signals(folder / "dataset.nc", most=40, seed=3),
     )
     rocks = np.unique(part.groups["rock"])
     assert len(part) == 36
@@ -136,23 +136,23 @@ def test_what_is_no_data_set_is_said(
     with h5py.File(place / "dataset.nc", "a") as file:
         change(file)
     with pytest.raises(vi.InputError, match=message):
-        vi.read_labelled_signals(place)
+        vi.recognition.load_labelled_signals(place)
 
 
 def test_files_that_are_no_data_sets(tmp_path: Path) -> None:
     with pytest.raises(
         vi.InputError, match=r"this is not a data set; there is no study\.nc or dataset\.nc"
     ):
-        vi.read_labelled_signals(tmp_path)
+        vi.recognition.load_labelled_signals(tmp_path)
     (tmp_path / "dataset.nc").write_text("no")
     with pytest.raises(vi.InputError, match="not a NetCDF-4 file"):
-        vi.read_labelled_signals(tmp_path)
+        vi.recognition.load_labelled_signals(tmp_path)
     place = write_knocks(tmp_path / "data", **SMALL)
     (place / "summary.json").write_text(json.dumps({"bayes_error": 1.5}))
     with pytest.raises(
         vi.InputError, match=r"bayes_error is 1\.5; it must be a number from 0 to below 1"
     ):
-        vi.read_labelled_signals(place)
+        vi.recognition.load_labelled_signals(place)
 
 
 def test_a_study_is_a_data_set(tmp_path: Path) -> None:
@@ -167,7 +167,7 @@ def test_a_study_is_a_data_set(tmp_path: Path) -> None:
         del file["signal_a1"].attrs["rate_Hz"]
         file["signal_a1"].dims[1].attach_scale(file["time_a1"])
         file["signal_a1"][7] = np.nan
-    signals = vi.read_labelled_signals(place)
+    signals = vi.recognition.load_labelled_signals(place)
     assert signals.sensors["a1"].rate == 20e3
     assert signals.groups["fall"].tolist() == [one for one in range(96) if one != 7]
     assert len(signals) == 95
@@ -230,7 +230,9 @@ def test_lengths_that_overlap_are_allowed(tmp_path: Path) -> None:
     def shorten(data: dict[str, Any]) -> None:
         data["signal_a1"][::3, 300:] = np.nan
 
-    signals = vi.read_labelled_signals(write_knocks(tmp_path / "data", shorten, **SMALL))
+    signals = vi.recognition.load_labelled_signals(
+        write_knocks(tmp_path / "data", shorten, **SMALL)
+    )
     check_signals(signals, "rock", 5)
     assert np.isfinite(features_of(signals).values).any(axis=1).all()  # zeros stand after the end
 
@@ -266,7 +268,9 @@ def test_the_same_signal_twice_in_one_rock_and_silence_are_allowed(tmp_path: Pat
         data["signal_a1"][[30, 60]] = 0.0
 
     check_signals(
-        vi.read_labelled_signals(write_knocks(tmp_path / "data", copy, **SMALL)), "rock", 5
+        vi.recognition.load_labelled_signals(write_knocks(tmp_path / "data", copy, **SMALL)),
+        "rock",
+        5,
     )
 
 
@@ -282,13 +286,15 @@ def test_slow_sampling_is_a_doubt_where_forces_tell_the_classes_too(tmp_path: Pa
     def forceful(data: dict[str, Any]) -> None:
         data["largest_force_N"] = data["largest_force_N"] * np.where(data["class"] == 1, 4.0, 1.0)
 
-    signals = vi.read_labelled_signals(write_knocks(tmp_path / "data", forceful, rate=2e3, **SMALL))
+    signals = vi.recognition.load_labelled_signals(
+        write_knocks(tmp_path / "data", forceful, rate=2e3, **SMALL)
+    )
     (doubt,) = check_signals(signals, "rock", 5)
     assert doubt.startswith("contact times can't be resolved: a1 samples at 2000 Hz")
 
 
 def test_groups_of_one_signal_are_a_doubt(folder: Path) -> None:
-    (doubt,) = check_signals(vi.read_labelled_signals(folder), "fall", 5)
+    (doubt,) = check_signals(vi.recognition.load_labelled_signals(folder), "fall", 5)
     assert doubt == "each signal has a fall of its own, so the grouped split is a random split"
 
 
@@ -306,7 +312,7 @@ def test_separation_is_that_of_the_area_under_the_curve() -> None:
 @pytest.mark.parametrize(("setting", "value"), [("folds", 1), ("seeds", 0), ("most", 3)])
 def test_settings_that_are_not_allowed(setting: str, value: int, folder: Path) -> None:
     with pytest.raises(vi.InputError, match=f"{setting}: {value} is not allowed"):
-        vi.recognise(folder, **{setting: value})
+        vi.recognition.recognise(folder, **{setting: value})
 
 
 def test_a_missing_extra_is_said(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -316,7 +322,7 @@ def test_a_missing_extra_is_said(folder: Path, monkeypatch: pytest.MonkeyPatch) 
         match=r"recognition needs scikit-learn, which is not installed: pip install "
         r'"vibroimpact\[ml\]"',
     ):
-        vi.recognise(folder)
+        vi.recognition.recognise(folder)
 
 
 # how it is scored
@@ -426,7 +432,7 @@ def test_probabilities_that_are_true_are_on_the_diagonal() -> None:
 
 
 def test_noise_has_its_level(folder: Path) -> None:
-    signals = vi.read_labelled_signals(folder)
+    signals = vi.recognition.load_labelled_signals(folder)
     power = np.median(np.mean(np.square(signals.sensors["a1"].values, dtype=float), axis=1))
     for level in (20.0, -10.0):
         added = with_noise(signals, level, 0).sensors["a1"].values - signals.sensors["a1"].values
@@ -482,7 +488,7 @@ def test_streams_of_other_rocks_are_within_their_intervals() -> None:
 # the whole
 
 
-def test_everything_is_compared(found: vi.Recognition) -> None:
+def test_everything_is_compared(found: vi.recognition.Recognition) -> None:
     assert list(found.scores) == [one.name for one in all_classifiers()] == list(found.random)
     assert found.best in (
         "logistic regression",
@@ -505,12 +511,14 @@ def test_everything_is_compared(found: vi.Recognition) -> None:
 
 
 @pytest.mark.slow
-def test_the_same_seed_gives_the_same_scores(found: vi.Recognition, folder: Path) -> None:
-    again = vi.recognise(folder, folds=3, seeds=2, workers=1)
+def test_the_same_seed_gives_the_same_scores(
+    found: vi.recognition.Recognition, folder: Path
+) -> None:
+    again = vi.recognition.recognise(folder, folds=3, seeds=2, workers=1)
     assert again.document == found.document
 
 
-def test_the_folder(saved: Path, found: vi.Recognition) -> None:
+def test_the_folder(saved: Path, found: vi.recognition.Recognition) -> None:
     assert {path.name for path in saved.iterdir()} == {
         *TABLES,
         "summary.json",
@@ -527,7 +535,7 @@ def test_the_folder(saved: Path, found: vi.Recognition) -> None:
     assert json.loads((saved / "summary.json").read_text())["recognition"]["best"] == found.best
 
 
-def test_charts_are_drawn(found: vi.Recognition) -> None:
+def test_charts_are_drawn(found: vi.recognition.Recognition) -> None:
     charts = recognition_charts(found)
     assert [one.name for one in charts] == [
         "scores",
@@ -546,7 +554,7 @@ def test_charts_are_drawn(found: vi.Recognition) -> None:
 @pytest.mark.slow
 def test_plates_that_were_never_trained_on(folder: Path) -> None:
     """Three plates are three folds; within the two that are trained on there are two."""
-    found = vi.recognise(folder, group="plate", folds=3, seeds=1)
+    found = vi.recognition.recognise(folder, group="plate", folds=3, seeds=1)
     assert found.groups == 3
     assert {one.key for one in found.unseen} >= {"drop.height"}
     with pytest.raises(
@@ -554,7 +562,7 @@ def test_plates_that_were_never_trained_on(folder: Path) -> None:
         match="coal is in 3 plates, too few for 5 folds; give signals of it from 5 plates or "
         "more, or ask for 3 folds",
     ):
-        vi.recognise(folder, group="plate", folds=5)
+        vi.recognition.recognise(folder, group="plate", folds=5)
 
 
 # leaks
@@ -565,7 +573,7 @@ def test_a_label_in_the_last_sample_is_found(tmp_path: Path) -> None:
     def leak(data: dict[str, Any]) -> None:
         data["signal_a1"][:, -1] = np.where(data["class"] == 1, 5e-3, -5e-3)
 
-    found = vi.recognise(
+    found = vi.recognition.recognise(
         write_knocks(tmp_path / "data", leak, bayes_error=False, **SMALL), folds=5, seeds=1
     )
     (doubt,) = (one for one in found.doubts if one.startswith("leak"))
@@ -576,7 +584,9 @@ def test_a_label_in_the_last_sample_is_found(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-def test_a_classifier_above_the_bound_is_a_leak(tmp_path: Path, found: vi.Recognition) -> None:
+def test_a_classifier_above_the_bound_is_a_leak(
+    tmp_path: Path, found: vi.recognition.Recognition
+) -> None:
     assert not any("leak" in one for one in found.doubts)
 
     # a faint tone of the recorder that gangue was recorded with
@@ -586,7 +596,9 @@ def test_a_classifier_above_the_bound_is_a_leak(tmp_path: Path, found: vi.Recogn
             np.float32
         )
 
-    leaky = vi.recognise(write_knocks(tmp_path / "data", leak, rocks=40, falls=6), folds=2, seeds=1)
+    leaky = vi.recognition.recognise(
+        write_knocks(tmp_path / "data", leak, rocks=40, falls=6), folds=2, seeds=1
+    )
     words = (
         "below the Bayes error of 23.1% that the data set states; if the bound counts all that "
         "an impact tells, it has used information"
@@ -597,7 +609,7 @@ def test_a_classifier_above_the_bound_is_a_leak(tmp_path: Path, found: vi.Recogn
     )
 
 
-def test_a_computed_bound_names_what_it_counts(found: vi.Recognition) -> None:
+def test_a_computed_bound_names_what_it_counts(found: vi.recognition.Recognition) -> None:
     """A classifier below the bound for two quantities may have seen a third."""
     rocks = np.repeat(np.arange(60), 5)
     right = np.eye(2)[rocks % 2]
@@ -675,7 +687,7 @@ def test_each_classifier_is_the_same_when_saved(name: str, count: int) -> None:
 
 def test_a_saved_model_recognises_other_signals(saved: Path, tmp_path: Path) -> None:
     other = write_knocks(tmp_path / "data", lambda data: data.pop("class"), seed=5, **SMALL)
-    done = vi.apply_recogniser(saved, other)
+    done = vi.recognition.apply_recogniser(saved, other)
     assert done.probabilities.shape == (96, 2)
     np.testing.assert_allclose(done.probabilities.sum(axis=1), 1.0, atol=1e-5)
     assert done.accuracy is None
@@ -683,8 +695,9 @@ def test_a_saved_model_recognises_other_signals(saved: Path, tmp_path: Path) -> 
     assert done.fractions["coal"].value == pytest.approx(
         1.0 - done.fractions["gangue"].value, abs=1e-6
     )
-    known = vi.apply_recogniser(
-        vi.load_recogniser(saved / "model"), write_knocks(tmp_path / "known", seed=5, **SMALL)
+    known = vi.recognition.apply_recogniser(
+        vi.recognition.load_recogniser(saved / "model"),
+        write_knocks(tmp_path / "known", seed=5, **SMALL),
     )
     np.testing.assert_array_equal(known.probabilities, done.probabilities)
     assert known.accuracy is not None
@@ -692,7 +705,7 @@ def test_a_saved_model_recognises_other_signals(saved: Path, tmp_path: Path) -> 
 
 
 def test_signals_that_a_model_was_trained_on_are_a_doubt(saved: Path, folder: Path) -> None:
-    assert vi.apply_recogniser(saved, folder).doubts == (
+    assert vi.recognition.apply_recogniser(saved, folder).doubts == (
         "the model was trained on signals of this data set, so it may "
         "recognise them better than others",
     )
@@ -709,7 +722,7 @@ def test_other_signals_than_a_model_knows(
     settings: dict, message: str, saved: Path, tmp_path: Path
 ) -> None:
     with pytest.raises(vi.InputError, match=message):
-        vi.apply_recogniser(saved, write_knocks(tmp_path / "data", **SMALL, **settings))
+        vi.recognition.apply_recogniser(saved, write_knocks(tmp_path / "data", **SMALL, **settings))
 
 
 def change_card(saved: Path, tmp_path: Path, **changes: Any) -> Path:
@@ -729,12 +742,14 @@ def test_a_model_of_another_format_is_refused(saved: Path, tmp_path: Path) -> No
         '"vibroimpact model 1": train it anew'
     )
     with pytest.raises(vi.InputError, match=message):
-        vi.load_recogniser(place)
+        vi.recognition.load_recogniser(place)
 
 
 def test_a_model_of_another_version_is_a_doubt(saved: Path, tmp_path: Path) -> None:
     place = change_card(saved, tmp_path, version="7.0")
-    (doubt,) = vi.apply_recogniser(place, write_knocks(tmp_path / "data", seed=5, **SMALL)).doubts
+    (doubt,) = vi.recognition.apply_recogniser(
+        place, write_knocks(tmp_path / "data", seed=5, **SMALL)
+    ).doubts
     assert doubt.startswith("the model was saved by vibroimpact 7.0 and this is")
 
 
@@ -746,7 +761,7 @@ def test_a_model_with_a_feature_of_another_version_is_refused(
         vi.InputError,
         match=r"the model needs the feature a1\.loudness, which this version does not compute",
     ):
-        vi.apply_recogniser(place, folder)
+        vi.recognition.apply_recogniser(place, folder)
 
 
 def test_a_damaged_model_is_refused(saved: Path, tmp_path: Path) -> None:
@@ -755,12 +770,12 @@ def test_a_damaged_model_is_refused(saved: Path, tmp_path: Path) -> None:
     graph[len(graph) // 2] ^= 1
     (place / "model.onnx").write_bytes(graph)
     with pytest.raises(vi.InputError, match="check sum does not match"):
-        vi.load_recogniser(place)
+        vi.recognition.load_recogniser(place)
     (place / "card.json").write_text((place / "card.json").read_text().replace("coal", "goal"))
     with pytest.raises(vi.InputError, match="check sum does not match"):
-        vi.load_recogniser(place)
+        vi.recognition.load_recogniser(place)
     with pytest.raises(vi.InputError, match=r"this is no saved model; there is no card\.json"):
-        vi.load_recogniser(saved.parent)
+        vi.recognition.load_recogniser(saved.parent)
 
 
 # the command
@@ -858,7 +873,9 @@ def test_a_random_split_is_optimistic_and_the_grouped_one_is_not(tmp_path: Path)
     """Rocks have tones of their own: split at random a classifier seems to pass the
     bound, and with rocks kept apart it stays above.
     """
-    found = vi.recognise(write_knocks(tmp_path / "data", rocks=60, falls=20, tone=0.5), seeds=5)
+    found = vi.recognition.recognise(
+        write_knocks(tmp_path / "data", rocks=60, falls=20, tone=0.5), seeds=5
+    )
     best = found.scores[found.best]
     assert found.optimism[found.best].low > 0.05
     assert found.random[found.best].error.value < BAYES_ERROR < best.error.high
@@ -871,7 +888,9 @@ def test_a_random_split_is_optimistic_and_the_grouped_one_is_not(tmp_path: Path)
 def test_without_tones_the_best_is_near_the_bound_and_the_split_does_not_matter(
     tmp_path: Path,
 ) -> None:
-    found = vi.recognise(write_knocks(tmp_path / "data", rocks=100, falls=10, tone=0.0), seeds=5)
+    found = vi.recognition.recognise(
+        write_knocks(tmp_path / "data", rocks=100, falls=10, tone=0.0), seeds=5
+    )
     best = found.scores[found.best]
     assert BAYES_ERROR - 0.03 < best.error.value < BAYES_ERROR + 0.06
     assert abs(found.optimism[found.best].value) < 0.04
@@ -879,7 +898,7 @@ def test_without_tones_the_best_is_near_the_bound_and_the_split_does_not_matter(
     assert found.calibration_error < 0.06
 
 
-def test_labelled_signals_of_python(found: vi.Recognition, folder: Path) -> None:
-    signals = vi.read_labelled_signals(folder)
+def test_labelled_signals_of_python(found: vi.recognition.Recognition, folder: Path) -> None:
+    signals = vi.recognition.load_labelled_signals(folder)
     assert isinstance(signals, LabelledSignals)
     assert found.recogniser.probabilities(signals).shape == (96, 2)

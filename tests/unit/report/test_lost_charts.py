@@ -106,7 +106,7 @@ def test_charts_that_raise(
     )
     for name in ("sensor_a1", "energy", "plate_in_motion"):
         assert f'<figure id="{name}">' in page
-    result = vi.read_result(tmp_path / "out")
+    result = vi.load_result(tmp_path / "out")
     assert len(result.impacts["time_s"]) == 1
     assert len(result.signals["a1"].value) > 1
     figures = {file.name for file in (tmp_path / "out/figures").iterdir()}
@@ -115,10 +115,10 @@ def test_charts_that_raise(
 
 
 def test_a_calibration_whose_chart_raises(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    what = vi.load_calibration("paper:type1-theory")
+    what = vi.calibration.load_calibration("paper:type1-theory")
     monkeypatch.setattr("vibroimpact.calibration.charts._parameter_chart", fails)
     with pytest.warns(ChartWarning, match="the chart parameter could not be drawn"):
-        folder = vi.save_calibration(what.case, vi.calibrate_case(what), tmp_path / "found")
+        folder = vi.calibration.calibrate_case(what).save(tmp_path / "found")
     assert json.loads((folder / "calibration.json").read_text())["parameter"] == "damping_max"
     assert "could not be drawn" in (folder / "report.html").read_text()
 

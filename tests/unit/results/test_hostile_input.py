@@ -72,7 +72,7 @@ TOO_LARGE = [
     ("changes", "words"), TOO_LARGE, ids=[words[:40] for _, words in TOO_LARGE]
 )
 def test_cases_beyond_what_a_case_can_be(changes: dict, words: str) -> None:
-    (outcome,) = attack(vi.read_case, [plain_case(**changes)])
+    (outcome,) = attack(vi.case_of, [plain_case(**changes)])
     assert outcome.kind == "refused", outcome
     assert words in outcome.text
 
@@ -106,7 +106,7 @@ def test_faults_are_few_short_and_clean() -> None:
         sphere={str(number): number for number in range(5000)}, **{f"x{'y' * 150}{ESCAPE}": 1}
     )
     with pytest.raises(InputError) as caught:
-        vi.read_case(case)
+        vi.case_of(case)
     lines = str(caught.value).split("\n")
     assert 1 < len(lines) <= MOST_LINES + 1
     assert lines[-1].startswith("and at least ")
@@ -154,7 +154,7 @@ def test_a_swept_key_that_moves_nothing(key: str) -> None:
     table = study_table(
         {"over": {key: values}}, plate={"size": [0.5, 0.4, 0.01], "material": "steel"}
     )
-    study = vi.read_sweep(table)
+    study = vi.studies.sweep_of(table)
     found = compute_points(study.table, ("impacts",), 0, study.plan.points(0, 3))
     assert not found.failures
     alone = vi.simulate(study.case_of(2)).impacts["max_force_N"]
@@ -176,7 +176,9 @@ def test_a_swept_key_that_moves_nothing(key: str) -> None:
 )
 def test_swept_keys_of_what_is_no_table(changes: dict, words: str) -> None:
     with pytest.raises(InputError) as caught:
-        vi.read_sweep(study_table({"over": {"plate.size.thickness": [0.01, 0.02]}}, **changes))
+        vi.studies.sweep_of(
+            study_table({"over": {"plate.size.thickness": [0.01, 0.02]}}, **changes)
+        )
     assert words in str(caught.value)
 
 
@@ -191,7 +193,7 @@ def test_swept_keys_of_what_is_no_table(changes: dict, words: str) -> None:
     ],
 )  # fmt: skip
 def test_studies_beyond_what_a_study_can_be(sweep: dict, words: str) -> None:
-    (outcome,) = attack(vi.read_sweep, [study_table(sweep)])
+    (outcome,) = attack(vi.studies.sweep_of, [study_table(sweep)])
     assert outcome.kind == "refused", outcome
     assert words in outcome.text
 
@@ -200,7 +202,7 @@ def test_levels_of_a_long_range_are_not_compared_as_texts() -> None:
     study = study_table(
         {"over": {"sphere.radius": {"from": 0.01, "to": 0.02, "number": 9_000_000}}}
     )
-    (outcome,) = attack(vi.read_sweep, [study])
+    (outcome,) = attack(vi.studies.sweep_of, [study])
     assert outcome.kind == "accepted", outcome
 
 

@@ -73,7 +73,7 @@ def test_values_that_do_not_exist_are_null_and_empty(tmp_path: Path) -> None:
         "drop": {"speed": 1, "gravity": 0},
         "contact": {"law": "newton", "restitution": 0.5},
     }
-    vi.simulate(vi.read_case(case)).save(tmp_path / "out")
+    vi.simulate(vi.case_of(case)).save(tmp_path / "out")
     row = json.loads((tmp_path / "out" / "summary.json").read_text())["impacts"][0]
     assert row["max_force_N"] is None
     assert row["rebound_height_m"] is None
@@ -107,13 +107,13 @@ def test_case_reads_back_as_the_same_run(folder: Path, theory: vi.Response) -> N
 
 
 def test_a_problem_made_in_python_keeps_its_inputs(tmp_path: Path) -> None:
-    law = vi.find_contact_law("newton")(restitution=0.5)
+    law = vi.laws.find_contact_law("newton")(restitution=0.5)
     ball = vi.Body(mass=1.25, contact_offset=0.1)
     vi.simulate(vi.Problem(sphere=ball, plate=vi.rigid_plate(), laws=(law,), height=1.0)).save(
         tmp_path / "out"
     )
     assert not (tmp_path / "out" / "case.toml").exists()
-    assert "mass=1.25" in vi.read_result(tmp_path / "out").provenance["problem"]
+    assert "mass=1.25" in vi.load_result(tmp_path / "out").provenance["problem"]
     assert "mass=1.25" in (tmp_path / "out" / "report.html").read_text()
 
 
@@ -153,7 +153,7 @@ def test_doubts_are_printed_and_kept(
 
 
 def test_result_reads_back(folder: Path, theory: vi.Response) -> None:
-    result = vi.read_result(folder)
+    result = vi.load_result(folder)
     np.testing.assert_array_equal(result.impacts["max_force_N"], theory.impacts["max_force_N"])
     np.testing.assert_array_equal(result.history["force_N"], theory.history()["force_N"])
     assert result.energy["input_J"] == theory.energy["input_J"]
@@ -176,14 +176,14 @@ def test_a_folder_from_before_there_was_a_column_is_read(
         monkeypatch.setattr("vibroimpact.results.folder.read_groups", read)
 
     without("time_of_max_force_s")
-    found = vi.read_result(folder).impacts
+    found = vi.load_result(folder).impacts
     assert np.isnan(found["time_of_max_force_s"]).all()
     np.testing.assert_array_equal(found["max_force_N"], theory.impacts["max_force_N"])
     without("max_force_N")
     with pytest.raises(
         vi.InputError, match=r"result.nc: the file is missing or damaged: no max_force_N"
     ):
-        vi.read_result(folder)
+        vi.load_result(folder)
 
 
 def test_report_is_remade_and_other_files_stay(tmp_path: Path, theory: vi.Response) -> None:
@@ -220,9 +220,9 @@ def test_force_replaces_a_result(
     shutil.copytree(folder, tmp_path / "out")
     with pytest.raises(vi.InputError, match="--force"):
         variable.save(tmp_path / "out")
-    assert vi.read_result(tmp_path / "out").status == theory.status
+    assert vi.load_result(tmp_path / "out").status == theory.status
     variable.save(tmp_path / "out", force=True)
-    assert vi.read_result(tmp_path / "out").status == variable.status
+    assert vi.load_result(tmp_path / "out").status == variable.status
     assert [path.name for path in tmp_path.iterdir()] == ["out"]
 
 
@@ -266,7 +266,7 @@ def test_damaged_results_are_named(
     if damage == b"" and name == "case.toml":
         return  # an empty case is what a problem made in Python has
     with pytest.raises(vi.InputError, match=r"damaged|not a result folder"):
-        vi.read_result(copy)
+        vi.load_result(copy)
 
 
 def test_damage_is_named_with_its_part_and_the_remedy(folder: Path, tmp_path: Path) -> None:
@@ -283,7 +283,7 @@ def test_damage_is_named_with_its_part_and_the_remedy(folder: Path, tmp_path: Pa
     content[place + 5] ^= 1
     (copy / "result.nc").write_bytes(bytes(content))
     with pytest.raises(vi.InputError) as refused:
-        vi.read_result(copy)
+        vi.load_result(copy)
     words = "history/force_N is damaged (its check sum does not match)"
     remedy = f"make it anew with: vibroimpact run '{copy / 'case.toml'}' -o '{copy}' --force"
     assert str(refused.value) == f"{copy / 'result.nc'}: {words}; {remedy}"
@@ -298,10 +298,10 @@ def test_a_damaged_summary_is_not_mended_by_a_run_of_another_case(
     copy = Path(shutil.copytree(folder, tmp_path / "copy"))
     (copy / "summary.json").write_text("{")
     with pytest.raises(vi.InputError, match="make it anew with: vibroimpact run"):
-        vi.read_result(copy)
+        vi.load_result(copy)
     (copy / "result.nc").unlink()
     with pytest.raises(vi.InputError, match=r"make the result anew$"):
-        vi.read_result(copy)
+        vi.load_result(copy)
 
 
 def test_results_of_earlier_versions_open(
@@ -313,14 +313,14 @@ def test_results_of_earlier_versions_open(
     summary = json.loads((copy / "summary.json").read_text())
     del summary["sha256"], summary["check_sums"]
     (copy / "summary.json").write_text(json.dumps(summary))
-    assert vi.read_result(copy).status == theory.status
+    assert vi.load_result(copy).status == theory.status
     summary["energy"], summary["truncation"] = 1.0, {"plate": [1.0]}
     (copy / "summary.json").write_text(json.dumps(summary))
     with pytest.raises(
         vi.InputError,
         match=r"summary.json: the file is missing or damaged: truncation has the wrong type",
     ):
-        vi.read_result(copy)
+        vi.load_result(copy)
 
 
 @pytest.mark.parametrize(
@@ -338,7 +338,7 @@ def test_peaks_and_truncation_without_modes_are_refused(
         vi.InputError,
         match=r"summary.json: the file is missing or damaged: frequencies_Hz has the wrong type",
     ):
-        vi.read_result(copy)
+        vi.load_result(copy)
 
 
 def test_a_large_file_goes_to_the_disk_as_it_grows(tmp_path: Path) -> None:

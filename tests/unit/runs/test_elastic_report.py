@@ -81,7 +81,7 @@ def elastic_case(**changes: Any) -> vi.Case:
         "run": {"impacts": 2},
         "sensors": SENSORS,
     }
-    return vi.read_case({**case, **changes})
+    return vi.case_of({**case, **changes})
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -106,7 +106,7 @@ def folder(response: vi.Response, tmp_path_factory: pytest.TempPathFactory) -> P
 
 @pytest.fixture(scope="module")
 def result(folder: Path) -> Result:
-    return vi.read_result(folder)
+    return vi.load_result(folder)
 
 
 def printed(result: Result, width: int = 120) -> str:
@@ -441,7 +441,7 @@ def test_identified_tells_its_element(tmp_path: Path) -> None:
     )
     write_result(result_of(response), tmp_path)
     write_paraview(response, tmp_path)
-    result = vi.read_result(tmp_path)
+    result = vi.load_result(tmp_path)
     assert "sphere" not in result.peaks
     assert dict(deformation_rows(result))["Stiffness of the local element"] == "2000000\u00a0N/m"
     assert not (tmp_path / "sensors").exists()
@@ -465,7 +465,7 @@ def test_a_sphere_alone_has_no_pictures_of_a_plate() -> None:
 def test_a_problem_made_in_python_has_no_deflection(response: vi.Response, tmp_path: Path) -> None:
     bare = replace(response.problem, models={}, source=None, facts={}, sensors=())
     write_result(result_of(vi.simulate(bare)), tmp_path)
-    result = vi.read_result(tmp_path)
+    result = vi.load_result(tmp_path)
     assert result.deflection is None
     assert treatment_sentence(result) == ""
     assert "plate_motion" in names_of(result)
@@ -481,7 +481,7 @@ def test_a_run_without_impact_is_saved(response: vi.Response, tmp_path: Path) ->
     write_paraview(response, tmp_path)
     summary = json.loads((tmp_path / "summary.json").read_text())
     assert summary["truncation"] == {"sphere": None, "plate": None}
-    result = vi.read_result(tmp_path)
+    result = vi.load_result(tmp_path)
     assert math.isnan(result.truncation["plate"])
     assert not (tmp_path / "paraview").exists()
     assert names_of(result) == {"position", "velocity", "energy"}

@@ -125,14 +125,14 @@ def test_a_summary_of_hostile_names_is_text() -> None:
 
 def test_a_long_table_leaves_its_middle_out() -> None:
     case = plain_case(contact={"law": "newton", "restitution": 0.99}, run={"impacts": 80})
-    html = vi.result_of(vi.simulate(vi.read_case(case)))._repr_html_()
+    html = vi.result_of(vi.simulate(vi.case_of(case)))._repr_html_()
     assert "… 32 more …" in html
     assert Cells(html).tags.count("tr") == 50
 
 
 def test_a_response_shows_what_its_result_does(theory: vi.Response) -> None:
     assert theory._repr_html_() == vi.result_of(theory)._repr_html_()
-    law = vi.find_contact_law("hertz")(stiffness=1e8)
+    law = vi.laws.find_contact_law("hertz")(stiffness=1e8)
     ball = vi.Body(mass=0.1, contact_offset=0.02)
     batch = vi.Problem(
         sphere=ball, plate=vi.rigid_plate(), laws=(law,), height=[0.5, 1.0], impacts=1

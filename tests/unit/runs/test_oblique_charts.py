@@ -11,7 +11,6 @@ import numpy as np
 import pytest
 
 import vibroimpact as vi
-from vibroimpact.calibration.charts import calibration_charts
 from vibroimpact.charts.chart import Chart
 from vibroimpact.charts.marks import Arrow, Label, Line, Outline, Points
 from vibroimpact.runs.charts import chart_makers
@@ -36,7 +35,7 @@ CASE: dict[str, Any] = {
 
 
 def result(**changes: Any) -> Any:
-    return vi.result_of(vi.simulate(vi.read_case({**CASE, **changes})))
+    return vi.result_of(vi.simulate(vi.case_of({**CASE, **changes})))
 
 
 def test_the_path_over_the_plate() -> None:
@@ -117,9 +116,9 @@ def charts_of(
         "run": {"impacts": 1},
         **changes,
     }
-    study = vi.read_study(
-        vi.run_sweep(
-            vi.read_sweep({**table, "sweep": {"over": over, "keep": ["peaks", *keep]}}),
+    study = vi.studies.load_study(
+        vi.studies.run_sweep(
+            vi.studies.sweep_of({**table, "sweep": {"over": over, "keep": ["peaks", *keep]}}),
             folder / "study",
         )
     )
@@ -222,12 +221,12 @@ def test_the_dimensionless_map_of_a_calibration(tmp_path: Path) -> None:
         ]
         file.write_text("\n".join([f"angle [deg],speed [m/s],{column}", *rows]), encoding="utf-8")
         section = {"target": str(file), "parameter": "friction.coefficient"}
-        found = vi.calibrate_case(
-            vi.read_calibration(
+        found = vi.calibration.calibrate_case(
+            vi.calibration.calibration_of(
                 {**ELASTIC, "drop": drops[0], "run": {"impacts": 1}, "calibrate": section}
             )
         )
-        (panel,) = calibration_charts(found)[1].panels
+        (panel,) = found.charts["slip_map"].panels
         (points,) = (mark for mark in panel.marks if isinstance(mark, Points))
         curve = next(
             mark for mark in panel.marks if isinstance(mark, Line) and mark.name == "computed"

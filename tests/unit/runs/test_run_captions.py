@@ -30,7 +30,7 @@ def run_of(**sections: Any) -> vi.Result:
         "contact": TSUJI,
         "run": {"impacts": 1},
     }
-    return vi.result_of(vi.simulate(vi.read_case({**usual, **sections})))
+    return vi.result_of(vi.simulate(vi.case_of({**usual, **sections})))
 
 
 def words(name: str, result: vi.Result) -> str:
@@ -139,7 +139,7 @@ def test_a_check_tells_all_that_ends_a_run() -> None:
         }
         console = Console(width=200)
         with console.capture() as printed:
-            console.print(case_explained(vi.read_case(table)))
+            console.print(case_explained(vi.case_of(table)))
         return (
             next(line for line in printed.get().split("\n") if line.startswith("stops"))
             .removeprefix("stops")

@@ -13,8 +13,8 @@ import numpy as np
 import pytest
 
 import vibroimpact as vi
-from vibroimpact.calibration.calibrate_case import calibrate_case, read_calibration
-from vibroimpact.signals.read_records import read_records
+from vibroimpact.calibration.calibrate_case import calibrate_case, calibration_of
+from vibroimpact.signals.record_files import load_records
 
 RATE, GRAVITY, HEIGHT, RESTITUTION = 48_000, 9.81, 0.3, 0.8
 LOSSY = {
@@ -64,7 +64,7 @@ def coded(
 def test_without_losses_the_samples_are_kept(tmp_path: Path, name: str) -> None:
     left, _ = bounces(1)
     both = np.stack([left, 0.5 * left[::-1]])
-    found = list(read_records(coded(tmp_path / name, both, *LOSSLESS[name])))
+    found = list(load_records(coded(tmp_path / name, both, *LOSSLESS[name])))
     assert [(one.name, one.rate, one.unit, one.doubts, one.blur) for one in found] == [
         (f"a {n}", RATE, "1", (), 0.0) for n in (1, 2)
     ]
@@ -81,8 +81,8 @@ def test_restitutions_hold_whatever_the_coder_lost(
     those of the WAV file are exact to 1e-6.
     """
     sound, touches = bounces(2)
-    (record,) = read_records(coded(tmp_path / name, sound, *LOSSY[name], bit_rate))
-    found = vi.find_bounces(record)
+    (record,) = load_records(coded(tmp_path / name, sound, *LOSSY[name], bit_rate))
+    found = vi.signals.find_bounces(record)
     assert len(found.time) == len(touches)
     off = found.restitution - RESTITUTION
     assert (np.abs(off) < 3.5 * np.sqrt(np.diag(found.covariance)) + 1e-5).all()
@@ -98,7 +98,7 @@ def test_calibrate_takes_a_phone_recording(tmp_path: Path) -> None:
         "contact": {"law": "adams-impact", "damping_max": 100},
         "calibrate": {"target": {"file": str(file)}},
     }
-    found = calibrate_case(read_calibration({"schema_version": 1, **case}))
+    found = calibrate_case(calibration_of({"schema_version": 1, **case}))
     assert any("coded with losses" in doubt for doubt in found.doubts)
 
 
@@ -118,7 +118,7 @@ def test_what_is_no_sound_is_refused(
     file = tmp_path / name
     file.write_bytes(content)
     with pytest.raises(vi.InputError) as error:
-        list(read_records(file))
+        list(load_records(file))
     assert str(error.value).startswith(f"{file}: ")
     assert len(str(error.value)) - len(str(file)) < 300
     assert capfd.readouterr() == ("", "")
@@ -127,9 +127,9 @@ def test_what_is_no_sound_is_refused(
 @pytest.mark.parametrize("name", ["a.mp3", "a.flac", "a.ogg"])
 def test_a_file_that_is_cut_off_is_read_as_far_as_it_goes(tmp_path: Path, name: str) -> None:
     file = coded(tmp_path / name, bounces(4)[0], *{**LOSSY, **LOSSLESS}[name])
-    (whole,) = read_records(file)
+    (whole,) = load_records(file)
     file.write_bytes(file.read_bytes()[: file.stat().st_size * 2 // 3])
-    (cut,) = read_records(file)
+    (cut,) = load_records(file)
     assert 0.5 < len(cut.value) / len(whole.value) < 0.8
 
 
@@ -143,4 +143,4 @@ def test_the_extra_is_named_where_it_is_missing(
         match=r"sound in \.m4a needs PyAV, which is not installed: pip install "
         r'"vibroimpact\[audio\]"',
     ):
-        list(read_records(tmp_path / "a.m4a"))
+        list(load_records(tmp_path / "a.m4a"))

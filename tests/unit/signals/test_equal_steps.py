@@ -66,12 +66,12 @@ def test_a_phone_s_table_is_read_with_a_doubt(tmp_path: Path) -> None:
     time = TIME + 0.2 / RATE * random.standard_normal(SAMPLES)
     rows = "\n".join(f"{at:.6f},{value:.6f}" for at, value in zip(time, swing(time), strict=True))
     (tmp_path / "phone.csv").write_text(f'"Time (s)","Acceleration x (m/s^2)"\n{rows}\n')
-    (record,) = vi.read_records(tmp_path / "phone.csv")
+    (record,) = vi.signals.load_records(tmp_path / "phone.csv")
     assert record.rate == pytest.approx(RATE, rel=1e-3)
     assert record.doubts[0].startswith('"acceleration_x": its times jitter by ')
-    assert vi.feature_table([record.value], record.rate)["peak_frequency"][0] == pytest.approx(
-        7.0, abs=0.11
-    )
+    assert vi.signals.feature_table([record.value], record.rate)["peak_frequency"][
+        0
+    ] == pytest.approx(7.0, abs=0.11)
 
 
 @pytest.mark.parametrize(

@@ -16,8 +16,8 @@ PLATE = {"size": ["300 mm", "200 mm", "8 mm"], "material": "steel"}
 SIGNAL = np.round(np.sin(np.arange(50) / 3.0) * np.exp(-np.arange(50) / 20.0), 6)
 
 
-def only(path: Path) -> vi.Record:
-    (record,) = vi.read_records(path)
+def only(path: Path) -> vi.signals.Record:
+    (record,) = vi.signals.load_records(path)
     assert record.source == str(path)
     return record
 
@@ -28,7 +28,7 @@ def test_a_table_with_units(tmp_path: Path) -> None:
         f"{0.02 * place:.3f};{value};{2 * value}" for place, value in enumerate(SIGNAL)
     )
     path.write_text(f"# a test\ntime [ms];geophone [mV];Plate acceleration (g)\n{rows}\n")
-    geophone, plate = vi.read_records(path)
+    geophone, plate = vi.signals.load_records(path)
     assert (geophone.name, geophone.unit, geophone.rate, geophone.start) == (
         "geophone",
         "V",
@@ -60,7 +60,7 @@ def test_a_wrong_table_says_what_is_wrong(text: str, message: str, tmp_path: Pat
     path = tmp_path / "wrong.csv"
     path.write_text(text)
     with pytest.raises(vi.InputError, match=message) as error:
-        list(vi.read_records(path))
+        list(vi.signals.load_records(path))
     assert "wrong.csv" in str(error.value)
 
 
@@ -114,7 +114,7 @@ def test_wav_of_24_bits_with_two_channels(tmp_path: Path) -> None:
         len(data),
     )
     path.write_bytes(head + data)
-    one, other = vi.read_records(path)
+    one, other = vi.signals.load_records(path)
     assert (one.name, other.name) == ("taps 1", "taps 2")
     np.testing.assert_allclose(one.value, SIGNAL, atol=2**-22)
     np.testing.assert_array_equal(other.value, -one.value)
@@ -127,14 +127,14 @@ def test_damaged_wav_files(data: bytes, tmp_path: Path) -> None:
     path = tmp_path / "damaged.wav"
     path.write_bytes(data)
     with pytest.raises(vi.InputError, match=r"damaged\.wav"):
-        list(vi.read_records(path))
+        list(vi.signals.load_records(path))
 
 
 @pytest.fixture(scope="module")
 def elastic(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Return the folder of a run with a sensor."""
     place = tmp_path_factory.mktemp("records") / "run"
-    case = vi.read_case(
+    case = vi.case_of(
         {
             "name": "two bounces",
             "sphere": {"radius": "25 mm", "material": "steel"},
@@ -169,15 +169,15 @@ def elastic(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_what_this_program_exports(
     format: str, file: str | None, close: float, elastic: Path, tmp_path: Path
 ) -> None:
-    signal = vi.read_result(elastic).signals["a1"]
-    vi.export_result(elastic, format, tmp_path / "out")
+    signal = vi.load_result(elastic).signals["a1"]
+    vi.exporting.export_result(elastic, format, tmp_path / "out")
     if file is None:
         with pytest.raises(vi.InputError, match="no file of records in this folder"):
-            list(vi.read_records(tmp_path / "out"))
+            list(vi.signals.load_records(tmp_path / "out"))
         return
     found = [
         one
-        for one in vi.read_records(next((tmp_path / "out").glob(file)))
+        for one in vi.signals.load_records(next((tmp_path / "out").glob(file)))
         if one.unit == "m/s" and "sphere" not in one.name
     ]
     assert len(found) == 1
@@ -186,11 +186,11 @@ def test_what_this_program_exports(
 
 
 def test_a_result_folder(elastic: Path) -> None:
-    (record,) = vi.read_records(elastic)
+    (record,) = vi.signals.load_records(elastic)
     assert (record.name, record.unit, record.rate, record.start) == ("a1", "m/s", 20e3, 0.0)
     assert record.source.endswith("result.nc")
-    np.testing.assert_array_equal(record.value, vi.read_result(elastic).signals["a1"].value)
-    (table,) = vi.read_records(elastic / "sensors" / "a1.csv")
+    np.testing.assert_array_equal(record.value, vi.load_result(elastic).signals["a1"].value)
+    (table,) = vi.signals.load_records(elastic / "sensors" / "a1.csv")
     np.testing.assert_allclose(table.value, record.value, rtol=1e-12)
 
 
@@ -213,7 +213,7 @@ def dataset(path: Path, units: str = "V", unequal: bool = False) -> np.ndarray:
 
 def test_a_data_set(tmp_path: Path) -> None:
     signals = dataset(tmp_path / "dataset.nc", "mV")
-    found = list(vi.read_records(tmp_path))
+    found = list(vi.signals.load_records(tmp_path))
     assert {(one.name, one.unit, one.rate) for one in found} == {("geophone", "V", 10e3)}
     np.testing.assert_allclose([one.value for one in found], 1e-3 * signals, rtol=1e-6)
 
@@ -226,7 +226,7 @@ def test_signals_that_are_filled_at_their_ends(tmp_path: Path) -> None:
             file["signal_geophone"][2],
             file["signal_geophone"][3, 10],
         ) = np.nan, np.nan, np.nan
-    whole, cut, none, spoilt, *_ = vi.read_records(tmp_path)
+    whole, cut, none, spoilt, *_ = vi.signals.load_records(tmp_path)
     assert [len(one.value) for one in (whole, cut, none, spoilt)] == [50, 30, 0, 50]
     np.testing.assert_array_equal(cut.value, signals[1, :30])
 
@@ -240,7 +240,9 @@ def test_a_channel_that_is_filled_at_its_end(tmp_path: Path) -> None:
         for name, length in (("long", 50), ("short", 30)):
             data = file.create_dataset(name, data=np.where(np.arange(50) < length, SIGNAL, np.nan))
             data.dims[0].attach_scale(time)
-    assert {one.name: len(one.value) for one in vi.read_records(tmp_path / "channels.nc")} == {
+    assert {
+        one.name: len(one.value) for one in vi.signals.load_records(tmp_path / "channels.nc")
+    } == {
         "long": 50,
         "short": 30,
     }
@@ -256,7 +258,7 @@ def test_netcdf_by_xarray(tmp_path: Path) -> None:
     # whatever a cluster of another test has left set
     with pytest.importorskip("dask").config.set(scheduler="synchronous"):
         data.to_netcdf(tmp_path / "x.nc", engine="h5netcdf")
-    one, other = vi.read_records(tmp_path / "x.nc")
+    one, other = vi.signals.load_records(tmp_path / "x.nc")
     assert (one.name, one.unit, one.rate, one.start) == ("acc", "m/s2", 1e3, 0.5)
     np.testing.assert_array_equal(other.value, -SIGNAL)
 
@@ -281,7 +283,7 @@ def test_netcdf_packed_by_a_filter_that_is_not_installed_is_not_called_damaged(
     with pytest.raises(
         vi.InputError, match=r"packed\.nc: acceleration is packed by a filter that HDF5 lacks here"
     ):
-        list(vi.read_records(path))
+        list(vi.signals.load_records(path))
 
 
 def test_wrong_netcdf(tmp_path: Path) -> None:
@@ -297,7 +299,7 @@ def test_wrong_netcdf(tmp_path: Path) -> None:
     }
     for name, message in messages.items():
         with pytest.raises(vi.InputError, match=message) as error:
-            list(vi.read_records(tmp_path / f"{name}.nc"))
+            list(vi.signals.load_records(tmp_path / f"{name}.nc"))
         assert f"{name}.nc" in str(error.value)
 
 
@@ -331,7 +333,7 @@ def test_a_universal_file_without_units(tmp_path: Path) -> None:
         ordinate_spec_data_type=0,
     )
     pyuff.UFF(path).write_sets(channel, "overwrite")
-    (record,) = vi.read_records(path)
+    (record,) = vi.signals.load_records(path)
     assert (record.name, record.unit, record.rate) == ("channel 1", "1", 1000.0)
     np.testing.assert_allclose(record.value, SIGNAL, rtol=1e-5)
 
@@ -347,4 +349,4 @@ def test_a_universal_file_without_units(tmp_path: Path) -> None:
 def test_what_is_no_record_is_said(name: str, message: str, tmp_path: Path) -> None:
     (tmp_path / "photo.png").write_bytes(b"\x89PNG")
     with pytest.raises(vi.InputError, match=message):
-        list(vi.read_records(tmp_path / name))
+        list(vi.signals.load_records(tmp_path / name))

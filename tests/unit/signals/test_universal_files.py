@@ -12,7 +12,7 @@ import pyuff
 
 import vibroimpact as vi
 from support import plain_case
-from vibroimpact.calibration.calibrate_case import calibrate_case, read_calibration
+from vibroimpact.calibration.calibrate_case import calibrate_case, calibration_of
 from vibroimpact.calibration.calibration import Calibration
 from vibroimpact.exporting.export_result import export_result
 from vibroimpact.measurements.record_file import read_universal_record
@@ -57,18 +57,18 @@ def calibrated(target: object, contact: dict = NEWTON) -> Calibration:
         "contact": contact,
         "calibrate": {"target": target, "degree": 0, "air": False},
     }
-    return calibrate_case(read_calibration(table))
+    return calibrate_case(calibration_of(table))
 
 
 @pytest.fixture(scope="module")
 def exported(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("run")
-    vi.simulate(vi.read_case(case())).save(folder / "run")
+    vi.simulate(vi.case_of(case())).save(folder / "run")
     export_result(folder / "run", "uff58", folder / "out.uff")
     return folder / "out.uff"
 
 
-RESTITUTIONS = vi.simulate(vi.read_case(case())).impacts["restitution_achieved"]
+RESTITUTIONS = vi.simulate(vi.case_of(case())).impacts["restitution_achieved"]
 
 
 def by_pyuff(path: Path, *functions: dict, units: dict | None = SI) -> Path:

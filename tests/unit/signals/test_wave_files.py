@@ -78,7 +78,7 @@ def test_formats_as_scipy_reads_them(
             (128.0, 128.0) if width == 1 else (0.0, 2.0 ** (8 * expected.dtype.itemsize - 1))
         )
         expected = (expected.astype(float) - middle) / size
-    found = list(vi.read_records(path))
+    found = list(vi.signals.load_records(path))
     assert [one.name for one in found] == ["sound 1", "sound 2", "sound 3"]
     assert all(one.rate == rate == RATE and one.doubts == () for one in found)
     assert np.array_equal(np.stack([one.value for one in found], axis=1), expected.astype(float))
@@ -88,23 +88,23 @@ def test_samples_in_blocks(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> N
     """Blocks of a few frames, and channels one after another, give the same."""
     data = np.random.default_rng(1).bytes(600 * 3 * 5)
     path = written(tmp_path, wave(data, 3, 5))
-    whole = [one.value for one in vi.read_records(path)]
+    whole = [one.value for one in vi.signals.load_records(path)]
     monkeypatch.setattr("vibroimpact.signals.reading.wave._BLOCK", 70)
     monkeypatch.setattr("vibroimpact.signals.reading.wave._TOGETHER", 2 * 8 * 600)
-    assert np.array_equal([one.value for one in vi.read_records(path)], whole)
+    assert np.array_equal([one.value for one in vi.signals.load_records(path)], whole)
 
 
 def test_streamed_and_long_files(tmp_path: Path) -> None:
     """Of unknown length: to the end of the file; and with the length in 64 bits."""
     data = bytes(2000)
-    (streamed,) = vi.read_records(written(tmp_path, wave(data, stated=0xFFFFFFFF)))
+    (streamed,) = vi.signals.load_records(written(tmp_path, wave(data, stated=0xFFFFFFFF)))
     assert (len(streamed.value), streamed.doubts) == (1000, ())
     long = wave(
         data + b"LISTjunk",
         stated=0xFFFFFFFF,
         more=chunk("<", b"ds64", struct.pack("<QQQ", 0, len(data), 1000)),
     )
-    (found,) = vi.read_records(written(tmp_path, b"RF64" + long[4:]))
+    (found,) = vi.signals.load_records(written(tmp_path, b"RF64" + long[4:]))
     assert (len(found.value), found.doubts) == (1000, ())
 
 
@@ -117,7 +117,7 @@ def test_a_file_that_is_cut_off_says_so(
         "the file is cut off, or its header is wrong: it has 400 of the 1,500 samples of a "
         "channel that its header states"
     )
-    (record,) = vi.read_records(path)
+    (record,) = vi.signals.load_records(path)
     assert (len(record.value), record.doubts) == (400, (words,))
     monkeypatch.setattr("sys.argv", ["vibroimpact", "features", str(path), "--only", "rms"])
     with pytest.raises(SystemExit, match="0"):
@@ -169,7 +169,7 @@ def comment(words: str) -> bytes:
 def test_refused(content: bytes, words: str, tmp_path: Path) -> None:
     path = written(tmp_path, content)
     with pytest.raises(vi.InputError) as error:
-        list(vi.read_records(path))
+        list(vi.signals.load_records(path))
     assert str(error.value).startswith(f"{path}: ")
     assert words in str(error.value)
 
@@ -180,7 +180,7 @@ def test_the_comment_before_or_after_the_samples(tmp_path: Path) -> None:
         wave(data, more=comment("1.0 is 2.5 mV (voltage of a)")),
         wave(data) + comment("1.0 is 2.5 mV (voltage of a)"),
     ):
-        (record,) = vi.read_records(written(tmp_path, content))
+        (record,) = vi.signals.load_records(written(tmp_path, content))
         assert (record.name, record.unit, record.value.tolist()) == ("a", "V", [1.25e-3, -0.625e-3])
 
 
@@ -196,9 +196,9 @@ def test_what_is_no_wave_is_not_read(tmp_path: Path) -> None:
     tracemalloc.start()
     try:
         with pytest.raises(vi.InputError, match="this is no WAV file"):
-            list(vi.read_records(zeros))
+            list(vi.signals.load_records(zeros))
         assert tracemalloc.get_traced_memory()[1] < 1_000_000
-        (record,) = vi.read_records(sound)
+        (record,) = vi.signals.load_records(sound)
         assert tracemalloc.get_traced_memory()[1] < 8 * samples + 30_000_000
     finally:
         tracemalloc.stop()
@@ -212,4 +212,4 @@ def test_a_record_that_needs_too_much_memory(
     with pytest.raises(
         vi.InputError, match="the samples of a channel need about 8e-06 GB of memory"
     ):
-        list(vi.read_records(written(tmp_path, wave(bytes(2000)))))
+        list(vi.signals.load_records(written(tmp_path, wave(bytes(2000)))))

@@ -32,7 +32,7 @@ ELASTIC_SPHERE = {"radius": 0.025, "material": "rock-paper", "model": "elastic",
 
 
 def bouncing(restitution: float, **run: Any) -> vi.Case:
-    return vi.read_case(plain_case(contact__restitution=restitution, run={"impacts": "all", **run}))
+    return vi.case_of(plain_case(contact__restitution=restitution, run={"impacts": "all", **run}))
 
 
 @pytest.mark.parametrize(
@@ -78,16 +78,16 @@ def test_a_run_of_tens_of_thousands_of_impacts_is_told() -> None:
 @pytest.mark.parametrize("law", ["newton", "hertz"])
 def test_an_elastic_bounce_goes_on_to_the_end_or_to_the_most_impacts(law: str) -> None:
     contact = {"law": law, **({"restitution": 1.0} if law == "newton" else {})}
-    case = vi.read_case(plain_case(contact=contact, run={"duration": "10 s"}))
+    case = vi.case_of(plain_case(contact=contact, run={"duration": "10 s"}))
     assert impacts_expected(case) == pytest.approx(len(vi.simulate(case).impacts["impact"]), abs=1)
     assert (
-        impacts_expected(vi.read_case(plain_case(contact=contact, run={"duration": "1e7 s"})))
+        impacts_expected(vi.case_of(plain_case(contact=contact, run={"duration": "1e7 s"})))
         == 100_000
     )
 
 
 def test_a_short_run_is_not_worth_a_word() -> None:
-    assert describe_costs(vi.read_case(plain_case())) == []
+    assert describe_costs(vi.case_of(plain_case())) == []
     assert describe_costs(vi.load_case("paper:type1-theory")) == []
 
 
@@ -95,7 +95,7 @@ def test_samples_of_a_long_run_are_told_and_refused_where_they_do_not_fit(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     sensors = [{"name": name, "position": [0.1, 0.0], "rate": "50 kHz"} for name in "abcdef"]
-    case = vi.read_case(plain_case(plate=PLATE, run={"duration": "600 s"}, sensors=sensors))
+    case = vi.case_of(plain_case(plate=PLATE, run={"duration": "600 s"}, sensors=sensors))
     (told,) = (one for one in describe_costs(case) if "samples" in one)
     assert told.startswith("the samples of 6 sensors, 1.8e+08, take about")
     assert "GB of memory and 1.6 GB on disk" in told
@@ -112,7 +112,7 @@ def test_modes_that_take_long_are_told_until_they_are_stored(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     monkeypatch.setenv("VIBROIMPACT_STORE", str(tmp_path))
-    case = vi.read_case(plain_case(sphere=ELASTIC_SPHERE))
+    case = vi.case_of(plain_case(sphere=ELASTIC_SPHERE))
     (told,) = describe_costs(case, modes_alone=True)
     assert told.startswith("the modes of the sphere take about 40 s, 1 GB of memory")
     monkeypatch.setattr("vibroimpact.structures.store.has_model", lambda key: True)
@@ -130,7 +130,7 @@ def test_modes_below_a_frequency_take_as_long_as_their_number(
         "mesh": {"elements_across": 12},
     }
     cases = [
-        vi.read_case(plain_case(sphere={**sphere, "max_frequency": most}))
+        vi.case_of(plain_case(sphere={**sphere, "max_frequency": most}))
         for most in ("20 kHz", "60 kHz")
     ]
     (few,), (many,) = (costs_of(case, modes_alone=True) for case in cases)
@@ -141,7 +141,7 @@ def test_modes_below_a_frequency_take_as_long_as_their_number(
 def test_many_impacts_of_bodies_that_vibrate_are_told() -> None:
     sphere = {**ELASTIC_SPHERE, "modes": 5, "damping": 1e-6}
     told = describe_costs(
-        vi.read_case(plain_case(sphere=sphere, contact__restitution=0.9999, run={"impacts": 1000}))
+        vi.case_of(plain_case(sphere=sphere, contact__restitution=0.9999, run={"impacts": 1000}))
     )
     assert any(one.startswith("up to about 1,000 impacts take about 20 s") for one in told), told
 

@@ -44,7 +44,7 @@ CASE = {
 
 @pytest.fixture(scope="module")
 def response() -> vi.Response:
-    return vi.simulate(vi.read_case(CASE))
+    return vi.simulate(vi.case_of(CASE))
 
 
 def rigid_motions(mass: float, lever: float = 0.0, inertia: float = 1.0) -> ModalBasis:
@@ -157,7 +157,7 @@ def test_under_gravity_it_would_fall(
         vi.InputError,
         match=r"falls away from under the sphere.*with drop.gravity = 0 and drop.speed",
     ):
-        vi.simulate(vi.read_case({**CASE, "drop": {"height": "1 m"}}))
+        vi.simulate(vi.case_of({**CASE, "drop": {"height": "1 m"}}))
     case = tmp_path / "free.toml"
     case.write_text(
         '[sphere]\nradius = "10 mm"\nmaterial = "steel"\n[plate]\nsize = [0.2, 0.15, '

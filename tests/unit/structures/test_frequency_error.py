@@ -197,7 +197,7 @@ def test_they_are_kept() -> None:
 
 
 def case(**plate: object) -> vi.Case:
-    return vi.read_case(
+    return vi.case_of(
         {
             "sphere": {"radius": "25 mm", "material": "rock-paper"},
             "plate": {

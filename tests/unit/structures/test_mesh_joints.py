@@ -18,7 +18,7 @@ from solid_meshes import together
 from support import plain_case
 from vibroimpact.errors import ComputationError, InputError
 from vibroimpact.materials import Material
-from vibroimpact.meshes.mesh_file import read_mesh
+from vibroimpact.meshes.mesh_file import load_mesh
 from vibroimpact.meshes.write_abaqus import write_abaqus
 from vibroimpact.meshes.write_nastran import write_nastran
 from vibroimpact.structures.geometry import check_mesh
@@ -102,7 +102,7 @@ def read(mesh: Mesh, more: str, folder: Path, suffix: str) -> Mesh:
     else:
         write_abaqus(mesh, file)
         file.write_text(file.read_text() + more)
-    return read_mesh(file)
+    return load_mesh(file)
 
 
 def frequencies(mesh: Mesh, supports: tuple[Support, ...] = (), rigid: int = 6) -> np.ndarray:
@@ -489,7 +489,7 @@ def test_joints_are_written_and_read_again(suffix: str, tmp_path: Path) -> None:
     (write_nastran if suffix == "bdf" else write_abaqus)(
         joined, tmp_path / f"again.{suffix}", STEEL
     )
-    again = read_mesh(tmp_path / f"again.{suffix}")
+    again = load_mesh(tmp_path / f"again.{suffix}")
     np.testing.assert_allclose(frequencies(again), frequencies(joined), rtol=1e-9)
 
 
@@ -549,7 +549,7 @@ def test_a_drop_on_joined_parts(tmp_path: Path) -> None:
             "mesh": {"file": str(tmp_path / name)},
         }
         drop = {"speed": 1.0, "gravity": 0, "position": [0.03, 0.01]}
-        response = vi.simulate(vi.read_case(plain_case(plate=plate, drop=drop)))
+        response = vi.simulate(vi.case_of(plain_case(plate=plate, drop=drop)))
         peaks.append(float(response.impacts["max_force_N"][0]))
     assert peaks[1] == pytest.approx(peaks[0], rel=1e-8)
 
@@ -567,7 +567,7 @@ def test_a_case_with_joined_parts(tmp_path: Path) -> None:
         "mesh": {"file": str(tmp_path / "joined.inp")},
     }
     for position in ([0.15, 0], [-0.1, 0], [0.15, 0]):
-        case = vi.read_case(
+        case = vi.case_of(
             plain_case(plate=plate, drop={"speed": 1.0, "gravity": 0, "position": position})
         )
         found = vi.compute_modes(case)["plate"]
@@ -684,7 +684,7 @@ def test_instances_of_an_assembly(tmp_path: Path) -> None:
     tied they are the block in one piece.
     """
     (tmp_path / "one.inp").write_text(assembly("*TIE, NAME=T, ADJUST=YES\nA, B\n"))
-    joined = read_mesh(tmp_path / "one.inp")
+    joined = load_mesh(tmp_path / "one.inp")
     assert joined.joined_by == {"*TIE": 1}
     assert joined.remarks == ()
     assert [name for name in joined.node_sets if "corner" in name] == [
@@ -710,7 +710,7 @@ def test_reference_points_of_an_assembly(tmp_path: Path) -> None:
     )
     (tmp_path / "two.inp").write_text(assembly(f"*EQUATION\n{nodes}"))
     np.testing.assert_allclose(
-        frequencies(read_mesh(tmp_path / "two.inp")), frequencies(WHOLE), rtol=1e-10
+        frequencies(load_mesh(tmp_path / "two.inp")), frequencies(WHOLE), rtol=1e-10
     )
     point = "*NODE\n1, 0, 0, 0.3\n*NSET, NSET=RP\n1,\n"
     coupled = "".join(
@@ -731,7 +731,7 @@ def test_reference_points_of_an_assembly(tmp_path: Path) -> None:
     )
     same = read(mesh, f"GRID,{number},,0.,0.,.3\n{rigid}", tmp_path, "bdf")
     np.testing.assert_allclose(
-        frequencies(read_mesh(tmp_path / "three.inp")), frequencies(same), rtol=1e-9
+        frequencies(load_mesh(tmp_path / "three.inp")), frequencies(same), rtol=1e-9
     )
 
 
@@ -752,7 +752,7 @@ def test_a_reference_point_of_an_assembly_of_one_instance(reference: str, tmp_pa
     number = len(half.nodes) + 1
     at_end = [str(node + 1) for node in np.flatnonzero(half.nodes[:, 0] > 0.1 - 1e-9)]
     rigid = f"GRID,{number},,0.,0.,.3\n" + many(["RBE2", "900", str(number), "123456", *at_end])
-    found, same = read_mesh(tmp_path / "one.inp"), read(half, rigid, tmp_path, "bdf")
+    found, same = load_mesh(tmp_path / "one.inp"), read(half, rigid, tmp_path, "bdf")
     assert found.joined_by == {"*KINEMATIC": 1}
     systems = [elastic_system(held_by(solid_structure(mesh, STEEL))) for mesh in (found, same)]
     one, other = (system.modes(3).angular_frequencies for system in systems)
@@ -765,7 +765,7 @@ def test_a_coupling_in_a_part(tmp_path: Path) -> None:
         "*END PART", "*KINEMATIC COUPLING, REF NODE=1\n2, 1, 3\ncorner, 1, 3\n*END PART"
     )
     (tmp_path / "two.inp").write_text(text)
-    found = read_mesh(tmp_path / "two.inp")
+    found = load_mesh(tmp_path / "two.inp")
     assert found.joined_by == {"*KINEMATIC COUPLING": 4}
     assert found.joints is not None
     assert len(found.joints.followers) == 2
@@ -882,4 +882,4 @@ def test_the_case_control_says_which_constraints_apply(tmp_path: Path) -> None:
     text = (tmp_path / "some.bdf").read_text().replace("ENDDATA", f"{more}ENDDATA")
     for asked, applied in (("MPC = 7", True), ("  MPC=9", True), ("TITLE = none", False)):
         (tmp_path / "some.bdf").write_text(text.replace("CEND", f"CEND\n{asked}"))
-        assert (number_of_parts(read_mesh(tmp_path / "some.bdf")) == 1) is applied
+        assert (number_of_parts(load_mesh(tmp_path / "some.bdf")) == 1) is applied

@@ -79,7 +79,7 @@ def abaqus(folder: Path, text: str, scale: float = 1.0, more: str = "") -> Path:
     """The bricks as a deck with the sets LEFT and RIGHT, and materials and sections as a text."""
     mesh = bricks()
     file = folder / "plate.inp"
-    vi.write_abaqus(replace(mesh, nodes=scale * mesh.nodes, materials=()), file)
+    vi.meshes.write_abaqus(replace(mesh, nodes=scale * mesh.nodes, materials=()), file)
     left, right = (
         ",\n".join(map(str, np.flatnonzero(mesh.element_materials == of) + 1)) for of in (0, 1)
     )
@@ -110,7 +110,7 @@ def case_of(file: Path, *, mesh: dict[str, Any] | None = None, **changes: Any) -
     }
     brought = {"file": str(file), "unit": "mm"} | (mesh or {})
     supports = {"supports": "free"}
-    return vi.read_case(
+    return vi.case_of(
         plain_case(
             plate={**plate, **supports, "mesh": brought, **changes},
             drop={"speed": 1.0, "gravity": 0},
@@ -160,7 +160,7 @@ def test_modes_of_two_materials_are_those_of_the_whole_matrices(axis: int, tmp_p
     of the motion may be lost.
     """
     mesh = bricks(axis)
-    vi.write_abaqus(mesh, tmp_path / "plate.inp")
+    vi.meshes.write_abaqus(mesh, tmp_path / "plate.inp")
     found = vi.compute_modes(case_of(tmp_path / "plate.inp", mesh={"unit": "m"}, modes=12))[
         "plate"
     ].model.angular_frequencies
@@ -328,7 +328,7 @@ def test_named_materials_are_part_of_the_case(tmp_path: Path) -> None:
         },
     )
     assert resolved_case(case)["plate"]["mesh"]["materials"]["right"]["density"] == 1100.0
-    again = vi.read_case(resolved_case(case))
+    again = vi.case_of(resolved_case(case))
     one, other = (vi.compute_modes(which)["plate"].model for which in (case, again))
     assert one.frequencies.tolist() == other.frequencies.tolist()
     density = find_material("steel").density
@@ -448,10 +448,10 @@ def test_files_that_are_written_keep_the_materials(tmp_path: Path) -> None:
     mesh = bricks()
     mixed = replace(mesh, materials=(RUBBER,), element_materials=mesh.element_materials - 1)
     for wrote in (mesh, mixed):
-        vi.write_nastran(wrote, tmp_path / "plate.bdf", STEEL)
-        vi.write_abaqus(wrote, tmp_path / "plate.inp", STEEL)
+        vi.meshes.write_nastran(wrote, tmp_path / "plate.bdf", STEEL)
+        vi.meshes.write_abaqus(wrote, tmp_path / "plate.inp", STEEL)
         for name in ("plate.bdf", "plate.inp"):
-            back = vi.read_mesh(tmp_path / name)
+            back = vi.meshes.load_mesh(tmp_path / name)
             densities = back.of_elements(STEEL, lambda one: one.density)
             assert densities == pytest.approx(wrote.of_elements(STEEL, lambda one: one.density))
             moduli = back.of_elements(STEEL, lambda one: one.youngs_modulus)
@@ -459,8 +459,8 @@ def test_files_that_are_written_keep_the_materials(tmp_path: Path) -> None:
 
 
 def test_the_static_compliance_has_the_material_at_the_place(tmp_path: Path) -> None:
-    vi.write_abaqus(replace(bricks(), materials=()), tmp_path / "one.inp", STEEL)
-    vi.write_abaqus(bricks(), tmp_path / "two.inp")
+    vi.meshes.write_abaqus(replace(bricks(), materials=()), tmp_path / "one.inp", STEEL)
+    vi.meshes.write_abaqus(bricks(), tmp_path / "two.inp")
     edges = {"type": "set", "name": "ENDS"}
     ends = (
         "*NSET, NSET=ENDS\n"
@@ -480,7 +480,7 @@ def test_the_static_compliance_has_the_material_at_the_place(tmp_path: Path) -> 
 def test_a_contact_over_layers_of_two_materials_is_refused_but_as_modes_alone(
     tmp_path: Path,
 ) -> None:
-    vi.write_abaqus(bricks(axis=2), tmp_path / "plate.inp")
+    vi.meshes.write_abaqus(bricks(axis=2), tmp_path / "plate.inp")
     case = case_of(
         tmp_path / "plate.inp",
         mesh={"unit": "m"},
@@ -495,7 +495,7 @@ def test_a_contact_over_layers_of_two_materials_is_refused_but_as_modes_alone(
     superposed = {"law": "hertz", "local_compliance": "superposed"}
     assert (
         vi.simulate(
-            vi.read_case({**resolved_case(case), "contact": superposed, "run": {"impacts": 1}})
+            vi.case_of({**resolved_case(case), "contact": superposed, "run": {"impacts": 1}})
         ).impacts["max_force_N"]
         > 0
     )

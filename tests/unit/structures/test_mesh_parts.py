@@ -44,14 +44,16 @@ def case_of(file: Path, position: list[float] | None = None, **mesh: Any) -> vi.
         "modes": 3,
         "mesh": {"file": str(file), **mesh},
     }
-    return vi.read_case(
+    return vi.case_of(
         plain_case(plate=plate, drop={"speed": 1.0, "gravity": 0, "position": position or [0, 0]})
     )
 
 
 @pytest.mark.parametrize("name", ["parts.inp", "parts.bdf"])
 def test_the_part_at_the_contact_is_the_body(name: str, tmp_path: Path) -> None:
-    (vi.write_nastran if name.endswith("bdf") else vi.write_abaqus)(PARTS, tmp_path / name)
+    (vi.meshes.write_nastran if name.endswith("bdf") else vi.meshes.write_abaqus)(
+        PARTS, tmp_path / name
+    )
     for _ in range(2):  # computed, and from the store, in which parts have keys of their own
         here, beside, rim = (
             vi.compute_modes(case_of(tmp_path / name, at))["plate"]
@@ -62,7 +64,7 @@ def test_the_part_at_the_contact_is_the_body(name: str, tmp_path: Path) -> None:
         assert rim.model.properties.centre[2] == pytest.approx(-0.1)
         assert here.model.frequencies == pytest.approx(beside.model.frequencies, rel=1e-6)
     alone = vi.compute_modes(
-        vi.read_case(
+        vi.case_of(
             plain_case(
                 plate={
                     "material": STEEL,
@@ -90,7 +92,7 @@ def test_the_part_at_the_contact_is_the_body(name: str, tmp_path: Path) -> None:
 
 
 def write(mesh: Mesh, file: Path) -> Path:
-    vi.write_abaqus(mesh, file)
+    vi.meshes.write_abaqus(mesh, file)
     return file
 
 

@@ -64,7 +64,7 @@ def test_of_plates(size: list[float], supports: str, more: dict[str, Any]) -> No
     plate = {"size": size, "material": "steel", "model": "elastic", "supports": supports, **more}
     sphere, drop = {"radius": 0.01, "material": "steel"}, {"speed": 1.0, "gravity": 0.0}
     recipe = elastic_bodies(
-        vi.read_case({"sphere": sphere, "plate": plate, "drop": drop, "contact": {"law": "hertz"}})
+        vi.case_of({"sphere": sphere, "plate": plate, "drop": drop, "contact": {"law": "hertz"}})
     )["plate"].recipe
     frequency = 60e3 if more else 30e3
     number = counted(recipe, frequency)

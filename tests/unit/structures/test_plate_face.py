@@ -47,7 +47,7 @@ def case(plate: dict[str, Any] | None = None, radius: float = 0.01, **more: Any)
         "modes": 20,
         **(plate or {}),
     }
-    return vi.read_case(
+    return vi.case_of(
         plain_case(
             sphere={"radius": radius, "material": "steel-paper"},
             plate=given,

@@ -48,7 +48,7 @@ def case(
         "modes": 8,
         "damping": 0.01,
     }
-    return vi.read_case(
+    return vi.case_of(
         {
             "sphere": {"radius": 0.002, "material": "steel"},
             "plate": {**table, **plate},

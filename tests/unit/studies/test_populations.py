@@ -103,7 +103,7 @@ def test_a_window_after_the_last_impact_asks_for_more_impacts() -> None:
     """A longer duration was asked for, which did not help."""
     case = {**table(), "run": {"duration": 0.6, "impacts": 1}}
     sweep = {"over": {"drop.height": [0.1]}, "keep": ["signals"], "window": {"length": 0.25}}
-    study = vi.read_sweep({**case, "sweep": sweep})
+    study = vi.studies.sweep_of({**case, "sweep": sweep})
     failures = compute_points(
         study.table, ("signals",), 0, study.plan.points(0, 1), study.window
     ).failures
@@ -151,8 +151,8 @@ def table(**sweep: Any) -> dict[str, Any]:
 
 
 def test_a_population_is_computed_and_read(tmp_path: Path) -> None:
-    sweep = vi.read_sweep(table())
-    study = vi.read_study(vi.run_sweep(sweep, tmp_path / "falls"))
+    sweep = vi.studies.sweep_of(table())
+    study = vi.studies.load_study(vi.studies.run_sweep(sweep, tmp_path / "falls"))
     assert study.failures == {}
     assert study.labels["rock"].tolist() == [0, 0, 1, 1, 2, 2, 3, 3, 4, 4, 5, 5]
     assert study.labels["plate"].tolist() == [0] * 6 + [1] * 6
@@ -250,5 +250,5 @@ def test_wrong_populations_are_refused(change: dict[str, Any], words: str) -> No
     wrong = table(**change)
     wrong["sweep"] = {key: value for key, value in wrong["sweep"].items() if value is not None}
     with pytest.raises(vi.InputError) as error:
-        vi.read_sweep(wrong).plan  # noqa: B018
+        vi.studies.sweep_of(wrong).plan  # noqa: B018
     assert words in str(error.value)

@@ -49,7 +49,7 @@ def population(
 
 @pytest.mark.parametrize(("design", "samples"), [("latin-hypercube", 400), ("sobol", 512)])
 def test_a_speed_follows_the_size(design: str, samples: int) -> None:
-    columns = vi.read_sweep(
+    columns = vi.studies.sweep_of(
         table({"drop.speed": SPEED, "sphere.radius": RADIUS}, design=design, samples=samples)
     ).plan.columns
     assert list(columns) == ["drop.speed", "sphere.radius"]
@@ -68,7 +68,7 @@ def test_a_speed_follows_the_size(design: str, samples: int) -> None:
 )
 def test_the_factor_belongs_to_rock_or_fall(each: str | None, number: int) -> None:
     speed = SPEED if each is None else {**SPEED, "each": each}
-    columns = vi.read_sweep(
+    columns = vi.studies.sweep_of(
         population({"drop.speed": speed}, {"sphere.radius": RADIUS})
     ).plan.columns
     factor = columns["drop.speed"] / np.sqrt(columns["sphere.radius"])
@@ -81,7 +81,7 @@ def test_classes_have_laws_of_their_own() -> None:
         "drop.speed": {**SPEED, "value": "0.6 m/s", "exponent": 1.0, "factor": [1.0]},
     }
     plain = {"sphere.radius": RADIUS, "drop.speed": {**SPEED, "factor": [1.0]}}
-    plan = vi.read_sweep(population({}, plain, flat)).plan
+    plan = vi.studies.sweep_of(population({}, plain, flat)).plan
     radius, speed, there = (
         plan.columns["sphere.radius"],
         plan.columns["drop.speed"],
@@ -93,8 +93,10 @@ def test_classes_have_laws_of_their_own() -> None:
 
 def test_what_others_draw_stays() -> None:
     own = {"sphere.radius": RADIUS}
-    alone = vi.read_sweep(population({"drop.gravity": {"from": 9.0, "to": 10.0}}, own)).plan.columns
-    beside = vi.read_sweep(
+    alone = vi.studies.sweep_of(
+        population({"drop.gravity": {"from": 9.0, "to": 10.0}}, own)
+    ).plan.columns
+    beside = vi.studies.sweep_of(
         population({"drop.gravity": {"from": 9.0, "to": 10.0}, "drop.speed": SPEED}, own)
     ).plan.columns
     for key, values in alone.items():
@@ -103,7 +105,9 @@ def test_what_others_draw_stays() -> None:
 
 def test_the_card_of_a_data_set_says_what_follows_what(tmp_path: Path) -> None:
     stated = population({"drop.speed": SPEED}, {"sphere.radius": RADIUS})
-    study = vi.read_study(vi.run_sweep(vi.read_sweep(stated), tmp_path / "study"))
+    study = vi.studies.load_study(
+        vi.studies.run_sweep(vi.studies.sweep_of(stated), tmp_path / "study")
+    )
     assert study.failures == {}
     card = data_card(study)
     assert "each independently. `drop.speed` follows `sphere.radius`." in card
@@ -112,9 +116,9 @@ def test_the_card_of_a_data_set_says_what_follows_what(tmp_path: Path) -> None:
 
 
 def test_a_description_says_what_follows_what() -> None:
-    told = sweep_document(vi.read_sweep(table({"drop.speed": SPEED, "sphere.radius": RADIUS})))[
-        "over"
-    ]["drop.speed"]
+    told = sweep_document(
+        vi.studies.sweep_of(table({"drop.speed": SPEED, "sphere.radius": RADIUS}))
+    )["over"]["drop.speed"]
     assert (told["value"], told["of"], told["at"], told["exponent"]) == (
         1.2,
         "sphere.radius",
@@ -178,7 +182,7 @@ def test_a_description_says_what_follows_what() -> None:
 )
 def test_what_can_not_follow_is_refused(wrong: dict[str, Any], words: str) -> None:
     with pytest.raises(vi.InputError, match=words):
-        vi.read_sweep(wrong)
+        vi.studies.sweep_of(wrong)
 
 
 def test_a_place_below_zero_has_no_root() -> None:
@@ -189,4 +193,4 @@ def test_a_place_below_zero_has_no_root() -> None:
         match=r'^sweep\.over\."drop\.speed": -\S+ to the power of 0\.5 is no finite number; it '
         r"is drop\.position\.x over at$",
     ):
-        vi.read_sweep(table({"drop.position.x": place, "drop.speed": speed}))
+        vi.studies.sweep_of(table({"drop.position.x": place, "drop.speed": speed}))

@@ -32,11 +32,11 @@ from vibroimpact.report.page import palette
 from vibroimpact.studies import compute_study as computing
 from vibroimpact.studies.chunk_file import ChunkResult
 from vibroimpact.studies.drop_variables import OUTCOME
-from vibroimpact.studies.read_sweep import read_sweep
 from vibroimpact.studies.report.outputs import study_outputs
 from vibroimpact.studies.report.sensitivity_table import sensitivity_of
 from vibroimpact.studies.run_sweep import run_sweep
-from vibroimpact.studies.study import Study, read_study
+from vibroimpact.studies.study import Study, load_study
+from vibroimpact.studies.sweep_file import sweep_of
 
 LOSSY = {"law": "lankarani-nikravesh", "restitution": 0.7}
 RADII = {"from": "5 mm", "to": "50 mm", "scale": "log"}
@@ -57,7 +57,7 @@ PLATE = {
 
 def study_of(folder: Path, sweep: Mapping[str, Any], **sections: Any) -> Study:
     table = {**plain_case(**{"contact": LOSSY, **sections}), "sweep": dict(sweep)}
-    return read_study(run_sweep(read_sweep(table), folder / "study"))
+    return load_study(run_sweep(sweep_of(table), folder / "study"))
 
 
 def charts_of(study: Study) -> dict[str, Chart]:
@@ -388,7 +388,7 @@ def test_the_command_of_a_drop_gives_its_results(
     (command,) = {text.split("\n")[-1] for text in texts if drop_in(text) == number}
     folder = study.path.parent
     assert run(monkeypatch, folder, command) == 0
-    impacts = vi.read_result(folder / f"drop-{number}").impacts
+    impacts = vi.load_result(folder / f"drop-{number}").impacts
     for column in ("max_force_N", "restitution_achieved", "time_s"):
         kept = study.values(column).reshape(study.size, -1)[number]
         assert impacts[column] == pytest.approx(kept[np.isfinite(kept)], rel=1e-7)
@@ -403,7 +403,7 @@ def test_a_drop_may_be_changed_and_must_exist(
     )
     assert run(monkeypatch, tmp_path, command) == 0
     assert "[sweep]" not in capsys.readouterr().err
-    case = vi.read_result(tmp_path / "changed").case
+    case = vi.load_result(tmp_path / "changed").case
     assert (case["drop"]["height"], case["sphere"]["radius"], case["contact"]["restitution"]) == (
         1.0,
         0.02,
@@ -487,9 +487,9 @@ def test_no_figure_is_drawn_for_a_report(drawn: Study) -> None:
 import sys
 from pathlib import Path
 from vibroimpact.studies.report.write_report import write_study_report
-from vibroimpact.studies.study import read_study
+from vibroimpact.studies.study import load_study
 folder = Path(sys.argv[1])
-write_study_report(read_study(folder))
+write_study_report(load_study(folder))
 print([name for name in sys.modules if name.split(".")[0] in ("matplotlib", "plotly")])
 """
     done = subprocess.run(

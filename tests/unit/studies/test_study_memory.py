@@ -11,7 +11,7 @@ from studies import RANDOM, study_table
 from vibroimpact.errors import InputError
 from vibroimpact.studies.compute_study import chunk_size, compute_study, least_memory
 
-LARGE = vi.read_sweep(study_table({**RANDOM, "samples": 100_000}))
+LARGE = vi.studies.sweep_of(study_table({**RANDOM, "samples": 100_000}))
 
 
 def test_memory_with_which_most_of_the_time_would_go_to_chunks_is_refused(tmp_path: Path) -> None:
@@ -34,13 +34,13 @@ def test_the_least_memory_makes_at_most_forty_chunks() -> None:
 
 
 def test_a_small_study_may_have_as_little_as_there_is() -> None:
-    small = vi.read_sweep(study_table({**RANDOM, "samples": 2000}))
+    small = vi.studies.sweep_of(study_table({**RANDOM, "samples": 2000}))
     assert least_memory(small) == 1e6
     assert chunk_size(small, 1e6) < 2000
 
 
 def test_what_was_begun_with_little_goes_on(tmp_path: Path) -> None:
     """The size of its chunks is fixed by then."""
-    small = vi.read_sweep(study_table({**RANDOM, "samples": 400}))
+    small = vi.studies.sweep_of(study_table({**RANDOM, "samples": 400}))
     folder = compute_study(small, tmp_path / "study", memory=1e6)
     assert compute_study(small, folder, resume=True, memory=1e6) == folder

@@ -25,7 +25,6 @@ from vibroimpact.report.terminal_report import terminal_report
 from vibroimpact.studies import compute_study as computing
 from vibroimpact.studies.chunk_file import ChunkResult
 from vibroimpact.studies.drop_variables import OUTCOME
-from vibroimpact.studies.read_sweep import read_sweep
 from vibroimpact.studies.report.axes import study_axes
 from vibroimpact.studies.report.outputs import (
     drawn_outputs,
@@ -37,7 +36,8 @@ from vibroimpact.studies.report.scales import key_axis, places
 from vibroimpact.studies.report.sensitivity_table import sensitivity_of, strongest
 from vibroimpact.studies.report.tables import percentiles_table, sensitivity_table, without_effect
 from vibroimpact.studies.run_sweep import run_sweep
-from vibroimpact.studies.study import Study, read_study
+from vibroimpact.studies.study import Study, load_study
+from vibroimpact.studies.sweep_file import sweep_of
 
 LOSSY = {"law": "lankarani-nikravesh", "restitution": 0.7}
 RADII = {"from": "5 mm", "to": "50 mm", "scale": "log"}
@@ -64,7 +64,7 @@ DRAWN = {
 
 def study_of(folder: Path, sweep: Mapping[str, Any], **sections: Any) -> Study:
     table = {**plain_case(**{"contact": LOSSY, **sections}), "sweep": dict(sweep)}
-    return read_study(run_sweep(read_sweep(table), folder / "study"))
+    return load_study(run_sweep(sweep_of(table), folder / "study"))
 
 
 @pytest.fixture(scope="module")

@@ -32,13 +32,13 @@ from vibroimpact.studies.workers import processes, this_process
 PEAKS = ("first_restitution_achieved", "largest_force_N", "total_energy_lost_J")
 
 
-def run(folder: Path, sweep: object = None, **changes: object) -> vi.Study:
-    return vi.read_study(
-        compute_study(vi.read_sweep(study_table(sweep, **changes)), folder / "study")
+def run(folder: Path, sweep: object = None, **changes: object) -> vi.studies.Study:
+    return vi.studies.load_study(
+        compute_study(vi.studies.sweep_of(study_table(sweep, **changes)), folder / "study")
     )
 
 
-def single(study: vi.Study, *place: int) -> dict[str, Any]:
+def single(study: vi.studies.Study, *place: int) -> dict[str, Any]:
     """The impacts of a drop of a study, run by itself."""
     at = place if "sample" not in study.dimensions else place * len(study.coordinates)
     values = {
@@ -159,12 +159,12 @@ def test_batches_do_not_show(tmp_path: Path) -> None:
         run__impacts=1,
         drop={"speed": 3.0, "gravity": 0.0},
     )
-    study = vi.read_study(compute_study(vi.read_sweep(table), tmp_path / "study"))
+    study = vi.studies.load_study(compute_study(vi.studies.sweep_of(table), tmp_path / "study"))
     assert "max_force_N" not in study.shapes
     asked = study.values("first_restitution_asked")
     np.testing.assert_array_equal(asked, study.coordinates["contact.restitution"])
-    law = vi.find_contact_law("lankarani-nikravesh")(stiffness=1.0, restitution=asked)
-    without_gravity = vi.achieved_restitution(law, np.ones(len(asked)), np.ones(len(asked)))
+    law = vi.laws.find_contact_law("lankarani-nikravesh")(stiffness=1.0, restitution=asked)
+    without_gravity = vi.laws.achieved_restitution(law, np.ones(len(asked)), np.ones(len(asked)))
     np.testing.assert_allclose(
         study.values("first_restitution_achieved"), without_gravity, rtol=2e-9
     )
@@ -271,9 +271,9 @@ def test_a_chunk_is_small_where_any_level_deforms() -> None:
         "model": "elastic",
     }
     over = {"plate.supports": ["clamped", "simply-supported"], "drop.height": [1.0, 2.0]}
-    assert chunk_size(vi.read_sweep(study_table({"over": over}, plate=elastic)), 5e8) == 32
-    assert chunk_size(vi.read_sweep(study_table(RANDOM)), 5e8) == 8000
-    drawn = vi.read_sweep(study_table(RANDOM))
+    assert chunk_size(vi.studies.sweep_of(study_table({"over": over}, plate=elastic)), 5e8) == 32
+    assert chunk_size(vi.studies.sweep_of(study_table(RANDOM)), 5e8) == 8000
+    drawn = vi.studies.sweep_of(study_table(RANDOM))
     # what a drop takes while it is computed, and four times what is kept of it
     each = 4000 + 4 * drawn.bytes / drawn.size
     assert chunk_size(drawn, 200 * each + 1) == 200
@@ -281,10 +281,10 @@ def test_a_chunk_is_small_where_any_level_deforms() -> None:
 
 def test_whole_sections_compare_laws_with_parameters_of_their_own(tmp_path: Path) -> None:
     laws = [{"law": "hertz"}, {"law": "flores", "restitution": 0.6}]
-    sweep = vi.read_sweep(study_table({"over": {"contact": laws, "drop.height": [1.0, 2.0]}}))
-    study = vi.read_study(compute_study(sweep, tmp_path / "study"))
+    sweep = vi.studies.sweep_of(study_table({"over": {"contact": laws, "drop.height": [1.0, 2.0]}}))
+    study = vi.studies.load_study(compute_study(sweep, tmp_path / "study"))
     for number, law in enumerate(laws):
-        alone = vi.simulate(vi.read_case(plain_case(contact=law, drop={"height": 2.0})))
+        alone = vi.simulate(vi.case_of(plain_case(contact=law, drop={"height": 2.0})))
         np.testing.assert_allclose(
             study.values("max_force_N", number, 1), alone.impacts["max_force_N"], rtol=1e-8
         )
@@ -306,7 +306,7 @@ def test_keys_without_quotes_are_the_same_keys(tmp_path: Path) -> None:
             "drop": {"height": {"from": 1, "to": 2, "number": 2}},
         }
     }
-    assert list(vi.read_sweep(study_table(nested)).axes) == [
+    assert list(vi.studies.sweep_of(study_table(nested)).axes) == [
         "sphere.radius",
         "sphere.material.density",
         "drop.height",
@@ -318,14 +318,16 @@ def test_a_distribution_can_come_from_a_file(tmp_path: Path) -> None:
         "# sieved\nRadius [mm];count\n5,5;1\n6,5;1\n7,5;2\n", encoding="utf-8"
     )
     over = {"sphere.radius": {"file": "sieve.csv", "column": "radius"}}
-    listed = vi.load_sweep(study_file(tmp_path, {"over": over}))
+    listed = vi.studies.load_sweep(study_file(tmp_path, {"over": over}))
     np.testing.assert_allclose(listed.plan.columns["sphere.radius"], [0.0055, 0.0065, 0.0075])
-    drawn = vi.load_sweep(study_file(tmp_path, {"design": "sobol", "samples": 1024, "over": over}))
+    drawn = vi.studies.load_sweep(
+        study_file(tmp_path, {"design": "sobol", "samples": 1024, "over": over})
+    )
     values, counts = np.unique(drawn.plan.columns["sphere.radius"], return_counts=True)
     np.testing.assert_allclose(values, [0.0055, 0.0065, 0.0075])
     assert np.ptp(counts) <= 2
     over["sphere.radius"] |= {"column": "Radius [mm]", "weights": "count"}
-    weighted = vi.load_sweep(
+    weighted = vi.studies.load_sweep(
         study_file(tmp_path, {"design": "sobol", "samples": 1024, "over": over})
     )
     assert np.unique(weighted.plan.columns["sphere.radius"], return_counts=True)[1].tolist() == [
@@ -339,9 +341,9 @@ def test_a_run_takes_no_notice_of_the_section(tmp_path: Path) -> None:
     case = vi.load_case(study_file(tmp_path))
     np.testing.assert_array_equal(
         vi.simulate(case).impacts["max_force_N"],
-        vi.simulate(vi.read_case(study_table())).impacts["max_force_N"],
+        vi.simulate(vi.case_of(study_table())).impacts["max_force_N"],
     )
-    assert vi.read_case(case.to_problem().source).sweep == case.sweep
+    assert vi.case_of(case.to_problem().source).sweep == case.sweep
 
 
 # where it is computed ----------------------------------------------------------------------------
@@ -349,7 +351,7 @@ def test_a_run_takes_no_notice_of_the_section(tmp_path: Path) -> None:
 
 def _chunks(start: Any) -> list[bytes]:
     """What comes of four chunks."""
-    sweep = vi.read_sweep(study_table(RANDOM))
+    sweep = vi.studies.sweep_of(study_table(RANDOM))
     found: dict[int, bytes] = {}
 
     def keep(chunk: Span, result: Any) -> None:

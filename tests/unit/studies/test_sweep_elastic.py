@@ -56,9 +56,11 @@ def own_store(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
 
 
 @pytest.fixture(scope="module")
-def study(own_store: Path, tmp_path_factory: pytest.TempPathFactory) -> vi.Study:
-    return vi.read_study(
-        compute_study(vi.read_sweep(elastic_table()), tmp_path_factory.mktemp("study") / "out")
+def study(own_store: Path, tmp_path_factory: pytest.TempPathFactory) -> vi.studies.Study:
+    return vi.studies.load_study(
+        compute_study(
+            vi.studies.sweep_of(elastic_table()), tmp_path_factory.mktemp("study") / "out"
+        )
     )
 
 
@@ -69,7 +71,7 @@ def alone(*place: int) -> vi.Response:
 
 
 @pytest.mark.slow
-def test_the_drops_are_those_of_single_runs(study: vi.Study) -> None:
+def test_the_drops_are_those_of_single_runs(study: vi.studies.Study) -> None:
     for place in ((0, 0), (1, 2)):
         single = alone(*place)
         for name in ("max_force_N", "restitution_achieved", "energy_to_vibration_J"):
@@ -79,12 +81,12 @@ def test_the_drops_are_those_of_single_runs(study: vi.Study) -> None:
         assert study.values("v2_max_magnitude", *place) == pytest.approx(np.abs(velocity).max())
 
 
-def test_the_noise_is_that_of_one_drop_alone(study: vi.Study) -> None:
+def test_the_noise_is_that_of_one_drop_alone(study: vi.studies.Study) -> None:
     noise = []
     for speed in range(3):
         (sensor,) = (one for one in alone(0, speed).problem.sensors if one.name == "a1")
         assert sensor.instrument is not None
-        quiet = vi.Sensor("a1", rate=sensor.rate)
+        quiet = vi.sensors.Sensor("a1", rate=sensor.rate)
         noise.append(
             study.values("signal_a1", 0, speed) - alone(0, speed).signals(quiet)["a1"].value
         )
@@ -94,7 +96,7 @@ def test_the_noise_is_that_of_one_drop_alone(study: vi.Study) -> None:
         np.testing.assert_allclose(values, drawn, atol=1e-3)
 
 
-def test_signals_have_a_time_and_units(study: vi.Study) -> None:
+def test_signals_have_a_time_and_units(study: vi.studies.Study) -> None:
     with xr.open_dataset(study.path, engine="h5netcdf") as data:
         assert data["signal_a1"].dims == ("drop.position.x", "drop.speed", "time")
         assert data["signal_a1"].attrs["units"] == "m/s2"
@@ -113,9 +115,9 @@ def test_what_is_left_in_vibration_is_kept(own_store: Path, tmp_path: Path) -> N
         "drop": {"speed": 2.0},
         "run": {"duration": "0.1 s"},
     }
-    sweep = vi.read_sweep(study_table({"over": {"drop.speed": [0.02, 2.0]}}, **given))
+    sweep = vi.studies.sweep_of(study_table({"over": {"drop.speed": [0.02, 2.0]}}, **given))
     folder = compute_study(sweep, tmp_path / "out")
-    left = vi.read_study(folder).values("left_in_vibration_J")
+    left = vi.studies.load_study(folder).values("left_in_vibration_J")
     resting = vi.simulate(sweep.case_of(0))
     assert resting.outcomes[0].at_rest
     np.testing.assert_array_equal(left, [resting.rest.left[0], np.nan])
@@ -127,7 +129,9 @@ def test_what_is_left_in_vibration_is_kept(own_store: Path, tmp_path: Path) -> N
 
 def test_a_drop_outside_the_plate_fails_by_itself(own_store: Path, tmp_path: Path) -> None:
     over = {"plate.size.length": [0.52, 0.3], "drop.position.x": [0.0, 0.2]}
-    study = vi.read_study(compute_study(vi.read_sweep(elastic_table(over=over)), tmp_path / "out"))
+    study = vi.studies.load_study(
+        compute_study(vi.studies.sweep_of(elastic_table(over=over)), tmp_path / "out")
+    )
     assert list(study.failures) == [3]
     assert "(0.2, 0) m lies outside the plate" in study.failures[3]
     assert np.isfinite(study.values("largest_force_N")).tolist() == [[True, True], [True, False]]
@@ -187,10 +191,14 @@ def scheduler(tmp_path: Path) -> Iterator[tuple[str, list[subprocess.Popen[bytes
 
 @pytest.mark.slow
 def test_modes_travel_to_workers_that_do_not_see_the_store(
-    study: vi.Study, scheduler: tuple[str, list[subprocess.Popen[bytes]], Path], tmp_path: Path
+    study: vi.studies.Study,
+    scheduler: tuple[str, list[subprocess.Popen[bytes]], Path],
+    tmp_path: Path,
 ) -> None:
     address, _, store = scheduler
-    folder = compute_study(vi.read_sweep(elastic_table()), tmp_path / "out", scheduler=address)
+    folder = compute_study(
+        vi.studies.sweep_of(elastic_table()), tmp_path / "out", scheduler=address
+    )
     names = {path.name for path in entries()}
     theirs = {path.name for path in store.iterdir()}
     assert theirs & names, "nothing travelled"
@@ -200,12 +208,14 @@ def test_modes_travel_to_workers_that_do_not_see_the_store(
 
 @pytest.mark.slow
 def test_a_dask_worker_that_is_killed_costs_nothing(
-    study: vi.Study, scheduler: tuple[str, list[subprocess.Popen[bytes]], Path], tmp_path: Path
+    study: vi.studies.Study,
+    scheduler: tuple[str, list[subprocess.Popen[bytes]], Path],
+    tmp_path: Path,
 ) -> None:
     address, workers, _ = scheduler
     # several chunks
     over = {"drop.position.x": [0.0, 0.1], "drop.speed": {"from": 1.0, "to": 3.0, "number": 64}}
-    sweep = vi.read_sweep(elastic_table(over=over))
+    sweep = vi.studies.sweep_of(elastic_table(over=over))
     killed = threading.Event()
 
     def progress(done: int, total: int) -> None:

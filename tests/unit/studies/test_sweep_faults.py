@@ -36,7 +36,7 @@ from vibroimpact.studies.run_chunks import run_chunks
 from vibroimpact.studies.workers import WorkerPool, processes, this_process
 from waiting import wait_until
 
-DRAWN = vi.read_sweep(study_table(RANDOM))
+DRAWN = vi.studies.sweep_of(study_table(RANDOM))
 SMALL = int(200 * (4000 + 4 * DRAWN.bytes / DRAWN.size)) + 1
 """Memory with which a chunk of three impacts has 200 drops."""
 
@@ -71,7 +71,9 @@ def killed_again_and_again(tmp_path: Path, kills: int, seed: int) -> None:
     in peace.
     """
     study, random_moment = study_file(tmp_path, MANY), random.Random(seed)
-    undisturbed = compute_study(vi.load_sweep(study), tmp_path / "undisturbed", memory=SMALL)
+    undisturbed = compute_study(
+        vi.studies.load_sweep(study), tmp_path / "undisturbed", memory=SMALL
+    )
     folder, done, progressed, killed = tmp_path / "disturbed", 0, 0, 0
     for number in range(kills):
         begun = (folder / LEDGER).exists()
@@ -98,7 +100,7 @@ def killed_again_and_again(tmp_path: Path, kills: int, seed: int) -> None:
         done = chunks_done(folder)
     assert killed >= (kills + 1) // 2
     assert progressed >= (killed + 1) // 2
-    compute_study(vi.load_sweep(study), folder, resume=True)
+    compute_study(vi.studies.load_sweep(study), folder, resume=True)
     assert results(folder) == results(undisturbed)
 
 
@@ -162,7 +164,7 @@ def test_ctrl_c_says_how_to_go_on(tmp_path: Path) -> None:
     )
     assert f"-o {folder} --resume" in last
     assert 0 < chunks_done(folder) < 40
-    compute_study(vi.load_sweep(study), folder, resume=True)
+    compute_study(vi.studies.load_sweep(study), folder, resume=True)
 
 
 # workers that die --------------------------------------------------------------------------------
@@ -183,7 +185,7 @@ def _dies(mark: str, always: bool, first: int, points: Any) -> ChunkResult:
 
 
 def _with_a_death(tmp_path: Path, *, always: bool) -> dict[int, ChunkResult]:
-    sweep, found = vi.read_sweep(study_table(RANDOM)), {}
+    sweep, found = vi.studies.sweep_of(study_table(RANDOM)), {}
     chunks = [Span(number, 50 * number, 50) for number in range(4)]
 
     def keep(chunk: Span, result: ChunkResult) -> None:
@@ -205,7 +207,7 @@ def _with_a_death(tmp_path: Path, *, always: bool) -> dict[int, ChunkResult]:
 def test_a_worker_that_is_killed_costs_nothing(tmp_path: Path) -> None:
     found = _with_a_death(tmp_path, always=False)
     assert (tmp_path / "mark").exists()
-    sweep = vi.read_sweep(study_table(RANDOM))
+    sweep = vi.studies.sweep_of(study_table(RANDOM))
     for number in range(4):
         alone = compute_points(
             sweep.table, ("impacts",), 50 * number, sweep.plan.points(50 * number, 50)
@@ -229,8 +231,8 @@ def test_a_chunk_that_kills_every_worker_is_given_up_and_the_rest_go_on(tmp_path
 def test_a_chunk_of_which_nothing_came_has_its_place_in_the_results(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    sweep = vi.read_sweep(study_table({**RANDOM, "samples": 500}))
-    whole = vi.read_study(compute_study(sweep, tmp_path / "whole", memory=SMALL))
+    sweep = vi.studies.sweep_of(study_table({**RANDOM, "samples": 500}))
+    whole = vi.studies.load_study(compute_study(sweep, tmp_path / "whole", memory=SMALL))
 
     def compute(table: Any, keep: Any, first: int, points: Any, window: Any) -> ChunkResult:
         return (
@@ -240,7 +242,7 @@ def test_a_chunk_of_which_nothing_came_has_its_place_in_the_results(
         )
 
     monkeypatch.setattr(computing, "compute_points", compute)
-    study = vi.read_study(compute_study(sweep, tmp_path / "out", memory=SMALL))
+    study = vi.studies.load_study(compute_study(sweep, tmp_path / "out", memory=SMALL))
     assert study.failures == dict.fromkeys(range(200, 400), "it died")
     for name in ("max_force_N", "largest_force_N"):
         values, expected = study.values(name), whole.values(name)
@@ -333,7 +335,9 @@ def _small_disk() -> bool:
 @pytest.mark.skipif(not _small_disk(), reason="no file systems can be mounted here")
 def test_a_full_disk_ends_the_study_and_room_lets_it_go_on(tmp_path: Path) -> None:
     study = study_file(tmp_path, {**RANDOM, "samples": 4000})
-    undisturbed = compute_study(vi.load_sweep(study), tmp_path / "undisturbed", memory=SMALL)
+    undisturbed = compute_study(
+        vi.studies.load_sweep(study), tmp_path / "undisturbed", memory=SMALL
+    )
     begin = subprocess.list2cmdline(sweep_command(study, Path("/mnt/out"), "--processes", "1"))
     script = f"""
         mount -t tmpfs -o size=1m tmpfs /mnt
@@ -362,7 +366,7 @@ def test_a_full_disk_ends_the_study_and_room_lets_it_go_on(tmp_path: Path) -> No
 
 
 def test_a_disk_that_fills_while_the_results_are_put_together_is_told(tmp_path: Path) -> None:
-    sweep = vi.read_sweep(study_table({**RANDOM, "samples": 100}))
+    sweep = vi.studies.sweep_of(study_table({**RANDOM, "samples": 100}))
     expected = results(compute_study(sweep, tmp_path / "undisturbed"))
     limits, kept = resource.getrlimit(resource.RLIMIT_FSIZE), study_dataset._reserve_space
 
@@ -387,7 +391,7 @@ def test_a_disk_that_fills_while_the_results_are_put_together_is_told(tmp_path: 
 def test_a_chunk_that_can_not_be_written_is_told(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    sweep = vi.read_sweep(study_table(RANDOM))
+    sweep = vi.studies.sweep_of(study_table(RANDOM))
 
     def full(descriptor: int) -> None:
         raise OSError(28, "No space left on device")
@@ -408,7 +412,7 @@ def test_a_chunk_that_can_not_be_written_is_told(
 # the folder --------------------------------------------------------------------------------------
 
 
-def stopped(folder: Path, sweep: vi.Sweep, after: int = 1) -> None:
+def stopped(folder: Path, sweep: vi.studies.Sweep, after: int = 1) -> None:
     """Begin a study and stop it after some of its drops."""
 
     class Stop(BaseException):
@@ -423,7 +427,7 @@ def stopped(folder: Path, sweep: vi.Sweep, after: int = 1) -> None:
 
 
 def test_a_second_sweep_in_a_folder_is_refused(tmp_path: Path) -> None:
-    sweep = vi.read_sweep(study_table({**RANDOM, "samples": 600}))
+    sweep = vi.studies.sweep_of(study_table({**RANDOM, "samples": 600}))
     folder = tmp_path / "out"
     stopped(folder, sweep)
     with open_ledger(folder):
@@ -459,7 +463,7 @@ def test_the_journal_of_a_ledger_whose_process_was_killed_goes_with_the_next_ope
 
 
 def test_a_damaged_ledger_is_refused_and_made_anew_from_the_chunks(tmp_path: Path) -> None:
-    sweep, folder = vi.read_sweep(study_table({**RANDOM, "samples": 1000})), tmp_path / "out"
+    sweep, folder = vi.studies.sweep_of(study_table({**RANDOM, "samples": 1000})), tmp_path / "out"
     stopped(folder, sweep, after=600)
     data = (folder / LEDGER).read_bytes()
     (folder / LEDGER).write_bytes(data[:4096] + os.urandom(len(data) - 4096))
@@ -478,19 +482,19 @@ def test_a_damaged_ledger_is_refused_and_made_anew_from_the_chunks(tmp_path: Pat
 
 
 def test_chunks_of_another_size_are_not_taken_up(tmp_path: Path) -> None:
-    sweep, folder = vi.read_sweep(study_table({**RANDOM, "samples": 1000})), tmp_path / "out"
+    sweep, folder = vi.studies.sweep_of(study_table({**RANDOM, "samples": 1000})), tmp_path / "out"
     stopped(folder, sweep, after=600)
     (folder / LEDGER).unlink()
     compute_study(sweep, folder, resume=True, memory=2 * SMALL)
     np.testing.assert_array_equal(
-        vi.read_study(folder).values("first_restitution_asked"),
+        vi.studies.load_study(folder).values("first_restitution_asked"),
         sweep.plan.columns["contact.restitution"],
     )
 
 
 def test_a_chunk_that_is_not_as_it_was_written_is_computed_again(tmp_path: Path) -> None:
     sweep, folder, told = (
-        vi.read_sweep(study_table({**RANDOM, "samples": 1000})),
+        vi.studies.sweep_of(study_table({**RANDOM, "samples": 1000})),
         tmp_path / "out",
         [],
     )
@@ -503,9 +507,9 @@ def test_a_chunk_that_is_not_as_it_was_written_is_computed_again(tmp_path: Path)
 
 
 def test_another_study_does_not_go_on_here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    sweep, folder = vi.read_sweep(study_table({**RANDOM, "samples": 600})), tmp_path / "out"
+    sweep, folder = vi.studies.sweep_of(study_table({**RANDOM, "samples": 600})), tmp_path / "out"
     stopped(folder, sweep)
-    changed = vi.read_sweep(study_table({**RANDOM, "samples": 600, "seed": 1}))
+    changed = vi.studies.sweep_of(study_table({**RANDOM, "samples": 600, "seed": 1}))
     with pytest.raises(
         vi.InputError,
         match=r"the study has changed since it was begun here.*study.toml in it is what was begun",
@@ -519,17 +523,17 @@ def test_another_study_does_not_go_on_here(tmp_path: Path, monkeypatch: pytest.M
         ):
             compute_study(sweep, folder, resume=True)
     # what was begun is there, and is the same
-    compute_study(vi.load_sweep(folder / "study.toml"), folder, resume=True)
+    compute_study(vi.studies.load_sweep(folder / "study.toml"), folder, resume=True)
     # nothing is left to do
-    compute_study(vi.load_sweep(folder / "study.toml"), folder, resume=True)
+    compute_study(vi.studies.load_sweep(folder / "study.toml"), folder, resume=True)
     with pytest.raises(
         vi.InputError, match=r"this is a study of many drops, not the result of a run"
     ):
-        vi.read_result(folder)
+        vi.load_result(folder)
 
 
 def test_resume_begins_where_nothing_was_begun_and_replaces_nothing(tmp_path: Path) -> None:
-    sweep = vi.read_sweep(study_table({**RANDOM, "samples": 10}))
+    sweep = vi.studies.sweep_of(study_table({**RANDOM, "samples": 10}))
     begun, again = (
         compute_study(sweep, tmp_path / name, resume=name == "begun") for name in ("begun", "again")
     )
@@ -542,13 +546,13 @@ def test_resume_begins_where_nothing_was_begun_and_replaces_nothing(tmp_path: Pa
 
 
 def test_a_study_takes_the_place_of_another_only_if_it_is_told_to(tmp_path: Path) -> None:
-    sweep = vi.read_sweep(study_table({**RANDOM, "samples": 10}))
+    sweep = vi.studies.sweep_of(study_table({**RANDOM, "samples": 10}))
     folder = compute_study(sweep, tmp_path / "out")
     before = results(folder)
     with pytest.raises(vi.InputError, match="a study is there already"):
         compute_study(sweep, folder)
     assert results(folder) == before
-    compute_study(vi.read_sweep(study_table({**RANDOM, "samples": 12})), folder, force=True)
+    compute_study(vi.studies.sweep_of(study_table({**RANDOM, "samples": 12})), folder, force=True)
     assert results(folder) != before
 
 

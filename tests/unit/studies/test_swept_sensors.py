@@ -47,21 +47,25 @@ def table(**over: Any) -> dict[str, Any]:
 
 
 @pytest.fixture(scope="module")
-def study(tmp_path_factory: pytest.TempPathFactory) -> vi.Study:
+def study(tmp_path_factory: pytest.TempPathFactory) -> vi.studies.Study:
     over = {
         "sensors.a1.position.x": ["100 mm", "97 mm"],
         "sensors.a1.accelerometer.sensitivity": ["10 mV s^2/m", "20 mV s^2/m"],
         "sensors.g.2.amplifier.noise": ["0 mV", "3 mV"],
     }
-    return vi.read_study(
-        vi.run_sweep(vi.read_sweep(table(**over)), tmp_path_factory.mktemp("sensors") / "study")
+    return vi.studies.load_study(
+        vi.studies.run_sweep(
+            vi.studies.sweep_of(table(**over)), tmp_path_factory.mktemp("sensors") / "study"
+        )
     )
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("place", [0, 1])
-def test_a_swept_sensor_reads_what_one_mounted_there_reads(study: vi.Study, place: int) -> None:
-    case = vi.read_case(
+def test_a_swept_sensor_reads_what_one_mounted_there_reads(
+    study: vi.studies.Study, place: int
+) -> None:
+    case = vi.case_of(
         with_values(
             table(),
             {
@@ -76,19 +80,19 @@ def test_a_swept_sensor_reads_what_one_mounted_there_reads(study: vi.Study, plac
     )
 
 
-def test_sensitivity_scales_what_is_read(study: vi.Study) -> None:
+def test_sensitivity_scales_what_is_read(study: vi.studies.Study) -> None:
     signals = study.values("signal_a1")
     np.testing.assert_allclose(signals[:, 1], 2.0 * signals[:, 0], rtol=1e-6)
     assert not np.allclose(signals[0], signals[1], rtol=1e-2)
 
 
-def test_swept_noise_is_in_the_samples_as_stated(study: vi.Study) -> None:
+def test_swept_noise_is_in_the_samples_as_stated(study: vi.studies.Study) -> None:
     signals = study.values("signal_g.2")
     noise = (signals[..., 1, :] - signals[..., 0, :]).ravel()
     assert stats.kstest(noise, stats.norm(0.0, 3e-3).cdf).pvalue > 1e-3
 
 
-def test_keys_have_units_and_words(study: vi.Study) -> None:
+def test_keys_have_units_and_words(study: vi.studies.Study) -> None:
     assert study.meanings["sensors.a1.position.x"] == ("m", "place of the sensor, x")
     assert study.meanings["sensors.g.2.amplifier.noise"][0] == "V"
 
@@ -131,14 +135,14 @@ def test_a_sensor_is_mounted_once_on_a_plate() -> None:
 )
 def test_what_can_not_be_swept_is_refused(over: dict[str, Any], words: str) -> None:
     with pytest.raises(InputError, match=words):
-        vi.read_sweep(table(**over))
+        vi.studies.sweep_of(table(**over))
 
 
 def test_sensors_matter_to_signals_alone() -> None:
     with pytest.raises(
         InputError, match=r'sensors.a1.position.x": it changes signals alone, which are not kept'
     ):
-        vi.read_sweep(
+        vi.studies.sweep_of(
             table(**{"sensors.a1.position.x": [0.1]})
             | {"sweep": {"over": {"sensors.a1.position.x": [0.1]}}}
         )
@@ -157,7 +161,7 @@ def test_sensors_are_not_of_a_class() -> None:
         "classes": classes,
     }
     with pytest.raises(InputError, match="the sensors are not of a class; leave it out here"):
-        vi.read_sweep({**table(), "sweep": sweep})
+        vi.studies.sweep_of({**table(), "sweep": sweep})
 
 
 def test_unquoted_keys_reach_sensors() -> None:
@@ -169,11 +173,11 @@ def test_unquoted_keys_reach_sensors() -> None:
             }
         }
     }
-    assert vi.read_sweep(table(**nested)).size == 6
+    assert vi.studies.sweep_of(table(**nested)).size == 6
 
 
 def test_single_keys_of_sensors_are_set() -> None:
-    case = vi.read_case(
+    case = vi.case_of(
         with_values(
             {**table(), "sweep": {"over": {"sphere.radius": [0.02]}}},
             {"sensors.g.2.geophone.sensitivity": "30 V s/m"},

@@ -38,9 +38,7 @@ def fallen() -> tuple[float, tuple[Record, ...]]:
     rate than the case says, one upside down.
     """
     sensors = [{**one, "rate": RATE} for one in TABLE["sensors"]]
-    response = vi.simulate(
-        vi.read_case({**TABLE, **DROP, "sensors": sensors, "run": {"impacts": 2}})
-    )
+    response = vi.simulate(vi.case_of({**TABLE, **DROP, "sensors": sensors, "run": {"impacts": 2}}))
     value = np.stack([one.value for one in response.signals().values()])
     touch, after = response.impacts["time_s"][:2]
     value = value[:, : int(after * RATE) - 40] * [[-1.0], [1.0]]
@@ -49,14 +47,14 @@ def fallen() -> tuple[float, tuple[Record, ...]]:
 
 @cache
 def dropped() -> Correlation:
-    return vi.correlate(vi.read_case({**TABLE, **DROP}), fallen()[1], window=0.15)
+    return vi.test_analysis.correlate(vi.case_of({**TABLE, **DROP}), fallen()[1], window=0.15)
 
 
 @cache
 def struck(damping: float = 0.008) -> Correlation:
     """Two blows, and the records of a plate of damping 0.008, beside the case with another."""
     force, value = hammered((0.02, 0.24), 0.45)
-    return vi.correlate(
+    return vi.test_analysis.correlate(
         a_case(damping=damping), records(value), force=Record("hammer", force, RATE, "N")
     )
 
@@ -163,7 +161,7 @@ def test_the_damping_is_put_into_the_case() -> None:
     field = tomllib.loads(damping_field(found.modes))["damping"]
     assert (struck(0.008).relative_residual < 0.015).all()
     force, value = hammered((0.02, 0.24), 0.45)
-    again = vi.correlate(
+    again = vi.test_analysis.correlate(
         a_case(damping=field),
         records(value),
         force=Record("hammer", force, RATE, "N"),
@@ -176,7 +174,7 @@ def test_what_a_hammer_may_do() -> None:
     force, value = hammered((0.02, 0.024), 0.2)
     most = 0.4 * np.abs(value).max()
     clipped = [replace(one, value=np.clip(one.value, -most, most)) for one in records(value)]
-    found = vi.correlate(
+    found = vi.test_analysis.correlate(
         a_case(), clipped, force=Record("hammer", force, RATE, "N"), band=(300.0, 1100.0)
     )
     words = " ".join(found.doubts)
@@ -189,7 +187,7 @@ def test_what_a_hammer_may_do() -> None:
 def test_channels_that_were_not_sampled_together_are_told() -> None:
     force, value = hammered((0.02,), 0.2)
     late = records(np.roll(value, 3, axis=1))
-    found = vi.correlate(
+    found = vi.test_analysis.correlate(
         a_case(), late, force=Record("hammer", force, RATE, "N"), band=(300.0, 1100.0)
     )
     assert found.delay * RATE == pytest.approx(3.0, abs=0.01)
@@ -213,7 +211,7 @@ def test_a_late_channel_is_named_and_the_right_one_is_not_inverted(
     moved = value.copy()
     moved[late] = np.roll(moved[late], shift)
     if with_force:
-        found = vi.correlate(
+        found = vi.test_analysis.correlate(
             a_case(), records(moved), force=Record("hammer", force, RATE, "N"), band=LOW
         )
     else:
@@ -222,7 +220,7 @@ def test_a_late_channel_is_named_and_the_right_one_is_not_inverted(
             replace(one, value=np.roll(one.value, shift)) if number == late else one
             for number, one in enumerate(made)
         ]
-        found = vi.correlate(vi.read_case({**TABLE, **DROP}), shifted, window=0.1)
+        found = vi.test_analysis.correlate(vi.case_of({**TABLE, **DROP}), shifted, window=0.1)
     signs = [1.0, 1.0] if with_force else [-1.0, 1.0]
     assert found.polarity.tolist() == signs
     said = [doubt for doubt in found.doubts if "than the others and its simulation" in doubt]
@@ -258,12 +256,12 @@ def test_records_of_a_low_rate_are_aligned_by_64_samples() -> None:
     }
     sensors = [{"name": "a", "position": [0.1, 0.03], "rate": 6e3}]
     drop = {"speed": 1.0, "position": [0.02, 0.01]}
-    case = vi.read_case(
+    case = vi.case_of(
         plain_case(
             plate=plate, drop=drop, contact={"law": "hertz"}, run={"duration": 0.2}, sensors=sensors
         )
     )
-    found = vi.correlate(
+    found = vi.test_analysis.correlate(
         case, [Record("a", 1.3 * vi.simulate(case).signals()["a"].value, 6e3, "m/s2")], window=0.05
     )
     assert found.aligned == pytest.approx(64.0 / 6e3)
@@ -277,10 +275,12 @@ def test_records_of_a_low_rate_are_aligned_by_64_samples() -> None:
 def test_a_gain_that_is_off_is_doubted(gain: float) -> None:
     force, value = HIT
     hammer = Record("hammer", force, RATE, "N")
-    one = vi.correlate(a_case(), records(value * [[1.0], [gain]]), force=hammer, band=LOW)
+    one = vi.test_analysis.correlate(
+        a_case(), records(value * [[1.0], [gain]]), force=hammer, band=LOW
+    )
     (said,) = [doubt for doubt in one.doubts if "times" in doubt]
     assert f'the record "a2" is {gain:.3g} times its simulation in the first 5 ms' in said
-    every = vi.correlate(a_case(), records(value * gain), force=hammer, band=LOW)
+    every = vi.test_analysis.correlate(a_case(), records(value * gain), force=hammer, band=LOW)
     (said,) = [doubt for doubt in every.doubts if "times" in doubt]
     assert f"all records are {gain:.3g} times the simulation" in said
     assert "the calibration of the force" in said
@@ -289,7 +289,7 @@ def test_a_gain_that_is_off_is_doubted(gain: float) -> None:
 @pytest.mark.parametrize("gain", [0.97, 1.0, 1.03])
 def test_a_gain_within_what_sensors_have_is_not(gain: float) -> None:
     force, value = HIT
-    found = vi.correlate(
+    found = vi.test_analysis.correlate(
         a_case(),
         records(value * [[1.0], [gain]]),
         force=Record("hammer", force, RATE, "N"),
@@ -317,7 +317,7 @@ def test_the_band_ends_where_the_force_does() -> None:
 def _whole(damping: float) -> Correlation:
     force, value = hammered((0.02, 0.24), 0.45)
     hammer = Record("hammer", force, RATE, "N")
-    return vi.correlate(
+    return vi.test_analysis.correlate(
         a_case(damping=damping),
         records(value),
         force=hammer,
@@ -332,7 +332,7 @@ def test_the_band_of_a_double_hit_is_that_of_its_pulses(hits: tuple[float, ...])
     """
     force, value = hammered(hits, 0.45)
     for damping in (0.008, 0.02):
-        found = vi.correlate(
+        found = vi.test_analysis.correlate(
             a_case(damping=damping), records(value), force=Record("hammer", force, RATE, "N")
         )
         # of a half sine of 1 ms the spectrum falls by 20 dB at 1.30 kHz
@@ -365,7 +365,7 @@ def test_where_damping_alone_differs_it_is_said(
     either, nor a sensitivity.
     """
     motions, force = knocked(knocked_case(radius, material))
-    found = vi.correlate(
+    found = vi.test_analysis.correlate(
         knocked_case(radius, material, damping=0.02), motions, force=force if with_force else None
     )
     assert found.band[1] == pytest.approx(min(11296.0, fallen_by_20_dB(force)), rel=0.01)
@@ -377,7 +377,7 @@ def test_where_damping_alone_differs_it_is_said(
     assert "the frequencies agree within 0.2 %, and the damping does not" in said[0]
     assert "modes are 0.25 times the case's" in said[0]
     assert f"FRAC is {found.damped_frac.min():.3f}" in said[0]
-    same = vi.correlate(
+    same = vi.test_analysis.correlate(
         knocked_case(radius, material), motions, force=force if with_force else None
     )
     assert (same.frac > 0.995).all()
@@ -387,7 +387,7 @@ def test_where_damping_alone_differs_it_is_said(
 
 def test_a_case_without_damping() -> None:
     motions, force = knocked(knocked_case(0.016))
-    found = vi.correlate(knocked_case(0.016, damping=0.0), motions, force=force)
+    found = vi.test_analysis.correlate(knocked_case(0.016, damping=0.0), motions, force=force)
     assert any(
         "modes are 0.0" in doubt and "and the case has no damping" in doubt
         for doubt in found.doubts
@@ -399,7 +399,7 @@ def test_a_case_without_damping() -> None:
 def test_a_modulus_that_is_off_is_told_of_records_too(with_force: bool) -> None:
     """Frequencies are proportional to its square root; with them the damping can be told apart."""
     motions, force = knocked(knocked_case(0.016, modulus=1.03 * 206e9))
-    found = vi.correlate(
+    found = vi.test_analysis.correlate(
         knocked_case(0.016, damping=0.01), motions, force=force if with_force else None
     )
     (said,) = (doubt for doubt in found.doubts if "Young's modulus over density" in doubt)
@@ -483,7 +483,7 @@ def test_what_is_not_clipped_is_not_said_to_be() -> None:
 
 def test_a_force_that_is_upside_down_is_suspected() -> None:
     force, value = hammered((0.02, 0.24), 0.45)
-    found = vi.correlate(
+    found = vi.test_analysis.correlate(
         a_case(damping=0.008), records(value), force=Record("hammer", -force, RATE, "N"), window=0.1
     )
     assert found.polarity.tolist() == [-1.0, -1.0]
@@ -506,8 +506,8 @@ def test_an_octave_of_few_frequencies_tells_nothing() -> None:
     """Of a single frequency the criterion would be 1, of noise too."""
     first, *others = fallen()[1]
     noise = replace(first, value=np.random.default_rng(0).standard_normal(len(first.value)))
-    found = vi.correlate(
-        vi.read_case({**TABLE, **DROP}), [noise, *others], window=0.15, band=(1408.0, 4000.0)
+    found = vi.test_analysis.correlate(
+        vi.case_of({**TABLE, **DROP}), [noise, *others], window=0.15, band=(1408.0, 4000.0)
     )
     assert found.octaves[0] == (1408.0, pytest.approx(1414.2, abs=0.1))
     assert np.isnan(found.octave_frac[:, 0]).all()
@@ -541,12 +541,12 @@ def changed(**one: Any) -> list[Record]:
 )
 def test_what_is_refused(change: dict[str, Any], options: dict[str, Any], words: str) -> None:
     with pytest.raises(vi.InputError, match=f"(?i){words}"):
-        vi.correlate(a_case(), changed(**change), **options)
+        vi.test_analysis.correlate(a_case(), changed(**change), **options)
 
 
 def test_no_records_are_refused() -> None:
     with pytest.raises(vi.InputError, match="there is no record"):
-        vi.correlate(a_case(), [])
+        vi.test_analysis.correlate(a_case(), [])
 
 
 @pytest.mark.parametrize(
@@ -562,7 +562,7 @@ def test_no_records_are_refused() -> None:
 )
 def test_cases_that_are_refused(table: dict[str, Any], words: str) -> None:
     with pytest.raises(vi.InputError, match=words):
-        vi.correlate(vi.read_case({**TABLE, **table}), changed())
+        vi.test_analysis.correlate(vi.case_of({**TABLE, **table}), changed())
 
 
 def test_the_command(command: Callable[..., tuple[int, str, str]]) -> None:

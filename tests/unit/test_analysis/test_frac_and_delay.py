@@ -24,7 +24,7 @@ def test_frac_of_shifted_resonances() -> None:
         (0.0, 0.001, 0.004),
         (3.0, 0.002, 0.001),
     ):
-        found = vi.frac(
+        found = vi.signals.frac(
             resonance(frequency, 1000.0, one), resonance(frequency, 1000.0 + shift, other)
         )
         widths = 1000.0 * one, 1000.0 * other
@@ -36,18 +36,18 @@ def test_frac_of_shifted_resonances() -> None:
 def test_frac_knows_no_scale() -> None:
     response = resonance(np.linspace(500.0, 1500.0, 1001), 1000.0, 0.01)
     other = resonance(np.linspace(500.0, 1500.0, 1001), 1010.0, 0.02)
-    assert vi.frac(response, response) == pytest.approx(1.0, abs=1e-12)
+    assert vi.signals.frac(response, response) == pytest.approx(1.0, abs=1e-12)
     for factor in (1e-200, -3.0, 2.0j, 1e200):
-        assert vi.frac(response, factor * other) == pytest.approx(
-            float(vi.frac(response, other)), rel=1e-12
+        assert vi.signals.frac(response, factor * other) == pytest.approx(
+            float(vi.signals.frac(response, other)), rel=1e-12
         )
-    assert vi.frac(np.stack([response, other]), np.stack([other, other])).shape == (2,)
-    assert np.isnan(vi.frac(np.zeros(3), np.ones(3)))
+    assert vi.signals.frac(np.stack([response, other]), np.stack([other, other])).shape == (2,)
+    assert np.isnan(vi.signals.frac(np.zeros(3), np.ones(3)))
 
 
 def test_frac_of_different_frequencies_is_refused() -> None:
     with pytest.raises(vi.InputError, match="can't be compared"):
-        vi.frac(np.ones(3), np.ones(4))
+        vi.signals.frac(np.ones(3), np.ones(4))
 
 
 @pytest.mark.parametrize("shift", [-7.3, 0.0, 0.25, 12.49])

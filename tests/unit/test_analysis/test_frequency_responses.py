@@ -43,8 +43,10 @@ RIGHT = tuple(accelerance(place) for place in PLACES)
 VALUES = np.array([1.0 + 2.0j, -3.0 - 4e-5j, 1e5 + 2.0j, -0.5j, 7.0 - 8.0j])
 
 
-def responses_in(folder: Path, *responses: Any, **changes: Any) -> tuple[vi.FrequencyResponse, ...]:
-    return vi.read_responses(measured(folder / "plate.uff", responses or RIGHT, **changes))
+def responses_in(
+    folder: Path, *responses: Any, **changes: Any
+) -> tuple[vi.signals.FrequencyResponse, ...]:
+    return vi.signals.load_responses(measured(folder / "plate.uff", responses or RIGHT, **changes))
 
 
 def compared(
@@ -54,7 +56,7 @@ def compared(
     reference: str | None = None,
     **changes: Any,
 ) -> ResponseCorrelation:
-    return vi.correlate_responses(
+    return vi.test_analysis.correlate_responses(
         case or a_case(), responses_in(folder, *responses, **changes), reference=reference
     )
 
@@ -78,7 +80,9 @@ def test_every_form_of_a_response_is_read(
         "binary": binary,
         "abscissa_spacing": even,
     }
-    (found,) = vi.read_responses(by_pyuff(tmp_path / "a.uff", {**one, "rsp_ent_name": "a1"}))
+    (found,) = vi.signals.load_responses(
+        by_pyuff(tmp_path / "a.uff", {**one, "rsp_ent_name": "a1"})
+    )
     told = frequency > 0.0
     np.testing.assert_allclose(found.frequency, frequency[told])
     np.testing.assert_allclose(found.value, VALUES[told], rtol=1e-5)
@@ -92,7 +96,7 @@ def test_lines_without_a_number_are_left_out(tmp_path: Path) -> None:
     path.write_text(
         path.read_text().replace(f"{1.0:20.11e}{2.0:20.11e}", f"{'NaN':>20}{'NaN':>20}")
     )
-    (found,) = vi.read_responses(path)
+    (found,) = vi.signals.load_responses(path)
     assert found.frequency.tolist() == [2.0, 3.0, 4.0, 5.0]
 
 
@@ -137,7 +141,7 @@ def test_units_of_dataset_164(tmp_path: Path) -> None:
         {"rsp_node": 12, "x": FREQUENCY, "data": RIGHT[0], **labels},
         first=inches,
     )
-    (found,) = vi.read_responses(path)
+    (found,) = vi.signals.load_responses(path)
     assert found.unit == "m/s2/N"
     np.testing.assert_allclose(found.value, 0.0254 * 0.22481 * RIGHT[0], rtol=1e-9)
 
@@ -201,7 +205,7 @@ def test_a_header_as_found_in_the_trade(tmp_path: Path) -> None:
     ]
     path = tmp_path / "trade.uff"
     path.write_bytes("\n".join(lines).encode("latin-1"))
-    (found,) = vi.read_responses(path)
+    (found,) = vi.signals.load_responses(path)
     assert (found.name, found.unit, found.doubts) == ("ref6_23_Mar", "m/s2/N", ())
     assert found.value[0] == -5.99924e-02 - 5.53260e-02j
 
@@ -211,7 +215,7 @@ def test_records_of_such_a_file_are_refused_with_what_reads_it(tmp_path: Path) -
     with pytest.raises(
         vi.InputError, match="its 2 functions of frequency are for correlate and modes"
     ):
-        list(vi.read_records(path))
+        list(vi.signals.load_records(path))
 
 
 @pytest.mark.parametrize("swapped", [False, True])
@@ -227,7 +231,7 @@ def test_coherences_belong_to_their_responses(tmp_path: Path, swapped: bool) -> 
         {**one, "rsp_node": 13},
         {**one, **ends, "data": coherence, **COHERENCE},
     )
-    first, second = vi.read_responses(path)
+    first, second = vi.signals.load_responses(path)
     assert first.coherence is not None
     np.testing.assert_allclose(first.coherence, coherence)
     assert second.coherence is None
@@ -245,7 +249,9 @@ def test_modes_of_a_closed_form(tmp_path: Path) -> None:
         if 60.0 < f < 700.0 and size > 0.05
     ]
     for level in (0.0, 0.01):
-        found = vi.modes_in_responses(responses_in(tmp_path, *noisy(RIGHT, level)), (60.0, 700.0))
+        found = vi.signals.modes_in_responses(
+            responses_in(tmp_path, *noisy(RIGHT, level)), (60.0, 700.0)
+        )
         assert len(found) >= len(expected) >= 4
         for truth in expected:
             mode = min(found, key=lambda one: abs(one.frequency.value - truth))
@@ -260,7 +266,7 @@ def test_modes_of_a_closed_form(tmp_path: Path) -> None:
 
 def synthetic(
     frequency: np.ndarray, seed: int, growing: float
-) -> tuple[list[vi.FrequencyResponse], np.ndarray, np.ndarray]:
+) -> tuple[list[vi.signals.FrequencyResponse], np.ndarray, np.ndarray]:
     """Seven modes in a band, two of them 2 % apart, and two above it, at three places;
     noise of 1 % of the rms, or that grows with them.
     """
@@ -278,13 +284,13 @@ def synthetic(
         if not growing
         else growing * np.abs(value)
     )
-    hammer = vi.DegreeOfFreedom(("hammer",))
+    hammer = vi.signals.DegreeOfFreedom(("hammer",))
     named = [
-        (vi.DegreeOfFreedom((str(number),)), one)
+        (vi.signals.DegreeOfFreedom((str(number),)), one)
         for number, one in enumerate(value + level * noise)
     ]
     return (
-        [vi.FrequencyResponse(end, hammer, frequency, one, "m/s2/N") for end, one in named],
+        [vi.signals.FrequencyResponse(end, hammer, frequency, one, "m/s2/N") for end, one in named],
         natural,
         ratios,
     )
@@ -297,7 +303,7 @@ def synthetic(
 )
 def test_frequencies_at_any_steps(frequency: np.ndarray) -> None:
     responses, natural, ratios = synthetic(frequency, 3, 0.0)
-    found = vi.modes_in_responses(responses, (100.0, 2000.0))
+    found = vi.signals.modes_in_responses(responses, (100.0, 2000.0))
     assert len(found) == 7
     for mode, truth, ratio in zip(found, natural, ratios, strict=False):
         assert abs(mode.frequency.value - truth) < 3.5 * mode.frequency.deviation
@@ -317,7 +323,7 @@ def test_intervals_hold_the_truth(growing: float, invented: float) -> None:
     draws, held, more = 60, np.zeros(2), 0
     for seed in range(draws):
         responses, natural, ratios = synthetic(np.arange(50.0, 2400.0), seed, growing)
-        found = vi.modes_in_responses(responses, (100.0, 2000.0))
+        found = vi.signals.modes_in_responses(responses, (100.0, 2000.0))
         more += len(found) - 7
         for truth, ratio in zip(natural[:7], ratios[:7], strict=True):
             mode = min(found, key=lambda one: abs(one.frequency.value - truth))
@@ -331,7 +337,7 @@ def test_intervals_hold_the_truth(growing: float, invented: float) -> None:
 def test_the_cases_own_agree(tmp_path: Path) -> None:
     """Written, read and compared: FRAC is 1, nothing differs, and nothing is doubted."""
     case = a_case()
-    own = vi.responses_of_case(case, FREQUENCY)
+    own = vi.test_analysis.responses_of_case(case, FREQUENCY)
     found = compared(tmp_path, *(-one.value for one in own), case=case)
     assert found.frac == pytest.approx(1.0, abs=1e-9)
     assert found.scale == pytest.approx(1.0, abs=1e-9)
@@ -442,7 +448,9 @@ def test_a_roving_hammer(tmp_path: Path) -> None:
         }
         for node, response in zip(NODES, RIGHT, strict=True)
     ]
-    found = vi.correlate_responses(a_case(), vi.read_responses(by_pyuff(tmp_path / "a.uff", *sets)))
+    found = vi.test_analysis.correlate_responses(
+        a_case(), vi.signals.load_responses(by_pyuff(tmp_path / "a.uff", *sets))
+    )
     assert found.reciprocal
     assert (found.frac > 0.97).all()
     assert any("by reciprocity" in doubt for doubt in found.doubts)
@@ -460,20 +468,20 @@ def test_several_places_of_the_hammer(tmp_path: Path) -> None:
         for place in (4, 7)
         for node, response in zip(NODES, RIGHT, strict=True)
     ]
-    responses = vi.read_responses(by_pyuff(tmp_path / "a.uff", *sets))
+    responses = vi.signals.load_responses(by_pyuff(tmp_path / "a.uff", *sets))
     with pytest.raises(
         vi.InputError,
         match=r"the forces act at 4, 7; name the one at drop.position of the case by --hammer",
     ):
-        vi.correlate_responses(a_case(), responses)
+        vi.test_analysis.correlate_responses(a_case(), responses)
     with pytest.raises(vi.InputError, match='no force acts, and no motion was measured, at "9"'):
-        vi.correlate_responses(a_case(), responses, reference="9")
-    assert vi.correlate_responses(a_case(), responses, reference="4").scale == pytest.approx(
-        1.0, abs=0.02
-    )
-    assert vi.correlate_responses(a_case(), responses, reference="7").scale == pytest.approx(
-        2.0, abs=0.04
-    )
+        vi.test_analysis.correlate_responses(a_case(), responses, reference="9")
+    assert vi.test_analysis.correlate_responses(
+        a_case(), responses, reference="4"
+    ).scale == pytest.approx(1.0, abs=0.02)
+    assert vi.test_analysis.correlate_responses(
+        a_case(), responses, reference="7"
+    ).scale == pytest.approx(2.0, abs=0.04)
 
 
 def test_three_directions_at_a_node(tmp_path: Path) -> None:
@@ -486,7 +494,9 @@ def test_three_directions_at_a_node(tmp_path: Path) -> None:
         }
         for direction in (1, 2, 3)
     ]
-    found = vi.correlate_responses(a_case(), vi.read_responses(by_pyuff(tmp_path / "a.uff", *sets)))
+    found = vi.test_analysis.correlate_responses(
+        a_case(), vi.signals.load_responses(by_pyuff(tmp_path / "a.uff", *sets))
+    )
     assert [sensor.name for sensor in found.sensors] == ["12"]
     assert found.frac[0] > 0.97
     assert any(
@@ -518,14 +528,14 @@ def test_what_the_case_does_not_measure_is_refused(
 
 
 def test_names_that_do_not_match(tmp_path: Path) -> None:
-    case = vi.read_case({**TABLE, "sensors": [{"name": "a1", "position": [0.12, 0.08]}]})
+    case = vi.case_of({**TABLE, "sensors": [{"name": "a1", "position": [0.12, 0.08]}]})
     with pytest.raises(
         vi.InputError,
         match=r"no sensor of the case \(a1\) is named after a response.*12, 13; write the "
         r'name.*name = "12"',
     ):
         compared(tmp_path, case=case)
-    named = vi.read_case({**TABLE, "sensors": [{"name": "12:+Z", "position": [0.12, 0.08]}]})
+    named = vi.case_of({**TABLE, "sensors": [{"name": "12:+Z", "position": [0.12, 0.08]}]})
     assert compared(tmp_path, case=named).frac[0] > 0.97
 
 
@@ -536,26 +546,26 @@ def test_bad_bands_and_frequencies(tmp_path: Path) -> None:
         match=r"a band from 10 to 300 Hz is not allowed; it must rise, within the 40 to 799.5 Hz "
         r"measured",
     ):
-        vi.correlate_responses(a_case(), responses, band=(10.0, 300.0))
+        vi.test_analysis.correlate_responses(a_case(), responses, band=(10.0, 300.0))
     low = [
-        vi.FrequencyResponse(
+        vi.signals.FrequencyResponse(
             one.response, one.reference, one.frequency[:60], one.value[:60], one.unit
         )
         for one in responses
     ]
     with pytest.raises(vi.InputError, match="the lowest mode of the plate has"):
-        vi.correlate_responses(a_case(), low)
+        vi.test_analysis.correlate_responses(a_case(), low)
     with pytest.raises(
         vi.InputError,
         match=r"have different frequencies, 1520 from 40 to 799.5 Hz and 60 from 40 to 69.5 Hz",
     ):
-        vi.modes_in_responses([responses[0], low[1]])
+        vi.signals.modes_in_responses([responses[0], low[1]])
     with pytest.raises(
         vi.InputError,
         match="there are 21 frequencies of the responses from 100 to 110 Hz, and 32 at least are "
         "needed",
     ):
-        vi.modes_in_responses(responses, (100.0, 110.0))
+        vi.signals.modes_in_responses(responses, (100.0, 110.0))
 
 
 def run(*words: str) -> Any:

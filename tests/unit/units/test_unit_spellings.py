@@ -13,7 +13,7 @@ import pytest
 import vibroimpact as vi
 from stated_numbers import ROOT
 from support import plain_case
-from vibroimpact.calibration.calibrate_case import calibrate_case, read_calibration
+from vibroimpact.calibration.calibrate_case import calibrate_case, calibration_of
 from vibroimpact.cases.build import problem_of
 from vibroimpact.cases.plate_motion import motion_of
 from vibroimpact.cli import main
@@ -87,14 +87,16 @@ def test_the_page_has_all_rows() -> None:
 
 @pytest.mark.parametrize(("unit", "word"), QUANTITIES)
 def test_in_a_case(unit: str, word: str) -> None:
-    assert vi.to_si(f"2.5 {word}", unit) == pytest.approx(2.5 * _FACTORS.get(word, 1.0), rel=1e-14)
+    assert vi.units.to_si(f"2.5 {word}", unit) == pytest.approx(
+        2.5 * _FACTORS.get(word, 1.0), rel=1e-14
+    )
 
 
 @pytest.mark.parametrize(("unit", "word"), QUANTITIES)
 def test_by_the_command(
     unit: str, word: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert vi.convert_units(2.5, word, unit) == pytest.approx(
+    assert vi.units.convert_units(2.5, word, unit) == pytest.approx(
         2.5 * _FACTORS.get(word, 1.0), rel=1e-14
     )
     monkeypatch.setattr("sys.argv", ["vibroimpact", "units", "2.5", word, "--to", unit])
@@ -113,7 +115,7 @@ def test_in_a_table_and_a_universal_file(unit: str, word: str, tmp_path: Path) -
     table.write_text(f"Zeit [ms];Kanal 1 [{word}]\n0;1,5\n0,5;-2\n", encoding="utf-8")
     universal.write_bytes(universal_file(word.encode()))
     for path in (table, universal):
-        (found,) = vi.read_records(path)
+        (found,) = vi.signals.load_records(path)
         assert (found.unit, found.rate) == (_SIGNALS[unit], 2000.0)
         np.testing.assert_allclose(found.value, factor * np.array([1.5, -2.0]), rtol=1e-14)
 
@@ -148,7 +150,7 @@ def test_a_label_in_either_encoding(encoding: str, tmp_path: Path) -> None:
     """UTF-8 as HBM catman writes it, and Latin-1; the standard has ASCII only."""
     path = tmp_path / "a.uff"
     path.write_bytes(universal_file("m/s²".encode(encoding)))
-    (found,) = vi.read_records(path)
+    (found,) = vi.signals.load_records(path)
     assert (found.unit, found.value.tolist()) == ("m/s2", [1.5, -2.0])
     path.write_bytes(universal_file("µm".encode(encoding), kind=8))
     np.testing.assert_allclose(
@@ -163,7 +165,7 @@ def test_a_measured_table_in_another_spelling(tmp_path: Path) -> None:
         )
         contact = {"law": "lankarani-nikravesh", "restitution": 0.7}
         return calibrate_case(
-            read_calibration(
+            calibration_of(
                 plain_case(
                     contact=contact, calibrate={"target": str(path), "degree": 1, "air": False}
                 )
@@ -183,7 +185,7 @@ def test_a_motion_of_the_supports_in_another_spelling(tmp_path: Path) -> None:
     for header in ("time [ms];acceleration [mm/s^2]", "Zeit [ms];acceleration [mm·s⁻²]"):
         (path := tmp_path / "motion.csv").write_text(f"{header}\n{rows}", encoding="utf-8")
         plate = {"material": "steel", "model": "rigid", "motion": {"file": str(path)}}
-        motion = motion_of(vi.read_case(plain_case(plate=plate)))
+        motion = motion_of(vi.case_of(plain_case(plate=plate)))
         assert motion is not None
         found.append(motion.at(time[3:-3]))
     np.testing.assert_array_equal(found[0], found[1])
@@ -196,11 +198,11 @@ def test_a_channel_by_the_cell_of_the_header(tmp_path: Path) -> None:
         '"Time (s)","Recording (a.u.)","Zweiter Kanal [V]"\n0,1,2\n0.1,3,4\n', encoding="utf-8"
     )
     for name in ("recording", "Recording", "Recording (a.u.)"):
-        found = vi.one_record(path, name)
+        found = vi.signals.one_record(path, name)
         assert (found.value.tolist(), found.unit) == ([1.0, 3.0], "1")
-    assert vi.one_record(path, "Zweiter Kanal").unit == "V"
+    assert vi.signals.one_record(path, "Zweiter Kanal").unit == "V"
     with pytest.raises(vi.InputError, match="no channel"):
-        vi.one_record(path, "Recordings")
+        vi.signals.one_record(path, "Recordings")
 
 
 def test_a_sensor_whose_name_has_capitals(tmp_path: Path) -> None:
@@ -218,10 +220,10 @@ def test_a_sensor_whose_name_has_capitals(tmp_path: Path) -> None:
         "modes": 5,
         "supports": "clamped",
     }
-    problem = problem_of(vi.read_case(plain_case(plate=plate, sensors=sensors)))
-    assert [one.name for one in sensors_of(problem.sensors, list(vi.read_records(path)))] == [
-        "Acc 1"
-    ]
+    problem = problem_of(vi.case_of(plain_case(plate=plate, sensors=sensors)))
+    assert [
+        one.name for one in sensors_of(problem.sensors, list(vi.signals.load_records(path)))
+    ] == ["Acc 1"]
 
 
 @pytest.mark.parametrize(
@@ -237,7 +239,7 @@ def test_a_sensor_whose_name_has_capitals(tmp_path: Path) -> None:
 )
 def test_what_is_still_refused(text: str, unit: str) -> None:
     with pytest.raises(vi.InputError):
-        vi.to_si(text, unit)
+        vi.units.to_si(text, unit)
 
 
 @pytest.mark.parametrize(
@@ -255,15 +257,15 @@ def test_what_is_still_refused(text: str, unit: str) -> None:
 )
 def test_a_remedy_is_accepted(text: str, unit: str, remedy: str, value: float) -> None:
     with pytest.raises(vi.InputError) as refused:
-        vi.to_si(text, unit)
+        vi.units.to_si(text, unit)
     assert str(refused.value).endswith(remedy)
     written = remedy.partition('"')[2].rstrip('"') or float(remedy.split()[-1])
-    assert vi.to_si(written, unit) == pytest.approx(value)
+    assert vi.units.to_si(written, unit) == pytest.approx(value)
 
 
 def test_a_list_of_numbers_is_no_number_with_commas() -> None:
     with pytest.raises(vi.InputError, match="write one number, with a point before its decimals"):
-        vi.to_si("1,2,3", "m")
+        vi.units.to_si("1,2,3", "m")
 
 
 @pytest.mark.parametrize(
@@ -275,7 +277,7 @@ def test_a_list_of_numbers_is_no_number_with_commas() -> None:
 )
 def test_all_kinds_of_a_dimension_are_named(text: str, kinds: str) -> None:
     with pytest.raises(vi.InputError, match=f'"{re.escape(text)}" is {kinds}; expected a length'):
-        vi.to_si(text, "m")
+        vi.units.to_si(text, "m")
 
 
 def test_the_message_names_what_is_accepted() -> None:

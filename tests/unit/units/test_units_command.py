@@ -46,13 +46,13 @@ def outcome(
     ],
 )
 def test_conversions(value: float, unit: str, to: str, expected: float) -> None:
-    assert vi.convert_units(value, unit, to) == pytest.approx(expected, rel=1e-13)
-    assert vi.convert_units(expected, to, unit) == pytest.approx(value, rel=1e-13)
+    assert vi.units.convert_units(value, unit, to) == pytest.approx(expected, rel=1e-13)
+    assert vi.units.convert_units(expected, to, unit) == pytest.approx(value, rel=1e-13)
 
 
 @given(power=POWERS, stiffness=st.floats(1e3, 1e12))
 def test_the_factor_is_1000_to_the_power(power: float, stiffness: float) -> None:
-    there = vi.convert_units(stiffness, f"N/m^{power:g}", f"N/mm^{power:g}")
+    there = vi.units.convert_units(stiffness, f"N/m^{power:g}", f"N/mm^{power:g}")
     assert there == pytest.approx(stiffness / 1000.0**power, rel=1e-12)
 
 
@@ -88,7 +88,7 @@ def test_the_factor_is_1000_to_the_power(power: float, stiffness: float) -> None
 )
 def test_what_is_refused(value: float, unit: str, to: str, words: list[str]) -> None:
     with pytest.raises(vi.InputError) as raised:
-        vi.convert_units(value, unit, to)
+        vi.units.convert_units(value, unit, to)
     for word in words:
         assert word in str(raised.value)
 
@@ -106,7 +106,7 @@ def test_dimensions_are_told_with_force() -> None:
 )
 def test_every_system_is_another_way_to_say_the_same(unit: str) -> None:
     for name, number, there in in_unit_systems(5.0, unit):
-        assert vi.convert_units(number, there, unit) == pytest.approx(5.0, rel=1e-12), name
+        assert vi.units.convert_units(number, there, unit) == pytest.approx(5.0, rel=1e-12), name
 
 
 def test_consistent_systems_agree_with_their_base_units() -> None:
@@ -121,7 +121,7 @@ def test_consistent_systems_agree_with_their_base_units() -> None:
     found = {name: number for name, number, _ in in_unit_systems(5.115e8, "N/m^1.5")}
     for name, (mass, time) in base.items():
         assert found[name] == pytest.approx(
-            vi.convert_units(5.115e8, "N/m^1.5", f"{mass} mm^-0.5/{time}^2"), rel=1e-12
+            vi.units.convert_units(5.115e8, "N/m^1.5", f"{mass} mm^-0.5/{time}^2"), rel=1e-12
         )
 
 

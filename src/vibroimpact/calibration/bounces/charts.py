@@ -33,8 +33,8 @@ def bounce_charts(found: Rebounds) -> list[Chart]:
     --------
     >>> import numpy as np
     >>> import vibroimpact as vi
-    >>> microphone = vi.Record("microphone", np.zeros(48000), 48e3, "Pa")
-    >>> heard = vi.Bounces(
+    >>> microphone = vi.signals.Record("microphone", np.zeros(48000), 48e3, "Pa")
+    >>> heard = vi.signals.Bounces(
     ...     microphone,
     ...     np.array([0.0, 0.4, 0.72, 0.976]),
     ...     np.full(4, 1e-5),
@@ -42,7 +42,7 @@ def bounce_charts(found: Rebounds) -> list[Chart]:
     ...     np.zeros(0),
     ...     (),
     ... )
-    >>> [chart.name for chart in bounce_charts(vi.rebounds_of(heard))]
+    >>> [chart.name for chart in bounce_charts(vi.calibration.rebounds_of(heard))]
     ['record', 'restitution']
     """
     of_impacts = partial(

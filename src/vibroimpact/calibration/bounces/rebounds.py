@@ -58,8 +58,8 @@ class Rebounds(Reported, reported_in="vibroimpact.calibration.bounces.report"):
     --------
     >>> import numpy as np
     >>> import vibroimpact as vi
-    >>> microphone = vi.Record("microphone", np.zeros(48000), 48e3, "Pa")
-    >>> heard = vi.Bounces(
+    >>> microphone = vi.signals.Record("microphone", np.zeros(48000), 48e3, "Pa")
+    >>> heard = vi.signals.Bounces(
     ...     microphone,
     ...     np.array([0.0, 0.4, 0.72, 0.976]),
     ...     np.full(4, 1e-5),
@@ -67,7 +67,7 @@ class Rebounds(Reported, reported_in="vibroimpact.calibration.bounces.report"):
     ...     np.zeros(0),
     ...     (),
     ... )
-    >>> found = vi.rebounds_of(heard, gravity=9.81, height=0.3)
+    >>> found = vi.calibration.rebounds_of(heard, gravity=9.81, height=0.3)
     >>> found.approach_speed.round(2).tolist(), found.intervals.shape
     ([2.43, 1.96, 1.57, 1.26], (4, 2))
     """

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from vibroimpact.arrays import Bools, Floats, Indices
+from vibroimpact.calibration.calibration import sections_of_case
 from vibroimpact.calibration.fitting import half_width, misfits
 from vibroimpact.calibration.friction.doubts import friction_doubts, rebound_doubts
 from vibroimpact.calibration.friction.intervals import bootstrap_intervals, profile_intervals
@@ -22,8 +23,11 @@ from vibroimpact.calibration.friction.parameters import (
 from vibroimpact.calibration.noise import standard_deviations
 from vibroimpact.calibration.observations import Observations, with_noise_scale
 from vibroimpact.calibration.section import FRICTION
+from vibroimpact.cases.case import Case
+from vibroimpact.cases.reader import case_of
 from vibroimpact.dynamics.problem import Problem, StatesProblem
 from vibroimpact.errors import ComputationError, InputError
+from vibroimpact.report.reported import Reported
 
 _NEARLY = 0.999
 """Fraction of the largest impulse of friction from which an impact slips throughout; gravity acts
@@ -38,7 +42,7 @@ _STARTS = 3
 
 
 @dataclass(frozen=True)
-class FrictionCalibration:
+class FrictionCalibration(Reported, reported_in="vibroimpact.calibration.report"):
     """Parameters of a friction law fitted to measured oblique impacts.
 
     Parameters
@@ -83,15 +87,17 @@ class FrictionCalibration:
     --------
     >>> import numpy as np
     >>> import vibroimpact as vi
-    >>> seen = vi.Observations(
+    >>> seen = vi.calibration.Observations(
     ...     speeds=np.full(3, 3.0),
     ...     wanted={"separation_velocity_x": np.array([3.92, 4.93, 5.91])},
     ...     speed_noise=np.zeros((3, 3)),
     ...     noise={"separation_velocity_x": 0.02 * np.eye(3)},
     ... )
-    >>> impacts = vi.ObliqueImpacts(seen, np.array([5.0, 6.0, 7.0]), np.zeros(3), seen.wanted)
-    >>> found = vi.calibrate_friction(
-    ...     vi.read_case(
+    >>> impacts = vi.calibration.ObliqueImpacts(
+    ...     seen, np.array([5.0, 6.0, 7.0]), np.zeros(3), seen.wanted
+    ... )
+    >>> found = vi.calibration.calibrate_friction(
+    ...     vi.case_of(
     ...         {
     ...             "sphere": {"radius": 0.01, "material": "glass"},
     ...             "plate": {"material": "steel"},
@@ -126,6 +132,21 @@ class FrictionCalibration:
     confidence: float
     bootstrap: int
     doubts: tuple[str, ...]
+
+    @property
+    def calibrated_case(self) -> Case:
+        """The case with the calibrated values of the friction law, ready to run.
+
+        Raises
+        ------
+        InputError
+            If the drop was stated in Python, and has no case.
+        """
+        table = sections_of_case(self.problem)
+        contact = table["contact"]
+        values = dict(zip(self.parameters.names, self.values.tolist(), strict=True))
+        friction = {**contact["friction"], **values}
+        return case_of({**table, "contact": {**contact, "friction": friction}})
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -191,7 +212,7 @@ def calibrate_friction(
     --------
     >>> import numpy as np
     >>> import vibroimpact as vi
-    >>> case = vi.read_case(
+    >>> case = vi.case_of(
     ...     {
     ...         "sphere": {"radius": 0.01, "material": "glass"},
     ...         "plate": {"material": "steel"},
@@ -204,14 +225,18 @@ def calibrate_friction(
     ...         "run": {"impacts": 1},
     ...     }
     ... )
-    >>> seen = vi.Observations(
+    >>> seen = vi.calibration.Observations(
     ...     speeds=np.full(3, 3.0),
     ...     wanted={"separation_velocity_x": np.array([3.92, 4.93, 5.91])},
     ...     speed_noise=np.zeros((3, 3)),
     ...     noise={"separation_velocity_x": 0.02 * np.eye(3)},
     ... )
-    >>> impacts = vi.ObliqueImpacts(seen, np.array([5.0, 6.0, 7.0]), np.zeros(3), seen.wanted)
-    >>> vi.calibrate_friction(case, impacts, ["friction.coefficient"]).values.round(3).tolist()
+    >>> impacts = vi.calibration.ObliqueImpacts(
+    ...     seen, np.array([5.0, 6.0, 7.0]), np.zeros(3), seen.wanted
+    ... )
+    >>> vi.calibration.calibrate_friction(case, impacts, ["friction.coefficient"]).values.round(
+    ...     3
+    ... ).tolist()
     [0.2]
     """
     report_progress = progress or (lambda fraction: None)

@@ -15,7 +15,7 @@ from vibroimpact.calibration.friction.calibrate import FrictionCalibration
 from vibroimpact.calibration.friction.parameters import ImpactModel
 from vibroimpact.calibration.matchable import ALONG_PLATE
 from vibroimpact.calibration.noise import standard_deviations
-from vibroimpact.cases.reader import read_case
+from vibroimpact.cases.reader import case_of
 from vibroimpact.charts.axis import Axis
 from vibroimpact.charts.chart import Chart, Panel
 from vibroimpact.charts.made import made_charts
@@ -119,7 +119,7 @@ def _slip_chart(found: FrictionCalibration, curves: list[Curve]) -> Chart | None
         found.model,
         found.impacts,
     )
-    ratio = moduli_ratio(law, None if source is None else read_case(source))
+    ratio = moduli_ratio(law, None if source is None else case_of(source))
     scale, radius = float(law.coefficient) * ratio, float(found.problem.sphere.contact_offset)
     if not scale > 0.0:
         return None

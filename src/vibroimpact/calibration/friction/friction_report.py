@@ -9,11 +9,10 @@ import numpy as np
 
 from vibroimpact._version import __version__
 from vibroimpact.arrays import Floats
+from vibroimpact.calibration.calibration import case_name
 from vibroimpact.calibration.friction.calibrate import FrictionCalibration
 from vibroimpact.calibration.matchable import ALONG_PLATE
 from vibroimpact.calibration.noise import standard_deviations
-from vibroimpact.cases.build import resolved_case
-from vibroimpact.cases.case import Case
 from vibroimpact.report.report import Table, first_rows, table_of
 from vibroimpact.runs.tables import formatted_column
 from vibroimpact.units.display import column_texts, digits, fixed, text
@@ -152,20 +151,18 @@ def friction_table(found: FrictionCalibration) -> Table:
     return table_of(headers, first_rows(rows))
 
 
-def friction_document(case: Case, found: FrictionCalibration) -> dict[str, Any]:
+def friction_document(found: FrictionCalibration) -> dict[str, Any]:
     """Return the contents of `calibration.json`; None where there is no finite value.
 
     Parameters
     ----------
-    case : Case
-        The calibrated case.
     found : FrictionCalibration
-        Result of its calibration.
+        The calibration.
     """
     ends = np.full((len(found.values), 2), np.nan) if found.intervals is None else found.intervals
     return {
         "version": __version__,
-        "name": case.name,
+        "name": case_name(found.problem),
         "law": found.parameters.law.name,
         "match": dict(found.weights),
         "parameters": [
@@ -187,7 +184,7 @@ def friction_document(case: Case, found: FrictionCalibration) -> dict[str, Any]:
         "bootstrap": found.bootstrap,
         "matched": friction_rows(found),
         "doubts": list(found.doubts),
-        "case": resolved_case(case),
+        "case": found.problem.source or None,
     }
 
 

@@ -56,12 +56,12 @@ class ObliqueImpacts:
     --------
     >>> import numpy as np
     >>> import vibroimpact as vi
-    >>> seen = vi.Observations(
+    >>> seen = vi.calibration.Observations(
     ...     speeds=np.array([3.0, 2.0]), wanted={"separation_velocity_x": np.array([2.1, 1.6])}
     ... )
-    >>> vi.ObliqueImpacts(seen, np.array([3.0, 2.0]), np.zeros(2), seen.wanted).angle.round(
-    ...     3
-    ... ).tolist()
+    >>> vi.calibration.ObliqueImpacts(
+    ...     seen, np.array([3.0, 2.0]), np.zeros(2), seen.wanted
+    ... ).angle.round(3).tolist()
     [45.0, 45.0]
     """
 

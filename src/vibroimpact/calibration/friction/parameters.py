@@ -117,9 +117,9 @@ def friction_parameters(problem: Problem, names: Sequence[str]) -> FrictionParam
     >>> import vibroimpact as vi
     >>> ball, wall = vi.Body(mass=0.02, contact_offset=0.01), vi.rigid_plate()
     >>> oblique = vi.Oblique(
-    ...     velocity=(1.0, 0.0), friction=vi.find_friction_law("coulomb")(coefficient=0.2)
+    ...     velocity=(1.0, 0.0), friction=vi.friction.find_friction_law("coulomb")(coefficient=0.2)
     ... )
-    >>> law = vi.find_contact_law("newton")(restitution=0.8)
+    >>> law = vi.laws.find_contact_law("newton")(restitution=0.8)
     >>> friction_parameters(
     ...     vi.Problem(sphere=ball, plate=wall, laws=(law,), speed=2.0, oblique=oblique),
     ...     ["friction.coefficient"],

@@ -63,7 +63,7 @@ class Restitutions(Reported, reported_in="vibroimpact.calibration.restitutions.r
     >>> with TemporaryDirectory() as folder:
     ...     with open(f"{folder}/ev.csv", "w") as file:
     ...         _ = file.write("speed [m/s],restitution\\n1,0.81\\n2,0.78\\n4,0.74\\n")
-    ...     found = vi.read_restitutions(f"{folder}/ev.csv")
+    ...     found = vi.calibration.load_restitutions(f"{folder}/ev.csv")
     >>> found.rounding, found.laws[1](2.0).round(3).item(), found.function.fastest
     (0.01, 0.784, 4.0)
     """
@@ -103,7 +103,7 @@ class Restitutions(Reported, reported_in="vibroimpact.calibration.restitutions.r
         return np.stack([self.restitution - half, self.restitution + half], axis=1)
 
 
-def read_restitutions(
+def load_restitutions(
     path: str | PathLike[str], *, confidence: float = 0.95, columns: str | None = None
 ) -> Restitutions:
     r"""Return the restitutions of a table with a row for each approach speed, and their fits.
@@ -138,7 +138,7 @@ def read_restitutions(
     >>> with TemporaryDirectory() as folder:
     ...     file = Path(folder, "ev.csv")
     ...     _ = file.write_text("speed [m/s],restitution,count\n1,0.81,5\n2,0.78,5\n4,0.74,8\n")
-    ...     found = vi.read_restitutions(file)
+    ...     found = vi.calibration.load_restitutions(file)
     >>> [(law.name, law.coefficients.round(3).tolist()) for law in found.laws]
     [('constant', [0.771]), ('linear', [0.83, -0.023]), ('power', [0.812, -0.066])]
     """

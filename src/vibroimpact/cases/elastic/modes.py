@@ -63,7 +63,7 @@ class BodyModes:
     Examples
     --------
     >>> import vibroimpact as vi
-    >>> case = vi.read_case(
+    >>> case = vi.case_of(
     ...     {
     ...         "sphere": {
     ...             "radius": "25 mm",
@@ -113,7 +113,7 @@ def compute_modes(
     Examples
     --------
     >>> import vibroimpact as vi
-    >>> case = vi.read_case(
+    >>> case = vi.case_of(
     ...     {
     ...         "sphere": {
     ...             "radius": "25 mm",

@@ -148,10 +148,10 @@ class BroughtMeshTable(Section):
 
         Of several parts that are not joined it is the one at the contact, or all.
         """
-        from vibroimpact.meshes.mesh_file import read_mesh
+        from vibroimpact.meshes.mesh_file import load_mesh
 
         return self._with_keys(
-            lambda: read_mesh(self.file, self.unit, self.element_size, self.materials, contact)
+            lambda: load_mesh(self.file, self.unit, self.element_size, self.materials, contact)
         )
 
     @staticmethod

@@ -56,7 +56,7 @@ def slips(case: ResolvedCase, aside: Container[str] = ()) -> list[str]:
     --------
     >>> import vibroimpact as vi
     >>> from vibroimpact.cases.build import resolved_case
-    >>> case = vi.read_case(
+    >>> case = vi.case_of(
     ...     {
     ...         "sphere": {"radius": 25, "material": "granite"},
     ...         "plate": {"material": "steel"},

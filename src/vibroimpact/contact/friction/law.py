@@ -37,8 +37,8 @@ class FrictionLaw(Parameters):
     Examples
     --------
     >>> import vibroimpact as vi
-    >>> law = vi.find_friction_law("coulomb")(coefficient=0.3)
-    >>> isinstance(law, vi.FrictionLaw), law.name
+    >>> law = vi.friction.find_friction_law("coulomb")(coefficient=0.3)
+    >>> isinstance(law, vi.friction.FrictionLaw), law.name
     (True, 'coulomb')
     """
 

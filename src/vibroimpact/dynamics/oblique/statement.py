@@ -76,7 +76,7 @@ class Oblique:
         if self.friction is not None and not isinstance(self.friction, FrictionLaw):
             raise InputError(
                 "friction must be a friction law with its parameters, such as "
-                'vi.find_friction_law("coulomb")(coefficient=0.3), '
+                'vi.friction.find_friction_law("coulomb")(coefficient=0.3), '
                 f"not {self.friction!r}"
             )
         if not (_are_numbers(self.inertia_ratio) and np.all(np.asarray(self.inertia_ratio) > 0.0)):

@@ -32,7 +32,7 @@ def tangential_history(law: CompliantFriction, largest_force: float) -> Tangenti
     ...     "effective_radius": 0.01,
     ... }
     >>> spring = tangential_history(
-    ...     vi.find_friction_law("mindlin")(coefficient=0.1, **moduli), 100.0
+    ...     vi.friction.find_friction_law("mindlin")(coefficient=0.1, **moduli), 100.0
     ... )
     >>> for moved in (0.0, 1e-7, 1e-3):
     ...     spring = history_after(spring, 100.0, moved, 0.0)

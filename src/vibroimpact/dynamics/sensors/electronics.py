@@ -41,7 +41,7 @@ class Amplifier:
     --------
     >>> import vibroimpact as vi
     >>> amplifier = vi.sensors.Amplifier(gain=100.0, noise=2e-3, hum=0.01)
-    >>> vi.Sensor("a1", amplifier=amplifier).amplifier.gain
+    >>> vi.sensors.Sensor("a1", amplifier=amplifier).amplifier.gain
     100.0
     """
 

@@ -32,7 +32,7 @@ class Signal:
     --------
     >>> import numpy as np
     >>> import vibroimpact as vi
-    >>> signal = vi.Signal(vi.Sensor("a1", rate=50e3), np.array([0.0, 3.0, -5.0]))
+    >>> signal = vi.sensors.Signal(vi.sensors.Sensor("a1", rate=50e3), np.array([0.0, 3.0, -5.0]))
     >>> signal.time.tolist(), signal.sensor.unit
     ([0.0, 2e-05, 4e-05], 'm/s2')
     """

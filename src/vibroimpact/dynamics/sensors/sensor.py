@@ -65,8 +65,8 @@ class Sensor:
     >>> import vibroimpact as vi
     >>> geophone = vi.sensors.Geophone(natural_frequency=10.0, sensitivity=30.0)
     >>> (
-    ...     vi.Sensor("a1", quantity="velocity", rate=20e3).unit,
-    ...     vi.Sensor("a2", quantity="voltage", instrument=geophone).unit,
+    ...     vi.sensors.Sensor("a1", quantity="velocity", rate=20e3).unit,
+    ...     vi.sensors.Sensor("a2", quantity="voltage", instrument=geophone).unit,
     ... )
     ('m/s', 'V')
     """

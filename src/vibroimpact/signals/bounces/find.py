@@ -72,8 +72,8 @@ class Bounces:
     --------
     >>> import numpy as np
     >>> import vibroimpact as vi
-    >>> microphone = vi.Record("microphone", np.zeros(48000), 48e3, "Pa")
-    >>> heard = vi.Bounces(
+    >>> microphone = vi.signals.Record("microphone", np.zeros(48000), 48e3, "Pa")
+    >>> heard = vi.signals.Bounces(
     ...     microphone,
     ...     np.array([0.0, 0.4, 0.72, 0.976]),
     ...     np.full(4, 1e-5),

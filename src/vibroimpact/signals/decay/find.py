@@ -53,13 +53,13 @@ class DecayMode:
     >>> import numpy as np
     >>> import vibroimpact as vi
     >>> time = np.arange(4000) / 10e3
-    >>> ringing = vi.Record(
+    >>> ringing = vi.signals.Record(
     ...     "a",
     ...     np.exp(-2.0 * np.pi * 400.0 * 0.01 * time) * np.sin(2.0 * np.pi * 400.0 * time),
     ...     10e3,
     ...     "m/s2",
     ... )
-    >>> (mode,) = vi.modes_in_decay([ringing], (300.0, 500.0))
+    >>> (mode,) = vi.signals.modes_in_decay([ringing], (300.0, 500.0))
     >>> round(mode.frequency.value, 1), round(mode.damping_ratio.value, 4)
     (400.0, 0.01)
     """

@@ -220,8 +220,10 @@ def modes_in_responses(
     >>> import vibroimpact as vi
     >>> frequency = np.arange(200.0, 800.0, 0.5)
     >>> value = 1.0 / (400.0**2 - frequency**2 + 2j * 0.01 * 400.0 * frequency)
-    >>> ends = (vi.DegreeOfFreedom(("a1",)), vi.DegreeOfFreedom(("hammer",)))
-    >>> (mode,) = vi.modes_in_responses([vi.FrequencyResponse(*ends, frequency, value, "m/N")])
+    >>> ends = (vi.signals.DegreeOfFreedom(("a1",)), vi.signals.DegreeOfFreedom(("hammer",)))
+    >>> (mode,) = vi.signals.modes_in_responses(
+    ...     [vi.signals.FrequencyResponse(*ends, frequency, value, "m/N")]
+    ... )
     >>> round(mode.frequency.value, 3), round(mode.damping_ratio.value, 6)
     (400.0, 0.01)
     """

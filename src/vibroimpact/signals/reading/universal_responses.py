@@ -65,7 +65,7 @@ def contents_of(path: str | PathLike[str]) -> Contents:
     return Contents(names, types.count(FREQUENCY_RESPONSE))
 
 
-def read_responses(path: str | PathLike[str]) -> tuple[FrequencyResponse, ...]:
+def load_responses(path: str | PathLike[str]) -> tuple[FrequencyResponse, ...]:
     """Return the frequency responses of a universal file with their coherences.
 
     They are in datasets 58, of function type 4, and the coherences of type 6.
@@ -97,7 +97,7 @@ def read_responses(path: str | PathLike[str]) -> tuple[FrequencyResponse, ...]:
     >>> lines += ["  1.00000e+00  0.00000e+00  0.00000e+00 -2.00000e+00", "    -1", ""]
     >>> with TemporaryDirectory() as folder:
     ...     _ = Path(folder, "beam.uff").write_text("    -1" + "\\n".join(lines))
-    ...     (response,) = vi.read_responses(f"{folder}/beam.uff")
+    ...     (response,) = vi.signals.load_responses(f"{folder}/beam.uff")
     >>> (
     ...     response.name,
     ...     response.response.direction,

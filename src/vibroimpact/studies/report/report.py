@@ -57,9 +57,11 @@ def report_of(study: Study) -> Report:
     >>> from tempfile import TemporaryDirectory
     >>> import vibroimpact as vi
     >>> case = vi.load_case("paper:type1-theory").to_problem().source
-    >>> sweep = vi.read_sweep({**case, "sweep": {"over": {"drop.height": ["1 m", "2 m"]}}})
+    >>> sweep = vi.studies.sweep_of({**case, "sweep": {"over": {"drop.height": ["1 m", "2 m"]}}})
     >>> with TemporaryDirectory() as folder:
-    ...     report = report_of(vi.read_study(vi.run_sweep(sweep, f"{folder}/heights")))
+    ...     report = report_of(
+    ...         vi.studies.load_study(vi.studies.run_sweep(sweep, f"{folder}/heights"))
+    ...     )
     >>> report.answer, list(report.files), [chart.name for chart in report.charts]
     ('2 drops; none failed.', ['percentiles.csv', 'sensitivity.csv'], ['curves', 'restitution'])
     """

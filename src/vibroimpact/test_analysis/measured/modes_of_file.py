@@ -14,7 +14,7 @@ from vibroimpact.report.reported import Reported
 from vibroimpact.signals.decay.find import DecayMode
 from vibroimpact.signals.decay.responses import common_lines, modes_in_responses
 from vibroimpact.signals.frequency_response import FrequencyResponse
-from vibroimpact.signals.reading.universal_responses import contents_of, read_responses
+from vibroimpact.signals.reading.universal_responses import contents_of, load_responses
 from vibroimpact.structures.modal_model import ModalBasis
 from vibroimpact.test_analysis.mode_pairs import ModePair, paired
 from vibroimpact.test_analysis.responses.doubts import doubts_of_files, doubts_of_resolution
@@ -102,7 +102,7 @@ def modes_beside(basis: ModalBasis | None, paths: Sequence[str | PathLike[str]])
 def _read(
     paths: Sequence[str | PathLike[str]],
 ) -> tuple[tuple[FrequencyResponse, ...], Floats, Complex]:
-    responses = tuple(response for path in paths for response in read_responses(path))
+    responses = tuple(response for path in paths for response in load_responses(path))
     return responses, *common_lines(responses)
 
 

@@ -45,7 +45,7 @@ def response_charts(found: ResponseCorrelation) -> list[Chart]:
     ...     "supports": "clamped",
     ...     "damping": 0.01,
     ... }
-    >>> case = vi.read_case(
+    >>> case = vi.case_of(
     ...     {
     ...         "sphere": {"radius": 0.02, "material": "steel"},
     ...         "plate": plate,
@@ -54,8 +54,8 @@ def response_charts(found: ResponseCorrelation) -> list[Chart]:
     ...         "sensors": [{"name": "a", "position": [0.1, 0.03]}],
     ...     }
     ... )
-    >>> found = vi.correlate_responses(
-    ...     case, vi.responses_of_case(case, np.arange(500.0, 4000.0, 2.0))
+    >>> found = vi.test_analysis.correlate_responses(
+    ...     case, vi.test_analysis.responses_of_case(case, np.arange(500.0, 4000.0, 2.0))
     ... )
     >>> [chart.name for chart in response_charts(found)]
     ['responses', 'frac', 'damping']

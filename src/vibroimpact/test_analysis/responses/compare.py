@@ -77,7 +77,7 @@ def correlate_responses(
     ...     "supports": "clamped",
     ...     "damping": 0.01,
     ... }
-    >>> case = vi.read_case(
+    >>> case = vi.case_of(
     ...     {
     ...         "sphere": {"radius": 0.02, "material": "steel"},
     ...         "plate": plate,
@@ -86,8 +86,8 @@ def correlate_responses(
     ...         "sensors": [{"name": "a", "position": [0.1, 0.03]}],
     ...     }
     ... )
-    >>> measured = vi.responses_of_case(case, np.arange(500.0, 4000.0, 2.0))
-    >>> found = vi.correlate_responses(case, measured)
+    >>> measured = vi.test_analysis.responses_of_case(case, np.arange(500.0, 4000.0, 2.0))
+    >>> found = vi.test_analysis.correlate_responses(case, measured)
     >>> pair = found.modes[0]
     >>> abs(pair.frequency_difference) < 1e-6, round(pair.measured.damping_ratio.value, 5)
     (True, 0.01)
@@ -196,7 +196,7 @@ def responses_of_case(
     ...     "supports": "clamped",
     ...     "damping": 0.01,
     ... }
-    >>> case = vi.read_case(
+    >>> case = vi.case_of(
     ...     {
     ...         "sphere": {"radius": 0.02, "material": "steel"},
     ...         "plate": plate,
@@ -205,7 +205,7 @@ def responses_of_case(
     ...         "sensors": [{"name": "a", "position": [0.1, 0.03]}],
     ...     }
     ... )
-    >>> (response,) = vi.responses_of_case(case, [200.0, 400.0, 800.0])
+    >>> (response,) = vi.test_analysis.responses_of_case(case, [200.0, 400.0, 800.0])
     >>> response.unit, len(response.value)
     ('m/s2/N', 3)
     """

@@ -67,7 +67,7 @@ class ResponseCorrelation(Reported, reported_in="vibroimpact.test_analysis.respo
     ...     "supports": "clamped",
     ...     "damping": 0.01,
     ... }
-    >>> case = vi.read_case(
+    >>> case = vi.case_of(
     ...     {
     ...         "sphere": {"radius": 0.02, "material": "steel"},
     ...         "plate": plate,
@@ -76,8 +76,8 @@ class ResponseCorrelation(Reported, reported_in="vibroimpact.test_analysis.respo
     ...         "sensors": [{"name": "a", "position": [0.1, 0.03]}],
     ...     }
     ... )
-    >>> measured = vi.responses_of_case(case, np.arange(500.0, 4000.0, 2.0))
-    >>> found = vi.correlate_responses(case, measured)
+    >>> measured = vi.test_analysis.responses_of_case(case, np.arange(500.0, 4000.0, 2.0))
+    >>> found = vi.test_analysis.correlate_responses(case, measured)
     >>> found.sensors[0].name, found.frac.round(6).tolist(), found.scale.round(6).tolist()
     ('a', [1.0], [1.0])
     """

@@ -33,7 +33,7 @@ _WHOLE = ("result.nc", "dataset.nc", "study.nc")
 """Files that hold all signals of a folder of this program."""
 
 
-def read_records(path: str | PathLike[str], columns: str | None = None) -> Iterator[Record]:
+def load_records(path: str | PathLike[str], columns: str | None = None) -> Iterator[Record]:
     """Yield the records of a file, or of a folder.
 
     Read are tables with a column `time [s]` and a column with its unit for each channel (CSV,
@@ -68,7 +68,7 @@ def read_records(path: str | PathLike[str], columns: str | None = None) -> Itera
     >>> with TemporaryDirectory() as folder:
     ...     file = Path(folder, "hammer.csv")
     ...     _ = file.write_text("time [ms],force [kN]\\n0,1\\n1,2\\n")
-    ...     [(record.name, record.value.tolist(), record.rate) for record in read_records(file)]
+    ...     [(record.name, record.value.tolist(), record.rate) for record in load_records(file)]
     [('force', [1000.0, 2000.0], 1000.0)]
     """
     files = record_files(path)

@@ -28,7 +28,7 @@ from vibroimpact.files.reading import with_path
 from vibroimpact.quoting import quoted
 from vibroimpact.recognition.labelled_signals import GROUPS, LabelledSignals, SensorSignals
 from vibroimpact.results.folder import SUMMARY
-from vibroimpact.studies.study import read_study
+from vibroimpact.studies.study import load_study
 from vibroimpact.studies.study_folder import DATASET as STUDY
 from vibroimpact.studies.study_folder import is_study
 
@@ -44,7 +44,7 @@ _BLOCK = 4096  # signals read at once
 _MOST_CLASSES = 100
 
 
-def read_labelled_signals(
+def load_labelled_signals(
     dataset: str | PathLike[str], *, most: int | None = None, group: str = "rock", seed: int = 0
 ) -> LabelledSignals:
     """Return the signals of a data set with their classes and groups.
@@ -75,7 +75,7 @@ def read_labelled_signals(
     Examples
     --------
     >>> import vibroimpact as vi
-    >>> signals = vi.read_labelled_signals("falls", most=40)
+    >>> signals = vi.recognition.load_labelled_signals("falls", most=40)
     >>> signals.total, len(signals), sorted(signals.groups)
     (96, 36, ['fall', 'plate', 'rock'])
     """
@@ -390,7 +390,7 @@ def _bayes_error(path: Path) -> float | None:
     if not summary.is_file():
         return None
     if _is_computed(path):
-        return least_error(falls_of_study(read_study(path.parent)))
+        return least_error(falls_of_study(load_study(path.parent)))
     try:
         value = read_sealed(summary).get("bayes_error")
     except (DamageError, InputError) as error:

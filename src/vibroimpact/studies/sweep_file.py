@@ -66,11 +66,14 @@ def load_sweep(source: str | PathLike[str], samples: int | None = None) -> Sweep
     Examples
     --------
     >>> import vibroimpact as vi
-    >>> vi.load_sweep("paper:sweep").size, vi.load_sweep("signals:coal-gangue", samples=10).size
+    >>> (
+    ...     vi.studies.load_sweep("paper:sweep").size,
+    ...     vi.studies.load_sweep("signals:coal-gangue", samples=10).size,
+    ... )
     (140, 10)
     """
     changes = {} if samples is None else {"sweep.samples": samples}
-    return prefix_errors(source, lambda: read_sweep(with_values(load_table(source), changes)))
+    return prefix_errors(source, lambda: sweep_of(with_values(load_table(source), changes)))
 
 
 def load_drop(
@@ -98,10 +101,10 @@ def load_drop(
     >>> case.sphere.radius, case.contact.parameters["restitution"]
     (0.005, 0.95)
     """
-    return prefix_errors(source, lambda: read_sweep(load_table(source)).case_of(drop, changes))
+    return prefix_errors(source, lambda: sweep_of(load_table(source)).case_of(drop, changes))
 
 
-def read_sweep(table: Mapping[str, Any]) -> Sweep:
+def sweep_of(table: Mapping[str, Any]) -> Sweep:
     """Return a study, read from a mapping with the structure of a TOML case file.
 
     Nothing is computed, but the case is validated at the first point and at the ends of every axis.
@@ -115,7 +118,7 @@ def read_sweep(table: Mapping[str, Any]) -> Sweep:
     --------
     >>> from vibroimpact.cases.reader import load_table
     >>> case = load_table("paper:type1-theory")
-    >>> study = read_sweep(
+    >>> study = sweep_of(
     ...     {
     ...         **case,
     ...         "sweep": {
