@@ -52,6 +52,8 @@ from .figures import save_figures as save_figures
 from .materials import Material as Material
 from .materials import find_material as find_material
 from .paper.report.folder import reproduce_paper as reproduce_paper
+from .paper.report.reproduction import Reproduction as Reproduction
+from .paper.report.reproduction import load_reproduction as load_reproduction
 from .regenerate import remake_report as remake_report
 from .results.folder import load_result as load_result
 from .results.result import Result as Result

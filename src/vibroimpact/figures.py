@@ -93,10 +93,9 @@ def _writer_of(
     from vibroimpact.studies.study_folder import is_study
 
     if is_study(folder):
-        from vibroimpact.studies.report.charts import study_charts
         from vibroimpact.studies.study import load_study
 
-        charts = study_charts(load_study(folder))
+        charts = load_study(folder).report.charts
 
         def write(place: Path) -> None:
             save_charts(charts, place, formats, progress)
@@ -113,7 +112,7 @@ def _result_in(folder: Path) -> Result:
     try:
         return load_result(folder)
     except InputError:
-        from vibroimpact.paper.report.folder import is_reproduction
+        from vibroimpact.paper.report.reproduction import is_reproduction
 
         if is_reproduction(folder):
             raise InputError(

@@ -33,16 +33,17 @@ def remake_report(directory: str | PathLike[str]) -> Path:
     'theory'
     """
     # imported here, since a run does not need them
-    from vibroimpact.studies.report.page import write_study_report
+    from vibroimpact.studies.report.write_report import write_study_report
     from vibroimpact.studies.study import load_study
     from vibroimpact.studies.study_folder import is_study
 
     folder = Path(directory)
     recover(folder)
     if is_study(folder):
-        write_study_report(load_study(folder), folder)
+        write_study_report(load_study(folder))
         return folder
-    from vibroimpact.paper.report.folder import is_reproduction, write_reproduction_report
+    from vibroimpact.paper.report.folder import write_reproduction_report
+    from vibroimpact.paper.report.reproduction import is_reproduction
 
     if is_reproduction(folder):
         write_reproduction_report(folder)

@@ -26,7 +26,6 @@ from vibroimpact.calibration.calibrate_case import calibrate_case, calibration_o
 from vibroimpact.exporting.load_drop import load_drop
 from vibroimpact.paper.report.folder import reproduce_paper
 from vibroimpact.studies.ledger import LEDGER
-from vibroimpact.studies.report.charts import study_charts
 
 
 class Change(NamedTuple):
@@ -90,7 +89,7 @@ def test_results(few: int, tmp_path: Path) -> None:
 
 def use_study(folder: Path) -> None:
     study = vi.studies.load_study(folder)
-    study_charts(study)
+    assert study.report.answer
     for name in study.shapes:
         study.values(name)
 

@@ -49,9 +49,6 @@ LAYERS = [
 ]
 LEVEL = {name: level for level, names in enumerate(LAYERS) for name in names}
 
-# study.plot(...) and what a notebook shows ask the package's front, which knows the charts: the door
-# upwards
-DOORS = {("studies/study.py", "vibroimpact")}
 
 # a room that people work in may have a section of the case, which is part of the case file and lies
 # beside the work that it asks for
@@ -96,27 +93,20 @@ def test_every_room_has_a_layer() -> None:
 def test_imports_point_down() -> None:
     modules = sorted(PACKAGE.rglob("*.py"))
     assert len(modules) > 40
-    doors = set()
     for path in modules:
         relative = path.relative_to(PACKAGE).as_posix()
         here = room(f"vibroimpact.{relative.removesuffix('.py').replace('/', '.')}")
         for name in imports_of(path):
-            if (relative, name) in DOORS:
-                doors.add((relative, name))
-                continue
             if here == "cases" and name in SECTIONS:
                 continue
             there = room(name)
             assert LEVEL[there] < LEVEL[here] or there == here, (
                 f"{relative} imports {name}, which lies above it"
             )
-    assert doors == DOORS, "a door that is no longer used"
 
 
 def test_modules_do_not_import_in_circles() -> None:
-    """Within rooms neither, and not for types alone; the package's front, which `DOORS`
-    lead to, is above all of them.
-    """
+    """Within rooms neither, and not for types alone; the package's front is above all of them."""
     paths = {
         f"vibroimpact.{path.relative_to(PACKAGE).with_suffix('').as_posix().replace('/', '.')}": path
         for path in PACKAGE.rglob("*.py")

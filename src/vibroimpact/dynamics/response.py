@@ -37,7 +37,7 @@ from vibroimpact.dynamics.shaken.steady import steady_modes
 from vibroimpact.dynamics.status import Ended, end_in_words, status_of
 from vibroimpact.dynamics.truncation import truncation_estimates
 from vibroimpact.errors import InputError, choices
-from vibroimpact.report.html_report import html_report
+from vibroimpact.report.html_report import html_summary
 from vibroimpact.report.reported import Reported
 
 if TYPE_CHECKING:
@@ -329,7 +329,7 @@ class Response(Reported, reported_in="vibroimpact.runs.response_report"):
 
     def _repr_html_(self) -> str | None:
         has_report = self.problem.shape == () and self.bounces is not None
-        return html_report(self.report) if has_report else None
+        return html_summary(self.report) if has_report else None
 
     # the history of one drop, segment by segment
     # ---------------------------------------------------

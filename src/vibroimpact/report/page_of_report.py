@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from vibroimpact._version import __version__
 from vibroimpact.report.page import render_page
 from vibroimpact.report.report import Report
 
@@ -28,5 +27,4 @@ def page_of_report(report: Report) -> str:
         None if scene is None else dict(scene.data),
         name=report.title[:1].upper() + report.title[1:],
         report=report,
-        version=__version__,
     )

@@ -5,11 +5,12 @@ A task has a module `report` with a function `report_of`, which returns the `Rep
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, ClassVar, Literal
 
+from vibroimpact._version import __version__
 from vibroimpact.charts.chart import Chart
 
 
@@ -29,6 +30,13 @@ class Column:
         Texts, aligned on the left; otherwise numbers.
     note : str
         A sentence on how it is read, which the terminal shows where it shows the column.
+    wraps : bool
+        Long texts, which the page breaks into lines.
+    tones : sequence of str
+        How each cell is coloured on the page: "good", "fair", "soft", "bad", or "" for none; by
+        default no cell is.
+    least_width : int
+        Width of a terminal [characters] below which the column is left out.
     """
 
     heading: str
@@ -36,6 +44,9 @@ class Column:
     unit: str = ""
     is_text: bool = False
     note: str = ""
+    wraps: bool = False
+    tones: Sequence[str] = ()
+    least_width: int = 0
 
 
 @dataclass(frozen=True)
@@ -119,12 +130,30 @@ class Paragraph:
 
 
 @dataclass(frozen=True)
+class Heading:
+    """A heading within a section."""
+
+    kind: ClassVar[str] = "heading"
+
+    text: str
+
+
+@dataclass(frozen=True)
 class Note:
-    """Sentences on how a table is read."""
+    """Sentences on how a table is read, or on what went wrong.
+
+    Parameters
+    ----------
+    text : str
+        The sentences.
+    is_warning : bool
+        Whether the terminal sets them apart as a warning.
+    """
 
     kind: ClassVar[str] = "note"
 
     text: str
+    is_warning: bool = False
 
 
 @dataclass(frozen=True)
@@ -232,7 +261,7 @@ class Code:
     is_short: bool = False
 
 
-Block = Table | Facts | Paragraph | Note | Explanation | Warnings | Figure | Scene | Code
+Block = Table | Facts | Paragraph | Heading | Note | Explanation | Warnings | Figure | Scene | Code
 
 
 @dataclass(frozen=True)
@@ -244,7 +273,7 @@ class Section:
     name : str
         Plain name, to which the contents link.
     title : str
-        The heading.
+        The heading; without one it is not in the contents.
     blocks : sequence of Block
         What it consists of.
     after_charts : bool
@@ -258,6 +287,11 @@ class Section:
     blocks: Sequence[Block]
     after_charts: bool = False
     medium: Literal["page", "terminal", "both"] = "both"
+
+    @property
+    def charts(self) -> list[Chart]:
+        """The charts within it."""
+        return [block.chart for block in self.blocks if isinstance(block, Figure)]
 
 
 @dataclass(frozen=True)
@@ -273,7 +307,7 @@ class Report:
     summary : mapping
         Content of `summary.json` in the folder; in SI.
     charts : sequence of Chart
-        The charts.
+        The charts that follow the sections.
     main_chart : str
         Name of the chart that is plotted where none is named; by default the first one.
     further_charts : mapping of str to callable
@@ -287,7 +321,7 @@ class Report:
     answer : str
         The finding in a sentence.
     has_failed : bool
-        Whether the answer is that it failed.
+        Whether the answer is that there is no result.
     sentences : sequence of str
         What else is said of it.
     warnings : sequence of str
@@ -296,6 +330,15 @@ class Report:
         What it was made from: words that follow the version of the program, or facts with it.
     data : mapping, optional
         What `--json` prints; by default the summary.
+    opening : sequence of Block
+        What precedes the contents of the page.
+    warnings_note : str
+        How the warnings are read.
+    commands : str
+        Where the commands are run that end the labels of points in charts, such as "In the study's
+        folder"; empty if they end with none.
+    version : str
+        Version of the program that computed the finding.
     """
 
     title: str
@@ -314,6 +357,10 @@ class Report:
     warnings: Sequence[str] = ()
     provenance: str | Facts = ""
     data: Mapping[str, Any] | None = None
+    opening: Sequence[Block] = ()
+    warnings_note: str = ""
+    commands: str = ""
+    version: str = __version__
 
     @property
     def document(self) -> dict[str, Any]:
@@ -323,9 +370,16 @@ class Report:
     @property
     def page_charts(self) -> tuple[Chart, ...]:
         """The charts of the page, in its order."""
-        ahead = [section for section in self.sections if not section.after_charts]
-        behind = [section for section in self.sections if section.after_charts]
-        return (*_charts_in(ahead), *self.charts, *_charts_in(behind))
+        ahead = [
+            chart
+            for section in self.sections
+            if not section.after_charts
+            for chart in section.charts
+        ]
+        behind = [
+            chart for section in self.sections if section.after_charts for chart in section.charts
+        ]
+        return (*ahead, *self.charts, *behind)
 
     @property
     def all_charts(self) -> tuple[Chart, ...]:
@@ -354,14 +408,6 @@ class Report:
             for text in block.texts
         ]
         return [*self.warnings, *of_sections]
-
-
-def _charts_in(sections: Iterable[Section]) -> Iterator[Chart]:
-    """Yield the charts of the figures of sections."""
-    for section in sections:
-        for block in section.blocks:
-            if isinstance(block, Figure):
-                yield block.chart
 
 
 _MOST_ROWS = 50
@@ -407,8 +453,9 @@ def table_of(
     Examples
     --------
     >>> table = table_of(["Law", ("Force", "N")], [["hertz", "20"], ["tsuji", "19"]])
-    >>> table.headings, table.rows
-    ([('Law', ''), ('Force', 'N')], [['hertz', '20'], ['tsuji', '19']])
+    >>> force = table.columns[1]
+    >>> force.heading, force.unit, force.cells
+    ('Force', 'N', ('20', '19'))
     """
     columns = []
     for number, heading in enumerate(headings):

@@ -79,12 +79,17 @@ def fill_folder(
     progress : callable, optional
         Called with the part of the figures that is written, up to 1.
     """
-    write_files(report.files, folder)
+    write_report(report, folder)
     write_summary(report.summary, folder, report.checked_files)
-    write_page(report, folder)
     if figures:
         (folder / FIGURES).mkdir()
         write_figures(report, folder / FIGURES, figures, progress)
+
+
+def write_report(report: Report, folder: Path) -> None:
+    """Write the page of a report, and its further files, into an existing folder."""
+    write_files(report.files, folder)
+    write_page(report, folder)
 
 
 def write_page(report: Report, folder: Path) -> None:

@@ -16,6 +16,7 @@ from vibroimpact.report.report import (
     Column,
     Explanation,
     Facts,
+    Heading,
     Note,
     Paragraph,
     Report,
@@ -56,19 +57,24 @@ def terminal_report(report: Report) -> RenderableType:
     if report.answer:
         lines.append(Text(report.answer))
     lines.extend(Text(sentence) for sentence in report.sentences)
-    is_first = True
-    for section in report.sections:
-        blocks = [] if section.medium == "page" else list(_section_lines(section))
-        if not blocks:
-            continue
-        # the table below the answer needs no heading
-        if not (is_first and isinstance(section.blocks[0], Table)):
-            lines.append(Text())
-            lines.append(Text(section.title, style="bold"))
+    sections = [section for section in report.sections if section.medium != "page"]
+    shown = [(section, blocks) for section in sections if (blocks := list(_section_lines(section)))]
+    for number, (section, blocks) in enumerate(shown):
+        lines.extend(_heading_lines(section, is_first=number == 0))
         lines.extend(blocks)
-        is_first = False
     lines.extend(warning_lines(report.all_warnings))
+    if report.all_warnings and report.warnings_note:
+        lines.append(Text(report.warnings_note, style="dim"))
     return Group(*lines)
+
+
+def _heading_lines(section: Section, *, is_first: bool) -> Iterator[Text]:
+    """Yield what sets a section apart; the table below the answer needs no heading."""
+    has_heading = section.title and not (is_first and isinstance(section.blocks[0], Table))
+    if has_heading or not is_first:
+        yield Text()
+    if has_heading:
+        yield Text(section.title, style="bold")
 
 
 def _section_lines(section: Section) -> Iterator[RenderableType]:
@@ -95,12 +101,14 @@ def block_lines(block: Block) -> Iterator[RenderableType]:
         yield _FittedTable(table) if table.expendable else _terminal_table(table, table.columns)
     elif isinstance(block, Facts):
         yield facts(block.rows, indent=1)
+    elif isinstance(block, Heading):
+        yield Text(block.text, style="bold")
     elif isinstance(block, Paragraph):
         yield Text(block.text)
     elif isinstance(block, Code) and block.is_short:
         yield Text(f"{block.lead}\n{block.text}")
     elif isinstance(block, Note):
-        yield Text(f" {block.text}", style="dim")
+        yield Text(f" {block.text}", style="yellow" if block.is_warning else "dim")
     elif isinstance(block, Explanation) and block.short:
         yield Text(f" {block.short}", style="dim")
 
@@ -138,7 +146,7 @@ def _terminal_table(table: Table, columns: Sequence[Column]) -> TerminalTable:
 
 def _terminal_columns(columns: Iterable[Column]) -> list[TerminalColumn]:
     return [
-        TerminalColumn(column.heading, column.cells, text=True)
+        TerminalColumn(column.heading, column.cells, text=True, least_width=column.least_width)
         if column.is_text
         else numbers(column.heading, column.unit, column.cells)
         for column in columns

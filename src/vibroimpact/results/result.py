@@ -21,7 +21,7 @@ from vibroimpact.dynamics.change_by_impact import RELATIVE_CHANGE, change_by_imp
 from vibroimpact.dynamics.response import Response
 from vibroimpact.dynamics.sensors.recording import Signal
 from vibroimpact.dynamics.truncation import time_of_contact
-from vibroimpact.report.html_report import html_report
+from vibroimpact.report.html_report import html_summary
 from vibroimpact.report.reported import Reported
 from vibroimpact.resolved_case import ResolvedCase
 from vibroimpact.results.deflection import Deflection, deflection_of
@@ -176,7 +176,7 @@ class Result(Reported, reported_in="vibroimpact.runs.report"):
         return str(self.case.get("name", "")) or "a drop"
 
     def _repr_html_(self) -> str:
-        return html_report(self.report)
+        return html_summary(self.report)
 
 
 def result_of(response: Response) -> Result:
