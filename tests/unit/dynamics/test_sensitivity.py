@@ -42,9 +42,12 @@ def undamped() -> Result:
 
 
 def printed(result: Result, width: int = 140) -> list[list[str]]:
+    """Return the words of the name and of the lines from the head of the table on."""
     written = StringIO()
     Console(width=width, file=written).print(terminal_report(result.report))
-    return [line.split() for line in written.getvalue().splitlines()]
+    lines = [line.split() for line in written.getvalue().splitlines()]
+    units = next(number for number, line in enumerate(lines) if line[:1] == ["#"])
+    return [lines[0], *lines[units - 1 :]]
 
 
 def test_the_terminal_prints_only_digits_that_are_there(undamped: Result) -> None:
